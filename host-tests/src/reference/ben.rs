@@ -1,0 +1,175 @@
+//! BSA, Ben's spike algorithm, on `r = x - shift`.
+//!
+//! Aligned (Schrauwen & Van Campenhout 2003): `e1 = sum |r[i+j]-h[j]|`, `e2 = sum |r[i+j]|`; spike
+//! at `i` iff `e1 <= e2 - threshold` (subtractive) or `e1 <= e2*threshold` (multiplicative); then
+//! `r[i+j] -= h[j]`. At the end of a recording both sums are cut to what is left.
+//!
+//! Toolbox: `e1` over `r[i+j+1]-h[j]`, `e2` over `r[i+j]`, spike iff `e1 <= e2*threshold`, and the
+//! subtraction at `r[i+j+2]`, left out beyond the last sample; for `i < L-F` only.
+//!
+//! All sums run over `j` ascending, from 0. The subtractive form sums one error,
+//! `|r-h| - |r|` a tap, and compares it with `-threshold`; the others sum `e1` and `e2` apart.
+
+use super::Real;
+
+/// Encodes a recording by the aligned form, `e1 <= e2 - threshold`. Without `finish` only whole
+/// windows are decided: `L-(F-1)` entries.
+pub fn ben_subtractive<T: Real>(
+    x: &[T],
+    taps: &[T],
+    shift: T,
+    threshold: T,
+    finish: bool,
+) -> Vec<i8> {
+    aligned(x, taps, shift, finish, |window| {
+        let mut error = T::ZERO;
+        for (&r, &h) in window.iter().zip(taps) {
+            error = error + ((r - h).magnitude() - r.magnitude());
+        }
+        error <= -threshold
+    })
+}
+
+/// Encodes a recording by the aligned form, `e1 <= e2*threshold`. Without `finish` only whole
+/// windows are decided: `L-(F-1)` entries.
+pub fn ben_multiplicative<T: Real>(
+    x: &[T],
+    taps: &[T],
+    shift: T,
+    threshold: T,
+    finish: bool,
+) -> Vec<i8> {
+    aligned(x, taps, shift, finish, |window| {
+        let (mut e1, mut e2) = (T::ZERO, T::ZERO);
+        for (&r, &h) in window.iter().zip(taps) {
+            e1 = e1 + (r - h).magnitude();
+            e2 = e2 + r.magnitude();
+        }
+        e1 <= e2 * threshold
+    })
+}
+
+/// Encodes a recording by the toolbox's form. Without `finish` there are `L-F` entries; with it
+/// `L`, the last `F` of them silent.
+pub fn ben_toolbox<T: Real>(x: &[T], taps: &[T], shift: T, threshold: T, finish: bool) -> Vec<i8> {
+    let mut r: Vec<T> = x.iter().map(|&value| value - shift).collect();
+    let mut spikes = Vec::with_capacity(x.len());
+    for i in 0..x.len().saturating_sub(taps.len()) {
+        let (mut e1, mut e2) = (T::ZERO, T::ZERO);
+        for (j, &h) in taps.iter().enumerate() {
+            e1 = e1 + (r[i + j + 1] - h).magnitude();
+            e2 = e2 + r[i + j].magnitude();
+        }
+        let spike = e1 <= e2 * threshold;
+        if spike {
+            for (r, &h) in r.iter_mut().skip(i + 2).zip(taps) {
+                *r = *r - h;
+            }
+        }
+        spikes.push(i8::from(spike));
+    }
+    if finish {
+        spikes.resize(x.len(), 0);
+    }
+    spikes
+}
+
+/// The windows of the aligned form: `spikes` says whether the filter fits at the start of one.
+fn aligned<T: Real>(
+    x: &[T],
+    taps: &[T],
+    shift: T,
+    finish: bool,
+    fits: impl Fn(&[T]) -> bool,
+) -> Vec<i8> {
+    let mut r: Vec<T> = x.iter().map(|&value| value - shift).collect();
+    let whole = (x.len() + 1).saturating_sub(taps.len());
+    let decided = if finish { x.len() } else { whole };
+    let mut spikes = Vec::with_capacity(decided);
+    for i in 0..decided {
+        let end = x.len().min(i + taps.len());
+        let window = &mut r[i..end];
+        let spike = fits(window);
+        if spike {
+            for (r, &h) in window.iter_mut().zip(taps) {
+                *r = *r - h;
+            }
+        }
+        spikes.push(i8::from(spike));
+    }
+    spikes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ben_multiplicative, ben_subtractive, ben_toolbox};
+
+    const TAPS: [f64; 3] = [0.25, 1.0, 0.5];
+
+    #[test]
+    fn subtractive_compares_with_the_sum_of_the_signal_less_the_threshold() {
+        // e1 = 0.25 + 0.5 + 0.5, e2 = 1.5 + 1: at most e2 - 1.25.
+        let x = [0.0, 1.5, 1.0];
+        assert_eq!(ben_subtractive(&x, &TAPS, 0.0, 1.25, false), [1]);
+        assert_eq!(ben_subtractive(&x, &TAPS, 0.0, 1.3125, false), [0]);
+        let (x, taps) = (x.map(|v| v as f32), TAPS.map(|v| v as f32));
+        assert_eq!(ben_subtractive(&x, &taps, 0.0, 1.25, false), [1]);
+    }
+
+    #[test]
+    fn multiplicative_compares_with_a_share_of_the_signal() {
+        // As above: 1.25 at most 2.5 * threshold.
+        let x = [0.0, 1.5, 1.0];
+        assert_eq!(ben_multiplicative(&x, &TAPS, 0.0, 0.5, false), [1]);
+        assert_eq!(ben_multiplicative(&x, &TAPS, 0.0, 0.4375, false), [0]);
+        let (x, taps) = (x.map(|v| v as f32), TAPS.map(|v| v as f32));
+        assert_eq!(ben_multiplicative(&x, &taps, 0.0, 0.5, false), [1]);
+    }
+
+    #[test]
+    fn the_shift_is_taken_off_and_each_spike_subtracted() {
+        // r = 1, 2, 1: the spike at 0 leaves 0, 1, 1; the spike at 1 leaves 0, 0, 0.
+        let x = [-4.0, -3.0, -4.0];
+        assert_eq!(ben_subtractive(&x, &[1.0, 1.0], -5.0, 1.5, false), [1, 1]);
+        assert_eq!(
+            ben_multiplicative(&x, &[1.0, 1.0], -5.0, 0.5, false),
+            [1, 1]
+        );
+    }
+
+    #[test]
+    fn the_last_windows_are_cut_to_what_is_left() {
+        // Errors of the windows, less the signal: 0.75 at 0; -0.75 at 1; -0.25 - 1 at 2.
+        let x = [0.0, 0.0, 0.75, 1.0];
+        assert_eq!(ben_subtractive(&x, &TAPS, 0.0, 1.25, true), [0, 0, 1, 0]);
+        assert_eq!(ben_subtractive(&x, &TAPS, 0.0, 1.25, false), [0, 0]);
+        // 0.25 + 1 - 0.5 at 1; 0.25 - 1 at 2; after its spike 0.25 at 3.
+        let last = [0.0, 0.0, 0.0, 1.0];
+        assert_eq!(ben_subtractive(&last, &TAPS, 0.0, 0.25, true), [0, 0, 1, 0]);
+        assert_eq!(
+            ben_multiplicative(&last, &TAPS, 0.0, 0.75, true),
+            [0, 0, 1, 0]
+        );
+        assert!(ben_subtractive(&x[..2], &TAPS, 0.0, 0.25, false).is_empty());
+        assert_eq!(ben_subtractive(&x[..2], &TAPS, 0.0, 0.25, true), [0, 0]);
+    }
+
+    #[test]
+    fn toolbox_is_one_sample_late_and_subtracts_one_later_still() {
+        // One tap of 1. At 0: |r[1]-1| = 0 <= |r[0]| -> spike, r[2] = 1. At 1: |1-1| = 0 -> spike,
+        // r[3] = 1. At 2: 0 <= 1 -> spike, r[4] does not exist. (Had the spike at 0 been subtracted
+        // at 1, there would have been |2-1| against nothing.)
+        let x = [1.0, 1.0, 2.0, 2.0];
+        assert_eq!(ben_toolbox(&x, &[1.0], 0.0, 0.5, true), [1, 1, 1, 0]);
+        assert_eq!(ben_toolbox(&x, &[1.0], 0.0, 0.5, false), [1, 1, 1]);
+        let single = x.map(|v| v as f32);
+        assert_eq!(ben_toolbox(&single, &[1.0], 0.0, 0.5, true), [1, 1, 1, 0]);
+    }
+
+    #[test]
+    fn toolbox_decides_nothing_in_the_last_windows() {
+        assert!(ben_toolbox(&TAPS, &TAPS, 0.0, 9.0, false).is_empty());
+        assert_eq!(ben_toolbox(&TAPS, &TAPS, 0.0, 9.0, true), [0, 0, 0]);
+        assert_eq!(ben_toolbox(&[1.0], &TAPS, 0.0, 9.0, true), [0]);
+    }
+}

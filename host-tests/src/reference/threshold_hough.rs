@@ -1,0 +1,102 @@
+//! T-HSA, the threshold Hough spike algorithm.
+//!
+//! On `r = x - shift`: `error = sum over j of max(0, h[j] - r[i+j])`; spike at `i` iff
+//! `error <= threshold`; then `r[i+j] -= h[j]`. At the end of a recording, samples past the end
+//! cost nothing, so that a tail of zeros can spike.
+//!
+//! The sum is taken from the threshold down: `left = threshold`, then for `j` ascending, where
+//! `h > r`, `left = left - (h - r)`; spike iff `left >= 0`.
+
+use super::Real;
+
+/// Encodes a recording. Without `finish` only whole windows are decided: `L-(F-1)` entries.
+pub fn threshold_hough<T: Real>(
+    x: &[T],
+    taps: &[T],
+    shift: T,
+    threshold: T,
+    finish: bool,
+) -> Vec<i8> {
+    let mut r: Vec<T> = x.iter().map(|&value| value - shift).collect();
+    let whole = (x.len() + 1).saturating_sub(taps.len());
+    let decided = if finish { x.len() } else { whole };
+    let mut spikes = Vec::with_capacity(decided);
+    for i in 0..decided {
+        let end = x.len().min(i + taps.len());
+        let window = &mut r[i..end];
+        let mut left = threshold;
+        for (&r, &h) in window.iter().zip(taps) {
+            if h > r {
+                left = left - (h - r);
+            }
+        }
+        let spike = left >= T::ZERO;
+        if spike {
+            for (r, &h) in window.iter_mut().zip(taps) {
+                *r = *r - h;
+            }
+        }
+        spikes.push(i8::from(spike));
+    }
+    spikes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::threshold_hough;
+    use crate::reference::{hough, rate_decode};
+
+    const TAPS: [f64; 3] = [0.25, 1.0, 0.5];
+
+    #[test]
+    fn the_comparison_is_not_strict() {
+        // Short by 0.25 and by 0.5.
+        let x = [0.0, 3.0, 0.0];
+        assert_eq!(threshold_hough(&x, &TAPS, 0.0, 0.75, false), [1]);
+        assert_eq!(threshold_hough(&x, &TAPS, 0.0, 0.6875, false), [0]);
+        let (x, taps) = (x.map(|v| v as f32), TAPS.map(|v| v as f32));
+        assert_eq!(threshold_hough(&x, &taps, 0.0, 0.75, false), [1]);
+    }
+
+    #[test]
+    fn without_tolerance_it_is_the_hough_spike_algorithm() {
+        let spikes = [1, 0, 1, 1, 0, 1, 0, 0];
+        let mut x = rate_decode(&spikes, &TAPS, 1.0);
+        x[3] -= 0.125;
+        let expected = hough(&x, &TAPS, 1.0, false);
+        assert_eq!(threshold_hough(&x, &TAPS, 1.0, 0.0, false), expected);
+        assert_eq!(threshold_hough(&x, &TAPS, 1.0, 0.125, false), spikes[..6]);
+    }
+
+    #[test]
+    fn what_was_taken_too_much_is_missing_later() {
+        // The spike at 0 leaves -1 at 1, so that 1 is short by 2 and not by 1.
+        let x = [1.0, 0.0, 1.0];
+        assert_eq!(threshold_hough(&x, &[1.0, 1.0], 0.0, 1.0, false), [1, 0]);
+        assert_eq!(threshold_hough(&x, &[1.0, 1.0], 0.0, 2.0, false), [1, 1]);
+    }
+
+    #[test]
+    fn a_tail_of_zeros_can_spike_at_the_end_only() {
+        let x = [0.0; 5];
+        assert_eq!(threshold_hough(&x, &TAPS, 0.0, 0.25, true), [0, 0, 0, 0, 1]);
+        // The spike at 3 costs 0.25 + 1 and leaves -1 at 4, which then costs as much.
+        assert_eq!(threshold_hough(&x, &TAPS, 0.0, 1.25, true), [0, 0, 0, 1, 1]);
+        assert_eq!(threshold_hough(&x, &TAPS, 0.0, 1.0, true), [0, 0, 0, 0, 1]);
+        assert_eq!(threshold_hough(&x, &TAPS, 0.0, 0.25, false), [0, 0, 0]);
+        assert_eq!(threshold_hough(&x[..1], &TAPS, 0.0, 0.25, true), [1]);
+        assert!(threshold_hough(&x[..1], &TAPS, 0.0, 0.25, false).is_empty());
+    }
+
+    #[test]
+    fn errors_are_summed_from_the_threshold_down() {
+        let taps = [0.1_f32, 0.2, 0.3];
+        let threshold = 0.6_f32;
+        let spikes = ((threshold - 0.1) - 0.2) - 0.3 >= 0.0;
+        let expected = [i8::from(spikes)];
+        assert_eq!(
+            threshold_hough(&[0.0; 3], &taps, 0.0, threshold, false),
+            expected
+        );
+    }
+}
