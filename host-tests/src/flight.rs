@@ -64,10 +64,7 @@ pub fn vtol_at_rest() -> Vec<Sample> {
 /// # Panics
 /// If there is no such channel.
 pub fn channel(samples: &[Sample], index: usize) -> Vec<f32> {
-    samples
-        .iter()
-        .map(|sample| sample.channels()[index])
-        .collect()
+    samples.iter().map(|sample| sample.channels()[index]).collect()
 }
 
 fn read(bytes: &[u8]) -> Vec<Sample> {
@@ -120,15 +117,10 @@ mod tests {
         assert_eq!(hexarotor.last().unwrap().time_us, 18_402_588);
         assert_eq!(vtol.last().unwrap().time_us, 6_496_152);
         let steps = |samples: &[Sample], least: u32| {
-            let steps = samples
-                .windows(2)
-                .map(|pair| pair[1].time_us - pair[0].time_us);
+            let steps = samples.windows(2).map(|pair| pair[1].time_us - pair[0].time_us);
             steps.filter(|&step| step > least).count()
         };
-        assert_eq!(
-            (steps(&hexarotor, 10_000), steps(&hexarotor, 20_000)),
-            (9, 1)
-        );
+        assert_eq!((steps(&hexarotor, 10_000), steps(&hexarotor, 20_000)), (9, 1));
         assert_eq!((steps(&vtol, 10_000), steps(&vtol, 20_000)), (1, 1));
     }
 
@@ -136,17 +128,9 @@ mod tests {
     fn time_rises_from_zero_and_all_is_finite() {
         for samples in [hexarotor(), vtol_at_rest()] {
             assert_eq!(samples[0].time_us, 0);
-            assert!(
-                samples
-                    .windows(2)
-                    .all(|pair| pair[0].time_us < pair[1].time_us)
-            );
+            assert!(samples.windows(2).all(|pair| pair[0].time_us < pair[1].time_us));
             for index in 0..6 {
-                assert!(
-                    channel(&samples, index)
-                        .iter()
-                        .all(|value| value.is_finite())
-                );
+                assert!(channel(&samples, index).iter().all(|value| value.is_finite()));
             }
         }
     }

@@ -57,10 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 package.name == log.package && package.version.to_string() == log.version
             })
             .ok_or_else(|| format!("{} {} is not a dependency", log.package, log.version))?;
-        let directory = package
-            .manifest_path
-            .parent()
-            .ok_or("a manifest lies in a directory")?;
+        let directory = package.manifest_path.parent().ok_or("a manifest lies in a directory")?;
         let bytes = fs::read(directory.join(log.file))?;
         if format!("{:x}", Sha256::digest(&bytes)) != log.sha256 {
             return Err(format!("{} is not the file that it was", log.file).into());
@@ -76,9 +73,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// The first instance of `sensor_combined`, with times from its first sample.
 fn inertial_samples(log: &[u8]) -> Result<Vec<Sample>, Box<dyn Error>> {
-    let parser = ULogParserBuilder::new(log)
-        .set_subscription_allow_list(["sensor_combined"])
-        .build()?;
+    let parser =
+        ULogParserBuilder::new(log).set_subscription_allow_list(["sensor_combined"]).build()?;
     let mut samples = Vec::new();
     let mut first = None;
     for message in parser {
@@ -124,19 +120,14 @@ fn csv(samples: &[Sample]) -> Result<String, std::fmt::Error> {
 
 /// Prints what `data/README.md` says of a recording.
 fn describe(name: &str, samples: &[Sample]) {
-    let steps: Vec<u32> = samples
-        .windows(2)
-        .map(|pair| pair[1].time_us - pair[0].time_us)
-        .collect();
+    let steps: Vec<u32> =
+        samples.windows(2).map(|pair| pair[1].time_us - pair[0].time_us).collect();
     let mut sorted = steps.clone();
     sorted.sort_unstable();
     let median = sorted[sorted.len() / 2];
     let duration = f64::from(steps.iter().sum::<u32>()) * 1e-6;
     let rate = steps.len() as f64 / duration;
-    println!(
-        "{name}: {} samples, {duration:.3} s, {rate:.2} Hz",
-        samples.len()
-    );
+    println!("{name}: {} samples, {duration:.3} s, {rate:.2} Hz", samples.len());
     println!("  step {median} us, {} at the least", sorted[0]);
     for (i, step) in steps.iter().enumerate() {
         if 2 * step > 3 * median {
@@ -147,9 +138,7 @@ fn describe(name: &str, samples: &[Sample]) {
     for (index, unit) in [(0, "rad/s"), (3, "m/s^2")] {
         let values = samples.iter().map(|sample| {
             let channels = sample.channels();
-            channels[index..index + 3]
-                .iter()
-                .fold(0.0, |most: f32, v| most.max(v.abs()))
+            channels[index..index + 3].iter().fold(0.0, |most: f32, v| most.max(v.abs()))
         });
         println!("  up to {} {unit}", values.fold(0.0, f32::max));
     }

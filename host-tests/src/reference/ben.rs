@@ -131,10 +131,7 @@ mod tests {
         // r = 1, 2, 1: the spike at 0 leaves 0, 1, 1; the spike at 1 leaves 0, 0, 0.
         let x = [-4.0, -3.0, -4.0];
         assert_eq!(ben_subtractive(&x, &[1.0, 1.0], -5.0, 1.5, false), [1, 1]);
-        assert_eq!(
-            ben_multiplicative(&x, &[1.0, 1.0], -5.0, 0.5, false),
-            [1, 1]
-        );
+        assert_eq!(ben_multiplicative(&x, &[1.0, 1.0], -5.0, 0.5, false), [1, 1]);
     }
 
     #[test]
@@ -146,10 +143,7 @@ mod tests {
         // 0.25 + 1 - 0.5 at 1; 0.25 - 1 at 2; after its spike 0.25 at 3.
         let last = [0.0, 0.0, 0.0, 1.0];
         assert_eq!(ben_subtractive(&last, &TAPS, 0.0, 0.25, true), [0, 0, 1, 0]);
-        assert_eq!(
-            ben_multiplicative(&last, &TAPS, 0.0, 0.75, true),
-            [0, 0, 1, 0]
-        );
+        assert_eq!(ben_multiplicative(&last, &TAPS, 0.0, 0.75, true), [0, 0, 1, 0]);
         assert!(ben_subtractive(&x[..2], &TAPS, 0.0, 0.25, false).is_empty());
         assert_eq!(ben_subtractive(&x[..2], &TAPS, 0.0, 0.25, true), [0, 0]);
     }

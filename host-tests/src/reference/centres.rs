@@ -15,9 +15,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 /// If `m` is less than 3.
 pub fn even_centres(min: f64, max: f64, m: usize) -> Vec<f64> {
     assert!(m >= 3, "even centres are at least three");
-    (0..m)
-        .map(|i| min + (2.0 * i as f64 - 1.0) / 2.0 * (max - min) / (m as f64 - 2.0))
-        .collect()
+    (0..m).map(|i| min + (2.0 * i as f64 - 1.0) / 2.0 * (max - min) / (m as f64 - 2.0)).collect()
 }
 
 /// The width of the receptive fields of `m` even centres: `sigma = (max-min)/(beta*(m-2))`.
@@ -36,9 +34,7 @@ pub fn gaussian_centres(min: f64, max: f64, m: usize) -> Vec<f64> {
         Normal::standard().inverse_cdf(probability)
     };
     let middle = f64::midpoint(min, max);
-    (0..m)
-        .map(|i| middle + (max - min) / 2.0 * z(i) / z(m - 1))
-        .collect()
+    (0..m).map(|i| middle + (max - min) / 2.0 * z(i) / z(m - 1)).collect()
 }
 
 #[cfg(test)]
@@ -68,10 +64,7 @@ mod tests {
             let centres = gaussian_centres(1.0, 3.0, m);
             let steps: Vec<f64> = centres.windows(2).map(|pair| pair[1] - pair[0]).collect();
             assert!((centres[0] - 1.0).abs() < 1e-15 && (centres[m - 1] - 3.0).abs() < 1e-15);
-            for pair in steps[..=steps.len() / 2]
-                .windows(2)
-                .take(steps.len() / 2 - 1)
-            {
+            for pair in steps[..=steps.len() / 2].windows(2).take(steps.len() / 2 - 1) {
                 assert!(pair[0] > pair[1] && pair[1] > 0.0);
             }
         }

@@ -11,20 +11,14 @@ pub fn triangular(n: usize) -> Vec<f64> {
     (1..=n)
         .map(|k| {
             let k = k.min(n + 1 - k) as f64;
-            if n % 2 == 1 {
-                2.0 * k / (n as f64 + 1.0)
-            } else {
-                (2.0 * k - 1.0) / n as f64
-            }
+            if n % 2 == 1 { 2.0 * k / (n as f64 + 1.0) } else { (2.0 * k - 1.0) / n as f64 }
         })
         .collect()
 }
 
 /// Hann without its zeros: `sin²(π(k+1)/(n+1))` for `k` in `0..n`.
 pub fn hann(n: usize) -> Vec<f64> {
-    (0..n)
-        .map(|k| (PI * (k as f64 + 1.0) / (n as f64 + 1.0)).sin().powi(2))
-        .collect()
+    (0..n).map(|k| (PI * (k as f64 + 1.0) / (n as f64 + 1.0)).sin().powi(2)).collect()
 }
 
 /// MATLAB's `gausswin(n, alpha)`: `exp(-1/2 (alpha (k - (n-1)/2) / ((n-1)/2))²)` for `k` in `0..n`;
@@ -34,9 +28,7 @@ pub fn gaussian(n: usize, alpha: f64) -> Vec<f64> {
         return vec![1.0];
     }
     let half = (n as f64 - 1.0) / 2.0;
-    (0..n)
-        .map(|k| (-0.5 * (alpha * (k as f64 - half) / half).powi(2)).exp())
-        .collect()
+    (0..n).map(|k| (-0.5 * (alpha * (k as f64 - half) / half).powi(2)).exp()).collect()
 }
 
 /// The same shape with its largest tap at `peak`.
@@ -65,10 +57,7 @@ mod tests {
         assert_eq!(triangular(2), [0.5, 0.5]);
         assert_eq!(triangular(3), [0.5, 1.0, 0.5]);
         assert_eq!(triangular(4), [0.25, 0.75, 0.75, 0.25]);
-        assert!(near(
-            &triangular(9),
-            &[0.2, 0.4, 0.6, 0.8, 1.0, 0.8, 0.6, 0.4, 0.2]
-        ));
+        assert!(near(&triangular(9), &[0.2, 0.4, 0.6, 0.8, 1.0, 0.8, 0.6, 0.4, 0.2]));
         let fifteen = triangular(15);
         assert_eq!((fifteen[0], fifteen[7], fifteen[14]), (0.125, 1.0, 0.125));
     }
@@ -88,13 +77,7 @@ mod tests {
         assert!(near(&gaussian(3, 2.5), &[end, 1.0, end]));
         assert!(near(
             &gaussian(5, 2.0),
-            &[
-                (-2.0_f64).exp(),
-                (-0.5_f64).exp(),
-                1.0,
-                (-0.5_f64).exp(),
-                (-2.0_f64).exp(),
-            ]
+            &[(-2.0_f64).exp(), (-0.5_f64).exp(), 1.0, (-0.5_f64).exp(), (-2.0_f64).exp(),]
         ));
     }
 

@@ -20,11 +20,7 @@ pub struct Finite<T> {
 pub fn split_finite<T: Real>(x: &[T]) -> Finite<T> {
     let (positions, rejected): (Vec<usize>, Vec<usize>) =
         (0..x.len()).partition(|&i| x[i].finite());
-    Finite {
-        accepted: positions.iter().map(|&i| x[i]).collect(),
-        positions,
-        rejected,
-    }
+    Finite { accepted: positions.iter().map(|&i| x[i]).collect(), positions, rejected }
 }
 
 #[cfg(test)]

@@ -93,10 +93,7 @@ mod tests {
         let x = [0.0, 2.0, 3.0, 5.0, -1.0, 2.0];
         let expected = [0, 0, 1, 1, -1, 0];
         assert_eq!(moving_window(&x, 2, 1.0_f64, None), expected);
-        assert_eq!(
-            moving_window(&x.map(|v| v as f32), 2, 1.0_f32, None),
-            expected
-        );
+        assert_eq!(moving_window(&x.map(|v| v as f32), 2, 1.0_f32, None), expected);
     }
 
     #[test]

@@ -43,15 +43,7 @@ mod tests {
     #[test]
     fn ties_go_to_the_lower_index_and_values_outside_to_the_ends() {
         let centres = [-1.0, 0.0, 4.0];
-        let x = [
-            -9.0,
-            -0.5,
-            -0.4375,
-            2.0,
-            2.0625,
-            f64::MAX / 4.0,
-            f64::MIN / 4.0,
-        ];
+        let x = [-9.0, -0.5, -0.4375, 2.0, 2.0625, f64::MAX / 4.0, f64::MIN / 4.0];
         assert_eq!(nearest(&x, &centres), [0, 0, 1, 1, 2, 2, 0]);
         let single = [-9.0_f32, -0.5, -0.4375, 2.0, 2.0625, f32::MAX, f32::MIN];
         assert_eq!(nearest(&single, &centres), [0, 0, 1, 1, 2, 2, 0]);

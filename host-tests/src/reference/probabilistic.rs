@@ -46,11 +46,7 @@ mod tests {
 
     fn from(values: &[u32]) -> impl FnMut() -> u32 {
         let mut values = values.iter().copied();
-        move || {
-            values
-                .next()
-                .expect("no more draws than neurons above level 0")
-        }
+        move || values.next().expect("no more draws than neurons above level 0")
     }
 
     #[test]
@@ -59,10 +55,7 @@ mod tests {
         let draws = [0x3fff_ffff, 0x4000_0000, 0xffff_ffff, 0x0fff_ffff];
         let fired = probabilistic_from_levels(&[4, 4, 0, 16, 1], 16, from(&draws));
         assert_eq!(fired, [true, false, false, true, true]);
-        assert_eq!(
-            probabilistic_from_levels(&[0, 1], 1, from(&[u32::MAX])),
-            [false, true]
-        );
+        assert_eq!(probabilistic_from_levels(&[0, 1], 1, from(&[u32::MAX])), [false, true]);
     }
 
     #[test]

@@ -36,9 +36,7 @@ pub fn slots_exp(
 
 /// The radius of each level `1..=n`: `sigma * sqrt(2 ln(n/(k-0.5)))`.
 pub fn distance_radii(sigma: f64, n: u16) -> Vec<f64> {
-    (1..=n)
-        .map(|k| sigma * (2.0 * (f64::from(n) / (f64::from(k) - 0.5)).ln()).sqrt())
-        .collect()
+    (1..=n).map(|k| sigma * (2.0 * (f64::from(n) / (f64::from(k) - 0.5)).ln()).sqrt()).collect()
 }
 
 /// The level of each neuron: the number of radii that the distance to its centre does not exceed.
@@ -71,10 +69,7 @@ pub fn slots_by_distance<T: Real>(
 
 /// Level `k` fires in slot `n-k`; level 0, or below the floor, is silent.
 pub fn slots_of_levels(levels: &[u16], n: u16, floor: u16) -> Vec<Option<u16>> {
-    levels
-        .iter()
-        .map(|&level| (level > 0 && level >= floor).then(|| n - level))
-        .collect()
+    levels.iter().map(|&level| (level > 0 && level >= floor).then(|| n - level)).collect()
 }
 
 /// The mean of the centres, weighted by `n - slot`: products and their sum in index order, from 0;
@@ -89,11 +84,7 @@ pub fn slots_decode<T: Real>(slots: &[Option<u16>], centres: &[T], n: u16, previ
             total += level;
         }
     }
-    if total == 0 {
-        previous
-    } else {
-        weighted / T::count(total)
-    }
+    if total == 0 { previous } else { weighted / T::count(total) }
 }
 
 #[cfg(test)]
@@ -144,10 +135,7 @@ mod tests {
     fn far_away_everything_is_silent() {
         let silent = [None; 4];
         assert_eq!(slots_exp(1e9, 0.0, 1.0, 4, 1.5, 100, 0), silent);
-        assert_eq!(
-            slots_by_distance(-1e9_f32, 0.0, 1.0, 4, 1.5, 100, 0),
-            silent
-        );
+        assert_eq!(slots_by_distance(-1e9_f32, 0.0, 1.0, 4, 1.5, 100, 0), silent);
     }
 
     #[test]

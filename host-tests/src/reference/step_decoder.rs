@@ -51,10 +51,7 @@ mod tests {
         let spikes = [0, 1, 1, 0, -1, -1, -1];
         let expected = [2.0, 2.5, 3.0, 3.0, 2.5, 2.0, 1.5];
         assert_eq!(step_decode(&spikes, 0.5, 2.0), expected);
-        assert_eq!(
-            step_decode(&spikes, 0.5_f32, 2.0),
-            expected.map(|value| value as f32)
-        );
+        assert_eq!(step_decode(&spikes, 0.5_f32, 2.0), expected.map(|value| value as f32));
     }
 
     #[test]

@@ -94,9 +94,6 @@ mod tests {
         let threshold = 0.6_f32;
         let spikes = ((threshold - 0.1) - 0.2) - 0.3 >= 0.0;
         let expected = [i8::from(spikes)];
-        assert_eq!(
-            threshold_hough(&[0.0; 3], &taps, 0.0, threshold, false),
-            expected
-        );
+        assert_eq!(threshold_hough(&[0.0; 3], &taps, 0.0, threshold, false), expected);
     }
 }

@@ -34,10 +34,8 @@ fn ben_subtractive_on_a_sine() {
         (0.955, 0.00707, 493, 5e-6),
     ];
     for (threshold, error, spikes, half_a_digit) in printed {
-        for (measured, count) in [
-            ben_on_a_sine::<f64>(threshold),
-            ben_on_a_sine::<f32>(threshold),
-        ] {
+        for (measured, count) in [ben_on_a_sine::<f64>(threshold), ben_on_a_sine::<f32>(threshold)]
+        {
             assert!(
                 (measured - error).abs() <= half_a_digit,
                 "threshold {threshold}: {measured} with {count} spikes"
