@@ -1,0 +1,16 @@
+//! What every example needs from its surroundings: a console to print to, and an ending.
+//!
+//! On a Cortex-M both go through semihosting, so a debugger or QEMU must be attached. On the host they are
+//! standard output and the exit status. A program's `main` is the same text for both.
+
+#![cfg_attr(target_os = "none", no_std)]
+
+#[cfg(target_os = "none")]
+mod cortex_m;
+#[cfg(target_os = "none")]
+pub use cortex_m::{console, entry, finish};
+
+#[cfg(not(target_os = "none"))]
+mod host;
+#[cfg(not(target_os = "none"))]
+pub use host::{console, finish};

@@ -1,0 +1,60 @@
+//! One line of the report: counts and a hash, gathered sample by sample.
+
+use core::fmt;
+
+/// What one scheme did with one sample type.
+pub struct Line {
+    samples: u32,
+    spikes: u32,
+    decoded: u32,
+    squares: f64,
+    hash: u64,
+}
+
+impl Default for Line {
+    fn default() -> Self {
+        Self {
+            samples: 0,
+            spikes: 0,
+            decoded: 0,
+            squares: 0.0,
+            hash: 0xcbf2_9ce4_8422_2325, // FNV-1a's start value
+        }
+    }
+}
+
+impl Line {
+    /// One outcome of the encoder: -1, 0 or +1. Zero is no spike, and counts as a sample.
+    pub fn spike(&mut self, spike: i8) {
+        self.samples += 1;
+        self.spikes += u32::from(spike != 0);
+        self.hash(&spike.to_le_bytes());
+    }
+
+    /// One outcome of the decoder, beside the sample it stands for.
+    pub fn decoded(&mut self, sample: f32, value: f32) {
+        let error = f64::from(value) - f64::from(sample);
+        self.decoded += 1;
+        self.squares += error * error;
+        self.hash(&value.to_bits().to_le_bytes());
+    }
+
+    /// `scheme sample spikes=<n> efficiency=<percent> rmse=<f32 bits> hash=<FNV-1a, 64 bits>`
+    pub fn write(&self, out: &mut impl fmt::Write, scheme: &str, sample: &str) -> fmt::Result {
+        let efficiency = 100.0 - 100.0 * self.spikes as f32 / self.samples as f32;
+        let rmse = libm::sqrt(self.squares / f64::from(self.decoded)) as f32;
+        writeln!(
+            out,
+            "{scheme} {sample} spikes={} efficiency={efficiency:.2} rmse={:08x} hash={:016x}",
+            self.spikes,
+            rmse.to_bits(),
+            self.hash,
+        )
+    }
+
+    fn hash(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.hash = (self.hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! The emulated boards, one for each Cortex-M core that the crate promises.
+
+use crate::paths;
+use anyhow::{Context, Result};
+use std::{fs, path::PathBuf};
+
+/// A board as QEMU knows it. Its memory map is `examples/board/memory/<machine>.x`.
+pub struct Board {
+    /// Column heading in the tables.
+    pub core: &'static str,
+    /// QEMU's name for it.
+    pub machine: &'static str,
+    /// Rust's name for what it runs.
+    pub target: &'static str,
+    /// The compiler's name for its core: code is tuned for it, and uses all the instructions it has.
+    pub cpu: &'static str,
+    /// Whether the f32 programs run on it: in hardware on M4F, M7 and M33, in software on the others.
+    pub float: bool,
+}
+
+pub const BOARDS: [Board; 5] = [
+    Board {
+        core: "M0",
+        machine: "microbit",
+        target: "thumbv6m-none-eabi",
+        cpu: "cortex-m0",
+        float: true,
+    },
+    Board {
+        core: "M3",
+        machine: "lm3s6965evb",
+        target: "thumbv7m-none-eabi",
+        cpu: "cortex-m3",
+        float: true,
+    },
+    Board {
+        core: "M4F",
+        machine: "netduinoplus2", // an STM32F405: the top-level memory.x
+        target: "thumbv7em-none-eabihf",
+        cpu: "cortex-m4",
+        float: true,
+    },
+    Board {
+        core: "M7",
+        machine: "mps2-an500",
+        target: "thumbv7em-none-eabihf",
+        cpu: "cortex-m7",
+        float: true,
+    },
+    Board {
+        core: "M33",
+        machine: "mps2-an505",
+        target: "thumbv8m.main-none-eabihf",
+        cpu: "cortex-m33",
+        float: true,
+    },
+];
+
+impl Board {
+    /// Bytes of flash and of RAM, read from the map that the firmware is linked with.
+    pub fn memory(&self) -> Result<(u32, u32)> {
+        let path = match self.machine {
+            "netduinoplus2" => paths::root().join("memory.x"),
+            other => paths::examples().join(format!("board/memory/{other}.x")),
+        };
+        Ok((length(&path, "FLASH")?, length(&path, "RAM")?))
+    }
+}
+
+/// `LENGTH` of the region's line in a linker's memory map, written in K.
+fn length(path: &PathBuf, region: &str) -> Result<u32> {
+    let map = fs::read_to_string(path).with_context(|| path.display().to_string())?;
+    map.lines()
+        .filter(|line| line.trim_start().starts_with(region))
+        .find_map(|line| {
+            let (_, length) = line.split_once("LENGTH = ")?;
+            let kibibytes: u32 = length.trim().strip_suffix('K')?.parse().ok()?;
+            Some(kibibytes * 1024)
+        })
+        .with_context(|| format!("no `{region} : … LENGTH = <n>K` in {}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_board_has_a_map_and_a_known_target() {
+        for board in &BOARDS {
+            let (flash, ram) = board.memory().unwrap();
+            assert!(flash >= 128 * 1024 && ram >= 16 * 1024, "{}", board.machine);
+            assert!(crate::toolchain::TARGETS.contains(&board.target));
+        }
+    }
+
+    #[test]
+    fn the_default_map_is_the_stm32f405() {
+        let board = BOARDS.iter().find(|board| board.core == "M4F").unwrap();
+        assert_eq!(board.memory().unwrap(), (1024 * 1024, 128 * 1024));
+    }
+}

@@ -1,0 +1,80 @@
+//! The steps of `cargo verify`, one function each; `verify.rs` lists them.
+
+use crate::{
+    paths, setup,
+    shell::{cargo, output, run},
+    toolchain::{TARGETS, cargo_for},
+};
+use anyhow::{Context, Result, ensure};
+use std::fs;
+
+pub fn setup() -> Result<()> {
+    setup::setup()
+}
+
+pub fn fmt() -> Result<()> {
+    run(&mut cargo("fmt --all --check"))?;
+    run(&mut cargo("fmt --all --check --manifest-path examples/Cargo.toml"))
+}
+
+pub fn clippy() -> Result<()> {
+    run(&mut cargo("clippy --workspace --all-targets --all-features -- -D warnings"))?;
+    let firmware = "clippy --workspace --manifest-path examples/Cargo.toml";
+    run(cargo(firmware).args(["--", "-D", "warnings"]))?;
+    // One core stands for all: the firmware's source has no conditions on the core.
+    run(cargo_for("thumbv7em-none-eabihf", firmware)?.args(["--", "-D", "warnings"]))
+}
+
+pub fn test() -> Result<()> {
+    run(&mut cargo("test --workspace"))?;
+    run(&mut cargo("test --all-features")) // the crate's own tests and doctests, every feature on
+}
+
+/// The README is the documentation of an item named `Readme`, which exists for doctests only.
+pub fn readme() -> Result<()> {
+    let said = output(&mut cargo("test --doc --all-features -- Readme"))?;
+    print!("{said}");
+    ensure!(
+        !said.contains("running 0 tests"),
+        "no doctest named `Readme`: is README.md included in src/lib.rs?"
+    );
+    Ok(())
+}
+
+pub fn doc() -> Result<()> {
+    run(cargo("doc --no-deps --all-features").env("RUSTDOCFLAGS", "-D warnings"))
+}
+
+pub fn features() -> Result<()> {
+    run(&mut cargo("check --no-default-features"))?;
+    for feature in feature_names()? {
+        run(cargo("check --no-default-features --features").arg(feature))?;
+    }
+    Ok(())
+}
+
+pub fn targets() -> Result<()> {
+    for target in TARGETS {
+        run(&mut cargo_for(target, "build --package spikewire --no-default-features")?)?;
+        run(&mut cargo_for(target, "build --package spikewire --all-features")?)?;
+    }
+    Ok(())
+}
+
+pub fn firmware() -> Result<()> {
+    crate::firmware::firmware(&[])
+}
+
+/// The names in Cargo.toml's `[features]`, so that a new feature is checked without a word here.
+fn feature_names() -> Result<Vec<String>> {
+    let manifest = fs::read_to_string(paths::root().join("Cargo.toml"))?;
+    let (_, rest) = manifest.split_once("[features]\n").context("Cargo.toml has no [features]")?;
+    let names = rest
+        .lines()
+        .take_while(|line| !line.starts_with('['))
+        .filter(|line| !line.starts_with('#'))
+        .filter_map(|line| line.split_once(" = "))
+        .map(|(name, _)| name.to_owned())
+        .collect();
+    Ok(names)
+}

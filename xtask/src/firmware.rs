@@ -1,0 +1,184 @@
+//! `cargo xtask firmware`: every example program on every emulated board, compared with the host.
+
+use crate::{
+    boards::{BOARDS, Board},
+    paths, qemu, shell, size, toolchain,
+};
+use anyhow::{Context, Result, bail, ensure};
+use std::{fs, path::PathBuf, thread};
+
+/// Runs the named programs, or all, and fails if a board prints another line than the host.
+pub fn firmware(names: &[String]) -> Result<()> {
+    let all = programs()?;
+    let chosen = if names.is_empty() { &all } else { names };
+    let mut differing = Vec::new();
+    for program in chosen {
+        ensure!(all.contains(program), "no program `{program}`; there are {all:?}");
+        if !compare(program)? {
+            differing.push(program.as_str());
+        }
+    }
+    if !differing.is_empty() {
+        bail!("boards and host differ in {}", differing.join(", "));
+    }
+    Ok(())
+}
+
+/// A program is a directory of the firmware workspace with a `src/main.rs`.
+fn programs() -> Result<Vec<String>> {
+    let mut names = Vec::new();
+    for entry in fs::read_dir(paths::examples())? {
+        let entry = entry?;
+        if entry.path().join("src/main.rs").is_file() {
+            names.push(entry.file_name().to_string_lossy().into_owned());
+        }
+    }
+    names.sort();
+    Ok(names)
+}
+
+/// What one board did.
+struct Outcome {
+    board: &'static Board,
+    image: PathBuf,
+    /// What the host prints when built alike.
+    expected: String,
+    printed: Result<String>,
+}
+
+impl Outcome {
+    fn agrees(&self) -> bool {
+        self.printed.as_ref().is_ok_and(|printed| *printed == self.expected)
+    }
+
+    /// The table's mark for one of the host's lines.
+    fn mark(&self, line: &str) -> &'static str {
+        if !self.expected.lines().any(|expected| expected == line) {
+            return "-"; // not asked of this board
+        }
+        match &self.printed {
+            Ok(printed) if printed.lines().any(|printed| printed == line) => "=",
+            Ok(_) => "DIFF",
+            Err(_) => "FAIL",
+        }
+    }
+}
+
+/// Runs one program everywhere and prints the table. True if every board agrees with the host.
+fn compare(program: &str) -> Result<bool> {
+    let host = on_host(program, true)?;
+    ensure!(!host.is_empty(), "{program} prints nothing on the host");
+    let images = BOARDS.iter().map(|board| build(program, board)).collect::<Result<Vec<_>>>()?;
+    let without_float = if BOARDS.iter().all(|board| board.float) {
+        String::new()
+    } else {
+        on_host(program, false)?
+    };
+
+    let outcomes: Vec<Outcome> = thread::scope(|scope| {
+        let runs: Vec<_> = BOARDS
+            .iter()
+            .zip(&images)
+            .map(|(board, image)| scope.spawn(|| qemu::run(board, image)))
+            .collect();
+        BOARDS
+            .iter()
+            .zip(images.iter().zip(runs))
+            .map(|(board, (image, run))| Outcome {
+                board,
+                image: image.clone(),
+                expected: if board.float { &host } else { &without_float }.clone(),
+                printed: run.join().unwrap_or_else(|_| bail!("its thread panicked")),
+            })
+            .collect()
+    });
+
+    print_table(program, &host, &outcomes);
+    for outcome in &outcomes {
+        print_difference(outcome);
+    }
+    for Outcome { board, image, .. } in &outcomes {
+        println!("{:4} {}", board.core, size::of(image, board)?);
+    }
+    let agree = outcomes.iter().all(Outcome::agrees);
+    if agree {
+        let (lines, boards) = (host.lines().count(), outcomes.len());
+        println!("Every bit agrees: {lines} lines, host and {boards} boards.");
+    }
+    Ok(agree)
+}
+
+/// What the program prints on the host.
+fn on_host(program: &str, float: bool) -> Result<String> {
+    let mut cargo = shell::cargo("run --quiet --release --manifest-path examples/Cargo.toml");
+    cargo.args(["--package", program]);
+    if !float {
+        cargo.arg("--no-default-features");
+    }
+    shell::output(&mut cargo)
+}
+
+/// Builds the program for the board and returns the image.
+fn build(program: &str, board: &Board) -> Result<PathBuf> {
+    // A directory for each board: two of them share a target, not a memory map.
+    let directory = paths::thumb_target().join(board.machine);
+    let mut cargo = toolchain::cargo_for(
+        board.target,
+        "build --quiet --release --manifest-path examples/Cargo.toml",
+    )?;
+    cargo
+        .args(["--package", program])
+        .env("CARGO_TARGET_DIR", &directory)
+        .env("BOARD", board.machine)
+        .env("RUSTFLAGS", format!("-C target-cpu={}", board.cpu));
+    if !board.float {
+        cargo.arg("--no-default-features");
+    }
+    shell::run(&mut cargo).with_context(|| format!("{program} for {}", board.machine))?;
+    Ok(directory.join(board.target).join("release").join(program))
+}
+
+/// One row for each of the host's lines, one column for each board.
+fn print_table(program: &str, host: &str, outcomes: &[Outcome]) {
+    let width = host.lines().map(|line| label(line).len()).max().unwrap_or(0);
+    let width = width.max(program.len());
+    print!("\n{program:width$}");
+    for outcome in outcomes {
+        print!(" {:>5}", outcome.board.core);
+    }
+    println!();
+    for line in host.lines() {
+        print!("{:width$}", label(line));
+        for outcome in outcomes {
+            print!(" {:>5}", outcome.mark(line));
+        }
+        println!();
+    }
+    println!();
+}
+
+/// The line without its two columns of hexadecimal, which are for the comparison.
+fn label(line: &str) -> &str {
+    line.split_once(" rmse=").map_or(line, |(label, _)| label)
+}
+
+/// The lines on which board and host disagree, one below the other.
+fn print_difference(outcome: &Outcome) {
+    let core = outcome.board.core;
+    match &outcome.printed {
+        Err(error) => println!("{core} failed: {error:#}"),
+        Ok(_) if outcome.agrees() => {}
+        Ok(printed) => {
+            let only_in = |one: &str, other: &str, name: &str| {
+                for line in one.lines() {
+                    if !other.lines().any(|same| same == line) {
+                        println!("only {name:4} {line}");
+                    }
+                }
+            };
+            println!("{core} and the host differ:");
+            only_in(&outcome.expected, printed, "host");
+            only_in(printed, &outcome.expected, core);
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Set-up and checks. `cargo xtask` lists the commands.
+
+mod boards;
+mod checks;
+mod demo;
+mod distribution;
+mod firmware;
+mod packages;
+mod paths;
+mod qemu;
+mod setup;
+mod shell;
+mod size;
+mod toolchain;
+mod verify;
+
+use anyhow::{Result, bail};
+use std::{env, process::ExitCode};
+
+const USAGE: &str = "\
+cargo xtask <command>
+
+  setup                 compiler targets, QEMU and binutils for Cortex-M; does only what is missing
+  firmware [PROGRAM]... runs the example programs on every emulated board and compares with the host
+  demo                  real flight data through encoder, emulated flight controller and decoder
+  verify [STEP]...      every check, or the named ones; `cargo verify --list` names them
+
+`cargo demo` and `cargo verify` are short for the last two.";
+
+fn main() -> ExitCode {
+    let mut args = env::args().skip(1);
+    let command = args.next().unwrap_or_default();
+    let rest: Vec<String> = args.collect();
+
+    match run(&command, &rest) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(command: &str, args: &[String]) -> Result<()> {
+    match command {
+        "setup" => setup::setup(),
+        "firmware" => firmware::firmware(args),
+        "demo" => demo::demo(args),
+        "verify" => verify::verify(args),
+        "" | "help" | "-h" | "--help" => {
+            println!("{USAGE}");
+            Ok(())
+        }
+        other => bail!("no command `{other}`\n\n{USAGE}"),
+    }
+}

@@ -1,0 +1,68 @@
+//! Runs a firmware image on an emulated board.
+
+use crate::{boards::Board, shell};
+use anyhow::{Context, Result, bail, ensure};
+use std::{
+    io::Read,
+    path::Path,
+    process::{Child, ExitStatus, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+/// A program that takes longer hangs: a fault before the console is up, for one, never ends.
+const PATIENCE: Duration = Duration::from_mins(2);
+
+/// Runs the image to its end and returns what it printed. It is an error if it ends badly, or not in time.
+pub fn run(board: &Board, image: &Path) -> Result<String> {
+    let mut emulator = shell::command("qemu-system-arm");
+    emulator
+        .args(["-M", board.machine, "-nographic"])
+        .args(["-semihosting-config", "enable=on,target=native"])
+        .arg("-kernel")
+        .arg(image)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    let mut child = emulator
+        .spawn()
+        .context("qemu-system-arm does not start; `cargo xtask setup` installs it")?;
+
+    // Read both streams while it runs, or a full pipe stops it.
+    let printed = read_all(child.stdout.take());
+    let said = read_all(child.stderr.take());
+    let status = wait(&mut child)?;
+    let printed = printed.join().unwrap_or_default();
+    let said = said.join().unwrap_or_default();
+
+    let Some(status) = status else {
+        bail!("no end after {PATIENCE:?}; so far: {printed}{said}");
+    };
+    ensure!(status.success(), "{status}: {printed}{said}");
+    Ok(printed)
+}
+
+fn read_all(stream: Option<impl Read + Send + 'static>) -> thread::JoinHandle<String> {
+    thread::spawn(move || {
+        let mut bytes = Vec::new();
+        if let Some(mut stream) = stream {
+            // What came before an error is still worth showing.
+            let _ = stream.read_to_end(&mut bytes);
+        }
+        String::from_utf8_lossy(&bytes).into_owned()
+    })
+}
+
+/// The exit status, or `None` after having ended a program that ran out of time.
+fn wait(child: &mut Child) -> Result<Option<ExitStatus>> {
+    let start = Instant::now();
+    while start.elapsed() < PATIENCE {
+        if let Some(status) = child.try_wait()? {
+            return Ok(Some(status));
+        }
+        thread::sleep(Duration::from_millis(10));
+    }
+    child.kill()?;
+    child.wait()?;
+    Ok(None)
+}

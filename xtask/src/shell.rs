@@ -1,0 +1,69 @@
+//! Running other programs: what runs is printed first, and failure is an error.
+
+use crate::paths;
+use anyhow::{Context, Result, bail};
+use std::{
+    path::Path,
+    process::{Command, Output},
+};
+
+/// A program, started at the repository's top.
+pub fn command(program: impl AsRef<std::ffi::OsStr>) -> Command {
+    let mut command = Command::new(program);
+    command.current_dir(paths::root());
+    command
+}
+
+/// Cargo of the toolchain that `cargo xtask` was started with, its arguments separated by blanks.
+pub fn cargo(args: &str) -> Command {
+    let mut command = command("cargo");
+    command.args(args.split_whitespace());
+    command
+}
+
+/// Prints the command, runs it with its output shown, and fails if it fails.
+pub fn run(command: &mut Command) -> Result<()> {
+    println!("$ {}", shown(command));
+    let status =
+        command.status().with_context(|| format!("`{}` does not start", shown(command)))?;
+    if !status.success() {
+        bail!("`{}` failed: {status}", shown(command));
+    }
+    Ok(())
+}
+
+/// Runs the command quietly and returns its standard output; what it said stands in the error if it fails.
+pub fn output(command: &mut Command) -> Result<String> {
+    let Output { status, stdout, stderr } =
+        command.output().with_context(|| format!("`{}` does not start", shown(command)))?;
+    if !status.success() {
+        let said = String::from_utf8_lossy(&stderr);
+        bail!("`{}` failed: {status}\n{said}", shown(command));
+    }
+    Ok(String::from_utf8_lossy(&stdout).into_owned())
+}
+
+/// Whether the command succeeds; nothing is shown.
+pub fn succeeds(command: &mut Command) -> bool {
+    command.output().is_ok_and(|output| output.status.success())
+}
+
+/// Whether a program of this name is on the path.
+pub fn has(program: &str) -> bool {
+    std::env::var_os("PATH")
+        .is_some_and(|path| std::env::split_paths(&path).any(|dir| dir.join(program).is_file()))
+}
+
+/// The command as one would type it at the repository's top.
+fn shown(command: &Command) -> String {
+    let root = format!("{}/", paths::root().display());
+    let set = command
+        .get_envs()
+        .filter_map(|(name, value)| Some((name, value?)))
+        .map(|(name, value)| format!("{}='{}'", name.display(), value.display()));
+    let words = [command.get_program()]
+        .into_iter()
+        .chain(command.get_args())
+        .map(|word| Path::new(word).display().to_string().replace(&root, ""));
+    set.chain(words).collect::<Vec<_>>().join(" ")
+}
