@@ -2,9 +2,12 @@
 
 use std::{env, path::PathBuf};
 
-/// The repository's top.
+/// The repository's top. Cargo says where this package is, when it runs it; what it said when it compiled it
+/// may be another checkout's place, if the two share a target directory.
 pub fn root() -> PathBuf {
-    let here = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let here =
+        env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
+    let here = PathBuf::from(here);
     here.parent().map(PathBuf::from).unwrap_or(here)
 }
 
