@@ -1,0 +1,71 @@
+//! Sensor samples to spikes and back, on a flight controller.
+//!
+//! Streaming encoders and decoders for the spike codes of neuromorphic robotics, one sample at a
+//! time, in fixed capacity: no heap, no panic, no unsafe code. The same bits on every machine.
+//!
+//! ```
+//! use spikewire::{Decoder, Encoder, Scheme, temporal::StepForward};
+//!
+//! const ROLL: StepForward<f32> = StepForward::<f32>::checked(0.35); // a bad constant fails the build
+//!
+//! let mut encoder = ROLL.encoder(); // the first sample becomes the baseline
+//! let mut decoder = ROLL.decoder();
+//! for rate in [0.0, 0.4, 0.9, 0.8, 0.2] {
+//!     let spike = encoder.encode(rate); // Up, Down or None
+//!     let estimate = decoder.decode(spike);
+//!     assert!((estimate - rate).abs() <= 0.55);
+//! }
+//! ```
+//!
+//! # Schemes
+//!
+//! | family | scheme | for |
+//! |---|---|---|
+//! | [`temporal`] | [`TemporalContrast`](temporal::TemporalContrast) (TBR) | changes, as an event camera sees them |
+//! | | [`StepForward`](temporal::StepForward) (SF) | following a signal closely with few spikes |
+//! | | [`MovingWindow`](temporal::MovingWindow) (MW) | changes against a short past |
+//! | [`rate`] | [`Hough`](rate::Hough) (HSA) | few spikes, never above the signal |
+//! | | [`ThresholdHough`](rate::ThresholdHough) (T-HSA) | the same, nearer to the signal |
+//! | | [`Ben`](rate::Ben) (BSA) | the best reconstruction of a rate code |
+//! | | [`BenToolbox`](rate::BenToolbox) | BSA as in the paper's tables |
+//! | [`population`] | [`Position`](population::Position) | a value, dense where it matters |
+//! | | [`Gaussian`](population::Gaussian) (GRF) | a value over an even range |
+//! | | [`Slots`](population::Slots) | a value finer than the neurons, by spike time |
+//! | | `Probabilistic` | a value by chance (feature `rand`) |
+//!
+//! The paper is Dupeyroux, Stroobants and de Croon, *A toolbox for neuromorphic perception in
+//! robotics*, 2022.
+//!
+//! # Features
+//!
+//! All off by default; each only adds.
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `fixed` | `FixedI16` and `FixedI32` with any fraction as [`Sample`]s |
+//! | `rand` | probabilistic spiking, from any `rand_core` generator |
+//! | `defmt` | `defmt::Format` on public data |
+//! | `serde` | `Serialize` on public data, and `Deserialize` where nothing has to be checked |
+#![no_std]
+#![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
+
+mod bank;
+mod calibrate;
+mod codec;
+mod curve;
+mod error;
+pub mod population;
+pub mod rate;
+mod sample;
+mod spike;
+pub mod temporal;
+
+pub use bank::Bank;
+pub use calibrate::{Calibration, Differences};
+pub use codec::{Decoder, Encoder, Output, Scheme};
+pub use error::ConfigError;
+pub use sample::Sample;
+pub use spike::{Code, Event, Firing, Polarity, Spike};

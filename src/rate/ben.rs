@@ -1,0 +1,180 @@
+//! Ben's spiker (BSA): a spike where subtracting the filter brings the signal nearer to zero.
+
+use super::decoder::RateDecoder;
+use super::encoder::{RateEncoder, Rule};
+use super::filter::Taps;
+use super::residual::Residual;
+use crate::error::{checked, finite, not_negative, ratio};
+use crate::sample::for_each_sample;
+use crate::{ConfigError, Sample, Scheme};
+
+/// Ben's spiker algorithm, as published: errors and subtraction aligned with the sample.
+///
+/// With `r = x - shift`, `e1 = sum |r[i+j] - h[j]|` and `e2 = sum |r[i+j]|`: a spike at `i` if
+/// `e1 <= e2 - threshold` ([`subtractive`](Self::subtractive)) or `e1 <= e2 * threshold`
+/// ([`multiplicative`](Self::multiplicative)); then `r[i+j] -= h[j]`. At the end of a recording both
+/// sums are cut to what is left.
+///
+/// - **Threshold:** subtractive: 0 or more, in the samples' unit. Multiplicative: above 0 and below
+///   4; with samples in fixed point it is rounded to a multiple of 2⁻¹⁴.
+/// - **Latency:** `F - 1` samples. **Memory:** `4 F + 24` bytes an encoder in `f32`; the taps are
+///   in flash, shared.
+/// - **Exactness:** subtractive `f32` sums `|r - h| - |r|`, first tap first, and compares with
+///   `-threshold`; multiplicative `f32` sums `e1` and `e2` apart. Fixed point is exact within the
+///   range of [`rate`](crate::rate).
+///
+/// Source: Schrauwen and Van Campenhout, BSA, 2003; paper, section II-B. The paper's own indices are
+/// those of [`BenToolbox`](super::BenToolbox).
+///
+/// ```
+/// use spikewire::{Encoder, Scheme, Spike, rate::{Ben, Scale, Shape, Taps}};
+///
+/// static TAPS: Taps<f32, 24> = Taps::<f32, _>::checked_shape(Shape::Hann, Scale::Sum(1.0));
+/// const LIFT: Ben<f32, 24> = Ben::<f32, _>::checked_subtractive(&TAPS, 0.955);
+///
+/// let mut encoder = LIFT.encoder();
+/// let spikes = (0..1000).filter(|_| encoder.encode(0.5) == Some(Spike::Up)).count();
+/// assert!((480..520).contains(&spikes)); // the rate is the value
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Ben<'a, S, const F: usize> {
+    taps: &'a Taps<S, F>,
+    criterion: Criterion<S>,
+    shift: S,
+}
+
+/// What [`Ben`] compares the two errors by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Criterion<S> {
+    /// `e1 <= e2 - threshold`.
+    Subtractive(S),
+    /// `e1 <= e2 * threshold`.
+    Multiplicative(f32),
+}
+
+impl<'a, S: Sample, const F: usize> Ben<'a, S, F> {
+    /// A scheme for signals whose minimum is 0, with either criterion.
+    ///
+    /// # Errors
+    /// The threshold is out of its range, or not finite.
+    pub fn new(taps: &'a Taps<S, F>, criterion: Criterion<S>) -> Result<Self, ConfigError> {
+        match criterion {
+            Criterion::Subtractive(threshold) => not_negative("threshold", threshold.to_f64())?,
+            Criterion::Multiplicative(threshold) => ratio("threshold", threshold)?,
+        }
+        Ok(Self { taps, criterion, shift: S::ZERO })
+    }
+
+    /// `e1 <= e2 - threshold`.
+    ///
+    /// # Errors
+    /// The threshold is negative or not finite.
+    pub fn subtractive(taps: &'a Taps<S, F>, threshold: S) -> Result<Self, ConfigError> {
+        Self::new(taps, Criterion::Subtractive(threshold))
+    }
+
+    /// `e1 <= e2 * threshold`.
+    ///
+    /// # Errors
+    /// The threshold is not above 0 and below 4.
+    pub fn multiplicative(taps: &'a Taps<S, F>, threshold: f32) -> Result<Self, ConfigError> {
+        Self::new(taps, Criterion::Multiplicative(threshold))
+    }
+
+    /// The same for signals with this minimum.
+    ///
+    /// # Errors
+    /// The shift is not finite.
+    pub fn with_shift(self, shift: S) -> Result<Self, ConfigError> {
+        finite("shift", shift.to_f64())?;
+        Ok(Self { shift, ..self })
+    }
+}
+
+macro_rules! constants {
+    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $reach:path) => {
+        impl<'a, const F: usize, $($generics)*> Ben<'a, $sample, F> {
+            /// For constants: `e1 <= e2 - threshold`. A negative threshold fails the build.
+            ///
+            /// # Panics
+            /// On such a threshold; at compile time where it initialises a constant.
+            pub const fn checked_subtractive(taps: &'a Taps<$sample, F>, threshold: $sample) -> Self {
+                checked!(not_negative("threshold", $to_f64(threshold)));
+                Self { taps, criterion: Criterion::Subtractive(threshold), shift: $nearest(0.0) }
+            }
+
+            /// For constants: `e1 <= e2 * threshold`. A threshold that is not above 0 and below 4
+            /// fails the build.
+            ///
+            /// # Panics
+            /// On such a threshold; at compile time where it initialises a constant.
+            pub const fn checked_multiplicative(taps: &'a Taps<$sample, F>, threshold: f32) -> Self {
+                checked!(ratio("threshold", threshold));
+                Self { taps, criterion: Criterion::Multiplicative(threshold), shift: $nearest(0.0) }
+            }
+        }
+    };
+}
+for_each_sample!(constants);
+
+impl<'a, S: Sample, const F: usize> Scheme for Ben<'a, S, F> {
+    type Sample = S;
+    type Encoder = RateEncoder<'a, S, BenRule<S::Residual>, F>;
+    type Decoder = RateDecoder<'a, S, F>;
+
+    const LATENCY: usize = F - 1;
+
+    fn encoder(self) -> Self::Encoder {
+        let rule = match self.criterion {
+            Criterion::Subtractive(threshold) => BenRule::Subtractive(threshold.widen().negated()),
+            Criterion::Multiplicative(threshold) => {
+                BenRule::Multiplicative(S::Residual::ratio(threshold))
+            }
+        };
+        RateEncoder::new(self.taps, self.shift, rule)
+    }
+
+    fn decoder(self) -> Self::Decoder {
+        RateDecoder::new(self.taps, self.shift)
+    }
+}
+
+/// The error with the filter subtracted is smaller than without, by the criterion.
+#[derive(Clone, Copy, Debug)]
+pub enum BenRule<R: Residual> {
+    /// At most this excess, which is minus the threshold.
+    Subtractive(R),
+    /// At most this part.
+    Multiplicative(R::Ratio),
+}
+
+impl<S: Sample> Rule<S> for BenRule<S::Residual> {
+    #[inline]
+    fn fits(&self, window: [(&[S::Residual], &[S]); 2], _: bool) -> bool {
+        match *self {
+            Self::Subtractive(most) => {
+                let mut excess = S::Residual::ZERO;
+                for (residuals, taps) in window {
+                    for (residual, tap) in residuals.iter().zip(taps) {
+                        excess = excess.plus(residual.excess(tap.widen()));
+                    }
+                }
+                excess <= most
+            }
+            Self::Multiplicative(ratio) => {
+                let mut with_filter = S::Residual::no_sum();
+                let mut without = S::Residual::no_sum();
+                for (residuals, taps) in window {
+                    for (residual, tap) in residuals.iter().zip(taps) {
+                        with_filter = residual.add_distance(tap.widen(), with_filter);
+                        without = residual.add_distance(S::Residual::ZERO, without);
+                    }
+                }
+                S::Residual::at_most(with_filter, without, ratio)
+            }
+        }
+    }
+}

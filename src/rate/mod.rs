@@ -1,0 +1,27 @@
+//! Rate codes: spikes whose convolution with a filter gives the signal back.
+//!
+//! All work on `r = x - shift`, look ahead over the filter, and subtract the filter from the
+//! residual at every spike. `shift` is the signal's minimum, from a
+//! [`Calibration`](crate::Calibration). One decoder serves them all, [`RateDecoder`].
+//!
+//! A residual in 32-bit fixed point is exact while `|x - shift|` stays within the type's maximum
+//! less the sum of the taps' magnitudes; beyond, it saturates there. In 16 bits it is always exact.
+
+mod ben;
+mod ben_toolbox;
+mod decoder;
+mod encoder;
+mod filter;
+mod hough;
+mod lookahead;
+mod residual;
+mod threshold_hough;
+
+pub use ben::{Ben, Criterion};
+pub use ben_toolbox::{BenToolbox, BenToolboxEncoder};
+pub use decoder::RateDecoder;
+pub use encoder::RateEncoder;
+pub use filter::{Scale, Shape, Taps};
+pub use hough::Hough;
+pub(crate) use residual::Rated;
+pub use threshold_hough::ThresholdHough;

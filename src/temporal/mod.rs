@@ -1,0 +1,16 @@
+//! Temporal codes: a spike when the signal moves by a step.
+//!
+//! All three share one decoder, [`StepDecoder`], which adds up the steps. Its error adds up too when
+//! a spike is lost: send keyframes ([`Encoder::keyframe`](crate::Encoder::keyframe)) over a link
+//! that may lose spikes.
+
+mod contrast;
+mod moving_window;
+mod step_decoder;
+mod step_forward;
+
+pub use contrast::{TemporalContrast, TemporalContrastEncoder};
+pub(crate) use moving_window::Windowed;
+pub use moving_window::{MovingWindow, MovingWindowEncoder};
+pub use step_decoder::StepDecoder;
+pub use step_forward::{StepForward, StepForwardEncoder};

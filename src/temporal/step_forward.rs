@@ -1,0 +1,156 @@
+//! Step forward (SF): a spike when the signal leaves the band around a baseline that follows it.
+
+use super::StepDecoder;
+use crate::error::{checked, positive};
+use crate::sample::{Tally, for_each_sample};
+use crate::{ConfigError, Encoder, Sample, Scheme, Spike};
+
+/// Step forward: the baseline starts at the first sample and follows the signal by one threshold
+/// a spike.
+///
+/// If `x > base + threshold`: [`Spike::Up`] and `base += threshold`; if `x < base - threshold`:
+/// [`Spike::Down`] and `base -= threshold`.
+///
+/// - **Threshold:** above 0, in the samples' unit.
+/// - **Latency:** 0 samples. **Memory:** 12 bytes an encoder in `f32`.
+/// - **Exactness:** `f32` rounds `base ± threshold` once; fixed point is exact.
+/// - **Error:** while `|x[i] - x[i-1]| <= threshold`, the decoded value stays within the threshold
+///   of the signal.
+///
+/// Source: paper, section II-C, algorithm 7 (whose second `base + threshold` is a slip for `-`).
+///
+/// ```
+/// use spikewire::{Decoder, Encoder, Scheme, Spike, temporal::StepForward};
+///
+/// const ROLL: StepForward<f32> = StepForward::<f32>::checked(0.25);
+/// let mut encoder = ROLL.encoder();
+/// let mut decoder = ROLL.decoder();
+/// let spikes = [0.0, 0.3, 0.6, 0.6, 0.1].map(|x| encoder.encode(x));
+/// assert_eq!(spikes, [Spike::None, Spike::Up, Spike::Up, Spike::None, Spike::Down]);
+/// assert_eq!(spikes.map(|s| decoder.decode(s)), [0.0, 0.25, 0.5, 0.5, 0.25]);
+/// ```
+///
+/// A threshold that makes no sense does not compile:
+///
+/// ```compile_fail
+/// # use spikewire::temporal::StepForward;
+/// const ROLL: StepForward<f32> = StepForward::<f32>::checked(0.0);
+/// # let _ = ROLL;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct StepForward<S> {
+    threshold: S,
+}
+
+impl<S: Sample> StepForward<S> {
+    /// A scheme with this threshold, which is also the decoder's step.
+    ///
+    /// # Errors
+    /// The threshold is not above 0, or not finite.
+    pub fn new(threshold: S) -> Result<Self, ConfigError> {
+        positive("threshold", threshold.to_f64())?;
+        Ok(Self { threshold })
+    }
+
+    /// The threshold, in the samples' unit.
+    pub fn threshold(&self) -> S {
+        self.threshold
+    }
+}
+
+macro_rules! constants {
+    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $reach:path) => {
+        impl<$($generics)*> StepForward<$sample> {
+            /// For constants: a threshold that is not above 0 fails the build.
+            ///
+            /// # Panics
+            /// On such a threshold; at compile time where it initialises a constant.
+            pub const fn checked(threshold: $sample) -> Self {
+                checked!(positive("threshold", $to_f64(threshold)));
+                Self { threshold }
+            }
+        }
+    };
+}
+for_each_sample!(constants);
+
+impl<S: Sample> Scheme for StepForward<S> {
+    type Sample = S;
+    type Encoder = StepForwardEncoder<S>;
+    type Decoder = StepDecoder<S>;
+
+    const LATENCY: usize = 0;
+
+    fn encoder(self) -> StepForwardEncoder<S> {
+        StepForwardEncoder { threshold: self.threshold, base: S::ZERO, tally: Tally::default() }
+    }
+
+    fn decoder(self) -> StepDecoder<S> {
+        StepDecoder::new(self.threshold)
+    }
+}
+
+/// The encoder of [`StepForward`].
+#[derive(Clone, Copy, Debug)]
+pub struct StepForwardEncoder<S> {
+    threshold: S,
+    base: S,
+    tally: Tally,
+}
+
+impl<S: Sample> StepForwardEncoder<S> {
+    /// Sets the baseline, which else is the first sample. A value that is not finite is counted and
+    /// ignored.
+    pub fn prime(&mut self, base: S) {
+        if base.is_finite() {
+            self.base = base;
+            self.tally.prime();
+        } else {
+            self.tally.reject();
+        }
+    }
+}
+
+impl<S: Sample> Encoder for StepForwardEncoder<S> {
+    type Sample = S;
+    type Output = Spike;
+
+    #[inline]
+    fn encode(&mut self, sample: S) -> Spike {
+        if !sample.is_finite() {
+            self.tally.reject();
+            return Spike::None;
+        }
+        if !self.tally.is_primed() {
+            self.base = sample;
+            self.tally.prime();
+            return Spike::None;
+        }
+        let upper = self.base.plus(self.threshold);
+        let lower = self.base.minus(self.threshold);
+        if sample > upper {
+            self.base = upper;
+            Spike::Up
+        } else if sample < lower {
+            self.base = lower;
+            Spike::Down
+        } else {
+            Spike::None
+        }
+    }
+
+    /// The baseline.
+    fn keyframe(&self) -> Option<S> {
+        self.tally.is_primed().then_some(self.base)
+    }
+
+    fn reset(&mut self) {
+        self.tally = Tally::default();
+    }
+
+    fn rejected(&self) -> u32 {
+        self.tally.rejected()
+    }
+}
