@@ -14,45 +14,23 @@ pub struct Board {
     pub target: &'static str,
     /// The compiler's name for its core: code is tuned for it, and uses all the instructions it has.
     pub cpu: &'static str,
-    /// Whether the f32 programs run on it: in hardware on M4F, M7 and M33, in software on the others.
-    pub float: bool,
 }
 
 pub const BOARDS: [Board; 5] = [
-    Board {
-        core: "M0",
-        machine: "microbit",
-        target: "thumbv6m-none-eabi",
-        cpu: "cortex-m0",
-        float: true,
-    },
-    Board {
-        core: "M3",
-        machine: "lm3s6965evb",
-        target: "thumbv7m-none-eabi",
-        cpu: "cortex-m3",
-        float: true,
-    },
+    Board { core: "M0", machine: "microbit", target: "thumbv6m-none-eabi", cpu: "cortex-m0" },
+    Board { core: "M3", machine: "lm3s6965evb", target: "thumbv7m-none-eabi", cpu: "cortex-m3" },
     Board {
         core: "M4F",
         machine: "netduinoplus2", // an STM32F405: the top-level memory.x
         target: "thumbv7em-none-eabihf",
         cpu: "cortex-m4",
-        float: true,
     },
-    Board {
-        core: "M7",
-        machine: "mps2-an500",
-        target: "thumbv7em-none-eabihf",
-        cpu: "cortex-m7",
-        float: true,
-    },
+    Board { core: "M7", machine: "mps2-an500", target: "thumbv7em-none-eabihf", cpu: "cortex-m7" },
     Board {
         core: "M33",
         machine: "mps2-an505",
         target: "thumbv8m.main-none-eabihf",
         cpu: "cortex-m33",
-        float: true,
     },
 ];
 

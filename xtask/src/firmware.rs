@@ -41,21 +41,16 @@ fn programs() -> Result<Vec<String>> {
 struct Outcome {
     board: &'static Board,
     image: PathBuf,
-    /// What the host prints when built alike.
-    expected: String,
     printed: Result<String>,
 }
 
 impl Outcome {
-    fn agrees(&self) -> bool {
-        self.printed.as_ref().is_ok_and(|printed| *printed == self.expected)
+    fn agrees(&self, host: &str) -> bool {
+        self.printed.as_ref().is_ok_and(|printed| printed == host)
     }
 
     /// The table's mark for one of the host's lines.
     fn mark(&self, line: &str) -> &'static str {
-        if !self.expected.lines().any(|expected| expected == line) {
-            return "-"; // not asked of this board
-        }
         match &self.printed {
             Ok(printed) if printed.lines().any(|printed| printed == line) => "=",
             Ok(_) => "DIFF",
@@ -66,14 +61,9 @@ impl Outcome {
 
 /// Runs one program everywhere and prints the table. True if every board agrees with the host.
 fn compare(program: &str) -> Result<bool> {
-    let host = on_host(program, true)?;
+    let host = on_host(program)?;
     ensure!(!host.is_empty(), "{program} prints nothing on the host");
     let images = BOARDS.iter().map(|board| build(program, board)).collect::<Result<Vec<_>>>()?;
-    let without_float = if BOARDS.iter().all(|board| board.float) {
-        String::new()
-    } else {
-        on_host(program, false)?
-    };
 
     let outcomes: Vec<Outcome> = thread::scope(|scope| {
         let runs: Vec<_> = BOARDS
@@ -87,7 +77,6 @@ fn compare(program: &str) -> Result<bool> {
             .map(|(board, (image, run))| Outcome {
                 board,
                 image: image.clone(),
-                expected: if board.float { &host } else { &without_float }.clone(),
                 printed: run.join().unwrap_or_else(|_| bail!("its thread panicked")),
             })
             .collect()
@@ -95,12 +84,12 @@ fn compare(program: &str) -> Result<bool> {
 
     print_table(program, &host, &outcomes);
     for outcome in &outcomes {
-        print_difference(outcome);
+        print_difference(&host, outcome);
     }
     for Outcome { board, image, .. } in &outcomes {
         println!("{:4} {}", board.core, size::of(image, board)?);
     }
-    let agree = outcomes.iter().all(Outcome::agrees);
+    let agree = outcomes.iter().all(|outcome| outcome.agrees(&host));
     if agree {
         let (lines, boards) = (host.lines().count(), outcomes.len());
         println!("Every bit agrees: {lines} lines, host and {boards} boards.");
@@ -109,12 +98,9 @@ fn compare(program: &str) -> Result<bool> {
 }
 
 /// What the program prints on the host.
-fn on_host(program: &str, float: bool) -> Result<String> {
+fn on_host(program: &str) -> Result<String> {
     let mut cargo = shell::cargo("run --quiet --release --manifest-path examples/Cargo.toml");
     cargo.args(["--package", program]);
-    if !float {
-        cargo.arg("--no-default-features");
-    }
     shell::output(&mut cargo)
 }
 
@@ -131,9 +117,6 @@ fn build(program: &str, board: &Board) -> Result<PathBuf> {
         .env("CARGO_TARGET_DIR", &directory)
         .env("BOARD", board.machine)
         .env("RUSTFLAGS", format!("-C target-cpu={}", board.cpu));
-    if !board.float {
-        cargo.arg("--no-default-features");
-    }
     shell::run(&mut cargo).with_context(|| format!("{program} for {}", board.machine))?;
     Ok(directory.join(board.target).join("release").join(program))
 }
@@ -163,11 +146,11 @@ fn label(line: &str) -> &str {
 }
 
 /// The lines on which board and host disagree, one below the other.
-fn print_difference(outcome: &Outcome) {
+fn print_difference(host: &str, outcome: &Outcome) {
     let core = outcome.board.core;
     match &outcome.printed {
         Err(error) => println!("{core} failed: {error:#}"),
-        Ok(_) if outcome.agrees() => {}
+        Ok(_) if outcome.agrees(host) => {}
         Ok(printed) => {
             let only_in = |one: &str, other: &str, name: &str| {
                 for line in one.lines() {
@@ -177,8 +160,8 @@ fn print_difference(outcome: &Outcome) {
                 }
             };
             println!("{core} and the host differ:");
-            only_in(&outcome.expected, printed, "host");
-            only_in(printed, &outcome.expected, core);
+            only_in(host, printed, "host");
+            only_in(printed, host, core);
         }
     }
 }

@@ -11,38 +11,19 @@
 
 mod flight;
 mod line;
+mod schemes;
 
 use core::fmt;
-use flight::CHANNELS;
-use line::Line;
+use fixed::{
+    FixedI16, FixedI32,
+    types::extra::{U8, U16},
+};
+use schemes::fly;
 
-/// Stands in until the schemes are here: a step code by hand.
+/// Encodes and decodes all channels by every scheme, in every sample type.
 pub fn run(out: &mut impl fmt::Write) -> fmt::Result {
-    #[cfg(feature = "float")]
-    {
-        let mut line = Line::default();
-        for index in 0..CHANNELS {
-            let mut base = 0.0;
-            for x in flight::channel(index) {
-                let spike = i8::from(x > base + 0.1) - i8::from(x < base - 0.1);
-                base += 0.1 * f32::from(spike);
-                line.spike(spike);
-                line.decoded(x, base);
-            }
-        }
-        line.write(out, "placeholder", "f32")?;
-    }
-
-    let mut line = Line::default();
-    for index in 0..CHANNELS {
-        let mut base = 0i16;
-        for x in flight::channel(index).map(|x| (x * 256.0) as i16) {
-            let spike =
-                i8::from(x > base.saturating_add(25)) - i8::from(x < base.saturating_sub(25));
-            base = base.saturating_add(25 * i16::from(spike));
-            line.spike(spike);
-            line.decoded(f32::from(x), f32::from(base));
-        }
-    }
-    line.write(out, "placeholder", "i16")
+    fly::<f32>(out, "f32")?;
+    fly::<FixedI16<U8>>(out, "q8.8")?;
+    fly::<FixedI32<U16>>(out, "q16.16")?;
+    fly::<i16>(out, "i16")
 }

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use spikewire::{Code, Polarity, Sample};
+
 /// What one scheme did with one sample type.
 pub struct Line {
     samples: u32,
@@ -24,19 +26,24 @@ impl Default for Line {
 }
 
 impl Line {
-    /// One outcome of the encoder: -1, 0 or +1. Zero is no spike, and counts as a sample.
-    pub fn spike(&mut self, spike: i8) {
+    /// One outcome of the encoder; no spike counts as a sample too.
+    pub fn code(&mut self, code: &impl Code) {
         self.samples += 1;
-        self.spikes += u32::from(spike != 0);
-        self.hash(&spike.to_le_bytes());
+        for firing in code.firings() {
+            self.spikes += 1;
+            self.hash(&firing.neuron.to_le_bytes());
+            self.hash(&firing.slot.to_le_bytes());
+            self.hash(&[u8::from(firing.polarity == Polarity::Up)]);
+        }
+        self.hash(&[0xff]);
     }
 
     /// One outcome of the decoder, beside the sample it stands for.
-    pub fn decoded(&mut self, sample: f32, value: f32) {
-        let error = f64::from(value) - f64::from(sample);
+    pub fn decoded<S: Sample>(&mut self, sample: S, value: S) {
+        let error = value.to_f64() - sample.to_f64();
         self.decoded += 1;
         self.squares += error * error;
-        self.hash(&value.to_bits().to_le_bytes());
+        self.hash(&value.to_f64().to_bits().to_le_bytes());
     }
 
     /// `scheme sample spikes=<n> efficiency=<percent> rmse=<f32 bits> hash=<FNV-1a, 64 bits>`
