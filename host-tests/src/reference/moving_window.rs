@@ -130,7 +130,7 @@ mod tests {
     #[test]
     fn a_recording_shorter_than_the_window_is_silent() {
         assert_eq!(moving_window(&[1.0, 9.0], 3, 0.5, None), [0, 0]);
-        assert_eq!(moving_window::<f32>(&[], 3, 0.5, None), []);
+        assert!(moving_window::<f32>(&[], 3, 0.5, None).is_empty());
         assert_eq!(moving_window(&[1.0], 3, 0.5, Some(&[0.0, 0.0, 0.0])), [1]);
     }
 }

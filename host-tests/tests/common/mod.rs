@@ -1,0 +1,194 @@
+//! What the tests of all schemes draw from: recordings, kind and hostile.
+#![allow(dead_code, unused_imports, unused_macros, reason = "each test takes what it needs")]
+
+pub(crate) mod rate;
+
+use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use host_tests::flight;
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+/// How many cases a property is tried with.
+pub(crate) fn cases(count: u32) -> ProptestConfig {
+    ProptestConfig { cases: count, failure_persistence: None, ..ProptestConfig::default() }
+}
+
+/// The floats that break things.
+pub(crate) const HOSTILE: [f32; 16] = [
+    0.0,
+    -0.0,
+    f32::MIN_POSITIVE,
+    -f32::MIN_POSITIVE,
+    1e-45,
+    -1e-45,
+    1e38,
+    -1e38,
+    f32::MAX,
+    f32::MIN,
+    f32::EPSILON,
+    16_777_217.0,
+    f32::NAN,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    1.0,
+];
+
+/// Any `f32`, the hostile ones often.
+pub(crate) fn float() -> BoxedStrategy<f32> {
+    prop_oneof![
+        proptest::sample::select(&HOSTILE[..]),
+        any::<u32>().prop_map(f32::from_bits),
+        -4.0_f32..4.0,
+    ]
+    .boxed()
+}
+
+/// Any finite `f32`.
+pub(crate) fn finite_float() -> BoxedStrategy<f32> {
+    float().prop_filter("finite", |value| value.is_finite()).boxed()
+}
+
+/// Any finite `f32` above 0, handy ones often.
+pub(crate) fn positive_float() -> BoxedStrategy<f32> {
+    prop_oneof![
+        (1..32_u8).prop_map(|eighths| f32::from(eighths) / 8.0),
+        0.01_f32..2.0,
+        finite_float().prop_map(f32::abs).prop_filter("above 0", |&value| value > 0.0),
+    ]
+    .boxed()
+}
+
+/// Values that stay for a while.
+fn steps<T: Clone + std::fmt::Debug + 'static>(value: BoxedStrategy<T>) -> BoxedStrategy<Vec<T>> {
+    vec((value, 1..9_usize), 0..12)
+        .prop_map(|parts| parts.into_iter().flat_map(|(value, n)| vec![value; n]).collect())
+        .boxed()
+}
+
+/// A walk in small steps, so that exact ties are frequent.
+fn walk() -> BoxedStrategy<Vec<i64>> {
+    vec(-9..=9_i64, 0..90)
+        .prop_map(|steps| {
+            steps.into_iter().scan(0, |value, step| {
+                *value += step;
+                Some(*value)
+            })
+            .collect()
+        })
+        .boxed()
+}
+
+/// Recordings of `f32`, with values that are not finite among them.
+pub(crate) fn floats() -> BoxedStrategy<Vec<f32>> {
+    prop_oneof![
+        walk().prop_map(|walk| walk.into_iter().map(|value| value as f32 / 8.0).collect()),
+        vec(-4.0_f32..4.0, 0..90),
+        vec(float(), 0..60),
+        steps(float()),
+        (walk(), vec(proptest::option::weighted(0.1, float()), 90)).prop_map(|(walk, faults)| {
+            let faulty = |(value, fault): (i64, Option<f32>)| fault.unwrap_or(value as f32 / 8.0);
+            walk.into_iter().zip(faults).map(faulty).collect()
+        }),
+    ]
+    .boxed()
+}
+
+/// Integers of a type with this largest value, its ends often.
+pub(crate) fn integer(max: i64) -> BoxedStrategy<i64> {
+    prop_oneof![
+        -100..=100_i64,
+        -max - 1..=max,
+        proptest::sample::select(vec![-max - 1, -max, -1, 0, 1, max - 1, max]),
+    ]
+    .boxed()
+}
+
+/// Recordings in integers of a type with this largest value.
+fn integers(max: i64) -> BoxedStrategy<Vec<i64>> {
+    let at_an_end = (walk(), proptest::sample::select(vec![-max - 1, max])).prop_map(
+        move |(walk, end)| {
+            walk.into_iter().map(|value| (value + end).clamp(-max - 1, max)).collect()
+        },
+    );
+    prop_oneof![walk(), at_an_end, vec(integer(max), 0..60), steps(integer(max))].boxed()
+}
+
+/// A sample type that recordings can be drawn in.
+pub(crate) trait Drawn: Sized + Clone + std::fmt::Debug + 'static {
+    /// Recordings, hostile ones included.
+    fn recordings() -> BoxedStrategy<Vec<Self>>;
+    /// Any finite value.
+    fn value() -> BoxedStrategy<Self>;
+    /// Any finite value above 0.
+    fn positive() -> BoxedStrategy<Self>;
+    /// A tap of which 24 fit into the type's range.
+    fn tap() -> BoxedStrategy<Self>;
+}
+
+impl Drawn for f32 {
+    fn recordings() -> BoxedStrategy<Vec<f32>> {
+        floats()
+    }
+    fn value() -> BoxedStrategy<f32> {
+        finite_float()
+    }
+    fn positive() -> BoxedStrategy<f32> {
+        positive_float()
+    }
+    fn tap() -> BoxedStrategy<f32> {
+        prop_oneof![
+            4 => (1..16_u8).prop_map(|eighths| f32::from(eighths) / 8.0),
+            4 => 0.01_f32..1.0,
+            1 => finite_float().prop_map(|value| value / 32.0),
+        ]
+        .boxed()
+    }
+}
+
+macro_rules! drawn {
+    ($sample:ty, $bits:ty, $from_bits:expr) => {
+        impl Drawn for $sample {
+            fn recordings() -> BoxedStrategy<Vec<Self>> {
+                let from_bits = |bits: i64| $from_bits(bits as $bits);
+                integers(<$bits>::MAX.into())
+                    .prop_map(move |list| list.into_iter().map(from_bits).collect())
+                    .boxed()
+            }
+            fn value() -> BoxedStrategy<Self> {
+                integer(<$bits>::MAX.into()).prop_map(|bits| $from_bits(bits as $bits)).boxed()
+            }
+            fn positive() -> BoxedStrategy<Self> {
+                let max = <$bits>::MAX;
+                prop_oneof![1..=100 as $bits, 1..=max, Just(max)].prop_map($from_bits).boxed()
+            }
+            fn tap() -> BoxedStrategy<Self> {
+                let most = <$bits>::MAX / 24;
+                prop_oneof![4 => 1..=24 as $bits, 2 => -9..=9 as $bits, 1 => -most..=most]
+                    .prop_map($from_bits)
+                    .boxed()
+            }
+        }
+    };
+}
+drawn!(i16, i16, |bits: i16| bits);
+drawn!(I8F8, i16, I8F8::from_bits);
+drawn!(I1F15, i16, I1F15::from_bits);
+drawn!(I16F16, i32, I16F16::from_bits);
+drawn!(I32F0, i32, I32F0::from_bits);
+
+/// All twelve channels of both flights.
+pub(crate) fn flight_channels() -> Vec<Vec<f32>> {
+    let flights = [flight::hexarotor(), flight::vtol_at_rest()];
+    let channels = |flight: &Vec<_>| (0..6).map(|i| flight::channel(flight, i)).collect::<Vec<_>>();
+    flights.iter().flat_map(channels).collect()
+}
+
+/// Every way of being short or strange: recordings that each scheme is run on.
+pub(crate) fn hostile_recordings() -> Vec<Vec<f32>> {
+    let mut recordings = vec![vec![], HOSTILE.to_vec()];
+    recordings.extend(HOSTILE.map(|value| vec![value]));
+    recordings.extend(HOSTILE.map(|value| vec![value; 40]));
+    recordings.extend(HOSTILE.map(|value| [vec![1.0; 20], vec![value; 20]].concat()));
+    recordings.extend(HOSTILE.map(|value| [0.5, value].repeat(20)));
+    recordings
+}

@@ -1,0 +1,60 @@
+//! What the tests of the rate schemes share: taps, and signals that make them spike.
+
+use super::Drawn;
+use host_tests::compare::Wire;
+use proptest::collection::vec;
+use proptest::prelude::*;
+use spikewire::rate::Taps;
+
+/// Calls a generic check with all lengths of the filter: the first taps of a longer list.
+macro_rules! all_lengths {
+    ($check:ident, $sample:ty, $taps:expr, $($argument:expr),*) => {{
+        $check::<$sample, 1>(&common::rate::first_taps($taps), $($argument),*);
+        $check::<$sample, 2>(&common::rate::first_taps($taps), $($argument),*);
+        $check::<$sample, 3>(&common::rate::first_taps($taps), $($argument),*);
+        $check::<$sample, 8>(&common::rate::first_taps($taps), $($argument),*);
+        $check::<$sample, 15>(&common::rate::first_taps($taps), $($argument),*);
+        $check::<$sample, 24>(&common::rate::first_taps($taps), $($argument),*);
+    }};
+}
+pub(crate) use all_lengths;
+
+/// The first taps of a list, of which at least one is not 0.
+pub(crate) fn first_taps<S: Wire, const F: usize>(list: &[S]) -> Taps<S, F> {
+    Taps::new(std::array::from_fn(|k| list[k])).unwrap()
+}
+
+/// 24 taps whose sum fits the type, the first of them not 0.
+pub(crate) fn taps<S: Wire + Drawn>() -> BoxedStrategy<Vec<S>> {
+    vec(S::tap(), 24).prop_filter("not 0 first", |taps| taps[0] != S::default()).boxed()
+}
+
+/// A triangle of 24 taps, ordinary for any signal of the flights.
+pub(crate) fn triangle<S: Wire>(peak: f64) -> Vec<S> {
+    (0..24).map(|k| S::nearest(peak * f64::from(12 - (k - 12_i32).abs() + 1) / 13.0)).collect()
+}
+
+/// A recording made of filters: spikes at random, each sample a little off at random.
+pub(crate) fn made_of_filters<S: Wire>(taps: &[S], spikes: &[bool], noise: &[i8]) -> Vec<S> {
+    let value = |i: usize| {
+        let taps = taps.iter().enumerate().take(i + 1);
+        taps.filter(|(j, _)| spikes[i - j]).map(|(_, tap)| tap.to_f64()).sum::<f64>()
+    };
+    let step = taps[0].to_f64().abs() / 64.0;
+    let noisy = |i: usize| S::nearest(value(i) + f64::from(noise[i % noise.len()]) * step);
+    (0..spikes.len()).map(noisy).collect()
+}
+
+/// Recordings, hostile ones and those made of the filter, with the filter's 24 taps.
+pub(crate) fn recordings<S: Wire + Drawn>() -> BoxedStrategy<(Vec<S>, Vec<S>)> {
+    let shaped = (taps::<S>(), vec(any::<bool>(), 0..90), vec(-3..=8_i8, 1..40), 1..25_usize)
+        .prop_map(|(taps, spikes, noise, length)| {
+            (made_of_filters(&taps[..length], &spikes, &noise), taps)
+        });
+    prop_oneof![(S::recordings(), taps::<S>()), shaped].boxed()
+}
+
+/// All pairs of two residuals within 8 bits, in the given taps' unit.
+pub(crate) fn pairs_of_8_bits() -> impl Iterator<Item = [i16; 2]> {
+    (-128..128).flat_map(|a| (-128..128).map(move |b| [a, b]))
+}

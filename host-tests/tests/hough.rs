@@ -1,0 +1,135 @@
+//! HSA, the Hough spike algorithm: a spike at `i` if `r[i+j] >= h[j]` for all `j`; then
+//! `r[i+j] -= h[j]`.
+
+mod common;
+
+use common::rate::{all_lengths, pairs_of_8_bits, recordings, triangle};
+use common::{Drawn, cases, flight_channels, hostile_recordings};
+use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use host_tests::compare::{Wire, check_rate, encode, reals, signs_of};
+use host_tests::reference::hough;
+use proptest::prelude::*;
+use spikewire::rate::{Hough, Taps};
+use spikewire::{Encoder, Scheme, Spike};
+
+/// Encoder and decoder against the reference.
+fn check<S: Wire, const F: usize>(taps: &Taps<S, F>, x: &[S], shift: S) {
+    let scheme = Hough::new(taps).with_shift(shift).unwrap();
+    let h = reals(taps.as_array());
+    check_rate(scheme, x, taps, shift, |r, shift, finish| hough(r, &h, shift, finish));
+}
+
+#[test]
+fn cases_by_hand() {
+    // With the taps 1/4, 1, 1/2 and the shift 0.
+    let table: [(&str, &[f32], &[i8]); 9] = [
+        ("empty", &[], &[]),
+        ("shorter than the filter", &[9.0, 9.0], &[0, 0]),
+        ("exactly the filter", &[0.25, 1.0, 0.5], &[1, 0, 0]),
+        ("a little less", &[0.25, 0.999, 0.5], &[0, 0, 0]),
+        ("each spike takes its filter", &[0.25, 1.25, 1.5, 0.5], &[1, 1, 0, 0]),
+        ("and leaves the rest", &[0.5, 2.0, 1.0], &[1, 0, 0]),
+        ("a cut window never spikes", &[0.0, 9.0, 9.0, 9.0], &[0, 1, 0, 0]),
+        ("not a number is skipped", &[0.25, f32::NAN, 1.0, 0.5], &[1, 0, 0]),
+        ("infinity is skipped", &[f32::INFINITY, 0.25, 1.0, 0.5], &[1, 0, 0]),
+    ];
+    let taps = Taps::new([0.25_f32, 1.0, 0.5]).unwrap();
+    for (name, x, expected) in table {
+        assert_eq!(signs_of(&encode(Hough::new(&taps), x).codes()), expected, "{name}");
+    }
+}
+
+#[test]
+fn waits_for_the_look_ahead() {
+    let taps = Taps::new([1.0_f32, 1.0, 1.0]).unwrap();
+    let scheme = Hough::new(&taps);
+    assert_eq!((scheme.latency(), Hough::<f32, 3>::LATENCY), (2, 2));
+    let mut encoder = scheme.encoder();
+    let x = [1.0, f32::NAN, 1.0, 1.0, f32::NAN, 1.0];
+    let outputs = x.map(|x| encoder.encode(x));
+    assert_eq!(outputs, [None, None, None, Some(Spike::Up), None, Some(Spike::None)]);
+    assert_eq!((encoder.rejected(), encoder.keyframe()), (2, None));
+    assert!(encoder.finish().eq([Spike::None; 2]));
+    assert_eq!(encoder.finish_next(), None);
+}
+
+#[test]
+fn flights() {
+    for channel in flight_channels() {
+        let shift = channel.iter().copied().fold(f32::INFINITY, f32::min);
+        all_lengths!(check, f32, &triangle(0.1), &channel, shift);
+        all_lengths!(check, f32, &triangle(1.0), &channel, shift);
+        let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
+        all_lengths!(check, I16F16, &triangle(0.1), &fixed, I16F16::from_num(shift));
+        let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
+        all_lengths!(check, I8F8, &triangle(0.1), &fixed, I8F8::from_num(shift));
+        let counts: Vec<_> = channel.iter().map(|&x| (x * 100.0) as i16).collect();
+        all_lengths!(check, i16, &triangle(13.0), &counts, (shift * 100.0) as i16);
+    }
+}
+
+#[test]
+fn hostile() {
+    for x in hostile_recordings() {
+        for shift in [0.0, -0.0, -1.0, f32::MIN] {
+            all_lengths!(check, f32, &triangle(1.0), &x, shift);
+        }
+    }
+}
+
+fn drawn<S: Wire + Drawn>() {
+    let shift = prop_oneof![Just(S::default()), S::value()];
+    let cases = &cases(128);
+    proptest!(cases, |(((x, taps), shift) in (recordings::<S>(), shift))| {
+        all_lengths!(check, S, &taps, &x, shift);
+    });
+}
+
+#[test]
+fn drawn_recordings() {
+    drawn::<f32>();
+    drawn::<i16>();
+    drawn::<I8F8>();
+    drawn::<I1F15>();
+    drawn::<I16F16>();
+    drawn::<I32F0>();
+}
+
+/// Up to the rounding of floats, the decoded value never exceeds the signal.
+#[test]
+fn never_above_the_signal() {
+    let taps = Taps::new([2_i16, 5, 3]).unwrap();
+    let signals = proptest::collection::vec(0..40_i16, 0..100);
+    proptest!(cases(256), |(x in signals)| {
+        let scheme = Hough::new(&taps);
+        let values = scheme.decoder();
+        let run = encode(scheme, &x);
+        for (value, x) in host_tests::compare::decode(&values, &run.codes()).iter().zip(&x) {
+            prop_assert!(value <= x);
+        }
+    });
+}
+
+/// Filters of one and two taps on all pairs of 8 bits, the tail included.
+#[test]
+fn all_pairs_of_8_bits() {
+    fn check<const F: usize>(taps: [i16; F]) {
+        let taps = Taps::new(taps.map(I8F8::from_bits)).unwrap();
+        let h = reals(taps.as_array());
+        let mut encoder = Hough::new(&taps).encoder();
+        for pair in pairs_of_8_bits() {
+            let pair = pair.map(I8F8::from_bits);
+            encoder.reset();
+            let mut spikes: Vec<_> =
+                pair.iter().filter_map(|&r| encoder.encode(r)).map(Spike::sign).collect();
+            spikes.extend(encoder.finish().map(Spike::sign));
+            assert_eq!(spikes, hough(&pair.map(Wire::real), &h, 0.0, true), "{pair:?}");
+        }
+    }
+    check([1]);
+    check([127]);
+    check([-5]);
+    check([1, 1]);
+    check([3, -2]);
+    check([0, 100]);
+}

@@ -1,0 +1,196 @@
+//! MW, moving window: a spike when the sample leaves the band around the mean of the `N` before.
+
+mod common;
+
+use common::{Drawn, cases, flight_channels, hostile_recordings};
+use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use host_tests::compare::{
+    Wire, assert_step_spikes, check_step_decoder, encode, finite, reals, run, signs_of,
+};
+use host_tests::reference::moving_window;
+use proptest::prelude::*;
+use spikewire::temporal::MovingWindow;
+use spikewire::{Encoder, Scheme, Spike};
+
+/// Encoder and decoder against the reference, unprimed and primed with a window drawn from `fill`.
+fn check<S: Wire, const N: usize>(x: &[S], threshold: S, fill: &[S]) {
+    let scheme = MovingWindow::<S, N>::new(threshold).unwrap();
+    let recording = finite(x);
+    let expected = moving_window(&recording.accepted, N, threshold.real(), None);
+    let unprimed = encode(scheme, x);
+    assert_step_spikes(&unprimed, &recording, &expected);
+    check_step_decoder(&scheme.decoder(), &signs_of(&unprimed.outputs), threshold, threshold);
+
+    let window: [S; N] =
+        std::array::from_fn(|i| fill.get(i % fill.len().max(1)).copied().unwrap_or_default());
+    let mut encoder = scheme.encoder();
+    // What was seen before priming does not count.
+    for &x in x.iter().take(N + 1) {
+        encoder.encode(x);
+    }
+    let rejected = encoder.rejected();
+    encoder.prime(&window);
+    assert_eq!(encoder.rejected(), rejected);
+    assert_eq!(encoder.keyframe(), window.last().copied());
+    let expected =
+        moving_window(&recording.accepted, N, threshold.real(), Some(&reals(&window)));
+    let mut primed = run(&encoder, x);
+    primed.rejected -= rejected;
+    assert_step_spikes(&primed, &recording, &expected);
+}
+
+/// All lengths of the window.
+fn check_all<S: Wire>(x: &[S], threshold: S, fill: &[S]) {
+    check::<S, 1>(x, threshold, fill);
+    check::<S, 2>(x, threshold, fill);
+    check::<S, 3>(x, threshold, fill);
+    check::<S, 5>(x, threshold, fill);
+    check::<S, 6>(x, threshold, fill);
+    check::<S, 64>(x, threshold, fill);
+}
+
+#[test]
+fn cases_by_hand() {
+    let table: [(&str, &[f32], f32, &[i8]); 8] = [
+        ("empty", &[], 1.0, &[]),
+        ("shorter than the window", &[9.0], 1.0, &[0]),
+        ("silent until the window is full", &[0.0, 9.0, 9.0], 1.0, &[0, 0, 1]),
+        ("strictly above the mean", &[0.0, 2.0, 2.0, 3.5], 1.0, &[0, 0, 0, 1]),
+        ("strictly below the mean", &[0.0, 2.0, 0.0, -0.5], 1.0, &[0, 0, 0, -1]),
+        ("the window moves", &[0.0, 0.0, 4.0, 4.0, 4.0], 1.0, &[0, 0, 1, 1, 0]),
+        ("not a number is skipped", &[0.0, f32::NAN, 0.0, 2.0], 1.0, &[0, 0, 0, 1]),
+        ("infinity is skipped", &[0.0, 0.0, f32::INFINITY, 1.0], 1.0, &[0, 0, 0, 0]),
+    ];
+    for (name, x, threshold, expected) in table {
+        let scheme = MovingWindow::<f32, 2>::new(threshold).unwrap();
+        assert_eq!(signs_of(&encode(scheme, x).outputs), expected, "{name}");
+    }
+}
+
+/// Primed with its own first samples, a recording is compared as in the paper.
+#[test]
+fn primed_with_the_first_window() {
+    let x = [0.0_f32, 3.0, 0.0, 1.0, 2.5];
+    let mut encoder = MovingWindow::<f32, 3>::new(1.0).unwrap().encoder();
+    encoder.prime(&[0.0, 3.0, 0.0]);
+    // Means: 1, then those of the samples before: 3 + 0 + 0, 0 + 0 + 3, 0 + 3 + 0, 3 + 0 + 1.
+    assert_eq!(signs_of(&run(&encoder, &x).outputs), [0, 1, 0, 0, 1]);
+}
+
+#[test]
+fn integers_do_not_wrap() {
+    fn ends<S: Wire + Ord, const N: usize>(min: S, max: S) {
+        let scheme = MovingWindow::<S, N>::new(max).unwrap();
+        for (first, then, expected) in
+            [(min, max, Spike::Up), (max, min, Spike::Down), (max, max, Spike::None)]
+        {
+            let mut encoder = scheme.encoder();
+            encoder.prime(&[first; N]);
+            assert_eq!(encoder.encode(then), expected, "{first:?} {then:?}");
+        }
+    }
+    ends::<i16, 1>(i16::MIN, i16::MAX);
+    ends::<i16, 16_384>(i16::MIN, i16::MAX);
+    ends::<I8F8, 16_384>(I8F8::MIN, I8F8::MAX);
+    ends::<I16F16, 16_384>(I16F16::MIN, I16F16::MAX);
+    ends::<I32F0, 16_384>(I32F0::MIN, I32F0::MAX);
+}
+
+#[test]
+fn a_rejected_priming_window_is_counted_and_ignored() {
+    let mut encoder = MovingWindow::<f32, 2>::new(1.0).unwrap().encoder();
+    encoder.prime(&[1.0, f32::NAN]);
+    assert_eq!((encoder.rejected(), encoder.keyframe()), (1, None));
+    encoder.prime(&[1.0, 2.0]);
+    encoder.prime(&[f32::INFINITY, 9.0]);
+    assert_eq!((encoder.rejected(), encoder.keyframe()), (2, Some(2.0)));
+    assert_eq!(encoder.encode(2.5), Spike::None);
+    assert_eq!(encoder.encode(3.5), Spike::Up);
+}
+
+#[test]
+fn the_keyframe_is_the_last_sample_of_a_full_window() {
+    let mut encoder = MovingWindow::<f32, 3>::new(1.0).unwrap().encoder();
+    for (i, x) in [3.0, -1.5, f32::NAN, 2.0, 7.0, 1.0, 5.0, 4.0].into_iter().enumerate() {
+        encoder.encode(x);
+        assert_eq!(encoder.keyframe(), (i >= 3).then_some(x), "{i}");
+    }
+}
+
+#[test]
+fn flights() {
+    for channel in flight_channels() {
+        for threshold in [0.01_f32, 0.25] {
+            check_all(&channel, threshold, &channel);
+            let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
+            check::<_, 6>(&fixed, I16F16::from_num(threshold), &fixed);
+            let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
+            check::<_, 5>(&fixed, I8F8::from_num(threshold), &fixed);
+            let counts: Vec<_> = channel.iter().map(|&x| (x * 100.0) as i16).collect();
+            check::<_, 64>(&counts, (threshold * 100.0) as i16, &counts);
+        }
+    }
+}
+
+#[test]
+fn hostile() {
+    for x in hostile_recordings() {
+        for threshold in [1e-45, 0.5, 1.0, f32::MAX] {
+            check_all(&x, threshold, &[1.0, -0.0, 3.0]);
+        }
+    }
+}
+
+/// The sum must not remember samples that have left the window.
+#[test]
+fn does_not_drift() {
+    let mut encoder = MovingWindow::<f32, 6>::new(1e-3).unwrap().encoder();
+    for i in 0..100_000 {
+        encoder.encode(if i % 3 == 0 { 1e7 } else { -0.1 });
+    }
+    for _ in 0..12 {
+        encoder.encode(0.1);
+    }
+    assert_eq!(encoder.encode(0.1), Spike::None);
+    assert_eq!(encoder.encode(0.102), Spike::Up);
+}
+
+fn drawn<S: Wire + Drawn>() {
+    let fill = proptest::collection::vec(S::value(), 0..7);
+    let cases = &cases(96);
+    proptest!(cases, |((x, threshold, fill) in (S::recordings(), S::positive(), fill))| {
+        check_all(&x, threshold, &fill);
+    });
+}
+
+#[test]
+fn drawn_recordings() {
+    drawn::<f32>();
+    drawn::<i16>();
+    drawn::<I8F8>();
+    drawn::<I1F15>();
+    drawn::<I16F16>();
+    drawn::<I32F0>();
+}
+
+/// All sums of a window of two within 8 bits, with all samples, in the middle and at both ends of
+/// the type.
+#[test]
+fn all_pairs_of_8_bits() {
+    for (from, to) in [(-128, 127), (i16::MIN, i16::MIN + 255), (i16::MAX - 255, i16::MAX)] {
+        for threshold in [1, 100, i16::MAX] {
+            let scheme = MovingWindow::<I8F8, 2>::new(I8F8::from_bits(threshold)).unwrap();
+            let mut encoder = scheme.encoder();
+            let pairs = (from..to).map(|a| (a, a)).chain((from..to).map(|a| (a, a + 1)));
+            for window in pairs.map(|(a, b)| [a, b].map(I8F8::from_bits)) {
+                let before = window.map(Wire::real);
+                for x in (from..=to).map(I8F8::from_bits) {
+                    let expected =
+                        moving_window(&[x.real()], 2, scheme.threshold().real(), Some(&before));
+                    encoder.prime(&window);
+                    assert_eq!([encoder.encode(x).sign()], *expected, "{x} after {window:?}");
+                }
+            }
+        }
+    }
+}

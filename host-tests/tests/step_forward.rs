@@ -1,0 +1,188 @@
+//! SF, step forward: a spike when the sample leaves `base ± threshold`, and the base follows by one
+//! threshold.
+
+mod common;
+
+use common::{Drawn, cases, flight_channels, hostile_recordings};
+use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use host_tests::compare::{
+    Wire, assert_step_spikes, check_step_decoder, encode, finite, run, saturated, signs_of,
+};
+use host_tests::reference::{step_decode_within, step_forward};
+use proptest::prelude::*;
+use spikewire::temporal::StepForward;
+use spikewire::{Decoder, Encoder, Scheme, Spike};
+
+/// Encoder and decoder against the reference, unprimed and primed.
+fn check<S: Wire>(x: &[S], threshold: S, primed: S) {
+    let scheme = StepForward::new(threshold).unwrap();
+    let recording = finite(x);
+    let expected = step_forward(&recording.accepted, threshold.real(), None);
+    let unprimed = encode(scheme, x);
+    assert_step_spikes(&unprimed, &recording, &expected);
+    check_step_decoder(&scheme.decoder(), &signs_of(&unprimed.outputs), threshold, primed);
+
+    let mut encoder = scheme.encoder();
+    encoder.prime(primed);
+    let expected = step_forward(&recording.accepted, threshold.real(), Some(primed.real()));
+    assert_step_spikes(&run(&encoder, x), &recording, &expected);
+}
+
+#[test]
+fn cases_by_hand() {
+    let table: [(&str, &[f32], f32, &[i8]); 10] = [
+        ("empty", &[], 1.0, &[]),
+        ("the first is the base", &[9.0], 1.0, &[0]),
+        ("strictly above", &[0.0, 1.0, 1.5], 1.0, &[0, 0, 1]),
+        ("strictly below", &[0.0, -1.0, -1.5], 1.0, &[0, 0, -1]),
+        ("one step a sample", &[0.0, 3.5, 3.5, 3.5, 3.5], 1.0, &[0, 1, 1, 1, 0]),
+        ("slow drift is seen", &[0.0, 0.75, 1.5, 2.25], 1.0, &[0, 0, 1, 1]),
+        ("down goes down", &[0.0, -1.5, -1.5, -0.5], 1.0, &[0, -1, 0, 0]),
+        ("not a number is skipped", &[0.0, f32::NAN, 2.0, 2.0], 1.0, &[0, 0, 1, 0]),
+        ("infinity leaves the base", &[0.0, f32::INFINITY, 0.5], 1.0, &[0, 0, 0]),
+        ("a bad first is no base", &[f32::NAN, 9.0, 9.5], 1.0, &[0, 0, 0]),
+    ];
+    for (name, x, threshold, expected) in table {
+        let scheme = StepForward::new(threshold).unwrap();
+        assert_eq!(signs_of(&encode(scheme, x).outputs), expected, "{name}");
+        check(x, threshold, 0.25);
+    }
+}
+
+#[test]
+fn integers_do_not_wrap() {
+    let (min, max) = (i16::MIN, i16::MAX);
+    let table = [
+        (min, max, vec![max; 4], vec![1, 1, 0, 0], max - 1),
+        (max, max, vec![min; 4], vec![-1, -1, 0, 0], min + 1),
+        (max - 1, 1, vec![max, max], vec![0, 0], max - 1),
+        (max - 2, 1, vec![max, max], vec![1, 0], max - 1),
+        (min + 2, 1, vec![min, min], vec![-1, 0], min + 1),
+    ];
+    for (base, threshold, x, expected, left) in table {
+        let mut encoder = StepForward::new(threshold).unwrap().encoder();
+        encoder.prime(base);
+        let spikes: Vec<_> = x.iter().map(|&x| encoder.encode(x).sign()).collect();
+        assert_eq!((spikes, encoder.keyframe()), (expected, Some(left)), "{base} {threshold}");
+    }
+}
+
+#[test]
+fn a_rejected_priming_value_is_counted_and_ignored() {
+    let mut encoder = StepForward::new(1.0_f32).unwrap().encoder();
+    encoder.prime(f32::NAN);
+    assert_eq!((encoder.rejected(), encoder.keyframe()), (1, None));
+    encoder.prime(5.0);
+    encoder.prime(f32::NEG_INFINITY);
+    assert_eq!((encoder.rejected(), encoder.keyframe()), (2, Some(5.0)));
+    assert_eq!(encoder.encode(7.0), Spike::Up);
+}
+
+/// A decoder that lost spikes is right again, to the bit, from the next keyframe on.
+#[test]
+fn a_keyframe_makes_up_for_lost_spikes() {
+    for channel in flight_channels() {
+        let scheme = StepForward::new(0.11_f32).unwrap();
+        let (mut encoder, mut whole, mut lossy) =
+            (scheme.encoder(), scheme.decoder(), scheme.decoder());
+        assert_eq!(encoder.keyframe(), None);
+        whole.resync(channel[0]);
+        for (i, &x) in channel.iter().enumerate() {
+            let spike = encoder.encode(x);
+            let value = whole.decode(spike);
+            assert_eq!(encoder.keyframe().map(f32::to_bits), Some(value.to_bits()));
+            if i % 100 == 99 {
+                lossy.resync(encoder.keyframe().unwrap());
+            } else if i % 100 < 50 {
+                lossy.decode(Spike::None);
+            } else {
+                lossy.decode(spike);
+            }
+            if i % 100 == 99 {
+                assert_eq!(lossy.value().to_bits(), value.to_bits());
+            }
+        }
+    }
+}
+
+#[test]
+fn flights() {
+    for channel in flight_channels() {
+        for threshold in [0.01_f32, 0.15, 0.5] {
+            check(&channel, threshold, channel[0] + 1.0);
+            let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
+            check(&fixed, I16F16::from_num(threshold), fixed[0]);
+            let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
+            check(&fixed, I8F8::from_num(threshold), fixed[0]);
+            let counts: Vec<_> = channel.iter().map(|&x| (x * 100.0) as i16).collect();
+            check(&counts, (threshold * 100.0) as i16, counts[0]);
+        }
+    }
+}
+
+#[test]
+fn hostile() {
+    for x in hostile_recordings() {
+        for threshold in [1e-45, 0.5, 1.0, f32::MAX] {
+            check(&x, threshold, -0.0);
+        }
+    }
+}
+
+fn drawn<S: Wire + Drawn>() {
+    let cases = &cases(256);
+    proptest!(cases, |((x, threshold, primed) in (S::recordings(), S::positive(), S::value()))| {
+        check(&x, threshold, primed);
+    });
+}
+
+#[test]
+fn drawn_recordings() {
+    drawn::<f32>();
+    drawn::<i16>();
+    drawn::<I8F8>();
+    drawn::<I1F15>();
+    drawn::<I16F16>();
+    drawn::<I32F0>();
+}
+
+/// While no sample moves by more than the threshold, the decoded value stays within it.
+#[test]
+fn follows_a_slow_signal() {
+    let walks = proptest::collection::vec(-50..=50_i16, 1..200);
+    proptest!(cases(256), |(moves in walks, threshold in 50..=99_i16)| {
+        let scheme = StepForward::new(threshold).unwrap();
+        let (mut encoder, mut decoder) = (scheme.encoder(), scheme.decoder());
+        let mut x = 0;
+        for step in moves {
+            let value = decoder.decode(encoder.encode(x));
+            prop_assert!((x - value).abs() <= threshold);
+            x += step;
+        }
+    });
+}
+
+/// All pairs of base and sample within 8 bits, in the middle and at both ends of the type: the spike
+/// and the base that it leaves.
+#[test]
+fn all_pairs_of_8_bits() {
+    for (from, to) in [(-128, 127), (i16::MIN, i16::MIN + 255), (i16::MAX - 255, i16::MAX)] {
+        for threshold in [1, 2, 100, 255, i16::MAX] {
+            let scheme = StepForward::new(I8F8::from_bits(threshold)).unwrap();
+            let step = scheme.threshold().real();
+            let [lowest, highest] = I8F8::ends();
+            for base in (from..=to).map(I8F8::from_bits) {
+                let mut encoder = scheme.encoder();
+                for x in (from..=to).map(I8F8::from_bits) {
+                    encoder.prime(base);
+                    let expected = step_forward(&[x.real()], step, Some(base.real()));
+                    let left = step_decode_within(&expected, step, base.real(), lowest, highest);
+                    assert_eq!([encoder.encode(x).sign()], *expected, "{x} at {base}");
+                    assert_eq!(encoder.keyframe().map(Wire::real), Some(left[0]));
+                    // An exact base never leaves the type.
+                    assert_eq!(saturated::<I8F8>(&left), left);
+                }
+            }
+        }
+    }
+}

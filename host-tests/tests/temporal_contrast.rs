@@ -1,0 +1,150 @@
+//! TBR, temporal contrast: `d = x[i] - x[i-1]`; up if `d > threshold`, down if `d < -threshold`.
+
+mod common;
+
+use common::{Drawn, cases, flight_channels, hostile_recordings};
+use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use host_tests::compare::{
+    Wire, assert_step_spikes, check_step_decoder, encode, finite, run, signs_of,
+};
+use host_tests::reference::temporal_contrast;
+use proptest::prelude::*;
+use spikewire::temporal::TemporalContrast;
+use spikewire::{Encoder, Scheme, Spike};
+
+/// Encoder and decoder against the reference, unprimed and primed.
+fn check<S: Wire>(x: &[S], threshold: S, step: S, primed: S) {
+    let scheme = TemporalContrast::with_step(threshold, step).unwrap();
+    let recording = finite(x);
+    let expected = temporal_contrast(&recording.accepted, threshold.real(), None);
+    let unprimed = encode(scheme, x);
+    assert_step_spikes(&unprimed, &recording, &expected);
+    check_step_decoder(&scheme.decoder(), &signs_of(&unprimed.outputs), step, primed);
+
+    let mut encoder = scheme.encoder();
+    encoder.prime(primed);
+    let expected = temporal_contrast(&recording.accepted, threshold.real(), Some(primed.real()));
+    assert_step_spikes(&run(&encoder, x), &recording, &expected);
+}
+
+#[test]
+fn cases_by_hand() {
+    let table: [(&str, &[f32], f32, &[i8]); 9] = [
+        ("empty", &[], 1.0, &[]),
+        ("the first has no predecessor", &[9.0], 1.0, &[0]),
+        ("strictly above", &[0.0, 1.0, 2.5], 1.0, &[0, 0, 1]),
+        ("strictly below", &[0.0, -1.0, -2.5], 1.0, &[0, 0, -1]),
+        ("slow drift is never seen", &[0.0, 0.75, 1.5, 2.25], 1.0, &[0, 0, 0, 0]),
+        ("a jump counts once", &[0.0, 9.0, 9.0], 1.0, &[0, 1, 0]),
+        ("not a number is skipped", &[0.0, f32::NAN, 2.0], 1.0, &[0, 0, 1]),
+        ("infinity is skipped", &[0.0, f32::INFINITY, 0.0], 1.0, &[0, 0, 0]),
+        ("the difference may overflow", &[f32::MIN, f32::MAX, f32::MIN], f32::MAX, &[0, 1, -1]),
+    ];
+    for (name, x, threshold, expected) in table {
+        let scheme = TemporalContrast::new(threshold).unwrap();
+        assert_eq!(signs_of(&encode(scheme, x).outputs), expected, "{name}");
+        check(x, threshold, threshold, 0.5);
+    }
+}
+
+#[test]
+fn integers_do_not_wrap() {
+    let (min, max) = (i16::MIN, i16::MAX);
+    let table = [
+        ([min, max], max, [0, 1]),
+        ([max, min], max, [0, -1]),
+        ([0, max], max, [0, 0]),
+        ([-1, max], max, [0, 1]),
+        ([0, min], max, [0, -1]),
+        ([-1, min], max, [0, 0]),
+    ];
+    for (x, threshold, expected) in table {
+        let scheme = TemporalContrast::new(threshold).unwrap();
+        assert_eq!(signs_of(&encode(scheme, &x).outputs), expected, "{x:?}");
+    }
+}
+
+#[test]
+fn a_rejected_priming_value_is_counted_and_ignored() {
+    let mut encoder = TemporalContrast::new(1.0_f32).unwrap().encoder();
+    encoder.prime(f32::NAN);
+    assert_eq!((encoder.rejected(), encoder.keyframe()), (1, None));
+    assert_eq!(encoder.encode(5.0), Spike::None);
+    encoder.prime(f32::INFINITY);
+    assert_eq!((encoder.rejected(), encoder.keyframe()), (2, Some(5.0)));
+    assert_eq!(encoder.encode(7.0), Spike::Up);
+}
+
+#[test]
+fn the_keyframe_is_the_last_sample() {
+    let mut encoder = TemporalContrast::new(1.0_f32).unwrap().encoder();
+    assert_eq!(encoder.keyframe(), None);
+    for x in [3.0, -1.5, f32::NAN, 2.0] {
+        encoder.encode(x);
+        let expected = if x.is_nan() { -1.5 } else { x };
+        assert_eq!(encoder.keyframe(), Some(expected));
+    }
+}
+
+#[test]
+fn flights() {
+    for channel in flight_channels() {
+        for threshold in [0.01_f32, 0.15, 0.5] {
+            check(&channel, threshold, 2.0 * threshold, channel[0]);
+            let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
+            check(&fixed, I16F16::from_num(threshold), I16F16::from_num(threshold), fixed[0]);
+            let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
+            check(&fixed, I8F8::from_num(threshold), I8F8::from_num(threshold), fixed[0]);
+            let counts: Vec<_> = channel.iter().map(|&x| (x * 100.0) as i16).collect();
+            let threshold = (threshold * 100.0) as i16;
+            check(&counts, threshold, threshold, counts[0]);
+        }
+    }
+}
+
+#[test]
+fn hostile() {
+    for x in hostile_recordings() {
+        for threshold in [1e-45, 0.5, 1.0, f32::MAX] {
+            check(&x, threshold, threshold, -0.0);
+        }
+    }
+}
+
+fn drawn<S: Wire + Drawn>() {
+    let cases = &cases(256);
+    let parameters = (S::recordings(), S::positive(), S::positive(), S::value());
+    proptest!(cases, |((x, threshold, step, primed) in parameters)| {
+        check(&x, threshold, step, primed);
+    });
+}
+
+#[test]
+fn drawn_recordings() {
+    drawn::<f32>();
+    drawn::<i16>();
+    drawn::<I8F8>();
+    drawn::<I1F15>();
+    drawn::<I16F16>();
+    drawn::<I32F0>();
+}
+
+/// All pairs of predecessor and sample within 8 bits, in the middle and at both ends of the type.
+#[test]
+fn all_pairs_of_8_bits() {
+    for (from, to) in [(-128, 127), (i16::MIN, i16::MIN + 255), (i16::MAX - 255, i16::MAX)] {
+        for threshold in [1, 2, 100, 255, i16::MAX] {
+            let scheme = TemporalContrast::new(I8F8::from_bits(threshold)).unwrap();
+            for previous in (from..=to).map(I8F8::from_bits) {
+                let mut encoder = scheme.encoder();
+                for x in (from..=to).map(I8F8::from_bits) {
+                    encoder.prime(previous);
+                    let expected =
+                        temporal_contrast(&[x.real()], scheme.threshold().real(), Some(previous.real()));
+                    assert_eq!([encoder.encode(x).sign()], *expected);
+                    assert_eq!(encoder.keyframe(), Some(x));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! T-HSA, the threshold Hough spike algorithm: `error = sum over j of max(0, h[j] - r[i+j])`; a spike
+//! if `error <= threshold`; then `r[i+j] -= h[j]`.
+
+mod common;
+
+use common::rate::{all_lengths, pairs_of_8_bits, recordings, triangle};
+use common::{Drawn, cases, flight_channels, hostile_recordings};
+use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use host_tests::compare::{Wire, check_rate, encode, reals, signs_of};
+use host_tests::reference::threshold_hough;
+use proptest::prelude::*;
+use spikewire::rate::{Hough, Taps, ThresholdHough};
+use spikewire::{Encoder, Scheme, Spike};
+
+/// Encoder and decoder against the reference.
+fn check<S: Wire, const F: usize>(taps: &Taps<S, F>, x: &[S], threshold: S, shift: S) {
+    let scheme = ThresholdHough::new(taps, threshold).unwrap().with_shift(shift).unwrap();
+    let h = reals(taps.as_array());
+    check_rate(scheme, x, taps, shift, |r, shift, finish| {
+        threshold_hough(r, &h, shift, threshold.real(), finish)
+    });
+}
+
+#[test]
+fn cases_by_hand() {
+    // With the taps 1/4, 1, 1/2 and the shift 0.
+    let table: [(&str, &[f32], f32, &[i8]); 9] = [
+        ("empty", &[], 0.5, &[]),
+        ("exactly the threshold", &[0.25, 0.75, 0.25, 0.0], 0.5, &[1, 0, 0, 0]),
+        ("a little more", &[0.25, 0.75, 0.2, 0.0], 0.5, &[0, 0, 0, 0]),
+        ("too much is no excuse for too little", &[9.0, 9.0, 0.0, -9.0], 0.25, &[0, 0, 0, 0]),
+        ("nothing fits a zero", &[0.0, 0.0, 0.0], 0.0, &[0, 0, 0]),
+        ("past the end nothing is missing", &[0.0, 0.0, 0.0], 0.25, &[0, 0, 1]),
+        ("even in the last two", &[0.0, 0.0, 0.0], 1.25, &[0, 1, 1]),
+        ("a single sample", &[0.1], 0.25, &[1]),
+        ("not a number is skipped", &[0.25, 1.0, f32::NAN, 0.5, -9.0], 0.0, &[1, 0, 0, 0]),
+    ];
+    let taps = Taps::new([0.25_f32, 1.0, 0.5]).unwrap();
+    for (name, x, threshold, expected) in table {
+        let scheme = ThresholdHough::new(&taps, threshold).unwrap();
+        assert_eq!(signs_of(&encode(scheme, x).codes()), expected, "{name}");
+    }
+}
+
+#[test]
+fn flights() {
+    for channel in flight_channels() {
+        let shift = channel.iter().copied().fold(f32::INFINITY, f32::min);
+        all_lengths!(check, f32, &triangle(0.1), &channel, 0.05, shift);
+        all_lengths!(check, f32, &triangle(1.0), &channel, 0.85, shift);
+        let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
+        let (threshold, base) = (I16F16::from_num(0.85), I16F16::from_num(shift));
+        all_lengths!(check, I16F16, &triangle(1.0), &fixed, threshold, base);
+        let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
+        let (threshold, base) = (I8F8::from_num(0.85), I8F8::from_num(shift));
+        all_lengths!(check, I8F8, &triangle(1.0), &fixed, threshold, base);
+        let counts: Vec<_> = channel.iter().map(|&x| (x * 100.0) as i16).collect();
+        all_lengths!(check, i16, &triangle(100.0), &counts, 85, (shift * 100.0) as i16);
+    }
+}
+
+#[test]
+fn hostile() {
+    for x in hostile_recordings() {
+        for threshold in [0.0, -0.0, 1e-45, 1.0, f32::MAX] {
+            all_lengths!(check, f32, &triangle(1.0), &x, threshold, -1.0);
+            all_lengths!(check, f32, &triangle(1.0), &x, threshold, f32::MIN);
+        }
+    }
+}
+
+fn drawn<S: Wire + Drawn>() {
+    let shift = prop_oneof![Just(S::default()), S::value()];
+    let threshold = prop_oneof![Just(S::default()), S::positive()];
+    let parameters = (recordings::<S>(), threshold, shift);
+    let cases = &cases(128);
+    proptest!(cases, |(((x, taps), threshold, shift) in parameters)| {
+        all_lengths!(check, S, &taps, &x, threshold, shift);
+    });
+}
+
+#[test]
+fn drawn_recordings() {
+    drawn::<f32>();
+    drawn::<i16>();
+    drawn::<I8F8>();
+    drawn::<I1F15>();
+    drawn::<I16F16>();
+    drawn::<I32F0>();
+}
+
+/// In flight, where windows are whole, a threshold of 0 makes it HSA.
+#[test]
+fn without_tolerance_it_is_the_hough_spiker() {
+    proptest!(cases(128), |((x, taps) in recordings::<f32>())| {
+        let taps = common::rate::first_taps::<f32, 8>(&taps);
+        let outputs = encode(ThresholdHough::new(&taps, 0.0).unwrap(), &x).outputs;
+        prop_assert_eq!(outputs, encode(Hough::new(&taps), &x).outputs);
+    });
+}
+
+/// Filters of one and two taps on all pairs of 8 bits, the tail included.
+#[test]
+fn all_pairs_of_8_bits() {
+    fn check<const F: usize>(taps: [i16; F], threshold: i16) {
+        let taps = Taps::new(taps.map(I8F8::from_bits)).unwrap();
+        let threshold = I8F8::from_bits(threshold);
+        let h = reals(taps.as_array());
+        let mut encoder = ThresholdHough::new(&taps, threshold).unwrap().encoder();
+        for pair in pairs_of_8_bits() {
+            let pair = pair.map(I8F8::from_bits);
+            encoder.reset();
+            let mut spikes: Vec<_> =
+                pair.iter().filter_map(|&r| encoder.encode(r)).map(Spike::sign).collect();
+            spikes.extend(encoder.finish().map(Spike::sign));
+            let expected = threshold_hough(&pair.map(Wire::real), &h, 0.0, threshold.real(), true);
+            assert_eq!(spikes, expected, "{pair:?}");
+        }
+    }
+    check([1], 0);
+    check([127], 5);
+    check([1, 1], 0);
+    check([3, -2], 1);
+    check([50, 100], 40);
+    check([50, 100], i16::MAX);
+}
