@@ -46,6 +46,11 @@
 //! | `rand` | probabilistic spiking, from any `rand_core` generator |
 //! | `defmt` | `defmt::Format` on public data |
 //! | `serde` | `Serialize` on public data, and `Deserialize` where nothing has to be checked |
+//! | `queue` | [`sink`]: a bounded queue of events from an interrupt to main |
+//! | `link` | `link`: framed events over any byte transport |
+//! | `embedded-hal` | [`sink`]: SPI; `chip`: neuromorphic chips |
+//! | `async` | [`sink`]: asynchronous SPI |
+//! | `embedded-io` | [`sink`]: UART and USB serial |
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -53,19 +58,29 @@
 extern crate std;
 
 mod bank;
+mod bins;
+mod bytes;
 mod calibrate;
 mod codec;
 mod curve;
 mod error;
+pub mod format;
+#[cfg(feature = "link")]
+pub mod link;
 pub mod population;
 pub mod rate;
 mod sample;
+pub mod sink;
+mod source;
 mod spike;
 pub mod temporal;
+pub mod tick;
 
 pub use bank::Bank;
+pub use bins::{Bins, StepOver};
 pub use calibrate::{Calibration, Differences};
 pub use codec::{Decoder, Encoder, Output, Scheme};
 pub use error::ConfigError;
 pub use sample::Sample;
+pub use source::EventSource;
 pub use spike::{Code, Event, Firing, Polarity, Spike};

@@ -1,0 +1,174 @@
+//! EVT2: the words of Prophesee's cameras and tools.
+
+use super::{EventDecoder, EventFormat, FormatError};
+use crate::bytes::Cursor;
+use crate::{Event, Polarity, tick};
+
+/// Prophesee EVT 2.0: words of 32 bits, little endian.
+///
+/// - **Word of an event:** type\[31:28\] 0 (down) or 1 (up), t\[27:22\] the low 6 bits of the time,
+///   x\[21:11\], y\[10:0\]. **Of time:** type 8, then the time's upper 28 bits.
+/// - **Address:** `y << 11 | x`; the upper bits of y are 0 when written and dropped when read.
+/// - **Time:** 34 bits of µs, from the first event's tick on; ticks may wrap.
+/// - **Length:** 4 bytes an event, and 4 whenever 64 µs have passed.
+/// - **Resynchronisation:** none but the time words; the stream must be read from a word's start.
+///
+/// Source: Prophesee, EVT 2.0 format.
+///
+/// ```
+/// use spikewire::{Event, Polarity, format::{EventDecoder, EventFormat, Evt2}};
+///
+/// let event = Event { tick: 0x41, address: 5, polarity: Polarity::Up };
+/// let mut bytes = [0; 8];
+/// assert_eq!(Evt2::encoder().encode(event, &mut bytes), Ok(8));
+/// assert_eq!(bytes, [0x01, 0, 0, 0x80, 0x00, 0x28, 0x40, 0x10]);
+/// assert!(Evt2::decoder().decode(&bytes).eq([event]));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Evt2;
+
+const TIME_BITS: u32 = 34;
+const LOW_BITS: u32 = 6;
+const X_BITS: u32 = 11;
+const X_MASK: u32 = (1 << X_BITS) - 1;
+const DOWN: u32 = 0;
+const UP: u32 = 1;
+const TIME_HIGH: u32 = 8;
+
+impl Evt2 {
+    /// The first lines of a file: 2048 by 32 pixels hold every address.
+    pub const HEADER: &[u8] =
+        b"% evt 2.0\n% format EVT2;height=32;width=2048\n% geometry 2048x32\n% end\n";
+
+    /// Writes words; for a file write the [header](Self::HEADER) before the first.
+    pub const fn encoder() -> Evt2Encoder {
+        Evt2Encoder { time: None, high: None, retimed: 0 }
+    }
+
+    /// Reads words, from a word's start on.
+    pub const fn decoder() -> Evt2Decoder {
+        Evt2Decoder { state: State::Word { word: 0, bytes: 0 }, high: None, skipped: 0 }
+    }
+
+    /// Reads a file: skips its header, the lines that begin with `%` up to `% end`, if it has any.
+    pub const fn file_decoder() -> Evt2Decoder {
+        Evt2Decoder { state: State::LineStart, high: None, skipped: 0 }
+    }
+}
+
+/// The encoder of [`Evt2`].
+#[derive(Clone, Copy, Debug)]
+pub struct Evt2Encoder {
+    /// The last event's, of 34 bits.
+    time: Option<u64>,
+    high: Option<u32>,
+    retimed: u32,
+}
+
+impl EventFormat for Evt2Encoder {
+    fn encode(&mut self, event: Event, bytes: &mut [u8]) -> Result<usize, FormatError> {
+        let last = self.time.unwrap_or(event.tick.into());
+        let delta = tick::difference(event.tick, last as u32);
+        let time = last.wrapping_add(delta.max(0) as u64) & ((1 << TIME_BITS) - 1);
+        let high = (time >> LOW_BITS) as u32;
+
+        let mut out = Cursor::new(bytes);
+        let address = u32::from(event.address);
+        let kind = if event.polarity == Polarity::Up { UP } else { DOWN };
+        let word = kind << 28
+            | (time as u32 & ((1 << LOW_BITS) - 1)) << 22
+            | (address & X_MASK) << X_BITS
+            | address >> X_BITS;
+        if self.high != Some(high) {
+            out.put(&(TIME_HIGH << 28 | high).to_le_bytes())
+                .ok_or(FormatError::Full { written: 0 })?;
+        }
+        self.high = Some(high);
+        self.retimed = self.retimed.saturating_add((delta < 0).into());
+        self.time = Some(time);
+        out.put(&word.to_le_bytes()).ok_or(FormatError::Full { written: out.written() })?;
+        Ok(out.written())
+    }
+
+    fn retimed(&self) -> u32 {
+        self.retimed
+    }
+}
+
+/// The decoder of [`Evt2`].
+///
+/// Triggers and other words are skipped, and so are events before the first time word.
+#[derive(Clone, Copy, Debug)]
+pub struct Evt2Decoder {
+    state: State,
+    high: Option<u32>,
+    skipped: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum State {
+    LineStart,
+    /// Within a line of the header, whose first bytes are `% end` as far as it goes.
+    Line {
+        end: u8,
+    },
+    Word {
+        word: u32,
+        bytes: u8,
+    },
+}
+
+impl Evt2Decoder {
+    fn word(&mut self, word: u32) -> Option<Event> {
+        let polarity = match word >> 28 {
+            TIME_HIGH => {
+                self.high = Some(word & 0x0FFF_FFFF);
+                return None;
+            }
+            DOWN => Polarity::Down,
+            UP => Polarity::Up,
+            _ => {
+                self.skipped = self.skipped.saturating_add(4);
+                return None;
+            }
+        };
+        let Some(high) = self.high else {
+            self.skipped = self.skipped.saturating_add(4);
+            return None;
+        };
+        let low = word >> 22 & ((1 << LOW_BITS) - 1);
+        let (x, y) = (word >> X_BITS & X_MASK, word & X_MASK);
+        Some(Event { tick: high << LOW_BITS | low, address: (y << X_BITS | x) as u16, polarity })
+    }
+}
+
+impl EventDecoder for Evt2Decoder {
+    fn push(&mut self, byte: u8) -> Option<Event> {
+        const END: &[u8; 6] = b"% end\n";
+        self.state = match self.state {
+            State::LineStart if byte == b'%' => State::Line { end: 1 },
+            State::LineStart => State::Word { word: byte.into(), bytes: 1 },
+            State::Line { end } => {
+                let is_end = END.get(usize::from(end)) == Some(&byte);
+                match (byte, is_end) {
+                    (b'\n', true) => State::Word { word: 0, bytes: 0 },
+                    (b'\n', false) => State::LineStart,
+                    (_, true) => State::Line { end: end + 1 },
+                    (_, false) => State::Line { end: u8::MAX },
+                }
+            }
+            State::Word { word, bytes: 3 } => {
+                self.state = State::Word { word: 0, bytes: 0 };
+                return self.word(word | u32::from(byte) << 24);
+            }
+            State::Word { word, bytes } => {
+                State::Word { word: word | u32::from(byte) << (8 * bytes), bytes: bytes + 1 }
+            }
+        };
+        None
+    }
+
+    fn skipped(&self) -> u32 {
+        self.skipped
+    }
+}

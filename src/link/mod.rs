@@ -1,0 +1,94 @@
+//! Framed events over any byte transport: UART, SPI to an FPGA, USB, UDP.
+//!
+//! # Specification, version 1
+//!
+//! A link is a run of frames. All numbers are little endian.
+//!
+//! | byte | field | |
+//! |---|---|---|
+//! | 0 | magic | `A5` |
+//! | 1 | version and flags | version 1 in the high nibble; flags 1 *lost*, 2 *restart*, 4 *keyframes*, 8 *wide* |
+//! | 2-3 | sequence | of the frame, +1 each, wraps |
+//! | 4-7 | first tick | µs, of the keyframes, and what the first event's time is counted from |
+//! | 8-9 | period | µs from sample to sample, 1 to 65 535 |
+//! | 10 | coding | address bits in the low nibble, jitter bits in the high one |
+//! | 11 | length | bytes of keyframes and events, 0 to 255 |
+//! | | keyframes | with the flag *keyframes*: their count, then each its address (2 bytes) and raw bits (2; 4 with the flag *wide*) |
+//! | | events | a string of bits, below |
+//! | | checksum | CRC-32/ISO-HDLC, the one of zlib, of all bytes before it |
+//!
+//! *lost*: the sender lost events before this frame. *restart*: the sender's first frame; its
+//! sequence says nothing about frames before it.
+//!
+//! **Events** follow each other without a gap, each byte filled from its high bit; the last is filled
+//! up with 0. `code(v, k)` is the exponential Golomb code: with `n = (v >> k) + 1`, as many 0 as `n`
+//! has bits after its first 1, then `n`, then the low `k` bits of `v`. An event is
+//!
+//! - `0` if it has the tick of the event before and a higher address (the first event: the first
+//!   tick and any address), then `code(address - previous address - 1, address bits)`;
+//! - `1` otherwise, then its time since the event before as `steps * period + jitter`, both signed,
+//!   the jitter at most half a period: `code(zigzag(steps - 1), 0)`, `code(zigzag(jitter), jitter
+//!   bits)`, `code(address, address bits)`, where zigzag maps 0, -1, 1, -2 to 0, 1, 2, 3;
+//! - then `1` for up or `0` for down.
+//!
+//! A rest of fewer than 8 bits, all 0, is no event. Six channels that fire at the same tick thus take
+//! 3 to 6 bits an event, and a tick of its own 3 bits more, and the jitter's.
+//!
+//! **Keyframes** say what the decoder of each address holds after all events of earlier frames and
+//! before those of this one. They make a step decoder exact again after a loss.
+//!
+//! **Resynchronisation:** at any byte that is not a magic, at a header that makes no sense, and at a
+//! checksum that does not match, the reader goes on with the next byte. A frame in whose place others
+//! are found is lost and shows in the sequence.
+//!
+//! # Parts
+//!
+//! Sending: a [`Transmitter`] draws events from a queue and turns them into frames, keyframes in
+//! their place. Below it, a [`Framer`] counts frames and a [`FrameWriter`] writes one. Receiving: a
+//! [`Reader`] finds frames in bytes cut anywhere, a [`FrameView`] reads one in place, and a
+//! [`Receiver`] applies them to decoders and says which are exact.
+//!
+//! ```
+//! use spikewire::{Bank, link::*, temporal::StepForward};
+//!
+//! const GYRO: StepForward<f32> = StepForward::<f32>::checked(0.1);
+//! let mut bank = Bank::<_, 3>::new(GYRO);
+//! let mut transmitter = Transmitter::<f32, 3>::new(Coding::for_channels(3, 1_000));
+//! let mut reader = Reader::<MAX_FRAME>::new();
+//! let mut receiver = Receiver::<_, 3>::new(GYRO);
+//!
+//! let mut events = Vec::new();
+//! for (tick, rate) in [(1_000, 0.0), (2_000, 0.3), (3_000, 0.35)] {
+//!     bank.encode(tick, [rate, 0.0, -rate], |event| events.push(event));
+//! }
+//! transmitter.keyframe(3_000, 0, bank.channels()); // once a second, after a sample
+//!
+//! let mut buffer = [0; MAX_FRAME];
+//! let mut events = events.into_iter();
+//! while let Some(bytes) = transmitter.next_frame(&mut events, &mut buffer)? {
+//!     let mut input = bytes; // what arrives at the other end
+//!     while let Some(received) = reader.next_frame(&mut input) {
+//!         receiver.apply(&received, |_, _, _| ());
+//!     }
+//! }
+//! assert_eq!(receiver.exact(0), Some(0.2));
+//! assert_eq!(receiver.exact(2), Some(-0.2));
+//! # Ok::<(), LinkError>(())
+//! ```
+
+mod bits;
+mod error;
+mod frame;
+mod raw;
+mod reader;
+mod receiver;
+mod transmitter;
+mod writer;
+
+pub use error::LinkError;
+pub use frame::{Events, FrameView, Keyframe, MAX_FRAME, MIN_FRAME};
+pub use raw::Raw;
+pub use reader::{Gap, Reader, Received};
+pub use receiver::Receiver;
+pub use transmitter::Transmitter;
+pub use writer::{Coding, FrameWriter, Framer};

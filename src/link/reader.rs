@@ -1,0 +1,155 @@
+//! Finding frames in bytes that arrive cut anywhere, damaged, or from the middle of a stream.
+
+use super::frame::{CHECKSUM, MAGIC};
+use super::{FrameView, LinkError, MIN_FRAME};
+
+/// Frames that never arrived whole, by their numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Gap {
+    /// How many, 1 to 65 535: a loss of 65 536 frames at once cannot be told from none.
+    pub lost_frames: u16,
+}
+
+/// A frame that arrived, and what is missing before it.
+#[derive(Clone, Copy, Debug)]
+pub struct Received<'a> {
+    /// Frames lost since the one before.
+    pub gap: Option<Gap>,
+    /// The frame.
+    pub frame: FrameView<'a>,
+}
+
+/// Finds frames of up to `N` bytes; [`MAX_FRAME`](super::MAX_FRAME) takes all.
+///
+/// - **Memory:** `N + 40` bytes. **Work:** a checksum a frame; after damage up to one for each byte
+///   that looks like a frame's first.
+/// - **Delay:** none, but a frame whose length was damaged may hold up to 255 more bytes back.
+///
+/// Counters: [`lost_frames`](Self::lost_frames), [`bad_checksums`](Self::bad_checksums),
+/// [`skipped`](Self::skipped).
+#[derive(Clone, Debug)]
+pub struct Reader<const N: usize> {
+    buffer: [u8; N],
+    /// What of the buffer is in use; the frame handed out last comes first.
+    start: usize,
+    end: usize,
+    handed_out: usize,
+    expected: Option<u16>,
+    frames: u32,
+    lost_frames: u32,
+    bad_checksums: u32,
+    skipped: u32,
+}
+
+impl<const N: usize> Default for Reader<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const N: usize> Reader<N> {
+    /// A reader that has seen nothing.
+    pub const fn new() -> Self {
+        const { assert!(N >= MIN_FRAME, "a reader has room for at least an empty frame") };
+        Self {
+            buffer: [0; N],
+            start: 0,
+            end: 0,
+            handed_out: 0,
+            expected: None,
+            frames: 0,
+            lost_frames: 0,
+            bad_checksums: 0,
+            skipped: 0,
+        }
+    }
+
+    /// The next frame. Takes bytes from the front of `input`, all of them before it returns `None`.
+    pub fn next_frame(&mut self, input: &mut &[u8]) -> Option<Received<'_>> {
+        self.start += core::mem::take(&mut self.handed_out);
+        let length = self.find(input)?;
+        self.handed_out = length;
+        let end = self.start + length - CHECKSUM;
+        let frame = FrameView::read(self.buffer.get(self.start..end)?)?;
+        self.frames = self.frames.saturating_add(1);
+
+        let expected = self.expected.replace(frame.sequence().wrapping_add(1));
+        let lost_frames = match expected {
+            Some(expected) if !frame.is_restart() => frame.sequence().wrapping_sub(expected),
+            _ => 0,
+        };
+        self.lost_frames = self.lost_frames.saturating_add(lost_frames.into());
+        let gap = (lost_frames > 0).then_some(Gap { lost_frames });
+        Some(Received { gap, frame })
+    }
+
+    /// How many frames arrived whole.
+    pub const fn frames(&self) -> u32 {
+        self.frames
+    }
+
+    /// How many frames are missing in the sequence, over all gaps.
+    pub const fn lost_frames(&self) -> u32 {
+        self.lost_frames
+    }
+
+    /// How often bytes that looked like a frame had a wrong checksum. One damaged frame may count
+    /// more than once, or not at all.
+    pub const fn bad_checksums(&self) -> u32 {
+        self.bad_checksums
+    }
+
+    /// How many bytes belonged to no frame.
+    pub const fn skipped(&self) -> u32 {
+        self.skipped
+    }
+
+    /// The length of the next whole frame, which is at `start` then.
+    fn find(&mut self, input: &mut &[u8]) -> Option<usize> {
+        loop {
+            let bytes = self.buffer.get(self.start..self.end).unwrap_or_default();
+            match FrameView::check(bytes) {
+                Ok(length) if FrameView::read(bytes).is_some() => return Some(length),
+                Err(LinkError::Truncated { needed, .. }) if needed <= N => {
+                    if input.is_empty() {
+                        return None;
+                    }
+                    self.take_in(input);
+                }
+                result => {
+                    if let Err(LinkError::Checksum { .. }) = result {
+                        self.bad_checksums = self.bad_checksums.saturating_add(1);
+                    }
+                    let next = bytes.iter().skip(1).position(|&byte| byte == MAGIC);
+                    let skipped = next.map_or(bytes.len(), |next| next + 1);
+                    self.start += skipped;
+                    self.skipped = self.skipped.saturating_add(skipped as u32);
+                }
+            }
+        }
+    }
+
+    /// Moves what is in use to the front and appends as much of `input` as there is room for.
+    fn take_in(&mut self, input: &mut &[u8]) {
+        let used = self.end - self.start;
+        if self.start > 0 {
+            for to in 0..used {
+                let byte = self.buffer.get(self.start + to).copied().unwrap_or_default();
+                if let Some(slot) = self.buffer.get_mut(to) {
+                    *slot = byte;
+                }
+            }
+            (self.start, self.end) = (0, used);
+        }
+        let free = self.buffer.get_mut(used..).unwrap_or_default();
+        let count = free.len().min(input.len());
+        let (taken, rest) = input.split_at_checked(count).unwrap_or_default();
+        for (slot, &byte) in free.iter_mut().zip(taken) {
+            *slot = byte;
+        }
+        self.end = used + count;
+        *input = rest;
+    }
+}

@@ -1,0 +1,108 @@
+//! Frames to values, with the knowledge of which are exact.
+
+use super::{Raw, Received};
+use crate::temporal::StepDecoder;
+use crate::{Decoder, Scheme};
+
+/// The decoders of `N` channels of a step code, numbered from address 0, at the end of a link.
+///
+/// A step code's events say when the value changes, not when a sample was taken. The value of a
+/// channel therefore holds from its event on until the next: read it after each event, from the
+/// call-back, or whenever it is wanted, from [`exact`](Self::exact).
+///
+/// After a loss a channel is not exact until its next keyframe; then it is what the encoder's own
+/// decoder holds, bit for bit. So it is before the first keyframe. Meanwhile events go on being
+/// applied, which gives an [`estimate`](Self::estimate).
+#[derive(Clone, Copy, Debug)]
+pub struct Receiver<S, const N: usize> {
+    channels: [Channel<S>; N],
+    outside: u32,
+    misfits: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Channel<S> {
+    decoder: StepDecoder<S>,
+    is_exact: bool,
+}
+
+impl<S: Raw, const N: usize> Receiver<S, N> {
+    /// The same scheme on every channel; that of the sender.
+    pub fn new<P: Scheme<Sample = S, Decoder = StepDecoder<S>>>(scheme: P) -> Self {
+        Self::from_decoders(core::array::from_fn(|_| scheme.decoder()))
+    }
+
+    /// Decoders of the caller's, each with parameters of its own.
+    pub fn from_decoders(decoders: [StepDecoder<S>; N]) -> Self {
+        const { assert!(N >= 1 && N <= 1 << 16, "addresses have 16 bits") };
+        let channels = decoders.map(|decoder| Channel { decoder, is_exact: false });
+        Self { channels, outside: 0, misfits: 0 }
+    }
+
+    /// Applies a frame, and hands the channel, tick and new value of each keyframe and event to
+    /// `on_value`, in order.
+    pub fn apply(&mut self, received: &Received<'_>, mut on_value: impl FnMut(u16, u32, S)) {
+        let frame = &received.frame;
+        if received.gap.is_some() || frame.is_after_loss() || frame.is_restart() {
+            self.mark_stale();
+        }
+        for keyframe in frame.keyframes() {
+            let value = S::from_raw(keyframe.raw);
+            match self.channels.get_mut(usize::from(keyframe.address)) {
+                None => self.outside = self.outside.saturating_add(1),
+                Some(_) if frame.is_wide() != S::IS_WIDE => {
+                    self.misfits = self.misfits.saturating_add(1);
+                }
+                Some(channel) => {
+                    channel.decoder.resync(value);
+                    channel.is_exact = true;
+                    on_value(keyframe.address, frame.tick(), value);
+                }
+            }
+        }
+        let mut events = frame.events();
+        for event in &mut events {
+            match self.channels.get_mut(usize::from(event.address)) {
+                None => self.outside = self.outside.saturating_add(1),
+                Some(channel) => {
+                    let value = channel.decoder.decode(event.polarity.into());
+                    on_value(event.address, event.tick, value);
+                }
+            }
+        }
+        if !events.is_complete() {
+            self.misfits = self.misfits.saturating_add(1);
+            self.mark_stale();
+        }
+    }
+
+    /// Marks every channel as not exact, for a loss that the link did not see.
+    pub fn mark_stale(&mut self) {
+        for channel in &mut self.channels {
+            channel.is_exact = false;
+        }
+    }
+
+    /// The value of a channel, if it is exact.
+    pub fn exact(&self, channel: u16) -> Option<S> {
+        let channel = self.channels.get(usize::from(channel))?;
+        channel.is_exact.then(|| channel.decoder.value())
+    }
+
+    /// The value of a channel, exact or not; 0 for one that there is not.
+    pub fn estimate(&self, channel: u16) -> S {
+        let channel = self.channels.get(usize::from(channel));
+        channel.map(|channel| channel.decoder.value()).unwrap_or_default()
+    }
+
+    /// How many events and keyframes had an address of `N` or above.
+    pub const fn outside(&self) -> u32 {
+        self.outside
+    }
+
+    /// How many keyframes had the width of another sample type, and how many frames had events that
+    /// cannot be.
+    pub const fn misfits(&self) -> u32 {
+        self.misfits
+    }
+}

@@ -1,0 +1,169 @@
+//! Events and keyframes to frames, in the order in which they hold.
+
+use super::{Coding, FrameWriter, Framer, LinkError, Raw};
+use crate::sink::Batch;
+use crate::{Encoder, Event, EventSource, Output, Spike, tick};
+
+/// Draws events from a source and turns them into frames for `N` channels of a step code, numbered
+/// from address 0.
+///
+/// - **Keyframes** are put after the events up to their tick and before those after it, wherever
+///   those are in the queue.
+/// - **Losses** of the source are told to the receiver, in the first frame after them, and a keyframe
+///   that may lie before a loss is dropped, as it would claim too much.
+/// - **Memory:** `8 N + 40` bytes in `f32`.
+#[derive(Clone, Copy, Debug)]
+pub struct Transmitter<S, const N: usize> {
+    framer: Framer,
+    held: Option<Event>,
+    pending: Option<Pending<S, N>>,
+    lost: u32,
+    owes_loss: bool,
+    dropped_keyframes: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Pending<S, const N: usize> {
+    tick: u32,
+    lost: u32,
+    values: [Option<S>; N],
+    /// The channel whose keyframe is written next.
+    next: usize,
+}
+
+impl<S: Raw, const N: usize> Transmitter<S, N> {
+    /// A sender that has sent nothing.
+    pub const fn new(coding: Coding) -> Self {
+        const { assert!(N >= 1 && N <= 1 << 16, "addresses have 16 bits") };
+        Self {
+            framer: Framer::new(coding),
+            held: None,
+            pending: None,
+            lost: 0,
+            owes_loss: false,
+            dropped_keyframes: 0,
+        }
+    }
+
+    /// Sends what the encoders hold, at the next chance.
+    ///
+    /// `tick` is that of the last sample encoded, `lost` the source's count at the same moment: take
+    /// them together with the encoders in the interrupt that encodes, or while it is held off.
+    pub fn keyframe<E>(&mut self, tick: u32, lost: u32, channels: &[E; N])
+    where
+        E: Encoder<Sample = S>,
+        E::Output: Output<Code = Spike>,
+    {
+        self.keyframe_values(tick, lost, channels.each_ref().map(Encoder::keyframe));
+    }
+
+    /// The same with the values themselves; `None` for a channel that has none yet.
+    pub fn keyframe_values(&mut self, tick: u32, lost: u32, values: [Option<S>; N]) {
+        if self.pending.is_some() {
+            self.dropped_keyframes = self.dropped_keyframes.saturating_add(1);
+        }
+        self.pending = Some(Pending { tick, lost, values, next: 0 });
+    }
+
+    /// Writes the next frame, with as many events as fit and are there; `None` if there is nothing to
+    /// send. Call it until then.
+    ///
+    /// # Errors
+    /// [`LinkError::Full`]: the buffer has no room for a single event or keyframe. Nothing is lost;
+    /// 64 bytes are always enough.
+    pub fn next_frame<'a>(
+        &mut self,
+        mut events: impl EventSource,
+        buffer: &'a mut [u8],
+    ) -> Result<Option<&'a [u8]>, LinkError> {
+        self.write_frame(&mut events, buffer)
+    }
+
+    fn write_frame<'a>(
+        &mut self,
+        events: &mut impl EventSource,
+        buffer: &'a mut [u8],
+    ) -> Result<Option<&'a [u8]>, LinkError> {
+        self.held = self.held.take().or_else(|| events.next_event());
+        self.note_loss(events.lost());
+
+        let due = match (&self.pending, &self.held) {
+            (Some(pending), Some(event)) => tick::is_before(pending.tick, event.tick),
+            (pending, _) => pending.is_some(),
+        };
+        let keyframes = if due { self.pending.as_mut() } else { None };
+        let start = match (&keyframes, &self.held) {
+            (Some(pending), _) => pending.tick,
+            (None, Some(event)) => event.tick,
+            (None, None) if self.owes_loss => 0,
+            (None, None) => return Ok(None),
+        };
+
+        let mut frame = self.framer.start(start, buffer)?;
+        if let Some(pending) = keyframes {
+            if !pending.write(&mut frame)? {
+                self.owes_loss = false;
+                return Ok(Some(frame.finish()));
+            }
+            self.pending = None;
+        }
+        while let Some(event) = self.held.take().or_else(|| events.next_event()) {
+            let is_behind = |pending: &Pending<S, N>| tick::is_before(pending.tick, event.tick);
+            if events.lost() != self.lost
+                || self.pending.as_ref().is_some_and(is_behind)
+                || frame.event(event).is_err()
+            {
+                self.held = Some(event);
+                break;
+            }
+        }
+        if frame.is_empty() && !self.owes_loss {
+            return Err(LinkError::Full);
+        }
+        self.owes_loss = false;
+        Ok(Some(frame.finish()))
+    }
+
+    /// How many keyframes were not sent: another came before its turn, or a loss did.
+    pub const fn dropped_keyframes(&self) -> u32 {
+        self.dropped_keyframes
+    }
+
+    fn note_loss(&mut self, lost: u32) {
+        if lost == self.lost {
+            return;
+        }
+        self.lost = lost;
+        self.owes_loss = true;
+        self.framer.mark_loss();
+        if self.pending.take_if(|pending| pending.lost != lost).is_some() {
+            self.dropped_keyframes = self.dropped_keyframes.saturating_add(1);
+        }
+    }
+}
+
+impl<S: Raw, const N: usize> Pending<S, N> {
+    /// Writes keyframes as far as they fit, and says whether that was all.
+    fn write(&mut self, frame: &mut FrameWriter<'_, '_>) -> Result<bool, LinkError> {
+        while let Some(value) = self.values.get(self.next) {
+            if let Some(value) = *value {
+                match frame.keyframe(self.next as u16, value) {
+                    Err(_) if !frame.is_empty() => return Ok(false),
+                    result => result?,
+                }
+            }
+            self.next += 1;
+        }
+        Ok(true)
+    }
+}
+
+/// One frame a batch, for a sink. A buffer too short for any frame sends nothing.
+impl<S: Raw, const N: usize> Batch for Transmitter<S, N> {
+    fn fill(&mut self, events: &mut impl EventSource, bytes: &mut [u8]) -> usize {
+        match self.write_frame(events, bytes) {
+            Ok(Some(frame)) => frame.len(),
+            _ => 0,
+        }
+    }
+}
