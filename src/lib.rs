@@ -70,6 +70,8 @@ pub mod link;
 pub mod population;
 pub mod rate;
 mod sample;
+#[cfg(feature = "serde")]
+mod serial;
 pub mod sink;
 mod source;
 mod spike;

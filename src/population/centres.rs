@@ -20,9 +20,16 @@ use crate::{ConfigError, Sample};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(transparent, bound = "S: serde::Serialize")
+)]
 pub struct Centres<S, const M: usize> {
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array"))]
     values: [S; M],
     /// `edges[i]` is the largest value that still belongs to neuron `i`; the last is not used.
+    #[cfg_attr(feature = "serde", serde(skip))]
     edges: [S; M],
 }
 

@@ -19,12 +19,33 @@ use crate::{ConfigError, Sample};
 ///
 /// Source: Bohté et al. 2002; paper, section II-A.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ReceptiveFields<S: Sample, const M: usize, const N: usize> {
     centres: Centres<S, M>,
     min: S,
     max: S,
+    beta: f32,
     /// `reaches[k]` is the largest distance with a level above `k`: falling.
+    #[cfg_attr(feature = "serde", serde(skip))]
     reaches: [S::Reach; N],
+}
+
+/// Without the table, which follows from the rest.
+#[cfg(feature = "defmt")]
+impl<S: Sample + defmt::Format, const M: usize, const N: usize> defmt::Format
+    for ReceptiveFields<S, M, N>
+{
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let Self { centres, min, max, beta, .. } = self;
+        defmt::write!(
+            f,
+            "ReceptiveFields {{ centres: {}, min: {}, max: {}, beta: {} }}",
+            centres,
+            min,
+            max,
+            beta
+        );
+    }
 }
 
 /// The distance from its centre at which a response of `N` levels falls below level `k`.
@@ -45,13 +66,13 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
     /// `beta` is not above 0, or as for [`Centres::new_linear`].
     pub fn new(min: S, max: S, beta: f32) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
-        let beta = f64::from(beta);
-        positive("beta", beta)?;
+        let width = f64::from(beta);
+        positive("beta", width)?;
         let centres = Centres::new_linear(min, max)?;
         let reaches = core::array::from_fn(|k| {
-            S::reach(radius(min.to_f64(), max.to_f64(), beta, M, k + 1, N), M)
+            S::reach(radius(min.to_f64(), max.to_f64(), width, M, k + 1, N), M)
         });
-        Ok(Self { centres, min, max, reaches })
+        Ok(Self { centres, min, max, beta, reaches })
     }
 
     /// The centres, lowest first.
@@ -119,16 +140,16 @@ macro_rules! constants {
             /// As `new` fails; at compile time where it initialises a constant.
             pub const fn checked(min: $sample, max: $sample, beta: f32) -> Self {
                 const { Self::SHAPE };
-                let beta = beta as f64;
-                checked!(positive("beta", beta));
+                let width = beta as f64;
+                checked!(positive("beta", width));
                 checked!(check_range($to_f64(min), $to_f64(max)));
                 let mut reaches = [$reach(0.0, M); N];
                 let mut k = 0;
                 while k < N {
-                    reaches[k] = $reach(radius($to_f64(min), $to_f64(max), beta, M, k + 1, N), M);
+                    reaches[k] = $reach(radius($to_f64(min), $to_f64(max), width, M, k + 1, N), M);
                     k += 1;
                 }
-                Self { centres: Centres::<$sample, M>::linear(min, max), min, max, reaches }
+                Self { centres: Centres::<$sample, M>::linear(min, max), min, max, beta, reaches }
             }
         }
     };

@@ -28,6 +28,7 @@ use crate::{Decoder, Encoder, Output, Sample, Scheme};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Position<'a, S, const M: usize> {
     centres: &'a Centres<S, M>,
 }

@@ -43,6 +43,8 @@ use crate::{Decoder, Encoder, Output, Sample};
 /// assert!(pattern.iter().any(|neuron| neuron == 2)); // response 1: it always fires
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Probabilistic<'a, S: Sample, const M: usize, const N: usize> {
     fields: &'a ReceptiveFields<S, M, N>,
 }
@@ -100,6 +102,14 @@ impl<const M: usize> Output for Pattern<M> {
 
     fn code(self) -> Option<Self> {
         Some(self)
+    }
+}
+
+/// The neurons that fired: `[2, 3]`.
+#[cfg(feature = "serde")]
+impl<const M: usize> serde::Serialize for Pattern<M> {
+    fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        crate::serial::sequence(|| self.iter(), serializer)
     }
 }
 

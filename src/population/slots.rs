@@ -31,6 +31,8 @@ use crate::{Decoder, Encoder, Output, Sample, Scheme};
 /// assert!((TILT.decoder().decode(volley) - 0.1).abs() < 0.05);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Slots<'a, S: Sample, const M: usize, const N: usize> {
     fields: &'a ReceptiveFields<S, M, N>,
     floor: u16,
@@ -122,6 +124,14 @@ impl<const M: usize, const N: usize> Output for Volley<M, N> {
 
     fn code(self) -> Option<Self> {
         Some(self)
+    }
+}
+
+/// The firing neurons, each with its slot: `[[0, 42], [1, 10]]`.
+#[cfg(feature = "serde")]
+impl<const M: usize, const N: usize> serde::Serialize for Volley<M, N> {
+    fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        crate::serial::sequence(|| self.iter(), serializer)
     }
 }
 

@@ -34,6 +34,7 @@ use crate::{ConfigError, Encoder, Sample, Scheme, Spike};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct BenToolbox<'a, S, const F: usize> {
     taps: &'a Taps<S, F>,
     threshold: f32,

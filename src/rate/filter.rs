@@ -16,9 +16,16 @@ use crate::{ConfigError, Sample};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(transparent, bound = "S: serde::Serialize")
+)]
 pub struct Taps<S, const F: usize> {
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array"))]
     taps: [S; F],
     /// The sum of the magnitudes, saturating.
+    #[cfg_attr(feature = "serde", serde(skip))]
     magnitude: S,
 }
 

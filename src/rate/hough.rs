@@ -33,6 +33,7 @@ use crate::{ConfigError, Sample, Scheme};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Hough<'a, S, const F: usize> {
     taps: &'a Taps<S, F>,
     shift: S,

@@ -1,0 +1,47 @@
+//! All public data can be logged: this compiles, or it does not.
+
+use defmt::Format;
+use fixed::types::{I8F8, I16F16};
+use spikewire::{
+    Calibration, ConfigError, Differences, Event, Firing, Polarity, Sample, Spike,
+    population::{
+        Centres, Gaussian, Neuron, Pattern, Position, Probabilistic, ReceptiveFields, Slots, Volley,
+    },
+    rate::{Ben, BenToolbox, Criterion, Hough, Scale, Shape, Taps, ThresholdHough},
+    temporal::{MovingWindow, StepForward, TemporalContrast},
+};
+
+const fn is_format<T: Format>() {}
+
+const fn is_format_in<S: Sample + Format>() {
+    is_format::<TemporalContrast<S>>();
+    is_format::<StepForward<S>>();
+    is_format::<MovingWindow<S, 4>>();
+
+    is_format::<Taps<S, 4>>();
+    is_format::<Scale<S>>();
+    is_format::<Criterion<S>>();
+    is_format::<Hough<S, 4>>();
+    is_format::<ThresholdHough<S, 4>>();
+    is_format::<Ben<S, 4>>();
+    is_format::<BenToolbox<S, 4>>();
+
+    is_format::<Centres<S, 4>>();
+    is_format::<ReceptiveFields<S, 4, 8>>();
+    is_format::<Position<S, 4>>();
+    is_format::<Gaussian<S, 4>>();
+    is_format::<Slots<S, 4, 8>>();
+    is_format::<Probabilistic<S, 4, 8>>();
+
+    is_format::<Calibration<S>>();
+}
+
+const _: () = {
+    is_format::<(Spike, Polarity, Event, Firing)>();
+    is_format::<(Neuron<4>, Volley<4, 8>, Pattern<4>)>();
+    is_format::<(Shape, Differences, ConfigError)>();
+    is_format_in::<f32>();
+    is_format_in::<i16>();
+    is_format_in::<I8F8>();
+    is_format_in::<I16F16>();
+};
