@@ -32,8 +32,7 @@ fn check<S: Wire, const N: usize>(x: &[S], threshold: S, fill: &[S]) {
     encoder.prime(&window);
     assert_eq!(encoder.rejected(), rejected);
     assert_eq!(encoder.keyframe(), window.last().copied());
-    let expected =
-        moving_window(&recording.accepted, N, threshold.real(), Some(&reals(&window)));
+    let expected = moving_window(&recording.accepted, N, threshold.real(), Some(&reals(&window)));
     let mut primed = run(&encoder, x);
     primed.rejected -= rejected;
     assert_step_spikes(&primed, &recording, &expected);

@@ -139,8 +139,11 @@ fn all_pairs_of_8_bits() {
                 let mut encoder = scheme.encoder();
                 for x in (from..=to).map(I8F8::from_bits) {
                     encoder.prime(previous);
-                    let expected =
-                        temporal_contrast(&[x.real()], scheme.threshold().real(), Some(previous.real()));
+                    let expected = temporal_contrast(
+                        &[x.real()],
+                        scheme.threshold().real(),
+                        Some(previous.real()),
+                    );
                     assert_eq!([encoder.encode(x).sign()], *expected);
                     assert_eq!(encoder.keyframe(), Some(x));
                 }

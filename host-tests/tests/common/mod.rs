@@ -69,11 +69,13 @@ fn steps<T: Clone + std::fmt::Debug + 'static>(value: BoxedStrategy<T>) -> Boxed
 fn walk() -> BoxedStrategy<Vec<i64>> {
     vec(-9..=9_i64, 0..90)
         .prop_map(|steps| {
-            steps.into_iter().scan(0, |value, step| {
-                *value += step;
-                Some(*value)
-            })
-            .collect()
+            steps
+                .into_iter()
+                .scan(0, |value, step| {
+                    *value += step;
+                    Some(*value)
+                })
+                .collect()
         })
         .boxed()
 }
@@ -105,11 +107,10 @@ pub(crate) fn integer(max: i64) -> BoxedStrategy<i64> {
 
 /// Recordings in integers of a type with this largest value.
 fn integers(max: i64) -> BoxedStrategy<Vec<i64>> {
-    let at_an_end = (walk(), proptest::sample::select(vec![-max - 1, max])).prop_map(
-        move |(walk, end)| {
+    let at_an_end =
+        (walk(), proptest::sample::select(vec![-max - 1, max])).prop_map(move |(walk, end)| {
             walk.into_iter().map(|value| (value + end).clamp(-max - 1, max)).collect()
-        },
-    );
+        });
     prop_oneof![walk(), at_an_end, vec(integer(max), 0..60), steps(integer(max))].boxed()
 }
 

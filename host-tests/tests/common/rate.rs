@@ -6,18 +6,29 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use spikewire::rate::Taps;
 
-/// Calls a generic check with all lengths of the filter: the first taps of a longer list.
+/// Calls a generic check with several lengths of the filter: the first taps of a longer list. Some
+/// sample types get all, the others few, as every length is compiled for itself.
 macro_rules! all_lengths {
-    ($check:ident, $sample:ty, $taps:expr, $($argument:expr),*) => {{
-        $check::<$sample, 1>(&common::rate::first_taps($taps), $($argument),*);
-        $check::<$sample, 2>(&common::rate::first_taps($taps), $($argument),*);
-        $check::<$sample, 3>(&common::rate::first_taps($taps), $($argument),*);
-        $check::<$sample, 8>(&common::rate::first_taps($taps), $($argument),*);
-        $check::<$sample, 15>(&common::rate::first_taps($taps), $($argument),*);
-        $check::<$sample, 24>(&common::rate::first_taps($taps), $($argument),*);
+    ($check:ident, $sample:ty, $taps:expr, $($argument:expr),*) => {
+        common::rate::lengths!([1 2 3 8 15 24] $check, $sample, $taps, ($($argument),*))
+    };
+}
+macro_rules! few_lengths {
+    ($check:ident, $sample:ty, $taps:expr, $($argument:expr),*) => {
+        common::rate::lengths!([1 3 8] $check, $sample, $taps, ($($argument),*))
+    };
+}
+macro_rules! lengths {
+    ([$($length:literal)*] $check:ident, $sample:ty, $taps:expr, $arguments:tt) => {{
+        $(common::rate::length!($length, $check, $sample, $taps, $arguments);)*
     }};
 }
-pub(crate) use all_lengths;
+macro_rules! length {
+    ($length:literal, $check:ident, $sample:ty, $taps:expr, ($($argument:expr),*)) => {
+        $check::<$sample, $length>(&common::rate::first_taps($taps), $($argument),*);
+    };
+}
+pub(crate) use {all_lengths, few_lengths, length, lengths};
 
 /// The first taps of a list, of which at least one is not 0.
 pub(crate) fn first_taps<S: Wire, const F: usize>(list: &[S]) -> Taps<S, F> {
