@@ -32,8 +32,8 @@ impl Coding {
             Some(period) => period,
             None => NonZeroU16::MIN,
         };
-        // A third of the channels fires at a time.
-        let address_bits = (u16::BITS - (channels / 4).leading_zeros()) as u8;
+        // When few fire at a time; more cost a bit or two each.
+        let address_bits = (u16::BITS - (channels / 8).leading_zeros()) as u8;
         Self { period, address_bits, jitter_bits: 0 }
     }
 

@@ -1,0 +1,62 @@
+//! How many bytes a spike takes on the flight log, against other ways to send it.
+
+use host_tests::flight;
+use spikewire::format::{Edvs, EdvsTime, EventFormat, EventStream, Evt2};
+use spikewire::link::{Coding, MAX_FRAME, Transmitter};
+use spikewire::temporal::StepForward;
+use spikewire::{Bank, Event, Scheme};
+
+/// Gyroscope in rad/s, accelerometer in m/s².
+fn spikes(gyro: f32, accel: f32) -> Vec<Event> {
+    let [gyro, accel] = [gyro, accel].map(|step| StepForward::<f32>::checked(step).encoder());
+    let mut bank = Bank::from_encoders([gyro, gyro, gyro, accel, accel, accel]);
+    let mut events = Vec::new();
+    for sample in flight::hexarotor() {
+        bank.encode(sample.time_us, sample.channels(), |event| events.push(event));
+    }
+    events
+}
+
+/// The bytes of all frames, where one is closed when the next event lies this far behind its first.
+fn link(events: &[Event], coding: Coding, delay: u32) -> usize {
+    let mut transmitter = Transmitter::<f32, 6>::new(coding);
+    let mut bytes = 0;
+    for batch in events.chunk_by(|a, b| a.tick / delay == b.tick / delay) {
+        let mut source = batch.iter().copied();
+        let mut buffer = [0; MAX_FRAME];
+        while let Some(frame) = transmitter.next_frame(&mut source, &mut buffer).unwrap() {
+            bytes += frame.len();
+        }
+    }
+    bytes
+}
+
+fn format(events: &[Event], mut format: impl EventFormat) -> usize {
+    let mut buffer = vec![0; 1 << 18]; // Event Stream writes a byte for every 254 µs
+    events.iter().map(|&event| format.encode(event, &mut buffer).unwrap()).sum()
+}
+
+#[test]
+fn the_link_takes_about_a_byte_a_spike() {
+    println!(
+        "bytes a spike on the flight log: thresholds, spikes, full frames, frames of 100 ms and of \
+         20 ms; raw; Event Stream; EVT2; eDVS E1"
+    );
+    for (gyro, accel) in [(0.02, 0.1), (0.05, 0.25), (0.1, 0.5), (0.2, 1.0)] {
+        let events = spikes(gyro, accel);
+        let each = |bytes: usize| bytes as f64 / events.len() as f64;
+        let coding = Coding::for_channels(6, 5_038);
+        let [full, slow, fast] =
+            [u32::MAX, 100_000, 20_000].map(|d| each(link(&events, coding, d)));
+        let es = each(format(&events, EventStream::encoder()));
+        let evt2 = each(format(&events, Evt2::encoder()));
+        let edvs = each(format(&events, Edvs::new(EdvsTime::Delta).encoder()));
+        println!(
+            "{gyro:4} rad/s {accel:4} m/s² {:6}   {full:.2} {slow:.2} {fast:.2}   7   {es:.2}   \
+             {evt2:.2}   {edvs:.2}",
+            events.len()
+        );
+        assert!(full < 1.0 && slow < 1.7, "{full} {slow}");
+        assert!(full < es && full < evt2 && full < edvs);
+    }
+}
