@@ -83,6 +83,19 @@ impl<const M: usize> Pattern<M> {
     /// No spike.
     pub const EMPTY: Self = Self { fired: [false; M] };
 
+    /// These neurons, as they came over a link or from a file. `None` if one is not below `M`, or
+    /// comes twice.
+    pub fn new(neurons: impl IntoIterator<Item = u16>) -> Option<Self> {
+        let mut pattern = Self::EMPTY;
+        for neuron in neurons {
+            let fired = pattern.fired.get_mut(usize::from(neuron))?;
+            if core::mem::replace(fired, true) {
+                return None;
+            }
+        }
+        Some(pattern)
+    }
+
     /// The neurons that fired, by rising index.
     pub fn iter(&self) -> impl Iterator<Item = u16> {
         (0..).zip(&self.fired).filter_map(|(neuron, &fired)| fired.then_some(neuron))

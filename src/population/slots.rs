@@ -93,6 +93,21 @@ impl<const M: usize, const N: usize> Volley<M, N> {
     /// No spike.
     pub const EMPTY: Self = Self { first: 0, length: 0, slots: [0; M] };
 
+    /// Neighbouring neurons from `first` on, each in its slot, as they came over a link or from a file.
+    ///
+    /// `None` if they reach beyond the `M` neurons, or a slot is not below `N`.
+    pub fn new(first: u16, slots: &[u8]) -> Option<Self> {
+        let end = usize::from(first) + slots.len();
+        if end > M || slots.iter().any(|&slot| usize::from(slot) >= N) {
+            return None;
+        }
+        let mut volley = Self { first, length: slots.len() as u16, ..Self::EMPTY };
+        for (known, &slot) in volley.slots.iter_mut().zip(slots) {
+            *known = slot;
+        }
+        Some(volley)
+    }
+
     /// The neurons that fire, by rising index, each with its slot.
     pub fn iter(&self) -> impl Iterator<Item = (u16, u16)> {
         (self.first..)
