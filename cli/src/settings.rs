@@ -1,0 +1,229 @@
+//! A scheme's parameters, complete: all that encoding and decoding need.
+
+/// Parameters of a scheme.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Settings {
+    /// Temporal contrast (`tbr`).
+    Contrast(Contrast),
+    /// Step forward (`sf`).
+    StepForward(StepForward),
+    /// Moving window (`mw`).
+    MovingWindow(MovingWindow),
+    /// The rate codes (`hsa`, `t-hsa`, `bsa`).
+    Rate(Rate),
+    /// Position coding (`position`).
+    Position(Centres),
+    /// Gaussian receptive fields (`grf`).
+    Gaussian(Evenly),
+    /// The same with sub-timesteps (`grf-slots`).
+    Slots(Slots),
+    /// The same with probabilistic spiking (`grf-prob`).
+    Probabilistic(Probabilistic),
+}
+
+/// Parameters of temporal contrast.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contrast {
+    /// What a difference must exceed.
+    pub threshold: f64,
+    /// The decoder's step.
+    pub step: f64,
+    /// The value before the first sample.
+    pub start: f64,
+}
+
+/// Parameters of step forward.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepForward {
+    /// The step.
+    pub threshold: f64,
+    /// The first baseline.
+    pub start: f64,
+}
+
+/// Parameters of the moving window.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MovingWindow {
+    /// What the distance from the mean must exceed; also the decoder's step.
+    pub threshold: f64,
+    /// One less than the samples of a mean, as the paper counts.
+    pub window: usize,
+    /// The value before the first sample.
+    pub start: f64,
+    /// The window that the encoder starts from; not needed to decode.
+    pub first: Vec<f64>,
+}
+
+/// Parameters of a rate code.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rate {
+    /// The filter.
+    pub taps: Vec<f64>,
+    /// The signal's minimum.
+    pub shift: f64,
+    /// When a sample spikes.
+    pub rule: RateRule,
+}
+
+/// When a sample of a rate code spikes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RateRule {
+    /// Where the filter fits.
+    Hough,
+    /// Where the filter fits, nearly.
+    ThresholdHough {
+        /// The error allowed.
+        threshold: f64,
+    },
+    /// `e1 <= e2 - threshold`, aligned.
+    BenSubtractive {
+        /// The gain demanded.
+        threshold: f64,
+    },
+    /// `e1 <= e2 * threshold`, aligned.
+    BenMultiplicative {
+        /// The part allowed.
+        threshold: f64,
+    },
+    /// `e1 <= e2 * threshold`, with the toolbox's indices.
+    BenToolbox {
+        /// The part allowed.
+        threshold: f64,
+    },
+}
+
+/// A number of neurons over a range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evenly {
+    /// How many.
+    pub neurons: usize,
+    /// The signal's minimum.
+    pub min: f64,
+    /// The signal's maximum.
+    pub max: f64,
+}
+
+/// Where the neurons of a position code are centred.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Centres {
+    /// Evenly.
+    Linear(Evenly),
+    /// Densely in the middle.
+    GaussianSpaced(Evenly),
+    /// Where the user says.
+    Listed(Vec<f64>),
+}
+
+impl Centres {
+    /// How many neurons there are.
+    pub fn neurons(&self) -> usize {
+        match self {
+            Self::Linear(range) | Self::GaussianSpaced(range) => range.neurons,
+            Self::Listed(list) => list.len(),
+        }
+    }
+}
+
+/// Gaussian receptive fields.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fields {
+    /// Where they are.
+    pub range: Evenly,
+    /// The wider, the smaller.
+    pub beta: f64,
+}
+
+/// Parameters of receptive fields with sub-timesteps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slots {
+    /// The fields.
+    pub fields: Fields,
+    /// Sub-timesteps a sample.
+    pub slots: usize,
+    /// The lowest level that fires.
+    pub floor: u16,
+}
+
+/// Parameters of receptive fields with probabilistic spiking.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Probabilistic {
+    /// The fields.
+    pub fields: Fields,
+    /// Where the generator starts.
+    pub seed: u64,
+}
+
+impl Settings {
+    /// The same in a unit of which `one` makes a 1.
+    pub fn scaled(&self, one: f64) -> Self {
+        let mut scaled = self.clone();
+        match &mut scaled {
+            Self::Contrast(contrast) => {
+                contrast.threshold *= one;
+                contrast.step *= one;
+                contrast.start *= one;
+            }
+            Self::StepForward(step_forward) => {
+                step_forward.threshold *= one;
+                step_forward.start *= one;
+            }
+            Self::MovingWindow(moving_window) => {
+                moving_window.threshold *= one;
+                moving_window.start *= one;
+                moving_window.first.iter_mut().for_each(|value| *value *= one);
+            }
+            Self::Rate(rate) => {
+                rate.taps.iter_mut().for_each(|tap| *tap *= one);
+                rate.shift *= one;
+                if let RateRule::ThresholdHough { threshold } | RateRule::BenSubtractive { threshold } =
+                    &mut rate.rule
+                {
+                    *threshold *= one;
+                }
+            }
+            Self::Position(Centres::Listed(list)) => list.iter_mut().for_each(|centre| *centre *= one),
+            Self::Position(Centres::Linear(range) | Centres::GaussianSpaced(range))
+            | Self::Gaussian(range)
+            | Self::Slots(Slots { fields: Fields { range, .. }, .. })
+            | Self::Probabilistic(Probabilistic { fields: Fields { range, .. }, .. }) => {
+                range.min *= one;
+                range.max *= one;
+            }
+        }
+        scaled
+    }
+
+    /// What the encoder starts from; see [`crate::codec::Encode::prime`].
+    pub fn first_window(&self) -> Vec<f64> {
+        match self {
+            Self::MovingWindow(moving_window) => moving_window.first.clone(),
+            _ => self.start().into_iter().collect(),
+        }
+    }
+
+    /// The value before the first sample, for decoders that add up.
+    pub fn start(&self) -> Option<f64> {
+        match self {
+            Self::Contrast(Contrast { start, .. })
+            | Self::StepForward(StepForward { start, .. })
+            | Self::MovingWindow(MovingWindow { start, .. }) => Some(*start),
+            _ => None,
+        }
+    }
+
+    /// How many neurons there are.
+    pub fn neurons(&self) -> usize {
+        match self {
+            Self::Position(centres) => centres.neurons(),
+            Self::Gaussian(range) => range.neurons,
+            Self::Slots(Slots { fields, .. })
+            | Self::Probabilistic(Probabilistic { fields, .. }) => fields.range.neurons,
+            _ => 1,
+        }
+    }
+
+    /// How many sub-timesteps a sample has.
+    pub fn slots(&self) -> usize {
+        if let Self::Slots(slots) = self { slots.slots } else { 1 }
+    }
+}
