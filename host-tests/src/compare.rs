@@ -7,6 +7,7 @@ use core::fmt::Debug;
 
 use fixed::types::extra::{LeEqU16, LeEqU32};
 use fixed::{FixedI16, FixedI32};
+use spikewire::population::Position;
 use spikewire::rate::{RateDecoder, Taps};
 use spikewire::temporal::StepDecoder;
 use spikewire::{Decoder, Encoder, Output, Sample, Scheme, Spike};
@@ -387,4 +388,40 @@ pub fn check_rate_decoder<S: Wire, const F: usize>(
         }
         assert_same_values(&decode(&decoder, &spikes_of(signs)), &expected);
     }
+}
+
+/// Checks encoder and decoder of position coding; `reference` gives the neurons of finite samples.
+///
+/// # Panics
+/// If a neuron or a value differs from the reference.
+pub fn check_position<S: Wire, const M: usize>(
+    scheme: Position<'_, S, M>,
+    samples: &[S],
+    centres: &[S::Real],
+    reference: impl Fn(&[S::Real]) -> Vec<usize>,
+) {
+    let recording = finite(samples);
+    let mut neurons = vec![None; samples.len()];
+    for (&position, neuron) in recording.positions.iter().zip(reference(&recording.accepted)) {
+        neurons[position] = Some(neuron);
+    }
+    let run = encode(scheme, samples);
+    let ours: Vec<_> =
+        run.outputs.iter().map(|output| output.map(|neuron| usize::from(neuron.index()))).collect();
+    assert_eq!(ours, neurons);
+    assert!(run.tail.is_empty());
+    assert_eq!(run.rejected as usize, recording.rejected.len());
+
+    let mut value = centres[M / 2];
+    let mut hold = |neuron: &Option<usize>| {
+        value = neuron.map_or(value, |neuron| centres[neuron]);
+        value
+    };
+    let expected: Vec<_> = neurons.iter().map(&mut hold).collect();
+    let mut decoder = scheme.decoder();
+    assert_same_values(&decode(&decoder, &run.outputs), &expected);
+    decoder.resync(S::default());
+    assert_same_values(&[decoder.decode(None)], &[S::Real::ZERO]);
+    decoder.reset();
+    assert_same_values(&decode(&decoder, &run.outputs), &expected);
 }

@@ -114,6 +114,10 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         while first > 0 && self.reaches(value, first - 1, level) {
             first -= 1;
         }
+        // Halfway between two centres rounding may leave only the other within reach.
+        if !self.reaches(value, first, level) {
+            first += 1;
+        }
         (first..M).take_while(move |&neuron| self.reaches(value, neuron, level))
     }
 

@@ -1,6 +1,7 @@
 //! What the tests of all schemes draw from: recordings, kind and hostile.
 #![allow(dead_code, unused_imports, unused_macros, reason = "each test takes what it needs")]
 
+pub(crate) mod fields;
 pub(crate) mod rate;
 
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};

@@ -1,0 +1,221 @@
+//! Position coding: the neuron with the nearest centre fires; halfway the lower one, outside the one
+//! at that end.
+
+mod common;
+
+use common::{Drawn, cases, flight_channels, float, hostile_recordings};
+use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use host_tests::compare::{Wire, check_position, encode, reals};
+use host_tests::reference::{even_centres, gaussian_centres, nearest, nearest_even};
+use proptest::prelude::*;
+use spikewire::Decoder;
+use spikewire::population::{Centres, Neuron, Position};
+use spikewire::{Encoder, Scheme};
+
+/// The user's centres against the reference.
+fn check<S: Wire, const M: usize>(values: [S; M], x: &[S]) {
+    let centres = Centres::new(values).unwrap();
+    let values = reals(&values);
+    check_position(Position::new(&centres), x, &values, |x| nearest(x, &values));
+}
+
+/// Linear centres against the reference.
+fn check_linear<S: Wire, const M: usize>(min: S, max: S, x: &[S]) {
+    let centres = Centres::<S, M>::new_linear(min, max).unwrap();
+    let (min, max) = (min.real(), max.real());
+    let values = even_centres(min.into(), max.into(), M);
+    let values: Vec<_> = values.into_iter().map(|value| S::nearest(value).real()).collect();
+    check_position(Position::new(&centres), x, &values, |x| nearest_even(x, min, max, M));
+}
+
+/// Gaussian-spaced centres against the reference.
+fn check_gaussian_spaced<S: Wire, const M: usize>(min: S, max: S, x: &[S]) {
+    let centres = Centres::<S, M>::new_gaussian_spaced(min, max).unwrap();
+    let values = gaussian_centres(min.to_f64(), max.to_f64(), M);
+    let values: Vec<_> = values.into_iter().map(|value| S::nearest(value).real()).collect();
+    check_position(Position::new(&centres), x, &values, |x| nearest(x, &values));
+}
+
+/// Each value, and its neighbours to either side.
+fn around(values: impl IntoIterator<Item = f64>) -> Vec<f32> {
+    let neighbours = |value: f64| {
+        let value = value as f32;
+        let (up, down) = (value.next_up(), value.next_down());
+        [value, up, down, up.next_up(), down.next_down()]
+    };
+    values.into_iter().flat_map(neighbours).collect()
+}
+
+/// Halfway between each two values.
+fn halves(values: &[f64]) -> Vec<f64> {
+    values.windows(2).map(|pair| f64::midpoint(pair[0], pair[1])).collect()
+}
+
+#[test]
+fn cases_by_hand() {
+    let centres = Centres::new([-2.0_f32, 0.0, 0.5, 4.0]).unwrap();
+    let table = [
+        ("on a centre", 0.5, Some(2)),
+        ("near one", 0.4, Some(2)),
+        ("halfway belongs to the lower", 0.25, Some(1)),
+        ("halfway, below 0", -1.0, Some(0)),
+        ("just above halfway", (-1.0_f32).next_up(), Some(1)),
+        ("below all", -1e30, Some(0)),
+        ("above all", 1e30, Some(3)),
+        ("minus 0 is 0", -0.0, Some(1)),
+        ("the lowest float", f32::MIN, Some(0)),
+        ("not a number", f32::NAN, None),
+        ("infinity", f32::INFINITY, None),
+    ];
+    for (name, x, neuron) in table {
+        let output = Position::new(&centres).encoder().encode(x);
+        assert_eq!(output.map(Neuron::index), neuron, "{name}");
+    }
+}
+
+#[test]
+fn the_decoder_starts_in_the_middle_and_holds() {
+    let centres = Centres::new([-2.0_f32, 0.0, 0.5, 4.0]).unwrap();
+    let mut decoder = Position::new(&centres).decoder();
+    let neuron = |index| Some(Neuron::new(index).unwrap());
+    let values = [None, neuron(3), None, neuron(0), None].map(|code| decoder.decode(code));
+    assert_eq!(values, [0.5, 4.0, 4.0, -2.0, -2.0]);
+    assert_eq!(Neuron::<4>::new(4), None);
+}
+
+#[test]
+fn linear_centres() {
+    let centres = Centres::<i16, 5>::new_linear(-300, 300).unwrap();
+    assert_eq!(*centres.as_array(), [-400, -200, 0, 200, 400]);
+    // Halfway between rounded centres is not halfway between centres: -2.5, 0, 2.5.
+    let centres = Centres::<i16, 3>::new_linear(-1, 1).unwrap();
+    assert_eq!(*centres.as_array(), [-2, 0, 2]);
+    let centres = Centres::<i16, 4>::new_linear(0, 5).unwrap();
+    assert_eq!(*centres.as_array(), [-1, 1, 4, 6]); // -1.25, 1.25, 3.75, 6.25
+    let neurons = encode(Position::new(&centres), &[-9, 0, 1, 2, 3, 4, 5, 6, 9]).outputs;
+    let neurons: Vec<_> = neurons.into_iter().map(|neuron| neuron.unwrap().index()).collect();
+    assert_eq!(neurons, [0, 0, 1, 1, 2, 2, 2, 3, 3]);
+}
+
+/// What is built at compile time is what is built in flight.
+#[test]
+fn constants() {
+    static LINEAR: Centres<f32, 20> = Centres::<f32, _>::linear(-9.0, 9.1);
+    static SPACED: Centres<f32, 21> = Centres::<f32, _>::gaussian_spaced(-0.3, 0.7);
+    static OWN: Centres<I8F8, 3> =
+        Centres::<I8F8, _>::checked([I8F8::NEG_ONE, I8F8::DELTA, I8F8::MAX]);
+    static COUNTS: Centres<i16, 20> = Centres::<i16, _>::linear(-30_000, 20_001);
+    static WORDS: Centres<I16F16, 9> =
+        Centres::<I16F16, _>::gaussian_spaced(I16F16::ZERO, I16F16::MAX);
+    assert_eq!(LINEAR, Centres::new_linear(-9.0, 9.1).unwrap());
+    assert_eq!(SPACED, Centres::new_gaussian_spaced(-0.3, 0.7).unwrap());
+    assert_eq!(OWN, Centres::new([I8F8::NEG_ONE, I8F8::DELTA, I8F8::MAX]).unwrap());
+    assert_eq!(COUNTS, Centres::new_linear(-30_000, 20_001).unwrap());
+    assert_eq!(WORDS, Centres::new_gaussian_spaced(I16F16::ZERO, I16F16::MAX).unwrap());
+}
+
+#[test]
+fn flights() {
+    for channel in flight_channels() {
+        let max = channel.iter().copied().fold(f32::MIN, f32::max);
+        let min = channel.iter().copied().fold(f32::MAX, f32::min);
+        check_linear::<f32, 20>(min, max, &channel);
+        check_gaussian_spaced::<f32, 21>(min, max, &channel);
+        let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
+        check_linear::<I16F16, 20>(I16F16::from_num(min), I16F16::from_num(max), &fixed);
+        let counts: Vec<_> = channel.iter().map(|&x| (x * 3000.0) as i16).collect();
+        check_linear::<i16, 20>((min * 3000.0) as i16, (max * 3000.0) as i16, &counts);
+    }
+}
+
+#[test]
+fn hostile() {
+    for x in hostile_recordings() {
+        check([-1.0, -1e-45, 0.0, 1e-45, 1e38], &x);
+        check([f32::MIN, 0.0, f32::MAX], &x);
+        check_linear::<f32, 3>(f32::MIN / 2.0, f32::MAX / 2.0, &x);
+        check_linear::<f32, 20>(-1e-38, 1e-38, &x);
+        check_gaussian_spaced::<f32, 5>(f32::MIN, f32::MAX, &x);
+    }
+}
+
+fn rising(count: usize) -> impl Strategy<Value = Vec<f32>> {
+    let value =
+        prop_oneof![-4.0_f32..4.0, (-40..40_i8).prop_map(f32::from), common::finite_float()];
+    proptest::collection::vec(value, count..4 * count).prop_filter_map("rising", move |mut list| {
+        list.sort_by(f32::total_cmp);
+        list.dedup_by(|a, b| a == b);
+        list.truncate(count);
+        (list.len() == count).then_some(list)
+    })
+}
+
+/// Exactly nearest, at each edge and at the floats next to it.
+#[test]
+fn edges() {
+    proptest!(cases(512), |(list in rising(7))| {
+        let values: [f32; 7] = list.try_into().unwrap();
+        let doubles = values.map(f64::from);
+        let mut x = around(halves(&doubles));
+        x.extend(around(doubles));
+        check(values, &x);
+    });
+}
+
+/// The same with linear and Gaussian-spaced centres.
+#[test]
+fn edges_of_ranges() {
+    fn check_both<const M: usize>(min: f32, max: f32) {
+        let linear = even_centres(min.into(), max.into(), M);
+        check_linear::<f32, M>(min, max, &around(halves(&linear)));
+        let spaced = gaussian_centres(min.into(), max.into(), M);
+        let spaced: Vec<_> = spaced.into_iter().map(|value| f64::from(value as f32)).collect();
+        check_gaussian_spaced::<f32, M>(min, max, &around(halves(&spaced)));
+    }
+    proptest!(cases(128), |(min in -100.0_f32..100.0, width in 0.01_f32..100.0)| {
+        let max = min + width;
+        check_both::<3>(min, max);
+        check_both::<4>(min, max);
+        check_both::<15>(min, max);
+        check_both::<20>(min, max);
+        check_both::<65>(min, max);
+    });
+    check_both::<1024>(-9.0, 9.1);
+}
+
+#[test]
+fn drawn_recordings() {
+    let floats = proptest::collection::vec(float(), 0..60);
+    proptest!(cases(256), |(list in rising(5), x in floats)| {
+        let values: [f32; 5] = list.try_into().unwrap();
+        check(values, &x);
+    });
+    fn integers<S: Wire + Drawn + Ord>() {
+        let list = proptest::collection::btree_set(S::value(), 5);
+        proptest!(cases(128), |(set in list, x in S::recordings())| {
+            let list: Vec<_> = set.into_iter().collect();
+            let values: [S; 5] = list.try_into().unwrap();
+            check(values, &x);
+        });
+    }
+    integers::<i16>();
+    integers::<I8F8>();
+    integers::<I1F15>();
+    integers::<I16F16>();
+    integers::<I32F0>();
+}
+
+#[test]
+fn all_65536_inputs() {
+    let counts: Vec<_> = (i16::MIN..=i16::MAX).collect();
+    check([i16::MIN, -30_000, -1, 0, 2, 5, i16::MAX], &counts);
+    check_linear::<_, 20>(-20_000_i16, 25_001, &counts);
+    check_linear::<_, 3>(i16::MIN + 1, i16::MAX, &counts);
+    check_gaussian_spaced::<_, 21>(-20_000_i16, 25_001, &counts);
+    let bits: Vec<_> = counts.iter().copied().map(I8F8::from_bits).collect();
+    check_linear::<_, 20>(I8F8::from_num(-9), I8F8::from_num(9.1), &bits);
+    check_gaussian_spaced::<_, 20>(I8F8::from_num(-9), I8F8::from_num(9.1), &bits);
+    let bits: Vec<_> = counts.iter().copied().map(I1F15::from_bits).collect();
+    check_linear::<_, 15>(I1F15::from_num(-0.5), I1F15::from_num(0.7), &bits);
+    check([I1F15::MIN, I1F15::from_bits(-7), I1F15::from_bits(-6), I1F15::MAX], &bits);
+}

@@ -1,0 +1,208 @@
+//! GRF with sub-timesteps: a response of level `k` of `N` fires in slot `N - k`.
+
+mod common;
+
+use common::fields::Fields;
+use common::{Drawn, cases, flight_channels, float, hostile_recordings};
+use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use host_tests::compare::{assert_same_values, decode, encode, finite, reals};
+use host_tests::reference::slots_of_levels;
+use proptest::prelude::*;
+use spikewire::population::{Centres, ReceptiveFields, Slots, Volley};
+use spikewire::{Decoder, Encoder, Scheme};
+
+/// A volley, neuron by neuron.
+fn listed<const M: usize, const N: usize>(volley: Volley<M, N>) -> Vec<Option<u16>> {
+    let mut slots = vec![None; M];
+    for (neuron, slot) in volley.iter() {
+        slots[usize::from(neuron)] = Some(slot);
+    }
+    assert_eq!(volley.len(), slots.iter().flatten().count());
+    assert_eq!(volley.is_empty(), volley.len() == 0);
+    slots
+}
+
+/// Encoder and decoder against the reference; without fields where the type is too coarse for them.
+fn check<S: Fields, const M: usize, const N: usize>(
+    min: S,
+    max: S,
+    beta: f32,
+    floor: u16,
+    x: &[S],
+) {
+    let Ok(fields) = ReceptiveFields::<S, M, N>::new(min, max, beta) else {
+        assert!(Centres::<S, M>::new_linear(min, max).is_err());
+        return;
+    };
+    let scheme = Slots::new(&fields).with_floor(floor).unwrap();
+    let run = encode(scheme, x);
+    let recording = finite(x);
+    assert!(run.tail.is_empty());
+    assert_eq!(run.rejected as usize, recording.rejected.len());
+
+    let n = N as u16;
+    let mut value = fields.centres()[M / 2];
+    let mut values = Vec::new();
+    for (&x, &volley) in x.iter().zip(&run.outputs) {
+        let mut levels = match x.real().into().is_finite() {
+            true => x.levels(min, max, M, beta, n),
+            false => vec![0; M],
+        };
+        assert_eq!(listed(volley), slots_of_levels(&levels, n, floor), "{x:?} in {min:?}..{max:?}");
+        for level in &mut levels {
+            *level = if *level < floor { 0 } else { *level };
+        }
+        value = S::weighted_mean(&levels, min, max, n).unwrap_or(value);
+        values.push(value.real());
+    }
+    let mut decoder = scheme.decoder();
+    assert_same_values(&decode(&decoder, &run.outputs), &values);
+    decoder.resync(max);
+    assert_eq!(decoder.decode(Volley::EMPTY), max);
+    decoder.reset();
+    assert_same_values(&decode(&decoder, &run.outputs), &values);
+}
+
+/// Several numbers of neurons and slots.
+fn check_all<S: Fields>(min: S, max: S, beta: f32, x: &[S]) {
+    check::<S, 3, 2>(min, max, beta, 1, x);
+    check::<S, 4, 100>(min, max, beta, 7, x);
+    check::<S, 15, 10>(min, max, beta, 1, x);
+    check::<S, 5, 256>(min, max, beta, 256, x);
+}
+
+#[test]
+fn the_printed_check_values() {
+    let fields = ReceptiveFields::<f32, 4, 100>::new(0.0, 1.0, 1.5).unwrap();
+    let table = [
+        (0.1, [Some(42), Some(10), Some(85), None]),
+        (0.5, [Some(92), Some(25), Some(25), Some(92)]),
+        (0.9, [None, Some(85), Some(10), Some(42)]),
+    ];
+    for (x, slots) in table {
+        assert_eq!(listed(Slots::new(&fields).encoder().encode(x)), slots);
+    }
+    let fields = ReceptiveFields::<I16F16, 4, 100>::new(I16F16::ZERO, I16F16::ONE, 1.5).unwrap();
+    for (x, slots) in table {
+        let x = I16F16::from_num(x);
+        assert_eq!(listed(Slots::new(&fields).encoder().encode(x)), slots);
+    }
+}
+
+#[test]
+fn cases_by_hand() {
+    // Centres -0.25, 0.25, 0.75, 1.25.
+    let fields = ReceptiveFields::<f32, 4, 100>::new(0.0, 1.0, 1.5).unwrap();
+    let all = Slots::new(&fields);
+    let some = all.with_floor(75).unwrap();
+    let table = [
+        ("on a centre: at once", all, 0.25, vec![(0, 68), (1, 0), (2, 68), (3, 99)]),
+        ("below the floor: silent", some, 0.5, vec![(1, 25), (2, 25)]),
+        ("far outside: silent", all, 9.0, vec![]),
+        ("not a number: silent", all, f32::NAN, vec![]),
+    ];
+    for (name, scheme, x, expected) in table {
+        assert!(scheme.encoder().encode(x).iter().eq(expected), "{name}");
+    }
+}
+
+/// What is built at compile time is what is built in flight.
+#[test]
+fn constants() {
+    static FLOATS: ReceptiveFields<f32, 15, 10> =
+        ReceptiveFields::<f32, _, _>::checked(-0.3, 0.7, 1.5);
+    static COUNTS: ReceptiveFields<i16, 15, 256> =
+        ReceptiveFields::<i16, _, _>::checked(-30_000, 7, 0.9);
+    static WORDS: ReceptiveFields<I16F16, 4, 100> =
+        ReceptiveFields::<I16F16, _, _>::checked(I16F16::MIN, I16F16::DELTA, 3.0);
+    assert_eq!(FLOATS, ReceptiveFields::new(-0.3, 0.7, 1.5).unwrap());
+    assert_eq!(COUNTS, ReceptiveFields::new(-30_000, 7, 0.9).unwrap());
+    assert_eq!(WORDS, ReceptiveFields::new(I16F16::MIN, I16F16::DELTA, 3.0).unwrap());
+    assert_eq!(reals(FLOATS.centres()), *FLOATS.centres());
+}
+
+#[test]
+fn flights() {
+    for channel in flight_channels() {
+        check::<f32, 15, 10>(-4.0, 4.0, 1.5, 1, &channel);
+        let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
+        check::<I8F8, 15, 10>(I8F8::from_num(-4), I8F8::from_num(4), 1.5, 1, &fixed);
+        let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
+        check::<I16F16, 4, 100>(I16F16::from_num(-4), I16F16::from_num(4), 1.5, 7, &fixed);
+    }
+}
+
+#[test]
+fn hostile() {
+    for x in hostile_recordings() {
+        check_all(0.0_f32, 1.0, 1.5, &x);
+        check_all(-1e-40_f32, 1e-40, 1.5, &x);
+        check_all(-1e37_f32, 1e38, 0.7, &x);
+    }
+}
+
+fn drawn<S: Fields + Drawn>() {
+    let beta = prop_oneof![Just(1.5_f32), 0.3_f32..4.0];
+    let cases = &cases(64);
+    proptest!(cases, |((x, a, b, beta) in (S::recordings(), S::value(), S::value(), beta))| {
+        let (min, max) = if a < b { (a, b) } else { (b, a) };
+        prop_assume!(min < max);
+        check_all(min, max, beta, &x);
+    });
+}
+
+#[test]
+fn drawn_recordings() {
+    drawn::<f32>();
+    drawn::<i16>();
+    drawn::<I8F8>();
+    drawn::<I1F15>();
+    drawn::<I16F16>();
+    drawn::<I32F0>();
+}
+
+/// Samples within the range, and next to the edges between neurons.
+#[test]
+fn within_the_range() {
+    let x = proptest::collection::vec(-0.5_f32..1.5, 40);
+    proptest!(cases(128), |(x in x, min in -3.0_f32..3.0, width in 0.1_f32..5.0)| {
+        let max = min + width;
+        let mut x: Vec<_> = x.into_iter().map(|x| min + x * width).collect();
+        x.extend((0..=13_u8).map(|i| min + f32::from(i) * width / 13.0));
+        check_all(min, max, 1.5, &x);
+    });
+}
+
+/// Fields so narrow that the floor is reached just halfway between two centres: there the rounding
+/// of either distance decides who fires, whichever neuron is the nearest.
+#[test]
+fn a_floor_halfway_between_two_neurons() {
+    let halfway = |n: f64, floor: f64| 2.0 * (2.0 * (n / (floor - 0.5)).ln()).sqrt();
+    proptest!(cases(512), |(min in -3.0_f32..3.0, width in 0.1_f32..5.0)| {
+        let max = min + width;
+        let edges = (0..=3_u8).map(|i| min + f32::from(i) * (max - min) / 3.0);
+        let x: Vec<_> = edges.flat_map(|x| [x.next_down(), x, x.next_up()]).collect();
+        let beta = halfway(10.0, 4.0) as f32;
+        for beta in [beta.next_down(), beta, beta.next_up()] {
+            check::<f32, 5, 10>(min, max, beta, 4, &x);
+        }
+    });
+}
+
+#[test]
+fn drawn_floors() {
+    proptest!(cases(64), |(x in proptest::collection::vec(float(), 40), floor in 1..=10_u16)| {
+        check::<f32, 15, 10>(-4.0, 4.0, 1.5, floor, &x);
+    });
+}
+
+#[test]
+fn all_65536_inputs() {
+    let counts: Vec<_> = (i16::MIN..=i16::MAX).collect();
+    check::<_, 4, 10>(-20_000_i16, 25_001, 1.5, 1, &counts);
+    check::<_, 3, 256>(i16::MIN, i16::MAX, 1.5, 1, &counts);
+    let bits: Vec<_> = counts.iter().copied().map(I8F8::from_bits).collect();
+    check::<_, 4, 100>(I8F8::from_num(-9), I8F8::from_num(9.1), 1.5, 3, &bits);
+    let bits: Vec<_> = counts.iter().copied().map(I1F15::from_bits).collect();
+    check::<_, 5, 10>(I1F15::from_num(-0.5), I1F15::from_num(0.7), 2.5, 1, &bits);
+}
