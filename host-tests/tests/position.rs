@@ -162,6 +162,18 @@ fn edges() {
     });
 }
 
+/// Even where one centre is too small to move the sum of both in double precision.
+#[test]
+fn edges_of_centres_of_any_size() {
+    for (tiny, neurons) in [(-1e-30_f32, [1, 2, 2]), (1e-30, [1, 1, 2])] {
+        let centres = Centres::new([-9.0, tiny, 1.0]).unwrap();
+        let x = [0.5_f32.next_down(), 0.5, 0.5_f32.next_up()];
+        let outputs = encode(Position::new(&centres), &x).outputs;
+        let ours: Vec<_> = outputs.into_iter().map(|neuron| neuron.unwrap().index()).collect();
+        assert_eq!(ours, neurons, "{tiny}");
+    }
+}
+
 /// The same with linear and Gaussian-spaced centres.
 #[test]
 fn edges_of_ranges() {

@@ -61,6 +61,15 @@ const fn not_rising(
     ConfigError::NotRising { parameter, index, value: value as f32, previous: previous as f32 }
 }
 
+/// Halfway between two, rounded to the next double below where it is none: `f32` centres may be of
+/// very different size.
+const fn halfway(low: f64, high: f64) -> f64 {
+    let sum = low + high;
+    let rest = sum - low;
+    let error = (low - (sum - rest)) + (high - rest);
+    if error < 0.0 { (sum / 2.0).next_down() } else { sum / 2.0 }
+}
+
 /// `mu[i] = min + (2i - 1) / 2 * (max - min) / (m - 2)`.
 const fn even_centre(min: f64, max: f64, i: usize, m: usize) -> f64 {
     min + (2.0 * i as f64 - 1.0) * (max - min) / (2.0 * (m as f64 - 2.0))
@@ -97,7 +106,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
                 if high <= low {
                     return Err(not_rising("centres", index, high, low));
                 }
-                *edge_below = S::floor_from_f64(f64::midpoint(low, high));
+                *edge_below = S::floor_from_f64(halfway(low, high));
             }
             previous = Some((value, edge));
         }
@@ -167,7 +176,7 @@ macro_rules! constants {
                     if i > 0 {
                         let below = $to_f64(values[i - 1]);
                         assert!(below < value, "centres must rise strictly");
-                        edges[i - 1] = $floor(f64::midpoint(below, value));
+                        edges[i - 1] = $floor(halfway(below, value));
                     }
                     i += 1;
                 }

@@ -2,8 +2,7 @@
 //!
 //! Ties go to the lower index, and values outside clamp to the end neurons. So the neuron is the
 //! number of borders that the value lies beyond, each border halfway between two centres. In `f64`
-//! for both sample types, where the sum of two `f32` centres is exact unless their sizes are more
-//! than 29 binary digits apart.
+//! for both sample types.
 
 /// The neuron nearest to each sample: the number of `i` in `0..m-1` with `2x > mu[i] + mu[i+1]`, for
 /// strictly rising centres.
@@ -16,10 +15,19 @@ where
         .map(|&value| {
             centres
                 .windows(2)
-                .filter(|pair| 2.0 * value.into() > pair[0].into() + pair[1].into())
+                .filter(|pair| doubled_exceeds(value.into(), pair[0].into(), pair[1].into()))
                 .count()
         })
         .collect()
+}
+
+/// Exactly `2x > low + high`. In `f64` the sum of two `f32` is rounded where their sizes are more than
+/// 29 binary digits apart; what it was rounded by then decides whether a tie is one.
+fn doubled_exceeds(x: f64, low: f64, high: f64) -> bool {
+    let sum = low + high;
+    let (larger, smaller) = if low.abs() > high.abs() { (low, high) } else { (high, low) };
+    let lost = smaller - (sum - larger);
+    2.0 * x > sum || (2.0 * x == sum && lost < 0.0)
 }
 
 /// The nearest of `m` even centres: the number of `i` in `0..m-1` with
