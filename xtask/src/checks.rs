@@ -61,6 +61,15 @@ pub fn targets() -> Result<()> {
     Ok(())
 }
 
+/// The program has no panic handler: one path to a panic that the compiler cannot rule out, and it does not link.
+pub fn no_panic() -> Result<()> {
+    for target in ["thumbv6m-none-eabi", "thumbv7em-none-eabihf"] {
+        let build = "build --release --manifest-path examples/Cargo.toml --package no-panic";
+        run(&mut cargo_for(target, build)?)?;
+    }
+    Ok(())
+}
+
 pub fn firmware() -> Result<()> {
     crate::firmware::firmware(&[])
 }

@@ -24,7 +24,8 @@ pub fn firmware(names: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// A program is a directory of the firmware workspace with a `src/main.rs`.
+/// A program is a directory of the firmware workspace with a `src/main.rs`. What is only linked, or does not
+/// print the same everywhere, calls it otherwise.
 fn programs() -> Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(paths::examples())? {

@@ -21,6 +21,7 @@ const STEPS: &[Step] = &[
     step("doc", "documentation without warnings", checks::doc),
     step("features", "every feature alone, on the host", checks::features),
     step("targets", "the crate for every Cortex-M", checks::targets),
+    step("no-panic", "every codec links without a panic handler", checks::no_panic),
     step("firmware", "emulated boards against the host", checks::firmware),
 ];
 
