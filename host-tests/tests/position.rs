@@ -195,6 +195,15 @@ fn edges_of_ranges() {
     check_both::<1024>(-9.0, 9.1);
 }
 
+fn integers<S: Wire + Drawn + Ord>() {
+    let list = proptest::collection::btree_set(S::value(), 5);
+    proptest!(cases(128), |(set in list, x in S::recordings())| {
+        let list: Vec<_> = set.into_iter().collect();
+        let values: [S; 5] = list.try_into().unwrap();
+        check(values, &x);
+    });
+}
+
 #[test]
 fn drawn_recordings() {
     let floats = proptest::collection::vec(float(), 0..60);
@@ -202,14 +211,6 @@ fn drawn_recordings() {
         let values: [f32; 5] = list.try_into().unwrap();
         check(values, &x);
     });
-    fn integers<S: Wire + Drawn + Ord>() {
-        let list = proptest::collection::btree_set(S::value(), 5);
-        proptest!(cases(128), |(set in list, x in S::recordings())| {
-            let list: Vec<_> = set.into_iter().collect();
-            let values: [S; 5] = list.try_into().unwrap();
-            check(values, &x);
-        });
-    }
     integers::<i16>();
     integers::<I8F8>();
     integers::<I1F15>();

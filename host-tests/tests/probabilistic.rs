@@ -97,7 +97,7 @@ fn cases_by_hand() {
     // Centres -0.5, 0.5, 1.5, 2.5, 3.5; the levels of 1.5 are 1, 16 * 0.325, 16: 0, 5, 16, 5, 0.
     let fields = ReceptiveFields::<f32, 5, 16>::new(0.0, 3.0, 1.5).unwrap();
     let word = |top: u32| top << 28 | 0x0fff_ffff;
-    let table: [(&str, f32, &[u32], &[u16], usize); 5] = [
+    let table: [(_, _, &[u32], &[u16], _); 5] = [
         ("below the level", 1.5, &[word(4), word(15), word(4)], &[1, 2, 3], 3),
         ("not below it", 1.5, &[word(5), word(0), word(5)], &[2], 3),
         ("by rising index", 1.5, &[word(0), word(0), word(15)], &[1, 2], 3),

@@ -18,7 +18,7 @@ fn listed<const M: usize, const N: usize>(volley: Volley<M, N>) -> Vec<Option<u1
         slots[usize::from(neuron)] = Some(slot);
     }
     assert_eq!(volley.len(), slots.iter().flatten().count());
-    assert_eq!(volley.is_empty(), volley.len() == 0);
+    assert_eq!(volley.is_empty(), slots.iter().all(Option::is_none));
     slots
 }
 
@@ -44,10 +44,8 @@ fn check<S: Fields, const M: usize, const N: usize>(
     let mut value = fields.centres()[M / 2];
     let mut values = Vec::new();
     for (&x, &volley) in x.iter().zip(&run.outputs) {
-        let mut levels = match x.real().into().is_finite() {
-            true => x.levels(min, max, M, beta, n),
-            false => vec![0; M],
-        };
+        let mut levels =
+            if x.real().into().is_finite() { x.levels(min, max, M, beta, n) } else { vec![0; M] };
         assert_eq!(listed(volley), slots_of_levels(&levels, n, floor), "{x:?} in {min:?}..{max:?}");
         for level in &mut levels {
             *level = if *level < floor { 0 } else { *level };

@@ -142,7 +142,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
             finite("filter tap", tap.to_f64())?;
             magnitude += tap.to_f64().abs();
         }
-        let largest = S::from_f64(f64::MAX).to_f64();
+        let largest = S::from_f64(f32::MAX.into()).to_f64();
         check_magnitude(magnitude, largest, Self::IS_WIDE)?;
         Ok(Self { taps, magnitude: S::from_f64(magnitude) })
     }
@@ -186,7 +186,7 @@ macro_rules! constants {
                     magnitude += tap.abs();
                     k += 1;
                 }
-                let largest: $sample = $nearest(f64::MAX);
+                let largest: $sample = $nearest(f32::MAX as f64);
                 checked!(check_magnitude(magnitude, $to_f64(largest), Self::IS_WIDE));
                 Self { taps, magnitude: $nearest(magnitude) }
             }

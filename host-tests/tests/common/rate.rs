@@ -46,13 +46,13 @@ pub(crate) fn triangle<S: Wire>(peak: f64) -> Vec<S> {
 }
 
 /// A recording made of filters: spikes at random, each sample a little off at random.
-pub(crate) fn made_of_filters<S: Wire>(taps: &[S], spikes: &[bool], noise: &[i8]) -> Vec<S> {
+pub(crate) fn made_of_filters<S: Wire>(taps: &[S], spikes: &[bool], errors: &[i8]) -> Vec<S> {
     let value = |i: usize| {
         let taps = taps.iter().enumerate().take(i + 1);
         taps.filter(|(j, _)| spikes[i - j]).map(|(_, tap)| tap.to_f64()).sum::<f64>()
     };
     let step = taps[0].to_f64().abs() / 64.0;
-    let noisy = |i: usize| S::nearest(value(i) + f64::from(noise[i % noise.len()]) * step);
+    let noisy = |i: usize| S::nearest(value(i) + f64::from(errors[i % errors.len()]) * step);
     (0..spikes.len()).map(noisy).collect()
 }
 

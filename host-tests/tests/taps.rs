@@ -1,0 +1,197 @@
+//! The filters of the rate codes: shapes, scales, and where their sums end.
+
+mod common;
+
+use common::cases;
+use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use host_tests::compare::{Wire, check_rate, check_rate_decoder, reals};
+use host_tests::reference::{
+    ben_multiplicative, ben_subtractive, ben_toolbox, gaussian, hann, hough, scaled_to_peak,
+    scaled_to_sum, threshold_hough, triangular,
+};
+use proptest::prelude::*;
+use spikewire::Scheme;
+use spikewire::rate::{Ben, BenToolbox, Hough, Scale, Shape, Taps, ThresholdHough};
+
+/// The reference's shape of `F` taps.
+fn shape<const F: usize>(shape: Shape) -> Vec<f64> {
+    match shape {
+        Shape::Triangular => triangular(F),
+        Shape::Hann => hann(F),
+        Shape::Gaussian { alpha } => gaussian(F, alpha),
+    }
+}
+
+/// Asserts the tap that the reference gives, rounded once from `f64`.
+///
+/// The crate takes sines and exponentials by series of its own, which also run at compile time. Over
+/// all lengths to 101 either is off by some last places of `f64` (crate, reference; by an evaluation
+/// to 50 digits: Hann on average 2.4 and 3.1, at most 65 and 213; Gaussian 1.1 and 0.7, at most 7
+/// and 6). Where the true tap lies halfway between two samples, as `sin²(π/3) = 3/4` can, that much
+/// decides which one it becomes. So it is allowed for before rounding, and nothing after.
+fn assert_rounded<S: Wire>(ours: S, expected: f64) {
+    const LAST_PLACES: f64 = 5e-14;
+    let allowed = [1.0, 1.0 - LAST_PLACES, 1.0 + LAST_PLACES].map(|off| S::nearest(expected * off));
+    assert!(allowed.contains(&ours), "{ours:?} for {allowed:?}");
+}
+
+/// All shapes and scales against the reference, which are computed in `f64` and rounded once.
+///
+/// A shape of an even number of taps has no tap at its top, and its peak scales the top.
+fn check<S: Wire, const F: usize>(scale: S) {
+    for name in [Shape::Triangular, Shape::Hann, Shape::Gaussian { alpha: 2.5 }] {
+        let heights = shape::<F>(name);
+        let to_sum = scaled_to_sum(&heights, scale.to_f64());
+        let to_peak: Vec<_> = heights.iter().map(|tap| tap * scale.to_f64()).collect();
+        if F % 2 == 1 {
+            let by_largest = scaled_to_peak(&heights, scale.to_f64());
+            assert!(to_peak.iter().zip(by_largest).all(|(a, b)| (a - b).abs() <= 1e-13 * b.abs()));
+        }
+        for (scale, expected) in [(Scale::Sum(scale), to_sum), (Scale::Peak(scale), to_peak)] {
+            let Ok(taps) = Taps::<S, F>::shaped(name, scale) else {
+                // All rounded to 0, or too much for the type.
+                let sum: f64 = expected.iter().map(|&tap| S::nearest(tap).to_f64()).sum();
+                assert!(sum == 0.0 || sum >= S::ends()[1].into(), "{name:?} {scale:?}");
+                continue;
+            };
+            for (&ours, expected) in taps.as_array().iter().zip(expected) {
+                assert_rounded(ours, expected);
+            }
+        }
+    }
+}
+
+fn check_all<S: Wire>(scale: S) {
+    check::<S, 1>(scale);
+    check::<S, 2>(scale);
+    check::<S, 3>(scale);
+    check::<S, 8>(scale);
+    check::<S, 9>(scale);
+    check::<S, 15>(scale);
+    check::<S, 24>(scale);
+    check::<S, 101>(scale);
+}
+
+#[test]
+fn shapes_by_hand() {
+    let triangle = Taps::<f32, 5>::triangular(1.5);
+    assert_eq!(*triangle.as_array(), [0.5, 1.0, 1.5, 1.0, 0.5]);
+    let triangle = Taps::<f32, 4>::triangular(1.0);
+    assert_eq!(*triangle.as_array(), [0.25, 0.75, 0.75, 0.25]);
+    let hann = Taps::<i16, 3>::shaped(Shape::Hann, Scale::Sum(2000)).unwrap();
+    assert_eq!(*hann.as_array(), [500, 1000, 500]);
+    let bell = Taps::<f32, 3>::shaped(Shape::Gaussian { alpha: 2.0 }, Scale::Peak(1.0)).unwrap();
+    assert_eq!(*bell.as_array(), [(-2.0_f64).exp() as f32, 1.0, (-2.0_f64).exp() as f32]);
+}
+
+#[test]
+fn shapes() {
+    for scale in [0.001, 0.3, 1.0, 2.0, 77.7] {
+        check_all::<f32>(scale as f32);
+        check_all(I8F8::from_num(scale).max(I8F8::DELTA));
+        check_all(I1F15::saturating_from_num(scale));
+        check_all(I16F16::from_num(scale));
+        check_all((scale * 400.0) as i16 + 1);
+        check_all(I32F0::from_bits((scale * 1e7) as i32));
+    }
+}
+
+#[test]
+fn drawn_shapes() {
+    proptest!(cases(128), |(scale in 1e-3_f32..1e3)| {
+        check_all(scale);
+        check_all(I16F16::from_num(scale));
+    });
+    proptest!(cases(64), |(alpha in 0.1_f64..9.0)| {
+        let expected = scaled_to_sum(&gaussian(15, alpha), 1.0);
+        let taps = Taps::<f32, 15>::shaped(Shape::Gaussian { alpha }, Scale::Sum(1.0)).unwrap();
+        for (&ours, expected) in taps.as_array().iter().zip(expected) {
+            assert_rounded(ours, expected);
+        }
+    });
+}
+
+/// What is built at compile time is what is built in flight.
+#[test]
+fn constants() {
+    const BELL: Shape = Shape::Gaussian { alpha: 1.7 };
+    static FLOATS: Taps<f32, 15> = Taps::<f32, _>::checked_shape(BELL, Scale::Sum(0.9));
+    static WORDS: Taps<I16F16, 24> =
+        Taps::<I16F16, _>::checked_shape(Shape::Hann, Scale::Peak(I16F16::ONE));
+    static COUNTS: Taps<i16, 9> = Taps::<i16, _>::triangular(1000);
+    static OWN: Taps<f32, 3> = Taps::<f32, _>::checked([0.1, -0.2, 1e-40]);
+    assert_eq!(FLOATS, Taps::shaped(BELL, Scale::Sum(0.9)).unwrap());
+    assert_eq!(WORDS, Taps::shaped(Shape::Hann, Scale::Peak(I16F16::ONE)).unwrap());
+    assert_eq!(COUNTS, Taps::shaped(Shape::Triangular, Scale::Peak(1000)).unwrap());
+    assert_eq!(OWN, Taps::new([0.1, -0.2, 1e-40]).unwrap());
+}
+
+/// Every rate scheme with samples, shifts and taps at the ends of their type.
+fn check_ends<S: Wire, const F: usize>(taps: [S; F], x: &[S], shift: S, threshold: S) {
+    let taps = Taps::new(taps).unwrap();
+    let h = reals(taps.as_array());
+    let t = threshold.real();
+    let scheme = Hough::new(&taps).with_shift(shift).unwrap();
+    check_rate(scheme, x, &taps, shift, |r, shift, finish| hough(r, &h, shift, finish));
+    let scheme = ThresholdHough::new(&taps, threshold).unwrap().with_shift(shift).unwrap();
+    check_rate(scheme, x, &taps, shift, |r, shift, finish| {
+        threshold_hough(r, &h, shift, t, finish)
+    });
+    let scheme = Ben::subtractive(&taps, threshold).unwrap().with_shift(shift).unwrap();
+    check_rate(scheme, x, &taps, shift, |r, shift, finish| {
+        ben_subtractive(r, &h, shift, t, finish)
+    });
+    let scheme = Ben::multiplicative(&taps, 1.5).unwrap().with_shift(shift).unwrap();
+    check_rate(scheme, x, &taps, shift, |r, shift, finish| {
+        ben_multiplicative(r, &h, shift, S::ratio(1.5), finish)
+    });
+    let scheme = BenToolbox::new(&taps, 3.9).unwrap().with_shift(shift).unwrap();
+    check_rate(scheme, x, &taps, shift, |r, shift, finish| {
+        ben_toolbox(r, &h, shift, S::ratio(3.9), finish)
+    });
+    // The decoder, with a spike at every sample: the sum of all taps above the shift.
+    let decoder = Hough::new(&taps).with_shift(shift).unwrap().decoder();
+    check_rate_decoder(&decoder, &[1; 40], &h, shift);
+}
+
+#[test]
+fn sixteen_bits_are_always_exact() {
+    let (min, max) = (i16::MIN, i16::MAX);
+    let x: Vec<_> = [min, max, max, max, 0, min, min, max, -1, 1].repeat(4);
+    for shift in [min, -1, 0, max] {
+        for threshold in [0, 1, max] {
+            check_ends([max; 8], &x, shift, threshold);
+            check_ends([min; 8], &x, shift, threshold);
+            check_ends([max, min, max], &x, shift, threshold);
+            check_ends([1], &x, shift, threshold);
+        }
+    }
+}
+
+#[test]
+fn thirty_two_bits_saturate_where_the_taps_leave_no_room() {
+    let (min, max) = (i32::MIN, i32::MAX);
+    let x: Vec<_> = [min, max, max, max, 0, min, min, max, -1, 1].repeat(4);
+    let x: Vec<_> = x.into_iter().map(I32F0::from_bits).collect();
+    for shift in [min, -1, 0, max].map(I32F0::from_bits) {
+        for threshold in [0, 1, max].map(I32F0::from_bits) {
+            check_ends([max].map(I32F0::from_bits), &x, shift, threshold);
+            check_ends([max / 2, -max / 2].map(I32F0::from_bits), &x, shift, threshold);
+            check_ends([max / 8; 8].map(I32F0::from_bits), &x, shift, threshold);
+            check_ends([-max / 8; 8].map(I32F0::from_bits), &x, shift, threshold);
+            check_ends([1; 3].map(I32F0::from_bits), &x, shift, threshold);
+        }
+    }
+}
+
+/// One by hand: taps of 2³⁰ in all leave residuals of at most 2³⁰ - 1, which HSA then says.
+#[test]
+fn the_limit_of_a_residual() {
+    let half = I32F0::from_bits(1 << 30);
+    let taps = Taps::new([half]).unwrap();
+    let spikes = host_tests::compare::encode(Hough::new(&taps), &[half, I32F0::MAX]).codes();
+    assert!(spikes.iter().all(|spike| !spike.is_fired()));
+    let taps = Taps::new([half - I32F0::DELTA]).unwrap();
+    let spikes = host_tests::compare::encode(Hough::new(&taps), &[half, I32F0::MAX]).codes();
+    assert!(spikes.iter().all(|spike| spike.is_fired()));
+}
