@@ -1,18 +1,55 @@
-//! x
-#![allow(dead_code)]
+//! Spikes from recordings and back, and the benchmark of the paper.
+
 mod codec;
+mod commands;
+mod filter;
+mod input;
+mod options;
+mod output;
+mod resolve;
 mod sample_type;
 mod scheme;
 mod settings;
-fn main() {
-    let c = codec::Codec::new(
-        sample_type::SampleType::F32,
-        &settings::Settings::Gaussian(settings::Evenly {
-            neurons: std::env::args().count(),
-            min: 0.0,
-            max: 1.0,
-        }),
-    )
-    .unwrap();
-    println!("{}", c.latency());
+mod spikes;
+
+use clap::{Parser, Subcommand};
+use commands::{decode, encode};
+use std::io;
+use std::process::ExitCode;
+
+/// Spikes from recordings and back, with the code that flies.
+#[derive(Parser)]
+#[command(name = "spikewire", version)]
+struct Program {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Encode(encode::Encode),
+    Decode(decode::Decode),
+}
+
+/// As for wrong options.
+const FAILURE: u8 = 2;
+
+fn main() -> ExitCode {
+    let done = match Program::parse().command {
+        Command::Encode(options) => encode::run(&options),
+        Command::Decode(options) => decode::run(&options),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        // Whoever reads has read enough.
+        Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(FAILURE)
+        }
+    }
+}
+
+fn is_closed_pipe(error: &anyhow::Error) -> bool {
+    error.downcast_ref::<io::Error>().is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
 }

@@ -1,0 +1,85 @@
+//! Filters by name, or from a file.
+
+use anyhow::{Context, Result, bail};
+use spikewire::rate::Shape;
+use std::fs;
+
+/// The taps that `--filter` means.
+///
+/// # Errors
+/// There is no such shape or file, or something in it is not a number.
+pub fn taps(text: &str) -> Result<Vec<f64>> {
+    let (shape, scale) = text.split_once(',').map_or((text, None), |(shape, scale)| (shape, Some(scale)));
+    match shape.split(':').collect::<Vec<_>>()[..] {
+        ["triang", length] => shaped(text, Shape::Triangular, length, scale),
+        ["hann", length] => shaped(text, Shape::Hann, length, scale),
+        ["gauss", length] => shaped(text, Shape::Gaussian { alpha: 2.5 }, length, scale),
+        ["gauss", length, alpha] => {
+            let alpha = positive(alpha).with_context(|| format!("--filter {text}: alpha"))?;
+            shaped(text, Shape::Gaussian { alpha }, length, scale)
+        }
+        _ => from_file(text),
+    }
+}
+
+fn shaped(text: &str, shape: Shape, length: &str, scale: Option<&str>) -> Result<Vec<f64>> {
+    const LONGEST: usize = 4096;
+    let length = match length.parse() {
+        Ok(length @ 1..=LONGEST) => length,
+        _ => bail!("--filter {text}: the length `{length}` must be 1 to {LONGEST}"),
+    };
+    let taps = (0..length).map(|tap| shape.at(tap, length));
+    let factor = match scale.map(|scale| scale.split_once('=')) {
+        None => 1.0,
+        Some(Some(("peak", peak))) => positive(peak).with_context(|| format!("--filter {text}: peak"))?,
+        Some(Some(("sum", sum))) => {
+            let sum = positive(sum).with_context(|| format!("--filter {text}: sum"))?;
+            sum / taps.clone().sum::<f64>()
+        }
+        Some(_) => bail!("--filter {text}: what is after the comma must be peak=NUMBER or sum=NUMBER"),
+    };
+    Ok(taps.map(|tap| tap * factor).collect())
+}
+
+fn positive(text: &str) -> Result<f64> {
+    match text.parse() {
+        Ok(value) if value > 0.0 && f64::is_finite(value) => Ok(value),
+        _ => bail!("`{text}` must be a number above 0"),
+    }
+}
+
+fn from_file(path: &str) -> Result<Vec<f64>> {
+    let text = fs::read_to_string(path).with_context(|| {
+        format!("--filter {path}: neither triang:N, hann:N, gauss:N or gauss:N:ALPHA, nor a file that can be read")
+    })?;
+    let mut taps = Vec::new();
+    for (line, content) in (1..).zip(text.lines()) {
+        let words = content.split([',', ' ', '\t']).filter(|word| !word.is_empty());
+        for (place, word) in (1..).zip(words) {
+            match word.parse::<f64>() {
+                Ok(tap) if tap.is_finite() => taps.push(tap),
+                _ => bail!("{path}: line {line}, number {place}: `{word}` is not a finite number"),
+            }
+        }
+    }
+    if taps.is_empty() {
+        bail!("{path}: empty; a filter needs a tap at least");
+    }
+    Ok(taps)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::taps;
+
+    #[test]
+    fn shapes_and_scales() {
+        assert_eq!(taps("triang:3").unwrap(), [0.5, 1.0, 0.5]);
+        assert_eq!(taps("triang:3,peak=4").unwrap(), [2.0, 4.0, 2.0]);
+        assert_eq!(taps("triang:3,sum=1").unwrap(), [0.25, 0.5, 0.25]);
+        assert!((taps("gauss:3:2").unwrap()[0] - (-2.0_f64).exp()).abs() < 1e-12);
+        for bad in ["triang:0", "hann:x", "gauss:3:-1", "triang:3,sum=0", "triang:3,width=1", "box:3"] {
+            assert!(taps(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! Writes a file of spikes while the samples come in.
+
+use super::Header;
+use crate::codec::Event;
+use crate::input::Gap;
+use anyhow::Result;
+use spikewire::Polarity;
+use std::collections::VecDeque;
+use std::io::Write;
+
+/// A file of spikes in the making.
+///
+/// Encoders see finite samples only and count those; the file counts all. Where an encoder looks ahead
+/// its events come late, and what there is to note of later samples waits for them.
+pub struct Writer<W> {
+    output: W,
+    slots: u64,
+    is_timed: bool,
+    /// Finite samples whose events may still come: their index and time.
+    pending: VecDeque<(u64, i64)>,
+    /// The finite sample that `pending` starts with, counted as the encoder does.
+    first_pending: u64,
+    /// Lines to come before the events of later samples than this.
+    notes: VecDeque<(u64, String)>,
+    /// A run of values that were not finite, which may go on: its first index and length.
+    rejected_run: Option<(u64, u64)>,
+    summary: Summary,
+    line: Vec<u8>,
+}
+
+/// What went through.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Summary {
+    /// All samples.
+    pub samples: u64,
+    /// Those that were not finite.
+    pub rejected: u64,
+    /// Spikes.
+    pub events: u64,
+}
+
+impl<W: Write> Writer<W> {
+    /// Writes the header.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn new(mut output: W, header: &Header, is_timed: bool) -> Result<Self> {
+        for (key, value) in header.lines() {
+            writeln!(output, "# {key}={value}")?;
+        }
+        writeln!(output, "index,address,polarity{}", if is_timed { ",time_us" } else { "" })?;
+        Ok(Self {
+            output,
+            slots: header.settings.slots() as u64,
+            is_timed,
+            pending: VecDeque::new(),
+            first_pending: 0,
+            notes: VecDeque::new(),
+            rejected_run: None,
+            summary: Summary::default(),
+            line: Vec::new(),
+        })
+    }
+
+    /// Takes note of the next samples and keeps the finite ones, for the encoder.
+    pub fn observe(&mut self, values: &mut Vec<f64>, times: &[i64], gaps: &[Gap]) {
+        for gap in gaps {
+            self.notes.push_back((gap.after, format!("# gap={},{}", gap.after, gap.microseconds)));
+        }
+        let mut place = 0;
+        values.retain(|value| {
+            let (index, time) = (self.summary.samples, times.get(place).copied().unwrap_or(0));
+            self.summary.samples += 1;
+            place += 1;
+            if value.is_finite() {
+                self.end_run();
+                self.pending.push_back((index, time));
+                return true;
+            }
+            self.summary.rejected += 1;
+            let (first, length) = self.rejected_run.unwrap_or((index, 0));
+            self.rejected_run = Some((first, length + 1));
+            false
+        });
+    }
+
+    fn end_run(&mut self) {
+        if let Some((first, length)) = self.rejected_run.take() {
+            self.notes.push_back((first, format!("# rejected={first},{length}")));
+            // Gaps of the same chunk may lie before.
+            self.notes.make_contiguous().sort_by_key(|&(at, _)| at);
+        }
+    }
+
+    /// Writes events. The encoder's next ones are of the finite sample `decided` or later.
+    ///
+    /// # Errors
+    /// They cannot be written.
+    pub fn write(&mut self, events: &mut Vec<Event>, decided: u64) -> Result<()> {
+        if self.slots > 1 {
+            events.sort_by_key(|event| (event.sample, event.slot));
+        }
+        self.line.clear();
+        let mut digits = itoa::Buffer::new();
+        for event in events.drain(..) {
+            let (sample, time) = self.pending[(event.sample - self.first_pending) as usize];
+            self.write_notes(sample);
+            self.line.extend(digits.format(sample * self.slots + u64::from(event.slot)).as_bytes());
+            self.line.push(b',');
+            self.line.extend(digits.format(event.neuron).as_bytes());
+            self.line.extend(if event.polarity == Polarity::Up { b",1".as_slice() } else { b",-1" });
+            if self.is_timed {
+                self.line.push(b',');
+                self.line.extend(digits.format(time).as_bytes());
+            }
+            self.line.push(b'\n');
+            self.summary.events += 1;
+        }
+        self.pending.drain(..(decided - self.first_pending) as usize);
+        self.first_pending = decided;
+        self.write_notes(self.pending.front().map_or(self.summary.samples, |&(sample, _)| sample));
+        self.output.write_all(&self.line)?;
+        Ok(())
+    }
+
+    /// Adds the notes that belong before this sample.
+    fn write_notes(&mut self, sample: u64) {
+        while self.notes.front().is_some_and(|&(at, _)| at < sample) {
+            if let Some((_, note)) = self.notes.pop_front() {
+                self.line.extend(note.as_bytes());
+                self.line.push(b'\n');
+            }
+        }
+    }
+
+    /// Writes the end and gives back the output.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn finish(mut self, events: &mut Vec<Event>) -> Result<(W, Summary)> {
+        self.end_run();
+        let decided = self.first_pending + self.pending.len() as u64;
+        self.write(events, decided)?;
+        let Summary { samples, events, .. } = self.summary;
+        writeln!(self.output, "# samples={samples}\n# events={events}")?;
+        Ok((self.output, self.summary))
+    }
+}
