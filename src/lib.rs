@@ -61,6 +61,8 @@ mod bank;
 mod bins;
 mod bytes;
 mod calibrate;
+#[cfg(feature = "embedded-hal")]
+pub mod chip;
 mod codec;
 mod curve;
 mod error;

@@ -1,0 +1,102 @@
+//! Xylo: packing, the registers of a time step, and errors at every access.
+
+use std::num::NonZeroU32;
+
+use proptest::prelude::*;
+use spikewire::chip::{ChipError, InputBank, Registers, Xylo, XyloMap, pack_counts};
+use spikewire::{Bins, Event, Polarity};
+
+const STAT1: u16 = 0x21;
+const STAT2: u16 = 0x22;
+
+/// Done after some reads of the status.
+#[derive(Debug, Default)]
+struct Chip {
+    accesses: Vec<(char, u16, u32)>,
+    busy: u32,
+    fails_at: Option<usize>,
+}
+
+impl Chip {
+    fn access(&mut self, kind: char, address: u16, value: u32) -> Result<u32, usize> {
+        self.accesses.push((kind, address, value));
+        let number = self.accesses.len();
+        if self.fails_at == Some(number) { Err(number) } else { Ok(value) }
+    }
+}
+
+impl Registers for Chip {
+    type Error = usize;
+
+    fn write(&mut self, address: u16, value: u32) -> Result<(), usize> {
+        self.access('w', address, value).map(|_| ())
+    }
+
+    fn read(&mut self, address: u16) -> Result<u32, usize> {
+        let value = match address {
+            0x10 => 0x101,
+            STAT1 => 0b101,
+            STAT2 => {
+                self.busy = self.busy.saturating_sub(1);
+                0xF0 | u32::from(self.busy == 0)
+            }
+            _ => panic!("{address:#x} is not read"),
+        };
+        self.access('r', address, value)
+    }
+}
+
+proptest! {
+    #[test]
+    fn every_channel_is_a_nibble(counts: [u8; 16]) {
+        let [low, high] = pack_counts(counts);
+        for (channel, count) in counts.into_iter().enumerate() {
+            let register = if channel < 8 { low } else { high };
+            prop_assert_eq!(register >> (4 * (channel % 8)) & 0xF, u32::from(count.min(15)));
+        }
+    }
+}
+
+#[test]
+fn a_time_step_from_events_to_outputs() {
+    let mut bins = Bins::<16>::new(0, NonZeroU32::new(1_000).unwrap()).with_limit(15);
+    for tick in 0..20 {
+        bins.add(Event { tick, address: 9, polarity: Polarity::Up }).unwrap();
+    }
+    let mut xylo =
+        Xylo::new(Chip { busy: 3, ..Chip::default() }, XyloMap::audio3(STAT1, STAT2), 10);
+    xylo.set_input(InputBank::First, bins.take()).unwrap();
+    xylo.set_input(InputBank::Second, [1; 16]).unwrap();
+    assert_eq!(bins.saturated(), 5);
+    assert_eq!(xylo.step(), Ok(0b101));
+    let expected = [
+        ('w', 0x149, 0),
+        ('w', 0x14A, 0xF0),
+        ('w', 0x14B, 0x1111_1111),
+        ('w', 0x14C, 0x1111_1111),
+        ('r', 0x10, 0x101),
+        ('w', 0x10, 0x111),
+        ('r', STAT2, 0xF0),
+        ('r', STAT2, 0xF0),
+        ('r', STAT2, 0xF1),
+        ('r', STAT1, 0b101),
+    ];
+    assert_eq!(xylo.release().accesses, expected);
+}
+
+#[test]
+fn a_step_that_does_not_finish_times_out() {
+    let mut xylo = Xylo::new(Chip { busy: 100, ..Chip::default() }, XyloMap::a2(STAT1, STAT2), 5);
+    assert_eq!(xylo.step(), Err(ChipError::Unfinished));
+    assert_eq!(xylo.release().accesses.len(), 7);
+}
+
+#[test]
+fn an_error_at_every_access_comes_back_typed() {
+    for number in 1..=6 {
+        let chip = Chip { fails_at: Some(number), ..Chip::default() };
+        let mut xylo = Xylo::new(chip, XyloMap::a2(STAT1, STAT2), 5);
+        let result = xylo.set_input(InputBank::First, [0; 16]).and_then(|()| xylo.step());
+        assert_eq!(result, Err(ChipError::Bus(number)));
+    }
+}

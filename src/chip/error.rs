@@ -1,0 +1,87 @@
+//! What can go wrong with a chip.
+
+use core::convert::Infallible;
+use core::fmt;
+
+use super::Phase;
+
+/// Why a chip did not do what it was asked: `B` is the error of its bus, `P` that of its port.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub enum ChipError<B, P = Infallible> {
+    /// The bus failed.
+    Bus(B),
+    /// The port failed.
+    Port(P),
+    /// The chip did not answer in this phase of a handshake.
+    Handshake(Phase),
+    /// The chip did not finish its time step.
+    Unfinished,
+    /// The chip may be out of step with the bus: reset it first.
+    NotReset,
+    /// The chip's activity must be gated for this: its memory cannot be accessed while it runs.
+    NotGated,
+    /// The chip's activity is gated: it takes no events.
+    Gated,
+    /// There is no such value.
+    OutOfRange {
+        /// What was out of range.
+        what: &'static str,
+        /// What it was.
+        value: i64,
+        /// The smallest allowed.
+        min: i64,
+        /// The largest allowed.
+        max: i64,
+    },
+    /// A virtual event of weight 0, which would act as a full spike.
+    ZeroWeight,
+    /// What was read back is not what was written: write it again, after a reset where the chip has
+    /// one.
+    ReadBack {
+        /// Where.
+        address: u32,
+        /// What was written.
+        written: u32,
+        /// What was read.
+        read: u32,
+    },
+}
+
+impl<B: fmt::Debug, P: fmt::Debug> fmt::Display for ChipError<B, P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Bus(error) => write!(f, "the bus failed: {error:?}"),
+            Self::Port(error) => write!(f, "the port failed: {error:?}"),
+            Self::Handshake(phase) => write!(f, "no answer in a handshake: {phase:?}"),
+            Self::Unfinished => write!(f, "the time step did not finish"),
+            Self::NotReset => write!(f, "the chip must be reset first"),
+            Self::NotGated => write!(f, "the chip's activity must be gated first"),
+            Self::Gated => write!(f, "the chip's activity is gated"),
+            Self::OutOfRange { what, value, min, max } => {
+                write!(f, "{what} {value} must lie in {min}..={max}")
+            }
+            Self::ZeroWeight => write!(f, "a virtual event of weight 0 acts as a full spike"),
+            Self::ReadBack { address, written, read } => {
+                write!(f, "wrote {written:#x} to {address:#x}, read back {read:#x}")
+            }
+        }
+    }
+}
+
+impl<B: fmt::Debug, P: fmt::Debug> core::error::Error for ChipError<B, P> {}
+
+/// `value` within `0..=max`.
+pub(super) fn at_most<B, P>(
+    what: &'static str,
+    value: u32,
+    max: u32,
+) -> Result<(), ChipError<B, P>> {
+    if value <= max {
+        Ok(())
+    } else {
+        Err(ChipError::OutOfRange { what, value: value.into(), min: 0, max: max.into() })
+    }
+}

@@ -1,0 +1,139 @@
+//! `SynSense` Xylo: counts of 16 channels a time step, in two registers.
+
+use super::ChipError;
+
+/// Access to the chip's registers, which the user supplies: the bytes on its bus are not public.
+pub trait Registers {
+    /// What can go wrong.
+    type Error;
+
+    /// Writes a register.
+    ///
+    /// # Errors
+    /// The bus failed.
+    fn write(&mut self, address: u16, value: u32) -> Result<(), Self::Error>;
+
+    /// Reads a register.
+    ///
+    /// # Errors
+    /// The bus failed.
+    fn read(&mut self, address: u16) -> Result<u32, Self::Error>;
+}
+
+/// Packs counts as the chip takes them: channel `k` in nibble `k`, saturating at 15.
+///
+/// ```
+/// use spikewire::chip::pack_counts;
+///
+/// let mut counts = [0; 16];
+/// (counts[0], counts[7], counts[8], counts[15]) = (1, 2, 3, 200);
+/// assert_eq!(pack_counts(counts), [0x2000_0001, 0xF000_0003]);
+/// ```
+pub fn pack_counts(counts: [u8; 16]) -> [u32; 2] {
+    let nibbles = counts.into_iter().rev();
+    let packed = nibbles.fold(0_u64, |packed, count| packed << 4 | u64::from(count.min(15)));
+    [packed as u32, (packed >> 32) as u32]
+}
+
+/// Which of the two banks of input registers a time step goes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum InputBank {
+    /// The first.
+    First,
+    /// The second.
+    Second,
+}
+
+/// Where a member of the family has its registers. The status registers are in the vendor's package
+/// `rockpool`; take them from there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct XyloMap {
+    /// The first register of the first bank; the second bank is two further.
+    pub input: u16,
+    /// Where the time step is triggered.
+    pub control: u16,
+    /// The outputs that fired: bit `i` is output `i`.
+    pub stat1: u16,
+    /// Whether the time step is done: bit 0.
+    pub stat2: u16,
+}
+
+impl XyloMap {
+    /// Xylo Audio 3.
+    pub const fn audio3(stat1: u16, stat2: u16) -> Self {
+        Self { input: 0x149, control: 0x10, stat1, stat2 }
+    }
+
+    /// Xylo Audio A2.
+    pub const fn a2(stat1: u16, stat2: u16) -> Self {
+        Self { input: 0x11, control: 0x10, stat1, stat2 }
+    }
+}
+
+/// Bit 4 of the control register.
+const STEP: u32 = 1 << 4;
+/// Bit 0 of `stat2`.
+const DONE: u32 = 1;
+
+/// Xylo Audio 3 and A2, stepped by hand: counts in, a time step, the outputs that fired.
+///
+/// Count the events of a time step with [`Bins<16>`](crate::Bins), limited to 15 so that what
+/// saturates is counted.
+///
+/// Source: register names and layouts of synsense/rockpool.
+#[derive(Debug)]
+pub struct Xylo<R> {
+    registers: R,
+    map: XyloMap,
+    polls: u32,
+}
+
+impl<R: Registers> Xylo<R> {
+    /// A chip with these registers. A time step is waited for by reading its status `polls` times.
+    pub const fn new(registers: R, map: XyloMap, polls: u32) -> Self {
+        Self { registers, map, polls }
+    }
+
+    /// Sets the counts of a time step.
+    ///
+    /// # Errors
+    /// The bus failed.
+    pub fn set_input(
+        &mut self,
+        bank: InputBank,
+        counts: [u8; 16],
+    ) -> Result<(), ChipError<R::Error>> {
+        let first = match bank {
+            InputBank::First => self.map.input,
+            InputBank::Second => self.map.input.wrapping_add(2),
+        };
+        let [low, high] = pack_counts(counts);
+        self.registers.write(first, low).map_err(ChipError::Bus)?;
+        self.registers.write(first.wrapping_add(1), high).map_err(ChipError::Bus)
+    }
+
+    /// Runs a time step and returns the outputs that fired: bit `i` is output `i`.
+    ///
+    /// # Errors
+    /// The bus failed, or the time step did not finish.
+    pub fn step(&mut self) -> Result<u32, ChipError<R::Error>> {
+        let control = self.registers.read(self.map.control).map_err(ChipError::Bus)?;
+        self.registers.write(self.map.control, control | STEP).map_err(ChipError::Bus)?;
+        for _ in 0..self.polls {
+            let status = self.registers.read(self.map.stat2).map_err(ChipError::Bus)?;
+            if status & DONE != 0 {
+                return self.registers.read(self.map.stat1).map_err(ChipError::Bus);
+            }
+        }
+        Err(ChipError::Unfinished)
+    }
+
+    /// The registers, for other uses.
+    pub fn release(self) -> R {
+        self.registers
+    }
+}
