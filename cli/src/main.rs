@@ -1,5 +1,6 @@
 //! Spikes from recordings and back, and the benchmark of the paper.
 
+mod bench;
 mod codec;
 mod commands;
 mod filter;
@@ -13,7 +14,7 @@ mod settings;
 mod spikes;
 
 use clap::{Parser, Subcommand};
-use commands::{decode, encode};
+use commands::{bench as benchmark, decode, encode, signal};
 use std::io;
 use std::process::ExitCode;
 
@@ -29,6 +30,8 @@ struct Program {
 enum Command {
     Encode(encode::Encode),
     Decode(decode::Decode),
+    Bench(benchmark::Bench),
+    Signal(signal::Signal),
 }
 
 /// As for wrong options.
@@ -38,6 +41,8 @@ fn main() -> ExitCode {
     let done = match Program::parse().command {
         Command::Encode(options) => encode::run(&options),
         Command::Decode(options) => decode::run(&options),
+        Command::Bench(options) => benchmark::run(&options),
+        Command::Signal(options) => signal::run(&options),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

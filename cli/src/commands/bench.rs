@@ -1,0 +1,57 @@
+//! `spikewire bench`: the paper's Tables I and II.
+
+use crate::bench::{self, paper};
+use anyhow::{Result, bail};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::time::Instant;
+
+/// Reproduce Tables I and II of the paper, cell by cell.
+#[derive(Args, Debug)]
+pub struct Bench {
+    /// Signals a case
+    #[arg(long, default_value_t = paper::TESTS)]
+    tests: usize,
+    /// How many of the five cases, from the shortest signals on
+    #[arg(long, default_value_t = paper::CASES.len())]
+    cases: usize,
+    /// Seed of the noise
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// For programs
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The options make no sense.
+pub fn run(options: &Bench) -> Result<()> {
+    let &Bench { tests, cases, seed, json } = options;
+    if tests < 2 {
+        bail!("--tests {tests}: a standard deviation takes 2 at least");
+    }
+    let most = paper::CASES.len();
+    if !(1..=most).contains(&cases) {
+        bail!("--cases {cases} must lie in 1..={most}");
+    }
+    let samples: usize = paper::CASES[..cases].iter().map(|seconds| seconds * bench::signal::RATE * tests).sum();
+    let bar = ProgressBar::new(samples as u64).with_style(ProgressStyle::with_template(
+        "{bar:40} {percent:>3} %  {human_pos} of {human_len} samples, {eta} left",
+    )?);
+    let start = Instant::now();
+    let results = bench::run(cases, tests, seed, |samples| bar.inc(samples));
+    let seconds = start.elapsed().as_secs_f64();
+    bar.finish_and_clear();
+    eprintln!(
+        "{samples} samples through 8 schemes, there and back, in {seconds:.2} s on {} cores",
+        rayon::current_num_threads()
+    );
+    if json {
+        println!("{:#}", bench::json(&results, seed));
+    } else {
+        print!("{}", bench::print(&results));
+    }
+    Ok(())
+}

@@ -1,0 +1,35 @@
+//! `spikewire signal`: a signal of the paper's benchmark, to try things on.
+
+use crate::bench::signal::{RATE, Waveform};
+use crate::output::Output;
+use anyhow::Result;
+use clap::Args;
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Write a signal of the paper's benchmark as a CSV table.
+#[derive(Args, Debug)]
+pub struct Signal {
+    /// Its duration
+    #[arg(long, default_value_t = 1)]
+    seconds: usize,
+    /// Seed of its noise
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// CSV file; standard output unless given
+    #[arg(short, long)]
+    output: Option<PathBuf>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The output cannot be written.
+pub fn run(options: &Signal) -> Result<()> {
+    let mut output = Output::open(options.output.as_deref())?;
+    writeln!(output, "time_us,signal")?;
+    for (step, value) in (1..).zip(Waveform::new(options.seconds).with_noise(options.seed, 0)) {
+        writeln!(output, "{},{value}", step * 1_000_000 / RATE)?;
+    }
+    output.finish()
+}
