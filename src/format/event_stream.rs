@@ -8,7 +8,8 @@ use crate::{Event, Polarity};
 /// that is 1 for up and 0 for down.
 ///
 /// - **Layout:** the [header](Self::HEADER), then for each event the µs since the one before (a byte
-///   up to 253; `FF` lets 254 µs pass, `FE` is a reset), the payload's size, and the payload.
+///   up to 253; `FF` lets 254 µs pass, `FE` is a reset), the payload's size, and the payload. The size
+///   is sent in groups of 7 bits, lowest first, each above a bit that says whether more follow.
 /// - **Length:** 5 bytes an event, and one for every 254 µs between two.
 /// - **Resynchronisation:** none; it is a file format. A damaged byte may spoil what follows.
 ///
@@ -20,7 +21,7 @@ use crate::{Event, Polarity};
 /// let event = Event { tick: 300, address: 0x0102, polarity: Polarity::Up };
 /// let mut bytes = [0; 8];
 /// assert_eq!(EventStream::encoder().encode(event, &mut bytes), Ok(6));
-/// assert_eq!(bytes[..6], [0xFF, 46, 3, 0x02, 0x01, 1]);
+/// assert_eq!(bytes[..6], [0xFF, 46, 6, 0x02, 0x01, 1]);
 ///
 /// let mut decoder = EventStream::decoder();
 /// assert_eq!(decoder.decode(&EventStream::HEADER).count(), 0);
@@ -32,7 +33,10 @@ pub struct EventStream;
 const RESET: u8 = 0xFE;
 const OVERFLOW: u8 = 0xFF;
 const OVERFLOW_TICKS: u32 = 254;
+/// Of the payload, and as it is written.
 const SIZE: u8 = 3;
+const SIZE_BYTE: u8 = SIZE << 1;
+const MORE: u8 = 1;
 
 impl EventStream {
     /// The first bytes of a file: magic, version 2.0.0, type 0.
@@ -68,7 +72,7 @@ impl EventFormat for EventStreamEncoder {
         }
         let [low, high] = event.address.to_le_bytes();
         let up = (event.polarity == Polarity::Up).into();
-        out.put(&[delta as u8, SIZE, low, high, up])
+        out.put(&[delta as u8, SIZE_BYTE, low, high, up])
             .ok_or(FormatError::Full { written: out.written() })?;
         self.clock.advance(delta, is_retimed);
         Ok(out.written())
@@ -155,8 +159,8 @@ impl EventDecoder for EventStreamDecoder {
                 State::Size { size: 0, shift: 0 }
             }
             State::Size { size, shift } => {
-                let size = size | u32::from(byte & 0x7F).unbounded_shl(shift.into());
-                if byte & 0x80 == 0 {
+                let size = size | u32::from(byte >> 1).unbounded_shl(shift.into());
+                if byte & MORE == 0 {
                     self.after_size(size)
                 } else {
                     State::Size { size, shift: shift.saturating_add(7) }

@@ -30,6 +30,10 @@ pub fn test() -> Result<()> {
     run(&mut cargo("test --all-features")) // the crate's own tests and doctests, every feature on
 }
 
+pub fn peers() -> Result<()> {
+    crate::peers::peers()
+}
+
 /// The README is the documentation of an item named `Readme`, which exists for doctests only.
 pub fn readme() -> Result<()> {
     let said = output(&mut cargo("test --doc --all-features -- Readme"))?;

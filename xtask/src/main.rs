@@ -7,6 +7,7 @@ mod distribution;
 mod firmware;
 mod packages;
 mod paths;
+mod peers;
 mod qemu;
 mod setup;
 mod shell;

@@ -17,6 +17,7 @@ const STEPS: &[Step] = &[
     step("fmt", "rustfmt", checks::fmt),
     step("clippy", "clippy, host and firmware", checks::clippy),
     step("test", "host tests and doctests", checks::test),
+    step("peers", "event formats against other programs", checks::peers),
     step("readme", "the README's code runs", checks::readme),
     step("doc", "documentation without warnings", checks::doc),
     step("features", "every feature alone, on the host", checks::features),

@@ -1,0 +1,301 @@
+//! The event formats: golden bytes, round trips, and decoders of cut, damaged and random bytes.
+
+use proptest::prelude::*;
+use spikewire::format::{
+    Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, FormatError, eieio,
+};
+use spikewire::sink::{Batch, Formatted};
+use spikewire::{Event, Polarity};
+
+fn event(tick: u32, address: u16, is_up: bool) -> Event {
+    Event { tick, address, polarity: if is_up { Polarity::Up } else { Polarity::Down } }
+}
+
+/// Events in order of time, with gaps below `max_gap`.
+fn events(max_gap: u32, max_address: u16) -> impl Strategy<Value = Vec<Event>> {
+    let gap = prop_oneof![Just(0), 0..300_u32.min(max_gap), 0..max_gap];
+    let one = (gap, 0..=max_address, any::<bool>());
+    prop::collection::vec(one, 0..100).prop_map(|gaps| {
+        let mut tick = 0_u32;
+        let next = |(gap, address, is_up)| {
+            tick = tick.wrapping_add(gap);
+            event(tick, address, is_up)
+        };
+        gaps.into_iter().map(next).collect()
+    })
+}
+
+/// All bytes of the events, in buffers of this size.
+fn encode(format: impl EventFormat, events: &[Event], buffer: usize) -> Vec<u8> {
+    let mut batch = Formatted::new(format);
+    let mut source = events.iter().copied();
+    let mut bytes = Vec::new();
+    loop {
+        let mut buffer = vec![0; buffer];
+        match batch.fill(&mut source, &mut buffer) {
+            0 => break,
+            length => bytes.extend(&buffer[..length]),
+        }
+    }
+    assert_eq!((batch.format().retimed(), batch.unspeakable()), (0, 0));
+    bytes
+}
+
+fn decode(mut decoder: impl EventDecoder, bytes: &[u8], cut: usize) -> Vec<Event> {
+    let events = bytes.chunks(cut).flat_map(|bytes| decoder.decode(bytes).collect::<Vec<_>>());
+    events.collect()
+}
+
+fn one(mut format: impl EventFormat, event: Event) -> Vec<u8> {
+    let mut bytes = [0; 64];
+    let length = format.encode(event, &mut bytes).unwrap();
+    bytes[..length].to_vec()
+}
+
+#[test]
+fn edvs_bytes_are_golden() {
+    let at = |tick| event(tick, 0x45 << 7 | 0x23, true);
+    let bytes = |time, tick| one(Edvs::new(time).encoder(), at(tick));
+    assert_eq!(bytes(EdvsTime::None, 99), [0xC5, 0xA3]);
+    for (delta, time) in [
+        (0, &[0x80][..]),
+        (0x7E, &[0xFE]),
+        (0x7F, &[0x00, 0xFF]), // the limits are strict
+        (0x3FFE, &[0x7F, 0xFE]),
+        (0x3FFF, &[0x00, 0x7F, 0xFF]),
+        (0x1F_FFFE, &[0x7F, 0x7F, 0xFE]),
+        (0x1F_FFFF, &[0x00, 0x7F, 0x7F, 0xFF]),
+        (0x0FFF_FFFF, &[0x7F, 0x7F, 0x7F, 0xFF]),
+        (0x1000_0000, &[0x7F, 0x7F, 0x7F, 0xFF]), // cut
+    ] {
+        assert_eq!(bytes(EdvsTime::Delta, delta)[2..], *time, "{delta:#x}");
+    }
+    assert_eq!(bytes(EdvsTime::Bits16, 0x1234_5678), [0xC5, 0xA3, 0x56, 0x78]);
+    assert_eq!(bytes(EdvsTime::Bits24, 0x1234_5678), [0xC5, 0xA3, 0x34, 0x56, 0x78]);
+    assert_eq!(bytes(EdvsTime::Bits32, 0x1234_5678), [0xC5, 0xA3, 0x12, 0x34, 0x56, 0x78]);
+    let zero = Edvs::new(EdvsTime::None).with_up_as_zero();
+    assert_eq!(one(zero.encoder(), at(0)), [0xC5, 0x23]);
+    assert_eq!(decode(zero.decoder(), &[0xC5, 0x23], 1), [at(0)]);
+}
+
+#[test]
+fn edvs_addresses_have_14_bits() {
+    let wide = event(0, 1 << 14, true);
+    let result = Edvs::new(EdvsTime::None).encoder().encode(wide, &mut [0; 8]);
+    assert_eq!(result, Err(FormatError::Address { address: 1 << 14, max: 0x3FFF }));
+
+    let mut batch = Formatted::new(Edvs::new(EdvsTime::None).encoder());
+    let length = batch.fill(&mut [wide, event(0, 1, true)].into_iter(), &mut [0; 8]);
+    assert_eq!((length, batch.unspeakable()), (2, 1));
+}
+
+#[test]
+fn event_stream_bytes_are_golden() {
+    assert_eq!(&EventStream::HEADER, b"Event Stream\x02\x00\x00\x00");
+    let bytes = |tick| one(EventStream::encoder(), event(tick, 0x0102, false));
+    assert_eq!(bytes(253), [253, 6, 2, 1, 0]);
+    assert_eq!(bytes(254), [0xFF, 0, 6, 2, 1, 0]);
+    assert_eq!(bytes(508 + 7), [0xFF, 0xFF, 7, 6, 2, 1, 0]);
+}
+
+#[test]
+fn event_stream_skips_what_is_not_its_own() {
+    let mut stream = EventStream::HEADER.to_vec();
+    stream[13] = 9; // a minor version
+    stream.extend([5, 4, 7, 7]); // a payload of two bytes
+    stream.extend([5, 0]); // of none
+    stream.push(0xFE);
+    stream.extend([5, 0x91, 0x02]); // of 200
+    stream.extend([0; 200]);
+    stream.extend([5, 0x07, 0x01, 0x00, 1, 0, 1]); // of three, in three groups
+    let mut decoder = EventStream::decoder();
+    assert!(decoder.decode(&stream).eq([event(20, 1, true)]));
+    assert_eq!(decoder.skipped(), 2 + 1 + 200);
+
+    let mut decoder = EventStream::decoder();
+    assert_eq!(decoder.decode(b"Event Stream\x03\0\0\0").count(), 0);
+    assert!(decoder.is_foreign());
+    let mut decoder = EventStream::decoder();
+    assert_eq!(decoder.decode(b"Event Stream\x02\0\0\x01").count(), 0);
+    assert!(decoder.is_foreign(), "another type of stream");
+}
+
+#[test]
+fn evt2_words_are_golden() {
+    let mut encoder = Evt2::encoder();
+    let mut bytes = [0; 8];
+    let first = event(0x40 * 5 + 3, 3 << 11 | 0x7FF, true);
+    assert_eq!(encoder.encode(first, &mut bytes), Ok(8));
+    let words = [0x8000_0005_u32, 1 << 28 | 3 << 22 | 0x7FF << 11 | 3];
+    assert_eq!(bytes[..], words.map(u32::to_le_bytes).concat());
+    let second = event(0x40 * 5 + 4, 0, false);
+    assert_eq!(encoder.encode(second, &mut bytes), Ok(4));
+    assert_eq!(bytes[..4], (4_u32 << 22).to_le_bytes());
+}
+
+#[test]
+fn evt2_time_goes_on_over_the_wrap_of_ticks() {
+    let mut encoder = Evt2::encoder();
+    let mut bytes = [0; 8];
+    let mut time_high = |tick| {
+        encoder.encode(event(tick, 0, true), &mut bytes).unwrap();
+        u32::from_le_bytes(*bytes.first_chunk().unwrap()) & 0x0FFF_FFFF
+    };
+    assert_eq!(time_high(u32::MAX), 0x03FF_FFFF);
+    assert_eq!(time_high(0), 0x0400_0000);
+}
+
+#[test]
+fn evt2_files_begin_with_lines() {
+    let events = [event(37, 0x25, true), event(99, 0x25, false)];
+    let mut file = Evt2::HEADER.to_vec();
+    file.extend(encode(Evt2::encoder(), &events, 64));
+    assert_eq!(decode(Evt2::file_decoder(), &file, 7), events);
+    let bare = encode(Evt2::encoder(), &events, 64);
+    assert_eq!(decode(Evt2::file_decoder(), &bare, 7), events);
+    let mut decoder = Evt2::decoder();
+    let early = decoder.decode(&bare[4..8]).count();
+    assert_eq!((early, decoder.skipped()), (0, 4), "no event before the first time");
+}
+
+#[test]
+fn eieio_datagrams_are_golden() {
+    let mut bytes = [0; 10];
+    let keys = [0x0007_0105, 0x0007_0106];
+    assert_eq!(eieio::encode(None, keys, &mut bytes), Ok(10));
+    assert_eq!(bytes, [0x02, 0x08, 0x05, 0x01, 0x07, 0x00, 0x06, 0x01, 0x07, 0x00]);
+    assert_eq!(eieio::encode(Some(0x1234), [keys[0]], &mut bytes), Ok(10));
+    assert_eq!(bytes, [0x01, 0x38, 0x34, 0x12, 0x00, 0x00, 0x05, 0x01, 0x07, 0x00]);
+    let datagram = eieio::decode(&bytes).unwrap();
+    assert_eq!(datagram.timestamp, Some(0x1234));
+    assert!(datagram.keys().eq([keys[0]]));
+    assert_eq!(eieio::encode(Some(0), keys, &mut bytes), Err(FormatError::Full { written: 0 }));
+    assert_eq!(eieio::decode(&bytes[..9]), None);
+    assert_eq!(eieio::decode(&[0, 0x18]), None);
+    let mut large = [0; 2_000];
+    assert_eq!(eieio::encode(None, 0..255, &mut large), Ok(2 + 4 * 255));
+    assert_eq!(eieio::encode(None, 0..256, &mut large), Err(FormatError::Full { written: 0 }));
+}
+
+#[test]
+fn events_out_of_order_are_retimed_and_counted() {
+    let events = [event(500, 1, true), event(400, 2, true), event(600, 3, true)];
+    let retimed = [event(500, 1, true), event(500, 2, true), event(600, 3, true)];
+    let check = |format: &mut dyn FnMut(Event) -> Vec<u8>| {
+        events.into_iter().flat_map(format).collect::<Vec<u8>>()
+    };
+    macro_rules! check {
+        ($encoder:expr, $decoder:expr, $header:expr) => {
+            let mut encoder = $encoder;
+            let mut bytes = $header.to_vec();
+            bytes.extend(check(&mut |event| {
+                let mut bytes = [0; 64];
+                let length = encoder.encode(event, &mut bytes).unwrap();
+                bytes[..length].to_vec()
+            }));
+            assert_eq!(encoder.retimed(), 1);
+            assert_eq!(decode($decoder, &bytes, 3), retimed);
+        };
+    }
+    let edvs = Edvs::new(EdvsTime::Delta);
+    check!(edvs.encoder(), edvs.decoder(), []);
+    check!(EventStream::encoder(), EventStream::decoder(), EventStream::HEADER);
+    check!(Evt2::encoder(), Evt2::decoder(), []);
+}
+
+proptest! {
+    #[test]
+    fn edvs_round_trips(
+        (time, events) in prop_oneof![
+            (Just(EdvsTime::Delta), events((1 << 28) - 1, 0x3FFF)),
+            (Just(EdvsTime::Bits16), events((1 << 16) - 1, 0x3FFF)),
+            (Just(EdvsTime::Bits24), events((1 << 24) - 1, 0x3FFF)),
+            (Just(EdvsTime::Bits32), events(u32::MAX, 0x3FFF)),
+        ],
+        is_zero in any::<bool>(),
+        buffer in 6..100_usize,
+        cut in 1..20_usize,
+    ) {
+        let format = Edvs::new(time);
+        let format = if is_zero { format.with_up_as_zero() } else { format };
+        let bytes = encode(format.encoder(), &events, buffer);
+        prop_assert_eq!(decode(format.decoder(), &bytes, cut), events);
+    }
+
+    #[test]
+    fn edvs_without_time_takes_that_of_arrival(events in events(1, 0x3FFF), now: u32) {
+        let format = Edvs::new(EdvsTime::None);
+        let bytes = encode(format.encoder(), &events, 2);
+        let mut decoder = format.decoder();
+        decoder.set_tick(now);
+        let expected = events.into_iter().map(|event| Event { tick: now, ..event });
+        prop_assert_eq!(decoder.decode(&bytes).collect::<Vec<_>>(), expected.collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn event_stream_round_trips(events in events(100_000, u16::MAX), buffer in 5..100_usize, cut in 1..20_usize) {
+        let mut bytes = EventStream::HEADER.to_vec();
+        bytes.extend(encode(EventStream::encoder(), &events, buffer));
+        prop_assert_eq!(decode(EventStream::decoder(), &bytes, cut), events);
+    }
+
+    #[test]
+    fn evt2_round_trips(events in events(1 << 30, u16::MAX), buffer in 4..100_usize, cut in 1..20_usize) {
+        let bytes = encode(Evt2::encoder(), &events, buffer);
+        prop_assert_eq!(decode(Evt2::decoder(), &bytes, cut), events);
+    }
+
+    #[test]
+    fn eieio_round_trips(stamp: Option<u32>, keys in prop::collection::vec(any::<u32>(), 0..=255)) {
+        let mut bytes = [0; 6 + 4 * 255];
+        let length = eieio::encode(stamp, keys.iter().copied(), &mut bytes).unwrap();
+        let datagram = eieio::decode(&bytes[..length]).unwrap();
+        prop_assert_eq!(datagram.timestamp, stamp);
+        prop_assert!(datagram.keys().eq(keys));
+    }
+
+    #[test]
+    fn random_and_damaged_bytes_never_panic(
+        events in events(100_000, 0x3FFF),
+        flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..20),
+        random in prop::collection::vec(any::<u8>(), 0..300),
+        is_file in any::<bool>(),
+    ) {
+        let damage = |mut bytes: Vec<u8>| {
+            for (index, flip) in &flips {
+                if !bytes.is_empty() {
+                    let at = index.index(bytes.len());
+                    bytes[at] ^= flip;
+                }
+            }
+            bytes.extend(&random);
+            bytes
+        };
+        for time in [EdvsTime::None, EdvsTime::Delta, EdvsTime::Bits16, EdvsTime::Bits24] {
+            let format = Edvs::new(time);
+            decode(format.decoder(), &damage(encode(format.encoder(), &events, 64)), 50);
+        }
+        let header: &[u8] = if is_file { &EventStream::HEADER } else { &[] };
+        let es = [header, &encode(EventStream::encoder(), &events, 64)].concat();
+        decode(EventStream::decoder(), &damage(es), 50);
+        let header: &[u8] = if is_file { Evt2::HEADER } else { &[] };
+        let evt2 = [header, &encode(Evt2::encoder(), &events, 64)].concat();
+        decode(Evt2::file_decoder(), &damage(evt2.clone()), 50);
+        decode(Evt2::decoder(), &damage(evt2), 50);
+        if let Some(datagram) = eieio::decode(&random) {
+            datagram.keys().for_each(drop);
+        }
+    }
+
+    #[test]
+    fn edvs_resynchronises_on_bit_7(
+        events in events(1_000, 0x3FFF),
+        junk in prop::collection::vec(0_u8..0x80, 0..20),
+    ) {
+        let format = Edvs::new(EdvsTime::Delta);
+        let bytes = [junk.clone(), encode(format.encoder(), &events, 64)].concat();
+        let mut decoder = format.decoder();
+        prop_assert!(decoder.decode(&bytes).eq(events));
+        prop_assert_eq!(decoder.skipped(), junk.len() as u32);
+    }
+}

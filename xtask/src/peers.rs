@@ -1,0 +1,21 @@
+//! Other people's programs, to read what we write and write what we read.
+
+use crate::{
+    paths,
+    shell::{cargo, command, run},
+};
+use anyhow::Result;
+
+/// Installs the Python packages in an environment of their own and runs the tests against them.
+pub fn peers() -> Result<()> {
+    let environment = paths::target().join("peers");
+    let python = environment.join("bin/python");
+    if !python.is_file() {
+        run(command("python3").args(["-m", "venv"]).arg(&environment))?;
+    }
+    let install =
+        ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"];
+    run(command(&python).args(install).arg("host-tests/peers/requirements.txt"))?;
+    let tests = "test --package host-tests --test formats_peers -- --ignored";
+    run(cargo(tests).env("PEERS_PYTHON", &python))
+}
