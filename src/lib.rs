@@ -71,6 +71,7 @@ pub mod format;
 pub mod link;
 pub mod population;
 pub mod rate;
+mod readout;
 mod sample;
 #[cfg(feature = "serde")]
 mod serial;
@@ -85,6 +86,7 @@ pub use bins::{Bins, StepOver};
 pub use calibrate::{Calibration, Differences};
 pub use codec::{Decoder, Encoder, Output, Scheme};
 pub use error::ConfigError;
+pub use readout::{Assemble, Readout};
 pub use sample::Sample;
 pub use source::EventSource;
 pub use spike::{Code, Event, Firing, Polarity, Spike};

@@ -19,7 +19,8 @@ use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::spi::{Mock, Transaction};
 use proptest::prelude::*;
 use spikewire::chip::{AerPort, ChipError, Input, Odin, OdinInput, Phase, TinyOdin, TinyOdinInput};
-use spikewire::{Event, Polarity};
+use spikewire::population::{Centres, Position};
+use spikewire::{Bank, Decoder, Encoder, Event, Polarity, Readout, Scheme};
 
 type Word = Result<u32, ChipError<(), ()>>;
 
@@ -621,6 +622,34 @@ fn leak_events_are_the_time_step() {
     assert_eq!(model.borrow().taken.len(), 8);
     chip.advance(start.wrapping_add(1_004_000), drop).unwrap();
     assert_eq!((model.borrow().taken.len(), chip.skipped_steps()), (8 + 255, 745));
+}
+
+/// The paper's loop, with a chip that passes every neuron through: a position code in, the chip's
+/// output spikes out, a thrust command back.
+#[test]
+fn output_spikes_become_a_thrust_command() {
+    static CENTRES: Centres<f32, 20> = Centres::<f32, _>::linear(-1.0, 1.0);
+    const ERROR: Position<f32, 20> = Position::new(&CENTRES);
+
+    let model = Chip::new(255);
+    let mut chip = running(&model, 4);
+    let mut bank = Bank::<_, 1>::new(ERROR);
+    let mut readout = Readout::<_, 1>::new(ERROR);
+    let mut direct = ERROR.decoder();
+    for step in 0..200_u32 {
+        let error = (step as f32 * 0.1).sin();
+        let mut inputs = Vec::new();
+        bank.encode(step, [error], |event| inputs.push(event));
+        let mut outputs = Vec::new();
+        let mut on_output = |neuron: u8| outputs.push(event(step, neuron.into()));
+        chip.feed(inputs.into_iter(), spike, &mut on_output).unwrap();
+        for _ in 0..50 {
+            chip.poll(&mut on_output).unwrap();
+        }
+        let [thrust] = readout.decode(step, &outputs);
+        assert_eq!(thrust, direct.decode(ERROR.encoder().encode(error)));
+        assert!((thrust - error).abs() <= 0.5 * 2.0 / 18.0 + 1e-6, "{error} came back as {thrust}");
+    }
 }
 
 #[test]
