@@ -9,7 +9,8 @@ use std::fs;
 /// # Errors
 /// There is no such shape or file, or something in it is not a number.
 pub fn taps(text: &str) -> Result<Vec<f64>> {
-    let (shape, scale) = text.split_once(',').map_or((text, None), |(shape, scale)| (shape, Some(scale)));
+    let (shape, scale) =
+        text.split_once(',').map_or((text, None), |(shape, scale)| (shape, Some(scale)));
     match shape.split(':').collect::<Vec<_>>()[..] {
         ["triang", length] => shaped(text, Shape::Triangular, length, scale),
         ["hann", length] => shaped(text, Shape::Hann, length, scale),
@@ -31,12 +32,16 @@ fn shaped(text: &str, shape: Shape, length: &str, scale: Option<&str>) -> Result
     let taps = (0..length).map(|tap| shape.at(tap, length));
     let factor = match scale.map(|scale| scale.split_once('=')) {
         None => 1.0,
-        Some(Some(("peak", peak))) => positive(peak).with_context(|| format!("--filter {text}: peak"))?,
+        Some(Some(("peak", peak))) => {
+            positive(peak).with_context(|| format!("--filter {text}: peak"))?
+        }
         Some(Some(("sum", sum))) => {
             let sum = positive(sum).with_context(|| format!("--filter {text}: sum"))?;
             sum / taps.clone().sum::<f64>()
         }
-        Some(_) => bail!("--filter {text}: what is after the comma must be peak=NUMBER or sum=NUMBER"),
+        Some(_) => {
+            bail!("--filter {text}: what is after the comma must be peak=NUMBER or sum=NUMBER")
+        }
     };
     Ok(taps.map(|tap| tap * factor).collect())
 }
@@ -78,7 +83,9 @@ mod tests {
         assert_eq!(taps("triang:3,peak=4").unwrap(), [2.0, 4.0, 2.0]);
         assert_eq!(taps("triang:3,sum=1").unwrap(), [0.25, 0.5, 0.25]);
         assert!((taps("gauss:3:2").unwrap()[0] - (-2.0_f64).exp()).abs() < 1e-12);
-        for bad in ["triang:0", "hann:x", "gauss:3:-1", "triang:3,sum=0", "triang:3,width=1", "box:3"] {
+        for bad in
+            ["triang:0", "hann:x", "gauss:3:-1", "triang:3,sum=0", "triang:3,width=1", "box:3"]
+        {
             assert!(taps(bad).is_err(), "{bad}");
         }
     }

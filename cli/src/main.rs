@@ -7,14 +7,16 @@ mod filter;
 mod input;
 mod options;
 mod output;
+mod plot;
 mod resolve;
 mod sample_type;
 mod scheme;
 mod settings;
 mod spikes;
+mod trial;
 
 use clap::{Parser, Subcommand};
-use commands::{bench as benchmark, decode, encode, signal};
+use commands::{decode, encode, info, score, signal};
 use std::io;
 use std::process::ExitCode;
 
@@ -30,7 +32,10 @@ struct Program {
 enum Command {
     Encode(encode::Encode),
     Decode(decode::Decode),
-    Bench(benchmark::Bench),
+    Score(score::Score),
+    Bench(commands::bench::Bench),
+    Plot(commands::plot::Plot),
+    Info(info::Info),
     Signal(signal::Signal),
 }
 
@@ -41,7 +46,10 @@ fn main() -> ExitCode {
     let done = match Program::parse().command {
         Command::Encode(options) => encode::run(&options),
         Command::Decode(options) => decode::run(&options),
-        Command::Bench(options) => benchmark::run(&options),
+        Command::Score(options) => score::run(&options),
+        Command::Bench(options) => commands::bench::run(&options),
+        Command::Plot(options) => commands::plot::run(&options),
+        Command::Info(options) => info::run(&options),
         Command::Signal(options) => signal::run(&options),
     };
     match done {

@@ -156,7 +156,8 @@ impl SchemeOptions {
         /// What the paper calls the amplitude of its signal.
         const PAPER_RANGE: f64 = 5.8;
         let scale = range / PAPER_RANGE;
-        let filter = |length: usize| self.filter.clone().or(Some(format!("triang:{length},peak={scale}")));
+        let filter =
+            |length: usize| self.filter.clone().or(Some(format!("triang:{length},peak={scale}")));
         let threshold = |value: f64| self.threshold.or(Some(value));
         let mut options = self.clone();
         match scheme {
@@ -179,7 +180,8 @@ impl SchemeOptions {
                 options.form = self.form.or(Some(Form::Toolbox));
                 options.threshold = threshold(1.15);
             }
-            SchemeName::Position if self.centres.as_deref().is_some_and(|centres| centres.contains(',')) => {}
+            SchemeName::Position
+                if self.centres.as_deref().is_some_and(|centres| centres.contains(',')) => {}
             SchemeName::Position | SchemeName::Grf => options.neurons = self.neurons.or(Some(20)),
             SchemeName::GrfSlots => {
                 options.neurons = self.neurons.or(Some(15));

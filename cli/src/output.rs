@@ -23,12 +23,16 @@ impl Output {
     /// Nothing can be written there.
     pub fn open(path: Option<&Path>) -> Result<Self> {
         let Some(path) = path.filter(|path| *path != Path::new("-")) else {
-            return Ok(Self::Direct(BufWriter::with_capacity(BUFFER, Box::new(io::stdout().lock()))));
+            return Ok(Self::Direct(BufWriter::with_capacity(
+                BUFFER,
+                Box::new(io::stdout().lock()),
+            )));
         };
         let name = path.display();
         // Nothing is moved onto a device.
         if fs::metadata(path).is_ok_and(|data| !data.is_file()) {
-            let device = File::create(path).with_context(|| format!("{name}: cannot be written"))?;
+            let device =
+                File::create(path).with_context(|| format!("{name}: cannot be written"))?;
             return Ok(Self::Direct(BufWriter::with_capacity(BUFFER, Box::new(device))));
         }
         let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty());

@@ -5,8 +5,8 @@ use crate::filter::taps;
 use crate::options::{Criterion, Form, SchemeOptions, Step};
 use crate::scheme::SchemeName;
 use crate::settings::{
-    Centres, Contrast, Evenly, Fields, MovingWindow, Probabilistic, Rate, RateRule, Settings, Slots,
-    StepForward,
+    Centres, Contrast, Evenly, Fields, MovingWindow, Probabilistic, Rate, RateRule, Settings,
+    Slots, StepForward,
 };
 use anyhow::{Context, Result, anyhow, bail};
 
@@ -25,7 +25,9 @@ pub fn missing(scheme: SchemeName, options: &SchemeOptions) -> Option<&'static s
         _ if options.paper => return Some("parameters in the place of --paper"),
         SchemeName::Tbr => (options.threshold.is_none(), "--threshold"),
         SchemeName::Sf | SchemeName::Mw => (false, ""),
-        SchemeName::Hsa | SchemeName::THsa | SchemeName::Bsa => (options.shift.is_none(), "--shift"),
+        SchemeName::Hsa | SchemeName::THsa | SchemeName::Bsa => {
+            (options.shift.is_none(), "--shift")
+        }
         SchemeName::Position if is_listed(options) => (false, ""),
         SchemeName::Position | SchemeName::Grf | SchemeName::GrfSlots | SchemeName::GrfProb => {
             (options.min.is_none() || options.max.is_none(), "--min and --max")
@@ -50,7 +52,9 @@ pub fn resolve(scheme: SchemeName, options: &SchemeOptions, known: Known) -> Res
         options.clone()
     };
     let name = scheme.name();
-    let needs = |what: &str| anyhow!("{name} needs --{what} (or --paper, for the paper's settings scaled to the signal)");
+    let needs = |what: &str| {
+        anyhow!("{name} needs --{what} (or --paper, for the paper's settings scaled to the signal)")
+    };
     let threshold = || finite("threshold", options.threshold.ok_or_else(|| needs("threshold"))?);
     let start = || match options.start {
         Some(start) => finite("start", start),
@@ -66,7 +70,9 @@ pub fn resolve(scheme: SchemeName, options: &SchemeOptions, known: Known) -> Res
             };
             Settings::Contrast(Contrast { threshold, step, start: start()? })
         }
-        SchemeName::Sf => Settings::StepForward(StepForward { threshold: threshold()?, start: start()? }),
+        SchemeName::Sf => {
+            Settings::StepForward(StepForward { threshold: threshold()?, start: start()? })
+        }
         SchemeName::Mw => {
             let threshold = threshold()?;
             let window = options.window.ok_or_else(|| needs("window"))?;
@@ -117,7 +123,11 @@ fn contrast_threshold(
         (None, Some(factor)) => {
             let calibrated = known.calibrated.context("tbr: no calibration")?;
             calibrated.threshold(factor, options.magnitudes).with_context(|| {
-                let hint = if options.magnitudes { "" } else { " (--magnitudes takes that of the differences' magnitudes)" };
+                let hint = if options.magnitudes {
+                    ""
+                } else {
+                    " (--magnitudes takes that of the differences' magnitudes)"
+                };
                 format!("tbr: --factor {factor} gives no threshold{hint}")
             })
         }
@@ -148,9 +158,13 @@ fn centres(
         None | Some("linear") => Ok(Centres::Linear(evenly(options, known, neurons()?)?)),
         Some("gaussian") => Ok(Centres::GaussianSpaced(evenly(options, known, neurons()?)?)),
         Some(list) => {
-            if let Some(option) = [("neurons", options.neurons.is_some()), ("min", options.min.is_some()), ("max", options.max.is_some())]
-                .into_iter()
-                .find_map(|(name, is_given)| is_given.then_some(name))
+            if let Some(option) = [
+                ("neurons", options.neurons.is_some()),
+                ("min", options.min.is_some()),
+                ("max", options.max.is_some()),
+            ]
+            .into_iter()
+            .find_map(|(name, is_given)| is_given.then_some(name))
             {
                 bail!("--centres {list} says it all; --{option} contradicts it");
             }

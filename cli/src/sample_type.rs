@@ -101,7 +101,9 @@ impl FromStr for SampleType {
             Some((whole @ 1.., fraction)) if whole.checked_add(fraction) == Some(32) => {
                 Ok(Self::Fixed32 { fraction })
             }
-            _ => bail!("no sample type `{name}`; there are f32, i16, i32, and qI.F with I + F = 16 or 32"),
+            _ => bail!(
+                "no sample type `{name}`; there are f32, i16, i32, and qI.F with I + F = 16 or 32"
+            ),
         }
     }
 }

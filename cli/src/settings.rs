@@ -175,13 +175,15 @@ impl Settings {
             Self::Rate(rate) => {
                 rate.taps.iter_mut().for_each(|tap| *tap *= one);
                 rate.shift *= one;
-                if let RateRule::ThresholdHough { threshold } | RateRule::BenSubtractive { threshold } =
-                    &mut rate.rule
+                if let RateRule::ThresholdHough { threshold }
+                | RateRule::BenSubtractive { threshold } = &mut rate.rule
                 {
                     *threshold *= one;
                 }
             }
-            Self::Position(Centres::Listed(list)) => list.iter_mut().for_each(|centre| *centre *= one),
+            Self::Position(Centres::Listed(list)) => {
+                list.iter_mut().for_each(|centre| *centre *= one)
+            }
             Self::Position(Centres::Linear(range) | Centres::GaussianSpaced(range))
             | Self::Gaussian(range)
             | Self::Slots(Slots { fields: Fields { range, .. }, .. })

@@ -31,7 +31,13 @@ pub fn run(cases: usize, tests: usize, seed: u64, tick: impl Fn(u64) + Sync) -> 
     cases.map(|(case, &seconds)| run_case(case, seconds, tests, seed, &tick)).collect()
 }
 
-fn run_case(case: usize, seconds: usize, tests: usize, seed: u64, tick: &(impl Fn(u64) + Sync)) -> CaseResult {
+fn run_case(
+    case: usize,
+    seconds: usize,
+    tests: usize,
+    seed: u64,
+    tick: &(impl Fn(u64) + Sync),
+) -> CaseResult {
     let waveform = Waveform::new(seconds);
     let outcomes: Vec<[Outcome; COLUMNS]> = (0..tests)
         .into_par_iter()
@@ -47,5 +53,9 @@ fn run_case(case: usize, seconds: usize, tests: usize, seed: u64, tick: &(impl F
             Statistics::new(outcomes.iter().map(|outcomes| value(&outcomes[column])))
         })
     };
-    CaseResult { seconds, efficiency: of(|outcome| outcome.efficiency), rmse: of(|outcome| outcome.rmse) }
+    CaseResult {
+        seconds,
+        efficiency: of(|outcome| outcome.efficiency),
+        rmse: of(|outcome| outcome.rmse),
+    }
 }

@@ -27,7 +27,8 @@ const MOVING_WINDOW: MovingWindow<f32, WINDOW> = MovingWindow::<f32, _>::checked
 const STEP_FORWARD: StepForward<f32> = StepForward::<f32>::checked(0.5);
 const BEN: BenToolbox<f32, 9> = BenToolbox::<f32, _>::checked(&TRIANGULAR_9, 1.15);
 const HOUGH: Hough<f32, 15> = Hough::new(&TRIANGULAR_15);
-const THRESHOLD_HOUGH: ThresholdHough<f32, 15> = ThresholdHough::<f32, _>::checked(&TRIANGULAR_15, 0.85);
+const THRESHOLD_HOUGH: ThresholdHough<f32, 15> =
+    ThresholdHough::<f32, _>::checked(&TRIANGULAR_15, 0.85);
 const BETA: f32 = 1.5;
 
 /// Runs all schemes, in the order of the columns.
@@ -124,7 +125,8 @@ where
     S: Scheme<Sample = f32, Encoder: Encoder<Sample = f32, Output = Option<Spike>>>,
 {
     let mut encoder = scheme.encoder();
-    let mut spikes: Vec<Spike> = signal.iter().filter_map(|&sample| encoder.encode(sample)).collect();
+    let mut spikes: Vec<Spike> =
+        signal.iter().filter_map(|&sample| encoder.encode(sample)).collect();
     spikes.extend(encoder.finish());
     spikes
 }

@@ -17,7 +17,7 @@ struct Cell {
     ours: Statistics,
     paper_mean: f64,
     paper_deviation: f64,
-    /// The difference of the means, in standard errors of that difference.
+    /// The difference of the means beyond the paper's rounding, in standard errors of that difference.
     standard_errors: f64,
     mean_agrees: bool,
     deviation_agrees: bool,
@@ -29,7 +29,8 @@ impl Cell {
     fn new(table: &Table, case: usize, scheme: usize, ours: Statistics) -> Self {
         let (mean, deviation) = (table.means[case][scheme], table.deviations[case][scheme]);
         let error = ours.error_against(TESTS);
-        let off = (ours.mean - mean).abs();
+        let off = ours.mean - mean;
+        let beyond = (off.abs() - table.rounding()).max(0.0).copysign(off);
         // With few tests the deviation itself is uncertain, by 1 in √(2 (N - 1)).
         let few = STANDARD_ERRORS / (2.0 * (ours.count as f64 - 1.0)).sqrt();
         let part = if ours.count < TESTS { DEVIATION_PART.max(few) } else { DEVIATION_PART };
@@ -37,9 +38,10 @@ impl Cell {
             ours,
             paper_mean: mean,
             paper_deviation: deviation,
-            standard_errors: (ours.mean - mean) / error,
-            mean_agrees: off <= STANDARD_ERRORS * error + table.rounding(),
-            deviation_agrees: (ours.deviation - deviation).abs() <= part * deviation + table.rounding(),
+            standard_errors: beyond / error,
+            mean_agrees: beyond.abs() <= STANDARD_ERRORS * error,
+            deviation_agrees: (ours.deviation - deviation).abs()
+                <= part * deviation + table.rounding(),
             is_misprint: table.title == RMSE.title && (case, scheme) == MISPRINT,
         }
     }
@@ -69,7 +71,10 @@ pub fn print(cases: &[CaseResult]) -> String {
     let total = all.len();
     let deviations = all.iter().filter(|cell| cell.deviation_agrees).count();
     let means = all.iter().filter(|cell| cell.mean_agrees).count();
-    let _ = write!(text, "{deviations} of {total} standard deviations within 15 % and the paper's rounding");
+    let _ = write!(
+        text,
+        "{deviations} of {total} standard deviations within 15 % and the paper's rounding"
+    );
     if let Some(cell) = all.iter().find(|cell| cell.is_misprint && !cell.deviation_agrees) {
         let _ = write!(
             text,
@@ -81,14 +86,26 @@ pub fn print(cases: &[CaseResult]) -> String {
     text
 }
 
-fn write_table(text: &mut String, table: &Table, cases: &[CaseResult], cells: &[Vec<Cell>]) -> std::fmt::Result {
+fn write_table(
+    text: &mut String,
+    table: &Table,
+    cases: &[CaseResult],
+    cells: &[Vec<Cell>],
+) -> std::fmt::Result {
     let decimals = table.decimals;
     let ours_decimals = decimals + 1;
-    writeln!(text, "{}: ours / the paper's (difference in standard errors)\n", table.title)?;
+    writeln!(text, "{}: ours / the paper's (difference beyond its rounding, in standard errors)\n", table.title)?;
     write!(text, "| {:9} |", "")?;
     SCHEMES.iter().try_for_each(|scheme| write!(text, " {scheme:21} |"))?;
     writeln!(text, " {:12} | {:12} |", "GRF", "GRF, slots")?;
-    writeln!(text, "|{:-<11}|{}{:-<14}|{:-<14}|", "", format!("{:-<23}|", "").repeat(SCHEMES.len()), "", "")?;
+    writeln!(
+        text,
+        "|{:-<11}|{}{:-<14}|{:-<14}|",
+        "",
+        format!("{:-<23}|", "").repeat(SCHEMES.len()),
+        "",
+        ""
+    )?;
     for (case, row) in cases.iter().zip(cells) {
         let ours = if table.title == RMSE.title { &case.rmse } else { &case.efficiency };
         let rows: [(&str, fn(&Cell) -> f64, fn(&Cell) -> f64, fn(&Statistics) -> f64); 2] = [
@@ -96,13 +113,18 @@ fn write_table(text: &mut String, table: &Table, cases: &[CaseResult], cells: &[
             ("SD", |cell| cell.ours.deviation, |cell| cell.paper_deviation, |ours| ours.deviation),
         ];
         for (name, value, paper, extra) in rows {
-            let label = if name == "mean" { format!("{} s mean", case.seconds) } else { name.to_owned() };
+            let label =
+                if name == "mean" { format!("{} s mean", case.seconds) } else { name.to_owned() };
             write!(text, "| {label:>9} |")?;
             for cell in row {
                 let agrees = if name == "mean" { cell.mean_agrees } else { cell.deviation_agrees };
                 let mark = if agrees { "" } else { " !" };
                 let shown = format!("{:.ours_decimals$} / {:.decimals$}", value(cell), paper(cell));
-                let errors = if name == "mean" { format!(" ({:+.1})", cell.standard_errors) } else { String::new() };
+                let errors = if name == "mean" {
+                    format!(" ({:+.1})", cell.standard_errors)
+                } else {
+                    String::new()
+                };
                 write!(text, " {:21} |", format!("{shown}{errors}{mark}"))?;
             }
             for ours in &ours[SCHEMES.len()..] {
@@ -120,8 +142,11 @@ pub fn json(cases: &[CaseResult], seed: u64) -> Value {
         let cells = cells(table, cases);
         let rows = cases.iter().zip(cells).map(|(case, row)| {
             let ours = if table.title == RMSE.title { &case.rmse } else { &case.efficiency };
-            let mut schemes: serde_json::Map<String, Value> =
-                SCHEMES.iter().zip(row).map(|(scheme, cell)| ((*scheme).to_owned(), object!(cell))).collect();
+            let mut schemes: serde_json::Map<String, Value> = SCHEMES
+                .iter()
+                .zip(row)
+                .map(|(scheme, cell)| ((*scheme).to_owned(), object!(cell)))
+                .collect();
             for (name, ours) in ["GRF", "GRF, slots"].iter().zip(&ours[SCHEMES.len()..]) {
                 schemes.insert((*name).to_owned(), object!({ "ours": ours }));
             }
@@ -129,7 +154,8 @@ pub fn json(cases: &[CaseResult], seed: u64) -> Value {
         });
         rows.collect()
     };
-    let all: Vec<Cell> = [&EFFICIENCY, &RMSE].iter().flat_map(|table| cells(table, cases)).flatten().collect();
+    let all: Vec<Cell> =
+        [&EFFICIENCY, &RMSE].iter().flat_map(|table| cells(table, cases)).flatten().collect();
     object!({
         "seed": seed,
         "efficiency": table(&EFFICIENCY),

@@ -14,7 +14,8 @@ pub struct Calibrated {
 impl Calibrated {
     /// A calibration that has seen nothing.
     pub fn new(sample: SampleType) -> Self {
-        let calibration = for_sample_type!(sample, S => Box::new(Calibration::<S>::new()) as Box<dyn Calibrate>);
+        let calibration =
+            for_sample_type!(sample, S => Box::new(Calibration::<S>::new()) as Box<dyn Calibrate>);
         Self { calibration, one: sample.one() }
     }
 

@@ -83,7 +83,12 @@ impl<D: Decoder<Code: FromEvents>> Decode for Erased<D> {
         self.codec.resync(D::Sample::from_f64(value));
     }
 
-    fn decode(&mut self, samples: usize, mut events: &[Event], values: &mut Vec<f64>) -> Result<(), Event> {
+    fn decode(
+        &mut self,
+        samples: usize,
+        mut events: &[Event],
+        values: &mut Vec<f64>,
+    ) -> Result<(), Event> {
         for _ in 0..samples {
             let now = leading(&mut events, self.next);
             let Some(code) = D::Code::from_events(now) else {
@@ -123,7 +128,10 @@ impl<S: Sample, const N: usize> Primed for MovingWindowEncoder<S, N> {
     }
 }
 
-impl<S: Sample, R, const F: usize> Primed for RateEncoder<'_, S, R, F> where Self: Encoder<Sample = S> {}
+impl<S: Sample, R, const F: usize> Primed for RateEncoder<'_, S, R, F> where
+    Self: Encoder<Sample = S>
+{
+}
 impl<S: Sample, const F: usize> Primed for BenToolboxEncoder<'_, S, F> {}
 impl<S: Sample, const M: usize> Primed for PositionEncoder<'_, S, M> {}
 impl<S: Sample, const M: usize, const N: usize> Primed for SlotsEncoder<'_, S, M, N> {}

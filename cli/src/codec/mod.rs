@@ -109,7 +109,12 @@ impl Codec {
     ///
     /// # Errors
     /// The first event of a sample whose events no encoder emits together.
-    pub fn decode(&mut self, samples: usize, events: &[Event], values: &mut Vec<f64>) -> Result<(), Event> {
+    pub fn decode(
+        &mut self,
+        samples: usize,
+        events: &[Event],
+        values: &mut Vec<f64>,
+    ) -> Result<(), Event> {
         let before = values.len();
         self.decoder.decode(samples, events, values)?;
         if self.one != 1.0 {

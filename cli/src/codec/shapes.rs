@@ -6,7 +6,7 @@ use anyhow::{Error, anyhow};
 macro_rules! for_each_filter_length {
     ($callback:ident) => {
         $callback! { 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29
-            30 31 32 48 64 }
+        30 31 32 48 64 }
     };
 }
 pub(super) use for_each_filter_length;
@@ -15,7 +15,7 @@ pub(super) use for_each_filter_length;
 macro_rules! for_each_window {
     ($callback:ident) => {
         $callback! { 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29
-            30 31 32 33 51 65 101 }
+        30 31 32 33 51 65 101 }
     };
 }
 pub(super) use for_each_window;
@@ -24,7 +24,7 @@ pub(super) use for_each_window;
 macro_rules! for_each_population {
     ($callback:ident) => {
         $callback! { 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30
-            31 32 64 128 }
+        31 32 64 128 }
     };
 }
 pub(super) use for_each_population;

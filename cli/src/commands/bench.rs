@@ -36,7 +36,8 @@ pub fn run(options: &Bench) -> Result<()> {
     if !(1..=most).contains(&cases) {
         bail!("--cases {cases} must lie in 1..={most}");
     }
-    let samples: usize = paper::CASES[..cases].iter().map(|seconds| seconds * bench::signal::RATE * tests).sum();
+    let samples: usize =
+        paper::CASES[..cases].iter().map(|seconds| seconds * bench::signal::RATE * tests).sum();
     let bar = ProgressBar::new(samples as u64).with_style(ProgressStyle::with_template(
         "{bar:40} {percent:>3} %  {human_pos} of {human_len} samples, {eta} left",
     )?);

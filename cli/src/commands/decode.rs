@@ -62,7 +62,9 @@ fn decode(input: impl BufRead, file: &str, open: impl FnOnce() -> Result<Output>
                 decoding.advance(first, &mut events).and_then(|()| decoding.skip(count))
             }
             Item::End { samples } => {
-                decoding.advance(samples, &mut events).map_err(|error| error.at(&reader.place()))?;
+                decoding
+                    .advance(samples, &mut events)
+                    .map_err(|error| error.at(&reader.place()))?;
                 return decoding.output.finish();
             }
         };
@@ -92,7 +94,10 @@ impl Failure {
     fn at(self, place: &str) -> anyhow::Error {
         match self {
             Self::Code(event) => {
-                anyhow!("{place} or before: sample {} has events that no encoder emits together", event.sample)
+                anyhow!(
+                    "{place} or before: sample {} has events that no encoder emits together",
+                    event.sample
+                )
             }
             Self::Output(error) => error.into(),
         }
@@ -103,7 +108,15 @@ impl Decoding {
     fn new(codec: Codec, sample: SampleType, mut output: Output) -> Result<Self> {
         output.write_all(b"index,value\n")?;
         let is_single = sample == SampleType::F32;
-        Ok(Self { codec, output, is_single, next: 0, skipped: 0, values: Vec::new(), line: Vec::new() })
+        Ok(Self {
+            codec,
+            output,
+            is_single,
+            next: 0,
+            skipped: 0,
+            values: Vec::new(),
+            line: Vec::new(),
+        })
     }
 
     /// Decodes up to this sample, which takes all events.
@@ -144,7 +157,8 @@ impl Decoding {
         for &value in &self.values {
             self.line.extend(whole.format(self.next).as_bytes());
             self.line.push(b',');
-            let text = if self.is_single { decimals.format(value as f32) } else { decimals.format(value) };
+            let text =
+                if self.is_single { decimals.format(value as f32) } else { decimals.format(value) };
             self.line.extend(text.as_bytes());
             self.line.push(b'\n');
             self.next += 1;

@@ -51,7 +51,8 @@ pub fn run(options: &Encode) -> Result<()> {
     source.next(&mut chunk)?;
     let mut clock = Clock::new(&chunk.times, input.rate, input.gap);
     let first: Vec<f64> = chunk.values.iter().copied().filter(|value| value.is_finite()).collect();
-    let settings = resolve(*scheme, parameters, Known { calibrated: calibrated.as_ref(), first: &first })?;
+    let settings =
+        resolve(*scheme, parameters, Known { calibrated: calibrated.as_ref(), first: &first })?;
     let mut codec = Codec::new(*sample, &settings)?;
 
     let mut notes = source.origin().to_vec();
@@ -123,7 +124,10 @@ fn report(summary: &Summary, clock: &Clock, saturated: &Saturated, is_timed: boo
     }
     if saturated.count > 0 {
         let (min, max) = saturated.sample.range();
-        eprintln!("{} samples were cut to the range of {}, {min} to {max}", saturated.count, saturated.sample);
+        eprintln!(
+            "{} samples were cut to the range of {}, {min} to {max}",
+            saturated.count, saturated.sample
+        );
     }
     if is_timed {
         eprintln!("{clock}");

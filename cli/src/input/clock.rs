@@ -74,7 +74,12 @@ impl fmt::Display for Clock {
         write!(f, "{} gaps above {longest:.3} ms where {usual:.3} ms are usual", self.count)?;
         for (place, gap) in self.first.iter().enumerate() {
             let before = if place == 0 { ": " } else { ", " };
-            write!(f, "{before}{:.3} ms after sample {}", gap.microseconds as f64 / 1e3, gap.after)?;
+            write!(
+                f,
+                "{before}{:.3} ms after sample {}",
+                gap.microseconds as f64 / 1e3,
+                gap.after
+            )?;
         }
         let more = self.count - self.first.len() as u64;
         if more > 0 { write!(f, ", and {more} more") } else { Ok(()) }

@@ -30,7 +30,8 @@ struct Column {
 
 impl<R: Read> Table<R> {
     pub(super) fn open(input: R, file: &str, options: &InputOptions) -> Result<Self> {
-        let mut reader = ReaderBuilder::new().buffer_capacity(1 << 18).comment(Some(b'#')).from_reader(input);
+        let mut reader =
+            ReaderBuilder::new().buffer_capacity(1 << 18).comment(Some(b'#')).from_reader(input);
         let header = reader.headers().with_context(|| format!("{file}: line 1"))?;
         let names: Vec<String> = header.iter().map(|name| name.trim().to_owned()).collect();
         if names.is_empty() {
@@ -83,7 +84,11 @@ impl<R: Read> Source for Table<R> {
         chunk.values.clear();
         chunk.times.clear();
         while chunk.values.len() < CHUNK {
-            if !self.reader.read_byte_record(&mut self.record).map_err(|error| unreadable(&self.file, &error))? {
+            if !self
+                .reader
+                .read_byte_record(&mut self.record)
+                .map_err(|error| unreadable(&self.file, &error))?
+            {
                 break;
             }
             let value = self.number(&self.column)?;

@@ -77,7 +77,9 @@ impl InputOptions {
     /// # Errors
     /// There is no such file, column, topic or field, or nothing in it.
     pub fn open(&self) -> Result<Box<dyn Source>> {
-        if let Some(rate) = self.rate.filter(|&rate| rate.is_nan() || rate <= 0.0 || rate.is_infinite()) {
+        if let Some(rate) =
+            self.rate.filter(|&rate| rate.is_nan() || rate <= 0.0 || rate.is_infinite())
+        {
             bail!("--rate {rate} must be above 0 and finite");
         }
         if self.is_stdin() {

@@ -25,7 +25,17 @@ mod tests {
     #[test]
     fn few_names_are_all_told_and_many_by_likeness() {
         assert_eq!(near("gyro", ["gyro_x", "time"]), "there are gyro_x, time");
-        let many = ["actuator_outputs", "battery", "cpuload", "ekf2", "gps", "home", "sensor_combined", "sensor_gyro", "vehicle"];
+        let many = [
+            "actuator_outputs",
+            "battery",
+            "cpuload",
+            "ekf2",
+            "gps",
+            "home",
+            "sensor_combined",
+            "sensor_gyro",
+            "vehicle",
+        ];
         let told = near("sensor_combine", many);
         assert!(told.starts_with("near it are sensor_combined, sensor_gyro"), "{told}");
     }

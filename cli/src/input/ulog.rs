@@ -67,14 +67,19 @@ impl Log {
         Ok(topics)
     }
 
-    fn for_each(&self, only: Option<&str>, mut visit: impl FnMut(String, i64, &Format)) -> Result<()> {
+    fn for_each(
+        &self,
+        only: Option<&str>,
+        mut visit: impl FnMut(String, i64, &Format),
+    ) -> Result<()> {
         let mut parser = ULogParserBuilder::new(self.bytes.as_slice());
         if let Some(topic) = only {
             parser = parser.set_subscription_allow_list([topic]);
         }
         let parser = parser.build().map_err(|error| anyhow!("{}: {error}", self.file))?;
         for (number, message) in parser.enumerate() {
-            let message = message.map_err(|error| anyhow!("{}: message {number}: {error}", self.file))?;
+            let message =
+                message.map_err(|error| anyhow!("{}: message {number}: {error}", self.file))?;
             if let UlogMessage::LoggedData(logged) = message {
                 let name = match logged.data.multi_id_index.unwrap_or(0) {
                     0 => logged.data.name.to_string(),

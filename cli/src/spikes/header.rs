@@ -3,8 +3,8 @@
 use crate::sample_type::SampleType;
 use crate::scheme::SchemeName;
 use crate::settings::{
-    Centres, Contrast, Evenly, Fields, MovingWindow, Probabilistic, Rate, RateRule, Settings, Slots,
-    StepForward,
+    Centres, Contrast, Evenly, Fields, MovingWindow, Probabilistic, Rate, RateRule, Settings,
+    Slots, StepForward,
 };
 use anyhow::{Result, anyhow, bail};
 use clap::ValueEnum;
@@ -56,7 +56,8 @@ impl Header {
             bail!("the header says format `{version}`; this program reads {VERSION}");
         }
         let name = keys.take("scheme")?;
-        let scheme = SchemeName::from_str(&name, false).map_err(|_| anyhow!("the header names no scheme that there is: `{name}`"))?;
+        let scheme = SchemeName::from_str(&name, false)
+            .map_err(|_| anyhow!("the header names no scheme that there is: `{name}`"))?;
         let sample = keys.take("sample")?.parse()?;
         let settings = settings(scheme, &mut keys)?;
         let rate = keys.optional("rate")?;
@@ -71,7 +72,11 @@ impl Header {
 /// What the settings are called in the header.
 fn parameters(settings: &Settings) -> Vec<(&'static str, String)> {
     let range = |range: &Evenly| {
-        vec![("neurons", range.neurons.to_string()), ("min", range.min.to_string()), ("max", range.max.to_string())]
+        vec![
+            ("neurons", range.neurons.to_string()),
+            ("min", range.min.to_string()),
+            ("max", range.max.to_string()),
+        ]
     };
     match settings {
         Settings::Contrast(Contrast { threshold, step, start }) => vec![
@@ -93,7 +98,9 @@ fn parameters(settings: &Settings) -> Vec<(&'static str, String)> {
                 RateRule::Hough => return keys,
                 RateRule::ThresholdHough { threshold } => (None, None, threshold),
                 RateRule::BenSubtractive { threshold } => (Some("aligned"), Some("sub"), threshold),
-                RateRule::BenMultiplicative { threshold } => (Some("aligned"), Some("mul"), threshold),
+                RateRule::BenMultiplicative { threshold } => {
+                    (Some("aligned"), Some("mul"), threshold)
+                }
                 RateRule::BenToolbox { threshold } => (Some("toolbox"), Some("mul"), threshold),
             };
             keys.extend(form.map(|form| ("form", form.to_owned())));
@@ -102,7 +109,9 @@ fn parameters(settings: &Settings) -> Vec<(&'static str, String)> {
             keys
         }
         Settings::Position(Centres::Listed(centres)) => vec![("centres", list(centres))],
-        Settings::Position(Centres::Linear(linear)) => [vec![("centres", "linear".to_owned())], range(linear)].concat(),
+        Settings::Position(Centres::Linear(linear)) => {
+            [vec![("centres", "linear".to_owned())], range(linear)].concat()
+        }
         Settings::Position(Centres::GaussianSpaced(spaced)) => {
             [vec![("centres", "gaussian".to_owned())], range(spaced)].concat()
         }
@@ -143,7 +152,9 @@ fn settings(scheme: SchemeName, keys: &mut Keys) -> Result<Settings> {
             let (taps, shift) = (keys.list("taps")?, keys.number("shift")?);
             let rule = match scheme {
                 SchemeName::Hsa => RateRule::Hough,
-                SchemeName::THsa => RateRule::ThresholdHough { threshold: keys.number("threshold")? },
+                SchemeName::THsa => {
+                    RateRule::ThresholdHough { threshold: keys.number("threshold")? }
+                }
                 _ => ben(keys)?,
             };
             Settings::Rate(Rate { taps, shift, rule })
@@ -182,7 +193,11 @@ fn fields(keys: &mut Keys) -> Result<Fields> {
 }
 
 fn evenly(keys: &mut Keys) -> Result<Evenly> {
-    Ok(Evenly { neurons: keys.number("neurons")?, min: keys.number("min")?, max: keys.number("max")? })
+    Ok(Evenly {
+        neurons: keys.number("neurons")?,
+        min: keys.number("min")?,
+        max: keys.number("max")?,
+    })
 }
 
 fn list(values: &[f64]) -> String {
@@ -194,7 +209,10 @@ fn numbers(key: &str, text: &str) -> Result<Vec<f64>> {
 }
 
 fn parse<T: FromStr>(key: &str, value: &str) -> Result<T> {
-    value.trim().parse().map_err(|_| anyhow!("the header says {key}={value}, which is not a number of its kind"))
+    value
+        .trim()
+        .parse()
+        .map_err(|_| anyhow!("the header says {key}={value}, which is not a number of its kind"))
 }
 
 /// Keys that are taken one after the other, so that what is left has no meaning.

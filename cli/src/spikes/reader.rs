@@ -64,12 +64,18 @@ impl<R: BufRead> Reader<R> {
         let mut lines = Vec::new();
         loop {
             if !reader.next_line()? {
-                let what = if reader.number == 0 { "empty" } else { "no events below the header, not even their names" };
+                let what = if reader.number == 0 {
+                    "empty"
+                } else {
+                    "no events below the header, not even their names"
+                };
                 bail!("{file}: {what}; a file of spikes starts with `# key=value` lines");
             }
             let text = reader.text();
             if let Some(note) = text.strip_prefix('#') {
-                let (key, value) = note.split_once('=').with_context(|| format!("{}: `{text}` is not `# key=value`", reader.place()))?;
+                let (key, value) = note.split_once('=').with_context(|| {
+                    format!("{}: `{text}` is not `# key=value`", reader.place())
+                })?;
                 lines.push((key.trim().to_owned(), value.trim().to_owned()));
                 continue;
             }
@@ -121,13 +127,21 @@ impl<R: BufRead> Reader<R> {
             }
         }
         let (Some(samples), Some(events)) = (self.samples, self.told_events) else {
-            bail!("{}: ends after line {} without `# samples=` and `# events=`; is it cut short?", self.file, self.number);
+            bail!(
+                "{}: ends after line {} without `# samples=` and `# events=`; is it cut short?",
+                self.file,
+                self.number
+            );
         };
         if events != self.events {
             bail!("{}: holds {} events where its end says {events}", self.file, self.events);
         }
         if self.events > 0 && self.previous >= samples {
-            bail!("{}: has an event at sample {} where its end says {samples} samples", self.file, self.previous);
+            bail!(
+                "{}: has an event at sample {} where its end says {samples} samples",
+                self.file,
+                self.previous
+            );
         }
         Ok(Item::End { samples })
     }
@@ -144,10 +158,19 @@ impl<R: BufRead> Reader<R> {
             bail!("{}: `{}` is not an event", self.place(), self.text());
         };
         if fields.count() + 3 != self.columns {
-            bail!("{}: `{}` has not the {} columns of the header", self.place(), self.text(), self.columns);
+            bail!(
+                "{}: `{}` has not the {} columns of the header",
+                self.place(),
+                self.text(),
+                self.columns
+            );
         }
         let (Some(index), Some(neuron)) = (digits(index), digits(neuron)) else {
-            bail!("{}: `{}` is not an event: index and address are whole numbers", self.place(), self.text());
+            bail!(
+                "{}: `{}` is not an event: index and address are whole numbers",
+                self.place(),
+                self.text()
+            );
         };
         let polarity = match polarity {
             b"1" => Polarity::Up,
@@ -155,7 +178,11 @@ impl<R: BufRead> Reader<R> {
             _ => bail!("{}: polarity `{}`", self.place(), String::from_utf8_lossy(polarity)),
         };
         if neuron >= self.neurons {
-            bail!("{}: address {neuron} where the header says {} neurons", self.place(), self.neurons);
+            bail!(
+                "{}: address {neuron} where the header says {} neurons",
+                self.place(),
+                self.neurons
+            );
         }
         let (sample, slot) = (index / self.slots, (index % self.slots) as u16);
         self.rises(sample)?;
@@ -196,5 +223,7 @@ fn digits(text: &[u8]) -> Option<u64> {
     if text.is_empty() || text.len() > 18 {
         return None;
     }
-    text.iter().try_fold(0, |number, byte| byte.is_ascii_digit().then(|| 10 * number + u64::from(byte - b'0')))
+    text.iter().try_fold(0, |number, byte| {
+        byte.is_ascii_digit().then(|| 10 * number + u64::from(byte - b'0'))
+    })
 }

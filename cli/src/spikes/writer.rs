@@ -108,7 +108,11 @@ impl<W: Write> Writer<W> {
             self.line.extend(digits.format(sample * self.slots + u64::from(event.slot)).as_bytes());
             self.line.push(b',');
             self.line.extend(digits.format(event.neuron).as_bytes());
-            self.line.extend(if event.polarity == Polarity::Up { b",1".as_slice() } else { b",-1" });
+            self.line.extend(if event.polarity == Polarity::Up {
+                b",1".as_slice()
+            } else {
+                b",-1"
+            });
             if self.is_timed {
                 self.line.push(b',');
                 self.line.extend(digits.format(time).as_bytes());

@@ -1,0 +1,72 @@
+//! `spikewire plot`: signal and reconstruction over spikes.
+
+use super::score::chosen;
+use crate::input::InputOptions;
+use crate::options::SchemeOptions;
+use crate::plot::{Picture, draw};
+use crate::sample_type::SampleType;
+use crate::scheme::SchemeName;
+use crate::trial::{Recording, Trial};
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use std::ops::Range;
+use std::path::PathBuf;
+
+/// Draw signal and reconstruction over spikes, as the paper's first figure.
+#[derive(Args, Debug)]
+pub struct Plot {
+    /// The scheme
+    #[arg(long, required_unless_present = "all")]
+    scheme: Option<SchemeName>,
+    /// Panels A-G for the paper's schemes with its settings, and H with their efficiency
+    #[arg(long, conflicts_with = "scheme")]
+    all: bool,
+    /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8
+    #[arg(long, default_value_t)]
+    sample: SampleType,
+    #[command(flatten)]
+    input: InputOptions,
+    #[command(flatten)]
+    parameters: SchemeOptions,
+    /// Samples to show, such as `1000..1400`; all of them are encoded
+    #[arg(long)]
+    range: Option<String>,
+    /// Picture, `.svg` or `.png`
+    #[arg(short, long)]
+    output: PathBuf,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The recording, the parameters or the output are not good.
+pub fn run(options: &Plot) -> Result<()> {
+    let Plot { scheme, sample, input, parameters, range, output, .. } = options;
+    let (schemes, parameters) = chosen(*scheme, parameters)?;
+    let recording = Recording::read(input)?;
+    let shown = shown(range.as_deref(), recording.values.len())?;
+    // Of the population codes the paper draws GRF.
+    let is_drawn = |scheme: &SchemeName| {
+        !options.all || !matches!(scheme, SchemeName::Position | SchemeName::GrfSlots | SchemeName::GrfProb)
+    };
+    let trials = schemes
+        .into_iter()
+        .filter(is_drawn)
+        .map(|scheme| Trial::new(scheme, &parameters, *sample, &recording))
+        .collect::<Result<Vec<_>>>()?;
+    if let Some(gaps) = &recording.gaps {
+        eprintln!("{gaps}");
+    }
+    draw(output, &Picture { recording: &recording, trials: &trials, shown })
+}
+
+fn shown(range: Option<&str>, samples: usize) -> Result<Range<usize>> {
+    let Some(text) = range else {
+        return Ok(0..samples);
+    };
+    let (start, end) = text.split_once("..").with_context(|| format!("--range {text}: give it as START..END"))?;
+    match (start.parse(), end.parse()) {
+        (Ok(start), Ok(end)) if start + 1 < end && end <= samples => Ok(start..end),
+        _ => bail!("--range {text}: two samples at least, within 0..{samples}"),
+    }
+}
