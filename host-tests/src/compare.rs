@@ -144,8 +144,9 @@ impl<O: Output> Run<O> {
     }
 }
 
-/// Runs an encoder over a recording: sample by sample, in one slice, and in slices of several
-/// lengths (of long recordings only a few). All must agree.
+/// Runs an encoder over a recording: sample by sample; in slices of several lengths (long recordings
+/// in one only), in turn with single samples; and with outputs for half the samples first. All must
+/// agree.
 ///
 /// # Panics
 /// If they do not.
@@ -159,18 +160,32 @@ where
     let outputs = samples.iter().map(|&sample| single.encode(sample)).collect();
     let expected = close(&mut single, outputs);
     let Some(&filler) = expected.outputs.first() else { return expected };
-    let lengths = [samples.len(), samples.len() / 2 + 1, 1, 2, 3, 7];
-    let few = if samples.len() > 500 { 2 } else { lengths.len() };
+
+    let lengths = [samples.len(), 1, 2, 3, 7, 25];
+    let few = if samples.len() > 500 { 1 } else { lengths.len() };
     for length in lengths.into_iter().take(few) {
-        let mut sliced = encoder.clone();
+        let mut mixed = encoder.clone();
         let mut outputs = Vec::new();
-        for chunk in samples.chunks(length) {
+        for (turn, chunk) in samples.chunks(length).enumerate() {
+            if turn % 3 == 2 {
+                outputs.extend(chunk.iter().map(|&sample| mixed.encode(sample)));
+                continue;
+            }
             let mut buffer = vec![filler; chunk.len()];
-            assert_eq!(sliced.encode_slice(chunk, &mut buffer), chunk.len());
+            assert_eq!(mixed.encode_slice(chunk, &mut buffer), chunk.len());
             outputs.extend(buffer);
         }
-        assert_eq!(close(&mut sliced, outputs), expected, "slices of {length}");
+        assert_eq!(close(&mut mixed, outputs), expected, "slices of {length}");
     }
+
+    let mut halved = encoder.clone();
+    let mut outputs = vec![filler; samples.len() / 2];
+    assert_eq!(halved.encode_slice(samples, &mut outputs), samples.len() / 2);
+    let rest = &samples[outputs.len()..];
+    let mut buffer = vec![filler; rest.len() + 1];
+    assert_eq!(halved.encode_slice(rest, &mut buffer), rest.len());
+    outputs.extend(&buffer[..rest.len()]);
+    assert_eq!(close(&mut halved, outputs), expected, "in halves");
     expected
 }
 

@@ -171,9 +171,11 @@ fn all_pairs_of_8_bits() {
         }
     }
     check([1], 0, 1.0);
+    check([2], 1, 0.5); // 4 - 2 is exactly half of 4
     check([127], 5, 0.5);
     check([1, 1], 0, 0.25);
     check([3, -2], 1, 3.0);
+    check([10, 20], 10, 0.5);
     check([50, 100], 40, 0.4);
     check([50, 100], i16::MAX, 0.000_1);
 }
