@@ -44,12 +44,7 @@ pub trait Encoder {
     /// Encodes samples in order into `outputs`: the same bits as one
     /// [`encode`](Self::encode) each. Stops at the end of the shorter slice and returns its length.
     fn encode_slice(&mut self, samples: &[Self::Sample], outputs: &mut [Self::Output]) -> usize {
-        let mut count = 0;
-        for (output, &sample) in outputs.iter_mut().zip(samples) {
-            *output = self.encode(sample);
-            count += 1;
-        }
-        count
+        encode_each(self, samples, outputs)
     }
 
     /// The next code of the tail at the end of a recording; see [`finish`](Self::finish).
@@ -79,6 +74,20 @@ pub trait Encoder {
     fn rejected(&self) -> u32;
 }
 
+/// The slice form by the sample form: apart, so that the usual path of a codec stays small.
+#[cold]
+#[inline(never)]
+pub(crate) fn encode_each<E: Encoder + ?Sized>(
+    encoder: &mut E,
+    samples: &[E::Sample],
+    outputs: &mut [E::Output],
+) -> usize {
+    for (output, &sample) in outputs.iter_mut().zip(samples) {
+        *output = encoder.encode(sample);
+    }
+    samples.len().min(outputs.len())
+}
+
 /// Turns spikes back into values, one output of the encoder at a time.
 pub trait Decoder {
     /// The numbers it works on.
@@ -92,12 +101,10 @@ pub trait Decoder {
     /// Decodes in order into `values`: the same bits as one [`decode`](Self::decode) each. Stops at
     /// the end of the shorter slice and returns its length.
     fn decode_slice(&mut self, codes: &[Self::Code], values: &mut [Self::Sample]) -> usize {
-        let mut count = 0;
         for (value, &code) in values.iter_mut().zip(codes) {
             *value = self.decode(code);
-            count += 1;
         }
-        count
+        codes.len().min(values.len())
     }
 
     /// Goes on from a known value, such as a keyframe's, as if the last one decoded had been it.

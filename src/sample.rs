@@ -8,6 +8,7 @@ use fixed::{
     types::extra::{LeEqU16, LeEqU32},
 };
 
+use crate::Spike;
 use crate::population::Spaced;
 use crate::rate::Rated;
 use crate::temporal::Windowed;
@@ -42,14 +43,18 @@ pub trait Arithmetic: Sized {
 
     fn is_finite(&self) -> bool;
 
+    /// Takes up a sample, so that whether all of a slice were finite can be asked once at its end: a
+    /// sum in `f32`, which no later sample makes finite again; nothing in fixed point.
+    fn taint(self, sample: Self) -> Self;
+
     /// `self + step`: rounded once in `f32`, saturating in fixed point.
     fn plus(self, step: Self) -> Self;
 
     /// `self - step`: rounded once in `f32`, saturating in fixed point.
     fn minus(self, step: Self) -> Self;
 
-    /// `self - from > by`: the difference rounded once in `f32`, exact in fixed point.
-    fn exceeds(self, from: Self, by: Self) -> bool;
+    /// The step from `previous`: its difference rounded once in `f32`, exact in fixed point.
+    fn step(self, previous: Self, threshold: Self) -> Spike;
 }
 
 impl Arithmetic for f32 {
@@ -58,6 +63,11 @@ impl Arithmetic for f32 {
     #[inline]
     fn is_finite(&self) -> bool {
         f32::is_finite(*self)
+    }
+
+    #[inline]
+    fn taint(self, sample: Self) -> Self {
+        self + sample
     }
 
     #[inline]
@@ -71,8 +81,15 @@ impl Arithmetic for f32 {
     }
 
     #[inline]
-    fn exceeds(self, from: Self, by: Self) -> bool {
-        self - from > by
+    fn step(self, previous: Self, threshold: Self) -> Spike {
+        let difference = self - previous;
+        if difference > threshold {
+            Spike::Up
+        } else if difference < -threshold {
+            Spike::Down
+        } else {
+            Spike::None
+        }
     }
 }
 
@@ -138,6 +155,11 @@ macro_rules! integer_sample {
             }
 
             #[inline]
+            fn taint(self, _: Self) -> Self {
+                self
+            }
+
+            #[inline]
             fn plus(self, step: Self) -> Self {
                 self.saturating_add(step)
             }
@@ -147,10 +169,16 @@ macro_rules! integer_sample {
                 self.saturating_sub(step)
             }
 
-            // No sample exceeds a saturated bound, nor would it exceed the exact one.
+            // No sample lies beyond a saturated bound, nor would it beyond the exact one.
             #[inline]
-            fn exceeds(self, from: Self, by: Self) -> bool {
-                self > from.saturating_add(by)
+            fn step(self, previous: Self, threshold: Self) -> Spike {
+                if self > previous.saturating_add(threshold) {
+                    Spike::Up
+                } else if self < previous.saturating_sub(threshold) {
+                    Spike::Down
+                } else {
+                    Spike::None
+                }
             }
         }
 

@@ -35,12 +35,16 @@ impl<'a, S: Sample, const F: usize> RateDecoder<'a, S, F> {
         let next = self.next as usize;
         let (late, early) = self.pending.split_at_mut_checked(next).unwrap_or_default();
         let (first, rest) = self.taps.as_array().split_at_checked(F - next).unwrap_or_default();
-        for (sum, tap) in early.iter_mut().zip(first) {
-            *sum = sum.plus(tap.widen());
-        }
-        for (sum, tap) in late.iter_mut().zip(rest) {
-            *sum = sum.plus(tap.widen());
-        }
+        add(early, first);
+        add(late, rest);
+    }
+}
+
+/// Adds taps to sums, one by one.
+#[inline]
+fn add<S: Sample>(sums: &mut [S::Residual], taps: &[S]) {
+    for (sum, tap) in sums.iter_mut().zip(taps) {
+        *sum = sum.plus(tap.widen());
     }
 }
 
@@ -62,6 +66,37 @@ impl<S: Sample, const F: usize> Decoder for RateDecoder<'_, S, F> {
             self.next = 0;
         }
         self.shift.restore(sum)
+    }
+
+    /// Sums lie in one line of memory, two filters long on the stack, where a filter does not wrap.
+    #[inline]
+    fn decode_slice(&mut self, spikes: &[Spike], values: &mut [S]) -> usize {
+        let length = spikes.len().min(values.len());
+        let spikes = spikes.get(..length).unwrap_or_default();
+        let mut pending = self.pending;
+        pending.rotate_left((self.next as usize).min(F));
+        let mut line = [pending, [S::Residual::ZERO; F]];
+        let line = line.as_flattened_mut();
+        for (spikes, values) in spikes.chunks(F).zip(values.chunks_mut(F)) {
+            for (start, &spike) in spikes.iter().enumerate() {
+                if spike == Spike::Up
+                    && let Some(sums) = line.get_mut(start..).and_then(<[_]>::first_chunk_mut::<F>)
+                {
+                    add(sums, self.taps.as_array());
+                }
+            }
+            for (value, &sum) in values.iter_mut().zip(line.iter()) {
+                *value = self.shift.restore(sum);
+            }
+            line.copy_within(spikes.len().., 0);
+            let (_, beyond) = line.split_at_mut_checked(2 * F - spikes.len()).unwrap_or_default();
+            beyond.fill(S::Residual::ZERO);
+        }
+        if let Some(pending) = line.first_chunk() {
+            self.pending = *pending;
+            self.next = 0;
+        }
+        length
     }
 
     /// Forgets the spikes of the past, whose filters would reach into the future; the value itself

@@ -1,8 +1,9 @@
 //! The encoder that the rate codes share: each has its own rule for when the filter fits.
 
 use super::filter::Taps;
-use super::lookahead::Lookahead;
+use super::lookahead::{Lookahead, subtract};
 use super::residual::Rated;
+use crate::codec::encode_each;
 use crate::sample::Tally;
 use crate::{Encoder, Sample, Spike};
 
@@ -54,6 +55,48 @@ impl<S: Sample, R: Rule<S>, const F: usize> Encoder for RateEncoder<'_, S, R, F>
         }
         self.residuals.push(sample.residual(self.shift, self.taps.magnitude()));
         self.residuals.is_full().then(|| self.decide())
+    }
+
+    /// Residuals lie in one line of memory, two filters long on the stack, where windows do not wrap.
+    /// Whether all samples are finite is asked once; if not, each is taken with care.
+    #[inline]
+    fn encode_slice(&mut self, samples: &[S], spikes: &mut [Option<Spike>]) -> usize {
+        let finite = samples.iter().fold(S::ZERO, |taint, &sample| taint.taint(sample)).is_finite();
+        if !finite {
+            return encode_each(self, samples, spikes);
+        }
+        let length = samples.len().min(spikes.len());
+        let lead = length.min(self.residuals.room());
+        encode_each(self, samples.get(..lead).unwrap_or_default(), spikes);
+        if lead == length {
+            return length;
+        }
+        let samples = samples.get(lead..length).unwrap_or_default();
+        let spikes = spikes.get_mut(lead..length).unwrap_or_default();
+        let taps = self.taps.as_array();
+        let mut line = [self.residuals.in_order(); 2];
+        let line = line.as_flattened_mut();
+        for (samples, spikes) in samples.chunks(F).zip(spikes.chunks_mut(F)) {
+            for (start, (spike, &sample)) in (1..).zip(spikes.iter_mut().zip(samples)) {
+                let Some(window) = line.get_mut(start..).and_then(<[_]>::first_chunk_mut::<F>)
+                else {
+                    break;
+                };
+                if let Some(newest) = window.last_mut() {
+                    *newest = sample.residual(self.shift, self.taps.magnitude());
+                }
+                let fits = self.rule.fits([(window, taps), (&[], &[])], true);
+                if fits {
+                    subtract(window, taps);
+                }
+                *spike = Some(if fits { Spike::Up } else { Spike::None });
+            }
+            line.copy_within(samples.len().., 0);
+        }
+        if let Some(window) = line.first_chunk() {
+            self.residuals = Lookahead::full(*window);
+        }
+        length
     }
 
     fn finish_next(&mut self) -> Option<Spike> {

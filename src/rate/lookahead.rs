@@ -18,6 +18,25 @@ impl<R: Residual, const F: usize> Lookahead<R, F> {
         Self { ring: [R::ZERO; F], start: 0, length: 0 }
     }
 
+    /// Full of these, oldest first.
+    pub(super) fn full(ring: [R; F]) -> Self {
+        Self { ring, start: 0, length: F as u16 }
+    }
+
+    /// The residuals of a full ring, oldest first.
+    #[inline]
+    pub(super) fn in_order(&self) -> [R; F] {
+        let mut line = self.ring;
+        line.rotate_left((self.start as usize).min(F));
+        line
+    }
+
+    /// How many it takes until it is full.
+    #[inline]
+    pub(super) fn room(&self) -> usize {
+        F.saturating_sub(self.length as usize)
+    }
+
     #[inline]
     pub(super) fn is_full(&self) -> bool {
         self.length as usize == F
@@ -75,12 +94,8 @@ impl<R: Residual, const F: usize> Lookahead<R, F> {
     pub(super) fn subtract<S: Rated<Residual = R> + Copy>(&mut self, taps: &[S; F]) {
         let (late, early) = self.ring.split_at_mut_checked(self.start as usize).unwrap_or_default();
         let (first, rest) = split(taps, F as u16 - self.start);
-        for (residual, tap) in early.iter_mut().zip(first) {
-            *residual = residual.minus(tap.widen());
-        }
-        for (residual, tap) in late.iter_mut().zip(rest) {
-            *residual = residual.minus(tap.widen());
-        }
+        subtract(early, first);
+        subtract(late, rest);
     }
 
     /// Subtracts the taps from one residual after the oldest on, which leaves the last tap over.
@@ -90,6 +105,17 @@ impl<R: Residual, const F: usize> Lookahead<R, F> {
         for (residual, tap) in early.iter_mut().chain(late).skip(1).zip(taps) {
             *residual = residual.minus(tap.widen());
         }
+    }
+}
+
+/// Subtracts taps from residuals, one by one.
+#[inline]
+pub(super) fn subtract<R: Residual, S: Rated<Residual = R> + Copy>(
+    residuals: &mut [R],
+    taps: &[S],
+) {
+    for (residual, tap) in residuals.iter_mut().zip(taps) {
+        *residual = residual.minus(tap.widen());
     }
 }
 

@@ -1,6 +1,7 @@
 //! Temporal contrast (TBR): a spike when one sample differs enough from the one before.
 
 use super::StepDecoder;
+use crate::codec::encode_each;
 use crate::error::{checked, positive};
 use crate::sample::{Tally, for_each_sample};
 use crate::{Calibration, ConfigError, Encoder, Sample, Scheme, Spike};
@@ -167,13 +168,30 @@ impl<S: Sample> Encoder for TemporalContrastEncoder<S> {
         if !self.tally.is_primed() {
             self.tally.prime();
             Spike::None
-        } else if sample.exceeds(previous, self.threshold) {
-            Spike::Up
-        } else if previous.exceeds(sample, self.threshold) {
-            Spike::Down
         } else {
-            Spike::None
+            sample.step(previous, self.threshold)
         }
+    }
+
+    /// The last sample stays in a register, and whether all were finite is asked once: if not, the
+    /// slice is taken again with care.
+    #[inline]
+    fn encode_slice(&mut self, samples: &[S], spikes: &mut [Spike]) -> usize {
+        if !self.tally.is_primed() {
+            return encode_each(self, samples, spikes);
+        }
+        let mut previous = self.previous;
+        let mut taint = S::ZERO;
+        for (spike, &sample) in spikes.iter_mut().zip(samples) {
+            taint = taint.taint(sample);
+            *spike = sample.step(previous, self.threshold);
+            previous = sample;
+        }
+        if !taint.is_finite() {
+            return encode_each(self, samples, spikes);
+        }
+        self.previous = previous;
+        samples.len().min(spikes.len())
     }
 
     /// The last sample.

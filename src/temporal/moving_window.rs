@@ -3,6 +3,7 @@
 use core::ops::{Add, Sub};
 
 use super::StepDecoder;
+use crate::codec::encode_each;
 use crate::error::{checked, positive};
 use crate::sample::{Tally, for_each_integer, for_each_sample};
 use crate::{ConfigError, Encoder, Sample, Scheme, Spike};
@@ -126,21 +127,52 @@ impl<S: Sample, const N: usize> MovingWindowEncoder<S, N> {
         if window.iter().all(S::is_finite) {
             self.clear_window();
             for &sample in window {
-                self.push(sample);
+                self.slide(sample);
             }
         } else {
             self.tally.reject();
         }
     }
 
+    /// Takes a finite sample, and gives the spike that it is against a full window.
     #[inline]
-    fn push(&mut self, sample: S) {
-        S::push(&mut self.ring, self.next as usize, &mut self.partial, sample);
+    fn slide(&mut self, sample: S) -> Spike {
+        let Some(slot) = self.ring.get_mut(self.next as usize) else { return Spike::None };
+        let sum = S::slide(slot, &mut self.partial, sample);
         self.next += 1;
         if self.next as usize == N {
-            self.next = 0;
-            self.tally.prime();
+            self.close_block();
         }
+        judge(sample.times(N), sum, self.margin)
+    }
+
+    /// The same for a slice against a full window: one run to the end of a block after the other, in
+    /// which nothing wraps.
+    #[inline]
+    fn slide_slice(&mut self, samples: &[S], spikes: &mut [Spike]) {
+        let mut pairs = spikes.iter_mut().zip(samples);
+        while pairs.len() > 0 {
+            let margin = self.margin;
+            let mut partial = self.partial;
+            let slots = self.ring.get_mut(self.next as usize..).unwrap_or_default();
+            let run = pairs.len().min(slots.len());
+            for (slot, (spike, &sample)) in slots.iter_mut().zip(&mut pairs) {
+                let sum = S::slide(slot, &mut partial, sample);
+                *spike = judge(sample.times(N), sum, margin);
+            }
+            self.partial = partial;
+            self.next += run as u16;
+            if self.next as usize == N {
+                self.close_block();
+            }
+        }
+    }
+
+    #[inline]
+    fn close_block(&mut self) {
+        S::close_block(&mut self.ring, &mut self.partial);
+        self.next = 0;
+        self.tally.prime();
     }
 
     fn clear_window(&mut self) {
@@ -160,19 +192,20 @@ impl<S: Sample, const N: usize> Encoder for MovingWindowEncoder<S, N> {
             self.tally.reject();
             return Spike::None;
         }
-        let sum = S::sum(&self.ring, self.next as usize, self.partial);
-        let scaled = sample.times(N);
-        let spike = if !self.tally.is_primed() {
-            Spike::None
-        } else if scaled > sum + self.margin {
-            Spike::Up
-        } else if scaled < sum - self.margin {
-            Spike::Down
-        } else {
-            Spike::None
-        };
-        self.push(sample);
-        spike
+        let is_primed = self.tally.is_primed();
+        let spike = self.slide(sample);
+        if is_primed { spike } else { Spike::None }
+    }
+
+    /// Whether all samples are finite is asked once; if not, each is taken with care.
+    #[inline]
+    fn encode_slice(&mut self, samples: &[S], spikes: &mut [Spike]) -> usize {
+        let finite = samples.iter().fold(S::ZERO, |taint, &sample| taint.taint(sample)).is_finite();
+        if !finite || !self.tally.is_primed() {
+            return encode_each(self, samples, spikes);
+        }
+        self.slide_slice(samples, spikes);
+        samples.len().min(spikes.len())
     }
 
     /// The last sample, once the window is full.
@@ -191,6 +224,22 @@ impl<S: Sample, const N: usize> Encoder for MovingWindowEncoder<S, N> {
     }
 }
 
+/// The spike of `N` times a sample against the sum over the window.
+#[inline]
+fn judge<T: Copy + PartialOrd + Add<Output = T> + Sub<Output = T>>(
+    scaled: T,
+    sum: T,
+    margin: T,
+) -> Spike {
+    if scaled > sum + margin {
+        Spike::Up
+    } else if scaled < sum - margin {
+        Spike::Down
+    } else {
+        Spike::None
+    }
+}
+
 /// How a sample type sums a window. Sealed: only this crate can name it.
 pub trait Windowed: Sized {
     /// Wide enough for 16 384 samples.
@@ -203,15 +252,15 @@ pub trait Windowed: Sized {
 
     fn times(self, count: usize) -> Self::Sum;
 
-    /// The sum over the window, where `next` is the slot of the oldest sample.
-    fn sum(ring: &[Self], next: usize, partial: Self::Sum) -> Self::Sum;
+    /// Puts a sample in the oldest one's slot; gives the sum over the window before.
+    fn slide(slot: &mut Self, partial: &mut Self::Sum, sample: Self) -> Self::Sum;
 
-    /// Replaces the oldest sample, in slot `next`.
-    fn push(ring: &mut [Self], next: usize, partial: &mut Self::Sum, sample: Self);
+    /// At the end of a block, before the first slot's turn comes again.
+    fn close_block(ring: &mut [Self], partial: &mut Self::Sum);
 }
 
-/// Slots before `next` hold the samples of the current block and `partial` their sum. The others
-/// hold, for each sample of the block before, the sum from it to the block's end.
+/// Slots whose turn has come in this block hold its samples, and `partial` their sum. The others hold,
+/// for each sample of the block before, the sum from it to that block's end.
 impl Windowed for f32 {
     type Sum = f32;
 
@@ -221,25 +270,21 @@ impl Windowed for f32 {
     }
 
     #[inline]
-    fn sum(ring: &[f32], next: usize, partial: f32) -> f32 {
-        ring.get(next).copied().unwrap_or_default() + partial
+    fn slide(slot: &mut f32, partial: &mut f32, sample: f32) -> f32 {
+        let sum = core::mem::replace(slot, sample) + *partial;
+        *partial += sample;
+        sum
     }
 
     #[inline]
-    fn push(ring: &mut [f32], next: usize, partial: &mut f32, sample: f32) {
-        if let Some(oldest) = ring.get_mut(next) {
-            *oldest = sample;
+    fn close_block(ring: &mut [f32], partial: &mut f32) {
+        // -0 is the only value that leaves every other as it is.
+        let mut to_the_end = -0.0;
+        for slot in ring.iter_mut().rev() {
+            to_the_end += *slot;
+            *slot = to_the_end;
         }
-        *partial += sample;
-        if next + 1 == ring.len() {
-            // -0 is the only value that leaves every other as it is.
-            let mut to_the_end = -0.0;
-            for slot in ring.iter_mut().rev() {
-                to_the_end += *slot;
-                *slot = to_the_end;
-            }
-            *partial = 0.0;
-        }
+        *partial = 0.0;
     }
 }
 
@@ -261,17 +306,15 @@ macro_rules! integer_window {
             }
 
             #[inline]
-            fn sum(_: &[Self], _: usize, partial: $sum) -> $sum {
-                partial
+            fn slide(slot: &mut Self, partial: &mut $sum, sample: Self) -> $sum {
+                let sum = *partial;
+                let oldest = core::mem::replace(slot, sample);
+                *partial += <$sum>::from($to_bits(sample)) - <$sum>::from($to_bits(oldest));
+                sum
             }
 
             #[inline]
-            fn push(ring: &mut [Self], next: usize, partial: &mut $sum, sample: Self) {
-                if let Some(oldest) = ring.get_mut(next) {
-                    let oldest = core::mem::replace(oldest, sample);
-                    *partial += <$sum>::from($to_bits(sample)) - <$sum>::from($to_bits(oldest));
-                }
-            }
+            fn close_block(_: &mut [Self], _: &mut $sum) {}
         }
     };
 }

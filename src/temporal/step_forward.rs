@@ -1,6 +1,7 @@
 //! Step forward (SF): a spike when the signal leaves the band around a baseline that follows it.
 
 use super::StepDecoder;
+use crate::codec::encode_each;
 use crate::error::{checked, positive};
 use crate::sample::{Tally, for_each_sample};
 use crate::{ConfigError, Encoder, Sample, Scheme, Spike};
@@ -139,6 +140,40 @@ impl<S: Sample> Encoder for StepForwardEncoder<S> {
         } else {
             Spike::None
         }
+    }
+
+    /// The band stays in registers, and whether all samples were finite is asked once: if not, the
+    /// slice is taken again with care.
+    #[inline]
+    fn encode_slice(&mut self, samples: &[S], spikes: &mut [Spike]) -> usize {
+        if !self.tally.is_primed() {
+            return encode_each(self, samples, spikes);
+        }
+        let mut base = self.base;
+        let mut upper = base.plus(self.threshold);
+        let mut lower = base.minus(self.threshold);
+        let mut taint = S::ZERO;
+        for (spike, &sample) in spikes.iter_mut().zip(samples) {
+            taint = taint.taint(sample);
+            *spike = if sample > upper {
+                base = upper;
+                upper = base.plus(self.threshold);
+                lower = base.minus(self.threshold);
+                Spike::Up
+            } else if sample < lower {
+                base = lower;
+                upper = base.plus(self.threshold);
+                lower = base.minus(self.threshold);
+                Spike::Down
+            } else {
+                Spike::None
+            };
+        }
+        if !taint.is_finite() {
+            return encode_each(self, samples, spikes);
+        }
+        self.base = base;
+        samples.len().min(spikes.len())
     }
 
     /// The baseline.
