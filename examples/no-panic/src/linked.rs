@@ -1,16 +1,17 @@
-//! Every codec in every sample type, linked with a panic handler that does not exist: one path to a panic that
-//! the compiler cannot rule out, and this program fails to link.
+//! Every codec in every sample type, and every link and chip, linked with a panic handler that does not exist:
+//! one path to a panic that the compiler cannot rule out, and this program fails to link.
 //!
 //! It is not run, so it needs no board and no memory map.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-use panic_never as _;
+use {cortex_m as _, panic_never as _};
 
 mod codecs;
 mod constants;
 mod exercise;
+mod links;
 
 use fixed::{
     FixedI16, FixedI32,
@@ -23,6 +24,7 @@ fn link_all() {
     codecs::link::<FixedI32<U16>>();
     codecs::link::<i16>();
     constants::link();
+    links::link();
 }
 
 /// Where the linker begins.
