@@ -74,6 +74,10 @@ pub fn no_panic() -> Result<()> {
     Ok(())
 }
 
+pub fn demo() -> Result<()> {
+    crate::demo::demo(&[])
+}
+
 pub fn firmware() -> Result<()> {
     crate::firmware::firmware(&[])
 }

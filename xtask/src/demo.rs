@@ -1,12 +1,102 @@
 //! `cargo demo`: real flight data through encoder, emulated flight controller and decoder.
 
-use crate::{firmware, setup};
-use anyhow::Result;
+use crate::{
+    boards::BOARDS,
+    firmware,
+    flown::{self, Flown},
+    names::full_name,
+    paths, picture, qemu, setup,
+};
+use anyhow::{Context, Result, bail, ensure};
+use std::fs;
 
-pub fn demo(_args: &[String]) -> Result<()> {
+/// The firmware program.
+const PROGRAM: &str = "demo";
+
+/// The yaw rate of the recorded flight, as the firmware encodes it.
+pub struct Signal {
+    /// Seconds since the first sample.
+    pub times: Vec<f64>,
+    /// rad/s.
+    pub rates: Vec<f32>,
+}
+
+pub fn demo(args: &[String]) -> Result<()> {
+    ensure!(args.is_empty(), "`cargo demo` takes no arguments");
     println!("=== What this needs");
     setup::setup()?;
 
-    println!("\n=== The flight on five emulated flight controllers, and on this computer");
-    firmware::firmware(&["flight-log".to_owned()])
+    println!("\n=== The flight, in the firmware of an emulated flight controller");
+    let board = BOARDS.iter().find(|board| board.core == "M4F").context("no Cortex-M4F")?;
+    let image = firmware::build(PROGRAM, board)?;
+    let flown = flown::parse(&qemu::run(board, &image)?)?;
+    let here = flown::parse(&firmware::on_host(PROGRAM)?)?;
+    let signal = Signal::read()?;
+
+    print_table(&signal, &flown, &here);
+
+    let path = paths::target().join("demo.svg");
+    picture::draw(&path, &signal, &flown)?;
+    println!("The signal, its spikes and its reconstruction: {}", path.display());
+    println!("Every sample type on every core, and all other checks: cargo verify");
+
+    if flown != here {
+        bail!("the board and this computer differ");
+    }
+    Ok(())
+}
+
+fn print_table(signal: &Signal, flown: &[Flown], here: &[Flown]) {
+    let (samples, seconds) = (signal.rates.len(), signal.duration());
+    println!(
+        "\nThe yaw rate of a hexarotor that takes off, flies and lands hard: {seconds:.1} s, {samples} samples.\n\
+         Encoded and decoded on an STM32F405 (Cortex-M4F), and once more on this computer.\n"
+    );
+    println!(
+        "{:37} {:>6} {:>8} {:>10} {:>11} {:>17}  every bit",
+        "scheme", "spikes", "spikes/s", "efficiency", "RMSE, rad/s", "latency"
+    );
+    for (flown, here) in flown.iter().zip(here) {
+        let spikes = flown.spikes();
+        let latency = match flown.latency {
+            0 => "none".into(),
+            late => format!("{late} = {:.0} ms", late as f64 * signal.interval() * 1e3),
+        };
+        println!(
+            "{:37} {spikes:>6} {:>8.1} {:>8.1} % {:>11.3} {latency:>17}  {}",
+            full_name(&flown.scheme),
+            spikes as f64 / seconds,
+            100.0 - 100.0 * spikes as f64 / samples as f64,
+            flown.rmse(&signal.rates),
+            if flown == here { "agrees" } else { "DIFFERS" },
+        );
+    }
+    println!(
+        "\nEfficiency: 100 % without a spike, 0 % with one a sample, negative beyond. Latency: samples of look-ahead.\n"
+    );
+}
+
+impl Signal {
+    /// From the same bytes as the firmware; `data/README.md` tells the layout.
+    fn read() -> Result<Self> {
+        let bytes = fs::read(paths::root().join("data/hexarotor.f32le"))?;
+        let (records, _) = bytes.as_chunks::<28>();
+        let word = |record: &[u8; 28], index: usize| record.as_chunks::<4>().0[index];
+        let time = |record| f64::from(u32::from_le_bytes(word(record, 0))) / 1e6;
+        Ok(Self {
+            times: records.iter().map(time).collect(),
+            rates: records.iter().map(|record| f32::from_le_bytes(word(record, 3))).collect(),
+        })
+    }
+
+    fn duration(&self) -> f64 {
+        self.times.last().copied().unwrap_or_default()
+    }
+
+    /// The usual time between two samples: the median, as the recording has gaps.
+    pub fn interval(&self) -> f64 {
+        let mut steps: Vec<f64> = self.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        steps.sort_by(f64::total_cmp);
+        steps.get(steps.len() / 2).copied().unwrap_or_default()
+    }
 }

@@ -2,13 +2,16 @@
 
 use crate::{
     boards::{BOARDS, Board},
-    paths, qemu, shell, size, toolchain,
+    markdown, paths, qemu, shell, size, toolchain,
 };
 use anyhow::{Context, Result, bail, ensure};
 use std::{fs, path::PathBuf, thread};
 
 /// Runs the named programs, or all, and fails if a board prints another line than the host.
 pub fn firmware(names: &[String]) -> Result<()> {
+    if names == ["--markdown"] {
+        return print_markdown("flight-log");
+    }
     let all = programs()?;
     let chosen = if names.is_empty() { &all } else { names };
     let mut differing = Vec::new();
@@ -24,8 +27,8 @@ pub fn firmware(names: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// A program is a directory of the firmware workspace with a `src/main.rs`. What is only linked, or does not
-/// print the same everywhere, calls it otherwise.
+/// A program is a directory of the firmware workspace with a `src/main.rs`. What is only linked, or prints
+/// too much for a table, calls it otherwise.
 fn programs() -> Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(paths::examples())? {
@@ -60,13 +63,13 @@ impl Outcome {
     }
 }
 
-/// Runs one program everywhere and prints the table. True if every board agrees with the host.
-fn compare(program: &str) -> Result<bool> {
+/// Runs one program everywhere: what the host printed, and what became of it on the boards.
+fn run(program: &str) -> Result<(String, Vec<Outcome>)> {
     let host = on_host(program)?;
     ensure!(!host.is_empty(), "{program} prints nothing on the host");
     let images = BOARDS.iter().map(|board| build(program, board)).collect::<Result<Vec<_>>>()?;
 
-    let outcomes: Vec<Outcome> = thread::scope(|scope| {
+    let outcomes = thread::scope(|scope| {
         let runs: Vec<_> = BOARDS
             .iter()
             .zip(&images)
@@ -82,7 +85,12 @@ fn compare(program: &str) -> Result<bool> {
             })
             .collect()
     });
+    Ok((host, outcomes))
+}
 
+/// Runs one program everywhere and prints the table. True if every board agrees with the host.
+fn compare(program: &str) -> Result<bool> {
+    let (host, outcomes) = run(program)?;
     print_table(program, &host, &outcomes);
     for outcome in &outcomes {
         print_difference(&host, outcome);
@@ -98,15 +106,30 @@ fn compare(program: &str) -> Result<bool> {
     Ok(agree)
 }
 
+fn print_markdown(program: &str) -> Result<()> {
+    let (host, outcomes) = run(program)?;
+    let marks = |line: &str| {
+        let marks: Vec<_> = outcomes.iter().map(|outcome| outcome.mark(line)).collect();
+        marks.join(" ")
+    };
+    let cores: Vec<_> = outcomes.iter().map(|outcome| outcome.board.core).collect();
+    println!(
+        "\nSpikes on the host, then {}: `=` where every spike and decoded bit is the host's.\n",
+        cores.join(" ")
+    );
+    print!("{}", markdown::table(&host, marks));
+    Ok(())
+}
+
 /// What the program prints on the host.
-fn on_host(program: &str) -> Result<String> {
+pub fn on_host(program: &str) -> Result<String> {
     let mut cargo = shell::cargo("run --quiet --release --manifest-path examples/Cargo.toml");
     cargo.args(["--package", program]);
     shell::output(&mut cargo)
 }
 
 /// Builds the program for the board and returns the image.
-fn build(program: &str, board: &Board) -> Result<PathBuf> {
+pub fn build(program: &str, board: &Board) -> Result<PathBuf> {
     // A directory for each board: two of them share a target, not a memory map.
     let directory = paths::thumb_target().join(board.machine);
     let mut cargo = toolchain::cargo_for(

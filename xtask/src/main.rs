@@ -5,9 +5,16 @@ mod checks;
 mod demo;
 mod distribution;
 mod firmware;
+mod flown;
+mod markdown;
+mod names;
 mod packages;
 mod paths;
+<<<<<<< 265aa4d5d51b6b1577d736fa9ffa79495239e2c5
 mod peers;
+=======
+mod picture;
+>>>>>>> local
 mod qemu;
 mod setup;
 mod shell;
@@ -23,6 +30,7 @@ cargo xtask <command>
 
   setup                 compiler targets, QEMU and binutils for Cortex-M; does only what is missing
   firmware [PROGRAM]... runs the example programs on every emulated board and compares with the host
+  firmware --markdown   the same for flight-log alone, as a table for the README
   demo                  real flight data through encoder, emulated flight controller and decoder
   verify [STEP]...      every check, or the named ones; `cargo verify --list` names them
 

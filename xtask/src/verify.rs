@@ -23,6 +23,7 @@ const STEPS: &[Step] = &[
     step("features", "every feature alone, on the host", checks::features),
     step("targets", "the crate for every Cortex-M", checks::targets),
     step("no-panic", "every codec links without a panic handler", checks::no_panic),
+    step("demo", "the demo's table and picture", checks::demo),
     step("firmware", "emulated boards against the host", checks::firmware),
 ];
 

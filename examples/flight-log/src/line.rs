@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use crate::Log;
 use spikewire::{Code, Polarity, Sample};
 
 /// What one scheme did with one sample type.
@@ -25,9 +26,10 @@ impl Default for Line {
     }
 }
 
-impl Line {
-    /// One outcome of the encoder; no spike counts as a sample too.
-    pub fn code(&mut self, code: &impl Code) {
+impl Log for Line {
+    fn latency(&mut self, _: usize) {}
+
+    fn code(&mut self, code: &impl Code) {
         self.samples += 1;
         for firing in code.firings() {
             self.spikes += 1;
@@ -38,14 +40,15 @@ impl Line {
         self.hash(&[0xff]);
     }
 
-    /// One outcome of the decoder, beside the sample it stands for.
-    pub fn decoded<S: Sample>(&mut self, sample: S, value: S) {
+    fn decoded<S: Sample>(&mut self, sample: S, value: S) {
         let error = value.to_f64() - sample.to_f64();
         self.decoded += 1;
         self.squares += error * error;
         self.hash(&value.to_f64().to_bits().to_le_bytes());
     }
+}
 
+impl Line {
     /// `scheme sample spikes=<n> efficiency=<percent> rmse=<f32 bits> hash=<FNV-1a, 64 bits>`
     pub fn write(&self, out: &mut impl fmt::Write, scheme: &str, sample: &str) -> fmt::Result {
         let efficiency = 100.0 - 100.0 * self.spikes as f32 / self.samples as f32;
