@@ -10,11 +10,8 @@ mod markdown;
 mod names;
 mod packages;
 mod paths;
-<<<<<<< 265aa4d5d51b6b1577d736fa9ffa79495239e2c5
 mod peers;
-=======
 mod picture;
->>>>>>> local
 mod qemu;
 mod setup;
 mod shell;
