@@ -33,7 +33,8 @@ fn programs() -> Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(paths::examples())? {
         let entry = entry?;
-        if entry.path().join("src/main.rs").is_file() {
+        let path = entry.path();
+        if path.join("src/main.rs").is_file() && !path.join("Cargo.lock").is_file() {
             names.push(entry.file_name().to_string_lossy().into_owned());
         }
     }
