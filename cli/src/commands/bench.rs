@@ -4,6 +4,7 @@ use crate::bench::{self, paper};
 use anyhow::{Result, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use std::io::{Write, stdout};
 use std::time::Instant;
 
 /// Reproduce Tables I and II of the paper, cell by cell.
@@ -50,9 +51,9 @@ pub fn run(options: &Bench) -> Result<()> {
         rayon::current_num_threads()
     );
     if json {
-        println!("{:#}", bench::json(&results, seed));
+        writeln!(stdout(), "{:#}", bench::json(&results, seed))?;
     } else {
-        print!("{}", bench::print(&results));
+        write!(stdout(), "{}", bench::print(&results))?;
     }
     Ok(())
 }

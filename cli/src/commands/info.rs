@@ -3,6 +3,7 @@
 use crate::input::{Clock, Log, is_flight_log};
 use anyhow::{Result, bail};
 use clap::Args;
+use std::io::{Write, stdout};
 use std::path::PathBuf;
 
 /// List a flight log's topics with their fields, rates and gaps.
@@ -27,16 +28,17 @@ pub fn run(options: &Info) -> Result<()> {
         bail!("{}: not a flight log; ULog files start with `ULog`", options.log.display());
     }
     let topics = Log::read(&options.log, options.accept_cut)?.topics()?;
+    let mut output = stdout().lock();
     for (name, topic) in topics {
         let (count, times) = (topic.times.len(), &topic.times);
         let mut clock = Clock::new(times, None, options.gap);
         clock.observe(times);
         let seconds = times.last().zip(times.first()).map_or(0.0, |(last, first)| (last - first) as f64 * 1e-6);
         match clock.rate() {
-            Some(rate) => println!("{name}: {count} samples, {seconds:.3} s, {rate:.2} Hz\n  {clock}"),
-            None => println!("{name}: {count} samples"),
+            Some(rate) => writeln!(output, "{name}: {count} samples, {seconds:.3} s, {rate:.2} Hz\n  {clock}")?,
+            None => writeln!(output, "{name}: {count} samples")?,
         }
-        println!("  {}", fields(&topic.fields));
+        writeln!(output, "  {}", fields(&topic.fields))?;
     }
     Ok(())
 }

@@ -8,6 +8,7 @@ use crate::trial::{Recording, Trial};
 use anyhow::{Result, bail};
 use clap::Args;
 use serde::Serialize;
+use std::io::{self, Write, stdout};
 
 /// Score one scheme, or all with the paper's settings, on a recording.
 #[derive(Args, Debug)]
@@ -61,9 +62,9 @@ pub fn run(options: &Score) -> Result<()> {
         eprintln!("{gaps}");
     }
     if *json {
-        println!("{}", serde_json::to_string_pretty(&figures)?);
+        writeln!(stdout(), "{}", serde_json::to_string_pretty(&figures)?)?;
     } else {
-        print_table(&figures);
+        print_table(&figures)?;
     }
     Ok(())
 }
@@ -104,11 +105,13 @@ fn figures(recording: &Recording, trial: &Trial) -> Figures {
     }
 }
 
-fn print_table(figures: &[Figures]) {
-    println!("| scheme    |  spikes | efficiency % |       RMSE |  SNR dB | spikes/s |");
-    println!("|-----------|--------:|-------------:|-----------:|--------:|---------:|");
+fn print_table(figures: &[Figures]) -> io::Result<()> {
+    let mut output = stdout().lock();
+    writeln!(output, "| scheme    |  spikes | efficiency % |       RMSE |  SNR dB | spikes/s |")?;
+    writeln!(output, "|-----------|--------:|-------------:|-----------:|--------:|---------:|")?;
     for Figures { scheme, spikes, efficiency, rmse, snr, spikes_per_second, .. } in figures {
         let rate = spikes_per_second.map_or("-".to_owned(), |rate| format!("{rate:.1}"));
-        println!("| {scheme:9} | {spikes:7} | {efficiency:12.2} | {rmse:10.5} | {snr:7.2} | {rate:>8} |");
+        writeln!(output, "| {scheme:9} | {spikes:7} | {efficiency:12.2} | {rmse:10.5} | {snr:7.2} | {rate:>8} |")?;
     }
+    Ok(())
 }

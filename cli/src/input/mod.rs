@@ -7,7 +7,7 @@ mod ulog;
 
 pub use clock::{Clock, Gap};
 pub use names::near;
-pub use ulog::{Log, Topic};
+pub use ulog::Log;
 
 use anyhow::{Context, Result, bail};
 use clap::Args;

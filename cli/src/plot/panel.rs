@@ -86,7 +86,7 @@ fn spikes<'a, B: DrawingBackend>(
         (false, _) => -0.8..neurons as f64 - 0.2,
     };
     let is_population = neurons > 1;
-    let unit = if picture.recording.rate.is_some() { "s" } else { "sample" };
+    let unit = if picture.recording.rate.is_some() { " s" } else { "" };
     let mut chart = ChartBuilder::on(area)
         .set_label_area_size(LabelAreaPosition::Left, LABELS)
         .set_label_area_size(LabelAreaPosition::Bottom, 30)
@@ -97,7 +97,7 @@ fn spikes<'a, B: DrawingBackend>(
         .x_labels(8)
         .y_labels(if is_population { 4 } else { 3 })
         .axis_style(GRID)
-        .x_label_formatter(&|value| if *value == 0.0 { format!("0 {unit}") } else { short(*value) })
+        .x_label_formatter(&|value| format!("{}{unit}", short(*value)))
         .y_label_formatter(&|value| if is_population { format!("{value:.0}") } else { format!("{value:+.0}").replace("+0", "0") })
         .label_style((FONT, 13).into_font().color(&INK))
         .draw()?;

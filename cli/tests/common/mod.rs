@@ -1,0 +1,102 @@
+//! Running the program.
+#![allow(dead_code)]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// What a run left behind.
+pub struct Ran {
+    pub status: i32,
+    pub output: String,
+    pub told: String,
+}
+
+/// Runs `spikewire` with arguments separated by blanks, and with this on standard input.
+pub fn spikewire(arguments: &str, input: &str) -> Ran {
+    use std::io::Write;
+    let mut child = Command::new(env!("CARGO_BIN_EXE_spikewire"))
+        .args(arguments.split_whitespace())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A program that refuses its options does not read.
+    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+    let done = child.wait_with_output().unwrap();
+    Ran {
+        status: done.status.code().unwrap(),
+        output: String::from_utf8(done.stdout).unwrap(),
+        told: String::from_utf8(done.stderr).unwrap(),
+    }
+}
+
+/// The same where nothing goes wrong.
+pub fn good(arguments: &str, input: &str) -> Ran {
+    let ran = spikewire(arguments, input);
+    assert_eq!(ran.status, 0, "spikewire {arguments}: {}", ran.told);
+    ran
+}
+
+/// The same where it is refused, with words that the message holds.
+pub fn refused(arguments: &str, input: &str, words: &[&str]) {
+    let ran = spikewire(arguments, input);
+    assert_eq!(ran.status, 2, "spikewire {arguments}: {}{}", ran.output, ran.told);
+    for word in words {
+        assert!(ran.told.contains(word), "spikewire {arguments}: `{word}` is not in: {}", ran.told);
+    }
+}
+
+/// A table of one column `x`.
+pub fn table(values: &[f64]) -> String {
+    let mut text = String::from("x\n");
+    for value in values {
+        text.push_str(&format!("{value}\n"));
+    }
+    text
+}
+
+/// The events of a file of spikes as (index, address, polarity).
+pub fn events(spikes: &str) -> Vec<(usize, usize, i32)> {
+    let lines = spikes.lines().filter(|line| !line.starts_with('#')).skip(1);
+    lines
+        .map(|line| {
+            let fields: Vec<i32> = line.split(',').take(3).map(|field| field.parse().unwrap()).collect();
+            (fields[0] as usize, fields[1] as usize, fields[2])
+        })
+        .collect()
+}
+
+/// The spikes of one neuron, one number a sample.
+pub fn train(spikes: &str) -> Vec<i32> {
+    let samples = spikes.lines().find_map(|line| line.strip_prefix("# samples=")).unwrap();
+    let mut train = vec![0; samples.parse().unwrap()];
+    for (index, _, polarity) in events(spikes) {
+        train[index] = polarity;
+    }
+    train
+}
+
+/// The values of a decoded file.
+pub fn values(decoded: &str) -> Vec<f64> {
+    decoded.lines().skip(1).map(|line| line.split_once(',').unwrap().1.parse().unwrap()).collect()
+}
+
+/// A file of the repository's flight data.
+pub fn flight(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../data").join(name).display().to_string()
+}
+
+/// The flight logs that two published crates carry: name and path.
+pub fn flight_logs() -> [PathBuf; 2] {
+    let metadata = cargo_metadata::MetadataCommand::new()
+        .manifest_path(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"))
+        .other_options(["--offline".to_owned()])
+        .exec()
+        .unwrap();
+    let file = |package: &str, file: &str| {
+        let package = metadata.packages.iter().find(|found| found.name == package).unwrap();
+        package.manifest_path.parent().unwrap().join(file).into_std_path_buf()
+    };
+    [file("ulog-rs", "test_data/sample-small.ulg"), file("yule_log", "data/sample_log_small.ulg")]
+}
