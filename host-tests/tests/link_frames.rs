@@ -258,6 +258,20 @@ fn a_start_in_the_middle_and_a_restart_are_no_gap() {
 }
 
 #[test]
+fn a_frame_sent_twice_counts_once() {
+    let events: Vec<Event> = (0..100).map(|n| event(n * 1_000, 0, true)).collect();
+    let frames = frames(Coding::for_channels(6, 1_000), &events, 40);
+    let stream: Vec<u8> = frames[1..].iter().flat_map(|(bytes, _)| bytes.repeat(2)).collect();
+    let mut reader = Reader::<MAX_FRAME>::new();
+    let mut input = &stream[..];
+    while let Some(received) = reader.next_frame(&mut input) {
+        assert_eq!(received.gap, None);
+    }
+    assert_eq!(reader.frames() as usize, frames.len() - 1);
+    assert_eq!((reader.repeated(), reader.lost_frames()), (reader.frames(), 0));
+}
+
+#[test]
 fn the_sequence_wraps() {
     let mut framer = Framer::new(Coding::for_channels(1, 1));
     let mut reader = Reader::<MIN_FRAME>::new();

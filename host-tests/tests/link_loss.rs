@@ -19,8 +19,8 @@ struct Tally {
     checked: u32,
 }
 
-/// The flight log through a bank, frames of 20 ms, a keyframe a second; a frame is lost with this
-/// chance. The receiver is compared, bit for bit, with decoders that lose nothing and are
+/// The flight log through a bank, frames of 20 ms, a keyframe a second; a frame is lost or
+/// damaged with this chance. The receiver is compared, bit for bit, with decoders that lose nothing and are
 /// resynchronised by the same keyframes.
 fn fly<S: Raw>(scheme: StepForward<S>, convert: fn(f32) -> S, per_cent: u32) -> Tally {
     let mut random = Pcg32::new(4, u64::from(per_cent));
@@ -57,6 +57,13 @@ fn fly<S: Raw>(scheme: StepForward<S>, convert: fn(f32) -> S, per_cent: u32) -> 
             if random.next_u32() % 100 < per_cent {
                 tally.lost += 1;
                 unseen += 1;
+                if random.next_u32() % 2 == 0 {
+                    // It arrives damaged, anywhere but in its length.
+                    let mut damaged = frame.to_vec();
+                    let at = random.next_u32() as usize % damaged.len();
+                    damaged[if at == 11 { 12 } else { at }] ^= 1 << (random.next_u32() % 8);
+                    assert!(reader.next_frame(&mut &damaged[..]).is_none());
+                }
                 continue;
             }
             while let Some(received) = reader.next_frame(&mut frame) {

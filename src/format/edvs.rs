@@ -13,9 +13,9 @@ pub enum EdvsTime {
     None,
     /// E1: µs since the event before, in one to four groups of 7 bits; cut to 2²⁸-1 µs.
     Delta,
-    /// E2: the low 16 bits of the tick.
+    /// E2: the low 16 bits of the tick; right while less than 65 ms pass between events.
     Bits16,
-    /// E3: the low 24 bits of the tick.
+    /// E3: the low 24 bits of the tick; right while less than 16.7 s pass between events.
     Bits24,
     /// E4: the tick.
     Bits32,

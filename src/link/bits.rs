@@ -129,7 +129,7 @@ impl<'a> BitReader<'a> {
     pub(super) fn is_padding(mut self) -> bool {
         match self.bytes {
             [] => true,
-            [_] => self.take(8 - self.used) == Some(0),
+            [_] if self.used > 0 => self.take(8 - self.used) == Some(0),
             _ => false,
         }
     }

@@ -67,19 +67,15 @@ impl<'a> FrameView<'a> {
     /// Every error but [`Full`](LinkError::Full) and [`KeyframeOrder`](LinkError::KeyframeOrder),
     /// in the order of the bytes that tell it.
     pub fn new(bytes: &'a [u8]) -> Result<(Self, usize), LinkError> {
-        let length = Self::check(bytes)?;
-        let body = bytes.get(..length - CHECKSUM).unwrap_or_default();
-        Ok((Self::read(body).ok_or(LinkError::Header)?, length))
-    }
-
-    /// The length of the frame that these bytes begin with, if it is whole and undamaged.
-    pub(super) fn check(bytes: &[u8]) -> Result<usize, LinkError> {
         let length = Self::length(bytes)?;
         let truncated = LinkError::Truncated { needed: length, found: bytes.len() };
         let (body, rest) = bytes.split_at_checked(length - CHECKSUM).ok_or(truncated)?;
         let found = u32::from_le_bytes(*rest.first_chunk().ok_or(truncated)?);
         let computed = checksum(body);
-        if found == computed { Ok(length) } else { Err(LinkError::Checksum { found, computed }) }
+        if found != computed {
+            return Err(LinkError::Checksum { found, computed });
+        }
+        Ok((Self::read(body).ok_or(LinkError::Header)?, length))
     }
 
     /// A frame without its checksum, which was checked.

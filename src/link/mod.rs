@@ -31,8 +31,8 @@
 //!   bits)`, `code(address, address bits)`, where zigzag maps 0, -1, 1, -2 to 0, 1, 2, 3;
 //! - then `1` for up or `0` for down.
 //!
-//! A rest of fewer than 8 bits, all 0, is no event. Six channels that fire at the same tick thus take
-//! 3 to 6 bits an event, and a tick of its own 3 bits more, and the jitter's.
+//! A rest of fewer than 8 bits, all 0, is no event. One of six channels thus takes 3 to 7 bits an
+//! event; the first event one period after the one before takes 2 more, other times more still.
 //!
 //! **Keyframes** say what the decoder of each address holds after all events of earlier frames and
 //! before those of this one. They make a step decoder exact again after a loss.

@@ -8,7 +8,8 @@ use super::{FrameView, LinkError, MIN_FRAME};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gap {
-    /// How many, 1 to 65 535: a loss of 65 536 frames at once cannot be told from none.
+    /// How many, 1 to 65 534: sequences wrap, so that losses count modulo 65 536. They mean nothing
+    /// where the sender restarted and its first frame was lost as well.
     pub lost_frames: u16,
 }
 
@@ -28,7 +29,7 @@ pub struct Received<'a> {
 /// - **Delay:** none, but a frame whose length was damaged may hold up to 255 more bytes back.
 ///
 /// Counters: [`lost_frames`](Self::lost_frames), [`bad_checksums`](Self::bad_checksums),
-/// [`skipped`](Self::skipped).
+/// [`repeated`](Self::repeated), [`skipped`](Self::skipped).
 #[derive(Clone, Debug)]
 pub struct Reader<const N: usize> {
     buffer: [u8; N],
@@ -40,6 +41,7 @@ pub struct Reader<const N: usize> {
     frames: u32,
     lost_frames: u32,
     bad_checksums: u32,
+    repeated: u32,
     skipped: u32,
 }
 
@@ -62,6 +64,7 @@ impl<const N: usize> Reader<N> {
             frames: 0,
             lost_frames: 0,
             bad_checksums: 0,
+            repeated: 0,
             skipped: 0,
         }
     }
@@ -101,6 +104,12 @@ impl<const N: usize> Reader<N> {
         self.bad_checksums
     }
 
+    /// How many frames had the number of the one before, as when a bus sends again what it could not
+    /// confirm; they are left out.
+    pub const fn repeated(&self) -> u32 {
+        self.repeated
+    }
+
     /// How many bytes belonged to no frame.
     pub const fn skipped(&self) -> u32 {
         self.skipped
@@ -110,16 +119,21 @@ impl<const N: usize> Reader<N> {
     fn find(&mut self, input: &mut &[u8]) -> Option<usize> {
         loop {
             let bytes = self.buffer.get(self.start..self.end).unwrap_or_default();
-            match FrameView::check(bytes) {
-                Ok(length) if FrameView::read(bytes).is_some() => return Some(length),
+            let frame = FrameView::new(bytes);
+            match frame {
+                Ok((frame, length)) if self.is_repeated(&frame) => {
+                    self.start += length;
+                    self.repeated = self.repeated.saturating_add(1);
+                }
+                Ok((_, length)) => return Some(length),
                 Err(LinkError::Truncated { needed, .. }) if needed <= N => {
                     if input.is_empty() {
                         return None;
                     }
                     self.take_in(input);
                 }
-                result => {
-                    if let Err(LinkError::Checksum { .. }) = result {
+                Err(error) => {
+                    if matches!(error, LinkError::Checksum { .. }) {
                         self.bad_checksums = self.bad_checksums.saturating_add(1);
                     }
                     let next = bytes.iter().skip(1).position(|&byte| byte == MAGIC);
@@ -129,6 +143,11 @@ impl<const N: usize> Reader<N> {
                 }
             }
         }
+    }
+
+    fn is_repeated(&self, frame: &FrameView<'_>) -> bool {
+        let next = frame.sequence().wrapping_add(1);
+        self.expected == Some(next) && !frame.is_restart()
     }
 
     /// Moves what is in use to the front and appends as much of `input` as there is room for.
