@@ -28,7 +28,7 @@ pub fn firmware(names: &[String]) -> Result<()> {
 }
 
 /// A program is a directory of the firmware workspace with a `src/main.rs`. What is only linked, or prints
-/// too much for a table, calls it otherwise.
+/// too much for a table, calls it otherwise; what is for one part alone is a workspace of its own.
 fn programs() -> Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(paths::examples())? {

@@ -1,0 +1,75 @@
+//! A Pico: its clocks and pins. Another board changes this file only.
+
+use embedded_hal::spi::MODE_0;
+use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
+use rp2040_hal::{
+    Clock, Sio, Spi, Timer, Watchdog,
+    clocks::init_clocks_and_plls,
+    fugit::RateExtU32,
+    gpio::{
+        FunctionSio, FunctionSpi, FunctionUart, Pin, Pins, PullDown, PullNone, SioInput, SioOutput,
+        bank0::{Gpio0, Gpio1, Gpio16, Gpio17, Gpio18, Gpio19, Gpio20},
+    },
+    pac, spi,
+    uart::{self, DataBits, StopBits, UartConfig, UartPeripheral},
+};
+
+const CRYSTAL_HZ: u32 = 12_000_000;
+const BAUD: u32 = 921_600;
+
+/// Sets up the flash before anything else runs; W25Q080 is what the Pico has.
+#[unsafe(link_section = ".boot2")]
+#[used]
+static BOOT_LOADER: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
+
+type SpiPin<P> = Pin<P, FunctionSpi, PullNone>;
+type SpiPins = (SpiPin<Gpio19>, SpiPin<Gpio16>, SpiPin<Gpio18>);
+type ChipSelect = Pin<Gpio17, FunctionSio<SioOutput>, PullNone>;
+type UartPins = (Pin<Gpio0, FunctionUart, PullNone>, Pin<Gpio1, FunctionUart, PullNone>);
+
+pub type ImuDevice = ExclusiveDevice<Spi<spi::Enabled, pac::SPI0, SpiPins, 8>, ChipSelect, NoDelay>;
+pub type DataReady = Pin<Gpio20, FunctionSio<SioInput>, PullDown>;
+pub type Uart = UartPeripheral<uart::Enabled, pac::UART0, UartPins>;
+
+pub struct Board {
+    pub imu: ImuDevice,
+    pub data_ready: DataReady,
+    pub uart: Uart,
+    /// Microseconds since the start; also for pauses.
+    pub clock: Timer,
+}
+
+pub fn start() -> Board {
+    let mut chip = pac::Peripherals::take().unwrap();
+    let mut watchdog = Watchdog::new(chip.WATCHDOG);
+    let Ok(clocks) = init_clocks_and_plls(
+        CRYSTAL_HZ,
+        chip.XOSC,
+        chip.CLOCKS,
+        chip.PLL_SYS,
+        chip.PLL_USB,
+        &mut chip.RESETS,
+        &mut watchdog,
+    ) else {
+        panic!("the clocks do not start");
+    };
+    let peripheral_clock = clocks.peripheral_clock.freq();
+    let bank = Sio::new(chip.SIO).gpio_bank0;
+    let pins = Pins::new(chip.IO_BANK0, chip.PADS_BANK0, bank, &mut chip.RESETS);
+
+    let bus = Spi::new(
+        chip.SPI0,
+        (pins.gpio19.reconfigure(), pins.gpio16.reconfigure(), pins.gpio18.reconfigure()),
+    )
+    .init(&mut chip.RESETS, peripheral_clock, 8.MHz(), MODE_0);
+    let Ok(imu) = ExclusiveDevice::new_no_delay(bus, pins.gpio17.reconfigure());
+
+    let serial = UartConfig::new(BAUD.Hz(), DataBits::Eight, None, StopBits::One);
+    let uart_pins = (pins.gpio0.reconfigure(), pins.gpio1.reconfigure());
+    let uart = UartPeripheral::new(chip.UART0, uart_pins, &mut chip.RESETS)
+        .enable(serial, peripheral_clock)
+        .unwrap();
+
+    let clock = Timer::new(chip.TIMER, &mut chip.RESETS, &clocks);
+    Board { imu, data_ready: pins.gpio20.reconfigure(), uart, clock }
+}

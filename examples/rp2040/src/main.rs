@@ -1,0 +1,138 @@
+//! From the IMU's interrupt to link frames out of the UART, on an RP2040.
+//!
+//! ```text
+//! BMI323 --INT1--> IO_IRQ_BANK0: SPI0, bank of step encoders --> queue --> main: frames --> UART0
+//! ```
+//!
+//! A Cortex-M0+ has no floating-point unit: the encoders work on the sensor's raw counts. Wiring and clocks:
+//! `examples/README.md`.
+
+#![no_std]
+#![no_main]
+
+mod board;
+mod imu;
+
+use core::cell::{Cell, RefCell};
+use critical_section::Mutex;
+use defmt_rtt as _;
+use panic_probe as _;
+use rp2040_hal::{gpio::Interrupt::EdgeHigh, pac, pac::interrupt};
+use spikewire::{
+    Bank, Encoder, Scheme,
+    link::{Coding, Transmitter},
+    sink::{EventQueue, Overflow, SerialSink},
+    temporal::StepForwardEncoder,
+};
+
+const CHANNELS: usize = 6;
+/// Samples from one keyframe to the next: a second.
+const KEYFRAME_EVERY: u16 = imu::SAMPLE_RATE;
+/// How often the counters are logged, in µs.
+const REPORT: u32 = 1_000_000;
+
+/// What the interrupt has for main.
+static EVENTS: EventQueue<256> = EventQueue::new(Overflow::DropOldest);
+/// The latest keyframe that main has not taken yet.
+static KEYFRAME: Mutex<Cell<Option<Keyframe>>> = Mutex::new(Cell::new(None));
+/// What the interrupt works with, once it is set up.
+static SAMPLER: Mutex<RefCell<Option<Sampler>>> = Mutex::new(RefCell::new(None));
+
+/// What the encoders held after the sample of this tick, and how many events had been lost by then.
+struct Keyframe {
+    tick: u32,
+    lost: u32,
+    values: [Option<i16>; CHANNELS],
+}
+
+struct Sampler {
+    data_ready: board::DataReady,
+    imu: imu::Imu<board::ImuDevice>,
+    clock: rp2040_hal::Timer,
+    bank: Bank<StepForwardEncoder<i16>, CHANNELS>,
+    samples_to_keyframe: u16,
+    failed_reads: u32,
+}
+
+impl Sampler {
+    /// Takes one sample: 20 µs on the bus, then six encoders.
+    fn sample(&mut self) {
+        let tick = self.clock.get_counter_low();
+        self.data_ready.clear_interrupt(EdgeHigh);
+        let Ok(sample) = imu::read(&mut self.imu) else {
+            self.failed_reads += 1;
+            return;
+        };
+        self.bank.encode(tick, sample, |event| {
+            let _ = EVENTS.push(event); // what does not fit is counted in the queue
+        });
+
+        self.samples_to_keyframe -= 1;
+        if self.samples_to_keyframe == 0 {
+            self.samples_to_keyframe = KEYFRAME_EVERY;
+            let values = self.bank.channels().each_ref().map(Encoder::keyframe);
+            let keyframe = Keyframe { tick, lost: EVENTS.lost(), values };
+            critical_section::with(|cs| KEYFRAME.borrow(cs).set(Some(keyframe)));
+        }
+    }
+}
+
+#[interrupt]
+fn IO_IRQ_BANK0() {
+    critical_section::with(|cs| {
+        if let Some(sampler) = SAMPLER.borrow(cs).borrow_mut().as_mut() {
+            sampler.sample();
+        }
+    });
+}
+
+#[rp2040_hal::entry]
+fn main() -> ! {
+    let board::Board { imu, data_ready, uart, mut clock } = board::start();
+    let imu = imu::start(imu, &mut clock).expect("no BMI323 on SPI0");
+
+    let [rate, acceleration] = [imu::RATE.encoder(), imu::ACCELERATION.encoder()];
+    let bank = Bank::from_encoders([rate, rate, rate, acceleration, acceleration, acceleration]);
+    data_ready.set_interrupt_enabled(EdgeHigh, true);
+    let sampler = Sampler {
+        data_ready,
+        imu,
+        clock,
+        bank,
+        samples_to_keyframe: KEYFRAME_EVERY,
+        failed_reads: 0,
+    };
+    critical_section::with(|cs| SAMPLER.borrow(cs).replace(Some(sampler)));
+    // SAFETY: main is in no critical section that this could break.
+    unsafe { pac::NVIC::unmask(pac::Interrupt::IO_IRQ_BANK0) };
+
+    // The sensor's clock is not ours: its samples come a few µs early or late.
+    let coding = Coding::for_channels(CHANNELS as u16, imu::PERIOD_US).with_jitter_bits(4);
+    let mut link = SerialSink::<_, _, 128>::new(uart, Transmitter::<i16, CHANNELS>::new(coding));
+    let (mut bytes, mut last_report) = (0_u32, clock.get_counter_low());
+    loop {
+        if let Some(keyframe) = critical_section::with(|cs| KEYFRAME.borrow(cs).take()) {
+            link.batch().keyframe_values(keyframe.tick, keyframe.lost, keyframe.values);
+        }
+        match link.send(&EVENTS) {
+            Ok(0) => cortex_m::asm::wfi(), // until the next sample
+            Ok(count) => bytes = bytes.wrapping_add(count as u32),
+            Err(_) => defmt::warn!("the UART failed; the frame is kept"),
+        }
+
+        if clock.get_counter_low().wrapping_sub(last_report) >= REPORT {
+            last_report = last_report.wrapping_add(REPORT);
+            let failed_reads = critical_section::with(|cs| {
+                SAMPLER.borrow_ref(cs).as_ref().map_or(0, |sampler| sampler.failed_reads)
+            });
+            defmt::info!(
+                "{} bytes sent; {} events lost, peak {}; {} reads failed; {} keyframes dropped",
+                bytes,
+                EVENTS.lost(),
+                EVENTS.peak(),
+                failed_reads,
+                link.batch().dropped_keyframes(),
+            );
+        }
+    }
+}
