@@ -2,7 +2,7 @@
 
 use crate::Event;
 
-/// A source of events: an [`EventQueue`](crate::sink::EventQueue), as `&EVENTS`, or any iterator.
+/// A source of events: an `EventQueue`, as `&EVENTS`, or any iterator.
 pub trait EventSource {
     /// The next event, if there is one now.
     fn next_event(&mut self) -> Option<Event>;

@@ -6,7 +6,7 @@ use crate::bytes::Cursor;
 #[derive(Debug)]
 pub(super) struct BitWriter<'a> {
     bytes: Cursor<'a>,
-    /// The low `pending` bits are not in the buffer yet; fewer than 8.
+    /// The low `pending` bits are not in the buffer yet, fewer than 8; those above are.
     bits: u32,
     pending: u32,
 }
@@ -35,17 +35,23 @@ impl<'a> BitWriter<'a> {
     }
 
     /// Appends the low `count` bits, up to 32.
+    #[inline]
     pub(super) fn put(&mut self, value: u32, count: u32) -> Option<()> {
-        let mut left = count;
-        while left > 0 {
-            let take = left.min(8 - self.pending);
-            left -= take;
-            self.bits = self.bits << take | (value >> left) & ((1 << take) - 1);
-            self.pending += take;
-            if self.pending == 8 {
-                self.bytes.put(&[self.bits as u8])?;
-                (self.bits, self.pending) = (0, 0);
-            }
+        if count > 16 {
+            self.put_few(value >> 16, count - 16)?;
+            self.put_few(value, 16)
+        } else {
+            self.put_few(value, count)
+        }
+    }
+
+    /// Appends the low `count` bits, up to 16.
+    fn put_few(&mut self, value: u32, count: u32) -> Option<()> {
+        self.bits = self.bits << count | value & ((1 << count) - 1);
+        self.pending += count;
+        while self.pending >= 8 {
+            self.bytes.push((self.bits >> (self.pending - 8)) as u8)?;
+            self.pending -= 8;
         }
         Some(())
     }
@@ -54,9 +60,12 @@ impl<'a> BitWriter<'a> {
     pub(super) fn put_code(&mut self, value: u32, k: u32) -> Option<()> {
         let number = (value >> k).saturating_add(1);
         let bits = 32 - number.leading_zeros();
+        if 2 * bits - 1 + k <= 16 {
+            return self.put_few(number << k | value & ((1 << k) - 1), 2 * bits - 1 + k);
+        }
         self.put(0, bits - 1)?;
         self.put(number, bits)?;
-        self.put(value, k)
+        self.put_few(value, k)
     }
 
     /// Appends whole bytes, before any bits; those that do not fit are left out.
@@ -85,53 +94,76 @@ impl<'a> BitWriter<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BitReader<'a> {
     bytes: &'a [u8],
-    /// The next byte's first `used` bits are taken; fewer than 8.
-    used: u32,
+    /// The next bits, from the highest on, and then 0.
+    window: u32,
+    /// How many of them there are.
+    available: u32,
 }
 
 impl<'a> BitReader<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, used: 0 }
+        Self { bytes, window: 0, available: 0 }
     }
 
     /// The next `count` bits, up to 32.
+    #[inline]
     pub(super) fn take(&mut self, count: u32) -> Option<u32> {
-        let mut value = 0_u32;
-        let mut left = count;
-        while left > 0 {
-            let (&byte, rest) = self.bytes.split_first()?;
-            let take = left.min(8 - self.used);
-            left -= take;
-            let bits = u32::from(byte) >> (8 - self.used - take) & ((1 << take) - 1);
-            value = value.unbounded_shl(take) | bits;
-            self.used += take;
-            if self.used == 8 {
-                (self.bytes, self.used) = (rest, 0);
-            }
+        if count > 16 {
+            let high = self.take_few(count - 16)?;
+            Some(high << 16 | self.take_few(16)?)
+        } else {
+            self.take_few(count)
         }
-        Some(value)
     }
 
     /// The value of the next `code(value, k)`.
     pub(super) fn take_code(&mut self, k: u32) -> Option<u32> {
+        self.fill();
+        let zeros = self.window.leading_zeros();
+        let number =
+            if 2 * zeros < self.available { self.shift(2 * zeros + 1) } else { self.take_long()? };
+        Some((number - 1).unbounded_shl(k) | self.take_few(k)?)
+    }
+
+    /// A number after as many 0 as it has bits after its first, longer than the window.
+    fn take_long(&mut self) -> Option<u32> {
         let mut zeros = 0;
-        while self.take(1)? == 0 {
+        while self.take_few(1)? == 0 {
             zeros += 1;
             if zeros == 32 {
                 return None;
             }
         }
-        let number = 1_u32 << zeros | self.take(zeros)?;
-        Some((number - 1).unbounded_shl(k) | self.take(k)?)
+        Some(1_u32 << zeros | self.take(zeros)?)
+    }
+
+    /// Up to 16.
+    fn take_few(&mut self, count: u32) -> Option<u32> {
+        self.fill();
+        (count <= self.available).then(|| self.shift(count))
+    }
+
+    /// At least 25 bits in the window, if there are.
+    fn fill(&mut self) {
+        while self.available <= 24 {
+            let Some((&byte, rest)) = self.bytes.split_first() else { return };
+            self.window |= u32::from(byte) << (24 - self.available);
+            self.available += 8;
+            self.bytes = rest;
+        }
+    }
+
+    /// The first `count` bits of the window, which has so many.
+    fn shift(&mut self, count: u32) -> u32 {
+        let bits = self.window.unbounded_shr(32 - count);
+        self.window = self.window.unbounded_shl(count);
+        self.available -= count;
+        bits
     }
 
     /// Whether all that is left are fewer than 8 bits of 0.
-    pub(super) fn is_padding(mut self) -> bool {
-        match self.bytes {
-            [] => true,
-            [_] if self.used > 0 => self.take(8 - self.used) == Some(0),
-            _ => false,
-        }
+    pub(super) fn is_padding(self) -> bool {
+        self.bytes.is_empty() && self.available < 8 && self.window == 0
     }
 }
 

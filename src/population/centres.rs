@@ -31,6 +31,9 @@ pub struct Centres<S, const M: usize> {
     /// `edges[i]` is the largest value that still belongs to neuron `i`; the last is not used.
     #[cfg_attr(feature = "serde", serde(skip))]
     edges: [S; M],
+    /// Neurons for 1 of an even range; 0 where the centres are not even.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    scale: S,
 }
 
 impl<S, const M: usize> Centres<S, M> {
@@ -110,7 +113,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
             }
             previous = Some((value, edge));
         }
-        Ok(Self { values, edges })
+        Ok(Self { values, edges, scale: S::ZERO })
     }
 
     /// Even centres over a range, half a spacing beyond it at either end:
@@ -127,6 +130,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
         for (i, edge) in centres.edges.iter_mut().enumerate() {
             *edge = S::floor_from_f64(even_edge(min, max, i, M));
         }
+        centres.scale = S::scale(min, max, M);
         Ok(centres)
     }
 
@@ -141,11 +145,19 @@ impl<S: Sample, const M: usize> Centres<S, M> {
         Self::new(core::array::from_fn(|i| S::from_f64(gaussian_centre(min, max, i, M))))
     }
 
-    /// The neuron of a finite value.
+    /// The neuron of a finite value: of even centres by arithmetic, which may come out too low by what
+    /// rounding loses; of others by binary search.
     #[inline]
     pub(super) fn nearest(&self, value: S) -> usize {
         let edges = self.edges.get(..M - 1).unwrap_or_default();
-        edges.partition_point(|&edge| value > edge)
+        if self.scale == S::ZERO {
+            return edges.partition_point(|&edge| value > edge);
+        }
+        let mut neuron = value.spacings(self.edges[0], self.scale).min(M - 1);
+        while edges.get(neuron).is_some_and(|&edge| value > edge) {
+            neuron += 1;
+        }
+        neuron
     }
 
     pub(super) fn get(&self, neuron: usize) -> Option<S> {
@@ -158,7 +170,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
 }
 
 macro_rules! constants {
-    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $reach:path) => {
+    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $reach:path, $scale:path) => {
         // Constants are built by index: there are no iterators in constants.
         #[allow(clippy::indexing_slicing)]
         impl<const M: usize, $($generics)*> Centres<$sample, M> {
@@ -180,7 +192,7 @@ macro_rules! constants {
                     }
                     i += 1;
                 }
-                Self { values, edges }
+                Self { values, edges, scale: $nearest(0.0) }
             }
 
             /// For constants: [`new_linear`](Self::new_linear). A range that is not one fails the build.
@@ -202,6 +214,7 @@ macro_rules! constants {
                     centres.edges[i] = $floor(even_edge(min, max, i, M));
                     i += 1;
                 }
+                centres.scale = $scale(min, max, M);
                 centres
             }
 

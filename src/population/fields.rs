@@ -134,7 +134,7 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
 }
 
 macro_rules! constants {
-    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $reach:path) => {
+    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $reach:path, $scale:path) => {
         // Constants are built by index: there are no iterators in constants.
         #[allow(clippy::indexing_slicing)]
         impl<const M: usize, const N: usize, $($generics)*> ReceptiveFields<$sample, M, N> {
@@ -180,6 +180,13 @@ pub trait Spaced: Sized {
         max: Self,
     ) -> Self::Reach;
 
+    /// What [`spacings`](Self::spacings) takes for even centres over this range.
+    fn scale(min: f64, max: f64, neurons: usize) -> Self;
+
+    /// How many whole spacings this lies above the lowest edge, or less by what rounding loses; 0
+    /// below it.
+    fn spacings(self, lowest: Self, scale: Self) -> usize;
+
     fn weigh(sum: Self::Weighted, centre: Self, neuron: usize, level: u32) -> Self::Weighted;
 
     fn mean(sum: Self::Weighted, levels: u32, neurons: usize, min: Self, max: Self) -> Self;
@@ -198,6 +205,15 @@ impl Spaced for f32 {
         (self - centre).abs()
     }
 
+    fn scale(min: f64, max: f64, neurons: usize) -> f32 {
+        crate::sample::f32_scale(min, max, neurons)
+    }
+
+    #[inline]
+    fn spacings(self, lowest: f32, scale: f32) -> usize {
+        ((self - lowest) * scale) as u32 as usize
+    }
+
     #[inline]
     fn weigh(sum: f32, centre: f32, _: usize, level: u32) -> f32 {
         sum + centre * level as f32
@@ -211,14 +227,15 @@ impl Spaced for f32 {
 
 macro_rules! integer_spaced {
     ([$($generics:tt)*] $sample:ty, i16, $to_bits:path, $from_bits:path,
-     $to_f64:path, $nearest:path, $floor:path, $reach:path) => {
-        integer_spaced!(@ [$($generics)*] $sample, i16, i32, $to_bits, $from_bits, $reach);
+     $to_f64:path, $nearest:path, $floor:path, $reach:path, $scale:path) => {
+        integer_spaced!(@ [$($generics)*] $sample, i16, i32, $to_bits, $from_bits, $reach, $scale);
     };
     ([$($generics:tt)*] $sample:ty, i32, $to_bits:path, $from_bits:path,
-     $to_f64:path, $nearest:path, $floor:path, $reach:path) => {
-        integer_spaced!(@ [$($generics)*] $sample, i32, i64, $to_bits, $from_bits, $reach);
+     $to_f64:path, $nearest:path, $floor:path, $reach:path, $scale:path) => {
+        integer_spaced!(@ [$($generics)*] $sample, i32, i64, $to_bits, $from_bits, $reach, $scale);
     };
-    (@ [$($generics:tt)*] $sample:ty, $bits:ty, $wide:ty, $to_bits:path, $from_bits:path, $reach:path) => {
+    (@ [$($generics:tt)*] $sample:ty, $bits:ty, $wide:ty, $to_bits:path, $from_bits:path,
+     $reach:path, $scale:path) => {
         impl<$($generics)*> Spaced for $sample {
             type Reach = $wide;
             type Weighted = i64;
@@ -233,6 +250,22 @@ macro_rules! integer_spaced {
                 let offset = <$wide>::from($to_bits(self)) - min;
                 let range = <$wide>::from($to_bits(max)) - min;
                 (2 * (neurons as $wide - 2) * offset - (2 * neuron as $wide - 1) * range).abs()
+            }
+
+            fn scale(min: f64, max: f64, neurons: usize) -> Self {
+                $scale(min, max, neurons)
+            }
+
+            // A 16-bit scale has no upper half, and no shift.
+            #[inline]
+            fn spacings(self, lowest: Self, scale: Self) -> usize {
+                if self <= lowest {
+                    return 0;
+                }
+                let above = i32::from($to_bits(self)).wrapping_sub(i32::from($to_bits(lowest))) as u32;
+                let scale = i32::from($to_bits(scale)) as u32;
+                let scaled = (above >> (scale >> 16)).min(0xffff) * (scale & 0xffff);
+                (scaled >> 16) as usize
             }
 
             #[inline]

@@ -90,7 +90,7 @@ impl<S: Sample> TemporalContrast<S> {
 }
 
 macro_rules! constants {
-    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $reach:path) => {
+    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $reach:path, $scale:path) => {
         impl<$($generics)*> TemporalContrast<$sample> {
             /// For constants: a threshold that is not above 0 fails the build.
             ///
@@ -165,11 +165,11 @@ impl<S: Sample> Encoder for TemporalContrastEncoder<S> {
             return Spike::None;
         }
         let previous = core::mem::replace(&mut self.previous, sample);
-        if !self.tally.is_primed() {
+        if self.tally.is_primed() {
+            sample.step(previous, self.threshold)
+        } else {
             self.tally.prime();
             Spike::None
-        } else {
-            sample.step(previous, self.threshold)
         }
     }
 
