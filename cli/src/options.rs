@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 /// Parameters, by the names of the paper's Table III, and what calibration takes from the signal.
 #[derive(Args, Clone, Debug, Default)]
-pub struct SchemeOptions {
+pub(crate) struct SchemeOptions {
     /// tbr: the threshold is the differences' mean and this many of their standard deviations
     #[arg(long, allow_negative_numbers = true, help_heading = "Parameters")]
     pub factor: Option<f64>,
@@ -70,7 +70,7 @@ pub struct SchemeOptions {
 
 /// The decoder's step of temporal contrast.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Step {
+pub(crate) enum Step {
     /// In the signal's unit.
     Value(f64),
     /// This many thresholds.
@@ -79,7 +79,7 @@ pub enum Step {
 
 /// The two forms of BSA.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Form {
+pub(crate) enum Form {
     /// As published.
     Aligned,
     /// With the toolbox's indices.
@@ -88,7 +88,7 @@ pub enum Form {
 
 /// What BSA compares its errors by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Criterion {
+pub(crate) enum Criterion {
     /// `e1 <= e2 - threshold`.
     Sub,
     /// `e1 <= e2 * threshold`.
@@ -112,7 +112,7 @@ impl SchemeOptions {
     ///
     /// # Errors
     /// Such an option is given.
-    pub fn check(&self, scheme: SchemeName) -> Result<()> {
+    pub(crate) fn check(&self, scheme: SchemeName) -> Result<()> {
         let taken = scheme.options();
         if let Some(option) = self.given().into_iter().find(|option| !taken.contains(option)) {
             let taken: Vec<String> = taken.iter().map(|option| format!("--{option}")).collect();
@@ -122,7 +122,7 @@ impl SchemeOptions {
     }
 
     /// Whether any parameter is given.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.given().is_empty()
     }
 
@@ -152,7 +152,7 @@ impl SchemeOptions {
 
     /// The paper's benchmark settings where nothing is given, for a signal with this range.
     #[must_use]
-    pub fn or_paper(&self, scheme: SchemeName, range: f64) -> Self {
+    pub(crate) fn or_paper(&self, scheme: SchemeName, range: f64) -> Self {
         /// What the paper calls the amplitude of its signal.
         const PAPER_RANGE: f64 = 5.8;
         let scale = range / PAPER_RANGE;

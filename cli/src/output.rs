@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 /// Standard output, or a file that is written beside its place and then moved there.
-pub enum Output {
+pub(crate) enum Output {
     /// Standard output, or a device.
     Direct(BufWriter<Box<dyn Write>>),
     /// A file in the making.
@@ -21,7 +21,7 @@ impl Output {
     ///
     /// # Errors
     /// Nothing can be written there.
-    pub fn open(path: Option<&Path>) -> Result<Self> {
+    pub(crate) fn open(path: Option<&Path>) -> Result<Self> {
         let Some(path) = path.filter(|path| *path != Path::new("-")) else {
             return Ok(Self::Direct(BufWriter::with_capacity(
                 BUFFER,
@@ -45,7 +45,7 @@ impl Output {
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn finish(self) -> Result<()> {
+    pub(crate) fn finish(self) -> Result<()> {
         match self {
             Self::Direct(mut output) => output.flush()?,
             Self::Beside(output, path) => {

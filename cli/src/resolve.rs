@@ -12,7 +12,7 @@ use anyhow::{Context, Result, anyhow, bail};
 
 /// What is known of the signal.
 #[derive(Clone, Copy)]
-pub struct Known<'a> {
+pub(crate) struct Known<'a> {
     /// A calibration over the whole of it, where [`missing`] asks for one.
     pub calibrated: Option<&'a Calibrated>,
     /// The first samples, finite; enough for any window.
@@ -20,7 +20,7 @@ pub struct Known<'a> {
 }
 
 /// The options that would make a calibration over the whole signal unnecessary.
-pub fn missing(scheme: SchemeName, options: &SchemeOptions) -> Option<&'static str> {
+pub(crate) fn missing(scheme: SchemeName, options: &SchemeOptions) -> Option<&'static str> {
     let is_open = match scheme {
         _ if options.paper => return Some("parameters in the place of --paper"),
         SchemeName::Tbr => (options.threshold.is_none(), "--threshold"),
@@ -40,7 +40,11 @@ pub fn missing(scheme: SchemeName, options: &SchemeOptions) -> Option<&'static s
 ///
 /// # Errors
 /// A parameter is missing, not taken by the scheme, or makes no sense.
-pub fn resolve(scheme: SchemeName, options: &SchemeOptions, known: Known) -> Result<Settings> {
+pub(crate) fn resolve(
+    scheme: SchemeName,
+    options: &SchemeOptions,
+    known: Known,
+) -> Result<Settings> {
     options.check(scheme)?;
     let options = &if options.paper {
         let (min, max) = range(options, known)?;

@@ -9,7 +9,7 @@ use std::str::FromStr;
 /// Fixed point is arithmetic on raw integers, whatever their unit. So every format of 16 bits runs as
 /// the crate's `i16` and every format of 32 bits as its `FixedI32`, in the unit that the name states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SampleType {
+pub(crate) enum SampleType {
     /// `f32`.
     #[default]
     F32,
@@ -48,7 +48,7 @@ pub(crate) use for_sample_type;
 
 impl SampleType {
     /// What a 1 is in the unit of the crate's type: a power of two.
-    pub fn one(self) -> f64 {
+    pub(crate) fn one(self) -> f64 {
         match self {
             Self::F32 => 1.0,
             Self::Fixed16 { fraction } => 2_f64.powi(fraction.into()),
@@ -57,7 +57,7 @@ impl SampleType {
     }
 
     /// The smallest and the largest value that it holds.
-    pub fn range(self) -> (f64, f64) {
+    pub(crate) fn range(self) -> (f64, f64) {
         let (bits, fraction) = match self {
             Self::F32 => return (f32::MIN.into(), f32::MAX.into()),
             Self::Fixed16 { fraction } => (15, fraction),

@@ -4,7 +4,7 @@ use clap::ValueEnum;
 
 /// A scheme, by the name that options and files use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum SchemeName {
+pub(crate) enum SchemeName {
     /// Temporal contrast.
     Tbr,
     /// Step forward.
@@ -29,7 +29,7 @@ pub enum SchemeName {
 
 impl SchemeName {
     /// All schemes, in the paper's order.
-    pub const ALL: [Self; 10] = [
+    pub(crate) const ALL: [Self; 10] = [
         Self::Tbr,
         Self::Mw,
         Self::Sf,
@@ -43,12 +43,12 @@ impl SchemeName {
     ];
 
     /// The name.
-    pub fn name(self) -> String {
+    pub(crate) fn name(self) -> String {
         self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
     }
 
     /// The name as the paper prints it.
-    pub fn title(self) -> &'static str {
+    pub(crate) fn title(self) -> &'static str {
         match self {
             Self::Tbr => "TBR",
             Self::Sf => "SF",
@@ -64,7 +64,7 @@ impl SchemeName {
     }
 
     /// The options that it takes.
-    pub fn options(self) -> &'static [&'static str] {
+    pub(crate) fn options(self) -> &'static [&'static str] {
         match self {
             Self::Tbr => &["factor", "magnitudes", "threshold", "step", "start"],
             Self::Sf => &["threshold", "start"],
@@ -80,7 +80,7 @@ impl SchemeName {
     }
 
     /// Whether its spikes have a direction.
-    pub fn is_signed(self) -> bool {
+    pub(crate) fn is_signed(self) -> bool {
         matches!(self, Self::Tbr | Self::Sf | Self::Mw)
     }
 }

@@ -2,7 +2,7 @@
 
 /// Parameters of a scheme.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Settings {
+pub(crate) enum Settings {
     /// Temporal contrast (`tbr`).
     Contrast(Contrast),
     /// Step forward (`sf`).
@@ -23,7 +23,7 @@ pub enum Settings {
 
 /// Parameters of temporal contrast.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Contrast {
+pub(crate) struct Contrast {
     /// What a difference must exceed.
     pub threshold: f64,
     /// The decoder's step.
@@ -34,7 +34,7 @@ pub struct Contrast {
 
 /// Parameters of step forward.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StepForward {
+pub(crate) struct StepForward {
     /// The step.
     pub threshold: f64,
     /// The first baseline.
@@ -43,7 +43,7 @@ pub struct StepForward {
 
 /// Parameters of the moving window.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MovingWindow {
+pub(crate) struct MovingWindow {
     /// What the distance from the mean must exceed; also the decoder's step.
     pub threshold: f64,
     /// One less than the samples of a mean, as the paper counts.
@@ -56,7 +56,7 @@ pub struct MovingWindow {
 
 /// Parameters of a rate code.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rate {
+pub(crate) struct Rate {
     /// The filter.
     pub taps: Vec<f64>,
     /// The signal's minimum.
@@ -67,7 +67,7 @@ pub struct Rate {
 
 /// When a sample of a rate code spikes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum RateRule {
+pub(crate) enum RateRule {
     /// Where the filter fits.
     Hough,
     /// Where the filter fits, nearly.
@@ -94,7 +94,7 @@ pub enum RateRule {
 
 /// A number of neurons over a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Evenly {
+pub(crate) struct Evenly {
     /// How many.
     pub neurons: usize,
     /// The signal's minimum.
@@ -105,7 +105,7 @@ pub struct Evenly {
 
 /// Where the neurons of a position code are centred.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Centres {
+pub(crate) enum Centres {
     /// Evenly.
     Linear(Evenly),
     /// Densely in the middle.
@@ -116,7 +116,7 @@ pub enum Centres {
 
 impl Centres {
     /// How many neurons there are.
-    pub fn neurons(&self) -> usize {
+    pub(crate) fn neurons(&self) -> usize {
         match self {
             Self::Linear(range) | Self::GaussianSpaced(range) => range.neurons,
             Self::Listed(list) => list.len(),
@@ -126,7 +126,7 @@ impl Centres {
 
 /// Gaussian receptive fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fields {
+pub(crate) struct Fields {
     /// Where they are.
     pub range: Evenly,
     /// The wider, the smaller.
@@ -135,7 +135,7 @@ pub struct Fields {
 
 /// Parameters of receptive fields with sub-timesteps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Slots {
+pub(crate) struct Slots {
     /// The fields.
     pub fields: Fields,
     /// Sub-timesteps a sample.
@@ -146,7 +146,7 @@ pub struct Slots {
 
 /// Parameters of receptive fields with probabilistic spiking.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Probabilistic {
+pub(crate) struct Probabilistic {
     /// The fields.
     pub fields: Fields,
     /// Where the generator starts.
@@ -155,7 +155,7 @@ pub struct Probabilistic {
 
 impl Settings {
     /// The same in a unit of which `one` makes a 1.
-    pub fn scaled(&self, one: f64) -> Self {
+    pub(crate) fn scaled(&self, one: f64) -> Self {
         let mut scaled = self.clone();
         match &mut scaled {
             Self::Contrast(contrast) => {
@@ -182,7 +182,7 @@ impl Settings {
                 }
             }
             Self::Position(Centres::Listed(list)) => {
-                list.iter_mut().for_each(|centre| *centre *= one)
+                list.iter_mut().for_each(|centre| *centre *= one);
             }
             Self::Position(Centres::Linear(range) | Centres::GaussianSpaced(range))
             | Self::Gaussian(range)
@@ -196,7 +196,7 @@ impl Settings {
     }
 
     /// What the encoder starts from; see [`crate::codec::Encode::prime`].
-    pub fn first_window(&self) -> Vec<f64> {
+    pub(crate) fn first_window(&self) -> Vec<f64> {
         match self {
             Self::MovingWindow(moving_window) => moving_window.first.clone(),
             _ => self.start().into_iter().collect(),
@@ -204,7 +204,7 @@ impl Settings {
     }
 
     /// The value before the first sample, for decoders that add up.
-    pub fn start(&self) -> Option<f64> {
+    pub(crate) fn start(&self) -> Option<f64> {
         match self {
             Self::Contrast(Contrast { start, .. })
             | Self::StepForward(StepForward { start, .. })
@@ -214,7 +214,7 @@ impl Settings {
     }
 
     /// How many neurons there are.
-    pub fn neurons(&self) -> usize {
+    pub(crate) fn neurons(&self) -> usize {
         match self {
             Self::Position(centres) => centres.neurons(),
             Self::Gaussian(range) => range.neurons,
@@ -225,7 +225,7 @@ impl Settings {
     }
 
     /// How many sub-timesteps a sample has.
-    pub fn slots(&self) -> usize {
+    pub(crate) fn slots(&self) -> usize {
         if let Self::Slots(slots) = self { slots.slots } else { 1 }
     }
 }

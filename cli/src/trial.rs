@@ -10,7 +10,7 @@ use crate::settings::Settings;
 use anyhow::{Result, anyhow, bail};
 
 /// A recording in memory.
-pub struct Recording {
+pub(crate) struct Recording {
     /// Its finite samples.
     pub values: Vec<f64>,
     /// Their times in µs, if recorded.
@@ -28,7 +28,7 @@ impl Recording {
     ///
     /// # Errors
     /// As reading does, or no finite sample.
-    pub fn read(input: &InputOptions) -> Result<Self> {
+    pub(crate) fn read(input: &InputOptions) -> Result<Self> {
         let Chunk { mut values, mut times } = input.read_all()?;
         let mut clock = Clock::new(&times, input.rate, input.gap);
         clock.observe(&times);
@@ -46,7 +46,7 @@ impl Recording {
     }
 
     /// How long it is in seconds, if that is known.
-    pub fn seconds(&self) -> Option<f64> {
+    pub(crate) fn seconds(&self) -> Option<f64> {
         match (self.times.first(), self.times.last()) {
             (Some(first), Some(last)) => Some((last - first) as f64 * 1e-6),
             _ => Some(self.values.len() as f64 / self.rate?),
@@ -55,7 +55,7 @@ impl Recording {
 }
 
 /// What a scheme made of a recording.
-pub struct Trial {
+pub(crate) struct Trial {
     /// The scheme.
     pub scheme: SchemeName,
     /// Its parameters.
@@ -71,7 +71,7 @@ impl Trial {
     ///
     /// # Errors
     /// The parameters make no sense.
-    pub fn new(
+    pub(crate) fn new(
         scheme: SchemeName,
         options: &SchemeOptions,
         sample: SampleType,
@@ -85,14 +85,14 @@ impl Trial {
         let (mut events, mut decoded) = (Vec::new(), Vec::new());
         codec.encode(&recording.values, &mut events);
         codec.finish(&mut events);
-        codec
-            .decode(recording.values.len(), &events, &mut decoded)
-            .map_err(|event| anyhow!("{}: sample {} does not decode", scheme.name(), event.sample))?;
+        codec.decode(recording.values.len(), &events, &mut decoded).map_err(|event| {
+            anyhow!("{}: sample {} does not decode", scheme.name(), event.sample)
+        })?;
         Ok(Self { scheme, settings, events, decoded })
     }
 
     /// `(1 - spikes / samples) * 100`.
-    pub fn efficiency(&self) -> f64 {
+    pub(crate) fn efficiency(&self) -> f64 {
         (1.0 - self.events.len() as f64 / self.decoded.len() as f64) * 100.0
     }
 }

@@ -14,11 +14,23 @@ fn columns_topics_and_fields() {
     refused(&format!("{SF} --column 8 {hexarotor}"), "", &["no column 8", "1 to 7"]);
     refused(&format!("{SF} {hexarotor}"), "", &["--column must say which", "accel_z"]);
     refused(&format!("{SF} --time clock --column gyro_x {hexarotor}"), "", &["no column `clock`"]);
-    refused(&format!("{SF} --topic sensor_combined --column gyro_x {hexarotor}"), "", &["a CSV table takes no --topic"]);
+    refused(
+        &format!("{SF} --topic sensor_combined --column gyro_x {hexarotor}"),
+        "",
+        &["a CSV table takes no --topic"],
+    );
     let log = flight_logs()[0].display().to_string();
     refused(&format!("{SF} {log}"), "", &["--topic and --field"]);
-    refused(&format!("{SF} --topic sensor_combine --field x {log}"), "", &["no topic `sensor_combine`", "near it are sensor_combined"]);
-    refused(&format!("{SF} --topic sensor_combined --field gyro_rad {log}"), "", &["no field `gyro_rad`", "gyro_rad[0]"]);
+    refused(
+        &format!("{SF} --topic sensor_combine --field x {log}"),
+        "",
+        &["no topic `sensor_combine`", "near it are sensor_combined"],
+    );
+    refused(
+        &format!("{SF} --topic sensor_combined --field gyro_rad {log}"),
+        "",
+        &["no field `gyro_rad`", "gyro_rad[0]"],
+    );
 }
 
 #[test]
@@ -27,9 +39,21 @@ fn tables() {
     refused(&format!("{SF} -"), "", &["standard input: empty"]);
     refused(&format!("{SF} -"), "x\n", &["no samples below the header"]);
     refused(&format!("{SF} -"), "1\n2\n", &["line 1 holds numbers"]);
-    refused(&format!("{SF} -"), "x\n1\n2\nabc\n", &["standard input: line 4, column x: `abc` is not a number"]);
-    refused(&format!("{SF} --column x -"), "x,y\n1,2\n3\n", &["line 3 has 1 columns where the header has 2"]);
-    refused(&format!("{SF} --column x -"), "x,time\n1,0\n2,later\n", &["line 3, column time: `later`"]);
+    refused(
+        &format!("{SF} -"),
+        "x\n1\n2\nabc\n",
+        &["standard input: line 4, column x: `abc` is not a number"],
+    );
+    refused(
+        &format!("{SF} --column x -"),
+        "x,y\n1,2\n3\n",
+        &["line 3 has 1 columns where the header has 2"],
+    );
+    refused(
+        &format!("{SF} --column x -"),
+        "x,time\n1,0\n2,later\n",
+        &["line 3, column time: `later`"],
+    );
 }
 
 #[test]
@@ -54,19 +78,51 @@ fn parameters() {
     let signal = table(&[0.0, 1.0, 0.5]);
     refused("encode --scheme sf -", &signal, &["sf needs --threshold"]);
     refused("encode --scheme sf --threshold 0 -", &signal, &["threshold 0 must be above 0"]);
-    refused("encode --scheme sf --threshold 0.001 --sample q8.8 -", &signal, &["threshold 0 must be above 0"]);
-    refused("encode --scheme sf --threshold 1 --factor 2 -", &signal, &["sf takes no --factor; it takes --threshold --start"]);
+    refused(
+        "encode --scheme sf --threshold 0.001 --sample q8.8 -",
+        &signal,
+        &["threshold 0 must be above 0"],
+    );
+    refused(
+        "encode --scheme sf --threshold 1 --factor 2 -",
+        &signal,
+        &["sf takes no --factor; it takes --threshold --start"],
+    );
     refused("encode --scheme sf --threshold x -", &signal, &["x"]);
-    refused("encode --scheme tbr --factor 1 -", &signal, &["standard input gives only once", "--threshold"]);
+    refused(
+        "encode --scheme tbr --factor 1 -",
+        &signal,
+        &["standard input gives only once", "--threshold"],
+    );
     refused("encode --scheme grf --neurons 20 -", &signal, &["--min and --max"]);
-    refused("encode --scheme grf --neurons 2 --min 0 --max 1 -", &signal, &["neurons 2 is not compiled in; there are 3-32"]);
+    refused(
+        "encode --scheme grf --neurons 2 --min 0 --max 1 -",
+        &signal,
+        &["neurons 2 is not compiled in; there are 3-32"],
+    );
     refused("encode --scheme grf --neurons 20 --min 1 --max 1 -", &signal, &["min and max"]);
-    refused("encode --scheme mw --threshold 1 --window 77 -", &signal, &["window 77 is not compiled in; there are 0-32"]);
-    refused("encode --scheme hsa --filter triang:33 --shift 0 -", &signal, &["filter length 33", "1-32, 48, 64"]);
+    refused(
+        "encode --scheme mw --threshold 1 --window 77 -",
+        &signal,
+        &["window 77 is not compiled in; there are 0-32"],
+    );
+    refused(
+        "encode --scheme hsa --filter triang:33 --shift 0 -",
+        &signal,
+        &["filter length 33", "1-32, 48, 64"],
+    );
     refused("encode --scheme hsa --filter box:3 --shift 0 -", &signal, &["box:3", "triang:N"]);
-    refused("encode --scheme bsa --filter triang:9 --form toolbox --criterion sub --threshold 1 --shift 0 -", &signal, &["mul only"]);
+    refused(
+        "encode --scheme bsa --filter triang:9 --form toolbox --criterion sub --threshold 1 --shift 0 -",
+        &signal,
+        &["mul only"],
+    );
     refused("encode --scheme position --centres 1,0,2 -", &signal, &["rise strictly"]);
-    refused("encode --scheme sf --threshold 1 --sample f16 -", &signal, &["no sample type `f16`", "q"]);
+    refused(
+        "encode --scheme sf --threshold 1 --sample f16 -",
+        &signal,
+        &["no sample type `f16`", "q"],
+    );
     refused("encode --scheme what -", &signal, &["what", "grf-slots"]);
     refused("bench --tests 1", "", &["--tests 1"]);
 }
@@ -81,7 +137,11 @@ fn filters_from_files() {
     assert!(encoded.contains("# taps=0.5,1,0.5\n"));
     assert_eq!(common::train(&encoded), [1, 0, 0, 0]);
     fs::write(file.path(), "0.5\n1 one\n").unwrap();
-    refused(&format!("encode --scheme hsa --filter {path} --shift 0 -"), &signal, &["line 2, number 2: `one`"]);
+    refused(
+        &format!("encode --scheme hsa --filter {path} --shift 0 -"),
+        &signal,
+        &["line 2, number 2: `one`"],
+    );
     fs::write(file.path(), "\n").unwrap();
     refused(&format!("encode --scheme hsa --filter {path} --shift 0 -"), &signal, &["empty"]);
 }
@@ -96,13 +156,29 @@ fn files_of_spikes() {
     refused("decode -", &with("# threshold=0.5\n", ""), &["lacks `# threshold=`"]);
     refused("decode -", &with("threshold=0.5", "threshold=half"), &["threshold=half"]);
     refused("decode -", &with("threshold=0.5", "threshold=-1"), &["threshold -1 must be above 0"]);
-    refused("decode -", &with("# scheme=sf", "# scheme=sf\n# scheme=mw"), &["contradicts itself: scheme=sf, then scheme=mw"]);
-    refused("decode -", &with("# scheme=sf", "# scheme=sf\n# window=5"), &["window=5, which sf does not take"]);
+    refused(
+        "decode -",
+        &with("# scheme=sf", "# scheme=sf\n# scheme=mw"),
+        &["contradicts itself: scheme=sf, then scheme=mw"],
+    );
+    refused(
+        "decode -",
+        &with("# scheme=sf", "# scheme=sf\n# window=5"),
+        &["window=5, which sf does not take"],
+    );
     refused("decode -", &with("1,0,1\n", "1,7,1\n"), &["address 7", "1 neurons"]);
     refused("decode -", &with("1,0,1\n", "1,0,2\n"), &["polarity `2`"]);
     refused("decode -", &with("1,0,1\n", "1,0\n"), &["`1,0` is not an event"]);
-    refused("decode -", &with("1,0,1\n2,0,1\n", "2,0,1\n1,0,1\n"), &["sample 1 comes after sample 2"]);
-    refused("decode -", &with("1,0,1\n", "1,0,1\n1,0,1\n").replace("events=2", "events=3"), &["sample 1", "no encoder emits"]);
+    refused(
+        "decode -",
+        &with("1,0,1\n2,0,1\n", "2,0,1\n1,0,1\n"),
+        &["sample 1 comes after sample 2"],
+    );
+    refused(
+        "decode -",
+        &with("1,0,1\n", "1,0,1\n1,0,1\n").replace("events=2", "events=3"),
+        &["sample 1", "no encoder emits"],
+    );
     refused("decode -", &with("# samples=3\n# events=2\n", ""), &["cut short"]);
     refused("decode -", &with("events=2", "events=3"), &["2 events where its end says 3"]);
     refused("decode -", &with("samples=3", "samples=2"), &["sample 2 where its end says 2"]);
@@ -125,6 +201,10 @@ fn nothing_half_written_stays() {
     assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 1);
     let decoded = directory.path().join("decoded.csv");
     let cut = &before[..before.len() - 30];
-    refused(&format!("decode - -o {}", decoded.display()), std::str::from_utf8(cut).unwrap(), &["standard input"]);
+    refused(
+        &format!("decode - -o {}", decoded.display()),
+        std::str::from_utf8(cut).unwrap(),
+        &["standard input"],
+    );
     assert!(!decoded.exists());
 }

@@ -12,7 +12,12 @@ fn every_scheme_and_sample_type_decodes_what_it_encodes() {
     let hexarotor = flight("hexarotor.csv");
     for scheme in SCHEMES {
         for sample in ["f32", "q16.16", "q8.8", "q4.12", "q8.24"] {
-            let encoded = good(&format!("encode --scheme {scheme} --paper --sample {sample} --column gyro_y {hexarotor}"), "");
+            let encoded = good(
+                &format!(
+                    "encode --scheme {scheme} --paper --sample {sample} --column gyro_y {hexarotor}"
+                ),
+                "",
+            );
             let decoded = values(&good("decode", &encoded.output).output);
             assert_eq!(decoded.len(), 3627, "{scheme} {sample}");
             assert!(decoded.iter().all(|value| value.is_finite()));
@@ -23,10 +28,15 @@ fn every_scheme_and_sample_type_decodes_what_it_encodes() {
 #[test]
 fn a_scheme_that_follows_stays_near() {
     let hexarotor = flight("hexarotor.csv");
-    let encoded = good(&format!("encode --scheme grf-slots --neurons 15 --slots 10 --column 5 {hexarotor}"), "").output;
+    let encoded = good(
+        &format!("encode --scheme grf-slots --neurons 15 --slots 10 --column 5 {hexarotor}"),
+        "",
+    )
+    .output;
     let decoded = values(&good("decode", &encoded).output);
     let signal = std::fs::read_to_string(&hexarotor).unwrap();
-    let signal = signal.lines().skip(1).map(|line| line.split(',').nth(4).unwrap().parse::<f64>().unwrap());
+    let signal =
+        signal.lines().skip(1).map(|line| line.split(',').nth(4).unwrap().parse::<f64>().unwrap());
     let squares: f64 = signal.zip(decoded).map(|(x, y)| (x - y) * (x - y)).sum();
     assert!((squares / 3627.0).sqrt() < 1.0);
 }
@@ -35,7 +45,11 @@ fn a_scheme_that_follows_stays_near() {
 fn a_flight_log_gives_the_same_spikes_as_its_table() {
     for (log, name) in flight_logs().iter().zip(["hexarotor.csv", "vtol_at_rest.csv"]) {
         let scheme = "encode --scheme sf --threshold 0.002";
-        let from_log = good(&format!("{scheme} --topic sensor_combined --field gyro_rad[0] {}", log.display()), "").output;
+        let from_log = good(
+            &format!("{scheme} --topic sensor_combined --field gyro_rad[0] {}", log.display()),
+            "",
+        )
+        .output;
         let from_table = good(&format!("{scheme} --column gyro_x {}", flight(name)), "").output;
         assert_eq!(common::events(&from_log), common::events(&from_table));
         assert!(common::events(&from_log).len() > 10);
@@ -44,13 +58,22 @@ fn a_flight_log_gives_the_same_spikes_as_its_table() {
 
 #[test]
 fn times_are_kept_and_gaps_are_told() {
-    let ran = good(&format!("encode --scheme sf --threshold 0.1 --column gyro_x {}", flight("hexarotor.csv")), "");
+    let ran = good(
+        &format!("encode --scheme sf --threshold 0.1 --column gyro_x {}", flight("hexarotor.csv")),
+        "",
+    );
     assert!(ran.told.contains("9 gaps above 7.557 ms"), "{}", ran.told);
     assert!(ran.told.contains("100.753 ms after sample 119"), "{}", ran.told);
     assert!(ran.output.contains("index,address,polarity,time_us\n"));
     assert!(ran.output.contains("\n833,0,-1,4297129\n"));
     assert_eq!(ran.output.matches("# gap=").count(), 9);
-    let wide = good(&format!("encode --scheme sf --threshold 0.1 --gap 3 --column gyro_x {}", flight("hexarotor.csv")), "");
+    let wide = good(
+        &format!(
+            "encode --scheme sf --threshold 0.1 --gap 3 --column gyro_x {}",
+            flight("hexarotor.csv")
+        ),
+        "",
+    );
     assert_eq!(wide.output.matches("# gap=").count(), 1);
 }
 
@@ -58,7 +81,8 @@ fn times_are_kept_and_gaps_are_told() {
 fn info_lists_topics_fields_rates_and_gaps() {
     let [hexarotor, _] = flight_logs();
     let told = good(&format!("info {}", hexarotor.display()), "").output;
-    let (_, sensors) = told.split_once("sensor_combined: 3627 samples, 18.403 s, 198.49 Hz\n").unwrap();
+    let (_, sensors) =
+        told.split_once("sensor_combined: 3627 samples, 18.403 s, 198.49 Hz\n").unwrap();
     assert!(sensors.starts_with("  9 gaps above 7.557 ms"), "{sensors}");
     assert!(sensors.contains("gyro_rad[0..3]"), "{sensors}");
 }
@@ -68,10 +92,17 @@ fn scores_are_those_of_a_signal_worked_by_hand() {
     // Decoded 0, 0, 1, 1: errors 0, 1, 1, 1 less; the variance of 0, 1, 2, 1 is 1/2.
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), table(&[0.0, 1.0, 2.0, 1.0])).unwrap();
-    let told = good(&format!("score --scheme sf --threshold 1 --rate 2 --json {}", file.path().display()), "").output;
+    let told = good(
+        &format!("score --scheme sf --threshold 1 --rate 2 --json {}", file.path().display()),
+        "",
+    )
+    .output;
     let figures: serde_json::Value = serde_json::from_str(&told).unwrap();
     let number = |name: &str| figures[0][name].as_f64().unwrap();
-    assert_eq!((number("spikes"), number("efficiency"), number("spikes_per_second")), (1.0, 75.0, 0.5));
+    assert_eq!(
+        (number("spikes"), number("efficiency"), number("spikes_per_second")),
+        (1.0, 75.0, 0.5)
+    );
     assert!((number("rmse") - 0.5_f64.sqrt()).abs() < 1e-12);
     assert!(number("snr").abs() < 1e-12);
     let all = good(&format!("score --column gyro_x {}", flight("hexarotor.csv")), "").output;
@@ -83,18 +114,41 @@ fn pictures_are_drawn_in_both_formats() {
     let directory = tempfile::tempdir().unwrap();
     let path = |name: &str| directory.path().join(name).display().to_string();
     let hexarotor = flight("hexarotor.csv");
-    good(&format!("plot --all --column gyro_x --range 2350..2700 -o {} {hexarotor}", path("all.svg")), "");
+    good(
+        &format!(
+            "plot --all --column gyro_x --range 2350..2700 -o {} {hexarotor}",
+            path("all.svg")
+        ),
+        "",
+    );
     let svg = std::fs::read_to_string(path("all.svg")).unwrap();
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>") && svg.contains("T-HSA"));
-    good(&format!("plot --scheme sf --threshold 0.1 --column gyro_x -o {} {hexarotor}", path("sf.png")), "");
+    good(
+        &format!(
+            "plot --scheme sf --threshold 0.1 --column gyro_x -o {} {hexarotor}",
+            path("sf.png")
+        ),
+        "",
+    );
     assert!(std::fs::read(path("sf.png")).unwrap().starts_with(b"\x89PNG"));
-    refused(&format!("plot --scheme sf --threshold 0.1 --column gyro_x -o {} {hexarotor}", path("sf.gif")), "", &[".svg or .png"]);
+    refused(
+        &format!(
+            "plot --scheme sf --threshold 0.1 --column gyro_x -o {} {hexarotor}",
+            path("sf.gif")
+        ),
+        "",
+        &[".svg or .png"],
+    );
     assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 2);
 }
 
 #[test]
 fn a_decoded_table_can_be_encoded_again() {
-    let encoded = good("encode --scheme sf --threshold 0.5 -", &table(&[0.0, 0.6, 1.2, 0.2])).output;
+    let encoded =
+        good("encode --scheme sf --threshold 0.5 -", &table(&[0.0, 0.6, 1.2, 0.2])).output;
     let decoded = good("decode -", &encoded).output;
-    assert_eq!(common::train(&good("encode --scheme sf --threshold 0.4 -", &decoded).output), [0, 1, 1, 0]);
+    assert_eq!(
+        common::train(&good("encode --scheme sf --threshold 0.4 -", &decoded).output),
+        [0, 1, 1, 0]
+    );
 }

@@ -29,7 +29,11 @@ fn contrast_takes_mean_and_deviation_of_the_differences() {
     // A ramp from 10 to 0 has a mean of -1 and no deviation.
     let ramp: Vec<f64> = (0..=10).map(|i| f64::from(10 - i)).collect();
     std::fs::write(file.path(), table(&ramp)).unwrap();
-    common::refused(&format!("encode --scheme tbr --factor 1 {path}"), "", &["threshold -1", "above 0", "--magnitudes"]);
+    common::refused(
+        &format!("encode --scheme tbr --factor 1 {path}"),
+        "",
+        &["threshold -1", "above 0", "--magnitudes"],
+    );
     let ran = good(&format!("encode --scheme tbr --factor 1 --magnitudes {path}"), "").output;
     assert!(ran.contains("# threshold=1\n"), "{ran}");
 }
@@ -48,7 +52,10 @@ fn moving_window_takes_the_mean_of_one_sample_more_than_the_window() {
     // The mean of the first two is 1; then it is that of the two before.
     let signal = [0.0, 2.0, 1.5, 2.25, 0.875, 1.0];
     assert_eq!(spikes("--scheme mw --threshold 0.5 --window 1", &signal), [-1, 1, 0, 0, -1, -1]);
-    assert_eq!(spikes("--scheme mw --threshold 0.5 --window 1 --start 0", &signal), [0, 1, 0, 0, -1, -1]);
+    assert_eq!(
+        spikes("--scheme mw --threshold 0.5 --window 1 --start 0", &signal),
+        [0, 1, 0, 0, -1, -1]
+    );
 }
 
 #[test]
@@ -61,7 +68,12 @@ fn hough_spikes_on_equality_and_never_where_the_filter_is_cut() {
 #[test]
 fn threshold_hough_spikes_on_equality_and_nothing_costs_past_the_end() {
     let signal = [0.5, 0.75, 0.5, 0.0, 0.5, 0.5, 0.5, 0.0, 0.0];
-    let at_most = |threshold: f64| spikes(&format!("--scheme t-hsa --filter triang:3 --shift 0 --threshold {threshold}"), &signal);
+    let at_most = |threshold: f64| {
+        spikes(
+            &format!("--scheme t-hsa --filter triang:3 --shift 0 --threshold {threshold}"),
+            &signal,
+        )
+    };
     assert_eq!(at_most(0.25), [1, 0, 0, 0, 0, 0, 0, 0, 0]);
     assert_eq!(at_most(0.5), [1, 0, 0, 0, 1, 0, 0, 0, 1]);
 }
@@ -73,7 +85,10 @@ fn ben_compares_errors_with_and_without_the_filter() {
     let aligned = "--scheme bsa --filter triang:3 --shift 0";
     assert_eq!(spikes(&format!("{aligned} --threshold 2"), &signal), [0, 0, 1, 0, 0, 0, 0, 0]);
     assert_eq!(spikes(&format!("{aligned} --threshold 2.001"), &signal), [0; 8]);
-    assert_eq!(spikes(&format!("{aligned} --criterion mul --threshold 0.0001"), &signal), [0, 0, 1, 0, 0, 0, 0, 0]);
+    assert_eq!(
+        spikes(&format!("{aligned} --criterion mul --threshold 0.0001"), &signal),
+        [0, 0, 1, 0, 0, 0, 0, 0]
+    );
     // The toolbox compares a sample later, and subtracts a sample later still.
     let toolbox = format!("{aligned} --form toolbox --threshold 0.0001");
     assert_eq!(spikes(&toolbox, &signal), [0, 1, 0, 0, 0, 0, 0, 0]);
@@ -81,17 +96,27 @@ fn ben_compares_errors_with_and_without_the_filter() {
 
 #[test]
 fn a_rate_code_decodes_to_its_filters_on_the_shift() {
-    let encoded = good("encode --scheme hsa --filter triang:3 --shift -1 -", &table(&[-0.5, 0.0, -0.5, -1.0])).output;
+    let encoded = good(
+        "encode --scheme hsa --filter triang:3 --shift -1 -",
+        &table(&[-0.5, 0.0, -0.5, -1.0]),
+    )
+    .output;
     assert_eq!(train(&encoded), [1, 0, 0, 0]);
     assert_eq!(values(&good("decode -", &encoded).output), [-0.5, 0.0, -0.5, -1.0]);
 }
 
 #[test]
 fn ben_on_a_sine_as_printed_with_the_schemes() {
-    let signal: Vec<f64> = (0..1000).map(|i| 0.5 + 0.4 * (std::f64::consts::TAU * 0.01 * f64::from(i)).sin()).collect();
-    for (threshold, spikes, error) in [(0.0, 713, 0.2425), (0.5, 598, 0.1222), (0.9, 505, 0.0183), (0.955, 493, 0.00707)] {
+    let signal: Vec<f64> = (0..1000)
+        .map(|i| 0.5 + 0.4 * (std::f64::consts::TAU * 0.01 * f64::from(i)).sin())
+        .collect();
+    for (threshold, spikes, error) in
+        [(0.0, 713, 0.2425), (0.5, 598, 0.1222), (0.9, 505, 0.0183), (0.955, 493, 0.00707)]
+    {
         let encoded = good(
-            &format!("encode --scheme bsa --filter hann:24,sum=1 --shift 0 --threshold {threshold} -"),
+            &format!(
+                "encode --scheme bsa --filter hann:24,sum=1 --shift 0 --threshold {threshold} -"
+            ),
             &table(&signal),
         )
         .output;
@@ -114,31 +139,56 @@ fn the_nearest_neuron_fires_ties_go_down_and_values_outside_to_the_ends() {
 #[test]
 fn receptive_fields_are_centred_half_a_step_outside() {
     // mu = -0.5, 0.5, 1.5, 2.5 for m = 4 over 0..2.
-    let encoded = good("encode --scheme grf --neurons 4 --min 0 --max 2 -", &table(&[0.0, 0.1, 1.0, 1.1, 9.0])).output;
+    let encoded = good(
+        "encode --scheme grf --neurons 4 --min 0 --max 2 -",
+        &table(&[0.0, 0.1, 1.0, 1.1, 9.0]),
+    )
+    .output;
     assert_eq!(values(&good("decode -", &encoded).output), [-0.5, 0.5, 0.5, 1.5, 2.5]);
 }
 
 #[test]
 fn slots_as_printed_with_the_schemes() {
     let signal = [0.1, 0.5, 0.9];
-    let encoded = good("encode --scheme grf-slots --neurons 4 --slots 100 --min 0 --max 1 -", &table(&signal)).output;
+    let encoded = good(
+        "encode --scheme grf-slots --neurons 4 --slots 100 --min 0 --max 1 -",
+        &table(&signal),
+    )
+    .output;
     let expected = [
-        (10, 1), (42, 0), (85, 2),
-        (125, 1), (125, 2), (192, 0), (192, 3),
-        (210, 2), (242, 3), (285, 1),
+        (10, 1),
+        (42, 0),
+        (85, 2),
+        (125, 1),
+        (125, 2),
+        (192, 0),
+        (192, 3),
+        (210, 2),
+        (242, 3),
+        (285, 1),
     ];
     assert_eq!(events(&encoded), expected.map(|(index, neuron)| (index, neuron, 1)));
     let decoded = values(&good("decode -", &encoded).output);
     assert!(signal.iter().zip(decoded).all(|(x, y)| (x - y).abs() < 0.05));
     // Levels below the floor are silent: slot 85 is level 15.
-    let floored = good("encode --scheme grf-slots --neurons 4 --slots 100 --floor 16 --min 0 --max 1 -", &table(&signal)).output;
+    let floored = good(
+        "encode --scheme grf-slots --neurons 4 --slots 100 --floor 16 --min 0 --max 1 -",
+        &table(&signal),
+    )
+    .output;
     assert_eq!(events(&floored).len(), 6);
 }
 
 #[test]
 fn probabilistic_spikes_come_from_their_seed() {
     let signal = vec![0.5; 200];
-    let run = |seed: u64| good(&format!("encode --scheme grf-prob --neurons 5 --min 0 --max 1 --seed {seed} -"), &table(&signal)).output;
+    let run = |seed: u64| {
+        good(
+            &format!("encode --scheme grf-prob --neurons 5 --min 0 --max 1 --seed {seed} -"),
+            &table(&signal),
+        )
+        .output
+    };
     let (first, again, other) = (run(1), run(1), run(2));
     assert_eq!(first, again);
     assert_ne!(events(&first), events(&other));
@@ -150,12 +200,21 @@ fn probabilistic_spikes_come_from_their_seed() {
 #[test]
 fn values_that_are_not_finite_emit_nothing_and_leave_the_state() {
     let with = "x\n0\nNaN\n0.6\ninf\ninf\n1.2\n0\n";
-    common::refused("encode --scheme sf --threshold 0.5 -", with, &["line 3", "NaN", "--skip-non-finite"]);
+    common::refused(
+        "encode --scheme sf --threshold 0.5 -",
+        with,
+        &["line 3", "NaN", "--skip-non-finite"],
+    );
     for scheme in ["sf --threshold 0.5", "tbr --threshold 0.5", "hsa --filter triang:3 --shift 0"] {
         let ran = good(&format!("encode --scheme {scheme} --skip-non-finite -"), with);
         assert!(ran.told.contains("3 samples were not finite"), "{}", ran.told);
-        assert!(ran.output.contains("# rejected=1,1\n") && ran.output.contains("# rejected=3,2\n"), "{}", ran.output);
-        let without = spikewire(&format!("encode --scheme {scheme} -"), "x\n0\n0.6\n1.2\n0\n").output;
+        assert!(
+            ran.output.contains("# rejected=1,1\n") && ran.output.contains("# rejected=3,2\n"),
+            "{}",
+            ran.output
+        );
+        let without =
+            spikewire(&format!("encode --scheme {scheme} -"), "x\n0\n0.6\n1.2\n0\n").output;
         let (with, without) = (train(&ran.output), train(&without));
         assert_eq!([with[0], with[2], with[5], with[6]], without[..]);
         let decoded = values(&good("decode -", &ran.output).output);

@@ -1,12 +1,12 @@
 //! The paper's benchmark: Tables I and II, cell by cell.
 
-pub mod paper;
+pub(crate) mod paper;
 mod recipe;
 mod report;
-pub mod signal;
+pub(crate) mod signal;
 mod statistics;
 
-pub use report::{json, print};
+pub(crate) use report::{json, print};
 
 use paper::CASES;
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ use signal::Waveform;
 use statistics::Statistics;
 
 /// One case of the benchmark: what came out of all its tests, by scheme.
-pub struct CaseResult {
+pub(crate) struct CaseResult {
     /// The signals' duration in seconds.
     pub seconds: usize,
     /// Spiking efficiency in percent, by column.
@@ -26,7 +26,12 @@ pub struct CaseResult {
 
 /// Runs the first cases with this many signals each. Every signal has its own generator, so that the
 /// outcome does not depend on the number of cores.
-pub fn run(cases: usize, tests: usize, seed: u64, tick: impl Fn(u64) + Sync) -> Vec<CaseResult> {
+pub(crate) fn run(
+    cases: usize,
+    tests: usize,
+    seed: u64,
+    tick: impl Fn(u64) + Sync,
+) -> Vec<CaseResult> {
     let cases = CASES.iter().take(cases).enumerate();
     cases.map(|(case, &seconds)| run_case(case, seconds, tests, seed, &tick)).collect()
 }

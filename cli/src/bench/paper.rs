@@ -1,16 +1,16 @@
 //! What the paper prints.
 
 /// The signals' durations in seconds.
-pub const CASES: [usize; 5] = [1, 5, 15, 50, 100];
+pub(crate) const CASES: [usize; 5] = [1, 5, 15, 50, 100];
 
 /// Signals a case.
-pub const TESTS: usize = 1000;
+pub(crate) const TESTS: usize = 1000;
 
 /// The schemes with figures, in the order of the tables' columns.
-pub const SCHEMES: [&str; 6] = ["TBR", "MW", "SF", "BSA", "HSA", "T-HSA"];
+pub(crate) const SCHEMES: [&str; 6] = ["TBR", "MW", "SF", "BSA", "HSA", "T-HSA"];
 
 /// One of the two tables.
-pub struct Table {
+pub(crate) struct Table {
     /// Its title.
     pub title: &'static str,
     /// Means by case and scheme.
@@ -23,13 +23,13 @@ pub struct Table {
 
 impl Table {
     /// How far a printed figure may be from what was rounded.
-    pub fn rounding(&self) -> f64 {
+    pub(crate) fn rounding(&self) -> f64 {
         0.5 * 10_f64.powi(-(self.decimals as i32))
     }
 }
 
 /// Table I, spiking efficiency in percent.
-pub const EFFICIENCY: Table = Table {
+pub(crate) const EFFICIENCY: Table = Table {
     title: "Table I, spiking efficiency in %",
     means: [
         [36.7, 29.2, 74.6, 45.8, 74.0, 62.4],
@@ -49,7 +49,7 @@ pub const EFFICIENCY: Table = Table {
 };
 
 /// Table II, root mean square error.
-pub const RMSE: Table = Table {
+pub(crate) const RMSE: Table = Table {
     title: "Table II, root mean square error",
     means: [
         [0.80, 0.68, 0.26, 0.84, 0.97, 0.68],
@@ -71,4 +71,4 @@ pub const RMSE: Table = Table {
 };
 
 /// The case and scheme of the deviation of [`RMSE`] that is a slip of the pen.
-pub const MISPRINT: (usize, usize) = (2, 5);
+pub(crate) const MISPRINT: (usize, usize) = (2, 5);

@@ -7,11 +7,11 @@ use spikewire::temporal::{MovingWindow, StepDecoder, StepForward, TemporalContra
 use spikewire::{Calibration, Code, ConfigError, Decoder, Encoder, Output, Scheme, Spike};
 
 /// The schemes of the tables, and GRF and GRF with slots, of which the paper gives no figures.
-pub const COLUMNS: usize = 8;
+pub(super) const COLUMNS: usize = 8;
 
 /// What a scheme made of a signal.
 #[derive(Clone, Copy, Debug)]
-pub struct Outcome {
+pub(super) struct Outcome {
     /// `(1 - spikes / samples) * 100`. Below 0 where there are more spikes than samples.
     pub efficiency: f64,
     /// Between the signal and what was decoded.
@@ -36,7 +36,7 @@ const BETA: f32 = 1.5;
 /// # Panics
 /// If the signal is shorter than a window or never moves, which those of the benchmark do.
 #[expect(clippy::expect_used, reason = "the signals are the benchmark's own")]
-pub fn run(signal: &[f32]) -> [Outcome; COLUMNS] {
+pub(super) fn run(signal: &[f32]) -> [Outcome; COLUMNS] {
     try_run(signal).expect("the benchmark's signals rise and fall")
 }
 

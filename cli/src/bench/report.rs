@@ -59,7 +59,7 @@ fn cells(table: &Table, cases: &[CaseResult]) -> Vec<Vec<Cell>> {
 }
 
 /// The tables, as Markdown, and how many cells agree.
-pub fn print(cases: &[CaseResult]) -> String {
+pub(crate) fn print(cases: &[CaseResult]) -> String {
     let mut text = String::new();
     let mut all = Vec::new();
     for table in [&EFFICIENCY, &RMSE] {
@@ -94,7 +94,11 @@ fn write_table(
 ) -> std::fmt::Result {
     let decimals = table.decimals;
     let ours_decimals = decimals + 1;
-    writeln!(text, "{}: ours / the paper's (difference beyond its rounding, in standard errors)\n", table.title)?;
+    writeln!(
+        text,
+        "{}: ours / the paper's (difference beyond its rounding, in standard errors)\n",
+        table.title
+    )?;
     write!(text, "| {:9} |", "")?;
     SCHEMES.iter().try_for_each(|scheme| write!(text, " {scheme:21} |"))?;
     writeln!(text, " {:12} | {:12} |", "GRF", "GRF, slots")?;
@@ -137,7 +141,7 @@ fn write_table(
 }
 
 /// The same for programs.
-pub fn json(cases: &[CaseResult], seed: u64) -> Value {
+pub(crate) fn json(cases: &[CaseResult], seed: u64) -> Value {
     let table = |table: &Table| -> Value {
         let cells = cells(table, cases);
         let rows = cases.iter().zip(cells).map(|(case, row)| {

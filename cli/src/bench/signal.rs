@@ -5,16 +5,16 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::f64::consts::PI;
 
 /// `2 sin(2πT) - 0.5 cos(0.5πT) + 0.75 sin(10πT)` at T = 0.01, 0.02, ...
-pub struct Waveform {
+pub(crate) struct Waveform {
     values: Vec<f64>,
 }
 
 /// Samples a second.
-pub const RATE: usize = 100;
+pub(crate) const RATE: usize = 100;
 
 impl Waveform {
     /// As many seconds of it.
-    pub fn new(seconds: usize) -> Self {
+    pub(crate) fn new(seconds: usize) -> Self {
         let at = |step: usize| {
             let t = step as f64 / RATE as f64;
             2.0 * (2.0 * PI * t).sin() - 0.5 * (0.5 * PI * t).cos() + 0.75 * (10.0 * PI * t).sin()
@@ -23,7 +23,7 @@ impl Waveform {
     }
 
     /// The same with `- 0.5 U(0,1)`, from a generator of its own for every number.
-    pub fn with_noise(&self, seed: u64, number: u64) -> Vec<f32> {
+    pub(crate) fn with_noise(&self, seed: u64, number: u64) -> Vec<f32> {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(number);
         self.values.iter().map(|value| (value - 0.5 * uniform(&mut generator)) as f32).collect()

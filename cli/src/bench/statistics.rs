@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// What is kept of a cell.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Statistics {
+pub(crate) struct Statistics {
     /// The mean.
     pub mean: f64,
     /// The standard deviation, with N-1.
@@ -15,7 +15,7 @@ pub struct Statistics {
 
 impl Statistics {
     /// Of these values.
-    pub fn new(values: impl ExactSizeIterator<Item = f64> + Clone) -> Self {
+    pub(crate) fn new(values: impl ExactSizeIterator<Item = f64> + Clone) -> Self {
         let count = values.len();
         let mean = values.clone().sum::<f64>() / count as f64;
         let squares: f64 = values.map(|value| (value - mean).powi(2)).sum();
@@ -23,7 +23,7 @@ impl Statistics {
     }
 
     /// The standard error of the difference to a mean over this many other tests, which vary alike.
-    pub fn error_against(&self, others: usize) -> f64 {
+    pub(crate) fn error_against(&self, others: usize) -> f64 {
         self.deviation * (1.0 / self.count as f64 + 1.0 / others as f64).sqrt()
     }
 }

@@ -5,7 +5,7 @@ use spikewire::temporal::TemporalContrast;
 use spikewire::{Calibration, ConfigError, Sample};
 
 /// A calibration in the recording's unit.
-pub struct Calibrated {
+pub(crate) struct Calibrated {
     calibration: Box<dyn Calibrate>,
     /// What a 1 is in the unit of the calibration.
     one: f64,
@@ -13,19 +13,19 @@ pub struct Calibrated {
 
 impl Calibrated {
     /// A calibration that has seen nothing.
-    pub fn new(sample: SampleType) -> Self {
+    pub(crate) fn new(sample: SampleType) -> Self {
         let calibration =
             for_sample_type!(sample, S => Box::new(Calibration::<S>::new()) as Box<dyn Calibrate>);
         Self { calibration, one: sample.one() }
     }
 
     /// Takes the next samples, all finite.
-    pub fn observe(&mut self, samples: &[f64]) {
+    pub(crate) fn observe(&mut self, samples: &[f64]) {
         samples.iter().for_each(|sample| self.calibration.observe(sample * self.one));
     }
 
     /// The smallest and the largest sample, if there was one.
-    pub fn range(&self) -> Option<(f64, f64)> {
+    pub(crate) fn range(&self) -> Option<(f64, f64)> {
         self.calibration.range().map(|(min, max)| (min / self.one, max / self.one))
     }
 
@@ -33,7 +33,7 @@ impl Calibrated {
     ///
     /// # Errors
     /// Too few samples, or a threshold that is not above 0.
-    pub fn threshold(&self, factor: f64, of_magnitudes: bool) -> Result<f64, ConfigError> {
+    pub(crate) fn threshold(&self, factor: f64, of_magnitudes: bool) -> Result<f64, ConfigError> {
         Ok(self.calibration.threshold(factor as f32, of_magnitudes)? / self.one)
     }
 }

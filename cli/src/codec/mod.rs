@@ -12,7 +12,7 @@ mod rate;
 mod shapes;
 mod temporal;
 
-pub use calibrate::Calibrated;
+pub(crate) use calibrate::Calibrated;
 
 use crate::sample_type::{SampleType, for_sample_type};
 use crate::settings::Settings;
@@ -21,7 +21,7 @@ use spikewire::Polarity;
 
 /// One neuron's spike for one sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Event {
+pub(crate) struct Event {
     /// The sample, counted from 0.
     pub sample: u64,
     /// The neuron, counted from 0.
@@ -62,7 +62,7 @@ trait Decode {
 }
 
 /// A matching encoder and decoder, in the recording's unit.
-pub struct Codec {
+pub(crate) struct Codec {
     encoder: Box<dyn Encode>,
     decoder: Box<dyn Decode>,
     latency: usize,
@@ -75,7 +75,7 @@ impl Codec {
     ///
     /// # Errors
     /// A parameter that makes no sense, or a shape that is not compiled in.
-    pub fn new(sample: SampleType, settings: &Settings) -> Result<Self> {
+    pub(crate) fn new(sample: SampleType, settings: &Settings) -> Result<Self> {
         let settings = settings.scaled(sample.one());
         let mut codec = for_sample_type!(sample, S => build::<S>(&settings))?;
         codec.encoder.prime(&settings.first_window());
@@ -86,12 +86,12 @@ impl Codec {
     }
 
     /// How many samples after its own the code of a sample comes out.
-    pub fn latency(&self) -> usize {
+    pub(crate) fn latency(&self) -> usize {
         self.latency
     }
 
     /// Takes the next samples, all finite, and adds the events that they bring about.
-    pub fn encode(&mut self, samples: &[f64], events: &mut Vec<Event>) {
+    pub(crate) fn encode(&mut self, samples: &[f64], events: &mut Vec<Event>) {
         if self.one == 1.0 {
             self.encoder.encode(samples, events);
         } else {
@@ -101,7 +101,7 @@ impl Codec {
     }
 
     /// Adds the events of the samples that still wait for their look-ahead.
-    pub fn finish(&mut self, events: &mut Vec<Event>) {
+    pub(crate) fn finish(&mut self, events: &mut Vec<Event>) {
         self.encoder.finish(events);
     }
 
@@ -109,7 +109,7 @@ impl Codec {
     ///
     /// # Errors
     /// The first event of a sample whose events no encoder emits together.
-    pub fn decode(
+    pub(crate) fn decode(
         &mut self,
         samples: usize,
         events: &[Event],

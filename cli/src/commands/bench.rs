@@ -9,7 +9,7 @@ use std::time::Instant;
 
 /// Reproduce Tables I and II of the paper, cell by cell.
 #[derive(Args, Debug)]
-pub struct Bench {
+pub(crate) struct Bench {
     /// Signals a case
     #[arg(long, default_value_t = paper::TESTS)]
     tests: usize,
@@ -28,7 +28,7 @@ pub struct Bench {
 ///
 /// # Errors
 /// The options make no sense.
-pub fn run(options: &Bench) -> Result<()> {
+pub(crate) fn run(options: &Bench) -> Result<()> {
     let &Bench { tests, cases, seed, json } = options;
     if tests < 2 {
         bail!("--tests {tests}: a standard deviation takes 2 at least");

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 /// Decode a file of spikes.
 #[derive(Args, Debug)]
-pub struct Decode {
+pub(crate) struct Decode {
     /// File of spikes; `-` is standard input
     #[arg(default_value = "-")]
     spikes: PathBuf,
@@ -25,7 +25,7 @@ pub struct Decode {
 ///
 /// # Errors
 /// The file of spikes or the output are not good.
-pub fn run(options: &Decode) -> Result<()> {
+pub(crate) fn run(options: &Decode) -> Result<()> {
     const BUFFER: usize = 1 << 18;
     let output = |path| Output::open(path);
     if options.spikes == Path::new("-") {

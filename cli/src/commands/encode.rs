@@ -14,7 +14,7 @@ use std::path::PathBuf;
 
 /// Encode one channel of a recording.
 #[derive(Args, Debug)]
-pub struct Encode {
+pub(crate) struct Encode {
     /// The scheme
     #[arg(long)]
     scheme: SchemeName,
@@ -34,7 +34,7 @@ pub struct Encode {
 ///
 /// # Errors
 /// The recording, the parameters or the output are not good.
-pub fn run(options: &Encode) -> Result<()> {
+pub(crate) fn run(options: &Encode) -> Result<()> {
     let Encode { scheme, sample, input, parameters, output } = options;
     parameters.check(*scheme)?;
     let calibrated = match missing(*scheme, parameters) {
@@ -85,7 +85,7 @@ pub fn run(options: &Encode) -> Result<()> {
 ///
 /// # Errors
 /// It cannot be read.
-pub fn calibrate(input: &InputOptions, sample: SampleType) -> Result<Calibrated> {
+pub(crate) fn calibrate(input: &InputOptions, sample: SampleType) -> Result<Calibrated> {
     let mut calibrated = Calibrated::new(sample);
     let (mut source, mut chunk) = (input.open()?, Chunk::default());
     loop {

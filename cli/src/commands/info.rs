@@ -8,8 +8,8 @@ use std::path::PathBuf;
 
 /// List a flight log's topics with their fields, rates and gaps.
 #[derive(Args, Debug)]
-pub struct Info {
-    /// PX4 flight log (ULog)
+pub(crate) struct Info {
+    /// PX4 flight log (`ULog`)
     log: PathBuf,
     /// Report steps in time above this many usual steps
     #[arg(long, default_value_t = 1.5)]
@@ -23,7 +23,7 @@ pub struct Info {
 ///
 /// # Errors
 /// The log cannot be read.
-pub fn run(options: &Info) -> Result<()> {
+pub(crate) fn run(options: &Info) -> Result<()> {
     if !is_flight_log(&options.log)? {
         bail!("{}: not a flight log; ULog files start with `ULog`", options.log.display());
     }
@@ -33,9 +33,15 @@ pub fn run(options: &Info) -> Result<()> {
         let (count, times) = (topic.times.len(), &topic.times);
         let mut clock = Clock::new(times, None, options.gap);
         clock.observe(times);
-        let seconds = times.last().zip(times.first()).map_or(0.0, |(last, first)| (last - first) as f64 * 1e-6);
+        let seconds = times
+            .last()
+            .zip(times.first())
+            .map_or(0.0, |(last, first)| (last - first) as f64 * 1e-6);
         match clock.rate() {
-            Some(rate) => writeln!(output, "{name}: {count} samples, {seconds:.3} s, {rate:.2} Hz\n  {clock}")?,
+            Some(rate) => writeln!(
+                output,
+                "{name}: {count} samples, {seconds:.3} s, {rate:.2} Hz\n  {clock}"
+            )?,
             None => writeln!(output, "{name}: {count} samples")?,
         }
         writeln!(output, "  {}", fields(&topic.fields))?;

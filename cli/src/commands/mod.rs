@@ -1,9 +1,9 @@
 //! One file a command.
 
-pub mod bench;
-pub mod decode;
-pub mod encode;
-pub mod info;
-pub mod plot;
-pub mod score;
-pub mod signal;
+pub(crate) mod bench;
+pub(crate) mod decode;
+pub(crate) mod encode;
+pub(crate) mod info;
+pub(crate) mod plot;
+pub(crate) mod score;
+pub(crate) mod signal;

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 
 /// Draw signal and reconstruction over spikes, as the paper's first figure.
 #[derive(Args, Debug)]
-pub struct Plot {
+pub(crate) struct Plot {
     /// The scheme
     #[arg(long, required_unless_present = "all")]
     scheme: Option<SchemeName>,
@@ -40,14 +40,15 @@ pub struct Plot {
 ///
 /// # Errors
 /// The recording, the parameters or the output are not good.
-pub fn run(options: &Plot) -> Result<()> {
+pub(crate) fn run(options: &Plot) -> Result<()> {
     let Plot { scheme, sample, input, parameters, range, output, .. } = options;
     let (schemes, parameters) = chosen(*scheme, parameters)?;
     let recording = Recording::read(input)?;
     let shown = shown(range.as_deref(), recording.values.len())?;
     // Of the population codes the paper draws GRF.
     let is_drawn = |scheme: &SchemeName| {
-        !options.all || !matches!(scheme, SchemeName::Position | SchemeName::GrfSlots | SchemeName::GrfProb)
+        !options.all
+            || !matches!(scheme, SchemeName::Position | SchemeName::GrfSlots | SchemeName::GrfProb)
     };
     let trials = schemes
         .into_iter()
@@ -64,7 +65,8 @@ fn shown(range: Option<&str>, samples: usize) -> Result<Range<usize>> {
     let Some(text) = range else {
         return Ok(0..samples);
     };
-    let (start, end) = text.split_once("..").with_context(|| format!("--range {text}: give it as START..END"))?;
+    let (start, end) =
+        text.split_once("..").with_context(|| format!("--range {text}: give it as START..END"))?;
     match (start.parse(), end.parse()) {
         (Ok(start), Ok(end)) if start + 1 < end && end <= samples => Ok(start..end),
         _ => bail!("--range {text}: two samples at least, within 0..{samples}"),

@@ -12,7 +12,7 @@ use std::io::{self, Write, stdout};
 
 /// Score one scheme, or all with the paper's settings, on a recording.
 #[derive(Args, Debug)]
-pub struct Score {
+pub(crate) struct Score {
     /// The scheme; all unless given
     #[arg(long)]
     scheme: Option<SchemeName>,
@@ -47,13 +47,15 @@ struct Figures {
 ///
 /// # Errors
 /// The recording or the parameters are not good.
-pub fn run(options: &Score) -> Result<()> {
+pub(crate) fn run(options: &Score) -> Result<()> {
     let Score { scheme, sample, input, parameters, json } = options;
     let (schemes, parameters) = chosen(*scheme, parameters)?;
     let recording = Recording::read(input)?;
     let figures = schemes
         .into_iter()
-        .map(|scheme| Ok(figures(&recording, &Trial::new(scheme, &parameters, *sample, &recording)?)))
+        .map(|scheme| {
+            Ok(figures(&recording, &Trial::new(scheme, &parameters, *sample, &recording)?))
+        })
         .collect::<Result<Vec<_>>>()?;
     if recording.rejected > 0 {
         eprintln!("{} samples were not finite and emitted nothing", recording.rejected);
@@ -73,14 +75,16 @@ pub fn run(options: &Score) -> Result<()> {
 ///
 /// # Errors
 /// Parameters without a scheme to take them.
-pub fn chosen(
+pub(crate) fn chosen(
     scheme: Option<SchemeName>,
     parameters: &SchemeOptions,
 ) -> Result<(Vec<SchemeName>, SchemeOptions)> {
     match scheme {
         Some(scheme) => Ok((vec![scheme], parameters.clone())),
         None if !parameters.is_empty() => {
-            bail!("all schemes run with the paper's settings; --scheme says which takes the parameters given")
+            bail!(
+                "all schemes run with the paper's settings; --scheme says which takes the parameters given"
+            )
         }
         None => Ok((SchemeName::ALL.to_vec(), SchemeOptions { paper: true, ..parameters.clone() })),
     }
@@ -111,7 +115,10 @@ fn print_table(figures: &[Figures]) -> io::Result<()> {
     writeln!(output, "|-----------|--------:|-------------:|-----------:|--------:|---------:|")?;
     for Figures { scheme, spikes, efficiency, rmse, snr, spikes_per_second, .. } in figures {
         let rate = spikes_per_second.map_or("-".to_owned(), |rate| format!("{rate:.1}"));
-        writeln!(output, "| {scheme:9} | {spikes:7} | {efficiency:12.2} | {rmse:10.5} | {snr:7.2} | {rate:>8} |")?;
+        writeln!(
+            output,
+            "| {scheme:9} | {spikes:7} | {efficiency:12.2} | {rmse:10.5} | {snr:7.2} | {rate:>8} |"
+        )?;
     }
     Ok(())
 }

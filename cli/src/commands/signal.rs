@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 /// Write a signal of the paper's benchmark as a CSV table.
 #[derive(Args, Debug)]
-pub struct Signal {
+pub(crate) struct Signal {
     /// Its duration
     #[arg(long, default_value_t = 1)]
     seconds: usize,
@@ -25,7 +25,7 @@ pub struct Signal {
 ///
 /// # Errors
 /// The output cannot be written.
-pub fn run(options: &Signal) -> Result<()> {
+pub(crate) fn run(options: &Signal) -> Result<()> {
     let mut output = Output::open(options.output.as_deref())?;
     writeln!(output, "time_us,signal")?;
     for (step, value) in (1..).zip(Waveform::new(options.seconds).with_noise(options.seed, 0)) {

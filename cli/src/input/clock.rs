@@ -4,7 +4,7 @@ use std::fmt;
 
 /// A step in time that is too long, or does not go forward.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Gap {
+pub(crate) struct Gap {
     /// The sample before it.
     pub after: u64,
     /// How long it is, in µs.
@@ -13,7 +13,7 @@ pub struct Gap {
 
 /// Watches the times of a recording.
 #[derive(Debug)]
-pub struct Clock {
+pub(crate) struct Clock {
     usual_step: f64,
     longest_step: f64,
     previous: Option<i64>,
@@ -25,7 +25,7 @@ pub struct Clock {
 
 impl Clock {
     /// A clock that takes the usual step from the first times, or else from a given rate.
-    pub fn new(first_times: &[i64], rate: Option<f64>, steps: f64) -> Self {
+    pub(crate) fn new(first_times: &[i64], rate: Option<f64>, steps: f64) -> Self {
         let usual_step = median_step(first_times).or_else(|| Some(1e6 / rate?)).unwrap_or(f64::NAN);
         Self {
             usual_step,
@@ -39,12 +39,12 @@ impl Clock {
     }
 
     /// Samples a second, if anything is known of it.
-    pub fn rate(&self) -> Option<f64> {
+    pub(crate) fn rate(&self) -> Option<f64> {
         (self.usual_step > 0.0).then(|| 1e6 / self.usual_step)
     }
 
     /// Takes the next times and gives the gaps among them.
-    pub fn observe(&mut self, times: &[i64]) -> Vec<Gap> {
+    pub(crate) fn observe(&mut self, times: &[i64]) -> Vec<Gap> {
         const TOLD: usize = 5;
         let mut gaps = Vec::new();
         for &time in times {

@@ -5,9 +5,9 @@ mod csv;
 mod names;
 mod ulog;
 
-pub use clock::{Clock, Gap};
-pub use names::near;
-pub use ulog::Log;
+pub(crate) use clock::{Clock, Gap};
+pub(crate) use names::near;
+pub(crate) use ulog::Log;
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -16,12 +16,12 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 /// How many samples a chunk holds.
-pub const CHUNK: usize = 8192;
+pub(crate) const CHUNK: usize = 8192;
 
 /// Where samples come from.
 #[derive(Args, Clone, Debug)]
-pub struct InputOptions {
-    /// CSV table with a header, or PX4 flight log (ULog); `-` is a CSV table on standard input
+pub(crate) struct InputOptions {
+    /// CSV table with a header, or PX4 flight log (`ULog`); `-` is a CSV table on standard input
     pub input: PathBuf,
     /// Column of a CSV table, by name or by number from 1
     #[arg(long, help_heading = "Input")]
@@ -52,7 +52,7 @@ pub struct InputOptions {
 
 /// Samples in order, with their times where there are any.
 #[derive(Debug, Default)]
-pub struct Chunk {
+pub(crate) struct Chunk {
     /// The samples, perhaps not finite.
     pub values: Vec<f64>,
     /// Their times in µs: as many, or none at all.
@@ -60,7 +60,7 @@ pub struct Chunk {
 }
 
 /// One channel of a recording.
-pub trait Source {
+pub(crate) trait Source {
     /// Replaces the chunk by the next samples; none are left if it stays empty.
     ///
     /// # Errors
@@ -76,7 +76,7 @@ impl InputOptions {
     ///
     /// # Errors
     /// There is no such file, column, topic or field, or nothing in it.
-    pub fn open(&self) -> Result<Box<dyn Source>> {
+    pub(crate) fn open(&self) -> Result<Box<dyn Source>> {
         if let Some(rate) =
             self.rate.filter(|&rate| rate.is_nan() || rate <= 0.0 || rate.is_infinite())
         {
@@ -97,7 +97,7 @@ impl InputOptions {
     }
 
     /// Whether it can be read only once.
-    pub fn is_stdin(&self) -> bool {
+    pub(crate) fn is_stdin(&self) -> bool {
         self.input == Path::new("-")
     }
 
@@ -105,7 +105,7 @@ impl InputOptions {
     ///
     /// # Errors
     /// As [`open`](Self::open), or what cannot be read.
-    pub fn read_all(&self) -> Result<Chunk> {
+    pub(crate) fn read_all(&self) -> Result<Chunk> {
         let mut source = self.open()?;
         let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
         loop {
@@ -127,7 +127,7 @@ impl InputOptions {
 }
 
 /// Whether a file starts as flight logs do, whatever its name.
-pub fn is_flight_log(path: &Path) -> Result<bool> {
+pub(crate) fn is_flight_log(path: &Path) -> Result<bool> {
     let mut start = Vec::new();
     let file = File::open(path).with_context(|| format!("{}: cannot be opened", path.display()))?;
     file.take(4).read_to_end(&mut start).with_context(|| format!("{}", path.display()))?;

@@ -1,7 +1,7 @@
 //! What a misspelt name may have meant.
 
 /// Names that resemble the one asked for, or all if they are few: ` (did you mean ..?)`.
-pub fn near<'a>(asked: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+pub(crate) fn near<'a>(asked: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     const FEW: usize = 8;
     const MOST: usize = 3;
     let lower = asked.to_lowercase();

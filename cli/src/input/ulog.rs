@@ -10,14 +10,14 @@ use yule_log::model::inst::{FieldValue, Format};
 use yule_log::model::msg::UlogMessage;
 
 /// The bytes of a flight log, whole messages only.
-pub struct Log {
+pub(crate) struct Log {
     bytes: Vec<u8>,
     file: String,
 }
 
 /// What a log holds of one instance of a topic.
 #[derive(Debug, Default)]
-pub struct Topic {
+pub(crate) struct Topic {
     /// Its fields of numbers.
     pub fields: Vec<String>,
     /// When it was logged, in µs.
@@ -29,7 +29,7 @@ impl Log {
     ///
     /// # Errors
     /// It is not a flight log, or cut short and that was not accepted.
-    pub fn read(path: &Path, accept_cut: bool) -> Result<Self> {
+    pub(crate) fn read(path: &Path, accept_cut: bool) -> Result<Self> {
         let file = path.display().to_string();
         let mut bytes = fs::read(path).with_context(|| format!("{file}: cannot be read"))?;
         if bytes.is_empty() {
@@ -56,7 +56,7 @@ impl Log {
     ///
     /// # Errors
     /// A message that cannot be read.
-    pub fn topics(&self) -> Result<BTreeMap<String, Topic>> {
+    pub(crate) fn topics(&self) -> Result<BTreeMap<String, Topic>> {
         let mut topics: BTreeMap<String, Topic> = BTreeMap::new();
         self.for_each(None, |name, time, data| {
             let topic = topics.entry(name).or_insert_with(|| Topic {

@@ -38,7 +38,11 @@ pub(super) fn fill<B: DrawingBackend>(area: &DrawingArea<B, Shift>, picture: &Pi
 }
 
 /// The title of a panel, behind its letter.
-pub(super) fn title<B: DrawingBackend>(area: &DrawingArea<B, Shift>, letter: Option<char>, text: &str) -> Drawn<B> {
+pub(super) fn title<B: DrawingBackend>(
+    area: &DrawingArea<B, Shift>,
+    letter: Option<char>,
+    text: &str,
+) -> Drawn<B> {
     let bold = (FONT, 19).into_font().style(FontStyle::Bold).color(&INK);
     let plain = (FONT, 16).into_font().color(&INK);
     let mut left = 14;

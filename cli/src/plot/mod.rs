@@ -1,8 +1,8 @@
 //! Pictures of trials, as SVG or PNG.
 
 mod layout;
-mod panel;
 mod palette;
+mod panel;
 
 use crate::trial::{Recording, Trial};
 use anyhow::{Result, anyhow, bail};
@@ -16,7 +16,7 @@ use std::path::Path;
 use crate::output::Output;
 
 /// What is drawn.
-pub struct Picture<'a> {
+pub(crate) struct Picture<'a> {
     /// The signal.
     pub recording: &'a Recording,
     /// One panel each.
@@ -32,9 +32,10 @@ const FONT: &str = "Ubuntu";
 ///
 /// # Errors
 /// The ending is neither `.svg` nor `.png`, or the file cannot be written.
-pub fn draw(path: &Path, picture: &Picture) -> Result<()> {
+pub(crate) fn draw(path: &Path, picture: &Picture) -> Result<()> {
     for style in [FontStyle::Normal, FontStyle::Bold] {
-        register_font(FONT, style, epaint_default_fonts::UBUNTU_LIGHT).map_err(|_| anyhow!("the font does not load"))?;
+        register_font(FONT, style, epaint_default_fonts::UBUNTU_LIGHT)
+            .map_err(|_| anyhow!("the font does not load"))?;
     }
     let size = layout::size(picture);
     let bytes = match path.extension().and_then(|extension| extension.to_str()) {
@@ -58,7 +59,10 @@ fn png(size: (u32, u32), picture: &Picture) -> Result<Vec<u8>> {
     Ok(fs::read(file.path())?)
 }
 
-fn fill<B: DrawingBackend>(area: &DrawingArea<B, plotters::coord::Shift>, picture: &Picture) -> Result<()> {
+fn fill<B: DrawingBackend>(
+    area: &DrawingArea<B, plotters::coord::Shift>,
+    picture: &Picture,
+) -> Result<()> {
     let drawn = layout::fill(area, picture).and_then(|()| area.present());
     drawn.map_err(|error| anyhow!("the picture cannot be drawn: {error}"))
 }

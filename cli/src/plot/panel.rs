@@ -21,12 +21,15 @@ pub(super) fn trial<B: DrawingBackend>(
     trial: &Trial,
     letter: Option<char>,
 ) -> Drawn<B> {
-    let spikes_shown = trial.events.iter().filter(|event| picture.shown.contains(&(event.sample as usize)));
+    let spikes_shown =
+        trial.events.iter().filter(|event| picture.shown.contains(&(event.sample as usize)));
     let count = spikes_shown.clone().count();
     let shown = picture.shown.len();
     title(area, letter, &format!("{}   {count} spikes on {shown} samples", trial.scheme.title()))?;
     let (_, height) = area.dim_in_pixel();
-    let (upper, lower) = area.margin(TITLE, 0, 4, 16).split_vertically(((height - TITLE) as f64 * (1.0 - SPIKES)) as u32);
+    let (upper, lower) = area
+        .margin(TITLE, 0, 4, 16)
+        .split_vertically((f64::from(height - TITLE) * (1.0 - SPIKES)) as u32);
 
     let at = times(picture);
     let x_range = at(picture.shown.start)..at(picture.shown.end - 1);
@@ -98,12 +101,21 @@ fn spikes<'a, B: DrawingBackend>(
         .y_labels(if is_population { 4 } else { 3 })
         .axis_style(GRID)
         .x_label_formatter(&|value| format!("{}{unit}", short(*value)))
-        .y_label_formatter(&|value| if is_population { format!("{value:.0}") } else { format!("{value:+.0}").replace("+0", "0") })
+        .y_label_formatter(&|value| {
+            if is_population {
+                format!("{value:.0}")
+            } else {
+                format!("{value:+.0}").replace("+0", "0")
+            }
+        })
         .label_style((FONT, 13).into_font().color(&INK))
         .draw()?;
     let slots = trial.settings.slots() as f64;
     chart.draw_series(events.map(|event| {
-        let x = at(event.sample as usize) + f64::from(event.slot) / slots * (at(1) - at(0)).max(0.0) * f64::from(u8::from(slots > 1.0));
+        let x = at(event.sample as usize)
+            + f64::from(event.slot) / slots
+                * (at(1) - at(0)).max(0.0)
+                * f64::from(u8::from(slots > 1.0));
         let (low, high) = match (is_population, event.polarity) {
             (true, _) => (f64::from(event.neuron) - 0.42, f64::from(event.neuron) + 0.42),
             (false, Polarity::Up) => (0.0, 1.0),
@@ -127,7 +139,8 @@ fn times<'a>(picture: &'a Picture) -> impl Fn(usize) -> f64 + 'a {
 
 /// The range of the values, with some air.
 fn bounds<'a>(values: impl Iterator<Item = &'a f64>) -> (f64, f64) {
-    let (min, max) = values.fold((f64::MAX, f64::MIN), |(min, max), &value| (min.min(value), max.max(value)));
+    let (min, max) =
+        values.fold((f64::MAX, f64::MIN), |(min, max), &value| (min.min(value), max.max(value)));
     let air = if max > min { 0.06 * (max - min) } else { 1.0 };
     (min - air, max + air)
 }
@@ -137,9 +150,14 @@ fn short(value: f64) -> String {
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
-pub(super) fn efficiencies<B: DrawingBackend>(area: &DrawingArea<B, Shift>, trials: &[Trial], letter: char) -> Drawn<B> {
+pub(super) fn efficiencies<B: DrawingBackend>(
+    area: &DrawingArea<B, Shift>,
+    trials: &[Trial],
+    letter: char,
+) -> Drawn<B> {
     title(area, Some(letter), "Spiking efficiency, % of samples without a spike")?;
-    let mut ranked: Vec<(SchemeName, f64)> = trials.iter().map(|trial| (trial.scheme, trial.efficiency())).collect();
+    let mut ranked: Vec<(SchemeName, f64)> =
+        trials.iter().map(|trial| (trial.scheme, trial.efficiency())).collect();
     ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
     let area = area.margin(TITLE, 12, 16, 40);
     let rows = ranked.len() as f64;
@@ -160,11 +178,15 @@ pub(super) fn efficiencies<B: DrawingBackend>(area: &DrawingArea<B, Shift>, tria
         .draw()?;
     for (row, (scheme, efficiency)) in ranked.iter().enumerate() {
         let (low, high) = (row as f64 + 0.18, row as f64 + 0.82);
-        let bar = Rectangle::new([(0.0, low), (efficiency.max(0.0), high)], palette::of(*scheme).filled());
+        let bar = Rectangle::new(
+            [(0.0, low), (efficiency.max(0.0), high)],
+            palette::of(*scheme).filled(),
+        );
         chart.draw_series([bar])?;
         let middle = row as f64 + 0.5;
         let label = |text: String, x: f64, offset: (i32, i32)| {
-            EmptyElement::at((x, middle)) + Text::new(text, offset, (FONT, 14).into_font().color(&INK))
+            EmptyElement::at((x, middle))
+                + Text::new(text, offset, (FONT, 14).into_font().color(&INK))
         };
         chart.draw_series([
             label(scheme.title().to_owned(), 0.0, (-54, -8)),

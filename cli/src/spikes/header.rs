@@ -12,7 +12,7 @@ use std::str::FromStr;
 
 /// What a file of spikes says before the first.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Header {
+pub(crate) struct Header {
     /// The scheme.
     pub scheme: SchemeName,
     /// The sample type.
@@ -33,7 +33,7 @@ const NOTES: [&str; 6] = ["column", "topic", "field", "factor", "filter", "laten
 
 impl Header {
     /// The keys and values, in order.
-    pub fn lines(&self) -> Vec<(&'static str, String)> {
+    pub(crate) fn lines(&self) -> Vec<(&'static str, String)> {
         let mut lines = vec![
             ("spikewire", VERSION.to_owned()),
             ("scheme", self.scheme.name()),
@@ -49,7 +49,7 @@ impl Header {
     ///
     /// # Errors
     /// One is missing, occurs twice, is not a number or does not belong to the scheme.
-    pub fn parse(lines: Vec<(String, String)>) -> Result<Self> {
+    pub(crate) fn parse(lines: Vec<(String, String)>) -> Result<Self> {
         let mut keys = Keys::new(lines)?;
         let version = keys.take("spikewire")?;
         if version != VERSION {

@@ -8,6 +8,6 @@ mod header;
 mod reader;
 mod writer;
 
-pub use header::Header;
-pub use reader::{Item, Reader};
-pub use writer::{Summary, Writer};
+pub(crate) use header::Header;
+pub(crate) use reader::{Item, Reader};
+pub(crate) use writer::{Summary, Writer};

@@ -8,7 +8,7 @@ use std::io::BufRead;
 
 /// What follows the header.
 #[derive(Debug, PartialEq)]
-pub enum Item {
+pub(crate) enum Item {
     /// A spike; samples are counted as the file does.
     Event(Event),
     /// Values that were not finite.
@@ -26,7 +26,7 @@ pub enum Item {
 }
 
 /// A file of spikes behind its header.
-pub struct Reader<R> {
+pub(crate) struct Reader<R> {
     input: R,
     file: String,
     line: Vec<u8>,
@@ -46,7 +46,7 @@ impl<R: BufRead> Reader<R> {
     ///
     /// # Errors
     /// It is not complete, or contradicts itself.
-    pub fn open(input: R, file: &str) -> Result<(Self, Header)> {
+    pub(crate) fn open(input: R, file: &str) -> Result<(Self, Header)> {
         let mut reader = Self {
             input,
             file: file.to_owned(),
@@ -104,7 +104,7 @@ impl<R: BufRead> Reader<R> {
     ///
     /// # Errors
     /// A line makes no sense, or the end is missing.
-    pub fn next(&mut self) -> Result<Item> {
+    pub(crate) fn next(&mut self) -> Result<Item> {
         while self.next_line()? {
             if self.line.first() != Some(&b'#') {
                 return Ok(Item::Event(self.event()?));
@@ -147,7 +147,7 @@ impl<R: BufRead> Reader<R> {
     }
 
     /// The line of the last item, for an error.
-    pub fn place(&self) -> String {
+    pub(crate) fn place(&self) -> String {
         format!("{}: line {}", self.file, self.number)
     }
 

@@ -12,7 +12,7 @@ use std::io::Write;
 ///
 /// Encoders see finite samples only and count those; the file counts all. Where an encoder looks ahead
 /// its events come late, and what there is to note of later samples waits for them.
-pub struct Writer<W> {
+pub(crate) struct Writer<W> {
     output: W,
     slots: u64,
     is_timed: bool,
@@ -30,7 +30,7 @@ pub struct Writer<W> {
 
 /// What went through.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Summary {
+pub(crate) struct Summary {
     /// All samples.
     pub samples: u64,
     /// Those that were not finite.
@@ -44,7 +44,7 @@ impl<W: Write> Writer<W> {
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn new(mut output: W, header: &Header, is_timed: bool) -> Result<Self> {
+    pub(crate) fn new(mut output: W, header: &Header, is_timed: bool) -> Result<Self> {
         for (key, value) in header.lines() {
             writeln!(output, "# {key}={value}")?;
         }
@@ -63,7 +63,7 @@ impl<W: Write> Writer<W> {
     }
 
     /// Takes note of the next samples and keeps the finite ones, for the encoder.
-    pub fn observe(&mut self, values: &mut Vec<f64>, times: &[i64], gaps: &[Gap]) {
+    pub(crate) fn observe(&mut self, values: &mut Vec<f64>, times: &[i64], gaps: &[Gap]) {
         for gap in gaps {
             self.notes.push_back((gap.after, format!("# gap={},{}", gap.after, gap.microseconds)));
         }
@@ -96,7 +96,7 @@ impl<W: Write> Writer<W> {
     ///
     /// # Errors
     /// They cannot be written.
-    pub fn write(&mut self, events: &mut Vec<Event>, decided: u64) -> Result<()> {
+    pub(crate) fn write(&mut self, events: &mut Vec<Event>, decided: u64) -> Result<()> {
         if self.slots > 1 {
             events.sort_by_key(|event| (event.sample, event.slot));
         }
@@ -141,7 +141,7 @@ impl<W: Write> Writer<W> {
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn finish(mut self, events: &mut Vec<Event>) -> Result<(W, Summary)> {
+    pub(crate) fn finish(mut self, events: &mut Vec<Event>) -> Result<(W, Summary)> {
         self.end_run();
         let decided = self.first_pending + self.pending.len() as u64;
         self.write(events, decided)?;

@@ -1,5 +1,5 @@
 //! Running the program.
-#![allow(dead_code)]
+#![allow(dead_code, unreachable_pub)]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -61,7 +61,8 @@ pub fn events(spikes: &str) -> Vec<(usize, usize, i32)> {
     let lines = spikes.lines().filter(|line| !line.starts_with('#')).skip(1);
     lines
         .map(|line| {
-            let fields: Vec<i32> = line.split(',').take(3).map(|field| field.parse().unwrap()).collect();
+            let fields: Vec<i32> =
+                line.split(',').take(3).map(|field| field.parse().unwrap()).collect();
             (fields[0] as usize, fields[1] as usize, fields[2])
         })
         .collect()
