@@ -25,9 +25,8 @@ pub(crate) fn taps(text: &str) -> Result<Vec<f64>> {
 
 fn shaped(text: &str, shape: Shape, length: &str, scale: Option<&str>) -> Result<Vec<f64>> {
     const LONGEST: usize = 4096;
-    let length = match length.parse() {
-        Ok(length @ 1..=LONGEST) => length,
-        _ => bail!("--filter {text}: the length `{length}` must be 1 to {LONGEST}"),
+    let Ok(length @ 1..=LONGEST) = length.parse() else {
+        bail!("--filter {text}: the length `{length}` must be 1 to {LONGEST}");
     };
     let taps = (0..length).map(|tap| shape.at(tap, length));
     let factor = match scale.map(|scale| scale.split_once('=')) {

@@ -139,6 +139,7 @@ pub(crate) struct Slots {
     /// The fields.
     pub fields: Fields,
     /// Sub-timesteps a sample.
+    #[expect(clippy::struct_field_names, reason = "its name in the options")]
     pub slots: usize,
     /// The lowest level that fires.
     pub floor: u16,
@@ -170,10 +171,14 @@ impl Settings {
             Self::MovingWindow(moving_window) => {
                 moving_window.threshold *= one;
                 moving_window.start *= one;
-                moving_window.first.iter_mut().for_each(|value| *value *= one);
+                for value in &mut moving_window.first {
+                    *value *= one;
+                }
             }
             Self::Rate(rate) => {
-                rate.taps.iter_mut().for_each(|tap| *tap *= one);
+                for tap in &mut rate.taps {
+                    *tap *= one;
+                }
                 rate.shift *= one;
                 if let RateRule::ThresholdHough { threshold }
                 | RateRule::BenSubtractive { threshold } = &mut rate.rule
@@ -182,7 +187,9 @@ impl Settings {
                 }
             }
             Self::Position(Centres::Listed(list)) => {
-                list.iter_mut().for_each(|centre| *centre *= one);
+                for centre in list.iter_mut() {
+                    *centre *= one;
+                }
             }
             Self::Position(Centres::Linear(range) | Centres::GaussianSpaced(range))
             | Self::Gaussian(range)

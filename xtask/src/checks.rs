@@ -82,6 +82,29 @@ pub fn firmware() -> Result<()> {
     crate::firmware::firmware(&[])
 }
 
+/// The laptop program on the recorded flight, and the paper's tables in full.
+pub fn laptop() -> Result<()> {
+    let spikewire = |args: &str| {
+        output(&mut cargo(&format!("run --release --quiet --package spikewire-cli -- {args}")))
+    };
+    let flight = "--column gyro_x data/hexarotor.csv";
+    let target = paths::root().join("target");
+    fs::create_dir_all(&target)?;
+    let (spikes, picture) = (target.join("flight-spikes.csv"), target.join("flight.svg"));
+    spikewire(&format!("encode --scheme sf --threshold 0.1 {flight} -o {}", spikes.display()))?;
+    let decoded = spikewire(&format!("decode {}", spikes.display()))?;
+    ensure!(decoded.lines().count() == 1 + 3627, "the flight decodes to another number of samples");
+    print!("{}", spikewire(&format!("score {flight}"))?);
+    spikewire(&format!("plot --all {flight} -o {}", picture.display()))?;
+    let tables = spikewire("bench")?;
+    print!("{tables}");
+    ensure!(
+        tables.ends_with("\n60 of 60 means within sampling error\n"),
+        "the benchmark differs from the paper"
+    );
+    Ok(())
+}
+
 /// The names in Cargo.toml's `[features]`, so that a new feature is checked without a word here.
 fn feature_names() -> Result<Vec<String>> {
     let manifest = fs::read_to_string(paths::root().join("Cargo.toml"))?;

@@ -25,6 +25,7 @@ const STEPS: &[Step] = &[
     step("no-panic", "every codec links without a panic handler", checks::no_panic),
     step("demo", "the demo's table and picture", checks::demo),
     step("firmware", "emulated boards against the host", checks::firmware),
+    step("laptop", "the laptop program on a flight, and the paper's tables", checks::laptop),
 ];
 
 const fn step(name: &'static str, what: &'static str, run: fn() -> Result<()>) -> Step {

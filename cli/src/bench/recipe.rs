@@ -42,7 +42,9 @@ pub(super) fn run(signal: &[f32]) -> [Outcome; COLUMNS] {
 
 fn try_run(signal: &[f32]) -> Result<[Outcome; COLUMNS], ConfigError> {
     let mut calibration = Calibration::new();
-    signal.iter().for_each(|&sample| calibration.observe(sample));
+    for &sample in signal {
+        calibration.observe(sample);
+    }
     let (min, max) = (calibration.min().unwrap_or(0.0), calibration.max().unwrap_or(0.0));
     Ok([
         contrast(signal, &calibration)?,
@@ -137,11 +139,11 @@ where
 {
     let (mut encoder, mut decoder) = (scheme.encoder(), scheme.decoder());
     let mut spikes = 0;
-    let decoded = signal.iter().filter_map(|&sample| encoder.encode(sample).code()).map(|code| {
+    let values = signal.iter().filter_map(|&sample| encoder.encode(sample).code()).map(|code| {
         spikes += code.firings().count();
         decoder.decode(code)
     });
-    let error = rmse(signal, decoded);
+    let error = rmse(signal, values);
     outcome(signal, spikes, error)
 }
 

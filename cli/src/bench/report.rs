@@ -86,6 +86,11 @@ pub(crate) fn print(cases: &[CaseResult]) -> String {
     text
 }
 
+/// Ours and the paper's.
+type Figures = fn(&Cell) -> [f64; 2];
+/// Of a column without the paper's.
+type Figure = fn(&Statistics) -> f64;
+
 fn write_table(
     text: &mut String,
     table: &Table,
@@ -112,18 +117,19 @@ fn write_table(
     )?;
     for (case, row) in cases.iter().zip(cells) {
         let ours = if table.title == RMSE.title { &case.rmse } else { &case.efficiency };
-        let rows: [(&str, fn(&Cell) -> f64, fn(&Cell) -> f64, fn(&Statistics) -> f64); 2] = [
-            ("mean", |cell| cell.ours.mean, |cell| cell.paper_mean, |ours| ours.mean),
-            ("SD", |cell| cell.ours.deviation, |cell| cell.paper_deviation, |ours| ours.deviation),
+        let rows: [(&str, Figures, Figure); 2] = [
+            ("mean", |cell| [cell.ours.mean, cell.paper_mean], |ours| ours.mean),
+            ("SD", |cell| [cell.ours.deviation, cell.paper_deviation], |ours| ours.deviation),
         ];
-        for (name, value, paper, extra) in rows {
+        for (name, figures, extra) in rows {
             let label =
                 if name == "mean" { format!("{} s mean", case.seconds) } else { name.to_owned() };
             write!(text, "| {label:>9} |")?;
             for cell in row {
                 let agrees = if name == "mean" { cell.mean_agrees } else { cell.deviation_agrees };
                 let mark = if agrees { "" } else { " !" };
-                let shown = format!("{:.ours_decimals$} / {:.decimals$}", value(cell), paper(cell));
+                let [value, paper] = figures(cell);
+                let shown = format!("{value:.ours_decimals$} / {paper:.decimals$}");
                 let errors = if name == "mean" {
                     format!(" ({:+.1})", cell.standard_errors)
                 } else {

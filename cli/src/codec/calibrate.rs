@@ -21,7 +21,9 @@ impl Calibrated {
 
     /// Takes the next samples, all finite.
     pub(crate) fn observe(&mut self, samples: &[f64]) {
-        samples.iter().for_each(|sample| self.calibration.observe(sample * self.one));
+        for sample in samples {
+            self.calibration.observe(sample * self.one);
+        }
     }
 
     /// The smallest and the largest sample, if there was one.

@@ -109,13 +109,17 @@ pub(super) trait Primed: Encoder {
 
 impl<S: Sample> Primed for TemporalContrastEncoder<S> {
     fn prime_with(&mut self, first: &[S]) {
-        first.iter().for_each(|&previous| self.prime(previous));
+        for &previous in first {
+            self.prime(previous);
+        }
     }
 }
 
 impl<S: Sample> Primed for StepForwardEncoder<S> {
     fn prime_with(&mut self, first: &[S]) {
-        first.iter().for_each(|&base| self.prime(base));
+        for &base in first {
+            self.prime(base);
+        }
     }
 }
 

@@ -49,11 +49,8 @@ pub fn refused(arguments: &str, input: &str, words: &[&str]) {
 
 /// A table of one column `x`.
 pub fn table(values: &[f64]) -> String {
-    let mut text = String::from("x\n");
-    for value in values {
-        text.push_str(&format!("{value}\n"));
-    }
-    text
+    let lines = values.iter().map(|value| format!("{value}\n"));
+    "x\n".to_owned() + &lines.collect::<String>()
 }
 
 /// The events of a file of spikes as (index, address, polarity).
