@@ -90,3 +90,8 @@ pub use readout::{Assemble, Readout};
 pub use sample::Sample;
 pub use source::EventSource;
 pub use spike::{Code, Event, Firing, Polarity, Spike};
+
+/// The README's code, for doctests alone.
+#[cfg(all(doctest, feature = "fixed", feature = "queue", feature = "link"))]
+#[doc = include_str!("../README.md")]
+pub struct Readme;
