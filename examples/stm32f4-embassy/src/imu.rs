@@ -1,0 +1,63 @@
+//! The BMI323: six channels, a pulse on INT1 for each sample.
+
+use bmi323_driver::{
+    AccelConfig, AccelMode, AccelRange, ActiveLevel, Bmi323, Error, GyroConfig, GyroMode,
+    GyroRange, InterruptChannel, InterruptPinConfig, InterruptRoute, InterruptSource,
+    OutputDataRate, OutputMode, SpiTransport,
+};
+use embedded_hal_async::{delay::DelayNs, spi::SpiDevice};
+use spikewire::temporal::StepForward;
+
+/// Samples a second, and the time between two.
+pub const SAMPLE_RATE: u16 = 800;
+pub const PERIOD_US: u16 = (1_000_000 / SAMPLE_RATE as u32) as u16;
+
+/// A spike for every 6 °/s.
+pub const RATE: StepForward<f32> = StepForward::<f32>::checked(6.0);
+/// A spike for every 0.05 g.
+pub const ACCELERATION: StepForward<f32> = StepForward::<f32>::checked(0.05);
+
+pub type Imu<D> = Bmi323<SpiTransport<D>>;
+
+/// Resets the sensor, and lets it sample at 800 Hz.
+pub async fn start<D: SpiDevice>(
+    device: D,
+    delay: &mut impl DelayNs,
+) -> Result<Imu<D>, Error<D::Error>> {
+    let mut imu = Bmi323::new_spi(device);
+    imu.init(delay).await?;
+    imu.set_accel_config(AccelConfig {
+        mode: AccelMode::HighPerformance,
+        range: AccelRange::G16,
+        odr: OutputDataRate::Hz800,
+        ..Default::default()
+    })
+    .await?;
+    imu.set_gyro_config(GyroConfig {
+        mode: GyroMode::HighPerformance,
+        range: GyroRange::Dps2000,
+        odr: OutputDataRate::Hz800,
+        ..Default::default()
+    })
+    .await?;
+    imu.configure_interrupt_pin(
+        InterruptChannel::Int1,
+        InterruptPinConfig {
+            active_level: ActiveLevel::High,
+            output_mode: OutputMode::PushPull,
+            enabled: true,
+        },
+    )
+    .await?;
+    // Both sensors sample together: one of them says when.
+    imu.map_interrupt(InterruptSource::GyroDataReady, InterruptRoute::Int1).await?;
+    Ok(imu)
+}
+
+/// Rates in °/s, then accelerations in g.
+pub async fn read<D: SpiDevice>(imu: &mut Imu<D>) -> Result<[f32; 6], Error<D::Error>> {
+    let data = imu.read_imu_data().await?;
+    let [rx, ry, rz] = data.gyro.as_dps(imu.gyro_range());
+    let [ax, ay, az] = data.accel.as_g(imu.accel_range());
+    Ok([rx, ry, rz, ax, ay, az])
+}

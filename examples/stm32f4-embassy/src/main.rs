@@ -1,0 +1,122 @@
+//! From the IMU's interrupt to link frames over SPI, on an STM32F405 with embassy; all bytes move by DMA.
+//!
+//! ```text
+//! BMI323 --INT1--> task: SPI1, bank of step encoders --> queue --> main: frames --> SPI2 --> bridge
+//! ```
+//!
+//! Wiring and clocks: `examples/README.md`.
+
+#![no_std]
+#![no_main]
+
+mod board;
+mod imu;
+
+use defmt_rtt as _;
+use embassy_executor::Spawner;
+use embassy_stm32::{exti::ExtiInput, mode::Async};
+use embassy_sync::{blocking_mutex::raw::CriticalSectionRawMutex, signal::Signal};
+use embassy_time::{Delay, Duration, Instant, Ticker, TimeoutError, with_timeout};
+use panic_probe as _;
+use spikewire::{
+    Bank, Encoder, Scheme,
+    link::{Coding, MAX_FRAME, Transmitter},
+    sink::{AsyncSpiSink, EventQueue, Overflow},
+};
+
+const CHANNELS: usize = 6;
+/// Samples from one keyframe to the next: a second.
+const KEYFRAME_EVERY: u16 = imu::SAMPLE_RATE;
+/// From one look at the queue to the next.
+const SEND_EVERY: Duration = Duration::from_millis(5);
+/// A frame takes half of that at 1 MHz.
+const SEND_LIMIT: Duration = Duration::from_millis(4);
+const REPORT_EVERY: Duration = Duration::from_secs(1);
+
+/// What the sampling task has for main.
+static EVENTS: EventQueue<256> = EventQueue::new(Overflow::DropOldest);
+/// The latest keyframe that main has not taken yet.
+static KEYFRAME: Signal<CriticalSectionRawMutex, Keyframe> = Signal::new();
+
+/// What the encoders held after the sample of this tick, and how many events had been lost by then.
+struct Keyframe {
+    tick: u32,
+    lost: u32,
+    values: [Option<f32>; CHANNELS],
+}
+
+fn now() -> u32 {
+    spikewire::tick::from_micros(Instant::now().as_micros())
+}
+
+defmt::timestamp!("{=u32:us}", now());
+
+/// Waits for a sample, reads it, encodes it.
+#[embassy_executor::task]
+async fn sample(mut imu: imu::Imu<board::SpiDevice>, mut data_ready: ExtiInput<'static, Async>) {
+    let [rate, acceleration] = [imu::RATE.encoder(), imu::ACCELERATION.encoder()];
+    let mut bank = Bank::<_, CHANNELS>::from_encoders([
+        rate,
+        rate,
+        rate,
+        acceleration,
+        acceleration,
+        acceleration,
+    ]);
+    loop {
+        for _ in 0..KEYFRAME_EVERY {
+            data_ready.wait_for_rising_edge().await;
+            let tick = now();
+            match imu::read(&mut imu).await {
+                Ok(sample) => bank.encode(tick, sample, |event| {
+                    let _ = EVENTS.push(event); // what does not fit is counted in the queue
+                }),
+                Err(_) => defmt::warn!("a sample could not be read"),
+            }
+        }
+        // No sample has come since the last one, so now is as good a tick as its own.
+        let values = bank.channels().each_ref().map(Encoder::keyframe);
+        KEYFRAME.signal(Keyframe { tick: now(), lost: EVENTS.lost(), values });
+    }
+}
+
+#[embassy_executor::main]
+async fn main(spawner: Spawner) {
+    let board::Board { imu, data_ready, bridge, bridge_ready } = board::start();
+    let imu = imu::start(imu, &mut Delay).await.expect("no BMI323 on SPI1");
+    spawner.spawn(sample(imu, data_ready).expect("spawned once"));
+
+    // The sensor's clock is not ours: its samples come a few µs early or late.
+    let coding = Coding::for_channels(CHANNELS as u16, imu::PERIOD_US).with_jitter_bits(4);
+    let transmitter = Transmitter::<f32, CHANNELS>::new(coding);
+    let mut link =
+        AsyncSpiSink::<_, _, MAX_FRAME, _>::with_ready(bridge, transmitter, bridge_ready);
+
+    let (mut bytes, mut failures, mut late) = (0_u32, 0_u32, 0_u32);
+    let mut next_look = Ticker::every(SEND_EVERY);
+    let mut next_report = Instant::now() + REPORT_EVERY;
+    loop {
+        next_look.next().await;
+        if let Some(keyframe) = KEYFRAME.try_take() {
+            link.batch().keyframe_values(keyframe.tick, keyframe.lost, keyframe.values);
+        }
+        // A frame that was not sent, for whatever reason, is kept for the next time.
+        match with_timeout(SEND_LIMIT, link.send(&EVENTS)).await {
+            Ok(Ok(count)) => bytes = bytes.wrapping_add(count as u32),
+            Ok(Err(_)) => failures = failures.wrapping_add(1),
+            Err(TimeoutError) => late = late.wrapping_add(1),
+        }
+        if Instant::now() >= next_report {
+            next_report += REPORT_EVERY;
+            defmt::info!(
+                "{} bytes sent, {} times not, {} times too late; {} events lost, peak {}; {} keyframes dropped",
+                bytes,
+                failures,
+                late,
+                EVENTS.lost(),
+                EVENTS.peak(),
+                link.batch().dropped_keyframes(),
+            );
+        }
+    }
+}
