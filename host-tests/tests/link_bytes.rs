@@ -60,3 +60,35 @@ fn the_link_takes_about_a_byte_a_spike() {
         assert!(full < es && full < evt2 && full < edvs);
     }
 }
+
+/// The same flight as a sensor at 1 kHz would have seen it, between its samples on straight lines, with
+/// ticks from a timer.
+#[test]
+fn at_a_kilohertz_too() {
+    let log = flight::hexarotor();
+    let step = StepForward::<f32>::checked;
+    for (gyro, accel) in [(0.02, 0.1), (0.05, 0.25)] {
+        let [gyro, accel] = [gyro, accel].map(|threshold| step(threshold).encoder());
+        let mut bank = Bank::from_encoders([gyro, gyro, gyro, accel, accel, accel]);
+        let mut events = Vec::new();
+        let mut next = 0;
+        for pair in log.windows(2) {
+            let (from, to) = (&pair[0], &pair[1]);
+            while next < to.time_us {
+                let part = (next - from.time_us) as f32 / (to.time_us - from.time_us) as f32;
+                let (a, b) = (from.channels(), to.channels());
+                let samples = core::array::from_fn(|c| a[c] + part * (b[c] - a[c]));
+                bank.encode(next, samples, |event| events.push(event));
+                next += 1_000;
+            }
+        }
+        let coding = Coding::for_channels(6, 1_000);
+        let each = |delay| link(&events, coding, delay) as f64 / events.len() as f64;
+        let [full, fast] = [u32::MAX, 20_000].map(each);
+        println!(
+            "1 kHz: {} spikes, full frames {full:.2}, of 20 ms {fast:.2} bytes a spike",
+            events.len()
+        );
+        assert!(full < 1.1, "{full}");
+    }
+}

@@ -57,7 +57,7 @@ fn fly<S: Raw>(scheme: StepForward<S>, convert: fn(f32) -> S, per_cent: u32) -> 
             if random.next_u32() % 100 < per_cent {
                 tally.lost += 1;
                 unseen += 1;
-                if random.next_u32() % 2 == 0 {
+                if random.next_u32().is_multiple_of(2) {
                     // It arrives damaged, anywhere but in its length.
                     let mut damaged = frame.to_vec();
                     let at = random.next_u32() as usize % damaged.len();
