@@ -14,27 +14,61 @@ pub struct Board {
     pub target: &'static str,
     /// The compiler's name for its core: code is tuned for it, and uses all the instructions it has.
     pub cpu: &'static str,
+    /// Its clock in Hz, which counts instructions.
+    pub clock: u64,
+    /// For counting, an instruction takes 2^icount ns: 2 and more ticks of that clock.
+    pub icount: u32,
 }
 
 pub const BOARDS: [Board; 5] = [
-    Board { core: "M0", machine: "microbit", target: "thumbv6m-none-eabi", cpu: "cortex-m0" },
-    Board { core: "M3", machine: "lm3s6965evb", target: "thumbv7m-none-eabi", cpu: "cortex-m3" },
+    Board {
+        core: "M0",
+        machine: "microbit",
+        target: "thumbv6m-none-eabi",
+        cpu: "cortex-m0",
+        clock: 16_000_000,
+        icount: 8,
+    },
+    Board {
+        core: "M3",
+        machine: "lm3s6965evb",
+        target: "thumbv7m-none-eabi",
+        cpu: "cortex-m3",
+        clock: 12_500_000,
+        icount: 8,
+    },
     Board {
         core: "M4F",
         machine: "netduinoplus2", // an STM32F405: the top-level memory.x
         target: "thumbv7em-none-eabihf",
         cpu: "cortex-m4",
+        clock: 168_000_000,
+        icount: 4,
     },
-    Board { core: "M7", machine: "mps2-an500", target: "thumbv7em-none-eabihf", cpu: "cortex-m7" },
+    Board {
+        core: "M7",
+        machine: "mps2-an500",
+        target: "thumbv7em-none-eabihf",
+        cpu: "cortex-m7",
+        clock: 25_000_000,
+        icount: 7,
+    },
     Board {
         core: "M33",
         machine: "mps2-an505",
         target: "thumbv8m.main-none-eabihf",
         cpu: "cortex-m33",
+        clock: 20_000_000,
+        icount: 7,
     },
 ];
 
 impl Board {
+    /// What the clock counts in 10^9 instructions.
+    pub fn ticks_per_gigainstruction(&self) -> u64 {
+        self.clock << self.icount
+    }
+
     /// Bytes of flash and of RAM, read from the map that the firmware is linked with.
     pub fn memory(&self) -> Result<(u32, u32)> {
         let path = match self.machine {
@@ -68,6 +102,13 @@ mod tests {
             let (flash, ram) = board.memory().unwrap();
             assert!(flash >= 128 * 1024 && ram >= 16 * 1024, "{}", board.machine);
             assert!(crate::toolchain::TARGETS.contains(&board.target));
+        }
+    }
+
+    #[test]
+    fn rounding_ticks_gives_exact_counts() {
+        for board in &BOARDS {
+            assert!(board.ticks_per_gigainstruction() >= 2_000_000_000, "{}", board.machine);
         }
     }
 

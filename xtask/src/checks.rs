@@ -105,6 +105,10 @@ pub fn laptop() -> Result<()> {
     Ok(())
 }
 
+pub fn bench() -> Result<()> {
+    crate::bench::verify()
+}
+
 /// The names in Cargo.toml's `[features]`, so that a new feature is checked without a word here.
 fn feature_names() -> Result<Vec<String>> {
     let manifest = fs::read_to_string(paths::root().join("Cargo.toml"))?;

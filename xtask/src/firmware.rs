@@ -5,7 +5,12 @@ use crate::{
     markdown, paths, qemu, shell, size, toolchain,
 };
 use anyhow::{Context, Result, bail, ensure};
-use std::{fs, path::PathBuf, thread};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+    thread,
+};
 
 /// Runs the named programs, or all, and fails if a board prints another line than the host.
 pub fn firmware(names: &[String]) -> Result<()> {
@@ -133,17 +138,23 @@ pub fn on_host(program: &str) -> Result<String> {
 pub fn build(program: &str, board: &Board) -> Result<PathBuf> {
     // A directory for each board: two of them share a target, not a memory map.
     let directory = paths::thumb_target().join(board.machine);
+    let (mut cargo, image) = building(program, board, &directory)?;
+    shell::run(&mut cargo).with_context(|| format!("{program} for {}", board.machine))?;
+    Ok(image)
+}
+
+/// What builds the program for the board in this directory, and the image that comes of it.
+pub fn building(program: &str, board: &Board, directory: &Path) -> Result<(Command, PathBuf)> {
     let mut cargo = toolchain::cargo_for(
         board.target,
         "build --quiet --release --manifest-path examples/Cargo.toml",
     )?;
     cargo
         .args(["--package", program])
-        .env("CARGO_TARGET_DIR", &directory)
+        .env("CARGO_TARGET_DIR", directory)
         .env("BOARD", board.machine)
         .env("RUSTFLAGS", format!("-C target-cpu={}", board.cpu));
-    shell::run(&mut cargo).with_context(|| format!("{program} for {}", board.machine))?;
-    Ok(directory.join(board.target).join("release").join(program))
+    Ok((cargo, directory.join(board.target).join("release").join(program)))
 }
 
 /// One row for each of the host's lines, one column for each board.

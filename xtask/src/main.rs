@@ -1,5 +1,6 @@
 //! Set-up and checks. `cargo xtask` lists the commands.
 
+mod bench;
 mod boards;
 mod checks;
 mod demo;
@@ -29,9 +30,10 @@ cargo xtask <command>
   firmware [PROGRAM]... runs the example programs on every emulated board and compares with the host
   firmware --markdown   the same for flight-log alone, as a table for the README
   demo                  real flight data through encoder, emulated flight controller and decoder
+  bench-target          what every codec costs on every emulated board, in instructions and bytes
   verify [STEP]...      every check, or the named ones; `cargo verify --list` names them
 
-`cargo demo` and `cargo verify` are short for the last two.";
+`cargo demo`, `cargo bench-target` and `cargo verify` are short for the last three.";
 
 fn main() -> ExitCode {
     let mut args = env::args().skip(1);
@@ -51,6 +53,7 @@ fn run(command: &str, args: &[String]) -> Result<()> {
     match command {
         "setup" => setup::setup(),
         "firmware" => firmware::firmware(args),
+        "bench-target" => bench::bench(args),
         "demo" => demo::demo(args),
         "verify" => verify::verify(args),
         "" | "help" | "-h" | "--help" => {

@@ -5,7 +5,7 @@ use anyhow::{Context, Result, bail, ensure};
 use std::{
     io::Read,
     path::Path,
-    process::{Child, ExitStatus, Stdio},
+    process::{Child, Command, ExitStatus, Stdio},
     thread,
     time::{Duration, Instant},
 };
@@ -13,11 +13,29 @@ use std::{
 /// A program that takes longer hangs: a fault before the console is up, for one, never ends.
 const PATIENCE: Duration = Duration::from_mins(2);
 
+/// Counting takes longer: software floating point on a Cortex-M0, some 10^10 instructions.
+const LONG_PATIENCE: Duration = Duration::from_mins(10);
+
 /// Runs the image to its end and returns what it printed. It is an error if it ends badly, or not in time.
 pub fn run(board: &Board, image: &Path) -> Result<String> {
+    run_for(PATIENCE, emulator(board), image)
+}
+
+/// The same with a clock that goes by instructions, so that every run is the same.
+pub fn run_counting(board: &Board, image: &Path) -> Result<String> {
+    let mut emulator = emulator(board);
+    emulator.arg("-icount").arg(format!("shift={}", board.icount));
+    run_for(LONG_PATIENCE, emulator, image)
+}
+
+fn emulator(board: &Board) -> Command {
     let mut emulator = shell::command("qemu-system-arm");
+    emulator.args(["-M", board.machine, "-nographic"]);
     emulator
-        .args(["-M", board.machine, "-nographic"])
+}
+
+fn run_for(patience: Duration, mut emulator: Command, image: &Path) -> Result<String> {
+    emulator
         .args(["-semihosting-config", "enable=on,target=native"])
         .arg("-kernel")
         .arg(image)
@@ -31,12 +49,12 @@ pub fn run(board: &Board, image: &Path) -> Result<String> {
     // Read both streams while it runs, or a full pipe stops it.
     let printed = read_all(child.stdout.take());
     let said = read_all(child.stderr.take());
-    let status = wait(&mut child)?;
+    let status = wait(&mut child, patience)?;
     let printed = printed.join().unwrap_or_default();
     let said = said.join().unwrap_or_default();
 
     let Some(status) = status else {
-        bail!("no end after {PATIENCE:?}; so far: {printed}{said}");
+        bail!("no end after {patience:?}; so far: {printed}{said}");
     };
     ensure!(status.success(), "{status}: {printed}{said}");
     Ok(printed)
@@ -54,9 +72,9 @@ fn read_all(stream: Option<impl Read + Send + 'static>) -> thread::JoinHandle<St
 }
 
 /// The exit status, or `None` after having ended a program that ran out of time.
-fn wait(child: &mut Child) -> Result<Option<ExitStatus>> {
+fn wait(child: &mut Child, patience: Duration) -> Result<Option<ExitStatus>> {
     let start = Instant::now();
-    while start.elapsed() < PATIENCE {
+    while start.elapsed() < patience {
         if let Some(status) = child.try_wait()? {
             return Ok(Some(status));
         }

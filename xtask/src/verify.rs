@@ -26,6 +26,7 @@ const STEPS: &[Step] = &[
     step("demo", "the demo's table and picture", checks::demo),
     step("firmware", "emulated boards against the host", checks::firmware),
     step("laptop", "the laptop program on a flight, and the paper's tables", checks::laptop),
+    step("bench", "instruction counts against the baseline", checks::bench),
 ];
 
 const fn step(name: &'static str, what: &'static str, run: fn() -> Result<()>) -> Step {

@@ -7,9 +7,10 @@ use core::{
 };
 
 use board::stopwatch::instructions;
+use rand_pcg::{Pcg32, rand_core::Rng};
 use spikewire::{
     Calibration, ConfigError,
-    population::{Centres, Gaussian, Position, ReceptiveFields, Slots},
+    population::{Centres, Gaussian, Position, Probabilistic, ReceptiveFields, Slots},
     rate::{Ben, BenToolbox, Hough, Scale, Shape, Taps, ThresholdHough},
     temporal::{MovingWindow, StepForward, TemporalContrast},
 };
@@ -56,29 +57,43 @@ impl From<fmt::Error> for Failure {
 }
 
 impl<S: Measured> Buffers<S> {
+    /// The compiler must not know their lengths, as it does not know those that the codecs get.
+    fn slices(&mut self) -> (&mut [S], &mut [i8]) {
+        (black_box(&mut self.signal[..]), black_box(&mut self.spikes[..]))
+    }
+
     /// The plain transcription of a code on the raw signal, encoding and decoding.
-    fn plain(&mut self, encode: impl FnOnce(&[S], &mut [i8]), decode: impl FnOnce(&[i8], &mut [S])) -> (u32, u32) {
-        let (signal, spikes) = (&mut self.signal, &mut self.spikes);
-        let encoding = instructions(|| encode(black_box(signal), spikes));
-        let decoding = instructions(|| decode(black_box(spikes), signal));
+    fn plain(
+        &mut self,
+        encode: impl FnOnce(&[S], &mut [i8]),
+        decode: impl FnOnce(&[i8], &mut [S]),
+    ) -> (u32, u32) {
+        let (signal, spikes) = self.slices();
+        let encoding = instructions(|| encode(signal, spikes));
+        let decoding = instructions(|| decode(spikes, signal));
         (encoding, decoding)
     }
 
     /// The same of a rate code, which takes the minimum off first and works in place.
-    fn plain_rate(&mut self, shift: S, taps: &[S], encode: impl FnOnce(&mut [S], &mut [i8])) -> (u32, u32) {
+    fn plain_rate(
+        &mut self,
+        shift: S,
+        taps: &[S],
+        encode: impl FnOnce(&mut [S], &mut [i8]),
+    ) -> (u32, u32) {
         for sample in &mut self.signal {
             *sample = S::narrow((*sample).into() - shift.into());
         }
-        let (signal, spikes) = (&mut self.signal, &mut self.spikes);
-        let encoding = instructions(|| encode(black_box(signal), spikes));
-        let decoding = instructions(|| plain::rate_decode(black_box(spikes), taps, shift, signal));
+        let (signal, spikes) = self.slices();
+        let encoding = instructions(|| encode(signal, spikes));
+        let decoding = instructions(|| plain::rate_decode(spikes, taps, shift, signal));
         (encoding, decoding)
     }
 
-    /// The same of a population code, which is long: a hundred samples at a time. It has no plain decoder.
-    fn plain_population(&mut self, mut encode: impl FnMut(&[S], &mut [i8])) -> (u32, u32) {
-        let chunks = self.signal.chunks(100).zip(self.spikes.chunks_mut(100));
-        let encoding = chunks.map(|(signal, spikes)| instructions(|| encode(black_box(signal), spikes))).sum();
+    /// The same of a population code. It has no plain decoder.
+    fn plain_population(&mut self, encode: impl FnOnce(&[S], &mut [i8])) -> (u32, u32) {
+        let (signal, spikes) = self.slices();
+        let encoding = instructions(|| encode(signal, spikes));
         (encoding, 0)
     }
 }
@@ -97,7 +112,8 @@ fn all<S: Measured>(
     let range = max.to_f64() - min.to_f64();
     let part = |value: f64| S::from_f64(value / 5.8 * range);
 
-    let subject = |codec, flash, plain| Subject { signal: source.name(), codec, sample, flash, plain };
+    let subject =
+        |codec, flash, plain| Subject { signal: source.name(), codec, sample, flash, plain };
 
     let contrast = TemporalContrast::from_magnitudes(&calibration, 0.5)?;
     let (threshold, step) = (contrast.threshold(), contrast.step());
@@ -120,8 +136,9 @@ fn all<S: Measured>(
     moving_window::<S, 64>(out, subject("mw-63", 0, (0, 0)), part(0.25), source, buffers)?;
 
     let taps = Taps::<S, 15>::shaped(Shape::Triangular, Scale::Peak(part(1.0)))?;
-    let plain = buffers
-        .plain_rate(min, taps.as_array(), |signal, spikes| plain::hough(signal, taps.as_array(), spikes));
+    let plain = buffers.plain_rate(min, taps.as_array(), |signal, spikes| {
+        plain::hough(signal, taps.as_array(), spikes)
+    });
     source.load(&mut buffers.signal);
     subject("hsa-15", size_of_val(&taps), plain).measure(
         out,
@@ -177,21 +194,71 @@ fn all<S: Measured>(
     )?;
 
     let centres = Centres::<S, 20>::new_gaussian_spaced(min, max)?;
-    let plain = buffers.plain_population(|signal, neurons| plain::position(signal, centres.as_array(), neurons));
-    subject("position-20", size_of_val(&centres), plain).measure(out, Position::new(&centres), &buffers.signal)?;
+    let plain = buffers
+        .plain_population(|signal, neurons| plain::position(signal, centres.as_array(), neurons));
+    subject("position-20", size_of_val(&centres), plain).measure(
+        out,
+        Position::new(&centres),
+        &buffers.signal,
+    )?;
 
     let centres = Centres::<S, 20>::new_linear(min, max)?;
     let sigma = (range / 18.0) as f32;
     let means = centres.as_array().map(|centre| centre.to_f64() as f32);
-    let plain = buffers.plain_population(|signal, neurons| plain::gaussian(signal, &means, sigma, neurons));
-    subject("grf-20", size_of_val(&centres), plain).measure(out, Gaussian::new(&centres), &buffers.signal)?;
+    let plain =
+        buffers.plain_population(|signal, neurons| plain::gaussian(signal, &means, sigma, neurons));
+    subject("grf-20", size_of_val(&centres), plain).measure(
+        out,
+        Gaussian::new(&centres),
+        &buffers.signal,
+    )?;
 
+    slots(out, subject("grf-slots-15x10", 0, (0, 0)), (min, max), buffers)?;
+    probabilistic(out, subject("grf-random-15x16", 0, (0, 0)), (min, max), buffers)
+}
+
+// Functions of their own, or their tables would all be on the stack together.
+
+#[inline(never)]
+fn slots<S: Measured>(
+    out: &mut impl Write,
+    subject: Subject<'_>,
+    (min, max): (S, S),
+    buffers: &mut Buffers<S>,
+) -> Result<(), Failure> {
     let fields = ReceptiveFields::<S, 15, 10>::new(min, max, 1.5)?;
-    let sigma = (range / (1.5 * 13.0)) as f32;
+    let sigma = ((max.to_f64() - min.to_f64()) / (1.5 * 13.0)) as f32;
     let means = fields.centres().map(|centre| centre.to_f64() as f32);
-    let plain = buffers.plain_population(|signal, slots| plain::slots(signal, &means, sigma, 10, slots));
-    subject("grf-slots-15x10", size_of_val(&fields), plain).measure(out, Slots::new(&fields), &buffers.signal)?;
-    Ok(())
+    let plain =
+        buffers.plain_population(|signal, slots| plain::slots(signal, &means, sigma, 10, slots));
+    let subject = Subject { flash: size_of_val(&fields), plain, ..subject };
+    Ok(subject.measure(out, Slots::new(&fields), &buffers.signal)?)
+}
+
+/// Not a scheme, as its encoder takes a generator, whose work is counted with it.
+#[inline(never)]
+fn probabilistic<S: Measured>(
+    out: &mut impl Write,
+    subject: Subject<'_>,
+    (min, max): (S, S),
+    buffers: &mut Buffers<S>,
+) -> Result<(), Failure> {
+    let fields = ReceptiveFields::<S, 15, 16>::new(min, max, 1.5)?;
+    let sigma = ((max.to_f64() - min.to_f64()) / (1.5 * 13.0)) as f32;
+    let means = fields.centres().map(|centre| centre.to_f64() as f32);
+    let generator = || Pcg32::new(2, 2);
+    let mut random = generator();
+    let plain = buffers.plain_population(|signal, fired| {
+        plain::probabilistic(signal, &means, sigma, || random.next_u32(), fired);
+    });
+    let scheme = Probabilistic::new(&fields);
+    let subject = Subject { flash: size_of_val(&fields), plain, ..subject };
+    Ok(subject.measure_codec(
+        out,
+        || scheme.encoder(generator()),
+        || scheme.decoder(),
+        &buffers.signal,
+    )?)
 }
 
 fn moving_window<S: Measured, const N: usize>(

@@ -1,13 +1,14 @@
-//! Runs one direction of one codec in both forms and prints what it cost.
+//! Runs a codec in both directions and both forms and prints what it cost.
 
 use core::{fmt, hint::black_box, mem::size_of};
 
-use board::stopwatch::{instructions, stack_depth};
-use spikewire::{Decoder, Encoder, Scheme};
+use board::stopwatch::{instructions, keep, stack_depth};
+use spikewire::{Decoder, Encoder, Output, Scheme};
 
 use crate::signal::LENGTH;
 
-/// Samples in one call of the slice form: the code of one sample takes up to 19 bytes, and a Cortex-M0 has 16 KiB.
+/// Samples in one call of the slice form: the code of one sample takes up to 19 bytes, and a
+/// Cortex-M0 has 16 KiB.
 const CHUNK: usize = 100;
 
 /// What is measured.
@@ -21,136 +22,160 @@ pub struct Subject<'a> {
     pub plain: (u32, u32),
 }
 
-/// What it cost, over the whole signal.
-#[derive(Default)]
+/// What one form of one direction cost, over the whole signal.
 struct Cost {
+    direction: &'static str,
+    form: &'static str,
+    /// Where its code begins.
+    code: usize,
+    state: usize,
+    samples: usize,
     total: u32,
+    /// Of the worst sample; in the slice form, of the worst chunk's mean.
     max: u32,
+    stack: u32,
 }
 
 impl Cost {
-    fn add(&mut self, count: u32, samples: usize) {
+    fn new(direction: &'static str, form: &'static str, code: *const (), state: usize) -> Self {
+        let code = code.addr();
+        Self { direction, form, code, state, samples: 0, total: 0, max: 0, stack: 0 }
+    }
+
+    /// Counts a piece of work, less the same call of a function that does nothing.
+    fn add(&mut self, samples: usize, call: u32, count: u32) {
+        let count = count.saturating_sub(call);
+        self.samples += samples;
         self.total += count;
-        self.max = self.max.max(count.div_ceil(samples as u32));
+        self.max = self.max.max(count.div_ceil(samples.max(1) as u32));
     }
 }
 
 impl Subject<'_> {
-    /// Measures a scheme, encoding and decoding. `codes` is room for what one chunk encodes to.
+    /// Measures a scheme, encoding and decoding.
     pub fn measure<P: Scheme>(
         &self,
         out: &mut impl fmt::Write,
         scheme: P,
         signal: &[P::Sample; LENGTH],
     ) -> fmt::Result {
-        self.encode(out, scheme, signal)?;
-        self.decode(out, scheme, signal)
+        self.measure_codec(out, || scheme.encoder(), || scheme.decoder(), signal)
     }
 
-    fn encode<P: Scheme>(&self, out: &mut impl fmt::Write, scheme: P, signal: &[P::Sample; LENGTH]) -> fmt::Result {
-        let state = size_of::<P::Encoder>();
-
-        let mut encoder = scheme.encoder();
-        let mut each = Cost::default();
-        for &sample in signal {
-            let call = instructions(|| _ = black_box(give_back(&mut encoder, black_box(sample))));
-            let count = instructions(|| _ = black_box(encode_sample(&mut encoder, black_box(sample))));
-            each.add(count.saturating_sub(call), 1);
-        }
-        let mut encoder = scheme.encoder();
-        let stack = stack_depth(|| {
-            for &sample in signal {
-                black_box(encode_sample(&mut encoder, sample));
-            }
-        });
-        self.print(out, "encode", "sample", &each, self.plain.0, state, stack)?;
-
-        let mut encoder = scheme.encoder();
-        let Some(&first) = signal.first() else { return Ok(()) };
-        let mut outputs = core::array::from_fn::<_, CHUNK, _>(|_| encoder.encode(first));
-        encoder.reset();
-        let mut slice = Cost::default();
-        for chunk in signal.chunks_exact(CHUNK) {
-            let call = instructions(|| take_slices(&mut encoder, black_box(chunk), &mut outputs));
-            let count = instructions(|| encode_slice(&mut encoder, black_box(chunk), &mut outputs));
-            slice.add(count.saturating_sub(call), CHUNK);
-            black_box(&outputs);
-        }
-        let mut encoder = scheme.encoder();
-        let stack = stack_depth(|| {
-            for chunk in signal.chunks_exact(CHUNK) {
-                encode_slice(&mut encoder, chunk, &mut outputs);
-            }
-        });
-        self.print(out, "encode", "slice", &slice, self.plain.0, state, stack)
-    }
-
-    fn decode<P: Scheme>(&self, out: &mut impl fmt::Write, scheme: P, signal: &[P::Sample; LENGTH]) -> fmt::Result {
-        use spikewire::Output;
-
-        let state = size_of::<P::Decoder>();
-        let (mut encoder, mut decoder) = (scheme.encoder(), scheme.decoder());
-        let mut each = Cost::default();
-        for &sample in signal {
-            let Some(code) = encoder.encode(sample).code() else { continue };
-            let call = instructions(|| _ = black_box(give_back(&mut decoder, black_box(code))));
-            let count = instructions(|| _ = black_box(decode_sample(&mut decoder, black_box(code))));
-            each.add(count.saturating_sub(call), 1);
-        }
-        let (mut encoder, mut decoder) = (scheme.encoder(), scheme.decoder());
-        let stack = stack_depth(|| {
-            for &sample in signal {
-                let Some(code) = encoder.encode(sample).code() else { continue };
-                black_box(decode_sample(&mut decoder, code));
-            }
-        });
-        self.print(out, "decode", "sample", &each, self.plain.1, state, stack)?;
-
-        let (mut encoder, mut decoder) = (scheme.encoder(), scheme.decoder());
-        let Some(&first) = signal.first() else { return Ok(()) };
-        let mut values = [first; CHUNK];
-        let mut slice = Cost::default();
-        for chunk in signal.chunks_exact(CHUNK) {
-            let mut length = 0;
-            let mut codes: [Option<_>; CHUNK] = core::array::from_fn(|_| None);
-            for (slot, &sample) in codes.iter_mut().zip(chunk) {
-                *slot = encoder.encode(sample).code();
-                length += usize::from(slot.is_some());
-            }
-            let Some(code) = codes.iter().flatten().next() else { continue };
-            let mut dense = [*code; CHUNK];
-            dense.iter_mut().zip(codes.iter().flatten()).for_each(|(slot, code)| *slot = *code);
-            let Some(dense) = dense.get(..length) else { continue };
-            let call = instructions(|| take_slices(&mut decoder, black_box(dense), &mut values));
-            let count = instructions(|| decode_slice(&mut decoder, black_box(dense), &mut values));
-            slice.add(count.saturating_sub(call), length);
-            black_box(&values);
-        }
-        self.print(out, "decode", "slice", &slice, self.plain.1, state, 0)
-    }
-
-    #[allow(clippy::too_many_arguments)]
-    fn print(
+    /// Measures an encoder and its decoder.
+    pub fn measure_codec<E, D>(
         &self,
         out: &mut impl fmt::Write,
-        direction: &str,
-        form: &str,
-        cost: &Cost,
-        plain: u32,
-        state: usize,
-        stack: u32,
-    ) -> fmt::Result {
+        encoder: impl Fn() -> E,
+        decoder: impl Fn() -> D,
+        signal: &[E::Sample; LENGTH],
+    ) -> fmt::Result
+    where
+        E: Encoder,
+        D: Decoder<Sample = E::Sample, Code = <E::Output as Output>::Code>,
+    {
+        for cost in encoding(&encoder, signal) {
+            self.print(out, &cost, self.plain.0)?;
+        }
+        for cost in decoding(&encoder, decoder, signal) {
+            self.print(out, &cost, self.plain.1)?;
+        }
+        Ok(())
+    }
+
+    #[inline(never)]
+    fn print(&self, out: &mut impl fmt::Write, cost: &Cost, plain: u32) -> fmt::Result {
         let Self { signal, codec, sample, flash, .. } = self;
-        let Cost { total, max } = cost;
-        writeln!(
-            out,
-            r#"{{"signal":"{signal}","codec":"{codec}","direction":"{direction}","sample":"{sample}","form":"{form}","samples":{LENGTH},"total":{total},"max":{max},"plain":{plain},"state":{state},"flash":{flash},"stack":{stack}}}"#
-        )
+        let Cost { direction, form, code, state, samples, total, max, stack } = cost;
+        write!(out, r#"{{"signal":"{signal}","codec":"{codec}","direction":"{direction}","#)?;
+        write!(out, r#""sample":"{sample}","form":"{form}","samples":{samples},"total":{total},"#)?;
+        write!(out, r#""max":{max},"plain_samples":{LENGTH},"plain":{plain},"code":{code},"#)?;
+        writeln!(out, r#""state":{state},"flash":{flash},"stack":{stack}}}"#)
     }
 }
 
-// What is counted is one call of a function that is not inlined, less one call of an empty one like it. Their
-// symbols carry the codec's type, so that its code can be found and weighed.
+#[inline(never)] // its buffer leaves the stack before decoding
+fn encoding<E: Encoder>(new: &impl Fn() -> E, signal: &[E::Sample; LENGTH]) -> [Cost; 2] {
+    let state = size_of::<E>();
+
+    let mut each = Cost::new("encode", "sample", encode_sample::<E> as *const (), state);
+    let mut encoder = new();
+    for &sample in signal {
+        let call = instructions(|| take_one(&mut encoder, black_box(sample)));
+        let count = instructions(|| keep(&encode_sample(&mut encoder, black_box(sample))));
+        each.add(1, call, count);
+    }
+    let mut encoder = new();
+    each.stack = stack_depth(|| signal.iter().for_each(|&x| keep(&encode_sample(&mut encoder, x))));
+
+    let mut slice = Cost::new("encode", "slice", encode_slice::<E> as *const (), state);
+    let mut outputs = [encode_sample(&mut new(), signal[0]); CHUNK];
+    let mut encoder = new();
+    for chunk in signal.chunks_exact(CHUNK) {
+        let call = instructions(|| take_slices(&mut encoder, black_box(chunk), &mut outputs));
+        let count = instructions(|| encode_slice(&mut encoder, black_box(chunk), &mut outputs));
+        slice.add(CHUNK, call, count);
+        keep(&outputs);
+    }
+    let mut encoder = new();
+    slice.stack = stack_depth(|| {
+        signal.chunks_exact(CHUNK).for_each(|x| encode_slice(&mut encoder, x, &mut outputs));
+    });
+    [each, slice]
+}
+
+#[inline(never)]
+fn decoding<E, D>(
+    encoder: &impl Fn() -> E,
+    new: impl Fn() -> D,
+    signal: &[E::Sample; LENGTH],
+) -> [Cost; 2]
+where
+    E: Encoder,
+    D: Decoder<Sample = E::Sample, Code = <E::Output as Output>::Code>,
+{
+    let state = size_of::<D>();
+    let mut each = Cost::new("decode", "sample", decode_sample::<D> as *const (), state);
+    let mut slice = Cost::new("decode", "slice", decode_slice::<D> as *const (), state);
+    // One decoder for each thing measured, as every one sees every code once.
+    let mut decoders = [new(), new(), new(), new()];
+    let [one, one_stack, many, many_stack] = &mut decoders;
+
+    let mut first = encoder();
+    let code = signal.iter().find_map(|&sample| encode_sample(&mut first, sample).code());
+    let Some(code) = code else { return [each, slice] };
+    let mut codes = [code; CHUNK];
+    let mut values = [signal[0]; CHUNK];
+    let mut encoder = encoder();
+    for chunk in signal.chunks_exact(CHUNK) {
+        let mut length = 0;
+        for &sample in chunk {
+            if let Some(code) = encode_sample(&mut encoder, sample).code() {
+                codes[length] = code;
+                length += 1;
+            }
+        }
+        let codes = &codes[..length];
+        for &code in codes {
+            let call = instructions(|| take_one(one, black_box(code)));
+            let count = instructions(|| keep(&decode_sample(one, black_box(code))));
+            each.add(1, call, count);
+        }
+        let call = instructions(|| take_slices(many, black_box(codes), &mut values));
+        let count = instructions(|| decode_slice(many, black_box(codes), &mut values));
+        slice.add(length, call, count);
+
+        let depth = stack_depth(|| codes.iter().for_each(|&x| keep(&decode_sample(one_stack, x))));
+        each.stack = each.stack.max(depth);
+        let depth = stack_depth(|| decode_slice(many_stack, codes, &mut values));
+        slice.stack = slice.stack.max(depth);
+        keep(&values);
+    }
+    [each, slice]
+}
+
+// What is counted is one call of a function that is not inlined, less one call of an empty one like
+// it. Their addresses are printed, so that the code can be found and weighed.
 
 #[inline(never)]
 fn encode_sample<E: Encoder>(encoder: &mut E, sample: E::Sample) -> E::Output {
@@ -173,12 +198,17 @@ fn decode_slice<D: Decoder>(decoder: &mut D, codes: &[D::Code], values: &mut [D:
 }
 
 #[inline(never)]
-fn give_back<C, T>(codec: &mut C, value: T) -> T {
-    black_box(codec);
-    value
+fn take_one<C, T>(codec: &mut C, value: T) {
+    keep(codec);
+    // What does not fit in registers comes by address, and is copied there by the caller.
+    if size_of::<T>() > 8 {
+        keep(&value);
+    }
 }
 
 #[inline(never)]
 fn take_slices<C, A, B>(codec: &mut C, inputs: &[A], outputs: &mut [B]) {
-    black_box((codec, inputs.len(), outputs.len()));
+    keep(codec);
+    keep(inputs);
+    keep(outputs);
 }

@@ -1,6 +1,8 @@
 //! The paper's pseudo-code, transcribed: whole recordings, one index after the other, its slips of sign and index
 //! mended. What the codecs are measured against, in the same sample type, for the same core, by the same compiler.
 
+#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
+
 use core::ops::{Add, AddAssign, Div, Mul, Sub, SubAssign};
 
 use fixed::{
@@ -286,6 +288,24 @@ pub fn slots<S: Plain>(input: &[S], centres: &[f32], sigma: f32, levels: usize, 
         for j in 0..centres.len() {
             let level = (levels as f32 * response(x, centres[j], sigma) + 0.5) as usize;
             slots[j] = if level > 0 { (levels - level) as i8 } else { -1 };
+        }
+    }
+}
+
+/// Probabilistic spiking with its exponentials, in `f32` for every sample type: a draw for each neuron.
+#[inline(never)]
+pub fn probabilistic<S: Plain>(
+    input: &[S],
+    centres: &[f32],
+    sigma: f32,
+    mut draw: impl FnMut() -> u32,
+    fired: &mut [i8],
+) {
+    for i in 0..input.len() {
+        let x = input[i].to_f64() as f32;
+        for j in 0..centres.len() {
+            let chance = draw() as f32 / 4_294_967_296.0;
+            fired[j] = (chance < response(x, centres[j], sigma)) as i8;
         }
     }
 }

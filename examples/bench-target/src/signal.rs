@@ -14,10 +14,15 @@ use crate::plain::Plain;
 /// Samples of either signal.
 pub const LENGTH: usize = 2000;
 
-static FLIGHT: &[u8] = include_bytes!("../../../data/hexarotor.f32le");
-
 /// A time stamp, then six channels, four bytes each.
 const RECORD: usize = 28;
+
+/// The recording's beginning.
+static FLIGHT: [u8; LENGTH * RECORD] =
+    match include_bytes!("../../../data/hexarotor.f32le").first_chunk() {
+        Some(beginning) => *beginning,
+        None => panic!("the recording is too short"),
+    };
 
 #[derive(Clone, Copy)]
 pub enum Signal {
@@ -42,12 +47,14 @@ impl Signal {
                 let mut noise = Pcg32::new(1, 1);
                 for (i, sample) in buffer.iter_mut().enumerate() {
                     let uniform = f64::from(noise.next_u32()) / 4_294_967_296.0;
-                    *sample = S::from_f64((clean(0.01 * (i + 1) as f64) - 0.5 * uniform) * S::UNITS);
+                    *sample =
+                        S::from_f64((clean(0.01 * (i + 1) as f64) - 0.5 * uniform) * S::UNITS);
                 }
             }
             Self::Flight => {
                 for (sample, record) in buffer.iter_mut().zip(FLIGHT.chunks_exact(RECORD)) {
-                    let gyro_x = record[4..].first_chunk().map_or(0.0, |word| f32::from_le_bytes(*word));
+                    let gyro_x =
+                        record[4..].first_chunk().map_or(0.0, |word| f32::from_le_bytes(*word));
                     *sample = S::from_f64(f64::from(gyro_x) * S::UNITS);
                 }
             }
@@ -57,7 +64,8 @@ impl Signal {
 
 /// The paper's signal at a time in seconds, without its noise.
 fn clean(time: f64) -> f64 {
-    2.0 * libm::sin(2.0 * PI * time) - 0.5 * libm::cos(0.5 * PI * time) + 0.75 * libm::sin(10.0 * PI * time)
+    2.0 * libm::sin(2.0 * PI * time) - 0.5 * libm::cos(0.5 * PI * time)
+        + 0.75 * libm::sin(10.0 * PI * time)
 }
 
 /// A sample type that is measured.

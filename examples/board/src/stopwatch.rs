@@ -4,13 +4,13 @@
 //! timer counts them. `cargo bench-target` says at build time how many ticks make 10^9 instructions.
 
 use core::{
-    arch::asm,
+    arch::{asm, naked_asm},
     hint::black_box,
-    ptr::{read_volatile, write_volatile},
+    sync::atomic::{AtomicU32, Ordering::Relaxed, Ordering::SeqCst, compiler_fence},
 };
 use cortex_m::peripheral::{SYST, syst::SystClkSource};
 
-/// Ticks for 10^9 instructions; at least 2 a instruction, so that rounding gives the exact count.
+/// Ticks for 10^9 instructions; more than 2 an instruction, so that rounding gives the exact count.
 const TICKS: u64 = match option_env!("TICKS_PER_GIGAINSTRUCTION") {
     Some(text) => match u64::from_str_radix(text, 10) {
         Ok(ticks) => ticks,
@@ -19,54 +19,148 @@ const TICKS: u64 = match option_env!("TICKS_PER_GIGAINSTRUCTION") {
     None => 1_000_000_000,
 };
 
-const FULL: u32 = 0x00ff_ffff;
+/// The timer counts 24 bits down, then calls its handler.
+const TURN: u32 = 1 << 24;
+
+/// Where the timer stood at a measurement's start.
+static START: AtomicU32 = AtomicU32::new(0);
+
+/// Turns of the timer since a measurement's start.
+static TURNS: AtomicU32 = AtomicU32::new(0);
+
+/// Instructions of the handler, which run in the midst of what is measured.
+const HANDLER: u64 = 5;
+
+/// Bytes of the stack that are watched.
+const PAINTED: u32 = 512;
+
+/// In assembly, so that its instructions are known.
+#[unsafe(naked)]
+#[unsafe(no_mangle)]
+extern "C" fn SysTick() {
+    naked_asm!(
+        "ldr r0, ={turns}",
+        "ldr r1, [r0]",
+        "adds r1, #1",
+        "str r1, [r0]",
+        "bx lr",
+        ".ltorg",
+        turns = sym TURNS
+    )
+}
 
 /// The instructions of one call of `work`, without those of calling and of timing it.
-///
-/// Counts up to two turns of the 24-bit timer, some 1.5 million instructions.
 #[inline(never)]
 pub fn instructions(work: impl FnOnce()) -> u32 {
-    let nothing = ticks(|| ());
-    let ticks = ticks(work) - nothing;
-    ((u64::from(ticks) * 1_000_000_000 + TICKS / 2) / TICKS) as u32
-}
-
-#[inline(always)]
-fn ticks(work: impl FnOnce()) -> u32 {
-    // SAFETY: nothing else in a bench program touches the timer.
-    let timer: &mut SYST = unsafe { &mut cortex_m::Peripherals::steal().SYST };
-    timer.set_clock_source(SystClkSource::Core);
-    timer.set_reload(FULL);
-    timer.clear_current();
-    timer.enable_counter();
-    // A first read leaves the reload behind and clears the flag of a wrap.
-    let start = SYST::get_current();
-    black_box(timer.has_wrapped());
+    start();
+    let nothing = stop();
+    start();
+    compiler_fence(SeqCst);
     work();
-    let end = SYST::get_current();
-    let wrapped = u32::from(timer.has_wrapped());
-    timer.disable_counter();
-    start.wrapping_sub(end).wrapping_add(wrapped * (FULL + 1))
+    compiler_fence(SeqCst);
+    count(stop(), nothing)
 }
 
-/// How far below its caller the stack of `work` reaches, in bytes, up to 2048.
+/// What the timer told.
+struct Time {
+    ticks: u64,
+    turns: u64,
+}
+
+// Functions of their own, as there are hundreds of measurements, and not much flash.
+
+#[inline(never)]
+fn start() {
+    let timer = timer();
+    timer.set_clock_source(SystClkSource::Core);
+    timer.set_reload(TURN - 1);
+    timer.clear_current();
+    timer.enable_interrupt();
+    timer.enable_counter();
+    // The first read leaves the reload behind, which may count as a turn.
+    START.store(SYST::get_current(), Relaxed);
+    TURNS.store(0, Relaxed);
+}
+
+#[inline(never)]
+fn stop() -> Time {
+    timer().disable_counter();
+    let turns = u64::from(TURNS.load(Relaxed));
+    let passed = u64::from(START.load(Relaxed)) + turns * u64::from(TURN);
+    Time { ticks: passed - u64::from(SYST::get_current()), turns }
+}
+
+#[inline(never)]
+fn count(Time { ticks, turns }: Time, nothing: Time) -> u32 {
+    let count = ((ticks - nothing.ticks) * 1_000_000_000 + TICKS / 2) / TICKS;
+    (count - turns * HANDLER) as u32
+}
+
+fn timer() -> &'static mut SYST {
+    // SAFETY: nothing else in a bench program touches the timer.
+    unsafe { &mut *core::ptr::without_provenance_mut::<SYST>(SYST::PTR.addr()) }
+}
+
+/// Whether counts are exact here, of little and of more than a turn of the timer.
+pub fn is_exact() -> bool {
+    // SAFETY: does nothing.
+    let nops = instructions(|| unsafe { asm!("nop", "nop", "nop") });
+    let of = |rounds: u32| {
+        // SAFETY: counts a register down.
+        instructions(|| unsafe {
+            asm!("2:", "subs {0}, #1", "bne 2b", inout(reg) black_box(rounds) => _);
+        })
+    };
+    let one = of(1);
+    nops == 3
+        && (2..64).chain([1000, 10_000_000]).all(|rounds| of(rounds) == one + 2 * (rounds - 1))
+}
+
+/// Makes the compiler believe that the value is looked at in memory, at no instruction.
+#[inline(always)]
+pub fn keep<T: ?Sized>(value: &T) {
+    // SAFETY: a comment.
+    unsafe {
+        asm!("/* {} */", in(reg) (&raw const *value).cast::<()>(), options(nostack, preserves_flags))
+    };
+}
+
+/// How far below its caller the stack of `work` reaches, in bytes, up to 512.
 #[inline(never)]
 pub fn stack_depth(work: impl FnOnce()) -> u32 {
-    const WORDS: usize = 512;
     const PAINT: u32 = 0x5afe_c0de;
-    let top: *mut u32;
-    // SAFETY: reads a register.
-    unsafe { asm!("mov {}, sp", out(reg) top, options(nomem, nostack)) };
-    let bottom = top.wrapping_sub(WORDS);
-    for word in 0..WORDS - 16 {
-        // SAFETY: below the stack pointer, less what this function itself may spill, lies free RAM: `memory.x`
-        // leaves 2 KiB and more.
-        unsafe { write_volatile(bottom.wrapping_add(word), PAINT) };
+    let (top, touched): (u32, u32);
+    // SAFETY: below the stack pointer lies free RAM, more than is painted. In assembly, as a function that paints
+    // would have its own stack there.
+    unsafe {
+        asm!(
+            "mov {top}, sp",
+            "subs {at}, {top}, {size}",
+            "2:",
+            "str {paint}, [{at}]",
+            "adds {at}, #4",
+            "cmp {at}, {top}",
+            "bne 2b",
+            top = out(reg) top,
+            at = out(reg) _,
+            size = in(reg) PAINTED,
+            paint = in(reg) PAINT,
+        );
     }
     work();
-    let untouched = (0..WORDS)
-        // SAFETY: as above.
-        .take_while(|&word| unsafe { read_volatile(bottom.wrapping_add(word)) } == PAINT)
-        .count();
-    (4 * (WORDS - untouched)) as u32
+    // SAFETY: reads what was painted, and ends at what was not.
+    unsafe {
+        asm!(
+            "2:",
+            "ldr {word}, [{at}]",
+            "adds {at}, #4",
+            "cmp {word}, {paint}",
+            "beq 2b",
+            word = out(reg) _,
+            at = inout(reg) top - PAINTED => touched,
+            paint = in(reg) PAINT,
+        );
+    }
+    // One word further, and at least there if nothing was touched.
+    (top + 4).saturating_sub(touched)
 }

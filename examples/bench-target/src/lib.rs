@@ -1,0 +1,30 @@
+//! Counts the instructions of every codec, exactly. `cargo bench-target` builds, runs and reads it.
+//!
+//! A program for each sample type, as one of all does not fit the flash of a Cortex-M0. It prints one line of JSON
+//! for each signal, codec, direction and form. Counts come from the core's timer, which in QEMU's `-icount` advances
+//! with the instructions; on the host, which has none, they are 0.
+
+#![cfg_attr(target_os = "none", no_std)]
+
+mod codecs;
+mod measure;
+mod plain;
+mod signal;
+
+use core::fmt::{self, Write};
+use signal::{Measured, Signal};
+
+/// Measures every codec in one sample type, which is called `sample` in what it prints.
+pub fn run<S: Measured>(out: &mut impl Write, sample: &str) -> fmt::Result {
+    if !board::stopwatch::is_exact() {
+        writeln!(
+            out,
+            "instructions are not counted exactly: start this with `cargo bench-target`"
+        )?;
+        return Err(fmt::Error);
+    }
+    for signal in [Signal::Paper, Signal::Flight] {
+        codecs::measure::<S>(out, sample, signal)?;
+    }
+    Ok(())
+}

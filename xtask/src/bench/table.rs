@@ -1,0 +1,181 @@
+//! The figures as tables to read.
+
+use super::Row;
+use anyhow::{Context, Result};
+use std::{fs, path::Path};
+
+/// The cores of the README's tables.
+pub const CORES: [&str; 2] = ["M4F", "M0"];
+
+const START: &str = "<!-- bench-target -->\n";
+const END: &str = "<!-- /bench-target -->";
+
+/// What a line of a table tells: one codec, in one sample type, on one core and signal.
+struct Line<'a> {
+    encode: &'a Row,
+    encode_sample: &'a Row,
+    decode: &'a Row,
+    decode_sample: &'a Row,
+}
+
+/// Each codec's rows as one line, in the order that they were measured in.
+fn lines(rows: &[Row]) -> impl Iterator<Item = Line<'_>> {
+    let of = |one: &Row, direction, form| {
+        rows.iter().find(|row| {
+            (row.core, &row.signal, &row.codec, &row.sample)
+                == (one.core, &one.signal, &one.codec, &one.sample)
+                && (row.direction.as_str(), row.form.as_str()) == (direction, form)
+        })
+    };
+    rows.iter().filter(|row| row.direction == "encode" && row.form == "slice").filter_map(
+        move |encode| {
+            Some(Line {
+                encode,
+                encode_sample: of(encode, "encode", "sample")?,
+                decode: of(encode, "decode", "slice")?,
+                decode_sample: of(encode, "decode", "sample")?,
+            })
+        },
+    )
+}
+
+impl Line<'_> {
+    /// The plain transcription's mean, and how many times this codec's it is.
+    fn plain(&self) -> (String, String) {
+        match self.encode.plain_mean {
+            Some(plain) => {
+                let ratio = plain / self.encode.instructions_mean;
+                (format!("{plain:.1}"), format!("{ratio:.1}"))
+            }
+            None => ("–".into(), "–".into()),
+        }
+    }
+}
+
+/// Every figure. Instructions are those of a sample, memory is in bytes.
+pub fn text(rows: &[Row]) -> String {
+    let mut text = String::new();
+    let mut table = String::new();
+    for line in lines(rows) {
+        let Line { encode, encode_sample, decode, decode_sample } = &line;
+        let title = format!("{}, {} signal, {}", encode.core, encode.signal, encode.sample);
+        if title != table {
+            text += &format!(
+                "\n{title:18} {:>8} {:>8} {:>6} {:>8} {:>8} {:>6} {:>9} {:>6} {:>6} {:>6} {:>5} {:>5} {:>5}\n",
+                "encode",
+                "1 sample",
+                "worst",
+                "decode",
+                "1 sample",
+                "worst",
+                "plain",
+                "ratio",
+                "code",
+                "decode",
+                "state",
+                "flash",
+                "stack",
+            );
+            table = title;
+        }
+        let (plain, ratio) = line.plain();
+        text += &format!(
+            "{:24} {:>8.1} {:>8.1} {:>6} {:>8.1} {:>8.1} {:>6} {:>9} {:>6} {:>6} {:>6} {:>5} {:>5} {:>5}\n",
+            encode.codec,
+            encode.instructions_mean,
+            encode_sample.instructions_mean,
+            encode_sample.instructions_max,
+            decode.instructions_mean,
+            decode_sample.instructions_mean,
+            decode_sample.instructions_max,
+            plain,
+            ratio,
+            encode.code_bytes,
+            decode.code_bytes,
+            encode.state_bytes,
+            encode.flash_bytes,
+            encode.stack_bytes.max(decode.stack_bytes),
+        );
+    }
+    text
+}
+
+/// The README's: `f32` where there is a floating-point unit, fixed point where there is none.
+pub fn markdown(rows: &[Row]) -> String {
+    let mut text = String::new();
+    for (core, sample) in CORES.into_iter().zip(["f32", "q16.16"]) {
+        text += &format!(
+            "\nCortex-{core}, `{sample}`:\n\n\
+             | codec | encode slice | encode sample | worst sample | decode | plain | ratio | code | state | flash |\n\
+             |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
+        );
+        for line in lines(rows) {
+            let Line { encode, encode_sample, decode, .. } = &line;
+            if (encode.core, encode.sample.as_str(), encode.signal.as_str())
+                == (core, sample, "paper")
+            {
+                let (plain, ratio) = line.plain();
+                text += &format!(
+                    "| {} | {:.1} | {:.1} | {} | {:.1} | {plain} | {ratio} | {} | {} | {} |\n",
+                    name(&encode.codec),
+                    encode.instructions_mean,
+                    encode_sample.instructions_mean,
+                    encode_sample.instructions_max,
+                    decode.instructions_mean,
+                    encode.code_bytes,
+                    encode.state_bytes,
+                    encode.flash_bytes,
+                );
+            }
+        }
+    }
+    text + "\n"
+}
+
+/// The codec as a reader of the README knows it.
+fn name(codec: &str) -> &str {
+    match codec {
+        "tbr" => "TBR",
+        "sf" => "SF",
+        "mw-5" => "MW, W = 5",
+        "mw-63" => "MW, W = 63",
+        "hsa-15" => "HSA, 15 taps",
+        "t-hsa-15" => "T-HSA, 15 taps",
+        "bsa-24" => "BSA, 24 taps",
+        "bsa-24-busy" => "BSA, 24 taps, spiking nearly always",
+        "bsa-toolbox-9" => "BSA as in the toolbox, 9 taps",
+        "position-20" => "position, 20 neurons",
+        "grf-20" => "GRF, 20 neurons",
+        "grf-slots-15x10" => "GRF, 15 neurons, 10 slots",
+        "grf-random-15x16" => "GRF, 15 neurons, by chance",
+        other => other,
+    }
+}
+
+/// Puts the table between the file's markers.
+pub fn write(rows: &[Row], path: &Path) -> Result<()> {
+    let file = fs::read_to_string(path).with_context(|| path.display().to_string())?;
+    fs::write(path, between(&file, &markdown(rows))?)?;
+    println!("{} has the table.", path.display());
+    Ok(())
+}
+
+fn between(file: &str, table: &str) -> Result<String> {
+    let missing = || format!("no `{}` … `{END}`", START.trim_end());
+    let (before, rest) = file.split_once(START).with_context(missing)?;
+    let (_, after) = rest.split_once(END).with_context(missing)?;
+    Ok(format!("{before}{START}{table}{END}{after}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_is_between_the_markers_changes() {
+        let file = "a\n<!-- bench-target -->\nold\n<!-- /bench-target -->\nb\n";
+        let new = "a\n<!-- bench-target -->\nnew\n<!-- /bench-target -->\nb\n";
+        assert_eq!(between(file, "new\n").unwrap(), new);
+        assert!(between("a", "new\n").is_err());
+    }
+}
