@@ -174,6 +174,79 @@ fn edges_of_centres_of_any_size() {
     }
 }
 
+/// The edges of a linear population, and the values within two last places of each.
+fn around_edges<S: Wire>(min: S, max: S, m: usize) -> Vec<S> {
+    let (min, max) = (min.to_f64(), max.to_f64());
+    let steps = if size_of::<S>() == 2 { 65_535.0 } else { 4_294_967_295.0 };
+    let unit = (S::ends()[1].into() - S::ends()[0].into()) / steps;
+    halves(&even_centres(min, max, m))
+        .into_iter()
+        .flat_map(|edge| (-2..=2).map(move |i| S::nearest(edge + f64::from(i) * unit)))
+        .collect()
+}
+
+/// The same in integers, with ranges from the finest to the widest.
+fn drawn_edges<S: Wire + Drawn>() {
+    fn check<S: Wire, const M: usize>(min: S, max: S) {
+        if Centres::<S, M>::new_linear(min, max).is_ok() {
+            let x: Vec<_> = around_edges(min, max, M).into_iter().step_by(1 + M / 64).collect();
+            check_linear::<S, M>(min, max, &x);
+        }
+    }
+    let cases = &cases(48);
+    proptest!(cases, |((a, b) in (S::value(), S::value()))| {
+        let (min, max) = if a < b { (a, b) } else { (b, a) };
+        prop_assume!(min < max);
+        check::<S, 3>(min, max);
+        check::<S, 4>(min, max);
+        check::<S, 20>(min, max);
+        check::<S, 65>(min, max);
+        check::<S, 1000>(min, max);
+    });
+}
+
+#[test]
+fn edges_of_integer_ranges() {
+    drawn_edges::<i16>();
+    drawn_edges::<I8F8>();
+    drawn_edges::<I1F15>();
+    drawn_edges::<I16F16>();
+    drawn_edges::<I32F0>();
+}
+
+/// Ranges so fine that a spacing is a few last places of a float: all floats within.
+#[test]
+fn spacings_of_a_few_last_places() {
+    proptest!(cases(256), |(min in prop_oneof![-9.0_f32..9.0, 1e-40_f32..1e-36], last in 20..400_u32)| {
+        let mut x = vec![min];
+        x.extend((0..last).scan(min, |x, _| {
+            *x = x.next_up();
+            Some(*x)
+        }));
+        let max = x[x.len() - 1];
+        if Centres::<f32, 20>::new_linear(min, max).is_ok() {
+            check_linear::<f32, 20>(min, max, &x);
+        }
+        if Centres::<f32, 65>::new_linear(min, max).is_ok() {
+            check_linear::<f32, 65>(min, max, &x);
+        }
+    });
+}
+
+/// Ranges of every size, from subnormals to half of all floats.
+#[test]
+fn ranges_of_every_size() {
+    proptest!(cases(256), |(a in common::finite_float(), b in common::finite_float())| {
+        let (min, max) = if a < b { (a, b) } else { (b, a) };
+        if Centres::<f32, 20>::new_linear(min, max).is_ok() {
+            let edges = halves(&even_centres(min.into(), max.into(), 20));
+            let mut x = around(edges);
+            x.extend(common::HOSTILE);
+            check_linear::<f32, 20>(min, max, &x);
+        }
+    });
+}
+
 /// The same with linear and Gaussian-spaced centres.
 #[test]
 fn edges_of_ranges() {
