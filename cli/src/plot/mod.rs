@@ -25,8 +25,8 @@ pub(crate) struct Picture<'a> {
     pub shown: Range<usize>,
 }
 
-/// The name that the embedded font goes by. In an SVG it is only a wish.
-const FONT: &str = "Ubuntu";
+/// The name that the embedded font goes by. In an SVG the viewer takes its own of that kind.
+const FONT: &str = "sans-serif";
 
 /// Draws into a file, by its ending.
 ///
