@@ -310,8 +310,11 @@ pub(crate) const fn fixed32_scale<Frac: LeEqU32>(
     while range >> shift > 0xffff {
         shift += 1;
     }
-    let scale = (neurons as i64 - 2) * 65_536 / ((range >> shift) + 1);
-    FixedI32::from_bits(if scale <= 0xffff { (shift << 16) | scale as i32 } else { 0 })
+    let scale = match ((neurons as i64 - 2) * 65_536).checked_div((range >> shift) + 1) {
+        Some(scale) if scale <= 0xffff => (shift << 16) | scale as i32,
+        _ => 0,
+    };
+    FixedI32::from_bits(scale)
 }
 
 const fn parts(neurons: usize) -> f64 {
