@@ -10,6 +10,7 @@ mod flown;
 mod markdown;
 mod names;
 mod packages;
+mod parts;
 mod paths;
 mod peers;
 mod picture;

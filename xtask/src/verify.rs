@@ -1,6 +1,6 @@
 //! `cargo verify`: every check, in order, each with its time. A failure does not hide the next one.
 
-use crate::checks;
+use crate::{checks, parts};
 use anyhow::{Result, bail};
 use std::time::Instant;
 
@@ -23,6 +23,7 @@ const STEPS: &[Step] = &[
     step("features", "every feature alone, on the host", checks::features),
     step("targets", "the crate for every Cortex-M", checks::targets),
     step("no-panic", "every codec links without a panic handler", checks::no_panic),
+    step("parts", "the examples for real parts", parts::parts),
     step("demo", "the demo's table and picture", checks::demo),
     step("firmware", "emulated boards against the host", checks::firmware),
     step("laptop", "the laptop program on a flight, and the paper's tables", checks::laptop),
