@@ -38,7 +38,8 @@ impl Cell {
             ours,
             paper_mean: mean,
             paper_deviation: deviation,
-            standard_errors: beyond / error,
+            // Adding 0 takes the sign off a 0.
+            standard_errors: beyond / error + 0.0,
             mean_agrees: beyond.abs() <= STANDARD_ERRORS * error,
             deviation_agrees: (ours.deviation - deviation).abs()
                 <= part * deviation + table.rounding(),
