@@ -169,6 +169,28 @@ fn events_lost_in_the_queue_make_the_receiver_stale_until_the_next_keyframe() {
     }
 }
 
+/// The interrupt went on while main was on its way with the keyframe.
+#[test]
+fn a_keyframe_that_comes_late_does_not_take_the_receiver_back() {
+    const ROLL: StepForward<i16> = StepForward::<i16>::checked(10);
+    let mut transmitter = Transmitter::<i16, 1>::new(Coding::for_channels(1, 1));
+    let mut reader = Reader::<MAX_FRAME>::new();
+    let mut receiver = Receiver::<i16, 1>::new(ROLL);
+    let mut send = |transmitter: &mut Transmitter<i16, 1>, tick| {
+        let event = Event { tick, address: 0, polarity: spikewire::Polarity::Up };
+        let mut buffer = [0; 64];
+        let mut bytes = transmitter.next_frame([event].into_iter(), &mut buffer).unwrap().unwrap();
+        receiver.apply(&reader.next_frame(&mut bytes).unwrap(), |_, _, _| ());
+        receiver.exact(0)
+    };
+    transmitter.keyframe_values(1, 0, [Some(100)]);
+    assert_eq!(send(&mut transmitter, 2), Some(110));
+    transmitter.keyframe_values(1, 0, [Some(100)]);
+    assert_eq!((send(&mut transmitter, 3), transmitter.dropped_keyframes()), (Some(120), 1));
+    transmitter.keyframe_values(3, 0, [Some(121)]); // as late as can be
+    assert_eq!((send(&mut transmitter, 4), transmitter.dropped_keyframes()), (Some(131), 1));
+}
+
 #[test]
 fn a_loss_is_told_although_no_event_follows() {
     let queue = EventQueue::<1>::new(Overflow::DropNewest);

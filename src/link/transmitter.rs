@@ -10,8 +10,9 @@ use crate::{Encoder, Event, EventSource, Output, Spike, tick};
 /// - **Keyframes** are put after the events up to their tick and before those after it, wherever
 ///   those are in the queue.
 /// - **Losses** of the source are told to the receiver, in the first frame after them, and a keyframe
-///   that may lie before a loss is dropped, as it would claim too much.
-/// - **Memory:** `8 N + 40` bytes in `f32`.
+///   that may lie before a loss is dropped, as it would claim too much. So is one that comes after
+///   later events were sent already, as it would take the decoder back.
+/// - **Memory:** `8 N + 48` bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
 pub struct Transmitter<S, const N: usize> {
     framer: Framer,
@@ -19,6 +20,8 @@ pub struct Transmitter<S, const N: usize> {
     pending: Option<Pending<S, N>>,
     lost: u32,
     owes_loss: bool,
+    /// The tick up to which all is sent.
+    sent: Option<u32>,
     dropped_keyframes: u32,
 }
 
@@ -41,6 +44,7 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
             pending: None,
             lost: 0,
             owes_loss: false,
+            sent: None,
             dropped_keyframes: 0,
         }
     }
@@ -59,8 +63,12 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
 
     /// The same with the values themselves; `None` for a channel that has none yet.
     pub fn keyframe_values(&mut self, tick: u32, lost: u32, values: [Option<S>; N]) {
-        if self.pending.is_some() {
+        let is_late = self.sent.is_some_and(|sent| tick::is_before(tick, sent));
+        if is_late || self.pending.is_some() {
             self.dropped_keyframes = self.dropped_keyframes.saturating_add(1);
+        }
+        if is_late {
+            return;
         }
         self.pending = Some(Pending { tick, lost, values, next: 0 });
     }
@@ -101,6 +109,7 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
 
         let mut frame = self.framer.start(start, buffer)?;
         if let Some(pending) = keyframes {
+            self.sent = Some(pending.tick);
             if !pending.write(&mut frame)? {
                 self.owes_loss = false;
                 return Ok(Some(frame.finish()));
@@ -116,6 +125,7 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
                 self.held = Some(event);
                 break;
             }
+            self.sent = Some(event.tick);
         }
         if frame.is_empty() && !self.owes_loss {
             return Err(LinkError::Full);
@@ -124,7 +134,7 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
         Ok(Some(frame.finish()))
     }
 
-    /// How many keyframes were not sent: another came before its turn, or a loss did.
+    /// How many keyframes were not sent: another came before its turn, a loss did, or it came late.
     pub const fn dropped_keyframes(&self) -> u32 {
         self.dropped_keyframes
     }
