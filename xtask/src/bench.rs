@@ -147,7 +147,10 @@ fn read(board: &Board, image: &Path, printed: &str) -> Result<Measured> {
     let code = Code::read(image)?;
     let row = |line: &str| {
         let printed: Printed = serde_json::from_str(line).with_context(|| line.to_owned())?;
-        let mean = |total: u32, samples: u32| f64::from(total) / f64::from(samples);
+        // To a thousandth, or some would have 16 digits.
+        let mean = |total: u32, samples: u32| {
+            (f64::from(total) / f64::from(samples) * 1000.0).round() / 1000.0
+        };
         Ok(Row {
             core: board.core,
             instructions_mean: mean(printed.total, printed.samples),

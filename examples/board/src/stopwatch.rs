@@ -32,7 +32,12 @@ static TURNS: AtomicU32 = AtomicU32::new(0);
 const HANDLER: u64 = 5;
 
 /// Bytes of the stack that are watched.
-const PAINTED: u32 = 512;
+const PAINTED: usize = 2048;
+
+unsafe extern "C" {
+    /// Where the statics end: the linker's.
+    static __sheap: u32;
+}
 
 /// In assembly, so that its instructions are known.
 #[unsafe(naked)]
@@ -125,25 +130,25 @@ pub fn keep<T: ?Sized>(value: &T) {
     };
 }
 
-/// How far below its caller the stack of `work` reaches, in bytes, up to 512.
+/// How far below its caller the stack of `work` reaches, in bytes, up to 2048 or what is free.
 #[inline(never)]
 pub fn stack_depth(work: impl FnOnce()) -> u32 {
     const PAINT: u32 = 0x5afe_c0de;
-    let (top, touched): (u32, u32);
-    // SAFETY: below the stack pointer lies free RAM, more than is painted. In assembly, as a function that paints
-    // would have its own stack there.
+    let top: usize;
+    // SAFETY: reads a register.
+    unsafe { asm!("mov {}, sp", out(reg) top, options(nomem, nostack)) };
+    let bottom = (top - PAINTED).max((&raw const __sheap).addr());
+    let mut touched = bottom;
+    // SAFETY: what lies between the statics and the stack pointer is free. In assembly, as a function
+    // that paints would have its own stack there.
     unsafe {
         asm!(
-            "mov {top}, sp",
-            "subs {at}, {top}, {size}",
             "2:",
             "str {paint}, [{at}]",
             "adds {at}, #4",
-            "cmp {at}, {top}",
+            "cmp {at}, sp",
             "bne 2b",
-            top = out(reg) top,
-            at = out(reg) _,
-            size = in(reg) PAINTED,
+            at = inout(reg) bottom => _,
             paint = in(reg) PAINT,
         );
     }
@@ -157,10 +162,10 @@ pub fn stack_depth(work: impl FnOnce()) -> u32 {
             "cmp {word}, {paint}",
             "beq 2b",
             word = out(reg) _,
-            at = inout(reg) top - PAINTED => touched,
+            at = inout(reg) touched,
             paint = in(reg) PAINT,
         );
     }
     // One word further, and at least there if nothing was touched.
-    (top + 4).saturating_sub(touched)
+    (top + 4).saturating_sub(touched) as u32
 }
