@@ -7,6 +7,7 @@ mod demo;
 mod distribution;
 mod firmware;
 mod flown;
+mod link;
 mod markdown;
 mod names;
 mod packages;

@@ -28,6 +28,16 @@ pub fn run_counting(board: &Board, image: &Path) -> Result<String> {
     run_for(LONG_PATIENCE, emulator, image)
 }
 
+/// The same, and what went out of the board's first serial port is kept in the file.
+pub fn run_capturing(board: &Board, image: &Path, serial: &Path) -> Result<String> {
+    let mut emulator = emulator(board);
+    emulator.arg("-icount").arg(format!("shift={}", board.icount));
+    // Or the monitor takes the console that the serial port leaves.
+    emulator.args(["-monitor", "none"]);
+    emulator.arg("-serial").arg(format!("file:{}", serial.display()));
+    run_for(PATIENCE, emulator, image)
+}
+
 fn emulator(board: &Board) -> Command {
     let mut emulator = shell::command("qemu-system-arm");
     emulator.args(["-M", board.machine, "-nographic"]);

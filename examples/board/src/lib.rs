@@ -5,7 +5,7 @@
 
 #![cfg_attr(target_os = "none", no_std)]
 
-#[cfg(target_os = "none")]
+#[cfg(all(target_os = "none", feature = "stopwatch"))]
 pub mod stopwatch;
 
 #[cfg(target_os = "none")]
@@ -14,7 +14,7 @@ mod cortex_m;
 pub use cortex_m::{console, entry, finish};
 
 /// The host counts no instructions.
-#[cfg(not(target_os = "none"))]
+#[cfg(all(not(target_os = "none"), feature = "stopwatch"))]
 pub mod stopwatch {
     pub fn instructions(work: impl FnOnce()) -> u32 {
         work();
