@@ -15,74 +15,76 @@ static CENTRES: Centres<f32, 3> = Centres::<f32, _>::checked([-1.5, 0.0, 2.0]);
 static FIELDS: ReceptiveFields<f32, 4, 128> = ReceptiveFields::<f32, _, _>::checked(0.0, 1.0, 1.5);
 
 #[track_caller]
-fn assert_json(data: impl Serialize, expected: serde_json::Value) {
-    assert_eq!(serde_json::to_value(data).unwrap(), expected);
+fn assert_json(data: impl Serialize, expected: &serde_json::Value) {
+    assert_eq!(serde_json::to_value(data).unwrap(), *expected);
 }
 
 #[test]
 fn spikes_and_events() {
-    assert_json([Spike::Down, Spike::None, Spike::Up], json!(["Down", "None", "Up"]));
+    assert_json([Spike::Down, Spike::None, Spike::Up], &json!(["Down", "None", "Up"]));
     let event = Event { tick: 5, address: 2, polarity: Polarity::Down };
-    assert_json(event, json!({ "tick": 5, "address": 2, "polarity": "Down" }));
+    assert_json(event, &json!({ "tick": 5, "address": 2, "polarity": "Down" }));
     let firing = Firing { neuron: 1, slot: 3, polarity: Polarity::Up };
-    assert_json(firing, json!({ "neuron": 1, "slot": 3, "polarity": "Up" }));
+    assert_json(firing, &json!({ "neuron": 1, "slot": 3, "polarity": "Up" }));
 }
 
 #[test]
 fn population_codes() {
-    assert_json(Neuron::<4>::new(2), json!(2));
+    assert_json(Neuron::<4>::new(2), &json!(2));
     let volley = Slots::new(&FIELDS).encoder().encode(0.5);
     let pairs: Vec<(u16, u16)> = volley.iter().collect();
     assert_eq!(pairs.len(), 4);
-    assert_json(volley, json!(pairs));
-    assert_json(Pattern::<4>::EMPTY, json!([]));
+    assert_json(volley, &json!(pairs));
+    assert_json(Pattern::<4>::EMPTY, &json!([]));
 }
 
 #[test]
 fn temporal_schemes() {
     let scheme = TemporalContrast::<i16>::checked_with_step(3, 6);
-    assert_json(scheme, json!({ "threshold": 3, "step": 6 }));
-    assert_json(StepForward::<f32>::checked(0.25), json!({ "threshold": 0.25 }));
+    assert_json(scheme, &json!({ "threshold": 3, "step": 6 }));
+    assert_json(StepForward::<f32>::checked(0.25), &json!({ "threshold": 0.25 }));
     let scheme = MovingWindow::<I8F8, 4>::new(I8F8::from_bits(64)).unwrap();
-    assert_json(scheme, json!({ "threshold": { "bits": 64 } }));
+    assert_json(scheme, &json!({ "threshold": { "bits": 64 } }));
 }
 
 #[test]
 fn rate_schemes_with_their_filter() {
     let taps = [0.5, 1.0, 0.5];
-    assert_json(TAPS, json!(taps));
-    assert_json(Hough::new(&TAPS), json!({ "taps": taps, "shift": 0.0 }));
+    assert_json(TAPS, &json!(taps));
+    assert_json(Hough::new(&TAPS), &json!({ "taps": taps, "shift": 0.0 }));
     let scheme = ThresholdHough::new(&TAPS, 0.25).unwrap();
-    assert_json(scheme, json!({ "taps": taps, "threshold": 0.25, "shift": 0.0 }));
+    assert_json(scheme, &json!({ "taps": taps, "threshold": 0.25, "shift": 0.0 }));
     let scheme = Ben::subtractive(&TAPS, 0.5).unwrap().with_shift(-1.0).unwrap();
     assert_json(
         scheme,
-        json!({ "taps": taps, "criterion": { "Subtractive": 0.5 }, "shift": -1.0 }),
+        &json!({ "taps": taps, "criterion": { "Subtractive": 0.5 }, "shift": -1.0 }),
     );
     let scheme = BenToolbox::new(&TAPS, 1.5).unwrap();
-    assert_json(scheme, json!({ "taps": taps, "threshold": 1.5, "shift": 0.0 }));
+    assert_json(scheme, &json!({ "taps": taps, "threshold": 1.5, "shift": 0.0 }));
 }
 
 #[test]
 fn population_schemes_with_their_neurons() {
-    assert_json(CENTRES, json!([-1.5, 0.0, 2.0]));
-    assert_json(Position::new(&CENTRES), json!({ "centres": [-1.5, 0.0, 2.0] }));
+    assert_json(CENTRES, &json!([-1.5, 0.0, 2.0]));
+    assert_json(Position::new(&CENTRES), &json!({ "centres": [-1.5, 0.0, 2.0] }));
     let fields =
         json!({ "centres": [-0.25, 0.25, 0.75, 1.25], "min": 0.0, "max": 1.0, "beta": 1.5 });
-    assert_json(FIELDS, fields.clone());
-    assert_json(Slots::new(&FIELDS), json!({ "fields": fields, "floor": 1 }));
-    assert_json(Probabilistic::new(&FIELDS), json!({ "fields": fields }));
+    assert_json(FIELDS, &fields);
+    assert_json(Slots::new(&FIELDS), &json!({ "fields": fields, "floor": 1 }));
+    assert_json(Probabilistic::new(&FIELDS), &json!({ "fields": fields }));
 }
 
 #[test]
 fn what_is_set_up_from() {
-    assert_json(Shape::Gaussian { alpha: 2.5 }, json!({ "Gaussian": { "alpha": 2.5 } }));
-    assert_json(Scale::Sum(1.0_f32), json!({ "Sum": 1.0 }));
-    assert_json(Criterion::<f32>::Multiplicative(0.5), json!({ "Multiplicative": 0.5 }));
+    assert_json(Shape::Gaussian { alpha: 2.5 }, &json!({ "Gaussian": { "alpha": 2.5 } }));
+    assert_json(Scale::Sum(1.0_f32), &json!({ "Sum": 1.0 }));
+    assert_json(Criterion::<f32>::Multiplicative(0.5), &json!({ "Multiplicative": 0.5 }));
     let error = ConfigError::AllZero { parameter: "filter taps" };
-    assert_json(error, json!({ "AllZero": { "parameter": "filter taps" } }));
+    assert_json(error, &json!({ "AllZero": { "parameter": "filter taps" } }));
     let mut calibration = Calibration::<f32>::new();
-    [1.0, 2.0, 4.0].into_iter().for_each(|sample| calibration.observe(sample));
-    assert_json(calibration.differences().unwrap().mean, json!(1.5));
+    for sample in [1.0, 2.0, 4.0] {
+        calibration.observe(sample);
+    }
+    assert_json(calibration.differences().unwrap().mean, &json!(1.5));
     assert_eq!(serde_json::to_value(calibration).unwrap()["max"], json!(4.0));
 }
