@@ -125,6 +125,6 @@ mod tests {
         assert_close(normal_quantile(0.5), 0.0);
         assert_close(normal_quantile(0.75), 0.674_489_750_196_081_7);
         assert_close(normal_quantile(0.975), 1.959_963_984_540_054);
-        assert_close(normal_quantile(0.999), 3.090_232_306_167_813_4);
+        assert_close(normal_quantile(0.999), 3.090_232_306_167_813);
     }
 }
