@@ -27,7 +27,7 @@ pub fn clippy() -> Result<()> {
 
 pub fn test() -> Result<()> {
     run(&mut cargo("test --workspace"))?;
-    run(&mut cargo("test --all-features")) // the crate's own tests and doctests, every feature on
+    run(&mut cargo("test --package spikewire --all-features")) // the crate's own tests and doctests, every feature on
 }
 
 pub fn peers() -> Result<()> {
@@ -36,7 +36,7 @@ pub fn peers() -> Result<()> {
 
 /// The README is the documentation of an item named `Readme`, which exists for doctests only.
 pub fn readme() -> Result<()> {
-    let said = output(&mut cargo("test --doc --all-features -- Readme"))?;
+    let said = output(&mut cargo("test --package spikewire --doc --all-features -- Readme"))?;
     print!("{said}");
     ensure!(
         said.contains(" - Readme (line "),
@@ -46,13 +46,14 @@ pub fn readme() -> Result<()> {
 }
 
 pub fn doc() -> Result<()> {
-    run(cargo("doc --no-deps --all-features").env("RUSTDOCFLAGS", "-D warnings"))
+    run(cargo("doc --package spikewire --no-deps --all-features")
+        .env("RUSTDOCFLAGS", "-D warnings"))
 }
 
 pub fn features() -> Result<()> {
-    run(&mut cargo("check --no-default-features"))?;
+    run(&mut cargo("check --package spikewire --no-default-features"))?;
     for feature in feature_names()? {
-        run(cargo("check --no-default-features --features").arg(feature))?;
+        run(cargo("check --package spikewire --no-default-features --features").arg(feature))?;
     }
     Ok(())
 }
