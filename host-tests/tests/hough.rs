@@ -135,3 +135,16 @@ fn all_pairs_of_8_bits() {
     check([3, -2]);
     check([0, 100]);
 }
+
+/// Room beyond the spikes is not written to.
+#[test]
+fn a_decoded_slice_ends_with_its_spikes() {
+    use spikewire::{Decoder, Scheme, Spike};
+
+    let taps = spikewire::rate::Taps::<f32, 4>::new([1.0, 2.0, 3.0, 4.0]).unwrap();
+    let mut decoder = spikewire::rate::Hough::new(&taps).decoder();
+    let mut values = [-1.0; 8];
+    assert_eq!(decoder.decode_slice(&[Spike::Up, Spike::None], &mut values), 2);
+    assert_eq!(values, [1.0, 2.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0]);
+    assert_eq!(decoder.decode(Spike::None), 3.0);
+}

@@ -73,6 +73,7 @@ impl<S: Sample, const F: usize> Decoder for RateDecoder<'_, S, F> {
     fn decode_slice(&mut self, spikes: &[Spike], values: &mut [S]) -> usize {
         let length = spikes.len().min(values.len());
         let spikes = spikes.get(..length).unwrap_or_default();
+        let values = values.get_mut(..length).unwrap_or_default();
         let mut pending = self.pending;
         pending.rotate_left((self.next as usize).min(F));
         let mut line = [pending, [S::Residual::ZERO; F]];
