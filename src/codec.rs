@@ -88,6 +88,12 @@ pub(crate) fn encode_each<E: Encoder + ?Sized>(
     samples.len().min(outputs.len())
 }
 
+/// Whether every sample is finite, asked once for all.
+#[inline]
+pub(crate) fn all_finite<S: Sample>(samples: &[S]) -> bool {
+    samples.iter().fold(S::ZERO, |taint, &sample| taint.taint(sample)).is_finite()
+}
+
 /// Turns spikes back into values, one output of the encoder at a time.
 pub trait Decoder {
     /// The numbers it works on.

@@ -3,7 +3,7 @@
 use super::filter::Taps;
 use super::lookahead::{Lookahead, subtract};
 use super::residual::Rated;
-use crate::codec::encode_each;
+use crate::codec::{all_finite, encode_each};
 use crate::sample::Tally;
 use crate::{Encoder, Sample, Spike};
 
@@ -61,8 +61,7 @@ impl<S: Sample, R: Rule<S>, const F: usize> Encoder for RateEncoder<'_, S, R, F>
     /// Whether all samples are finite is asked once; if not, each is taken with care.
     #[inline]
     fn encode_slice(&mut self, samples: &[S], spikes: &mut [Option<Spike>]) -> usize {
-        let finite = samples.iter().fold(S::ZERO, |taint, &sample| taint.taint(sample)).is_finite();
-        if !finite {
+        if !all_finite(samples) {
             return encode_each(self, samples, spikes);
         }
         let length = samples.len().min(spikes.len());

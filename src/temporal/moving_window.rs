@@ -3,7 +3,7 @@
 use core::ops::{Add, Sub};
 
 use super::StepDecoder;
-use crate::codec::encode_each;
+use crate::codec::{all_finite, encode_each};
 use crate::error::{checked, positive};
 use crate::sample::{Tally, for_each_integer, for_each_sample};
 use crate::{ConfigError, Encoder, Sample, Scheme, Spike};
@@ -200,8 +200,7 @@ impl<S: Sample, const N: usize> Encoder for MovingWindowEncoder<S, N> {
     /// Whether all samples are finite is asked once; if not, each is taken with care.
     #[inline]
     fn encode_slice(&mut self, samples: &[S], spikes: &mut [Spike]) -> usize {
-        let finite = samples.iter().fold(S::ZERO, |taint, &sample| taint.taint(sample)).is_finite();
-        if !finite || !self.tally.is_primed() {
+        if !all_finite(samples) || !self.tally.is_primed() {
             return encode_each(self, samples, spikes);
         }
         self.slide_slice(samples, spikes);
