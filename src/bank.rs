@@ -1,7 +1,11 @@
 //! Channels side by side: samples in, addressed and time-stamped events out.
 
+#[cfg(feature = "queue")]
+use crate::sink::EventQueue;
 use crate::spike::{Code, Event};
 use crate::{Encoder, Output, Scheme};
+#[cfg(feature = "link")]
+use crate::{Spike, link::Snapshot};
 
 /// `N` encoders of one kind, such as the six channels of an inertial sensor.
 ///
@@ -33,7 +37,12 @@ pub struct Bank<E, const N: usize> {
 impl<E: Encoder, const N: usize> Bank<E, N> {
     /// The same scheme on every channel.
     pub fn new<P: Scheme<Encoder = E>>(scheme: P) -> Self {
-        Self::from_encoders(core::array::from_fn(|_| scheme.encoder()))
+        Self::from_schemes([scheme; N])
+    }
+
+    /// A scheme for each channel, such as one for rates and another for accelerations.
+    pub fn from_schemes<P: Scheme<Encoder = E>>(schemes: [P; N]) -> Self {
+        Self::from_encoders(schemes.map(Scheme::encoder))
     }
 
     /// Encoders of the caller's, each with parameters of its own.
@@ -70,6 +79,31 @@ impl<E: Encoder, const N: usize> Bank<E, N> {
             }
             first = first.wrapping_add(<<E::Output as Output>::Code as Code>::NEURONS as u16);
         }
+    }
+
+    /// The same into a queue, from the interrupt in which the samples come. Never blocks; what does not
+    /// fit is counted in the queue, as lost under any policy, since nobody takes it back.
+    #[cfg(feature = "queue")]
+    #[inline]
+    pub fn encode_into<const Q: usize>(
+        &mut self,
+        tick: u32,
+        samples: [E::Sample; N],
+        events: &EventQueue<Q>,
+    ) {
+        self.encode(tick, samples, |event| events.put(event));
+    }
+
+    /// What the encoders hold, for the keyframes of a link.
+    ///
+    /// `tick` is that of the last sample encoded, `lost` the queue's count at the same moment: take it
+    /// where the bank encodes, before the next sample.
+    #[cfg(feature = "link")]
+    pub fn snapshot(&self, tick: u32, lost: u32) -> Snapshot<E::Sample, N>
+    where
+        E::Output: Output<Code = Spike>,
+    {
+        Snapshot { tick, lost, values: self.channels.each_ref().map(Encoder::keyframe) }
     }
 
     /// The encoders, for their keyframes and counters.

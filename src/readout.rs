@@ -102,7 +102,12 @@ where
 {
     /// The same scheme on every channel.
     pub fn new<P: Scheme<Decoder = D>>(scheme: P) -> Self {
-        Self::from_decoders(core::array::from_fn(|_| scheme.decoder()))
+        Self::from_schemes([scheme; N])
+    }
+
+    /// A scheme for each channel.
+    pub fn from_schemes<P: Scheme<Decoder = D>>(schemes: [P; N]) -> Self {
+        Self::from_decoders(schemes.map(Scheme::decoder))
     }
 
     /// Decoders of the caller's, each with parameters of its own.

@@ -6,8 +6,10 @@ use common::{cases, flight_channels, float};
 use host_tests::compare::encode;
 use proptest::collection::vec;
 use proptest::prelude::*;
+use spikewire::link::Snapshot;
 use spikewire::population::{Centres, Position, ReceptiveFields, Slots};
 use spikewire::rate::{Hough, Taps};
+use spikewire::sink::{EventQueue, Overflow};
 use spikewire::temporal::StepForward;
 use spikewire::{Bank, Code, Encoder, Event, Output, Polarity, Scheme};
 
@@ -69,10 +71,8 @@ fn addresses_times_and_polarities_by_hand() {
         ]
     );
     assert_eq!(bank.rejected(), 1);
-    assert_eq!(
-        bank.channels().each_ref().map(Encoder::keyframe),
-        [Some(1.0), Some(-1.0), Some(5.0)]
-    );
+    let values = [Some(1.0), Some(-1.0), Some(5.0)];
+    assert_eq!(bank.snapshot(30, 7), Snapshot { tick: 30, lost: 7, values });
     bank.reset();
     assert_eq!((bank.rejected(), bank.channels()[0].keyframe()), (0, None));
 }
@@ -90,11 +90,26 @@ fn slots_are_times() {
 
 #[test]
 fn channels_may_have_parameters_of_their_own() {
-    let thresholds = [1.0_f32, 2.0].map(|t| StepForward::new(t).unwrap().encoder());
-    let mut bank = Bank::from_encoders(thresholds);
+    let mut bank = Bank::from_schemes([1.0_f32, 2.0].map(|t| StepForward::new(t).unwrap()));
     let channels = [vec![0.0, 1.5], vec![0.0, 1.5]];
     let told = events(&mut bank, &channels, &[1, 2]);
     assert_eq!(told, [Event { tick: 2, address: 0, polarity: Polarity::Up }]);
+}
+
+#[test]
+fn a_queue_counts_what_a_bank_has_no_room_for() {
+    for (overflow, expected, refused) in [
+        (Overflow::DropOldest, [1, 2], 0),
+        (Overflow::DropNewest, [0, 1], 0),
+        (Overflow::Refuse, [0, 1], 1),
+    ] {
+        let queue = EventQueue::<2>::new(overflow);
+        let mut bank = Bank::<_, 3>::new(StepForward::<i16>::checked(1));
+        bank.encode_into(1, [0; 3], &queue);
+        bank.encode_into(2, [5; 3], &queue);
+        assert_eq!((queue.lost(), queue.refused()), (1, refused), "{overflow:?}");
+        assert!(queue.drain().map(|event| event.address).eq(expected), "{overflow:?}");
+    }
 }
 
 /// As many neurons as there are addresses.

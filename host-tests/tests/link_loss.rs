@@ -5,7 +5,7 @@ use fixed::types::I8F8;
 use host_tests::flight;
 use rand_core::Rng;
 use rand_pcg::Pcg32;
-use spikewire::link::{Coding, MAX_FRAME, Raw, Reader, Receiver, Transmitter};
+use spikewire::link::{Coding, MAX_FRAME, Raw, Reader, Receiver, Snapshot, Transmitter};
 use spikewire::sink::{EventQueue, Overflow};
 use spikewire::temporal::{StepDecoder, StepForward};
 use spikewire::{Bank, Decoder, Event, Sample, Scheme};
@@ -41,7 +41,7 @@ fn fly<S: Raw>(scheme: StepForward<S>, convert: fn(f32) -> S, per_cent: u32) -> 
         });
         if sample.time_us >= next_keyframe {
             next_keyframe += 1_000_000;
-            transmitter.keyframe(sample.time_us, 0, bank.channels());
+            transmitter.keyframe(bank.snapshot(sample.time_us, 0));
             for (decoder, encoder) in lossless.iter_mut().zip(bank.channels()) {
                 decoder.resync(spikewire::Encoder::keyframe(encoder).unwrap());
             }
@@ -148,13 +148,13 @@ fn events_lost_in_the_queue_make_the_receiver_stale_until_the_next_keyframe() {
         };
 
         let now = encode(&mut bank, 3);
-        transmitter.keyframe(now, queue.lost(), bank.channels());
+        transmitter.keyframe(bank.snapshot(now, queue.lost()));
         flush(&mut transmitter, &mut receiver);
         assert_eq!(receiver.exact(0), base(&bank));
 
         // A keyframe that may lie before a loss must not hide it.
         let now = encode(&mut bank, 2);
-        transmitter.keyframe(now, queue.lost(), bank.channels());
+        transmitter.keyframe(bank.snapshot(now, queue.lost()));
         encode(&mut bank, 5);
         assert_eq!(queue.lost(), 3);
         flush(&mut transmitter, &mut receiver);
@@ -162,7 +162,7 @@ fn events_lost_in_the_queue_make_the_receiver_stale_until_the_next_keyframe() {
 
         // One that was taken after it makes up for it.
         let now = encode(&mut bank, 2);
-        transmitter.keyframe(now, queue.lost(), bank.channels());
+        transmitter.keyframe(bank.snapshot(now, queue.lost()));
         encode(&mut bank, 1);
         flush(&mut transmitter, &mut receiver);
         assert_eq!(receiver.exact(0), base(&bank));
@@ -183,11 +183,11 @@ fn a_keyframe_that_comes_late_does_not_take_the_receiver_back() {
         receiver.apply(&reader.next_frame(&mut bytes).unwrap(), |_, _, _| ());
         receiver.exact(0)
     };
-    transmitter.keyframe_values(1, 0, [Some(100)]);
+    transmitter.keyframe(Snapshot { tick: 1, lost: 0, values: [Some(100)] });
     assert_eq!(send(&mut transmitter, 2), Some(110));
-    transmitter.keyframe_values(1, 0, [Some(100)]);
+    transmitter.keyframe(Snapshot { tick: 1, lost: 0, values: [Some(100)] });
     assert_eq!((send(&mut transmitter, 3), transmitter.dropped_keyframes()), (Some(120), 1));
-    transmitter.keyframe_values(3, 0, [Some(121)]); // as late as can be
+    transmitter.keyframe(Snapshot { tick: 3, lost: 0, values: [Some(121)] }); // as late as can be
     assert_eq!((send(&mut transmitter, 4), transmitter.dropped_keyframes()), (Some(131), 1));
 }
 

@@ -246,7 +246,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     }
 
     /// Sends the events of a source, each as the input that `to_input` makes of it, and the time steps
-    /// between them. Returns how many events were sent.
+    /// between them. Returns how many events were sent. From a queue take `EVENTS.drain()`, which ends
+    /// even if events come faster than the chip takes them.
     ///
     /// # Errors
     /// As [`send`](Self::send). An event that the chip did not acknowledge is held and comes first the

@@ -61,7 +61,7 @@
 //! for (tick, rate) in [(1_000, 0.0), (2_000, 0.3), (3_000, 0.35)] {
 //!     bank.encode(tick, [rate, 0.0, -rate], |event| events.push(event));
 //! }
-//! transmitter.keyframe(3_000, 0, bank.channels()); // once a second, after a sample
+//! transmitter.keyframe(bank.snapshot(3_000, 0)); // once a second, after a sample
 //!
 //! let mut buffer = [0; MAX_FRAME];
 //! let mut events = events.into_iter();
@@ -82,6 +82,7 @@ mod frame;
 mod raw;
 mod reader;
 mod receiver;
+mod snapshot;
 mod transmitter;
 mod writer;
 
@@ -90,5 +91,6 @@ pub use frame::{Events, FrameView, Keyframe, MAX_FRAME, MIN_FRAME};
 pub use raw::Raw;
 pub use reader::{Gap, Reader, Received};
 pub use receiver::Receiver;
+pub use snapshot::Snapshot;
 pub use transmitter::Transmitter;
 pub use writer::{Coding, FrameWriter, Framer};

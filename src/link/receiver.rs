@@ -29,7 +29,12 @@ struct Channel<S> {
 impl<S: Raw, const N: usize> Receiver<S, N> {
     /// The same scheme on every channel; that of the sender.
     pub fn new<P: Scheme<Sample = S, Decoder = StepDecoder<S>>>(scheme: P) -> Self {
-        Self::from_decoders(core::array::from_fn(|_| scheme.decoder()))
+        Self::from_schemes([scheme; N])
+    }
+
+    /// A scheme for each channel; those of the sender.
+    pub fn from_schemes<P: Scheme<Sample = S, Decoder = StepDecoder<S>>>(schemes: [P; N]) -> Self {
+        Self::from_decoders(schemes.map(Scheme::decoder))
     }
 
     /// Decoders of the caller's, each with parameters of its own.

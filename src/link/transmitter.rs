@@ -1,8 +1,8 @@
 //! Events and keyframes to frames, in the order in which they hold.
 
-use super::{Coding, FrameWriter, Framer, LinkError, Raw};
+use super::{Coding, FrameWriter, Framer, LinkError, Raw, Snapshot};
 use crate::sink::Batch;
-use crate::{Encoder, Event, EventSource, Output, Spike, tick};
+use crate::{Event, EventSource, tick};
 
 /// Draws events from a source and turns them into frames for `N` channels of a step code, numbered
 /// from address 0.
@@ -27,9 +27,7 @@ pub struct Transmitter<S, const N: usize> {
 
 #[derive(Clone, Copy, Debug)]
 struct Pending<S, const N: usize> {
-    tick: u32,
-    lost: u32,
-    values: [Option<S>; N],
+    snapshot: Snapshot<S, N>,
     /// The channel whose keyframe is written next.
     next: usize,
 }
@@ -49,28 +47,16 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
         }
     }
 
-    /// Sends what the encoders hold, at the next chance.
-    ///
-    /// `tick` is that of the last sample encoded, `lost` the source's count at the same moment: take
-    /// them together with the encoders in the interrupt that encodes, or while it is held off.
-    pub fn keyframe<E>(&mut self, tick: u32, lost: u32, channels: &[E; N])
-    where
-        E: Encoder<Sample = S>,
-        E::Output: Output<Code = Spike>,
-    {
-        self.keyframe_values(tick, lost, channels.each_ref().map(Encoder::keyframe));
-    }
-
-    /// The same with the values themselves; `None` for a channel that has none yet.
-    pub fn keyframe_values(&mut self, tick: u32, lost: u32, values: [Option<S>; N]) {
-        let is_late = self.sent.is_some_and(|sent| tick::is_before(tick, sent));
+    /// Sends what the encoders held, at the next chance.
+    pub fn keyframe(&mut self, snapshot: Snapshot<S, N>) {
+        let is_late = self.sent.is_some_and(|sent| tick::is_before(snapshot.tick, sent));
         if is_late || self.pending.is_some() {
             self.dropped_keyframes = self.dropped_keyframes.saturating_add(1);
         }
         if is_late {
             return;
         }
-        self.pending = Some(Pending { tick, lost, values, next: 0 });
+        self.pending = Some(Pending { snapshot, next: 0 });
     }
 
     /// Writes the next frame, with as many events as fit and are there; `None` if there is nothing to
@@ -96,12 +82,12 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
         self.note_loss(events.lost());
 
         let due = match (&self.pending, &self.held) {
-            (Some(pending), Some(event)) => tick::is_before(pending.tick, event.tick),
+            (Some(pending), Some(event)) => tick::is_before(pending.snapshot.tick, event.tick),
             (pending, _) => pending.is_some(),
         };
         let keyframes = if due { self.pending.as_mut() } else { None };
         let start = match (&keyframes, &self.held) {
-            (Some(pending), _) => pending.tick,
+            (Some(pending), _) => pending.snapshot.tick,
             (None, Some(event)) => event.tick,
             (None, None) if self.owes_loss => 0,
             (None, None) => return Ok(None),
@@ -109,7 +95,7 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
 
         let mut frame = self.framer.start(start, buffer)?;
         if let Some(pending) = keyframes {
-            self.sent = Some(pending.tick);
+            self.sent = Some(pending.snapshot.tick);
             if !pending.write(&mut frame)? {
                 self.owes_loss = false;
                 return Ok(Some(frame.finish()));
@@ -117,7 +103,8 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
             self.pending = None;
         }
         while let Some(event) = self.held.take().or_else(|| events.next_event()) {
-            let is_behind = |pending: &Pending<S, N>| tick::is_before(pending.tick, event.tick);
+            let is_behind =
+                |pending: &Pending<S, N>| tick::is_before(pending.snapshot.tick, event.tick);
             if events.lost() != self.lost
                 || self.pending.as_ref().is_some_and(is_behind)
                 || frame.event(event).is_err()
@@ -146,7 +133,7 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
         self.lost = lost;
         self.owes_loss = true;
         self.framer.mark_loss();
-        if self.pending.take_if(|pending| pending.lost != lost).is_some() {
+        if self.pending.take_if(|pending| pending.snapshot.lost != lost).is_some() {
             self.dropped_keyframes = self.dropped_keyframes.saturating_add(1);
         }
     }
@@ -155,7 +142,7 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
 impl<S: Raw, const N: usize> Pending<S, N> {
     /// Writes keyframes as far as they fit, and says whether that was all.
     fn write(&mut self, frame: &mut FrameWriter<'_, '_>) -> Result<bool, LinkError> {
-        while let Some(value) = self.values.get(self.next) {
+        while let Some(value) = self.snapshot.values.get(self.next) {
             if let Some(value) = *value {
                 match frame.keyframe(self.next as u16, value) {
                     Err(_) if !frame.is_empty() => return Ok(false),

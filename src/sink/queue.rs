@@ -92,6 +92,14 @@ impl<const N: usize> EventQueue<N> {
         self.with(|shared| shared.push(event, self.overflow)).unwrap_or(Err(Refused(event)))
     }
 
+    /// The same for one who takes nothing back: an event that is refused is lost, and counted as such.
+    #[inline]
+    pub(crate) fn put(&self, event: Event) {
+        if self.push(event).is_err() {
+            self.with(|shared| shared.lost = shared.lost.saturating_add(1));
+        }
+    }
+
     /// Takes the oldest event.
     pub fn pop(&self) -> Option<Event> {
         self.with(|shared| shared.events.pop_front()).flatten()

@@ -15,7 +15,7 @@ mod send;
 #[cfg(target_os = "none")]
 mod uart;
 
-use spikewire::{Scheme, temporal::StepForward};
+use spikewire::temporal::StepForward;
 
 /// Gyroscope x, y, z, then accelerometer x, y, z.
 const CHANNELS: usize = 6;
@@ -24,15 +24,9 @@ const RATE: StepForward<f32> = StepForward::<f32>::checked(0.1);
 /// A spike for every 0.5 m/s².
 const ACCELERATION: StepForward<f32> = StepForward::<f32>::checked(0.5);
 
-/// One of the two for each channel, and what the caller makes of it.
-fn channels<T: Copy>(make: impl Fn(StepForward<f32>) -> T) -> [T; CHANNELS] {
-    let [rate, acceleration] = [make(RATE), make(ACCELERATION)];
-    [rate, rate, rate, acceleration, acceleration, acceleration]
-}
-
-fn decoders() -> [<StepForward<f32> as Scheme>::Decoder; CHANNELS] {
-    channels(Scheme::decoder)
-}
+/// The same on both ends.
+const SCHEMES: [StepForward<f32>; CHANNELS] =
+    [RATE, RATE, RATE, ACCELERATION, ACCELERATION, ACCELERATION];
 
 #[cfg(target_os = "none")]
 #[board::entry]

@@ -1,6 +1,6 @@
 //! The host: what the board's UART said, from standard input, to values.
 
-use crate::{decoders, digest::Digest};
+use crate::{SCHEMES, digest::Digest};
 use spikewire::link::{MAX_FRAME, Reader, Receiver};
 use std::{
     fmt,
@@ -12,7 +12,7 @@ pub fn run(out: &mut impl fmt::Write) -> fmt::Result {
     io::stdin().read_to_end(&mut captured).map_err(|_| fmt::Error)?;
 
     let mut reader = Reader::<MAX_FRAME>::new();
-    let mut receiver = Receiver::from_decoders(decoders());
+    let mut receiver = Receiver::from_schemes(SCHEMES);
     let mut decoded = Digest::new();
     let mut bytes = captured.as_slice();
     while let Some(received) = reader.next_frame(&mut bytes) {

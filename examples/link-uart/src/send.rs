@@ -1,6 +1,6 @@
 //! The board: the timer's interrupt samples and encodes, main sends.
 
-use crate::{CHANNELS, channels, decoders, digest::Digest, flight, uart::Uart};
+use crate::{CHANNELS, SCHEMES, digest::Digest, flight, uart::Uart};
 use core::{
     cell::{Cell, RefCell},
     fmt,
@@ -9,8 +9,8 @@ use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::exception;
 use critical_section::Mutex;
 use spikewire::{
-    Bank, Decoder, Encoder, Scheme,
-    link::{Coding, MAX_FRAME, Transmitter},
+    Bank, Decoder, Scheme,
+    link::{Coding, MAX_FRAME, Snapshot, Transmitter},
     sink::{EventQueue, Overflow, SerialSink},
     temporal::{StepDecoder, StepForwardEncoder},
 };
@@ -23,15 +23,8 @@ const PERIOD: u16 = 5_000;
 const TIMER_RELOAD: u32 = 168_000;
 
 static EVENTS: EventQueue<64> = EventQueue::new(Overflow::DropOldest);
-static KEYFRAME: Mutex<Cell<Option<Keyframe>>> = Mutex::new(Cell::new(None));
+static KEYFRAME: Mutex<Cell<Option<Snapshot<f32, CHANNELS>>>> = Mutex::new(Cell::new(None));
 static SAMPLER: Mutex<RefCell<Option<Sampler>>> = Mutex::new(RefCell::new(None));
-
-/// What the encoders held after the sample of this tick, and how many events had been lost by then.
-struct Keyframe {
-    tick: u32,
-    lost: u32,
-    values: [Option<f32>; CHANNELS],
-}
 
 struct Sampler {
     next: usize,
@@ -63,9 +56,8 @@ impl Sampler {
             }
         }
         if self.next.is_multiple_of(KEYFRAME_EVERY) {
-            let values = bank.channels().each_ref().map(Encoder::keyframe);
-            let keyframe = Keyframe { tick, lost: EVENTS.lost(), values };
-            critical_section::with(|cs| KEYFRAME.borrow(cs).set(Some(keyframe)));
+            let snapshot = bank.snapshot(tick, EVENTS.lost());
+            critical_section::with(|cs| KEYFRAME.borrow(cs).set(Some(snapshot)));
         }
         self.next += 1;
     }
@@ -84,8 +76,8 @@ pub fn run(out: &mut impl fmt::Write) -> fmt::Result {
     let sampler = Sampler {
         next: 0,
         is_done: false,
-        bank: Bank::from_encoders(channels(Scheme::encoder)),
-        decoders: decoders(),
+        bank: Bank::from_schemes(SCHEMES),
+        decoders: SCHEMES.map(Scheme::decoder),
         decoded: Digest::new(),
     };
     critical_section::with(|cs| SAMPLER.replace(cs, Some(sampler)));
@@ -104,8 +96,8 @@ pub fn run(out: &mut impl fmt::Write) -> fmt::Result {
         let is_done = critical_section::with(|cs| {
             SAMPLER.borrow_ref(cs).as_ref().is_none_or(|sampler| sampler.is_done)
         });
-        if let Some(keyframe) = critical_section::with(|cs| KEYFRAME.borrow(cs).take()) {
-            link.batch().keyframe_values(keyframe.tick, keyframe.lost, keyframe.values);
+        if let Some(snapshot) = critical_section::with(|cs| KEYFRAME.borrow(cs).take()) {
+            link.batch().keyframe(snapshot);
         }
         match link.send(&EVENTS).map_err(|_| fmt::Error)? {
             0 if is_done => break,

@@ -61,9 +61,10 @@ fn framed<S: Raw>(scheme: StepForward<S>) {
     let coding = black_box(Coding::for_channels(black_box(3), black_box(1_000)));
     let mut bank = Bank::<_, 3>::new(black_box(scheme));
     bank.encode(black_box(0), black_box([S::default(); 3]), |event| hide(EVENTS.push(event)));
+    bank.encode_into(black_box(0), black_box([S::default(); 3]), &EVENTS);
 
     let mut transmitter = black_box(Transmitter::<S, 3>::new(coding));
-    transmitter.keyframe(black_box(5), EVENTS.lost(), bank.channels());
+    transmitter.keyframe(bank.snapshot(black_box(5), EVENTS.lost()));
     let mut reader = black_box(Reader::<MAX_FRAME>::new());
     let mut receiver: Receiver<S, 3> = Receiver::new(scheme);
     let mut buffer = black_box([0; 300]);

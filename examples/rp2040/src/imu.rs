@@ -13,9 +13,12 @@ pub const SAMPLE_RATE: u16 = 800;
 pub const PERIOD_US: u16 = (1_000_000 / SAMPLE_RATE as u32) as u16;
 
 /// A spike for every 6 °/s, in counts of ±2000 °/s.
-pub const RATE: StepForward<i16> = StepForward::<i16>::checked(98);
+const RATE: StepForward<i16> = StepForward::<i16>::checked(98);
 /// A spike for every 0.05 g, in counts of ±16 g.
-pub const ACCELERATION: StepForward<i16> = StepForward::<i16>::checked(102);
+const ACCELERATION: StepForward<i16> = StepForward::<i16>::checked(102);
+/// Rates about x, y and z, then accelerations along them.
+pub const SCHEMES: [StepForward<i16>; 6] =
+    [RATE, RATE, RATE, ACCELERATION, ACCELERATION, ACCELERATION];
 
 pub type Imu<D> = Bmi323<SpiTransport<D>>;
 

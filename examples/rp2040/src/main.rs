@@ -19,13 +19,13 @@ use defmt_rtt as _;
 use panic_probe as _;
 use rp2040_hal::{gpio::Interrupt::EdgeHigh, pac, pac::interrupt};
 use spikewire::{
-    Bank, Encoder, Scheme,
-    link::{Coding, Transmitter},
+    Bank,
+    link::{Coding, Snapshot, Transmitter},
     sink::{EventQueue, Overflow, SerialSink},
     temporal::StepForwardEncoder,
 };
 
-const CHANNELS: usize = 6;
+const CHANNELS: usize = imu::SCHEMES.len();
 /// Samples from one keyframe to the next: a second.
 const KEYFRAME_EVERY: u16 = imu::SAMPLE_RATE;
 /// How often the counters are logged, in µs.
@@ -34,16 +34,9 @@ const REPORT: u32 = 1_000_000;
 /// What the interrupt has for main.
 static EVENTS: EventQueue<256> = EventQueue::new(Overflow::DropOldest);
 /// The latest keyframe that main has not taken yet.
-static KEYFRAME: Mutex<Cell<Option<Keyframe>>> = Mutex::new(Cell::new(None));
+static KEYFRAME: Mutex<Cell<Option<Snapshot<i16, CHANNELS>>>> = Mutex::new(Cell::new(None));
 /// What the interrupt works with, once it is set up.
 static SAMPLER: Mutex<RefCell<Option<Sampler>>> = Mutex::new(RefCell::new(None));
-
-/// What the encoders held after the sample of this tick, and how many events had been lost by then.
-struct Keyframe {
-    tick: u32,
-    lost: u32,
-    values: [Option<i16>; CHANNELS],
-}
 
 struct Sampler {
     data_ready: board::DataReady,
@@ -63,16 +56,13 @@ impl Sampler {
             self.failed_reads += 1;
             return;
         };
-        self.bank.encode(tick, sample, |event| {
-            let _ = EVENTS.push(event); // what does not fit is counted in the queue
-        });
+        self.bank.encode_into(tick, sample, &EVENTS);
 
         self.samples_to_keyframe -= 1;
         if self.samples_to_keyframe == 0 {
             self.samples_to_keyframe = KEYFRAME_EVERY;
-            let values = self.bank.channels().each_ref().map(Encoder::keyframe);
-            let keyframe = Keyframe { tick, lost: EVENTS.lost(), values };
-            critical_section::with(|cs| KEYFRAME.borrow(cs).set(Some(keyframe)));
+            let snapshot = self.bank.snapshot(tick, EVENTS.lost());
+            critical_section::with(|cs| KEYFRAME.borrow(cs).set(Some(snapshot)));
         }
     }
 }
@@ -91,14 +81,12 @@ fn main() -> ! {
     let board::Board { imu, data_ready, uart, mut clock } = board::start();
     let imu = imu::start(imu, &mut clock).expect("no BMI323 on SPI0");
 
-    let [rate, acceleration] = [imu::RATE.encoder(), imu::ACCELERATION.encoder()];
-    let bank = Bank::from_encoders([rate, rate, rate, acceleration, acceleration, acceleration]);
     data_ready.set_interrupt_enabled(EdgeHigh, true);
     let sampler = Sampler {
         data_ready,
         imu,
         clock,
-        bank,
+        bank: Bank::from_schemes(imu::SCHEMES),
         samples_to_keyframe: KEYFRAME_EVERY,
         failed_reads: 0,
     };
@@ -111,8 +99,8 @@ fn main() -> ! {
     let mut link = SerialSink::<_, _, 128>::new(uart, Transmitter::<i16, CHANNELS>::new(coding));
     let (mut bytes, mut last_report) = (0_u32, clock.get_counter_low());
     loop {
-        if let Some(keyframe) = critical_section::with(|cs| KEYFRAME.borrow(cs).take()) {
-            link.batch().keyframe_values(keyframe.tick, keyframe.lost, keyframe.values);
+        if let Some(snapshot) = critical_section::with(|cs| KEYFRAME.borrow(cs).take()) {
+            link.batch().keyframe(snapshot);
         }
         match link.send(&EVENTS) {
             Ok(0) => cortex_m::asm::wfi(), // until the next sample

@@ -19,12 +19,12 @@ use embassy_sync::{blocking_mutex::raw::CriticalSectionRawMutex, signal::Signal}
 use embassy_time::{Delay, Duration, Instant, Ticker, TimeoutError, with_timeout};
 use panic_probe as _;
 use spikewire::{
-    Bank, Encoder, Scheme,
-    link::{Coding, MAX_FRAME, Transmitter},
+    Bank,
+    link::{Coding, MAX_FRAME, Snapshot, Transmitter},
     sink::{AsyncSpiSink, EventQueue, Overflow},
 };
 
-const CHANNELS: usize = 6;
+const CHANNELS: usize = imu::SCHEMES.len();
 /// Samples from one keyframe to the next: a second.
 const KEYFRAME_EVERY: u16 = imu::SAMPLE_RATE;
 /// From one look at the queue to the next.
@@ -36,14 +36,7 @@ const REPORT_EVERY: Duration = Duration::from_secs(1);
 /// What the sampling task has for main.
 static EVENTS: EventQueue<256> = EventQueue::new(Overflow::DropOldest);
 /// The latest keyframe that main has not taken yet.
-static KEYFRAME: Signal<CriticalSectionRawMutex, Keyframe> = Signal::new();
-
-/// What the encoders held after the sample of this tick, and how many events had been lost by then.
-struct Keyframe {
-    tick: u32,
-    lost: u32,
-    values: [Option<f32>; CHANNELS],
-}
+static KEYFRAME: Signal<CriticalSectionRawMutex, Snapshot<f32, CHANNELS>> = Signal::new();
 
 fn now() -> u32 {
     spikewire::tick::from_micros(Instant::now().as_micros())
@@ -54,29 +47,18 @@ defmt::timestamp!("{=u32:us}", now());
 /// Waits for a sample, reads it, encodes it.
 #[embassy_executor::task]
 async fn sample(mut imu: imu::Imu<board::SpiDevice>, mut data_ready: ExtiInput<'static, Async>) {
-    let [rate, acceleration] = [imu::RATE.encoder(), imu::ACCELERATION.encoder()];
-    let mut bank = Bank::<_, CHANNELS>::from_encoders([
-        rate,
-        rate,
-        rate,
-        acceleration,
-        acceleration,
-        acceleration,
-    ]);
+    let mut bank = Bank::from_schemes(imu::SCHEMES);
     loop {
         for _ in 0..KEYFRAME_EVERY {
             data_ready.wait_for_rising_edge().await;
             let tick = now();
             match imu::read(&mut imu).await {
-                Ok(sample) => bank.encode(tick, sample, |event| {
-                    let _ = EVENTS.push(event); // what does not fit is counted in the queue
-                }),
+                Ok(sample) => bank.encode_into(tick, sample, &EVENTS),
                 Err(_) => defmt::warn!("a sample could not be read"),
             }
         }
         // No sample has come since the last one, so now is as good a tick as its own.
-        let values = bank.channels().each_ref().map(Encoder::keyframe);
-        KEYFRAME.signal(Keyframe { tick: now(), lost: EVENTS.lost(), values });
+        KEYFRAME.signal(bank.snapshot(now(), EVENTS.lost()));
     }
 }
 
@@ -97,8 +79,8 @@ async fn main(spawner: Spawner) {
     let mut next_report = Instant::now() + REPORT_EVERY;
     loop {
         next_look.next().await;
-        if let Some(keyframe) = KEYFRAME.try_take() {
-            link.batch().keyframe_values(keyframe.tick, keyframe.lost, keyframe.values);
+        if let Some(snapshot) = KEYFRAME.try_take() {
+            link.batch().keyframe(snapshot);
         }
         // A frame that was not sent, for whatever reason, is kept for the next time.
         match with_timeout(SEND_LIMIT, link.send(&EVENTS)).await {

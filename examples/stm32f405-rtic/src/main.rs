@@ -40,7 +40,7 @@ mod app {
     use core::{num::NonZeroU32, sync::atomic::Ordering::Relaxed};
     use embedded_hal::{delay::DelayNs, spi::MODE_0};
     use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
-    use spikewire::{Bank, Scheme, chip::TinyOdin, temporal::StepForwardEncoder};
+    use spikewire::{Bank, chip::TinyOdin, temporal::StepForwardEncoder};
     use stm32f4xx_hal::{
         gpio::{Edge, Input, Output, PA3, PA4, PB12, Speed},
         pac::{SPI1, SPI2},
@@ -52,7 +52,7 @@ mod app {
 
     use crate::{
         EVENTS, FAILED_READS,
-        imu::{self, ACCELERATION, Imu, RATE},
+        imu::{self, Imu},
         network, now,
         port::Port,
     };
@@ -75,7 +75,7 @@ mod app {
     struct Local {
         data_ready: PA3<Input>,
         imu: Imu<ImuDevice>,
-        bank: Bank<StepForwardEncoder<f32>, 6>,
+        bank: Bank<StepForwardEncoder<f32>, { imu::SCHEMES.len() }>,
         chip: TinyOdin<ChipDevice, Port>,
         delay: SysDelay,
     }
@@ -139,8 +139,7 @@ mod app {
         data_ready.trigger_on_edge(&mut cx.device.EXTI, Edge::Rising);
         data_ready.enable_interrupt(&mut cx.device.EXTI);
 
-        let [r, a] = [RATE.encoder(), ACCELERATION.encoder()];
-        let bank = Bank::from_encoders([r, r, r, a, a, a]);
+        let bank = Bank::from_schemes(imu::SCHEMES);
         (Shared {}, Local { data_ready, imu, bank, chip, delay })
     }
 
@@ -150,9 +149,7 @@ mod app {
         let tick = now();
         cx.local.data_ready.clear_interrupt_pending_bit();
         match imu::read(cx.local.imu) {
-            Ok(sample) => cx.local.bank.encode(tick, sample, |event| {
-                let _ = EVENTS.push(event); // what does not fit is counted in the queue
-            }),
+            Ok(sample) => cx.local.bank.encode_into(tick, sample, &EVENTS),
             Err(_) => _ = FAILED_READS.fetch_add(1, Relaxed),
         }
     }
@@ -175,7 +172,7 @@ mod app {
                 }
             };
             let fed = chip
-                .feed(&EVENTS, network::input, &mut on_output)
+                .feed(EVENTS.drain(), network::input, &mut on_output)
                 .and_then(|count| chip.advance(now(), &mut on_output).map(|()| count))
                 .and_then(|count| chip.poll(&mut on_output).map(|()| count));
             match fed {
