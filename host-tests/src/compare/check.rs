@@ -6,7 +6,7 @@ use spikewire::temporal::StepDecoder;
 use spikewire::{Decoder, Encoder, Scheme, Spike};
 
 use super::run::{Run, decode, encode};
-use super::wire::{Wire, finite, reals, saturated, signs_of, spikes_of};
+use super::wire::{Wire, assert_same_values, finite, reals, saturated, signs_of, spikes_of};
 use crate::reference::{Finite, Real, rate_decode, step_decode_within};
 
 /// Asserts that spikes came out at `latency` samples after their own, that rejected samples gave
@@ -45,18 +45,6 @@ pub fn assert_step_spikes<T: Real>(run: &Run<Spike>, recording: &Finite<T>, spik
     assert_eq!(signs_of(&run.outputs), expected);
     assert!(run.tail.is_empty());
     assert_eq!(run.rejected as usize, recording.rejected.len());
-}
-
-/// Asserts the same values, bit for bit.
-///
-/// # Panics
-/// If a bit differs.
-pub fn assert_same_values<S: Wire>(ours: &[S], reference: &[S::Real]) {
-    assert_eq!(ours.len(), reference.len());
-    for (i, (ours, &reference)) in ours.iter().zip(reference).enumerate() {
-        let (ours, reference): (f64, f64) = (ours.real().into(), reference.into());
-        assert_eq!(ours.to_bits(), reference.to_bits(), "{ours} for {reference} at {i}");
-    }
 }
 
 /// Checks the decoder of a temporal scheme, from 0 and from a known value.

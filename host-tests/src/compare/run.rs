@@ -4,8 +4,7 @@ use core::fmt::Debug;
 
 use spikewire::{Decoder, Encoder, Output, Scheme};
 
-use super::check::assert_same_values;
-use super::wire::{Wire, reals};
+use super::wire::{Wire, assert_same_values, reals};
 
 /// What an encoder said about one recording.
 #[derive(Clone, Debug, PartialEq)]

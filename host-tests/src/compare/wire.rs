@@ -147,3 +147,15 @@ pub fn spikes_of(signs: &[i8]) -> Vec<Spike> {
     };
     signs.iter().map(spike).collect()
 }
+
+/// Asserts the same values, bit for bit.
+///
+/// # Panics
+/// If a bit differs.
+pub fn assert_same_values<S: Wire>(ours: &[S], reference: &[S::Real]) {
+    assert_eq!(ours.len(), reference.len());
+    for (i, (ours, &reference)) in ours.iter().zip(reference).enumerate() {
+        let (ours, reference): (f64, f64) = (ours.real().into(), reference.into());
+        assert_eq!(ours.to_bits(), reference.to_bits(), "{ours} for {reference} at {i}");
+    }
+}
