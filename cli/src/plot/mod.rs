@@ -1,8 +1,10 @@
 //! Pictures of trials, as SVG or PNG.
 
+mod efficiencies;
 mod layout;
 mod palette;
 mod panel;
+mod title;
 
 use crate::trial::{Recording, Trial};
 use anyhow::{Result, anyhow, bail};

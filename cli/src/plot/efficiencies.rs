@@ -1,0 +1,55 @@
+//! The panel of the efficiencies: a bar for each trial.
+
+use super::FONT;
+use super::palette::{self, GRID, INK};
+use super::title::{Drawn, TITLE, title};
+use crate::scheme::SchemeName;
+use crate::trial::Trial;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+pub(super) fn draw<B: DrawingBackend>(
+    area: &DrawingArea<B, Shift>,
+    trials: &[Trial],
+    letter: char,
+) -> Drawn<B> {
+    title(area, Some(letter), "Spiking efficiency, % of samples without a spike")?;
+    let mut ranked: Vec<(SchemeName, f64)> =
+        trials.iter().map(|trial| (trial.scheme, trial.efficiency())).collect();
+    ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let area = area.margin(TITLE, 12, 16, 40);
+    let rows = ranked.len() as f64;
+    let mut chart = ChartBuilder::on(&area)
+        .set_label_area_size(LabelAreaPosition::Left, 60)
+        .set_label_area_size(LabelAreaPosition::Bottom, 26)
+        .build_cartesian_2d(0.0..100.0, 0.0..rows)?;
+    chart
+        .configure_mesh()
+        .disable_y_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(GRID)
+        .axis_style(GRID)
+        .x_labels(6)
+        .y_labels(0)
+        .x_label_formatter(&|value| format!("{value:.0}"))
+        .label_style((FONT, 13).into_font().color(&INK))
+        .draw()?;
+    for (row, (scheme, efficiency)) in ranked.iter().enumerate() {
+        let (low, high) = (row as f64 + 0.18, row as f64 + 0.82);
+        let bar = Rectangle::new(
+            [(0.0, low), (efficiency.max(0.0), high)],
+            palette::of(*scheme).filled(),
+        );
+        chart.draw_series([bar])?;
+        let middle = row as f64 + 0.5;
+        let label = |text: String, x: f64, offset: (i32, i32)| {
+            EmptyElement::at((x, middle))
+                + Text::new(text, offset, (FONT, 14).into_font().color(&INK))
+        };
+        chart.draw_series([
+            label(scheme.title().to_owned(), 0.0, (-54, -8)),
+            label(format!("{efficiency:.1}"), efficiency.max(0.0), (6, -8)),
+        ])?;
+    }
+    Ok(())
+}
