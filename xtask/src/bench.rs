@@ -1,7 +1,8 @@
-//! `cargo bench-target`: what every codec costs, counted exactly on the emulated boards.
+//! `cargo bench-target`: what every codec costs, and an event on its way, counted exactly on the emulated boards.
 
 mod baseline;
 mod code;
+mod events;
 mod table;
 
 use crate::{
@@ -10,6 +11,7 @@ use crate::{
 };
 use anyhow::{Context, Result, bail};
 use code::Code;
+use events::Event;
 use serde::{Deserialize, Serialize};
 use std::{
     path::{Path, PathBuf},
@@ -17,16 +19,18 @@ use std::{
 };
 
 const USAGE: &str = "\
-cargo bench-target [CORE]... [--json | --markdown | --write FILE | --baseline]
+cargo bench-target [events] [CORE]... [--json | --markdown | --write FILE | --baseline]
 
+  events        not the codecs: only what an event costs in queue, links, formats and chips' words
   CORE          M0, M3, M4F, M7 or M33; all, if none is named
-  --json        every figure, as an array of objects
-  --markdown    the README's table
-  --write FILE  puts that table into FILE, between its markers
+  --json        every figure, as an array of objects; those of an event have the kind `event`
+  --markdown    the README's tables
+  --write FILE  puts those tables into FILE, between their markers
   --baseline    makes these counts the ones that `cargo verify` compares with";
 
-/// The programs of the firmware.
+/// The programs that count codecs, and the one that counts events.
 const SAMPLES: [&str; 4] = ["f32", "q16_16", "q8_8", "i16"];
+const EVENTS: &str = "events";
 
 /// What one form of one direction of a codec costs; instructions are those of a sample.
 #[derive(Serialize)]
@@ -67,52 +71,74 @@ struct Printed {
 }
 
 /// The figures, and the compiler that they are of.
+#[derive(Default)]
 struct Measured {
     rows: Vec<Row>,
+    events: Vec<Event>,
     rustc: String,
 }
 
 pub fn bench(args: &[String]) -> Result<()> {
     let options: Vec<&str> = args.iter().map(String::as_str).collect();
-    let cores: Vec<&str> =
-        options.iter().copied().take_while(|arg| !arg.starts_with('-')).collect();
-    match options[cores.len()..] {
+    let named = options.iter().take_while(|arg| !arg.starts_with('-')).count();
+    let (named, output) = options.split_at(named);
+    let (programs, cores): (&[&str], _) = match named {
+        [EVENTS, cores @ ..] => (&[EVENTS], cores),
+        cores => (&[], cores),
+    };
+    let tables = || measure(programs, &table::CORES);
+    match *output {
         [] => {
             setup::setup()?;
-            print!("{}", table::text(&measure(&cores)?.rows));
+            let Measured { rows, events, .. } = measure(programs, cores)?;
+            print!("{}{}", table::text(&rows), events::text(&events));
         }
-        ["--json"] => println!("{}", serde_json::to_string_pretty(&measure(&cores)?.rows)?),
-        ["--markdown"] => print!("{}", table::markdown(&measure(&table::CORES)?.rows)),
-        ["--write", file] => table::write(&measure(&table::CORES)?.rows, Path::new(file))?,
-        ["--baseline"] => baseline::write(&measure(&baseline::CORES)?)?,
+        ["--json"] => println!("{}", json(&measure(programs, cores)?)?),
+        ["--markdown"] => print!("{}", table::markdown(&tables()?)?),
+        ["--write", file] => table::write(&tables()?, Path::new(file))?,
+        ["--baseline"] => baseline::write(&measure(&[], &baseline::CORES)?)?,
         _ => bail!("{USAGE}"),
     }
     Ok(())
 }
 
-/// Fails if a codec takes more instructions than it did.
+/// Fails if anything takes more instructions than it did, or six channels more than is promised.
 pub fn verify() -> Result<()> {
-    baseline::compare(&measure(&baseline::CORES)?)
+    let measured = measure(&[], &baseline::CORES)?;
+    events::ensure_six_channels_fit(&measured.events)?;
+    baseline::compare(&measured)
 }
 
-/// Runs on the named cores, or all. One is built while others run.
-fn measure(cores: &[&str]) -> Result<Measured> {
+fn json(Measured { rows, events, .. }: &Measured) -> Result<String> {
+    let rows = rows.iter().map(serde_json::to_value);
+    let events = events.iter().map(serde_json::to_value);
+    Ok(serde_json::to_string_pretty(&rows.chain(events).collect::<Result<Vec<_>, _>>()?)?)
+}
+
+/// Runs the named programs, or all, on the named cores, or all. One is built while others run.
+fn measure(programs: &[&str], cores: &[&str]) -> Result<Measured> {
     let boards = boards(cores)?;
+    let wanted = |program: &&str| programs.is_empty() || programs.contains(program);
+    let programs: Vec<&str> = SAMPLES.into_iter().chain([EVENTS]).filter(wanted).collect();
     thread::scope(|scope| {
         let mut runs = Vec::new();
         for board in boards {
             eprintln!("Building and running on {} ({}).", board.core, board.machine);
-            for image in build(board)? {
+            let built = build(board)?;
+            for &program in &programs {
+                let image = built.with_file_name(program);
                 runs.push(scope.spawn(move || {
                     let printed = qemu::run_counting(board, &image)?;
-                    read(board, &image, &printed).with_context(|| format!("on {}", board.core))
+                    read(board, program, &image, &printed)
+                        .with_context(|| format!("on {}", board.core))
                 }));
             }
         }
-        let mut measured = Measured { rows: Vec::new(), rustc: String::new() };
+        let mut measured = Measured::default();
         for run in runs {
             let one = run.join().unwrap_or_else(|_| bail!("its thread panicked"))?;
             measured.rows.extend(one.rows);
+            measured.events.extend(one.events);
             measured.rustc = one.rustc;
         }
         Ok(measured)
@@ -130,8 +156,8 @@ fn boards(cores: &[&str]) -> Result<Vec<&'static Board>> {
     cores.iter().map(named).collect()
 }
 
-/// Builds a program for each sample type.
-fn build(board: &Board) -> Result<[PathBuf; 4]> {
+/// Builds the programs, which lie beside what is returned.
+fn build(board: &Board) -> Result<PathBuf> {
     let directory = paths::thumb_target().join("bench").join(board.machine);
     let (mut cargo, built) = firmware::building("bench-target", board, &directory)?;
     // Names that tell Rust's functions from the runtime's; and no debug information, which takes time.
@@ -140,17 +166,18 @@ fn build(board: &Board) -> Result<[PathBuf; 4]> {
         .env("CARGO_PROFILE_RELEASE_DEBUG", "0")
         .env("TICKS_PER_GIGAINSTRUCTION", board.ticks_per_gigainstruction().to_string());
     shell::output(&mut cargo).with_context(|| format!("for {}", board.machine))?;
-    Ok(SAMPLES.map(|sample| built.with_file_name(sample)))
+    Ok(built)
 }
 
-fn read(board: &Board, image: &Path, printed: &str) -> Result<Measured> {
+fn read(board: &Board, program: &str, image: &Path, printed: &str) -> Result<Measured> {
+    let rustc = code::compiler(image)?;
+    if program == EVENTS {
+        let events = printed.lines().map(|line| Event::read(board, line));
+        return Ok(Measured { events: events.collect::<Result<_>>()?, rustc, rows: Vec::new() });
+    }
     let code = Code::read(image)?;
     let row = |line: &str| {
         let printed: Printed = serde_json::from_str(line).with_context(|| line.to_owned())?;
-        // To a thousandth, or some would have 16 digits.
-        let mean = |total: u32, samples: u32| {
-            (f64::from(total) / f64::from(samples) * 1000.0).round() / 1000.0
-        };
         Ok(Row {
             core: board.core,
             instructions_mean: mean(printed.total, printed.samples),
@@ -168,5 +195,10 @@ fn read(board: &Board, image: &Path, printed: &str) -> Result<Measured> {
         })
     };
     let rows = printed.lines().map(row).collect::<Result<Vec<_>>>()?;
-    Ok(Measured { rows, rustc: code::compiler(image)? })
+    Ok(Measured { rows, rustc, events: Vec::new() })
+}
+
+/// To a thousandth, or some would have 16 digits.
+fn mean(total: u32, count: u32) -> f64 {
+    (f64::from(total) / f64::from(count) * 1000.0).round() / 1000.0
 }

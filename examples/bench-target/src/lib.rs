@@ -1,4 +1,5 @@
-//! Counts the instructions of every codec, exactly. `cargo bench-target` builds, runs and reads it.
+//! Counts the instructions of every codec, and of an event's way, exactly. `cargo bench-target` builds, runs and
+//! reads it.
 //!
 //! A program for each sample type, as one of all does not fit the flash of a Cortex-M0. It prints one line of JSON
 //! for each signal, codec, direction and form. Counts come from the core's timer, which in QEMU's `-icount` advances
@@ -7,6 +8,7 @@
 #![cfg_attr(target_os = "none", no_std)]
 
 mod codecs;
+mod events;
 mod measure;
 mod plain;
 mod signal;
@@ -16,15 +18,23 @@ use signal::{Measured, Signal};
 
 /// Measures every codec in one sample type, which is called `sample` in what it prints.
 pub fn run<S: Measured>(out: &mut impl Write, sample: &str) -> fmt::Result {
-    if !board::stopwatch::is_exact() {
-        writeln!(
-            out,
-            "instructions are not counted exactly: start this with `cargo bench-target`"
-        )?;
-        return Err(fmt::Error);
-    }
+    ensure_exact(out)?;
     for signal in [Signal::Paper, Signal::Flight] {
         codecs::measure::<S>(out, sample, signal)?;
     }
     Ok(())
+}
+
+/// Measures what an event costs in the queue, in every link and format, and as a chip's word.
+pub fn run_events(out: &mut impl Write) -> fmt::Result {
+    ensure_exact(out)?;
+    events::measure(out)
+}
+
+fn ensure_exact(out: &mut impl Write) -> fmt::Result {
+    if board::stopwatch::is_exact() {
+        return Ok(());
+    }
+    writeln!(out, "instructions are not counted exactly: start this with `cargo bench-target`")?;
+    Err(fmt::Error)
 }

@@ -1,5 +1,6 @@
 //! The host stands in for a board: its output is what every board must print.
 
+use critical_section as _; // links the standard library's
 use std::{
     fmt,
     io::{self, Write},

@@ -21,8 +21,10 @@ fn path() -> PathBuf {
     paths::examples().join("bench-target/baseline.json")
 }
 
-fn counts(rows: &[Row]) -> BTreeMap<String, f64> {
-    rows.iter().map(|row| (key(row), row.instructions_mean)).collect()
+fn counts(Measured { rows, events, .. }: &Measured) -> BTreeMap<String, f64> {
+    let rows = rows.iter().map(|row| (key(row), row.instructions_mean));
+    let events = events.iter().map(|event| (event.key(), event.instructions_mean));
+    rows.chain(events).collect()
 }
 
 fn key(row: &Row) -> String {
@@ -31,8 +33,7 @@ fn key(row: &Row) -> String {
 }
 
 pub fn write(measured: &Measured) -> Result<()> {
-    let Measured { rows, rustc } = measured;
-    let baseline = Baseline { rustc: rustc.clone(), instructions_mean: counts(rows) };
+    let baseline = Baseline { rustc: measured.rustc.clone(), instructions_mean: counts(measured) };
     fs::write(path(), serde_json::to_string_pretty(&baseline)? + "\n")?;
     println!("{} counts are the baseline now.", baseline.instructions_mean.len());
     Ok(())
@@ -43,7 +44,7 @@ pub fn compare(measured: &Measured) -> Result<()> {
     let file = fs::read_to_string(path())
         .context("no baseline; `cargo bench-target --baseline` writes it")?;
     let baseline: Baseline = serde_json::from_str(&file)?;
-    let grown = differences(&baseline.instructions_mean, &counts(&measured.rows));
+    let grown = differences(&baseline.instructions_mean, &counts(measured));
     if grown == 0 {
         println!("No count of {} has grown by more than 5 %.", baseline.instructions_mean.len());
     } else if baseline.rustc == measured.rustc {

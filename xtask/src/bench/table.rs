@@ -1,14 +1,15 @@
 //! The figures as tables to read.
 
-use super::Row;
+use super::{Measured, Row, events};
 use anyhow::{Context, Result};
 use std::{fs, path::Path};
 
 /// The cores of the README's tables.
 pub const CORES: [&str; 2] = ["M4F", "M0"];
 
-const START: &str = "<!-- bench-target -->\n";
-const END: &str = "<!-- /bench-target -->";
+/// Between which comments a file has the tables.
+const CODECS: &str = "bench-target";
+const EVENTS: &str = "bench-target events";
 
 /// What a line of a table tells: one codec, in one sample type, on one core and signal.
 struct Line<'a> {
@@ -100,8 +101,19 @@ pub fn text(rows: &[Row]) -> String {
     text
 }
 
-/// The README's: `f32` where there is a floating-point unit, fixed point where there is none.
-pub fn markdown(rows: &[Row]) -> String {
+/// The README's tables.
+pub fn markdown(measured: &Measured) -> Result<String> {
+    Ok(tables(measured)?.into_iter().map(|(_, table)| table).collect())
+}
+
+/// Those of what was measured, each with its marker.
+fn tables(Measured { rows, events, .. }: &Measured) -> Result<Vec<(&'static str, String)>> {
+    let codecs = (!rows.is_empty()).then(|| (CODECS, codecs(rows)));
+    Ok(codecs.into_iter().chain([(EVENTS, events::markdown(events)?)]).collect())
+}
+
+/// `f32` where there is a floating-point unit, fixed point where there is none.
+fn codecs(rows: &[Row]) -> String {
     let mut text = String::new();
     for (core, sample) in CORES.into_iter().zip(["f32", "q16.16"]) {
         text += &format!(
@@ -152,19 +164,23 @@ fn name(codec: &str) -> &str {
     }
 }
 
-/// Puts the table between the file's markers.
-pub fn write(rows: &[Row], path: &Path) -> Result<()> {
-    let file = fs::read_to_string(path).with_context(|| path.display().to_string())?;
-    fs::write(path, between(&file, &markdown(rows))?)?;
-    println!("{} has the table.", path.display());
+/// Puts the tables between the file's markers.
+pub fn write(measured: &Measured, path: &Path) -> Result<()> {
+    let mut file = fs::read_to_string(path).with_context(|| path.display().to_string())?;
+    for (marker, table) in tables(measured)? {
+        file = between(&file, marker, &table)?;
+    }
+    fs::write(path, file)?;
+    println!("{} has the tables.", path.display());
     Ok(())
 }
 
-fn between(file: &str, table: &str) -> Result<String> {
-    let missing = || format!("no `{}` … `{END}`", START.trim_end());
-    let (before, rest) = file.split_once(START).with_context(missing)?;
-    let (_, after) = rest.split_once(END).with_context(missing)?;
-    Ok(format!("{before}{START}{table}{END}{after}"))
+fn between(file: &str, marker: &str, table: &str) -> Result<String> {
+    let (start, end) = (format!("<!-- {marker} -->\n"), format!("<!-- /{marker} -->"));
+    let missing = || format!("no `{}` … `{end}`", start.trim_end());
+    let (before, rest) = file.split_once(&start).with_context(missing)?;
+    let (_, after) = rest.split_once(&end).with_context(missing)?;
+    Ok(format!("{before}{start}{table}{end}{after}"))
 }
 
 #[cfg(test)]
@@ -173,9 +189,9 @@ mod tests {
 
     #[test]
     fn only_what_is_between_the_markers_changes() {
-        let file = "a\n<!-- bench-target -->\nold\n<!-- /bench-target -->\nb\n";
-        let new = "a\n<!-- bench-target -->\nnew\n<!-- /bench-target -->\nb\n";
-        assert_eq!(between(file, "new\n").unwrap(), new);
-        assert!(between("a", "new\n").is_err());
+        let file = "a\n<!-- x -->\nold\n<!-- /x -->\nb\n<!-- x y -->\n<!-- /x y -->\n";
+        let new = "a\n<!-- x -->\nnew\n<!-- /x -->\nb\n<!-- x y -->\n<!-- /x y -->\n";
+        assert_eq!(between(file, "x", "new\n").unwrap(), new);
+        assert!(between("a", "x", "new\n").is_err());
     }
 }

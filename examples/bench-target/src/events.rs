@@ -1,0 +1,31 @@
+//! What an event costs on its way: in the queue, in every link and format, and as a chip's word.
+//!
+//! The events are those of the recorded flight, six channels through SF. Whatever is written is read again and must be
+//! the same: figures of something else would be worth nothing.
+
+mod chips;
+mod flight;
+mod formats;
+mod framed;
+mod meter;
+mod path;
+
+use core::fmt::{self, Write};
+
+pub fn measure(out: &mut impl Write) -> fmt::Result {
+    path::queue(out)?;
+    framed::measure(out)?;
+    formats::measure(out)?;
+    chips::measure(out)?;
+    path::measure::<f32>(out, "f32")?;
+    path::measure::<fixed::FixedI32<fixed::types::extra::U16>>(out, "q16.16")
+}
+
+/// Ends the program with a reason if something is not as it must be.
+fn ensure(out: &mut impl Write, holds: bool, subject: &str) -> fmt::Result {
+    if !holds {
+        writeln!(out, "{subject}: what was read is not what was written")?;
+        return Err(fmt::Error);
+    }
+    Ok(())
+}
