@@ -112,15 +112,15 @@ impl Sample for f32 {
 macro_rules! for_each_integer {
     ($callback:ident) => {
         $callback! { [] i16, i16, core::convert::identity, core::convert::identity,
-            $crate::sample::i16_to_f64, $crate::sample::i16_nearest, $crate::sample::i16_floor, $crate::sample::i16_reach, $crate::sample::i16_scale }
+            $crate::sample::i16_to_f64, $crate::sample::i16_nearest, $crate::sample::i16_floor }
         #[cfg(feature = "fixed")]
         $callback! { [Frac: fixed::types::extra::LeEqU16 + 'static] fixed::FixedI16<Frac>, i16,
             fixed::FixedI16::to_bits, fixed::FixedI16::from_bits,
-            $crate::sample::fixed16_to_f64, $crate::sample::fixed16_nearest, $crate::sample::fixed16_floor, $crate::sample::fixed16_reach::<Frac>, $crate::sample::fixed16_scale::<Frac> }
+            $crate::sample::fixed16_to_f64, $crate::sample::fixed16_nearest, $crate::sample::fixed16_floor }
         #[cfg(feature = "fixed")]
         $callback! { [Frac: fixed::types::extra::LeEqU32 + 'static] fixed::FixedI32<Frac>, i32,
             fixed::FixedI32::to_bits, fixed::FixedI32::from_bits,
-            $crate::sample::fixed32_to_f64, $crate::sample::fixed32_nearest, $crate::sample::fixed32_floor, $crate::sample::fixed32_reach::<Frac>, $crate::sample::fixed32_scale::<Frac> }
+            $crate::sample::fixed32_to_f64, $crate::sample::fixed32_nearest, $crate::sample::fixed32_floor }
     };
 }
 pub(crate) use for_each_integer;
@@ -130,22 +130,22 @@ pub(crate) use for_each_integer;
 macro_rules! for_each_sample {
     ($callback:ident) => {
         $callback! { [] f32,
-            $crate::sample::f32_to_f64, $crate::sample::f32_nearest, $crate::sample::f32_floor, $crate::sample::f32_reach, $crate::sample::f32_scale }
+            $crate::sample::f32_to_f64, $crate::sample::f32_nearest, $crate::sample::f32_floor }
         $callback! { [] i16,
-            $crate::sample::i16_to_f64, $crate::sample::i16_nearest, $crate::sample::i16_floor, $crate::sample::i16_reach, $crate::sample::i16_scale }
+            $crate::sample::i16_to_f64, $crate::sample::i16_nearest, $crate::sample::i16_floor }
         #[cfg(feature = "fixed")]
         $callback! { [Frac: fixed::types::extra::LeEqU16] fixed::FixedI16<Frac>,
-            $crate::sample::fixed16_to_f64, $crate::sample::fixed16_nearest, $crate::sample::fixed16_floor, $crate::sample::fixed16_reach::<Frac>, $crate::sample::fixed16_scale::<Frac> }
+            $crate::sample::fixed16_to_f64, $crate::sample::fixed16_nearest, $crate::sample::fixed16_floor }
         #[cfg(feature = "fixed")]
         $callback! { [Frac: fixed::types::extra::LeEqU32] fixed::FixedI32<Frac>,
-            $crate::sample::fixed32_to_f64, $crate::sample::fixed32_nearest, $crate::sample::fixed32_floor, $crate::sample::fixed32_reach::<Frac>, $crate::sample::fixed32_scale::<Frac> }
+            $crate::sample::fixed32_to_f64, $crate::sample::fixed32_nearest, $crate::sample::fixed32_floor }
     };
 }
 pub(crate) use for_each_sample;
 
 macro_rules! integer_sample {
     ([$($generics:tt)*] $sample:ty, $bits:ty, $to_bits:path, $from_bits:path,
-     $to_f64:path, $nearest:path, $floor:path, $reach:path, $scale:path) => {
+     $to_f64:path, $nearest:path, $floor:path) => {
         impl<$($generics)*> Arithmetic for $sample {
             const ZERO: Self = $from_bits(0);
 
@@ -254,73 +254,6 @@ pub(crate) const fn fixed32_floor<Frac: LeEqU32>(value: f64) -> FixedI32<Frac> {
     FixedI32::from_bits(clamp_i32(floor(value * power_of_two(FixedI32::<Frac>::FRAC_NBITS))))
 }
 
-/// A distance from a centre, in the unit of [`Spaced::Reach`].
-pub(crate) const fn f32_reach(distance: f64, _: usize) -> f32 {
-    distance as f32
-}
-
-/// The same in integers: a centre is whole in units of the last place over `2 (neurons - 2)`.
-pub(crate) const fn i16_reach(distance: f64, neurons: usize) -> i32 {
-    clamp_i32(floor(distance * parts(neurons)))
-}
-
-#[cfg(feature = "fixed")]
-pub(crate) const fn fixed16_reach<Frac: LeEqU16>(distance: f64, neurons: usize) -> i32 {
-    clamp_i32(floor(distance * power_of_two(FixedI16::<Frac>::FRAC_NBITS) * parts(neurons)))
-}
-
-#[cfg(feature = "fixed")]
-pub(crate) const fn fixed32_reach<Frac: LeEqU32>(distance: f64, neurons: usize) -> i64 {
-    floor(distance * power_of_two(FixedI32::<Frac>::FRAC_NBITS) * parts(neurons))
-}
-
-/// Neurons for 1 of an even range, for [`Spaced::spacings`]; 0 for ranges so small or large that a
-/// product with it would lose more than rounding does.
-pub(crate) const fn f32_scale(min: f64, max: f64, neurons: usize) -> f32 {
-    let range = max - min;
-    let scale = (neurons as f64 - 2.0) / range;
-    if range > 1e-30 && range < 1e30 { scale as f32 } else { 0.0 }
-}
-
-/// The same in 65536ths of a neuron for 1 in the last place; 0 where that has no room.
-pub(crate) const fn i16_scale(min: f64, max: f64, neurons: usize) -> i16 {
-    let scale = floor((neurons as f64 - 2.0) * 65_536.0 / (max - min));
-    if scale <= i16::MAX as i64 { scale as i16 } else { 0 }
-}
-
-#[cfg(feature = "fixed")]
-pub(crate) const fn fixed16_scale<Frac: LeEqU16>(
-    min: f64,
-    max: f64,
-    neurons: usize,
-) -> FixedI16<Frac> {
-    let unit = power_of_two(FixedI16::<Frac>::FRAC_NBITS);
-    FixedI16::from_bits(i16_scale(min * unit, max * unit, neurons))
-}
-
-/// The same for 1 in the last place of what a shift leaves 16 bits of. The shift is in the upper half.
-#[cfg(feature = "fixed")]
-pub(crate) const fn fixed32_scale<Frac: LeEqU32>(
-    min: f64,
-    max: f64,
-    neurons: usize,
-) -> FixedI32<Frac> {
-    let range = floor((max - min) * power_of_two(FixedI32::<Frac>::FRAC_NBITS));
-    let mut shift = 0;
-    while range >> shift > 0xffff {
-        shift += 1;
-    }
-    let scale = match ((neurons as i64 - 2) * 65_536).checked_div((range >> shift) + 1) {
-        Some(scale) if scale <= 0xffff => (shift << 16) | scale as i32,
-        _ => 0,
-    };
-    FixedI32::from_bits(scale)
-}
-
-const fn parts(neurons: usize) -> f64 {
-    2.0 * (neurons as f64 - 2.0)
-}
-
 #[cfg(feature = "fixed")]
 const fn power_of_two(exponent: u32) -> f64 {
     (1_u64 << exponent) as f64
@@ -355,6 +288,7 @@ const fn clamp_i16(value: i64) -> i16 {
     }
 }
 
+#[cfg(feature = "fixed")]
 const fn clamp_i32(value: i64) -> i32 {
     if value > i32::MAX as i64 {
         i32::MAX

@@ -1,8 +1,10 @@
 //! Where the neurons of a population are centred.
 
+use super::cells::Cells;
+use super::search::count_preceding;
+use super::spaced::for_each_spaced;
 use crate::curve::normal_quantile;
 use crate::error::{checked, finite};
-use crate::sample::for_each_sample;
 use crate::{ConfigError, Sample};
 
 /// The centres of `M` neurons, 3 to 1024, and the edges halfway between them, kept in flash and
@@ -10,6 +12,12 @@ use crate::{ConfigError, Sample};
 ///
 /// The neuron of a value is the one whose centre is nearest, exactly, in every sample type: a value
 /// halfway between two belongs to the lower, a value outside to the neuron at that end.
+///
+/// - **Memory:** the centres, as many edges, `2 M` bytes for a table of even cells, and 8 bytes.
+/// - **Work:** one multiplication finds a value's cell, the table a neuron for the cell, and one
+///   comparison with an edge whether it is that or the next. Where two edges share a cell, as with
+///   Gaussian-spaced centres from about 140 on or the user's own, and beyond 256 neurons, it is a binary
+///   search instead.
 ///
 /// Fewer than three neurons do not compile:
 ///
@@ -31,9 +39,11 @@ pub struct Centres<S, const M: usize> {
     /// `edges[i]` is the largest value that still belongs to neuron `i`; the last is not used.
     #[cfg_attr(feature = "serde", serde(skip))]
     edges: [S; M],
-    /// Neurons for 1 of an even range; 0 where the centres are not even.
     #[cfg_attr(feature = "serde", serde(skip))]
-    scale: S,
+    cells: Cells,
+    /// The number of the lowest neuron of each cell's values, from 1.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    starts: [[u8; 2]; M],
 }
 
 impl<S, const M: usize> Centres<S, M> {
@@ -74,7 +84,7 @@ const fn halfway(low: f64, high: f64) -> f64 {
 }
 
 /// `mu[i] = min + (2i - 1) / 2 * (max - min) / (m - 2)`.
-const fn even_centre(min: f64, max: f64, i: usize, m: usize) -> f64 {
+pub(super) const fn even_centre(min: f64, max: f64, i: usize, m: usize) -> f64 {
     min + (2.0 * i as f64 - 1.0) * (max - min) / (2.0 * (m as f64 - 2.0))
 }
 
@@ -113,7 +123,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
             }
             previous = Some((value, edge));
         }
-        Ok(Self { values, edges, scale: S::ZERO })
+        Ok(S::centres(values, edges))
     }
 
     /// Even centres over a range, half a spacing beyond it at either end:
@@ -130,8 +140,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
         for (i, edge) in centres.edges.iter_mut().enumerate() {
             *edge = S::floor_from_f64(even_edge(min, max, i, M));
         }
-        centres.scale = S::scale(min, max, M);
-        Ok(centres)
+        Ok(S::centres(centres.values, centres.edges))
     }
 
     /// Centres from `min` to `max` spaced as the quantiles of a normal distribution: dense around
@@ -145,19 +154,37 @@ impl<S: Sample, const M: usize> Centres<S, M> {
         Self::new(core::array::from_fn(|i| S::from_f64(gaussian_centre(min, max, i, M))))
     }
 
-    /// The neuron of a finite value: of even centres by arithmetic, which may come out too low by what
-    /// rounding loses; of others by binary search.
+    /// The number of a finite value's neuron, from 1.
     #[inline]
     pub(super) fn nearest(&self, value: S) -> usize {
+        if self.has_cells() { self.by_cell(value) } else { self.by_search(value) }
+    }
+
+    /// Whether [`by_cell`](Self::by_cell) tells the neuron of every value.
+    #[inline]
+    pub(super) fn has_cells(&self) -> bool {
+        self.cells != Cells::ONE
+    }
+
+    /// As [`nearest`](Self::nearest), by cell; 1 for what is not a number.
+    #[inline]
+    pub(super) fn by_cell(&self, value: S) -> usize {
+        let cell = value.cell(self.cells).min(2 * M - 1);
+        let lowest = self.starts.as_flattened().get(cell).copied().map_or(1, usize::from);
+        if self.is_beyond(value, lowest - 1) { lowest + 1 } else { lowest }
+    }
+
+    /// As [`nearest`](Self::nearest), by binary search.
+    #[inline(never)] // unrolled, and not to be so more than once
+    pub(super) fn by_search(&self, value: S) -> usize {
+        1 + count_preceding(M - 1, |edge| self.is_beyond(value, edge))
+    }
+
+    /// Whether the value lies beyond the edge of this neuron; beyond the last it does not.
+    #[inline]
+    fn is_beyond(&self, value: S, neuron: usize) -> bool {
         let edges = self.edges.get(..M - 1).unwrap_or_default();
-        if self.scale == S::ZERO {
-            return edges.partition_point(|&edge| value > edge);
-        }
-        let mut neuron = value.spacings(self.edges[0], self.scale).min(M - 1);
-        while edges.get(neuron).is_some_and(|&edge| value > edge) {
-            neuron += 1;
-        }
-        neuron
+        edges.get(neuron).is_some_and(|&edge| value > edge)
     }
 
     pub(super) fn get(&self, neuron: usize) -> Option<S> {
@@ -170,7 +197,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
 }
 
 macro_rules! constants {
-    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $reach:path, $scale:path) => {
+    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $raw:path, $kind:ident) => {
         // Constants are built by index: there are no iterators in constants.
         #[allow(clippy::indexing_slicing)]
         impl<const M: usize, $($generics)*> Centres<$sample, M> {
@@ -192,7 +219,7 @@ macro_rules! constants {
                     }
                     i += 1;
                 }
-                Self { values, edges, scale: $nearest(0.0) }
+                Self::with_cells(values, edges)
             }
 
             /// For constants: [`new_linear`](Self::new_linear). A range that is not one fails the build.
@@ -214,8 +241,7 @@ macro_rules! constants {
                     centres.edges[i] = $floor(even_edge(min, max, i, M));
                     i += 1;
                 }
-                centres.scale = $scale(min, max, M);
-                centres
+                Self::with_cells(centres.values, centres.edges)
             }
 
             /// For constants: [`new_gaussian_spaced`](Self::new_gaussian_spaced). A range that is not
@@ -234,7 +260,29 @@ macro_rules! constants {
                 }
                 Self::checked(values)
             }
+
+            /// With the table for the edges, where no two of them share a cell.
+            pub(super) const fn with_cells(values: [$sample; M], edges: [$sample; M]) -> Self {
+                use super::spaced::$kind::{cell, cells, units};
+                let lowest = units($raw(edges[0]));
+                let count = 2 * M;
+                let width = (units($raw(edges[M - 2])) - lowest) / (count - 1) as f64;
+                let cells = cells(lowest - width / 16.0, width, count);
+                let mut starts = [[1; 2]; M];
+                let mut edge = 0;
+                let mut i = 0;
+                while i < count && edge < 256 {
+                    starts[i / 2][i % 2] = (edge + 1) as u8;
+                    if edge < M - 1 && cell(cells, $raw(edges[edge])) == i {
+                        edge += 1;
+                    }
+                    i += 1;
+                }
+                // Two edges in one cell, and the second was not passed.
+                let cells = if edge == M - 1 && i == count { cells } else { Cells::ONE };
+                Self { values, edges, cells, starts }
+            }
         }
     };
 }
-for_each_sample!(constants);
+for_each_spaced!(constants);

@@ -1,9 +1,11 @@
 //! Gaussian receptive fields of equal width, as distances instead of exponentials.
 
-use super::centres::{Centres, check_range};
+use super::cells::Cells;
+use super::centres::{Centres, check_range, even_centre};
+use super::search::count_preceding;
+use super::spaced::{Distance, for_each_spaced};
 use crate::curve::{ln, sqrt};
 use crate::error::{checked, positive};
-use crate::sample::{for_each_integer, for_each_sample};
 use crate::{ConfigError, Sample};
 
 /// `M` neurons, 3 to 1024, whose responses to a value are told apart in `N` levels, 2 to 256. Kept in
@@ -13,7 +15,7 @@ use crate::{ConfigError, Sample};
 /// `sigma = (max - min) / (beta (M - 2))`; its level is `N r`, rounded half up. A level is reached
 /// within a distance from the centre, so that a table of `N` distances replaces the exponential.
 ///
-/// - **Memory:** `8 M + 4 N` bytes of flash in `f32`.
+/// - **Memory:** `4 M + 4 N + 20` bytes of flash in `f32`.
 /// - **Exactness:** `f32` compares the distance to the rounded centre, rounded once, with the
 ///   rounded table; fixed point compares exact distances to the unrounded centre.
 ///
@@ -21,11 +23,17 @@ use crate::{ConfigError, Sample};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ReceptiveFields<S: Sample, const M: usize, const N: usize> {
-    centres: Centres<S, M>,
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array"))]
+    centres: [S; M],
     min: S,
     max: S,
     beta: f32,
-    /// `reaches[k]` is the largest distance with a level above `k`: falling.
+    /// A value in cell `i` is out of reach of the neurons below `i`.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    cells: Cells,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    near: S::Near,
+    /// `reaches[slot]` is the largest distance with a level of at least `N - slot`: rising.
     #[cfg_attr(feature = "serde", serde(skip))]
     reaches: [S::Reach; N],
 }
@@ -69,56 +77,62 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         let width = f64::from(beta);
         positive("beta", width)?;
         let centres = Centres::new_linear(min, max)?;
-        let reaches = core::array::from_fn(|k| {
-            S::reach(radius(min.to_f64(), max.to_f64(), width, M, k + 1, N), M)
-        });
-        Ok(Self { centres, min, max, beta, reaches })
+        Ok(S::fields(*centres.as_array(), min, max, beta))
     }
 
     /// The centres, lowest first.
-    pub fn centres(&self) -> &[S; M] {
-        self.centres.as_array()
-    }
-
-    pub(super) fn table(&self) -> &Centres<S, M> {
+    pub const fn centres(&self) -> &[S; M] {
         &self.centres
     }
 
-    /// How far a value is from a centre, in the unit of the table.
-    #[inline]
-    fn distance(&self, value: S, neuron: usize) -> Option<S::Reach> {
-        let centre = self.centres.get(neuron)?;
-        Some(S::distance(value, centre, neuron, M, self.min, self.max))
+    pub(super) fn middle(&self) -> S {
+        self.centres.get(M / 2).copied().unwrap_or(S::ZERO)
     }
 
-    /// The level of a neuron's response, 0 to `N`.
+    /// Whether the distances of a value fit [`Short`](super::Spaced::Short).
     #[inline]
-    pub(super) fn level(&self, value: S, neuron: usize) -> usize {
-        self.distance(value, neuron)
-            .map_or(0, |distance| self.reaches.partition_point(|&reach| distance <= reach))
+    pub(super) fn is_near(&self, value: S) -> bool {
+        value.is_near(self.near)
     }
 
-    /// Whether a neuron's response has at least this level, 1 to `N`.
+    /// The first neuron that may respond to a finite value: it, or the next if the value
+    /// [is above](Self::is_above) it.
     #[inline]
-    pub(super) fn reaches(&self, value: S, neuron: usize, level: usize) -> bool {
-        match (self.distance(value, neuron), self.reaches.get(level.wrapping_sub(1))) {
-            (Some(distance), Some(reach)) => distance <= *reach,
-            _ => false,
-        }
+    pub(super) fn first(&self, value: S) -> usize {
+        value.cell(self.cells).min(M)
     }
 
-    /// The neurons, from the first, whose response to a finite value has at least this level.
     #[inline]
-    pub(super) fn responding(&self, value: S, level: usize) -> impl Iterator<Item = usize> {
-        let mut first = self.centres.nearest(value);
-        while first > 0 && self.reaches(value, first - 1, level) {
-            first -= 1;
-        }
-        // Halfway between two centres rounding may leave only the other within reach.
-        if !self.reaches(value, first, level) {
-            first += 1;
-        }
-        (first..M).take_while(move |&neuron| self.reaches(value, neuron, level))
+    pub(super) fn is_above(&self, value: S, neuron: usize) -> bool {
+        self.centres.get(neuron).is_some_and(|&centre| value > centre)
+    }
+
+    /// The distances of a finite value from this neuron and those after it.
+    #[inline]
+    pub(super) fn distances<'f, D: Distance<S> + 'f>(
+        &'f self,
+        value: S,
+        first: usize,
+    ) -> impl ExactSizeIterator<Item = D> + 'f {
+        let centres = self.centres.get(first..).unwrap_or_default();
+        centres
+            .iter()
+            .enumerate()
+            .map(move |(i, &centre)| D::between(value, centre, first + i, M, self.min, self.max))
+    }
+
+    /// The largest distance with at least this level, 1 to `N`.
+    #[inline]
+    pub(super) fn reach<D: Distance<S>>(&self, level: usize) -> Option<D> {
+        self.reaches.get(N.wrapping_sub(level)).copied().map(D::of)
+    }
+
+    /// `N` less the level at this distance, which is at least 1.
+    #[inline]
+    pub(super) fn slot<D: Distance<S>>(&self, distance: D) -> usize {
+        count_preceding(N - 1, |slot| {
+            self.reaches.get(slot).is_some_and(|&reach| distance > D::of(reach))
+        })
     }
 
     /// The mean of the centres weighted by their levels, or `None` without any.
@@ -126,7 +140,7 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         let mut weighted = S::Weighted::default();
         let mut total = 0;
         for (neuron, level) in levels {
-            weighted = S::weigh(weighted, self.centres.get(neuron)?, neuron, level);
+            weighted = S::weigh(weighted, *self.centres.get(neuron)?, neuron, level);
             total += level;
         }
         (total > 0).then(|| S::mean(weighted, total, M, self.min, self.max))
@@ -134,7 +148,7 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
 }
 
 macro_rules! constants {
-    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $reach:path, $scale:path) => {
+    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $raw:path, $kind:ident) => {
         // Constants are built by index: there are no iterators in constants.
         #[allow(clippy::indexing_slicing)]
         impl<const M: usize, const N: usize, $($generics)*> ReceptiveFields<$sample, M, N> {
@@ -144,145 +158,43 @@ macro_rules! constants {
             /// As `new` fails; at compile time where it initialises a constant.
             pub const fn checked(min: $sample, max: $sample, beta: f32) -> Self {
                 const { Self::SHAPE };
-                let width = beta as f64;
-                checked!(positive("beta", width));
+                checked!(positive("beta", beta as f64));
                 checked!(check_range($to_f64(min), $to_f64(max)));
-                let mut reaches = [$reach(0.0, M); N];
+                let centres = Centres::<$sample, M>::linear(min, max);
+                Self::with_table(*centres.as_array(), min, max, beta)
+            }
+
+            /// With the table of distances, and the cells in which they end.
+            pub(super) const fn with_table(
+                centres: [$sample; M],
+                min: $sample,
+                max: $sample,
+                beta: f32,
+            ) -> Self {
+                use super::spaced::$kind;
+                let (low, high) = ($kind::units($raw(min)), $kind::units($raw(max)));
+                let mut reaches = [$kind::reach(0.0, M); N];
                 let mut k = 0;
                 while k < N {
-                    reaches[k] = $reach(radius($to_f64(min), $to_f64(max), width, M, k + 1, N), M);
+                    reaches[k] = $kind::reach(radius(low, high, beta as f64, M, N - k, N), M);
                     k += 1;
                 }
-                Self { centres: Centres::<$sample, M>::linear(min, max), min, max, beta, reaches }
-            }
-        }
-    };
-}
-for_each_sample!(constants);
-
-/// The sample type's part in the receptive fields. Sealed: only this crate can name it.
-pub trait Spaced: Sized {
-    /// A distance from a centre: `f32`, or an integer in units of the type's last place over
-    /// `2 (M - 2)`, in which every centre is whole.
-    type Reach: Copy + PartialOrd + core::fmt::Debug;
-    /// Centres times levels, summed.
-    type Weighted: Default;
-
-    /// The largest distance in the table's unit that is not above this one in the samples' unit.
-    fn reach(distance: f64, neurons: usize) -> Self::Reach;
-
-    fn distance(
-        self,
-        centre: Self,
-        neuron: usize,
-        neurons: usize,
-        min: Self,
-        max: Self,
-    ) -> Self::Reach;
-
-    /// What [`spacings`](Self::spacings) takes for even centres over this range.
-    fn scale(min: f64, max: f64, neurons: usize) -> Self;
-
-    /// How many whole spacings this lies above the lowest edge, or less by what rounding loses; 0
-    /// below it.
-    fn spacings(self, lowest: Self, scale: Self) -> usize;
-
-    fn weigh(sum: Self::Weighted, centre: Self, neuron: usize, level: u32) -> Self::Weighted;
-
-    fn mean(sum: Self::Weighted, levels: u32, neurons: usize, min: Self, max: Self) -> Self;
-}
-
-impl Spaced for f32 {
-    type Reach = f32;
-    type Weighted = f32;
-
-    fn reach(distance: f64, neurons: usize) -> f32 {
-        crate::sample::f32_reach(distance, neurons)
-    }
-
-    #[inline]
-    fn distance(self, centre: f32, _: usize, _: usize, _: f32, _: f32) -> f32 {
-        (self - centre).abs()
-    }
-
-    fn scale(min: f64, max: f64, neurons: usize) -> f32 {
-        crate::sample::f32_scale(min, max, neurons)
-    }
-
-    #[inline]
-    fn spacings(self, lowest: f32, scale: f32) -> usize {
-        ((self - lowest) * scale) as u32 as usize
-    }
-
-    #[inline]
-    fn weigh(sum: f32, centre: f32, _: usize, level: u32) -> f32 {
-        sum + centre * level as f32
-    }
-
-    #[inline]
-    fn mean(sum: f32, levels: u32, _: usize, _: f32, _: f32) -> f32 {
-        sum / levels as f32
-    }
-}
-
-macro_rules! integer_spaced {
-    ([$($generics:tt)*] $sample:ty, i16, $to_bits:path, $from_bits:path,
-     $to_f64:path, $nearest:path, $floor:path, $reach:path, $scale:path) => {
-        integer_spaced!(@ [$($generics)*] $sample, i16, i32, $to_bits, $from_bits, $reach, $scale);
-    };
-    ([$($generics:tt)*] $sample:ty, i32, $to_bits:path, $from_bits:path,
-     $to_f64:path, $nearest:path, $floor:path, $reach:path, $scale:path) => {
-        integer_spaced!(@ [$($generics)*] $sample, i32, i64, $to_bits, $from_bits, $reach, $scale);
-    };
-    (@ [$($generics:tt)*] $sample:ty, $bits:ty, $wide:ty, $to_bits:path, $from_bits:path,
-     $reach:path, $scale:path) => {
-        impl<$($generics)*> Spaced for $sample {
-            type Reach = $wide;
-            type Weighted = i64;
-
-            fn reach(distance: f64, neurons: usize) -> $wide {
-                $reach(distance, neurons)
-            }
-
-            #[inline]
-            fn distance(self, _: Self, neuron: usize, neurons: usize, min: Self, max: Self) -> $wide {
-                let min = <$wide>::from($to_bits(min));
-                let offset = <$wide>::from($to_bits(self)) - min;
-                let range = <$wide>::from($to_bits(max)) - min;
-                (2 * (neurons as $wide - 2) * offset - (2 * neuron as $wide - 1) * range).abs()
-            }
-
-            fn scale(min: f64, max: f64, neurons: usize) -> Self {
-                $scale(min, max, neurons)
-            }
-
-            // A 16-bit scale has no upper half, and no shift.
-            #[inline]
-            fn spacings(self, lowest: Self, scale: Self) -> usize {
-                if self <= lowest {
-                    return 0;
+                let farthest = radius(low, high, beta as f64, M, 1, N);
+                let width = (high - low) / (M as f64 - 2.0);
+                // A 32nd of a cell for what is rounded.
+                let cells = $kind::cells(low + farthest - 1.46875 * width, width, M + 2);
+                let mut hold = true;
+                let mut i = 0;
+                while i < M {
+                    let top = $kind::top(even_centre(low, high, i, M), farthest);
+                    hold &= $kind::cell(cells, top) <= i;
+                    i += 1;
                 }
-                let above = i32::from($to_bits(self)).wrapping_sub(i32::from($to_bits(lowest))) as u32;
-                let scale = i32::from($to_bits(scale)) as u32;
-                let scaled = (above >> (scale >> 16)).min(0xffff) * (scale & 0xffff);
-                (scaled >> 16) as usize
-            }
-
-            #[inline]
-            fn weigh(sum: i64, _: Self, neuron: usize, level: u32) -> i64 {
-                sum + (2 * neuron as i64 - 1) * i64::from(level)
-            }
-
-            #[inline]
-            fn mean(sum: i64, levels: u32, neurons: usize, min: Self, max: Self) -> Self {
-                let min = i64::from($to_bits(min));
-                let range = i64::from($to_bits(max)) - min;
-                let parts = (neurons as i64 - 2) * i64::from(levels);
-                // The nearest, halves upwards: floor of the quotient and a half.
-                let value = min + (range * sum + parts).div_euclid(2 * parts.max(1));
-                $from_bits(value.clamp(<$bits>::MIN.into(), <$bits>::MAX.into()) as $bits)
+                let cells = if hold { cells } else { Cells::ONE };
+                let near = $kind::near(low, high, M, reaches[N - 1]);
+                Self { centres, min, max, beta, cells, near, reaches }
             }
         }
     };
 }
-for_each_integer!(integer_spaced);
+for_each_spaced!(constants);

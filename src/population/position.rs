@@ -1,6 +1,9 @@
 //! Position coding: the neuron whose centre is nearest fires.
 
+use core::num::NonZeroU16;
+
 use super::centres::Centres;
+use crate::codec::encode_each;
 use crate::sample::Tally;
 use crate::spike::{Code, Firing, Polarity};
 use crate::{Decoder, Encoder, Output, Sample, Scheme};
@@ -57,20 +60,49 @@ impl<'a, S: Sample, const M: usize> Scheme for Position<'a, S, M> {
 }
 
 /// One of `M` neurons.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Neuron<const M: usize>(u16);
+///
+/// Two bytes, and no more where there may be none.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Neuron<const M: usize>(NonZeroU16);
 
 impl<const M: usize> Neuron<M> {
     /// The neuron with this index, if there is one.
     pub const fn new(index: u16) -> Option<Self> {
-        if (index as usize) < M { Some(Self(index)) } else { None }
+        if (index as usize) < M { Self::counted(index + 1) } else { None }
     }
 
     /// Its index, 0 to `M - 1`.
     pub const fn index(self) -> u16 {
-        self.0
+        self.0.get() - 1
+    }
+
+    /// The first is 1; 0 is none.
+    const fn counted(number: u16) -> Option<Self> {
+        match NonZeroU16::new(number) {
+            Some(number) => Some(Self(number)),
+            None => None,
+        }
+    }
+}
+
+impl<const M: usize> core::fmt::Debug for Neuron<M> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_tuple("Neuron").field(&self.index()).finish()
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl<const M: usize> defmt::Format for Neuron<M> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "Neuron({})", self.index());
+    }
+}
+
+/// Its index.
+#[cfg(feature = "serde")]
+impl<const M: usize> serde::Serialize for Neuron<M> {
+    fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        serializer.serialize_newtype_struct("Neuron", &self.index())
     }
 }
 
@@ -79,7 +111,8 @@ impl<const M: usize> Code for Option<Neuron<M>> {
     const NEURONS: usize = M;
 
     fn firings(&self) -> impl Iterator<Item = Firing> {
-        self.map(|neuron| Firing { neuron: neuron.0, slot: 0, polarity: Polarity::Up }).into_iter()
+        self.map(|neuron| Firing { neuron: neuron.index(), slot: 0, polarity: Polarity::Up })
+            .into_iter()
     }
 }
 
@@ -108,7 +141,23 @@ impl<S: Sample, const M: usize> Encoder for PositionEncoder<'_, S, M> {
             self.tally.reject();
             return None;
         }
-        Some(Neuron(self.centres.nearest(sample) as u16))
+        Neuron::counted(self.centres.nearest(sample) as u16)
+    }
+
+    fn encode_slice(&mut self, samples: &[S], outputs: &mut [Option<Neuron<M>>]) -> usize {
+        let centres = self.centres;
+        let mut taint = S::ZERO;
+        if centres.has_cells() {
+            // As if all were finite; if one was not, all over again.
+            for (output, &sample) in outputs.iter_mut().zip(samples) {
+                taint = taint.taint(sample);
+                *output = Neuron::counted(centres.by_cell(sample) as u16);
+            }
+            if taint.is_finite() {
+                return samples.len().min(outputs.len());
+            }
+        }
+        encode_each(self, samples, outputs)
     }
 
     fn reset(&mut self) {
@@ -135,7 +184,7 @@ impl<S: Sample, const M: usize> Decoder for PositionDecoder<'_, S, M> {
 
     #[inline]
     fn decode(&mut self, neuron: Option<Neuron<M>>) -> S {
-        if let Some(centre) = neuron.and_then(|neuron| self.centres.get(neuron.0 as usize)) {
+        if let Some(centre) = neuron.and_then(|neuron| self.centres.get(neuron.index().into())) {
             self.value = centre;
         }
         self.value

@@ -4,6 +4,7 @@
 use rand_core::Rng;
 
 use super::fields::ReceptiveFields;
+use super::spaced::Distance;
 use crate::sample::Tally;
 use crate::spike::{Code, Firing, Polarity};
 use crate::{Decoder, Encoder, Output, Sample};
@@ -66,7 +67,7 @@ impl<'a, S: Sample, const M: usize, const N: usize> Probabilistic<'a, S, M, N> {
 
     /// A decoder in its initial state.
     pub fn decoder(self) -> ProbabilisticDecoder<'a, S, M, N> {
-        ProbabilisticDecoder { fields: self.fields, value: self.fields.table().middle() }
+        ProbabilisticDecoder { fields: self.fields, value: self.fields.middle() }
     }
 }
 
@@ -134,6 +135,31 @@ pub struct ProbabilisticEncoder<'a, S: Sample, G, const M: usize, const N: usize
     tally: Tally,
 }
 
+impl<S: Sample, G: Rng, const M: usize, const N: usize> ProbabilisticEncoder<'_, S, G, M, N> {
+    #[inline]
+    fn fire<D: Distance<S>>(&mut self, sample: S, pattern: &mut Pattern<M>) {
+        let fields = self.fields;
+        let Some(reach) = fields.reach::<D>(1) else { return };
+        let mut first = fields.first(sample);
+        loop {
+            let fired = pattern.fired.get_mut(first..).unwrap_or_default();
+            let mut responds = false;
+            for (fired, distance) in fired.iter_mut().zip(fields.distances::<D>(sample, first)) {
+                if distance > reach {
+                    break;
+                }
+                let draw = (self.generator.next_u32() >> (32 - N.ilog2())) as usize;
+                *fired = fields.reach(draw + 1).is_some_and(|reach| distance <= reach);
+                responds = true;
+            }
+            if responds || !fields.is_above(sample, first) {
+                break;
+            }
+            first += 1;
+        }
+    }
+}
+
 impl<S: Sample, G: Rng, const M: usize, const N: usize> Encoder
     for ProbabilisticEncoder<'_, S, G, M, N>
 {
@@ -147,11 +173,10 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Encoder
             self.tally.reject();
             return pattern;
         }
-        for neuron in self.fields.responding(sample, 1) {
-            let draw = (self.generator.next_u32() >> (32 - N.ilog2())) as usize;
-            if let Some(fired) = pattern.fired.get_mut(neuron) {
-                *fired = self.fields.reaches(sample, neuron, draw + 1);
-            }
+        if self.fields.is_near(sample) {
+            self.fire::<S::Short>(sample, &mut pattern);
+        } else {
+            self.fire::<S::Reach>(sample, &mut pattern);
         }
         pattern
     }
@@ -192,6 +217,6 @@ impl<S: Sample, const M: usize, const N: usize> Decoder for ProbabilisticDecoder
     }
 
     fn reset(&mut self) {
-        self.value = self.fields.table().middle();
+        self.value = self.fields.middle();
     }
 }

@@ -1,6 +1,8 @@
 //! Gaussian receptive fields with sub-timesteps: the stronger the response, the earlier the spike.
 
 use super::fields::ReceptiveFields;
+use super::spaced::Distance;
+use crate::codec::{all_finite, encode_each};
 use crate::error::ConfigError;
 use crate::sample::Tally;
 use crate::spike::{Code, Firing, Polarity};
@@ -62,6 +64,45 @@ impl<'a, S: Sample, const M: usize, const N: usize> Slots<'a, S, M, N> {
     }
 }
 
+impl<S: Sample, const M: usize, const N: usize> Slots<'_, S, M, N> {
+    /// The spikes of a finite sample, in an empty volley.
+    #[inline(never)] // registers enough for its loops
+    fn fire(self, sample: S, volley: &mut Volley<M, N>) {
+        if self.fields.is_near(sample) {
+            self.fire_within::<S::Short>(sample, volley);
+        } else {
+            self.fire_within::<S::Reach>(sample, volley);
+        }
+    }
+
+    #[inline]
+    fn fire_within<D: Distance<S>>(self, sample: S, volley: &mut Volley<M, N>) {
+        let Self { fields, floor } = self;
+        let Some(reach) = fields.reach::<D>(floor.into()) else { return };
+        let mut first = fields.first(sample);
+        loop {
+            let mut length = 0;
+            let distances = fields.distances::<D>(sample, first);
+            for (slot, distance) in volley.slots.iter_mut().zip(distances) {
+                if distance > reach {
+                    break;
+                }
+                *slot = fields.slot(distance) as u8;
+                length += 1;
+            }
+            if length > 0 {
+                volley.first = first as u16;
+                volley.length = length;
+                return;
+            }
+            if !fields.is_above(sample, first) {
+                return;
+            }
+            first += 1;
+        }
+    }
+}
+
 impl<'a, S: Sample, const M: usize, const N: usize> Scheme for Slots<'a, S, M, N> {
     type Sample = S;
     type Encoder = SlotsEncoder<'a, S, M, N>;
@@ -74,7 +115,7 @@ impl<'a, S: Sample, const M: usize, const N: usize> Scheme for Slots<'a, S, M, N
     }
 
     fn decoder(self) -> Self::Decoder {
-        SlotsDecoder { fields: self.fields, value: self.fields.table().middle() }
+        SlotsDecoder { fields: self.fields, value: self.fields.middle() }
     }
 }
 
@@ -164,20 +205,23 @@ impl<S: Sample, const M: usize, const N: usize> Encoder for SlotsEncoder<'_, S, 
     #[inline]
     fn encode(&mut self, sample: S) -> Volley<M, N> {
         let mut volley = Volley::EMPTY;
-        if !sample.is_finite() {
+        if sample.is_finite() {
+            self.scheme.fire(sample, &mut volley);
+        } else {
             self.tally.reject();
-            return volley;
-        }
-        let Slots { fields, floor } = self.scheme;
-        let mut neurons = fields.responding(sample, floor as usize);
-        for (slot, neuron) in volley.slots.iter_mut().zip(&mut neurons) {
-            if volley.length == 0 {
-                volley.first = neuron as u16;
-            }
-            *slot = (N - fields.level(sample, neuron)) as u8;
-            volley.length += 1;
         }
         volley
+    }
+
+    fn encode_slice(&mut self, samples: &[S], outputs: &mut [Volley<M, N>]) -> usize {
+        if !all_finite(samples) {
+            return encode_each(self, samples, outputs);
+        }
+        for (volley, &sample) in outputs.iter_mut().zip(samples) {
+            *volley = Volley::EMPTY;
+            self.scheme.fire(sample, volley);
+        }
+        samples.len().min(outputs.len())
     }
 
     fn reset(&mut self) {
@@ -218,6 +262,6 @@ impl<S: Sample, const M: usize, const N: usize> Decoder for SlotsDecoder<'_, S, 
     }
 
     fn reset(&mut self) {
-        self.value = self.fields.table().middle();
+        self.value = self.fields.middle();
     }
 }

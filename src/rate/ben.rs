@@ -96,7 +96,7 @@ impl<'a, S: Sample, const F: usize> Ben<'a, S, F> {
 }
 
 macro_rules! constants {
-    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $reach:path, $scale:path) => {
+    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path) => {
         impl<'a, const F: usize, $($generics)*> Ben<'a, $sample, F> {
             /// For constants: `e1 <= e2 - threshold`. A negative threshold fails the build.
             ///

@@ -62,7 +62,7 @@ impl<'a, S: Sample, const F: usize> BenToolbox<'a, S, F> {
 }
 
 macro_rules! constants {
-    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $reach:path, $scale:path) => {
+    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path) => {
         impl<'a, const F: usize, $($generics)*> BenToolbox<'a, $sample, F> {
             /// For constants: a threshold that is not above 0 and below 4 fails the build.
             ///

@@ -168,7 +168,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
 }
 
 macro_rules! constants {
-    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $reach:path, $scale:path) => {
+    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path) => {
         // Constants are built by index: there are no iterators in constants.
         #[allow(clippy::indexing_slicing)]
         impl<const F: usize, $($generics)*> Taps<$sample, F> {

@@ -64,7 +64,7 @@ impl<'a, S: Sample, const F: usize> ThresholdHough<'a, S, F> {
 }
 
 macro_rules! constants {
-    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $reach:path, $scale:path) => {
+    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path) => {
         impl<'a, const F: usize, $($generics)*> ThresholdHough<'a, $sample, F> {
             /// For constants: a negative threshold fails the build.
             ///

@@ -72,7 +72,7 @@ impl<S: Sample, const N: usize> MovingWindow<S, N> {
 }
 
 macro_rules! constants {
-    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $reach:path, $scale:path) => {
+    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path) => {
         impl<const N: usize, $($generics)*> MovingWindow<$sample, N> {
             /// For constants: a threshold that is not above 0 fails the build.
             ///

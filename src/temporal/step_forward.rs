@@ -62,7 +62,7 @@ impl<S: Sample> StepForward<S> {
 }
 
 macro_rules! constants {
-    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path, $reach:path, $scale:path) => {
+    ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path) => {
         impl<$($generics)*> StepForward<$sample> {
             /// For constants: a threshold that is not above 0 fails the build.
             ///
