@@ -19,6 +19,7 @@ mod qemu;
 mod setup;
 mod shell;
 mod size;
+mod storm;
 mod toolchain;
 mod verify;
 

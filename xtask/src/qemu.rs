@@ -22,16 +22,18 @@ pub fn run(board: &Board, image: &Path) -> Result<String> {
 }
 
 /// The same with a clock that goes by instructions, so that every run is the same.
+pub fn run_repeatably(board: &Board, image: &Path) -> Result<String> {
+    run_for(PATIENCE, counting(board), image)
+}
+
+/// The same for a program that counts instructions, and takes its time.
 pub fn run_counting(board: &Board, image: &Path) -> Result<String> {
-    let mut emulator = emulator(board);
-    emulator.arg("-icount").arg(format!("shift={}", board.icount));
-    run_for(LONG_PATIENCE, emulator, image)
+    run_for(LONG_PATIENCE, counting(board), image)
 }
 
 /// The same, and what went out of the board's first serial port is kept in the file.
 pub fn run_capturing(board: &Board, image: &Path, serial: &Path) -> Result<String> {
-    let mut emulator = emulator(board);
-    emulator.arg("-icount").arg(format!("shift={}", board.icount));
+    let mut emulator = counting(board);
     // Or the monitor takes the console that the serial port leaves.
     emulator.args(["-monitor", "none"]);
     emulator.arg("-serial").arg(format!("file:{}", serial.display()));
@@ -41,6 +43,12 @@ pub fn run_capturing(board: &Board, image: &Path, serial: &Path) -> Result<Strin
 fn emulator(board: &Board) -> Command {
     let mut emulator = shell::command("qemu-system-arm");
     emulator.args(["-M", board.machine, "-nographic"]);
+    emulator
+}
+
+fn counting(board: &Board) -> Command {
+    let mut emulator = emulator(board);
+    emulator.arg("-icount").arg(format!("shift={}", board.icount));
     emulator
 }
 

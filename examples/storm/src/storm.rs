@@ -1,0 +1,17 @@
+//! Two interrupts, one above the other, push more events than main takes, under each policy of the queue.
+//!
+//! Every event tells its source and number, so that main knows which are missing; all of them must have been counted.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+mod check;
+mod source;
+
+#[cfg_attr(target_os = "none", path = "interrupts.rs")]
+#[cfg_attr(not(target_os = "none"), path = "threads.rs")]
+mod weather;
+
+#[cfg_attr(target_os = "none", board::entry)]
+fn main() -> ! {
+    board::finish(check::run(&mut board::console()))
+}
