@@ -8,6 +8,7 @@ mod distribution;
 mod firmware;
 mod flown;
 mod link;
+mod logging;
 mod markdown;
 mod names;
 mod packages;

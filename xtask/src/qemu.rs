@@ -21,6 +21,11 @@ pub fn run(board: &Board, image: &Path) -> Result<String> {
     run_for(PATIENCE, emulator(board), image)
 }
 
+/// The same of a program that prints something else than text.
+pub fn run_bytes(board: &Board, image: &Path) -> Result<Vec<u8>> {
+    run_to_end(PATIENCE, emulator(board), image)
+}
+
 /// The same with a clock that goes by instructions, so that every run is the same.
 pub fn run_repeatably(board: &Board, image: &Path) -> Result<String> {
     run_for(PATIENCE, counting(board), image)
@@ -52,7 +57,11 @@ fn counting(board: &Board) -> Command {
     emulator
 }
 
-fn run_for(patience: Duration, mut emulator: Command, image: &Path) -> Result<String> {
+fn run_for(patience: Duration, emulator: Command, image: &Path) -> Result<String> {
+    Ok(text(&run_to_end(patience, emulator, image)?))
+}
+
+fn run_to_end(patience: Duration, mut emulator: Command, image: &Path) -> Result<Vec<u8>> {
     emulator
         .args(["-semihosting-config", "enable=on,target=native"])
         .arg("-kernel")
@@ -71,21 +80,26 @@ fn run_for(patience: Duration, mut emulator: Command, image: &Path) -> Result<St
     let printed = printed.join().unwrap_or_default();
     let said = said.join().unwrap_or_default();
 
+    let shown = || text(&printed) + &text(&said);
     let Some(status) = status else {
-        bail!("no end after {patience:?}; so far: {printed}{said}");
+        bail!("no end after {patience:?}; so far: {}", shown());
     };
-    ensure!(status.success(), "{status}: {printed}{said}");
+    ensure!(status.success(), "{status}: {}", shown());
     Ok(printed)
 }
 
-fn read_all(stream: Option<impl Read + Send + 'static>) -> thread::JoinHandle<String> {
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn read_all(stream: Option<impl Read + Send + 'static>) -> thread::JoinHandle<Vec<u8>> {
     thread::spawn(move || {
         let mut bytes = Vec::new();
         if let Some(mut stream) = stream {
             // What came before an error is still worth showing.
             let _ = stream.read_to_end(&mut bytes);
         }
-        String::from_utf8_lossy(&bytes).into_owned()
+        bytes
     })
 }
 

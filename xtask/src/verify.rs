@@ -1,6 +1,6 @@
 //! `cargo verify`: every check, in order, each with its time. A failure does not hide the next one.
 
-use crate::{checks, link, parts, storm};
+use crate::{checks, link, logging, parts, storm};
 use anyhow::{Result, bail};
 use std::time::Instant;
 
@@ -27,6 +27,7 @@ const STEPS: &[Step] = &[
     step("demo", "the demo's table and picture", checks::demo),
     step("firmware", "emulated boards against the host", checks::firmware),
     step("storm", "more events than main takes, on emulated boards and host", storm::storm),
+    step("logging", "defmt out of emulated boards, decoded on the host", logging::logging),
     step("link", "a flight over a serial line, board against host", link::link),
     step("laptop", "the laptop program on a flight, and the paper's tables", checks::laptop),
     step("bench", "instruction counts against the baseline", checks::bench),
