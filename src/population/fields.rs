@@ -99,7 +99,7 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
     /// [is above](Self::is_above) it.
     #[inline]
     pub(super) fn first(&self, value: S) -> usize {
-        value.cell(self.cells).min(M)
+        value.cell(self.cells)
     }
 
     #[inline]
@@ -107,18 +107,17 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         self.centres.get(neuron).is_some_and(|&centre| value > centre)
     }
 
-    /// The distances of a finite value from this neuron and those after it.
+    /// The distances of a finite value from this neuron and those after it, if there is one.
     #[inline]
     pub(super) fn distances<'f, D: Distance<S> + 'f>(
         &'f self,
         value: S,
         first: usize,
-    ) -> impl ExactSizeIterator<Item = D> + 'f {
-        let centres = self.centres.get(first..).unwrap_or_default();
-        centres
-            .iter()
-            .enumerate()
-            .map(move |(i, &centre)| D::between(value, centre, first + i, M, self.min, self.max))
+    ) -> Option<impl ExactSizeIterator<Item = D> + 'f> {
+        let &Self { min, max, .. } = self;
+        let centres = self.centres.get(first..).filter(|_| first < M)?;
+        let distance = move |(i, &centre)| D::between(value, centre, first + i, M, min, max);
+        Some(centres.iter().enumerate().map(distance))
     }
 
     /// The largest distance with at least this level, 1 to `N`.
@@ -135,13 +134,21 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         })
     }
 
-    /// The mean of the centres weighted by their levels, or `None` without any.
-    pub(super) fn mean(&self, levels: impl Iterator<Item = (usize, u32)>) -> Option<S> {
+    /// The mean of the centres from `first` on that have levels, weighted by these, or `None` without any.
+    #[inline]
+    pub(super) fn mean(
+        &self,
+        first: usize,
+        levels: impl ExactSizeIterator<Item = Option<u32>>,
+    ) -> Option<S> {
+        let centres = self.centres.get(first..first + levels.len())?;
         let mut weighted = S::Weighted::default();
         let mut total = 0;
-        for (neuron, level) in levels {
-            weighted = S::weigh(weighted, *self.centres.get(neuron)?, neuron, level);
-            total += level;
+        for (i, (level, &centre)) in levels.zip(centres).enumerate() {
+            if let Some(level) = level {
+                weighted = S::weigh(weighted, centre, first + i, level);
+                total += level;
+            }
         }
         (total > 0).then(|| S::mean(weighted, total, M, self.min, self.max))
     }

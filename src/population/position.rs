@@ -3,7 +3,6 @@
 use core::num::NonZeroU16;
 
 use super::centres::Centres;
-use crate::codec::encode_each;
 use crate::sample::Tally;
 use crate::spike::{Code, Firing, Polarity};
 use crate::{Decoder, Encoder, Output, Sample, Scheme};
@@ -131,6 +130,22 @@ pub struct PositionEncoder<'a, S, const M: usize> {
     tally: Tally,
 }
 
+impl<S: Sample, const M: usize> PositionEncoder<'_, S, M> {
+    /// Apart, so that the usual path stays small.
+    #[cold]
+    #[inline(never)]
+    fn search_each(&mut self, samples: &[S], outputs: &mut [Option<Neuron<M>>]) {
+        for (output, &sample) in outputs.iter_mut().zip(samples) {
+            *output = None;
+            if sample.is_finite() {
+                *output = Neuron::counted(self.centres.by_search(sample) as u16);
+            } else {
+                self.tally.reject();
+            }
+        }
+    }
+}
+
 impl<S: Sample, const M: usize> Encoder for PositionEncoder<'_, S, M> {
     type Sample = S;
     type Output = Option<Neuron<M>>;
@@ -153,11 +168,11 @@ impl<S: Sample, const M: usize> Encoder for PositionEncoder<'_, S, M> {
                 taint = taint.taint(sample);
                 *output = Neuron::counted(centres.by_cell(sample) as u16);
             }
-            if taint.is_finite() {
-                return samples.len().min(outputs.len());
-            }
         }
-        encode_each(self, samples, outputs)
+        if !centres.has_cells() || !taint.is_finite() {
+            self.search_each(samples, outputs);
+        }
+        samples.len().min(outputs.len())
     }
 
     fn reset(&mut self) {

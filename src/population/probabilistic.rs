@@ -73,7 +73,8 @@ impl<'a, S: Sample, const M: usize, const N: usize> Probabilistic<'a, S, M, N> {
 
 /// Which neurons fired for one sample.
 ///
-/// `M` bytes.
+/// `M` bytes, rounded up to words.
+#[repr(align(4))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pattern<const M: usize> {
@@ -136,26 +137,34 @@ pub struct ProbabilisticEncoder<'a, S: Sample, G, const M: usize, const N: usize
 }
 
 impl<S: Sample, G: Rng, const M: usize, const N: usize> ProbabilisticEncoder<'_, S, G, M, N> {
+    /// Encodes into an empty pattern.
     #[inline]
+    fn encode_into(&mut self, sample: S, pattern: &mut Pattern<M>) {
+        if !sample.is_finite() {
+            self.tally.reject();
+        } else if self.fields.is_near(sample) {
+            self.fire::<S::Short>(sample, pattern);
+        } else {
+            self.fire::<S::Reach>(sample, pattern);
+        }
+    }
+
+    #[inline(never)] // one copy, with the registers to itself
     fn fire<D: Distance<S>>(&mut self, sample: S, pattern: &mut Pattern<M>) {
         let fields = self.fields;
+        let first = fields.first(sample);
         let Some(reach) = fields.reach::<D>(1) else { return };
-        let mut first = fields.first(sample);
-        loop {
-            let fired = pattern.fired.get_mut(first..).unwrap_or_default();
-            let mut responds = false;
-            for (fired, distance) in fired.iter_mut().zip(fields.distances::<D>(sample, first)) {
-                if distance > reach {
-                    break;
-                }
+        let Some(distances) = fields.distances::<D>(sample, first) else { return };
+        let fired = pattern.fired.iter_mut().enumerate().skip(first);
+        let mut responds = false;
+        for ((neuron, fired), distance) in fired.zip(distances) {
+            if distance <= reach {
                 let draw = (self.generator.next_u32() >> (32 - N.ilog2())) as usize;
                 *fired = fields.reach(draw + 1).is_some_and(|reach| distance <= reach);
                 responds = true;
-            }
-            if responds || !fields.is_above(sample, first) {
+            } else if responds || !fields.is_above(sample, neuron) {
                 break;
             }
-            first += 1;
         }
     }
 }
@@ -169,16 +178,16 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Encoder
     #[inline]
     fn encode(&mut self, sample: S) -> Pattern<M> {
         let mut pattern = Pattern::EMPTY;
-        if !sample.is_finite() {
-            self.tally.reject();
-            return pattern;
-        }
-        if self.fields.is_near(sample) {
-            self.fire::<S::Short>(sample, &mut pattern);
-        } else {
-            self.fire::<S::Reach>(sample, &mut pattern);
-        }
+        self.encode_into(sample, &mut pattern);
         pattern
+    }
+
+    fn encode_slice(&mut self, samples: &[S], outputs: &mut [Pattern<M>]) -> usize {
+        for (pattern, &sample) in outputs.iter_mut().zip(samples) {
+            *pattern = Pattern::EMPTY;
+            self.encode_into(sample, pattern);
+        }
+        samples.len().min(outputs.len())
     }
 
     /// Forgets the count of rejected samples; the generator goes on.
@@ -206,7 +215,8 @@ impl<S: Sample, const M: usize, const N: usize> Decoder for ProbabilisticDecoder
     type Code = Pattern<M>;
 
     fn decode(&mut self, pattern: Pattern<M>) -> S {
-        if let Some(mean) = self.fields.mean(pattern.iter().map(|neuron| (neuron as usize, 1))) {
+        let levels = pattern.fired.iter().map(|&fired| fired.then_some(1));
+        if let Some(mean) = self.fields.mean(0, levels) {
             self.value = mean;
         }
         self.value

@@ -2,7 +2,6 @@
 
 use super::fields::ReceptiveFields;
 use super::spaced::Distance;
-use crate::codec::{all_finite, encode_each};
 use crate::error::ConfigError;
 use crate::sample::Tally;
 use crate::spike::{Code, Firing, Polarity};
@@ -66,40 +65,56 @@ impl<'a, S: Sample, const M: usize, const N: usize> Slots<'a, S, M, N> {
 
 impl<S: Sample, const M: usize, const N: usize> Slots<'_, S, M, N> {
     /// The spikes of a finite sample, in an empty volley.
-    #[inline(never)] // registers enough for its loops
-    fn fire(self, sample: S, volley: &mut Volley<M, N>) {
+    #[inline]
+    fn fire(&self, sample: S, volley: &mut Volley<M, N>) {
         if self.fields.is_near(sample) {
-            self.fire_within::<S::Short>(sample, volley);
+            self.fire_near(sample, volley);
         } else {
-            self.fire_within::<S::Reach>(sample, volley);
+            self.fire_anywhere::<S::Reach>(sample, volley);
         }
     }
 
-    #[inline]
-    fn fire_within<D: Distance<S>>(self, sample: S, volley: &mut Volley<M, N>) {
-        let Self { fields, floor } = self;
-        let Some(reach) = fields.reach::<D>(floor.into()) else { return };
-        let mut first = fields.first(sample);
-        loop {
-            let mut length = 0;
-            let distances = fields.distances::<D>(sample, first);
-            for (slot, distance) in volley.slots.iter_mut().zip(distances) {
-                if distance > reach {
-                    break;
-                }
-                *slot = fields.slot(distance) as u8;
-                length += 1;
-            }
-            if length > 0 {
-                volley.first = first as u16;
-                volley.length = length;
-                return;
-            }
-            if !fields.is_above(sample, first) {
-                return;
-            }
+    #[inline(never)] // one copy, with the registers to itself
+    fn fire_near(&self, sample: S, volley: &mut Volley<M, N>) {
+        if !self.fire_from::<S::Short>(sample, self.fields.first(sample), volley) {
+            self.fire_anywhere::<S::Short>(sample, volley);
+        }
+    }
+
+    /// Where the first neuron does not fire, the next may.
+    #[cold]
+    #[inline(never)]
+    fn fire_anywhere<D: Distance<S>>(&self, sample: S, volley: &mut Volley<M, N>) {
+        let mut first = self.fields.first(sample);
+        while !self.fire_from::<D>(sample, first, volley) && self.fields.is_above(sample, first) {
             first += 1;
         }
+    }
+
+    /// Fires the neurons from `first` on that have a finite sample within reach, and says whether any has.
+    #[inline]
+    fn fire_from<D: Distance<S>>(
+        &self,
+        sample: S,
+        first: usize,
+        volley: &mut Volley<M, N>,
+    ) -> bool {
+        let reach = self.fields.reach::<D>(self.floor.into());
+        let distances = self.fields.distances::<D>(sample, first);
+        let (Some(reach), Some(distances)) = (reach, distances) else { return false };
+        let mut length = 0_usize;
+        for (slot, distance) in volley.slots.iter_mut().zip(distances) {
+            if distance > reach {
+                break;
+            }
+            *slot = self.fields.slot(distance) as u8;
+            length += 1;
+        }
+        if length > 0 {
+            volley.first = first as u16;
+            volley.length = length as u16;
+        }
+        length > 0
     }
 }
 
@@ -121,7 +136,8 @@ impl<'a, S: Sample, const M: usize, const N: usize> Scheme for Slots<'a, S, M, N
 
 /// The spikes of one sample: neighbouring neurons, each in its slot of `N`.
 ///
-/// `M + 4` bytes.
+/// `M + 4` bytes, rounded up to words.
+#[repr(align(4))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Volley<const M: usize, const N: usize> {
@@ -198,6 +214,18 @@ pub struct SlotsEncoder<'a, S: Sample, const M: usize, const N: usize> {
     tally: Tally,
 }
 
+impl<S: Sample, const M: usize, const N: usize> SlotsEncoder<'_, S, M, N> {
+    /// Encodes into an empty volley.
+    #[inline]
+    fn encode_into(&mut self, sample: S, volley: &mut Volley<M, N>) {
+        if sample.is_finite() {
+            self.scheme.fire(sample, volley);
+        } else {
+            self.tally.reject();
+        }
+    }
+}
+
 impl<S: Sample, const M: usize, const N: usize> Encoder for SlotsEncoder<'_, S, M, N> {
     type Sample = S;
     type Output = Volley<M, N>;
@@ -205,21 +233,14 @@ impl<S: Sample, const M: usize, const N: usize> Encoder for SlotsEncoder<'_, S, 
     #[inline]
     fn encode(&mut self, sample: S) -> Volley<M, N> {
         let mut volley = Volley::EMPTY;
-        if sample.is_finite() {
-            self.scheme.fire(sample, &mut volley);
-        } else {
-            self.tally.reject();
-        }
+        self.encode_into(sample, &mut volley);
         volley
     }
 
     fn encode_slice(&mut self, samples: &[S], outputs: &mut [Volley<M, N>]) -> usize {
-        if !all_finite(samples) {
-            return encode_each(self, samples, outputs);
-        }
         for (volley, &sample) in outputs.iter_mut().zip(samples) {
             *volley = Volley::EMPTY;
-            self.scheme.fire(sample, volley);
+            self.encode_into(sample, volley);
         }
         samples.len().min(outputs.len())
     }
@@ -249,9 +270,9 @@ impl<S: Sample, const M: usize, const N: usize> Decoder for SlotsDecoder<'_, S, 
     type Code = Volley<M, N>;
 
     fn decode(&mut self, volley: Volley<M, N>) -> S {
-        let levels =
-            volley.iter().map(|(neuron, slot)| (neuron as usize, N as u32 - u32::from(slot)));
-        if let Some(mean) = self.fields.mean(levels) {
+        let slots = volley.slots.get(..volley.len()).unwrap_or(&volley.slots);
+        let levels = slots.iter().map(|&slot| Some(N as u32 - u32::from(slot)));
+        if let Some(mean) = self.fields.mean(volley.first.into(), levels) {
             self.value = mean;
         }
         self.value

@@ -238,7 +238,7 @@ macro_rules! integer {
             type Reach = $reach;
             type Short = i32;
             type Near = $near;
-            type Weighted = i64;
+            type Weighted = i32;
 
             assembled!();
 
@@ -253,22 +253,40 @@ macro_rules! integer {
                 cells.of_integer($to_bits(self).into())
             }
 
+            // At most 1024 neurons of 256 levels: neither this nor the sum of levels leaves 30 bits.
             #[inline]
-            fn weigh(sum: i64, _: Self, neuron: usize, level: u32) -> i64 {
-                sum + (2 * neuron as i64 - 1) * i64::from(level)
+            fn weigh(sum: i32, _: Self, neuron: usize, level: u32) -> i32 {
+                sum + (2 * neuron as i32 - 1) * level as i32
             }
 
             #[inline]
-            fn mean(sum: i64, levels: u32, neurons: usize, min: Self, max: Self) -> Self {
-                let min = i64::from($to_bits(min));
-                let range = i64::from($to_bits(max)) - min;
-                let parts = (neurons as i64 - 2) * i64::from(levels);
-                // The nearest, halves upwards: floor of the quotient and a half.
-                let value = min + (range * sum + parts).div_euclid(2 * parts.max(1));
+            fn mean(sum: i32, levels: u32, neurons: usize, min: Self, max: Self) -> Self {
+                let parts = (neurons as i32 - 2) * levels as i32;
+                let value = mean($to_bits(min).into(), $to_bits(max).into(), sum, parts);
                 $from_bits(value.clamp(<$bits>::MIN.into(), <$bits>::MAX.into()) as $bits)
             }
         }
     };
+}
+
+/// `min + (max - min) * sum / (2 * parts)`, to the nearest, halves upwards, saturating. Where 32 bits have room
+/// for the product, the division is one of 32 bits.
+fn mean(min: i32, max: i32, sum: i32, parts: i32) -> i32 {
+    let product = max.checked_sub(min).and_then(|range| range.checked_mul(sum));
+    let Some(dividend) = product.and_then(|product| product.checked_add(parts)) else {
+        return long_mean(min, max, sum, parts);
+    };
+    // The floor, also of a negative quotient.
+    let sign = dividend >> 31;
+    let quotient = ((dividend ^ sign) as u32).checked_div(2 * parts as u32).unwrap_or(0);
+    min.saturating_add(quotient as i32 ^ sign)
+}
+
+#[cold]
+fn long_mean(min: i32, max: i32, sum: i32, parts: i32) -> i32 {
+    let [min, max, sum, parts] = [min, max, sum, parts].map(i64::from);
+    let value = min + ((max - min) * sum + parts).div_euclid(2 * parts.max(1));
+    value.clamp(i32::MIN.into(), i32::MAX.into()) as i32
 }
 
 macro_rules! distance {
@@ -303,7 +321,7 @@ distance!([] i16, i32, core::convert::identity);
 
 #[cfg(feature = "fixed")]
 mod fixed_point {
-    use super::{Cells, Centres, Distance, ReceptiveFields, Spaced};
+    use super::{Cells, Centres, Distance, ReceptiveFields, Spaced, mean};
     use fixed::types::extra::{LeEqU16, LeEqU32};
     use fixed::{FixedI16, FixedI32};
 
