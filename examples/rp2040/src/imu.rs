@@ -6,18 +6,26 @@ use bmi323_driver::{
     OutputDataRate, OutputMode, SpiTransport,
 };
 use embedded_hal::{delay::DelayNs, spi::SpiDevice};
+use fixed::{FixedI32, types::extra::U16};
 use spikewire::temporal::StepForward;
 
 /// Samples a second, and the time between two.
 pub const SAMPLE_RATE: u16 = 800;
 pub const PERIOD_US: u16 = (1_000_000 / SAMPLE_RATE as u32) as u16;
 
-/// A spike for every 6 °/s, in counts of ±2000 °/s.
-const RATE: StepForward<i16> = StepForward::<i16>::checked(98);
-/// A spike for every 0.05 g, in counts of ±16 g.
-const ACCELERATION: StepForward<i16> = StepForward::<i16>::checked(102);
+/// A rate in °/s or an acceleration in g: every count of the sensor is one of these, exactly.
+pub type Value = FixedI32<U16>;
+
+/// ±2000 °/s and ±16 g in 16 bits: what a count is, in steps of 2^-16.
+const RATE_COUNT: i32 = 4_000;
+const ACCELERATION_COUNT: i32 = 32;
+
+/// A spike for every 6 °/s.
+const RATE: StepForward<Value> = StepForward::<Value>::checked(Value::lit("6"));
+/// A spike for every 0.05 g.
+const ACCELERATION: StepForward<Value> = StepForward::<Value>::checked(Value::lit("0.05"));
 /// Rates about x, y and z, then accelerations along them.
-pub const SCHEMES: [StepForward<i16>; 6] =
+pub const SCHEMES: [StepForward<Value>; 6] =
     [RATE, RATE, RATE, ACCELERATION, ACCELERATION, ACCELERATION];
 
 pub type Imu<D> = Bmi323<SpiTransport<D>>;
@@ -52,7 +60,16 @@ pub fn start<D: SpiDevice>(device: D, delay: &mut impl DelayNs) -> Result<Imu<D>
 }
 
 /// Rates, then accelerations.
-pub fn read<D: SpiDevice>(imu: &mut Imu<D>) -> Result<[i16; 6], Error<D::Error>> {
+pub fn read<D: SpiDevice>(imu: &mut Imu<D>) -> Result<[Value; 6], Error<D::Error>> {
     let ImuData { gyro, accel } = imu.read_imu_data()?;
-    Ok([gyro.x, gyro.y, gyro.z, accel.x, accel.y, accel.z])
+    let rate = |count: i16| Value::from_bits(i32::from(count) * RATE_COUNT);
+    let acceleration = |count: i16| Value::from_bits(i32::from(count) * ACCELERATION_COUNT);
+    Ok([
+        rate(gyro.x),
+        rate(gyro.y),
+        rate(gyro.z),
+        acceleration(accel.x),
+        acceleration(accel.y),
+        acceleration(accel.z),
+    ])
 }

@@ -4,8 +4,8 @@
 //! BMI323 --INT1--> IO_IRQ_BANK0: SPI0, bank of step encoders --> queue --> main: frames --> UART0
 //! ```
 //!
-//! A Cortex-M0+ has no floating-point unit: the encoders work on the sensor's raw counts. Wiring and clocks:
-//! `examples/README.md`.
+//! A Cortex-M0+ has no floating-point unit: the encoders work in fixed point, in the sensor's units and without
+//! rounding. Wiring and clocks: `examples/README.md`.
 
 #![no_std]
 #![no_main]
@@ -34,7 +34,7 @@ const REPORT: u32 = 1_000_000;
 /// What the interrupt has for main.
 static EVENTS: EventQueue<256> = EventQueue::new(Overflow::DropOldest);
 /// The latest keyframe that main has not taken yet.
-static KEYFRAME: Mutex<Cell<Option<Snapshot<i16, CHANNELS>>>> = Mutex::new(Cell::new(None));
+static KEYFRAME: Mutex<Cell<Option<Snapshot<imu::Value, CHANNELS>>>> = Mutex::new(Cell::new(None));
 /// What the interrupt works with, once it is set up.
 static SAMPLER: Mutex<RefCell<Option<Sampler>>> = Mutex::new(RefCell::new(None));
 
@@ -42,7 +42,7 @@ struct Sampler {
     data_ready: board::DataReady,
     imu: imu::Imu<board::ImuDevice>,
     clock: rp2040_hal::Timer,
-    bank: Bank<StepForwardEncoder<i16>, CHANNELS>,
+    bank: Bank<StepForwardEncoder<imu::Value>, CHANNELS>,
     samples_to_keyframe: u16,
     failed_reads: u32,
 }
@@ -96,7 +96,8 @@ fn main() -> ! {
 
     // The sensor's clock is not ours: its samples come a few µs early or late.
     let coding = Coding::for_channels(CHANNELS as u16, imu::PERIOD_US).with_jitter_bits(4);
-    let mut link = SerialSink::<_, _, 128>::new(uart, Transmitter::<i16, CHANNELS>::new(coding));
+    let mut link =
+        SerialSink::<_, _, 128>::new(uart, Transmitter::<imu::Value, CHANNELS>::new(coding));
     let (mut bytes, mut last_report) = (0_u32, clock.get_counter_low());
     loop {
         if let Some(snapshot) = critical_section::with(|cs| KEYFRAME.borrow(cs).take()) {
