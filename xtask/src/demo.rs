@@ -6,20 +6,12 @@ use crate::{
     flown::{self, Flown},
     names::full_name,
     paths, picture, qemu, setup,
+    signal::Signal,
 };
 use anyhow::{Context, Result, bail, ensure};
-use std::fs;
 
 /// The firmware program.
 const PROGRAM: &str = "demo";
-
-/// The yaw rate of the recorded flight, as the firmware encodes it.
-pub struct Signal {
-    /// Seconds since the first sample.
-    pub times: Vec<f64>,
-    /// rad/s.
-    pub rates: Vec<f32>,
-}
 
 pub fn demo(args: &[String]) -> Result<()> {
     ensure!(args.is_empty(), "`cargo demo` takes no arguments");
@@ -74,29 +66,4 @@ fn print_table(signal: &Signal, flown: &[Flown], here: &[Flown]) {
     println!(
         "\nEfficiency: 100 % without a spike, 0 % with one a sample, negative beyond. Latency: samples of look-ahead.\n"
     );
-}
-
-impl Signal {
-    /// From the same bytes as the firmware; `data/README.md` tells the layout.
-    fn read() -> Result<Self> {
-        let bytes = fs::read(paths::root().join("data/hexarotor.f32le"))?;
-        let (records, _) = bytes.as_chunks::<28>();
-        let word = |record: &[u8; 28], index: usize| record.as_chunks::<4>().0[index];
-        let time = |record| f64::from(u32::from_le_bytes(word(record, 0))) / 1e6;
-        Ok(Self {
-            times: records.iter().map(time).collect(),
-            rates: records.iter().map(|record| f32::from_le_bytes(word(record, 3))).collect(),
-        })
-    }
-
-    fn duration(&self) -> f64 {
-        self.times.last().copied().unwrap_or_default()
-    }
-
-    /// The usual time between two samples: the median, as the recording has gaps.
-    pub fn interval(&self) -> f64 {
-        let mut steps: Vec<f64> = self.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        steps.sort_by(f64::total_cmp);
-        steps.get(steps.len() / 2).copied().unwrap_or_default()
-    }
 }

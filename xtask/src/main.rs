@@ -19,6 +19,7 @@ mod picture;
 mod qemu;
 mod setup;
 mod shell;
+mod signal;
 mod size;
 mod storm;
 mod toolchain;

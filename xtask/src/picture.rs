@@ -2,7 +2,7 @@
 //!
 //! The colours are Okabe and Ito's, which colour-blind people tell apart; polarity is also a direction.
 
-use crate::{demo::Signal, flown::Flown, names::full_name};
+use crate::{flown::Flown, names::full_name, signal::Signal};
 use anyhow::{Context, Result};
 use plotters::{coord::Shift, prelude::*};
 use std::{ops::Range, path::Path};

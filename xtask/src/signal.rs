@@ -1,0 +1,38 @@
+//! The signal of the demo.
+
+use crate::paths;
+use anyhow::Result;
+use std::fs;
+
+/// The yaw rate of the recorded flight, as the firmware encodes it.
+pub struct Signal {
+    /// Seconds since the first sample.
+    pub times: Vec<f64>,
+    /// rad/s.
+    pub rates: Vec<f32>,
+}
+
+impl Signal {
+    /// From the same bytes as the firmware; `data/README.md` tells the layout.
+    pub fn read() -> Result<Self> {
+        let bytes = fs::read(paths::root().join("data/hexarotor.f32le"))?;
+        let (records, _) = bytes.as_chunks::<28>();
+        let word = |record: &[u8; 28], index: usize| record.as_chunks::<4>().0[index];
+        let time = |record| f64::from(u32::from_le_bytes(word(record, 0))) / 1e6;
+        Ok(Self {
+            times: records.iter().map(time).collect(),
+            rates: records.iter().map(|record| f32::from_le_bytes(word(record, 3))).collect(),
+        })
+    }
+
+    pub fn duration(&self) -> f64 {
+        self.times.last().copied().unwrap_or_default()
+    }
+
+    /// The usual time between two samples: the median, as the recording has gaps.
+    pub fn interval(&self) -> f64 {
+        let mut steps: Vec<f64> = self.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        steps.sort_by(f64::total_cmp);
+        steps.get(steps.len() / 2).copied().unwrap_or_default()
+    }
+}
