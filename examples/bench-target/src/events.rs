@@ -3,6 +3,7 @@
 //! The events are those of the recorded flight, six channels through SF. Whatever is written is read again and must be
 //! the same: figures of something else would be worth nothing.
 
+mod banks;
 mod chips;
 mod flight;
 mod formats;
@@ -12,13 +13,17 @@ mod path;
 
 use core::fmt::{self, Write};
 
+use fixed::{FixedI32, types::extra::U16};
+
 pub fn measure(out: &mut impl Write) -> fmt::Result {
     path::queue(out)?;
     framed::measure(out)?;
     formats::measure(out)?;
     chips::measure(out)?;
+    banks::measure::<f32>(out, "f32")?;
     path::measure::<f32>(out, "f32")?;
-    path::measure::<fixed::FixedI32<fixed::types::extra::U16>>(out, "q16.16")
+    banks::measure::<FixedI32<U16>>(out, "q16.16")?;
+    path::measure::<FixedI32<U16>>(out, "q16.16")
 }
 
 /// Ends the program with a reason if something is not as it must be.

@@ -101,7 +101,8 @@ pub fn text(events: &[Event]) -> String {
 
 /// The README's.
 pub fn markdown(events: &[Event]) -> Result<String> {
-    Ok(format!("\n{}\n{}\n", each_event(events), six_channels(events)?))
+    let tables = [each_event(events), banks(events)?, six_channels(events)?];
+    Ok(format!("\n{}\n", tables.join("\n")))
 }
 
 /// A line for each subject, with both directions and both cores.
@@ -156,28 +157,42 @@ const NAMES: [(&str, &str); 18] = [
     ("xylo", "Xylo, counts of 10 ms"),
 ];
 
-/// From six channels to frames, at both rates and on both cores.
-fn six_channels(events: &[Event]) -> Result<String> {
+/// Six samples into a bank, on both cores.
+fn banks(events: &[Event]) -> Result<String> {
     let mut text = String::from(
-        "| a set of six samples | bank alone | interrupt: bank, queue | worst | main: frames | all | worst 100 ms |\n\
+        "| the bank alone | SF | worst | HSA, 15 taps | worst | T-HSA, 15 taps | worst |\n\
          |---|---:|---:|---:|---:|---:|---:|\n",
     );
-    for ((core, sample), (path, rate)) in table::CORES.into_iter().zip(SAMPLES).flat_map(|core| {
-        [("path-8khz", "8 kHz"), ("path-200hz", "200 Hz")].map(|path| (core, path))
-    }) {
-        let [bank, interrupt, main, all] =
-            [("bank-sf-6", "encode"), (path, "interrupt"), (path, "main"), (path, "all")]
-                .map(|(subject, direction)| find(events, core, subject, direction, sample));
-        let (bank, interrupt, main, all) = (bank?, interrupt?, main?, all?);
-        text += &format!(
-            "| {core}, `{sample}`, {rate} | {:.1} | {:.1} | {} | {:.1} | {:.1} | {} |\n",
-            bank.instructions_mean,
-            interrupt.instructions_mean,
-            interrupt.instructions_max,
-            main.instructions_mean,
-            all.instructions_mean,
-            all.instructions_max,
-        );
+    for (core, sample) in table::CORES.into_iter().zip(SAMPLES) {
+        text += &format!("| {core}, `{sample}` |");
+        for bank in ["bank-sf-6", "bank-hsa-6", "bank-t-hsa-6"] {
+            let bank = find(events, core, bank, "encode", sample)?;
+            text += &format!(" {:.1} | {} |", bank.instructions_mean, bank.instructions_max);
+        }
+        text += "\n";
+    }
+    Ok(text)
+}
+
+/// From six samples to frames, at both rates and on both cores.
+fn six_channels(events: &[Event]) -> Result<String> {
+    let mut text = String::from(
+        "| SF, queue and frames | interrupt: bank, queue | worst | main: frames | all | worst 100 ms |\n\
+         |---|---:|---:|---:|---:|---:|\n",
+    );
+    for (core, sample) in table::CORES.into_iter().zip(SAMPLES) {
+        for (path, rate) in [("path-8khz", "8 kHz"), ("path-200hz", "200 Hz")] {
+            let of = |direction| find(events, core, path, direction, sample);
+            let (interrupt, main, all) = (of("interrupt")?, of("main")?, of("all")?);
+            text += &format!(
+                "| {core}, `{sample}`, {rate} | {:.1} | {} | {:.1} | {:.1} | {} |\n",
+                interrupt.instructions_mean,
+                interrupt.instructions_max,
+                main.instructions_mean,
+                all.instructions_mean,
+                all.instructions_max,
+            );
+        }
     }
     let set = set(events)?;
     let (second, share) = (set * RATE / 1e6, 100.0 * set * RATE / CLOCK);

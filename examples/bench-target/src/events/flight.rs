@@ -5,6 +5,8 @@ use spikewire::{
     temporal::{StepForward, StepForwardEncoder},
 };
 
+use crate::signal::Measured;
+
 /// Gyroscope x, y, z, then accelerometer x, y, z.
 pub const CHANNELS: usize = 6;
 /// The recording's time from sample to sample, in µs.
@@ -37,6 +39,11 @@ pub fn samples() -> impl Iterator<Item = (u32, [f32; CHANNELS])> {
         let value = |at: usize| f32::from_le_bytes(words[at]);
         (u32::from_le_bytes(words[0]), core::array::from_fn(|channel| value(channel + 1)))
     })
+}
+
+/// The same in the sample type.
+pub fn typed<S: Measured>((tick, set): (u32, [f32; CHANNELS])) -> (u32, [S; CHANNELS]) {
+    (tick, set.map(|value| S::from_f64(value.into())))
 }
 
 /// The same as a sensor at another rate would have seen it, on straight lines between the samples.

@@ -5,7 +5,7 @@ use core::{
     hint::black_box,
 };
 
-use board::stopwatch::{instructions, keep};
+use board::stopwatch::instructions;
 use spikewire::{
     Encoder, Event,
     link::{Coding, MAX_FRAME, Raw, Reader, Receiver, Transmitter},
@@ -40,19 +40,8 @@ pub fn queue(out: &mut impl Write) -> fmt::Result {
     popped.print_event(out, "queue", "pop")
 }
 
-/// Counts by sets of six samples: the bank alone, then the whole way, at the recording's own rate and
-/// at 8 kHz.
+/// Counts the whole way by sets of six samples, at the recording's own rate and at 8 kHz.
 pub fn measure<S: Measured + Raw>(out: &mut impl Write, sample: &str) -> fmt::Result {
-    let mut bank = flight::bank::<S>().ok_or(fmt::Error)?;
-    let mut alone = Cost::default();
-    for (tick, set) in flight::samples().map(typed) {
-        let (tick, set) = (black_box(&tick), black_box(&set));
-        let call = instructions(|| take(&mut bank, tick, set));
-        let count = instructions(|| encode(&mut bank, tick, set));
-        alone.add(1, 0, count.saturating_sub(call));
-    }
-    alone.print(out, ("bank-sf-6", "encode"), Some(sample), "sample set")?;
-
     Way::<S>::new(PERIOD).ok_or(fmt::Error)?.go(out, ("path-200hz", sample), flight::samples())?;
     let fast = flight::samples_every(SPACING.into()).take(10 * 8_000);
     Way::<S>::new(SPACING).ok_or(fmt::Error)?.go(out, ("path-8khz", sample), fast)
@@ -63,15 +52,6 @@ const SPACING: u16 = 125;
 /// From one burst of frames to the next, and from one keyframe to the next, in µs.
 const FRAMES: u32 = 100_000;
 const KEYFRAMES: u32 = 1_000_000;
-
-fn typed<S: Measured>((tick, set): (u32, [f32; CHANNELS])) -> (u32, [S; CHANNELS]) {
-    (tick, set.map(|value| S::from_f64(value.into())))
-}
-
-#[inline(never)]
-fn encode<S: Measured>(bank: &mut Six<S>, tick: &u32, set: &[S; CHANNELS]) {
-    bank.encode(*tick, *set, |event| keep(&event));
-}
 
 /// What an interrupt does.
 #[inline(never)]
@@ -122,7 +102,7 @@ impl<S: Measured + Raw> Way<S> {
         let (mut sets, mut interrupts) = (0, 0);
         let (mut frames_at, mut keyframe_at) = (FRAMES, 0);
         let mut agrees = true;
-        for (tick, set) in samples.map(typed) {
+        for (tick, set) in samples.map(flight::typed) {
             let (at, set) = (black_box(&tick), black_box(&set));
             let bank = &mut self.bank;
             let call =

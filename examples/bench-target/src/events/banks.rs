@@ -1,0 +1,85 @@
+//! A set of six samples through a bank, channels side by side, and nothing after it.
+
+use core::{
+    fmt::{self, Write},
+    hint::black_box,
+};
+
+use board::stopwatch::{instructions, keep};
+use spikewire::{
+    Bank, Calibration, ConfigError, Encoder, Scheme,
+    rate::{Hough, Scale, Shape, Taps, ThresholdHough},
+};
+
+use super::{
+    flight::{self, CHANNELS},
+    meter::{Cost, take},
+};
+use crate::signal::Measured;
+
+pub fn measure<S: Measured>(out: &mut impl Write, sample: &str) -> fmt::Result {
+    let six = flight::bank::<S>().ok_or(fmt::Error)?;
+    bank(out, ("bank-sf-6", sample), six)?;
+
+    let minima = minima::<S>();
+    let [rates, accelerations] = peaks()
+        .map(|peak| Taps::<S, 15>::shaped(Shape::Triangular, Scale::Peak(S::from_f64(peak))).ok());
+    let (rates, accelerations) = (rates.ok_or(fmt::Error)?, accelerations.ok_or(fmt::Error)?);
+    let taps = |channel: usize| if channel < 3 { &rates } else { &accelerations };
+
+    let scheme = |channel| Hough::new(taps(channel)).with_shift(minima[channel]);
+    rate_bank(out, ("bank-hsa-6", sample), scheme)?;
+
+    let scheme = |channel: usize| {
+        let threshold = S::from_f64(0.85 * peaks()[channel / 3]);
+        ThresholdHough::new(taps(channel), threshold)?.with_shift(minima[channel])
+    };
+    rate_bank(out, ("bank-t-hsa-6", sample), scheme)
+}
+
+/// Of the filters, in rad/s and m/s².
+fn peaks() -> [f64; 2] {
+    [0.5, 2.0]
+}
+
+/// The smallest sample of each channel, which a rate code takes off.
+fn minima<S: Measured>() -> [S; CHANNELS] {
+    let mut calibrations = [(); CHANNELS].map(|()| Calibration::<S>::new());
+    for (_, set) in flight::samples().map(flight::typed::<S>) {
+        calibrations.iter_mut().zip(set).for_each(|(channel, sample)| channel.observe(sample));
+    }
+    calibrations.map(|channel| channel.min().unwrap_or_default())
+}
+
+fn rate_bank<P: Scheme<Sample: Measured>>(
+    out: &mut impl Write,
+    name: (&str, &str),
+    scheme: impl Fn(usize) -> Result<P, ConfigError>,
+) -> fmt::Result {
+    let first = scheme(0).map_err(|_| fmt::Error)?;
+    let mut schemes = [first; CHANNELS];
+    for (channel, slot) in schemes.iter_mut().enumerate() {
+        *slot = scheme(channel).map_err(|_| fmt::Error)?;
+    }
+    bank(out, name, Bank::from_schemes(schemes))
+}
+
+fn bank<E: Encoder<Sample: Measured>>(
+    out: &mut impl Write,
+    (name, sample): (&str, &str),
+    mut bank: Bank<E, CHANNELS>,
+) -> fmt::Result {
+    let mut cost = Cost::default();
+    for (tick, set) in flight::samples().map(flight::typed::<E::Sample>) {
+        let (tick, set) = (black_box(&tick), black_box(&set));
+        let call = *cost.call.get_or_insert_with(|| instructions(|| take(&mut bank, tick, set)));
+        let count = instructions(|| encode(&mut bank, tick, set)).saturating_sub(call);
+        cost.add(1, 0, count);
+    }
+    cost.print(out, (name, "encode"), Some(sample), "sample set")
+}
+
+#[inline(never)]
+fn encode<E: Encoder>(bank: &mut Bank<E, CHANNELS>, tick: &u32, set: &[E::Sample; CHANNELS]) {
+    bank.encode(*tick, *set, |event| keep(&event));
+}
