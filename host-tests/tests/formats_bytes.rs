@@ -146,6 +146,37 @@ fn evt2_time_goes_on_over_the_wrap_of_ticks() {
 }
 
 #[test]
+fn evt2_rows_that_no_address_holds_are_skipped() {
+    let word = |row: u32| (1_u32 << 28 | 7 << 11 | row).to_le_bytes();
+    let bytes = [(8_u32 << 28).to_le_bytes(), word(32), word(31)].concat();
+    let mut decoder = Evt2::decoder();
+    assert!(decoder.decode(&bytes).eq([event(0, 31 << 11 | 7, true)]));
+    assert_eq!(decoder.skipped(), 4);
+}
+
+#[test]
+fn a_stream_that_is_cut_within_an_event_says_so() {
+    let event = event(300, 0x25, true);
+    macro_rules! check {
+        ($decoder:expr, $bytes:expr, $whole:expr) => {{
+            let mut decoder = $decoder;
+            assert!(!decoder.is_partial(), "nothing has begun");
+            for (length, &byte) in (1..).zip($bytes) {
+                decoder.push(byte);
+                assert_eq!(!decoder.is_partial(), $whole.contains(&length), "{length} bytes");
+            }
+        }};
+    }
+    let camera = Edvs::new(EdvsTime::Bits16);
+    let bytes = [[0x33].as_slice(), &one(camera.encoder(), event)].concat();
+    check!(camera.decoder(), &bytes, &[1, 5]);
+    let bytes = [&EventStream::HEADER, one(EventStream::encoder(), event).as_slice()].concat();
+    check!(EventStream::decoder(), &bytes, &[16, 17, 22]);
+    let bytes = [b"% end\n", one(Evt2::encoder(), event).as_slice()].concat();
+    check!(Evt2::file_decoder(), &bytes, &[6, 10, 14]);
+}
+
+#[test]
 fn evt2_files_begin_with_lines() {
     let events = [event(37, 0x25, true), event(99, 0x25, false)];
     let mut file = Evt2::HEADER.to_vec();

@@ -228,4 +228,8 @@ impl EventDecoder for EdvsDecoder {
     fn skipped(&self) -> u32 {
         self.skipped
     }
+
+    fn is_partial(&self) -> bool {
+        !matches!(self.state, State::First)
+    }
 }

@@ -193,4 +193,8 @@ impl EventDecoder for EventStreamDecoder {
     fn skipped(&self) -> u32 {
         self.skipped
     }
+
+    fn is_partial(&self) -> bool {
+        !matches!(self.state, State::Time | State::Header(0) | State::Foreign)
+    }
 }

@@ -8,7 +8,7 @@ use crate::{Event, Polarity, tick};
 ///
 /// - **Word of an event:** type\[31:28\] 0 (down) or 1 (up), t\[27:22\] the low 6 bits of the time,
 ///   x\[21:11\], y\[10:0\]. **Of time:** type 8, then the time's upper 28 bits.
-/// - **Address:** `y << 11 | x`; the upper bits of y are 0 when written and dropped when read.
+/// - **Address:** `y << 11 | x`; events of rows from 32 on, which have more than 16 bits, are skipped.
 /// - **Time:** 34 bits of µs, from the first event's tick on; ticks may wrap.
 /// - **Length:** 4 bytes an event, and 4 whenever 64 µs have passed.
 /// - **Resynchronisation:** none but the time words; the stream must be read from a word's start.
@@ -31,6 +31,8 @@ const TIME_BITS: u32 = 34;
 const LOW_BITS: u32 = 6;
 const X_BITS: u32 = 11;
 const X_MASK: u32 = (1 << X_BITS) - 1;
+/// Bits of y that no address of 16 bits has.
+const FAR_ROWS: u32 = X_MASK & !0x1F;
 const DOWN: u32 = 0;
 const UP: u32 = 1;
 const TIME_HIGH: u32 = 8;
@@ -97,7 +99,8 @@ impl EventFormat for Evt2Encoder {
 
 /// The decoder of [`Evt2`].
 ///
-/// Triggers and other words are skipped, and so are events before the first time word.
+/// Triggers and other words are skipped, and so are events before the first time word and in rows
+/// from 32 on.
 #[derive(Clone, Copy, Debug)]
 pub struct Evt2Decoder {
     state: State,
@@ -132,7 +135,7 @@ impl Evt2Decoder {
                 return None;
             }
         };
-        let Some(high) = self.high else {
+        let Some(high) = self.high.filter(|_| word & FAR_ROWS == 0) else {
             self.skipped = self.skipped.saturating_add(4);
             return None;
         };
@@ -170,5 +173,9 @@ impl EventDecoder for Evt2Decoder {
 
     fn skipped(&self) -> u32 {
         self.skipped
+    }
+
+    fn is_partial(&self) -> bool {
+        !matches!(self.state, State::LineStart | State::Word { bytes: 0, .. })
     }
 }

@@ -47,6 +47,9 @@ pub trait EventDecoder {
     /// How many bytes belonged to no event that could be read.
     fn skipped(&self) -> u32;
 
+    /// Whether the last bytes begin something that has not ended: a stream that ends here is cut.
+    fn is_partial(&self) -> bool;
+
     /// Takes bytes, cut anywhere, and returns the events that they complete. Run it to its end.
     fn decode(&mut self, bytes: &[u8]) -> impl Iterator<Item = Event> {
         bytes.iter().filter_map(|&byte| self.push(byte))

@@ -89,6 +89,10 @@ impl EventDecoder for Raw {
         0
     }
 
+    fn is_partial(&self) -> bool {
+        false
+    }
+
     fn decode(&mut self, bytes: &[u8]) -> impl Iterator<Item = Event> {
         let event = bytes.first_chunk().map(|&[t0, t1, t2, t3, a0, a1, sign]: &[u8; 7]| Event {
             tick: u32::from_le_bytes([t0, t1, t2, t3]),
