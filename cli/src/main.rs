@@ -3,20 +3,25 @@
 mod bench;
 mod codec;
 mod commands;
+mod events;
 mod filter;
 mod input;
+mod live;
 mod options;
 mod output;
 mod plot;
+mod port;
 mod resolve;
 mod sample_type;
 mod scheme;
 mod settings;
 mod spikes;
+mod stop;
 mod trial;
+mod values;
 
 use clap::{Parser, Subcommand};
-use commands::{decode, encode, info, score, signal};
+use commands::{convert, decode, encode, info, listen, score, signal};
 use std::io;
 use std::process::ExitCode;
 
@@ -32,6 +37,8 @@ struct Program {
 enum Command {
     Encode(encode::Encode),
     Decode(decode::Decode),
+    Listen(listen::Listen),
+    Convert(convert::Convert),
     Score(score::Score),
     Bench(commands::bench::Bench),
     Plot(commands::plot::Plot),
@@ -46,6 +53,8 @@ fn main() -> ExitCode {
     let done = match Program::parse().command {
         Command::Encode(options) => encode::run(&options),
         Command::Decode(options) => decode::run(&options),
+        Command::Listen(options) => listen::run(&options),
+        Command::Convert(options) => convert::run(&options),
         Command::Score(options) => score::run(&options),
         Command::Bench(options) => commands::bench::run(&options),
         Command::Plot(options) => commands::plot::run(&options),

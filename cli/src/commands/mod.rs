@@ -1,9 +1,11 @@
 //! One file a command.
 
 pub(crate) mod bench;
+pub(crate) mod convert;
 pub(crate) mod decode;
 pub(crate) mod encode;
 pub(crate) mod info;
+pub(crate) mod listen;
 pub(crate) mod plot;
 pub(crate) mod score;
 pub(crate) mod signal;

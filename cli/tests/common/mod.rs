@@ -13,6 +13,19 @@ pub struct Ran {
 
 /// Runs `spikewire` with arguments separated by blanks, and with this on standard input.
 pub fn spikewire(arguments: &str, input: &str) -> Ran {
+    let RanBytes { status, output, told } = spikewire_bytes(arguments, input.as_bytes());
+    Ran { status, output: String::from_utf8(output).unwrap(), told }
+}
+
+/// What a run on bytes left behind.
+pub struct RanBytes {
+    pub status: i32,
+    pub output: Vec<u8>,
+    pub told: String,
+}
+
+/// The same with bytes.
+pub fn spikewire_bytes(arguments: &str, input: &[u8]) -> RanBytes {
     use std::io::Write;
     let mut child = Command::new(env!("CARGO_BIN_EXE_spikewire"))
         .args(arguments.split_whitespace())
@@ -22,13 +35,20 @@ pub fn spikewire(arguments: &str, input: &str) -> Ran {
         .spawn()
         .unwrap();
     // A program that refuses its options does not read.
-    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+    let _ = child.stdin.take().unwrap().write_all(input);
     let done = child.wait_with_output().unwrap();
-    Ran {
+    RanBytes {
         status: done.status.code().unwrap(),
-        output: String::from_utf8(done.stdout).unwrap(),
+        output: done.stdout,
         told: String::from_utf8(done.stderr).unwrap(),
     }
+}
+
+/// The same with bytes where nothing goes wrong.
+pub fn good_bytes(arguments: &str, input: &[u8]) -> RanBytes {
+    let ran = spikewire_bytes(arguments, input);
+    assert_eq!(ran.status, 0, "spikewire {arguments}: {}", ran.told);
+    ran
 }
 
 /// The same where nothing goes wrong.
@@ -40,8 +60,8 @@ pub fn good(arguments: &str, input: &str) -> Ran {
 
 /// The same where it is refused, with words that the message holds.
 pub fn refused(arguments: &str, input: &str, words: &[&str]) {
-    let ran = spikewire(arguments, input);
-    assert_eq!(ran.status, 2, "spikewire {arguments}: {}{}", ran.output, ran.told);
+    let ran = spikewire_bytes(arguments, input.as_bytes());
+    assert_eq!(ran.status, 2, "spikewire {arguments}: {}", ran.told);
     for word in words {
         assert!(ran.told.contains(word), "spikewire {arguments}: `{word}` is not in: {}", ran.told);
     }

@@ -1,6 +1,6 @@
 //! The recording: a hexarotor taking off, flying and landing hard. `data/README.md` tells where it comes from.
 
-use crate::CHANNELS;
+use crate::send::CHANNELS;
 
 /// One record: time in microseconds as u32, then the channels as f32, all little endian.
 const RECORD: usize = 4 + 4 * CHANNELS;
@@ -8,10 +8,6 @@ const RECORD: usize = 4 + 4 * CHANNELS;
 static RECORDS: &[u8] = include_bytes!("../../../data/hexarotor.f32le");
 
 /// The sample of this number: its time, and six channels in rad/s and m/s².
-#[cfg_attr(
-    not(target_os = "none"),
-    expect(dead_code, reason = "the host hears of it over the link only")
-)]
 pub fn sample(number: usize) -> Option<(u32, [f32; CHANNELS])> {
     let (records, _) = RECORDS.as_chunks::<RECORD>();
     let (words, _) = records.get(number)?.as_chunks::<4>();

@@ -1,6 +1,6 @@
 //! The board: the timer's interrupt samples and encodes, main sends.
 
-use crate::{CHANNELS, SCHEMES, digest::Digest, flight, uart::Uart};
+use crate::{digest::Digest, flight, uart::Uart};
 use core::{
     cell::{Cell, RefCell},
     fmt,
@@ -12,8 +12,17 @@ use spikewire::{
     Bank, Decoder, Scheme,
     link::{Coding, MAX_FRAME, Snapshot, Transmitter},
     sink::{EventQueue, Overflow, SerialSink},
-    temporal::{StepDecoder, StepForwardEncoder},
+    temporal::{StepDecoder, StepForward, StepForwardEncoder},
 };
+
+/// Gyroscope x, y, z, then accelerometer x, y, z.
+pub const CHANNELS: usize = 6;
+/// A spike for every 0.1 rad/s.
+const RATE: StepForward<f32> = StepForward::<f32>::checked(0.1);
+/// A spike for every 0.5 m/s².
+const ACCELERATION: StepForward<f32> = StepForward::<f32>::checked(0.5);
+const SCHEMES: [StepForward<f32>; CHANNELS] =
+    [RATE, RATE, RATE, ACCELERATION, ACCELERATION, ACCELERATION];
 
 /// Samples from one keyframe to the next: a second of the recording.
 const KEYFRAME_EVERY: usize = 200;

@@ -1,0 +1,59 @@
+//! `spikewire convert`: events from any format to any other, in constant memory.
+
+use crate::events::{Format, Stream};
+use crate::output::Output;
+use crate::port::{Bytes, Port};
+use anyhow::Result;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Convert events from one format to another.
+///
+/// FORMAT is `link`, `edvs:e0` to `edvs:e4` (by how the camera sends times), `es` (Event Stream),
+/// `evt2` (a file .raw), `eieio` (datagrams one after the other) or `csv` (`tick,address,polarity`).
+/// After a comma: `link,period=5000,channels=6,jitter=5` for short frames; `edvs:e2,up=0` where a 0
+/// goes up; `eieio,base=0x70000,step=1000` for the key of address 0 and the µs of a time step.
+#[derive(Args, Debug)]
+pub(crate) struct Convert {
+    /// File of events; `-` is standard input
+    #[arg(default_value = "-")]
+    input: PathBuf,
+    /// Format of the input
+    #[arg(long, value_name = "FORMAT")]
+    from: Format,
+    /// Format of the output
+    #[arg(long, value_name = "FORMAT")]
+    to: Format,
+    /// File of events; standard output unless given
+    #[arg(short, long)]
+    output: Option<PathBuf>,
+    /// Take the first tick off all: some formats count from 0
+    #[arg(long)]
+    from_zero: bool,
+    /// Go on without the events that the format has no word for, and count them
+    #[arg(long)]
+    drop: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The input cannot be read, or the output not be written.
+pub(crate) fn run(options: &Convert) -> Result<()> {
+    let Convert { input, from, to, output, from_zero, drop } = options;
+    let mut port = Port::open(input, None)?;
+    let mut output = Output::open(output.as_deref())?;
+    let mut stream = Stream::new(from.reader(port.name()), to.writer(*drop), *from_zero);
+    let mut buffer = vec![0; 1 << 16];
+    loop {
+        match port.read(&mut buffer)? {
+            Bytes::Some(count) => stream.push(&buffer[..count], 0, &mut output)?,
+            Bytes::NotYet => {}
+            Bytes::End => break,
+        }
+    }
+    stream.finish(&mut output)?;
+    output.finish()?;
+    eprint!("{stream}");
+    Ok(())
+}

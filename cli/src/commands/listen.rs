@@ -1,0 +1,152 @@
+//! `spikewire listen`: what a board sends, as events or values, while it comes.
+
+use crate::codec::Calibrated;
+use crate::events::{Format, LinkReader, Stream, Values, values_writer};
+use crate::live::Live;
+use crate::options::SchemeOptions;
+use crate::output::Output;
+use crate::port::{Bytes, Port};
+use crate::resolve::{Known, missing, resolve};
+use crate::sample_type::SampleType;
+use crate::scheme::SchemeName;
+use crate::settings::Settings;
+use crate::stop::Stop;
+use crate::values;
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Listen to what a board sends: events, or with `--scheme` the values they mean.
+///
+/// Formats are called as in `convert`. Values come from a link, by the receiver that runs on boards:
+/// bit for bit those of the sender's own decoder from a keyframe on until something is lost.
+#[derive(Args, Debug)]
+pub(crate) struct Listen {
+    /// Serial port, or file of captured bytes; `-` is standard input
+    #[arg(default_value = "-")]
+    input: PathBuf,
+    /// The input is a serial port of this speed, 8 data bits, no parity, 1 stop bit
+    #[arg(long)]
+    baud: Option<u32>,
+    /// Stop after this time; Ctrl-C stops as well
+    #[arg(long, requires = "baud")]
+    seconds: Option<f64>,
+    /// Format of the bytes
+    #[arg(long, value_name = "FORMAT", default_value = "link")]
+    from: Format,
+    /// Format to write
+    #[arg(long, value_name = "FORMAT", default_value = "csv")]
+    to: Format,
+    /// File of events or values; standard output unless given
+    #[arg(short, long)]
+    output: Option<PathBuf>,
+    /// Take the first tick off all: some formats count from 0
+    #[arg(long)]
+    from_zero: bool,
+    /// Go on without the events that the format has no word for, and count them
+    #[arg(long)]
+    drop: bool,
+    /// Decode a link's frames: tbr, sf or mw
+    #[arg(long)]
+    scheme: Option<SchemeName>,
+    /// Sample type of the sender: f32, i16, i32, or fixed point such as q16.16 or q8.8
+    #[arg(long, default_value_t)]
+    sample: SampleType,
+    /// In the place of --threshold, one for each channel from address 0 on: `0.1,0.1,0.5`
+    #[arg(
+        long,
+        value_delimiter = ',',
+        allow_negative_numbers = true,
+        conflicts_with = "threshold",
+        help_heading = "Parameters"
+    )]
+    thresholds: Vec<f64>,
+    #[command(flatten)]
+    parameters: SchemeOptions,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The options, the port or the output are not good.
+pub(crate) fn run(options: &Listen) -> Result<()> {
+    let values = options.values()?;
+    let mut port = Port::open(&options.input, options.baud)?;
+    let mut output = Output::open(options.output.as_deref())?;
+    let (reader, writer) = match values {
+        Some(values) => {
+            let reader: Box<dyn crate::events::EventReader> =
+                Box::new(LinkReader::new(Some(values)));
+            (reader, values_writer(options.sample))
+        }
+        None => (options.from.reader(port.name()), options.to.writer(options.drop)),
+    };
+    let mut stream = Stream::new(reader, writer, options.from_zero);
+    let stop = Stop::new(options.seconds)?;
+    let mut live = Live::new(options.output.is_none());
+
+    let mut buffer = vec![0; 1 << 16];
+    let heard = loop {
+        match port.read(&mut buffer) {
+            Ok(Bytes::Some(count)) => {
+                stream.push(&buffer[..count], stop.tick(), &mut output)?;
+                if !port.is_file() {
+                    output.flush()?;
+                }
+            }
+            Ok(Bytes::NotYet) => {}
+            Ok(Bytes::End) => break Ok(()),
+            Err(error) => break Err(error),
+        }
+        live.update(&stream);
+        if stop.is_due() {
+            break Ok(());
+        }
+    };
+    // What came before a port failed is kept.
+    stream.finish(&mut output)?;
+    output.finish()?;
+    live.clear();
+    eprint!("{stream}");
+    heard
+}
+
+impl Listen {
+    /// What decodes the frames, if that is wanted.
+    fn values(&self) -> Result<Option<Box<dyn Values>>> {
+        let Some(scheme) = self.scheme else {
+            if !self.parameters.is_empty() || self.parameters.paper || !self.thresholds.is_empty() {
+                bail!("a scheme's parameters need --scheme");
+            }
+            return Ok(None);
+        };
+        if !matches!(self.from, Format::Link(_)) {
+            bail!("--scheme needs --from link, whose keyframes say where the sender stands");
+        }
+        if self.to != Format::Csv {
+            bail!("--scheme gives values, which only --to csv holds");
+        }
+        let settings = if self.thresholds.is_empty() {
+            vec![settings(scheme, &self.parameters)?]
+        } else {
+            let each = self.thresholds.iter().map(|&threshold| {
+                let options =
+                    SchemeOptions { threshold: Some(threshold), ..self.parameters.clone() };
+                settings(scheme, &options)
+            });
+            each.collect::<Result<_>>()?
+        };
+        values::receiver(self.sample, &settings).map(Some).with_context(|| scheme.name())
+    }
+}
+
+/// The settings of a channel, from its options alone.
+fn settings(scheme: SchemeName, options: &SchemeOptions) -> Result<Settings> {
+    options.check(scheme)?;
+    if let Some(what) = missing(scheme, options) {
+        bail!("{}: there is no signal to calibrate over; give {what}", scheme.name());
+    }
+    let calibrated: Option<&Calibrated> = None;
+    resolve(scheme, options, Known { calibrated, first: &[0.0] })
+}

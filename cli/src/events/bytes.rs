@@ -1,0 +1,159 @@
+//! The formats of events one after the other: eDVS, Event Stream, EVT2.
+
+use super::{EventReader, EventWriter, Item, Tally};
+use anyhow::{Result, bail};
+use spikewire::format::{EventDecoder, EventFormat, FormatError};
+use spikewire::{Event, tick};
+use std::io::Write;
+
+/// Reads a format.
+pub(super) struct Reader<D> {
+    decoder: D,
+    hooks: Hooks<D>,
+}
+
+/// What one format needs and others do not.
+pub(super) struct Hooks<D> {
+    /// Refuses another format's bytes.
+    pub check: fn(&D) -> Result<()>,
+    /// Sets the time of events that bring none.
+    pub set_arrival: Option<fn(&mut D, u32)>,
+}
+
+impl<D: EventDecoder> Reader<D> {
+    pub(super) fn new(decoder: D, hooks: Hooks<D>) -> Self {
+        Self { decoder, hooks }
+    }
+}
+
+impl<D: EventDecoder> EventReader for Reader<D> {
+    fn read(&mut self, bytes: &[u8], items: &mut Vec<Item>) -> Result<()> {
+        items.extend(self.decoder.decode(bytes).map(Item::Event));
+        (self.hooks.check)(&self.decoder)
+    }
+
+    fn tally(&self) -> Tally {
+        Tally {
+            skipped: self.decoder.skipped().into(),
+            is_cut: self.decoder.is_partial(),
+            ..Tally::default()
+        }
+    }
+
+    fn set_arrival(&mut self, tick: u32) {
+        if let Some(set) = self.hooks.set_arrival {
+            set(&mut self.decoder, tick);
+        }
+    }
+}
+
+/// Writes a format, and reads back what it wrote to count what comes out otherwise.
+pub(super) struct Writer<E, D> {
+    encoder: E,
+    decoder: D,
+    header: &'static [u8],
+    drops: bool,
+    events: u64,
+    dropped: u64,
+    retimed: Retimed,
+    /// Keyframes and losses.
+    others: u64,
+}
+
+/// Events that will be read at another time.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Retimed {
+    count: u64,
+    furthest: u32,
+}
+
+impl Retimed {
+    /// Counts an event if the two times differ.
+    pub(super) fn observe(&mut self, read: u32, event: u32) {
+        self.count += u64::from(read != event);
+        self.furthest = self.furthest.max(tick::difference(read, event).unsigned_abs());
+    }
+
+    /// Says so.
+    pub(super) fn note(self) -> Option<String> {
+        let Self { count, furthest } = self;
+        (count > 0).then(|| {
+            format!("{count} events will be read at another time, up to {furthest} µs away")
+        })
+    }
+}
+
+impl<E: EventFormat, D: EventDecoder> Writer<E, D> {
+    /// Writes this header first. The decoder is the format's own. Events that the format has no word
+    /// for are an error, or dropped and counted.
+    pub(super) fn new(encoder: E, decoder: D, header: &'static [u8], drops: bool) -> Self {
+        Self {
+            encoder,
+            decoder,
+            header,
+            drops,
+            events: 0,
+            dropped: 0,
+            retimed: Retimed::default(),
+            others: 0,
+        }
+    }
+
+    fn event(&mut self, event: Event, output: &mut dyn Write) -> Result<()> {
+        let mut buffer = [0; 4096];
+        loop {
+            let (written, is_done) = match self.encoder.encode(event, &mut buffer) {
+                Ok(written) => (written, true),
+                Err(FormatError::Full { written }) => (written, false),
+                Err(_) if self.drops => {
+                    self.dropped += 1;
+                    return Ok(());
+                }
+                Err(error) => bail!("event {}: {error}; --drop goes on", self.events),
+            };
+            let bytes = &buffer[..written];
+            output.write_all(bytes)?;
+            for read in self.decoder.decode(bytes) {
+                self.retimed.observe(read.tick, event.tick);
+            }
+            if is_done {
+                self.events += 1;
+                return Ok(());
+            }
+        }
+    }
+
+    /// The header, once.
+    fn begin(&mut self, output: &mut dyn Write) -> Result<()> {
+        let header = std::mem::take(&mut self.header);
+        self.decoder.decode(header).for_each(drop);
+        Ok(output.write_all(header)?)
+    }
+}
+
+impl<E: EventFormat, D: EventDecoder> EventWriter for Writer<E, D> {
+    fn write(&mut self, item: &Item, output: &mut dyn Write) -> Result<()> {
+        self.begin(output)?;
+        match *item {
+            Item::Event(event) => self.event(event, output)?,
+            Item::Restart => {}
+            _ => self.others += 1,
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self, output: &mut dyn Write) -> Result<()> {
+        self.begin(output)
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let dropped = (self.dropped > 0)
+            .then(|| format!("{} events dropped: no word for them", self.dropped));
+        [dropped, self.retimed.note(), without(self.others)].into_iter().flatten().collect()
+    }
+}
+
+/// What a format without keyframes leaves out.
+pub(super) fn without(others: u64) -> Option<String> {
+    (others > 0).then(|| format!("{others} keyframes and losses left out: no word for them"))
+}

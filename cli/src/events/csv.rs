@@ -1,0 +1,223 @@
+//! Tables of events: `tick,address,polarity`, and in comments what is no event.
+
+use super::{EventReader, EventWriter, Item, Known, Tally};
+use crate::sample_type::SampleType;
+use anyhow::{Context, Result, bail};
+use spikewire::link::Keyframe;
+use spikewire::{Event, Polarity};
+use std::io::Write;
+
+const HEADER: &str = "tick,address,polarity";
+const VALUES: &str = "tick,address,value,known";
+
+/// Reads a table of events, or a file of spikes with times.
+pub(super) struct Reader {
+    file: String,
+    /// The line that has not ended, and how many have.
+    line: Vec<u8>,
+    number: u64,
+    columns: Option<Columns>,
+}
+
+/// Where in a line things are.
+#[derive(Clone, Copy)]
+struct Columns {
+    tick: usize,
+    address: usize,
+    polarity: usize,
+}
+
+impl Reader {
+    pub(super) fn new(file: &str) -> Self {
+        Self { file: file.to_owned(), line: Vec::new(), number: 0, columns: None }
+    }
+
+    fn end_line(&mut self, items: &mut Vec<Item>) -> Result<()> {
+        self.number += 1;
+        let line = std::mem::take(&mut self.line);
+        let text = String::from_utf8_lossy(&line);
+        let text = text.trim();
+        let item = if let Some(note) = text.strip_prefix('#') {
+            note_item(note.trim())
+        } else if let Some(columns) = self.columns {
+            if text.is_empty() { Ok(None) } else { event_item(text, columns).map(Some) }
+        } else {
+            header(text).map(|columns| {
+                self.columns = Some(columns);
+                None
+            })
+        };
+        let item = item.with_context(|| format!("{}: line {}", self.file, self.number))?;
+        items.extend(item);
+        Ok(())
+    }
+}
+
+impl EventReader for Reader {
+    fn read(&mut self, bytes: &[u8], items: &mut Vec<Item>) -> Result<()> {
+        const LONGEST: usize = 4096;
+        for piece in bytes.split_inclusive(|&byte| byte == b'\n') {
+            self.line.extend(piece);
+            if self.line.len() > LONGEST {
+                bail!(
+                    "{}: line {} is longer than {LONGEST} bytes; is it a table?",
+                    self.file,
+                    self.number + 1
+                );
+            }
+            if piece.ends_with(b"\n") {
+                self.end_line(items)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self, items: &mut Vec<Item>) -> Result<()> {
+        if !self.line.is_empty() {
+            self.end_line(items)?;
+        }
+        if self.columns.is_none() {
+            bail!("{}: empty; a table of events starts with `{HEADER}`", self.file);
+        }
+        Ok(())
+    }
+
+    fn tally(&self) -> Tally {
+        Tally::default()
+    }
+}
+
+fn header(text: &str) -> Result<Columns> {
+    let names: Vec<&str> = text.split(',').map(str::trim).collect();
+    let find = |wanted: &[&str]| names.iter().position(|name| wanted.contains(name));
+    match (find(&["tick", "time_us"]), find(&["address"]), find(&["polarity"])) {
+        (Some(tick), Some(address), Some(polarity)) => Ok(Columns { tick, address, polarity }),
+        _ => bail!("`{text}`, where `{HEADER}` should stand (or `time_us` for `tick`)"),
+    }
+}
+
+fn event_item(text: &str, columns: Columns) -> Result<Item> {
+    let field = |column: usize| text.split(',').nth(column).map_or("", str::trim);
+    let (tick, address) = (field(columns.tick), field(columns.address));
+    let tick = tick.parse().with_context(|| {
+        format!("tick `{tick}` is not a number of µs from 0 to {}, where ticks wrap", u32::MAX)
+    })?;
+    let address = address
+        .parse()
+        .with_context(|| format!("address `{address}` is not a number from 0 to {}", u16::MAX))?;
+    let polarity = match field(columns.polarity) {
+        "1" => Polarity::Up,
+        "-1" => Polarity::Down,
+        other => bail!("polarity `{other}` is neither 1 nor -1"),
+    };
+    Ok(Item::Event(Event { tick, address, polarity }))
+}
+
+/// What a comment says; others than ours say nothing.
+fn note_item(note: &str) -> Result<Option<Item>> {
+    let (key, value) = note.split_once('=').unwrap_or((note, ""));
+    Ok(match key {
+        "lost_frames" => Some(Item::LostFrames(
+            value.parse().with_context(|| format!("`{value}` is not a number of frames"))?,
+        )),
+        "lost_events" => Some(Item::LostEvents),
+        "restart" => Some(Item::Restart),
+        "keyframe" => Some(keyframe(value).with_context(|| {
+            format!("keyframe `{value}` is not TICK,ADDRESS,BITS with 4 or 8 hexadecimal digits")
+        })?),
+        _ => None,
+    })
+}
+
+fn keyframe(value: &str) -> Option<Item> {
+    let (tick, rest) = value.split_once(',')?;
+    let (address, bits) = rest.split_once(',')?;
+    let keyframe =
+        Keyframe { address: address.parse().ok()?, raw: u32::from_str_radix(bits, 16).ok()? };
+    let is_wide = match bits.len() {
+        4 => false,
+        8 => true,
+        _ => return None,
+    };
+    Some(Item::Keyframe { tick: tick.parse().ok()?, keyframe, is_wide })
+}
+
+/// Writes a table of events, or of values of a sample type.
+pub(super) struct Writer {
+    values: Option<SampleType>,
+    has_begun: bool,
+    line: Vec<u8>,
+}
+
+impl Writer {
+    pub(super) fn new(values: Option<SampleType>) -> Self {
+        Self { values, has_begun: false, line: Vec::new() }
+    }
+
+    fn begin(&mut self, output: &mut dyn Write) -> Result<()> {
+        if !std::mem::replace(&mut self.has_begun, true) {
+            writeln!(output, "{}", if self.values.is_some() { VALUES } else { HEADER })?;
+        }
+        Ok(())
+    }
+
+    fn start_line(&mut self, tick: u32, address: u16) {
+        let mut digits = itoa::Buffer::new();
+        self.line.clear();
+        self.line.extend(digits.format(tick).as_bytes());
+        self.line.push(b',');
+        self.line.extend(digits.format(address).as_bytes());
+        self.line.push(b',');
+    }
+
+    /// In as few digits as name the number: `f32` and fixed point come back bit for bit.
+    fn value(&mut self, value: f64) {
+        let mut digits = zmij::Buffer::new();
+        let text = match self.values {
+            Some(SampleType::F32) => digits.format(value as f32),
+            _ => digits.format(value),
+        };
+        self.line.extend(text.as_bytes());
+    }
+}
+
+impl EventWriter for Writer {
+    fn write(&mut self, item: &Item, output: &mut dyn Write) -> Result<()> {
+        self.begin(output)?;
+        match *item {
+            Item::Event(Event { tick, address, polarity }) => {
+                self.start_line(tick, address);
+                let polarity: &[u8] = if polarity == Polarity::Up { b"1\n" } else { b"-1\n" };
+                self.line.extend(polarity);
+                output.write_all(&self.line)?;
+            }
+            Item::Value { tick, address, value, known } => {
+                self.start_line(tick, address);
+                self.value(value);
+                let known: &[u8] = match known {
+                    Known::Keyframe => b",keyframe\n",
+                    Known::Exact => b",exact\n",
+                    Known::Estimate => b",estimate\n",
+                };
+                self.line.extend(known);
+                output.write_all(&self.line)?;
+            }
+            Item::Keyframe { tick, keyframe: Keyframe { address, raw }, is_wide } => {
+                let digits = if is_wide { 8 } else { 4 };
+                writeln!(output, "# keyframe={tick},{address},{raw:0digits$x}")?;
+            }
+            Item::LostFrames(count) => writeln!(output, "# lost_frames={count}")?,
+            Item::LostEvents => writeln!(output, "# lost_events")?,
+            Item::Restart => writeln!(output, "# restart")?,
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self, output: &mut dyn Write) -> Result<()> {
+        self.begin(output)
+    }
+
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
+}

@@ -1,0 +1,175 @@
+//! EIEIO datagrams, one after the other as in a recording of their payloads.
+
+use super::bytes::{Retimed, without};
+use super::{EventReader, EventWriter, Item, Tally};
+use anyhow::{Result, bail};
+use spikewire::format::eieio;
+use spikewire::{Event, Polarity};
+use std::io::Write;
+use std::num::NonZeroU32;
+
+/// What the keys and time stamps of a board mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Board {
+    /// The key of address 0.
+    pub base: u32,
+    /// A time step in µs.
+    pub step: NonZeroU32,
+}
+
+const MAX_KEYS: usize = 255;
+/// The longest datagram.
+const LONGEST: usize = 2 + 4 + 4 * MAX_KEYS;
+
+/// Reads datagrams.
+pub(super) struct Reader {
+    board: Board,
+    waiting: Vec<u8>,
+    time: u32,
+    skipped: u64,
+}
+
+impl Reader {
+    pub(super) fn new(board: Board) -> Self {
+        Self { board, waiting: Vec::new(), time: 0, skipped: 0 }
+    }
+
+    /// Takes whole datagrams from the front of what waits, and bytes that begin none.
+    fn datagrams(&mut self, is_end: bool, items: &mut Vec<Item>) {
+        let Self { board, waiting, time, skipped } = self;
+        let mut bytes = waiting.as_slice();
+        while !bytes.is_empty() {
+            if let Some(datagram) = eieio::decode(bytes) {
+                if let Some(stamp) = datagram.timestamp {
+                    *time = stamp.wrapping_mul(board.step.get());
+                }
+                for key in datagram.keys() {
+                    match key.checked_sub(board.base).map(u16::try_from) {
+                        Some(Ok(address)) => {
+                            let event = Event { tick: *time, address, polarity: Polarity::Up };
+                            items.push(Item::Event(event));
+                        }
+                        _ => *skipped += 4,
+                    }
+                }
+                let stamp = if datagram.timestamp.is_some() { 4 } else { 0 };
+                bytes = &bytes[2 + stamp + 4 * datagram.keys().count()..];
+            } else if is_end || bytes.len() >= LONGEST || !begins(bytes) {
+                *skipped += 1;
+                bytes = &bytes[1..];
+            } else {
+                break;
+            }
+        }
+        let rest = bytes.len();
+        waiting.drain(..waiting.len() - rest);
+    }
+}
+
+/// Whether a datagram may begin so: with the kinds that are written.
+fn begins(bytes: &[u8]) -> bool {
+    let padded: Vec<u8> = bytes.iter().copied().chain([0; LONGEST]).collect();
+    bytes.len() < 2 || eieio::decode(&padded).is_some()
+}
+
+impl EventReader for Reader {
+    fn read(&mut self, bytes: &[u8], items: &mut Vec<Item>) -> Result<()> {
+        self.waiting.extend(bytes);
+        self.datagrams(false, items);
+        Ok(())
+    }
+
+    fn finish(&mut self, items: &mut Vec<Item>) -> Result<()> {
+        self.datagrams(true, items);
+        Ok(())
+    }
+
+    fn tally(&self) -> Tally {
+        Tally { skipped: self.skipped, ..Tally::default() }
+    }
+
+    fn set_arrival(&mut self, tick: u32) {
+        self.time = tick;
+    }
+}
+
+/// Writes a datagram for each time step.
+pub(super) struct Writer {
+    board: Board,
+    drops: bool,
+    stamp: u32,
+    keys: Vec<u32>,
+    events: u64,
+    dropped: u64,
+    retimed: Retimed,
+    others: u64,
+}
+
+impl Writer {
+    pub(super) fn new(board: Board, drops: bool) -> Self {
+        Self {
+            board,
+            drops,
+            stamp: 0,
+            keys: Vec::new(),
+            events: 0,
+            dropped: 0,
+            retimed: Retimed::default(),
+            others: 0,
+        }
+    }
+
+    fn datagram(&mut self, output: &mut dyn Write) -> Result<()> {
+        if self.keys.is_empty() {
+            return Ok(());
+        }
+        let mut buffer = [0; LONGEST];
+        let length = eieio::encode(Some(self.stamp), self.keys.drain(..), &mut buffer)?;
+        Ok(output.write_all(&buffer[..length])?)
+    }
+
+    fn event(&mut self, event: Event, output: &mut dyn Write) -> Result<()> {
+        let key = self.board.base.checked_add(event.address.into());
+        let Some(key) = key.filter(|_| event.polarity == Polarity::Up) else {
+            if self.drops {
+                self.dropped += 1;
+                return Ok(());
+            }
+            bail!(
+                "event {} at address {}: a key of 32 bits has no direction; --drop goes on without events that go down",
+                self.events,
+                event.address
+            );
+        };
+        let stamp = event.tick / self.board.step;
+        if stamp != self.stamp || self.keys.len() == MAX_KEYS {
+            self.datagram(output)?;
+        }
+        self.stamp = stamp;
+        self.keys.push(key);
+        self.events += 1;
+        self.retimed.observe(stamp * self.board.step.get(), event.tick);
+        Ok(())
+    }
+}
+
+impl EventWriter for Writer {
+    fn write(&mut self, item: &Item, output: &mut dyn Write) -> Result<()> {
+        match *item {
+            Item::Event(event) => self.event(event, output)?,
+            Item::Restart => {}
+            _ => self.others += 1,
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self, output: &mut dyn Write) -> Result<()> {
+        self.datagram(output)
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let dropped = (self.dropped > 0)
+            .then(|| format!("{} events dropped: a key has no direction", self.dropped));
+        [dropped, self.retimed.note(), without(self.others)].into_iter().flatten().collect()
+    }
+}

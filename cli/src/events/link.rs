@@ -1,0 +1,204 @@
+//! The crate's link.
+
+use super::{EventReader, EventWriter, Item, LinkTally, Tally};
+use anyhow::Result;
+use fixed::types::I16F16;
+use spikewire::Event;
+use spikewire::link::{
+    Coding, FrameWriter, Framer, Keyframe, LinkError, MAX_FRAME, Raw, Reader, Received,
+};
+use std::io::Write;
+
+/// What decodes the frames of a link.
+pub(crate) trait Values {
+    /// Applies a frame, and adds a value for each of its keyframes and events.
+    fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>);
+
+    /// How many events and keyframes had an address without a decoder.
+    fn outside(&self) -> u64;
+
+    /// How many keyframes had the width of another sample type.
+    fn misfits(&self) -> u64;
+}
+
+/// Reads a link: its events, or its values.
+pub(crate) struct LinkReader {
+    reader: Reader<MAX_FRAME>,
+    /// Zeros of our own that the reader skipped.
+    padding: u64,
+    values: Option<Box<dyn Values>>,
+    tally: LinkTally,
+}
+
+impl LinkReader {
+    /// A reader that gives values where there is something to decode them.
+    pub(crate) fn new(values: Option<Box<dyn Values>>) -> Self {
+        Self { reader: Reader::new(), padding: 0, values, tally: LinkTally::default() }
+    }
+}
+
+impl EventReader for LinkReader {
+    fn read(&mut self, mut bytes: &[u8], items: &mut Vec<Item>) -> Result<()> {
+        while let Some(received) = self.reader.next_frame(&mut bytes) {
+            take(&received, &mut self.tally, self.values.as_deref_mut(), items);
+        }
+        Ok(())
+    }
+
+    /// A frame whose length was damaged holds those after it back, until as many bytes follow as the
+    /// longest frame has.
+    fn finish(&mut self, items: &mut Vec<Item>) -> Result<()> {
+        self.read(&[0; MAX_FRAME], items)?;
+        self.padding = MAX_FRAME as u64;
+        Ok(())
+    }
+
+    fn tally(&self) -> Tally {
+        let reader = &self.reader;
+        let values = self.values.as_deref();
+        let link = LinkTally {
+            frames: reader.frames().into(),
+            lost: reader.lost_frames().into(),
+            bad_checksums: reader.bad_checksums().into(),
+            repeated: reader.repeated().into(),
+            outside: values.map_or(0, Values::outside),
+            misfits: values.map_or(0, Values::misfits),
+            ..self.tally
+        };
+        let skipped = u64::from(reader.skipped()).saturating_sub(self.padding);
+        Tally { skipped, is_cut: false, link: Some(link) }
+    }
+}
+
+/// Adds what a frame brings, in the order in which it holds.
+fn take(
+    received: &Received<'_>,
+    tally: &mut LinkTally,
+    values: Option<&mut (dyn Values + 'static)>,
+    items: &mut Vec<Item>,
+) {
+    let Received { gap, frame } = received;
+    if let Some(gap) = gap {
+        tally.gaps += 1;
+        items.push(Item::LostFrames(gap.lost_frames));
+    }
+    if frame.is_after_loss() {
+        tally.after_loss += 1;
+        items.push(Item::LostEvents);
+    }
+    if frame.is_restart() {
+        tally.restarts += 1;
+        items.push(Item::Restart);
+    }
+    tally.keyframes += frame.keyframes().count() as u64;
+    let mut events = frame.events();
+    if let Some(values) = values {
+        values.apply(received, items);
+        events.by_ref().for_each(drop);
+    } else {
+        let (tick, is_wide) = (frame.tick(), frame.is_wide());
+        items.extend(frame.keyframes().map(|keyframe| Item::Keyframe { tick, keyframe, is_wide }));
+        items.extend(events.by_ref().map(Item::Event));
+    }
+    tally.impossible += u64::from(!events.is_complete());
+}
+
+/// Writes a link, in frames as long as they may be.
+pub(super) struct Writer {
+    framer: Framer,
+    coding: Coding,
+    keyframes: Vec<(Keyframe, bool)>,
+    /// When all of them hold.
+    tick: u32,
+    events: Vec<Event>,
+}
+
+/// How many events wait for their frames at most.
+const BATCH: usize = 1024;
+
+impl Writer {
+    pub(super) fn new(coding: Coding) -> Self {
+        let framer = Framer::new(coding);
+        Self { framer, coding, keyframes: Vec::new(), tick: 0, events: Vec::new() }
+    }
+
+    /// Writes frames; the last only if nothing may be added to it.
+    fn frames(&mut self, with_last: bool, output: &mut dyn Write) -> Result<()> {
+        let Self { framer, keyframes, tick, events, .. } = self;
+        let mut buffer = [0; MAX_FRAME];
+        loop {
+            let start = match (keyframes.first(), events.first()) {
+                (Some(_), _) => *tick,
+                (None, Some(event)) => event.tick,
+                (None, None) => return Ok(()),
+            };
+            let mut frame = framer.start(start, &mut buffer)?;
+            let keys = fitting(keyframes, |&(key, is_wide)| put(&mut frame, key, is_wide));
+            let fired = if keys == keyframes.len() {
+                fitting(events, |&event| frame.event(event))
+            } else {
+                0
+            };
+            let is_last = keys == keyframes.len() && fired == events.len();
+            if is_last && !with_last {
+                return Ok(());
+            }
+            output.write_all(frame.finish())?;
+            keyframes.drain(..keys);
+            events.drain(..fired);
+        }
+    }
+}
+
+/// How many items from the front the frame took.
+fn fitting<T>(items: &[T], put: impl FnMut(&T) -> Result<(), LinkError>) -> usize {
+    items.iter().map(put).take_while(Result::is_ok).count()
+}
+
+fn put(frame: &mut FrameWriter<'_, '_>, key: Keyframe, is_wide: bool) -> Result<(), LinkError> {
+    if is_wide {
+        frame.keyframe(key.address, I16F16::from_raw(key.raw))
+    } else {
+        frame.keyframe(key.address, i16::from_raw(key.raw))
+    }
+}
+
+impl EventWriter for Writer {
+    fn write(&mut self, item: &Item, output: &mut dyn Write) -> Result<()> {
+        match *item {
+            Item::Event(event) => {
+                self.events.push(event);
+                if self.events.len() >= BATCH {
+                    self.frames(false, output)?;
+                }
+            }
+            Item::Keyframe { tick, keyframe, is_wide } => {
+                let is_other = tick != self.tick
+                    || self.keyframes.last().is_some_and(|&(_, was_wide)| was_wide != is_wide);
+                if is_other || !self.events.is_empty() {
+                    self.frames(true, output)?;
+                }
+                self.tick = tick;
+                self.keyframes.push((keyframe, is_wide));
+            }
+            Item::LostFrames(_) | Item::LostEvents => {
+                self.frames(true, output)?;
+                self.framer.mark_loss();
+            }
+            Item::Restart => {
+                self.frames(true, output)?;
+                self.framer = Framer::new(self.coding);
+            }
+            Item::Value { .. } => {}
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self, output: &mut dyn Write) -> Result<()> {
+        self.frames(true, output)
+    }
+
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
+}

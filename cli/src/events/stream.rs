@@ -1,0 +1,173 @@
+//! Bytes of one format in, bytes of another out.
+
+use super::{EventReader, EventWriter, Item, Tally};
+use anyhow::Result;
+use spikewire::tick;
+use std::fmt;
+use std::io::Write;
+
+/// A reader, a writer, and counts of what went through.
+pub(crate) struct Stream {
+    reader: Box<dyn EventReader>,
+    writer: Box<dyn EventWriter>,
+    /// What is taken off every tick, where they are to start at 0.
+    zero: Zero,
+    items: Vec<Item>,
+    bytes: u64,
+    events: u64,
+    values: u64,
+    addresses: Vec<u64>,
+    last: Option<u32>,
+    wraps: u64,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Zero {
+    Keep,
+    Wanted,
+    At(u32),
+}
+
+impl Stream {
+    /// Bytes are read by the one and written by the other, with the ticks as they are or from 0 on.
+    pub(crate) fn new(
+        reader: Box<dyn EventReader>,
+        writer: Box<dyn EventWriter>,
+        from_zero: bool,
+    ) -> Self {
+        Self {
+            reader,
+            writer,
+            zero: if from_zero { Zero::Wanted } else { Zero::Keep },
+            items: Vec::new(),
+            bytes: 0,
+            events: 0,
+            values: 0,
+            addresses: vec![0; 1 << 16],
+            last: None,
+            wraps: 0,
+        }
+    }
+
+    /// Takes bytes that arrive at this time, cut anywhere.
+    ///
+    /// # Errors
+    /// They cannot be read, or what they mean cannot be written.
+    pub(crate) fn push(
+        &mut self,
+        bytes: &[u8],
+        arrival: u32,
+        output: &mut dyn Write,
+    ) -> Result<()> {
+        /// So many that their items stay small.
+        const PIECE: usize = 1 << 14;
+        self.reader.set_arrival(arrival);
+        for piece in bytes.chunks(PIECE) {
+            self.bytes += piece.len() as u64;
+            // What came before an error is still written.
+            let read = self.reader.read(piece, &mut self.items);
+            self.write(output)?;
+            read?;
+        }
+        Ok(())
+    }
+
+    /// The end of the bytes.
+    ///
+    /// # Errors
+    /// As [`push`](Self::push).
+    pub(crate) fn finish(&mut self, output: &mut dyn Write) -> Result<()> {
+        let read = self.reader.finish(&mut self.items);
+        self.write(output)?;
+        read?;
+        self.writer.finish(output)
+    }
+
+    fn write(&mut self, output: &mut dyn Write) -> Result<()> {
+        let mut items = std::mem::take(&mut self.items);
+        for item in &mut items {
+            self.observe(item);
+            self.writer.write(item, output)?;
+        }
+        items.clear();
+        self.items = items;
+        Ok(())
+    }
+
+    fn observe(&mut self, item: &mut Item) {
+        let (now, address) = match item {
+            Item::Event(event) => {
+                self.events += 1;
+                (&mut event.tick, event.address)
+            }
+            Item::Value { tick, address, .. } => {
+                self.values += 1;
+                (tick, *address)
+            }
+            Item::Keyframe { tick, .. } => {
+                self.start_at_zero(tick);
+                return;
+            }
+            _ => return,
+        };
+        self.addresses[usize::from(address)] += 1;
+        self.start_at_zero(now);
+        if self.last.is_some_and(|last| *now < last && tick::difference(*now, last) > 0) {
+            self.wraps += 1;
+        }
+        self.last = Some(*now);
+    }
+
+    fn start_at_zero(&mut self, tick: &mut u32) {
+        match self.zero {
+            Zero::Keep => {}
+            Zero::Wanted => {
+                self.zero = Zero::At(*tick);
+                *tick = 0;
+            }
+            Zero::At(zero) => *tick = tick.wrapping_sub(zero),
+        }
+    }
+
+    /// How many events, or values in their place, each address had.
+    pub(crate) fn addresses(&self) -> &[u64] {
+        &self.addresses
+    }
+
+    /// How many events, or values in their place.
+    pub(crate) fn count(&self) -> u64 {
+        self.events + self.values
+    }
+
+    /// How many bytes went in.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// What there was besides events.
+    pub(crate) fn tally(&self) -> Tally {
+        self.reader.tally()
+    }
+}
+
+/// What a user should know at the end.
+impl fmt::Display for Stream {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (count, what) =
+            if self.values > 0 { (self.values, "values") } else { (self.events, "events") };
+        let addresses = self.addresses.iter().filter(|&&count| count > 0).count();
+        write!(f, "{} bytes, {count} {what} at {addresses} addresses", self.bytes)?;
+        if count > 0 {
+            write!(f, ", {:.2} bytes each", self.bytes as f64 / count as f64)?;
+        }
+        writeln!(f)?;
+        write!(f, "{}", self.tally())?;
+        if let Zero::At(zero) = self.zero {
+            writeln!(f, "{zero} µs taken off every tick")?;
+        }
+        if self.wraps > 0 {
+            writeln!(f, "ticks wrapped {} times, after 71.6 minutes each", self.wraps)?;
+        }
+        self.writer.notes().iter().try_for_each(|note| writeln!(f, "{note}"))
+    }
+}

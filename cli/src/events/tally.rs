@@ -1,0 +1,73 @@
+//! What a stream brings besides events.
+
+use std::fmt;
+
+/// Counts of a reader.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Tally {
+    /// Bytes that belonged to nothing.
+    pub skipped: u64,
+    /// Whether the end was cut.
+    pub is_cut: bool,
+    /// Of a link only.
+    pub link: Option<LinkTally>,
+}
+
+/// Counts of a link's reader.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct LinkTally {
+    /// Frames that arrived whole.
+    pub frames: u64,
+    /// Frames that never did.
+    pub lost: u64,
+    /// Where they are missing.
+    pub gaps: u64,
+    /// Checksums that did not match.
+    pub bad_checksums: u64,
+    /// Frames that came twice.
+    pub repeated: u64,
+    /// Frames before which the sender lost events.
+    pub after_loss: u64,
+    /// How often the sender began.
+    pub restarts: u64,
+    /// Keyframes.
+    pub keyframes: u64,
+    /// Frames whose events cannot be.
+    pub impossible: u64,
+    /// Events and keyframes of an address without a decoder.
+    pub outside: u64,
+    /// Keyframes with the width of another sample type.
+    pub misfits: u64,
+}
+
+impl fmt::Display for Tally {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(link) = self.link {
+            writeln!(
+                f,
+                "{} frames: {} lost in {} gaps, {} bad checksums, {} repeated; {} restarts, {} keyframes",
+                link.frames,
+                link.lost,
+                link.gaps,
+                link.bad_checksums,
+                link.repeated,
+                link.restarts,
+                link.keyframes
+            )?;
+            let rare = [
+                (link.after_loss, "frames before which the sender lost events"),
+                (link.impossible, "frames with events that cannot be"),
+                (link.outside, "events and keyframes at addresses without a decoder"),
+                (link.misfits, "keyframes with the width of another sample type"),
+            ];
+            for (count, what) in rare.into_iter().filter(|(count, _)| *count > 0) {
+                writeln!(f, "{count} {what}")?;
+            }
+        }
+        writeln!(f, "{} bytes skipped", self.skipped)?;
+        if self.is_cut {
+            writeln!(f, "the end is cut within an event")?;
+        }
+        Ok(())
+    }
+}

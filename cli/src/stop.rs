@@ -1,0 +1,51 @@
+//! Ctrl-C ends what has no end of its own, with all that it has so far kept.
+
+use anyhow::{Context, Result};
+use std::process;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+static IS_WANTED: AtomicBool = AtomicBool::new(false);
+
+/// When to stop.
+pub(crate) struct Stop {
+    start: Instant,
+    after: Option<Duration>,
+}
+
+impl Stop {
+    /// On Ctrl-C, and after this many seconds if there is a number; a second Ctrl-C ends at once.
+    ///
+    /// # Errors
+    /// The number is not above 0.
+    pub(crate) fn new(seconds: Option<f64>) -> Result<Self> {
+        /// As a shell tells of a program that Ctrl-C ended.
+        const INTERRUPTED: i32 = 130;
+        let after = match seconds {
+            None => None,
+            Some(seconds) => Some(
+                Duration::try_from_secs_f64(seconds)
+                    .ok()
+                    .filter(|after| !after.is_zero())
+                    .with_context(|| format!("--seconds {seconds} must be above 0"))?,
+            ),
+        };
+        ctrlc::set_handler(|| {
+            if IS_WANTED.swap(true, Ordering::Relaxed) {
+                process::exit(INTERRUPTED);
+            }
+        })?;
+        Ok(Self { start: Instant::now(), after })
+    }
+
+    /// Whether it is time.
+    pub(crate) fn is_due(&self) -> bool {
+        IS_WANTED.load(Ordering::Relaxed)
+            || self.after.is_some_and(|after| self.start.elapsed() >= after)
+    }
+
+    /// The time since the start, in µs as ticks have it.
+    pub(crate) fn tick(&self) -> u32 {
+        self.start.elapsed().as_micros() as u32
+    }
+}

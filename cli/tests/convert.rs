@@ -1,0 +1,325 @@
+//! Events in every format, there and back, and what a format cannot hold.
+
+mod common;
+
+use common::{good, good_bytes, refused, spikewire_bytes};
+use std::fmt::Write;
+
+/// Formats that hold any event of 14 bits of address whose time rises by little.
+const FORMATS: [&str; 11] = [
+    "link",
+    "link,period=5000,channels=6,jitter=5",
+    "edvs:e1",
+    "edvs:e1,up=0",
+    "edvs:e2",
+    "edvs:e3",
+    "edvs:e4",
+    "edvs:e4,up=0",
+    "es",
+    "evt2",
+    "csv",
+];
+
+/// A table of events.
+fn table(events: impl IntoIterator<Item = (u32, u16, i8)>) -> String {
+    let mut table = "tick,address,polarity\n".to_owned();
+    for (tick, address, polarity) in events {
+        writeln!(table, "{tick},{address},{polarity}").unwrap();
+    }
+    table
+}
+
+/// Some events: several at a time, of addresses up to 16 383.
+fn events() -> String {
+    table((1..1500_u32).map(|i| {
+        let address = (i * 7919 % 16_384) as u16;
+        (i / 3 * 997, address, if i % 5 < 2 { -1 } else { 1 })
+    }))
+}
+
+fn convert(from: &str, to: &str, input: &[u8]) -> common::RanBytes {
+    good_bytes(&format!("convert --from {from} --to {to}"), input)
+}
+
+/// The events alone.
+fn rows(table: &[u8]) -> String {
+    let text = str::from_utf8(table).unwrap();
+    text.lines()
+        .filter(|line| !line.starts_with('#'))
+        .fold(String::new(), |rows, line| rows + line + "\n")
+}
+
+#[test]
+fn every_format_gives_back_what_it_was_given() {
+    let events = events();
+    for format in FORMATS {
+        let there = convert("csv", format, events.as_bytes());
+        assert!(there.told.contains("1499 events at"), "{format}: {}", there.told);
+        assert!(!there.told.contains("another time"), "{format}: {}", there.told);
+        let back = convert(format, "csv", &there.output);
+        assert_eq!(rows(&back.output), events, "{format}");
+        assert!(back.told.contains("\n0 bytes skipped\n"), "{format}: {}", back.told);
+    }
+}
+
+#[test]
+fn every_format_is_read_from_every_other() {
+    let events = events();
+    for from in FORMATS {
+        let bytes = convert("csv", from, events.as_bytes()).output;
+        for to in ["link", "edvs:e1", "es", "evt2"] {
+            let direct = convert("csv", to, events.as_bytes()).output;
+            assert!(convert(from, to, &bytes).output == direct, "{from} to {to}");
+        }
+    }
+}
+
+#[test]
+fn bytes_are_golden() {
+    let bytes =
+        |format: &str, tick| convert("csv", format, table([(tick, 0x105, 1)]).as_bytes()).output;
+    assert_eq!(bytes("edvs:e0", 0), [0x82, 0x85]);
+    assert_eq!(bytes("edvs:e1", 0x80), [0x82, 0x85, 0x01, 0x80]);
+    assert_eq!(bytes("edvs:e2,up=0", 0x1234), [0x82, 0x05, 0x12, 0x34]);
+    assert_eq!(bytes("edvs:e4", 0x1234_5678), [0x82, 0x85, 0x12, 0x34, 0x56, 0x78]);
+    assert_eq!(bytes("es", 300), b"Event Stream\x02\0\0\0\xFF\x2E\x06\x05\x01\x01");
+    assert!(bytes("evt2", 0x41).ends_with(&[0x01, 0, 0, 0x80, 0x00, 0x28, 0x48, 0x10]));
+    assert!(bytes("evt2", 0x41).starts_with(b"% evt 2.0\n"));
+    let eieio = [1, 0x38, 0x34, 0x12, 0, 0, 5, 1, 7, 0];
+    assert_eq!(bytes("eieio,base=0x70000,step=1", 0x1234), eieio);
+    assert_eq!(bytes("csv", 7), b"tick,address,polarity\n7,261,1\n");
+}
+
+#[test]
+fn datagrams_hold_a_time_step_of_up_to_255_keys() {
+    let events = table((0..600).map(|i| (i / 300 * 2000, i as u16, 1)));
+    let there = convert("csv", "eieio", events.as_bytes());
+    assert_eq!(there.output.len(), 4 * 6 + 600 * 4);
+    assert_eq!(rows(&convert("eieio", "csv", &there.output).output), events);
+    let between = table([(1999, 0, 1)]);
+    let told = convert("csv", "eieio", between.as_bytes()).told;
+    assert!(told.contains("1 events will be read at another time, up to 999 µs away"), "{told}");
+    // Keys without a time stamp take the time of the last one; those below the base are no address.
+    let bytes = [1, 0x38, 9, 0, 0, 0, 1, 0, 0, 0, 2, 8, 0, 0, 0, 0, 3, 0, 0, 0];
+    let read = convert("eieio,base=1,step=1", "csv", &bytes);
+    assert_eq!(rows(&read.output), table([(9, 0, 1), (9, 2, 1)]));
+    assert!(read.told.contains("\n4 bytes skipped\n"), "{}", read.told);
+}
+
+#[test]
+fn addresses_and_directions_that_a_format_lacks_are_refused_or_counted() {
+    let wide = table([(1, 16_383, 1), (2, 16_384, 1), (3, 5, 1)]);
+    refused(
+        "convert --from csv --to edvs:e4",
+        &wide,
+        &["event 1", "address 16384", "16383", "--drop"],
+    );
+    let dropped = good_bytes("convert --drop --from csv --to edvs:e4", wide.as_bytes());
+    assert!(dropped.told.contains("1 events dropped"), "{}", dropped.told);
+    let kept = rows(&convert("edvs:e4", "csv", &dropped.output).output);
+    assert_eq!(kept, table([(1, 16_383, 1), (3, 5, 1)]));
+
+    let down = table([(0, 1, 1), (0, 2, -1)]);
+    refused("convert --from csv --to eieio", &down, &["event 1 at address 2", "no direction"]);
+    let dropped = good_bytes("convert --drop --from csv --to eieio", down.as_bytes());
+    assert!(dropped.told.contains("1 events dropped"), "{}", dropped.told);
+
+    // Two words of EVT2, the second in row 32.
+    let words = [8_u32 << 28, 1 << 28 | 3 << 11 | 31, 1 << 28 | 3 << 11 | 32];
+    let read = convert("evt2", "csv", &words.map(u32::to_le_bytes).concat());
+    assert_eq!(rows(&read.output), table([(0, 31 << 11 | 3, 1)]));
+    assert!(read.told.contains("\n4 bytes skipped\n"), "{}", read.told);
+}
+
+#[test]
+fn times_that_a_format_lacks_are_counted_as_they_will_be_read() {
+    let told = |format: &str, events: &[(u32, u16, i8)]| {
+        let there = convert("csv", format, table(events.iter().copied()).as_bytes());
+        let back = rows(&convert(format, "csv", &there.output).output);
+        let ticks = back.lines().skip(1).map(|line| line.split(',').next().unwrap().parse::<u32>());
+        (there.told, ticks.collect::<Result<Vec<_>, _>>().unwrap())
+    };
+    let late = [(10, 0, 1), (70_010, 1, 1)];
+    let (said, read) = told("edvs:e0", &late);
+    assert_eq!(read, [0, 0]);
+    assert!(said.contains("2 events will be read at another time, up to 70010 µs away"), "{said}");
+    let (said, read) = told("edvs:e2", &late);
+    assert_eq!(read, [10, 70_010 - 65_536]);
+    assert!(said.contains("1 events will be read at another time, up to 65536 µs away"), "{said}");
+    let unordered = [(500, 0, 1), (400, 1, 1), (600, 2, 1)];
+    for format in ["es", "evt2", "edvs:e1"] {
+        let (said, read) = told(format, &unordered);
+        assert_eq!(read, [500, 500, 600], "{format}");
+        assert!(said.contains("1 events will be read at another time, up to 100 µs"), "{said}");
+    }
+    for format in ["link", "edvs:e4", "csv"] {
+        let (said, read) = told(format, &unordered);
+        assert_eq!(read, [500, 400, 600], "{format}");
+        assert!(!said.contains("another time"), "{said}");
+    }
+}
+
+#[test]
+fn formats_that_count_from_0_take_late_recordings_from_0() {
+    let late = table([(3_000_000_000, 0, 1), (3_000_000_777, 1, -1)]);
+    let told = convert("csv", "es", late.as_bytes()).told;
+    assert!(told.contains("2 events will be read at another time"), "{told}");
+    let moved = good_bytes("convert --from-zero --from csv --to es", late.as_bytes());
+    assert!(moved.told.contains("3000000000 µs taken off every tick"), "{}", moved.told);
+    assert!(!moved.told.contains("another time"), "{}", moved.told);
+    assert_eq!(rows(&convert("es", "csv", &moved.output).output), table([(0, 0, 1), (777, 1, -1)]));
+}
+
+#[test]
+fn a_long_silence_takes_its_bytes_and_no_memory() {
+    let events = table([(5, 0, 1), (100_000_000, 1, -1)]);
+    let there = convert("csv", "es", events.as_bytes());
+    assert_eq!(there.output.len(), 16 + 5 + 99_999_995 / 254 + 5);
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), &there.output).unwrap();
+    let back = good(&format!("convert --from es --to csv {}", file.path().display()), "");
+    assert_eq!(back.output, events);
+}
+
+#[test]
+fn wraps_of_ticks_are_told() {
+    let events = table([(4_294_967_290, 0, 1), (4, 1, 1), (9, 0, 1)]);
+    for format in ["link", "edvs:e4", "evt2"] {
+        let there = convert("csv", format, events.as_bytes());
+        assert!(there.told.contains("ticks wrapped 1 times"), "{format}: {}", there.told);
+        let back = convert(format, "csv", &there.output);
+        assert_eq!(rows(&back.output), events, "{format}");
+        assert!(back.told.contains("ticks wrapped 1 times"), "{format}: {}", back.told);
+    }
+    let from_0 = good_bytes("convert --from-zero --from csv --to es", events.as_bytes());
+    assert!(!from_0.told.contains("wrapped"), "{}", from_0.told);
+    let moved = table([(0, 0, 1), (10, 1, 1), (15, 0, 1)]);
+    assert_eq!(rows(&convert("es", "csv", &from_0.output).output), moved);
+}
+
+#[test]
+fn a_table_holds_all_that_a_link_does() {
+    let told = "tick,address,polarity\n# restart\n# keyframe=5000,0,3dcccccd\n# keyframe=5000,1,00000000\n\
+                5001,0,1\n# lost_events\n6001,1,-1\n# keyframe=7000,2,ff38\n7000,2,1\n";
+    let link = convert("csv", "link", told.as_bytes());
+    let back = convert("link", "csv", &link.output);
+    assert_eq!(str::from_utf8(&back.output).unwrap(), told);
+    assert!(back.told.contains("1 restarts, 3 keyframes"), "{}", back.told);
+    assert!(back.told.contains("1 frames before which the sender lost events"), "{}", back.told);
+    // A receiver takes frames that are missing as a loss; other formats have no word for it.
+    let gap = "tick,address,polarity\n1,0,1\n# lost_frames=3\n2,0,1\n";
+    let back = convert("link", "csv", &convert("csv", "link", gap.as_bytes()).output);
+    assert!(str::from_utf8(&back.output).unwrap().ends_with("1,0,1\n# lost_events\n2,0,1\n"));
+    for format in ["es", "evt2", "edvs:e4", "eieio"] {
+        let without = convert("csv", format, gap.as_bytes()).told;
+        assert!(without.contains("1 keyframes and losses left out"), "{format}: {without}");
+    }
+}
+
+#[test]
+fn spikes_of_a_recording_are_events_too() {
+    let scheme = "encode --scheme sf --threshold 0.1 --column gyro_x";
+    let spikes = good(&format!("{scheme} {}", common::flight("hexarotor.csv")), "").output;
+    let table = convert("csv", "csv", spikes.as_bytes());
+    assert!(table.told.contains("1406 events at 1 addresses"), "{}", table.told);
+    assert!(str::from_utf8(&table.output).unwrap().contains("\n4297129,0,-1\n"));
+    let untimed = good("encode --scheme sf --threshold 0.5 -", &common::table(&[0.0, 1.0])).output;
+    refused("convert --from csv --to es", &untimed, &["line ", "tick,address,polarity"]);
+}
+
+#[test]
+fn a_file_that_is_cut_anywhere_gives_the_events_before_the_cut() {
+    let events = table((0..9).map(|i| (i * 400, i as u16, 1)));
+    let whole = rows(events.as_bytes());
+    for format in ["link", "edvs:e1", "edvs:e4", "es", "evt2", "eieio,step=1"] {
+        let bytes = convert("csv", format, events.as_bytes()).output;
+        for length in (0..bytes.len()).step_by(5) {
+            let read = convert(format, "csv", &bytes[..length]);
+            assert!(whole.starts_with(&rows(&read.output)), "{format} cut to {length}");
+        }
+        let read = convert(format, "csv", &bytes[..bytes.len() - 1]);
+        let is_told =
+            read.told.contains("the end is cut") || !read.told.contains("\n0 bytes skipped");
+        assert!(is_told, "{format}: {}", read.told);
+    }
+}
+
+#[test]
+fn damage_in_a_link_costs_frames_that_are_counted() {
+    let events = events();
+    let bytes = convert("csv", "link", events.as_bytes()).output;
+    let frames = {
+        let told = convert("link", "csv", &bytes).told;
+        let line = told.lines().nth(1).unwrap();
+        line.split(' ').next().unwrap().parse::<usize>().unwrap()
+    };
+    assert!(frames > 10);
+    for at in (0..bytes.len()).step_by(bytes.len() / 37) {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 0x10;
+        let read = convert("link", "csv", &damaged);
+        let rows = rows(&read.output);
+        assert!(rows.lines().all(|row| events.contains(row)), "flip at {at}");
+        assert!(
+            read.told.contains(&format!("{} frames:", frames - 1)),
+            "flip at {at}: {}",
+            read.told
+        );
+        assert!(!read.told.contains("\n0 bytes skipped"), "flip at {at}: {}", read.told);
+    }
+    let middle = convert("link", "csv", &bytes[100..]);
+    assert!(!middle.told.contains("\n0 bytes skipped"), "{}", middle.told);
+    assert!(events.ends_with(rows(&middle.output).split_once('\n').unwrap().1));
+}
+
+#[test]
+fn a_camera_is_read_from_the_middle_of_its_stream() {
+    let events = table((0..50).map(|i| (i * 100, (i % 8) as u16, 1)));
+    let bytes = convert("csv", "edvs:e2", events.as_bytes()).output;
+    let read = convert("edvs:e2", "csv", &bytes[2..]);
+    assert!(read.told.contains("\n2 bytes skipped\n"), "{}", read.told);
+    assert!(events.ends_with(rows(&read.output).split_once('\n').unwrap().1));
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let to_es = "convert --from csv --to es";
+    refused(to_es, "", &["standard input: empty", "tick,address,polarity"]);
+    refused(to_es, "1,2,3\n", &["line 1", "`1,2,3`", "tick,address,polarity"]);
+    let with = |row: &str| format!("tick,address,polarity\n1,2,1\n{row}\n");
+    refused(to_es, &with("-1,2,1"), &["line 3", "tick `-1`"]);
+    refused(to_es, &with("4294967296,2,1"), &["line 3", "4294967295", "wrap"]);
+    refused(to_es, &with("1,65536,1"), &["line 3", "address `65536`", "65535"]);
+    refused(to_es, &with("1,2,0"), &["line 3", "polarity `0`"]);
+    refused(to_es, &with("1,2"), &["line 3", "polarity ``"]);
+    refused(to_es, &with("# keyframe=1,2,3"), &["line 3", "4 or 8 hexadecimal digits"]);
+    refused(to_es, &"x".repeat(5000), &["line 1", "longer than 4096"]);
+    refused("convert --from es --to csv", &events(), &["not an Event Stream"]);
+    refused("convert --from csv --to es nowhere.csv", "", &["nowhere.csv: cannot be opened"]);
+    for (format, words) in [
+        ("aedat", ["no format `aedat`", "evt2"]),
+        ("edvs", ["edvs:e0", "edvs:e4"]),
+        ("edvs:e1,up=2", ["up=2", "0 or 1"]),
+        ("es,up=0", ["es takes no up=", ""]),
+        ("link,period=0", ["period", "above 0"]),
+        ("link,period=70000", ["period=70000", "range"]),
+        ("eieio,step=0", ["step", "above 0"]),
+        ("eieio,base", ["`base`", "KEY=NUMBER"]),
+    ] {
+        refused(&format!("convert --from csv --to {format}"), "", &words);
+    }
+    let none = spikewire_bytes("convert --to csv", b"");
+    assert_eq!(none.status, 2);
+}
+
+#[test]
+fn nothing_half_written_stays() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("events.es");
+    refused(
+        &format!("convert --from csv --to es -o {}", path.display()),
+        &(events() + "1,2,up\n"),
+        &["polarity `up`"],
+    );
+    assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 0);
+}

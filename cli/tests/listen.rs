@@ -1,0 +1,420 @@
+//! What a board sends, to the values that it holds itself: from files, pipes and serial ports.
+
+mod common;
+
+use common::{good_bytes, refused, spikewire_bytes};
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+use spikewire::link::{Coding, Framer, MAX_FRAME, Raw, Transmitter};
+use spikewire::temporal::{MovingWindow, StepForward, TemporalContrast};
+use spikewire::{Bank, Decoder, Encoder, Output, Sample, Scheme, Spike};
+use std::fs::{self, File};
+use std::io::{Read, Write};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+const CHANNELS: usize = 3;
+
+/// A board's frames, and the values that its own decoders hold after each event.
+struct Board<S> {
+    frames: Vec<Vec<u8>>,
+    values: Vec<(u32, u16, S)>,
+}
+
+/// A board that encodes waves, with a keyframe every 100 samples.
+fn board<S: Raw, P: Scheme<Sample = S>>(schemes: [P; CHANNELS]) -> Board<S>
+where
+    <P::Encoder as Encoder>::Output: Output<Code = Spike>,
+    P::Decoder: Decoder<Sample = S, Code = Spike>,
+{
+    let mut bank = Bank::from_encoders(schemes.map(Scheme::encoder));
+    let mut decoders = schemes.map(Scheme::decoder);
+    let mut transmitter = Transmitter::<S, CHANNELS>::new(Coding::for_channels(3, 1000));
+    let mut board = Board { frames: Vec::new(), values: Vec::new() };
+    let mut buffer = [0; MAX_FRAME];
+    for sample in 0..400_u32 {
+        let wave = |pace: f64| S::from_f64((f64::from(sample) * pace).sin() * 100.0);
+        let tick = sample * 1000;
+        let mut events = Vec::new();
+        bank.encode(tick, [wave(0.05), wave(0.07), wave(0.11)], |event| events.push(event));
+        for event in &events {
+            let value = decoders[usize::from(event.address)].decode(event.polarity.into());
+            board.values.push((event.tick, event.address, value));
+        }
+        // At 3 the moving window has filled.
+        if sample == 3 || sample % 100 == 0 {
+            let snapshot = bank.snapshot(tick, 0);
+            // What the board's decoders start from.
+            for (decoder, value) in decoders.iter_mut().zip(snapshot.values) {
+                if let Some(value) = value {
+                    decoder.resync(value);
+                }
+            }
+            transmitter.keyframe(snapshot);
+        }
+        let mut events = events.into_iter();
+        while let Some(frame) = transmitter.next_frame(&mut events, &mut buffer).unwrap() {
+            board.frames.push(frame.to_vec());
+        }
+    }
+    board
+}
+
+fn three_floats() -> Board<f32> {
+    board([7.5, 3.1, 12.7].map(|threshold| StepForward::<f32>::new(threshold).unwrap()))
+}
+
+const THREE: &str = "--scheme sf --thresholds 7.5,3.1,12.7";
+
+/// A line of values.
+#[derive(Debug, PartialEq)]
+struct Line {
+    tick: u32,
+    address: u16,
+    value: f64,
+    known: String,
+}
+
+fn values(table: &[u8]) -> Vec<Line> {
+    let lines = str::from_utf8(table).unwrap().lines();
+    lines
+        .skip(1)
+        .filter(|line| !line.starts_with('#'))
+        .map(|line| {
+            let [tick, address, value, known] = line.split(',').collect::<Vec<_>>()[..] else {
+                panic!("{line}");
+            };
+            Line {
+                tick: tick.parse().unwrap(),
+                address: address.parse().unwrap(),
+                value: value.parse().unwrap(),
+                known: known.to_owned(),
+            }
+        })
+        .collect()
+}
+
+/// All values of events are the board's, exactly.
+fn assert_exact<S: Sample>(board: &Board<S>, one: f64, options: &str) {
+    let heard = good_bytes(&format!("listen {options}"), &board.frames.concat());
+    let heard: Vec<Line> =
+        values(&heard.output).into_iter().filter(|value| value.known != "keyframe").collect();
+    assert!(heard.len() == board.values.len() && heard.len() > 200, "{options}: {}", heard.len());
+    for (heard, &(tick, address, value)) in heard.iter().zip(&board.values) {
+        assert_eq!(
+            (heard.tick, heard.address, heard.known.as_str()),
+            (tick, address, "exact"),
+            "{options}"
+        );
+        assert_eq!(S::from_f64(heard.value * one), value, "{options}");
+    }
+}
+
+#[test]
+fn values_are_those_of_the_board_bit_for_bit() {
+    let board_f32 = three_floats();
+    let heard = good_bytes(&format!("listen {THREE}"), &board_f32.frames.concat());
+    let text = str::from_utf8(&heard.output).unwrap();
+    let bits: Vec<u32> = text
+        .lines()
+        .filter(|line| line.ends_with(",exact"))
+        .map(|line| line.split(',').nth(2).unwrap().parse::<f32>().unwrap().to_bits())
+        .collect();
+    assert!(bits.iter().copied().eq(board_f32.values.iter().map(|(_, _, value)| value.to_bits())));
+
+    let counts = board([7, 3, 12].map(|threshold| StepForward::<i16>::new(threshold).unwrap()));
+    assert_exact(&counts, 1.0, "--sample i16 --scheme sf --thresholds 7,3,12");
+    let q8_8 = board([StepForward::<i16>::new(7).unwrap(); 3]);
+    assert_exact(&q8_8, 256.0, "--sample q8.8 --scheme sf --threshold 0.02734375");
+    let contrast = board([TemporalContrast::<f32>::with_step(1.5, 3.0).unwrap(); 3]);
+    assert_exact(&contrast, 1.0, "--scheme tbr --threshold 1.5 --step 2x");
+    let window = board([MovingWindow::<f32, 4>::new(2.5).unwrap(); 3]);
+    assert_exact(&window, 1.0, "--scheme mw --threshold 2.5 --window 3");
+}
+
+#[test]
+fn after_a_lost_frame_values_are_estimates_until_the_next_keyframe() {
+    let board = three_floats();
+    let keyframes = |frame: &Vec<u8>| frame[1] & 4 != 0;
+    let lost = board.frames.iter().skip(20).position(|frame| !keyframes(frame)).unwrap() + 20;
+    let mut frames = board.frames.clone();
+    frames.remove(lost);
+    let heard = good_bytes(&format!("listen {THREE}"), &frames.concat());
+    assert!(heard.told.contains(" 1 lost in 1 gaps"), "{}", heard.told);
+    let text = str::from_utf8(&heard.output).unwrap();
+    let (before, after) = text.split_once("# lost_frames=1\n").unwrap();
+    assert!(!before.contains("estimate"));
+    let (stale, fresh) = after.split_once(",keyframe\n").unwrap();
+    assert!(stale.contains("estimate") && !stale.contains("exact"), "{stale}");
+    assert!(fresh.contains("exact") && !fresh.contains("estimate"), "{fresh}");
+    // And then they are the board's again.
+    let end = values(fresh.as_bytes()).pop().unwrap();
+    let &(tick, address, value) = board.values.last().unwrap();
+    assert_eq!((end.tick, end.address, end.value as f32), (tick, address, value));
+}
+
+#[test]
+fn damage_a_cut_end_and_a_start_in_the_middle_are_counted() {
+    let board = three_floats();
+    let frames = board.frames.len();
+    let listen = |bytes: &[u8]| good_bytes(&format!("listen {THREE}"), bytes).told;
+
+    let mut flipped = board.frames.clone();
+    flipped[10][5] ^= 1;
+    let told = listen(&flipped.concat());
+    let skipped = format!("\n{} bytes skipped\n", board.frames[10].len());
+    assert!(told.contains(&format!("{} frames: 1 lost in 1 gaps, ", frames - 1)), "{told}");
+    assert!(!told.contains(" 0 bad checksums") && told.contains(&skipped), "{told}");
+
+    // A damaged length asks for more bytes than follow: the frames after it are not held back.
+    let mut long = board.frames.clone();
+    long[frames - 3][11] = 0xFF;
+    let told = listen(&long.concat());
+    assert!(told.contains(&format!("{} frames: 1 lost in 1 gaps, ", frames - 1)), "{told}");
+
+    let all = board.frames.concat();
+    let told = listen(&all[..all.len() - 1]);
+    let skipped = format!("\n{} bytes skipped\n", board.frames[frames - 1].len() - 1);
+    assert!(told.contains(&format!("{} frames: 0 lost", frames - 1)), "{told}");
+    assert!(told.contains(&skipped), "{told}");
+
+    let told = listen(&all[board.frames[0].len() + 3..]);
+    let skipped = format!("\n{} bytes skipped\n", board.frames[1].len() - 3);
+    assert!(told.contains(&format!("{} frames: 0 lost", frames - 2)), "{told}");
+    assert!(told.contains("0 restarts") && told.contains(&skipped), "{told}");
+
+    let twice = [board.frames[..5].concat(), board.frames[4..].concat()].concat();
+    assert!(listen(&twice).contains(" 1 repeated"));
+    assert!(listen(b"").contains("0 frames: 0 lost"));
+}
+
+#[test]
+fn what_no_decoder_is_there_for_is_counted() {
+    let board = three_floats();
+    let two = good_bytes("listen --scheme sf --thresholds 7.5,3.1", &board.frames.concat());
+    let outside = board.values.iter().filter(|(_, address, _)| *address == 2).count() + 5;
+    let told = format!("\n{outside} events and keyframes at addresses without a decoder\n");
+    assert!(two.told.contains(&told), "{}", two.told);
+    assert!(values(&two.output).iter().all(|value| value.address < 2));
+
+    let narrow =
+        good_bytes("listen --sample i16 --scheme sf --threshold 7", &board.frames.concat());
+    let told = "\n15 keyframes with the width of another sample type\n";
+    assert!(narrow.told.contains(told), "{}", narrow.told);
+    assert!(values(&narrow.output).iter().all(|value| value.known == "estimate"));
+}
+
+#[test]
+fn a_loss_at_the_sender_is_told() {
+    let mut framer = Framer::new(Coding::for_channels(1, 1000));
+    let mut buffer = [0; 64];
+    let mut bytes = framer.start(0, &mut buffer).unwrap().finish().to_vec();
+    framer.mark_loss();
+    bytes.extend(framer.start(0, &mut buffer).unwrap().finish());
+    let heard = good_bytes("listen", &bytes);
+    assert_eq!(heard.output, b"tick,address,polarity\n# restart\n# lost_events\n");
+    assert!(
+        heard.told.contains("\n1 frames before which the sender lost events\n"),
+        "{}",
+        heard.told
+    );
+}
+
+#[test]
+fn events_become_any_format() {
+    let bytes = three_floats().frames.concat();
+    let table = good_bytes("listen", &bytes).output;
+    let stream = good_bytes("listen --to es", &bytes).output;
+    let rows = |table: &[u8]| {
+        let text = str::from_utf8(table).unwrap().to_owned();
+        text.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(rows(&good_bytes("listen --from es", &stream).output), rows(&table));
+}
+
+#[test]
+fn options_that_contradict_are_refused() {
+    for (options, words) in [
+        ("--threshold 1", ["need --scheme", ""]),
+        ("--scheme hsa --filter triang:3 --shift 0", ["hsa", "tbr, sf and mw"]),
+        ("--scheme sf", ["sf needs --threshold", ""]),
+        ("--scheme sf --threshold 0", ["threshold 0", "above 0"]),
+        ("--scheme sf --thresholds 1,0", ["threshold 0", "above 0"]),
+        ("--scheme sf --threshold 1 --thresholds 1,2", ["--threshold", "cannot be used"]),
+        ("--scheme sf --threshold 1 --window 3", ["sf takes no --window", "it takes"]),
+        ("--scheme tbr --factor 1", ["no signal to calibrate", "--threshold"]),
+        ("--scheme sf --threshold 1 --from es", ["--from link", "keyframes"]),
+        ("--scheme sf --threshold 1 --to es", ["--to csv", "values"]),
+        ("--from what", ["no format `what`", "edvs:e0"]),
+        ("--seconds 1", ["--baud", ""]),
+        ("--baud 9600 --seconds 0 nowhere", ["nowhere", "cannot be opened at 9600"]),
+        ("nowhere.bytes", ["nowhere.bytes", "cannot be opened"]),
+    ] {
+        refused(&format!("listen {options}"), "", &words);
+    }
+    let many = vec!["1"; 257].join(",");
+    refused(&format!("listen --scheme sf --thresholds {many}"), "", &["1 to 256 channels"]);
+    let foreign = spikewire_bytes("listen --from es", b"Event Stream\x02\0\0\x01");
+    assert_eq!(foreign.status, 2);
+    assert!(foreign.told.contains("generic events"), "{}", foreign.told);
+}
+
+/// A serial line: the board's end, and the name of the laptop's, which does not hang up while the file is open.
+fn serial_line() -> (File, String, File) {
+    let board = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
+    grantpt(&board).unwrap();
+    unlockpt(&board).unwrap();
+    let name = ptsname(&board, Vec::new()).unwrap().into_string().unwrap();
+    let open = File::options().read(true).write(true).open(&name).unwrap();
+    let mut settings = tcgetattr(&open).unwrap();
+    settings.make_raw();
+    tcsetattr(&open, OptionalActions::Now, &settings).unwrap();
+    (board.into(), name, open)
+}
+
+fn spawn(arguments: &str, told: impl Into<Stdio>) -> Child {
+    Command::new(env!("CARGO_BIN_EXE_spikewire"))
+        .args(arguments.split_whitespace())
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(told)
+        .spawn()
+        .unwrap()
+}
+
+/// Waits until the program has written so many lines.
+fn lines(child: &mut Child, count: usize) -> String {
+    let (mut said, mut byte) = (Vec::new(), [0]);
+    for _ in 0..count {
+        while byte != *b"\n" {
+            child.stdout.as_mut().unwrap().read_exact(&mut byte).unwrap();
+            said.extend(byte);
+        }
+        byte = [0];
+    }
+    String::from_utf8(said).unwrap()
+}
+
+#[test]
+fn a_serial_port_is_heard_until_its_time_is_over() {
+    let (mut line, name, _open) = serial_line();
+    let bytes = three_floats().frames.concat();
+    let (first, second) = bytes.split_at(bytes.len() / 2);
+    let mut child =
+        spawn(&format!("listen {THREE} --baud 115200 --seconds 2 {name}"), Stdio::piped());
+    line.write_all(first).unwrap();
+    std::thread::sleep(Duration::from_millis(100));
+    line.write_all(second).unwrap();
+    let mut output = Vec::new();
+    child.stdout.take().unwrap().read_to_end(&mut output).unwrap();
+    let done = child.wait_with_output().unwrap();
+    let told = String::from_utf8(done.stderr).unwrap();
+    assert!(done.status.success(), "{told}");
+    assert_eq!(output, good_bytes(&format!("listen {THREE}"), &bytes).output, "{told}");
+    assert!(told.contains("\n0 bytes skipped\n"), "{told}");
+}
+
+#[test]
+fn a_camera_without_times_takes_those_of_arrival() {
+    let (mut line, name, _open) = serial_line();
+    let mut child =
+        spawn(&format!("listen --from edvs:e0 --baud 115200 --seconds 1 {name}"), Stdio::piped());
+    line.write_all(&[0x81, 0x82]).unwrap();
+    let first = lines(&mut child, 2);
+    std::thread::sleep(Duration::from_millis(20));
+    line.write_all(&[0x81, 0x82]).unwrap();
+    let second = lines(&mut child, 1);
+    assert!(child.wait().unwrap().success());
+    let tick = |line: &str| {
+        line.lines().last().unwrap().split(',').next().unwrap().parse::<u32>().unwrap()
+    };
+    assert!(tick(&second) - tick(&first) >= 20_000, "{first}{second}");
+}
+
+#[test]
+fn ctrl_c_keeps_what_was_heard() {
+    let (mut line, name, _open) = serial_line();
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("heard.csv");
+    let options = format!("listen --from edvs:e4 --baud 115200 {name}");
+    let mut piped = spawn(&options, Stdio::piped());
+    line.write_all(&[0x81, 0x82, 0, 0, 0, 9]).unwrap();
+    lines(&mut piped, 2);
+    assert!(interrupt(piped).contains("6 bytes, 1 events"));
+
+    let child = spawn(&format!("{options} -o {}", path.display()), Stdio::piped());
+    wait_for_file(directory.path());
+    line.write_all(&[0x81, 0x82, 0, 0, 0, 9, 0x81]).unwrap();
+    std::thread::sleep(Duration::from_millis(300));
+    let told = interrupt(child);
+    assert!(told.contains("7 bytes, 1 events") && told.contains("the end is cut"), "{told}");
+    assert_eq!(fs::read(&path).unwrap(), b"tick,address,polarity\n9,130,1\n");
+}
+
+/// Until the program has opened its port and then its file, beside its place.
+fn wait_for_file(directory: &Path) {
+    for _ in 0..1000 {
+        if fs::read_dir(directory).unwrap().count() > 0 {
+            std::thread::sleep(Duration::from_millis(300));
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    panic!("no file in 10 s");
+}
+
+/// Ctrl-C, and what the program says then.
+fn interrupt(child: Child) -> String {
+    let id = child.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+    let done = child.wait_with_output().unwrap();
+    let told = String::from_utf8(done.stderr).unwrap();
+    assert!(done.status.success(), "{told}");
+    told
+}
+
+#[test]
+fn a_port_that_goes_away_is_an_error_and_what_came_is_kept() {
+    let (mut line, name, open) = serial_line();
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("heard.csv");
+    let file = path.display();
+    let child =
+        spawn(&format!("listen --from edvs:e4 --baud 115200 {name} -o {file}"), Stdio::piped());
+    wait_for_file(directory.path());
+    drop(open);
+    line.write_all(&[0x81, 0x82, 0, 0, 0, 9]).unwrap();
+    std::thread::sleep(Duration::from_millis(300));
+    drop(line);
+    let done = child.wait_with_output().unwrap();
+    let told = String::from_utf8(done.stderr).unwrap();
+    assert_eq!(done.status.code(), Some(2), "{told}");
+    assert!(
+        told.contains("6 bytes, 1 events") && told.contains(&format!("error: {name}")),
+        "{told}"
+    );
+    assert_eq!(fs::read(&path).unwrap(), b"tick,address,polarity\n9,130,1\n");
+}
+
+#[test]
+fn a_terminal_shows_counts_while_they_grow() {
+    let (mut line, name, _open) = serial_line();
+    let (mut screen, _, terminal) = serial_line();
+    let mut child = spawn(&format!("listen --baud 115200 --seconds 3 {name}"), terminal);
+    for frame in three_floats().frames.iter().take(60) {
+        line.write_all(frame).unwrap();
+        std::thread::sleep(Duration::from_millis(25));
+    }
+    let mut output = Vec::new();
+    child.stdout.take().unwrap().read_to_end(&mut output).unwrap();
+    assert!(child.wait().unwrap().success());
+    let mut shown = Vec::new();
+    let mut buffer = [0; 4096];
+    while let Ok(count @ 1..) = screen.read(&mut buffer) {
+        shown.extend(&buffer[..count]);
+    }
+    let shown = String::from_utf8_lossy(&shown);
+    assert!(shown.contains("/s 0:") && shown.contains(" 0 lost in 0 gaps"), "{shown}");
+    assert!(shown.contains("60 frames: 0 lost in 0 gaps"), "{shown}");
+}
