@@ -191,6 +191,15 @@ fn a_keyframe_that_comes_late_does_not_take_the_receiver_back() {
     assert_eq!((send(&mut transmitter, 4), transmitter.dropped_keyframes()), (Some(131), 1));
 }
 
+/// As of a moving window whose first window is not full.
+#[test]
+fn a_snapshot_before_any_value_sends_nothing() {
+    let mut transmitter = Transmitter::<i16, 2>::new(Coding::for_channels(2, 1));
+    transmitter.keyframe(Snapshot { tick: 1, lost: 0, values: [None; 2] });
+    assert_eq!(transmitter.next_frame(std::iter::empty(), &mut [0; 64]), Ok(None));
+    assert_eq!(transmitter.dropped_keyframes(), 0);
+}
+
 #[test]
 fn a_loss_is_told_although_no_event_follows() {
     let queue = EventQueue::<1>::new(Overflow::DropNewest);

@@ -47,8 +47,11 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
         }
     }
 
-    /// Sends what the encoders held, at the next chance.
+    /// Sends what the encoders held, at the next chance; nothing where none has a value yet.
     pub fn keyframe(&mut self, snapshot: Snapshot<S, N>) {
+        if snapshot.values.iter().all(Option::is_none) {
+            return;
+        }
         let is_late = self.sent.is_some_and(|sent| tick::is_before(snapshot.tick, sent));
         if is_late || self.pending.is_some() {
             self.dropped_keyframes = self.dropped_keyframes.saturating_add(1);
