@@ -19,9 +19,9 @@ use crate::{ConfigError, Sample, Scheme};
 ///   4; with samples in fixed point it is rounded to a multiple of 2⁻¹⁴.
 /// - **Latency:** `F - 1` samples. **Memory:** `4 F + 24` bytes an encoder in `f32`; the taps are
 ///   in flash, shared.
-/// - **Exactness:** subtractive `f32` sums `|r - h| - |r|`, first tap first, and compares with
-///   `-threshold`; multiplicative `f32` sums `e1` and `e2` apart. Fixed point is exact within the
-///   range of [`rate`](crate::rate).
+/// - **Exactness:** `f32` sums `e1` and `e2` apart, by rising `(i + j) mod F` over a whole window
+///   (which is how it lies in memory), first tap first over a cut one; subtractive compares
+///   `e1 - e2` with `-threshold`. Fixed point is exact within the range of [`rate`](crate::rate).
 ///
 /// Source: Schrauwen and Van Campenhout, BSA, 2003; paper, section II-B. The paper's own indices are
 /// those of [`BenToolbox`](super::BenToolbox).
@@ -152,29 +152,72 @@ pub enum BenRule<R: Residual> {
     Multiplicative(R::Ratio),
 }
 
-impl<S: Sample> Rule<S> for BenRule<S::Residual> {
-    #[inline]
-    fn fits(&self, window: [(&[S::Residual], &[S]); 2], _: bool) -> bool {
-        match *self {
-            Self::Subtractive(most) => {
-                let mut excess = S::Residual::ZERO;
-                for (residuals, taps) in window {
-                    for (residual, tap) in residuals.iter().zip(taps) {
-                        excess = excess.plus(residual.excess(tap.widen()));
-                    }
+impl<R: Residual> Rule<R> for BenRule<R> {
+    const IN_ORDER: bool = false;
+
+    #[inline(always)]
+    fn fits(&self, pairs: impl Iterator<Item = (R, R)>, _: bool) -> bool {
+        R::is_nearer(self, pairs)
+    }
+
+    #[inline(always)]
+    fn fits_by_slot(&self, pairs: impl Iterator<Item = (R, R)>) -> Option<bool> {
+        Some(R::is_nearer(self, pairs))
+    }
+}
+
+/// Compares residuals with and without their taps. Sealed: only this crate can name it.
+pub trait Nearer: Sized {
+    /// Whether the taps bring the residuals nearer to zero, by the criterion.
+    fn is_nearer(rule: &BenRule<Self>, pairs: impl Iterator<Item = (Self, Self)>) -> bool
+    where
+        Self: Residual;
+}
+
+impl Nearer for f32 {
+    #[inline(always)]
+    fn is_nearer(rule: &BenRule<f32>, pairs: impl Iterator<Item = (f32, f32)>) -> bool {
+        let (mut with, mut without) = (0.0, 0.0);
+        for (residual, tap) in pairs {
+            with += (residual - tap).abs();
+            without += residual.abs();
+        }
+        match *rule {
+            BenRule::Subtractive(most) => with - without <= most,
+            BenRule::Multiplicative(ratio) => with <= without * ratio,
+        }
+    }
+}
+
+/// `|residual - tap| - |residual|`.
+#[inline(always)]
+fn excess(residual: i32, tap: i32) -> i32 {
+    // Mostly, and whatever the tap's sign.
+    if residual >= tap && residual >= 0 {
+        return tap.wrapping_neg();
+    }
+    residual.wrapping_sub(tap).wrapping_abs().wrapping_sub(residual.wrapping_abs())
+}
+
+impl Nearer for i32 {
+    #[inline(always)]
+    fn is_nearer(rule: &BenRule<i32>, pairs: impl Iterator<Item = (i32, i32)>) -> bool {
+        match *rule {
+            // The excess has room: it is at most the sum of the taps' magnitudes.
+            BenRule::Subtractive(most) => {
+                let mut excess = 0_i32;
+                for (residual, tap) in pairs {
+                    excess = excess.wrapping_add(self::excess(residual, tap));
                 }
                 excess <= most
             }
-            Self::Multiplicative(ratio) => {
-                let mut with_filter = S::Residual::no_sum();
-                let mut without = S::Residual::no_sum();
-                for (residuals, taps) in window {
-                    for (residual, tap) in residuals.iter().zip(taps) {
-                        with_filter = residual.add_distance(tap.widen(), with_filter);
-                        without = residual.add_distance(S::Residual::ZERO, without);
-                    }
+            BenRule::Multiplicative(ratio) => {
+                let (mut with, mut without) = (i32::no_sum(), i32::no_sum());
+                for (residual, tap) in pairs {
+                    with = residual.add_distance(tap, with);
+                    without = residual.add_distance(0, without);
                 }
-                S::Residual::at_most(with_filter, without, ratio)
+                i32::at_most(with, without, ratio)
             }
         }
     }

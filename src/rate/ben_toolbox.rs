@@ -1,8 +1,9 @@
 //! Ben's spiker (BSA) with the indices of the paper's toolbox.
 
+use super::cursor::Cursor;
 use super::decoder::RateDecoder;
+use super::encoder::{cells, subtract};
 use super::filter::Taps;
-use super::lookahead::Lookahead;
 use super::residual::Residual;
 use crate::error::{checked, finite, ratio};
 use crate::sample::{Tally, for_each_sample};
@@ -18,7 +19,7 @@ use crate::{ConfigError, Encoder, Sample, Scheme, Spike};
 ///   2⁻¹⁴.
 /// - **Latency:** `F` samples. **Memory:** `4 F + 24` bytes an encoder in `f32`; the taps are in
 ///   flash, shared.
-/// - **Exactness:** as [`Ben`](super::Ben), multiplicative.
+/// - **Exactness:** as [`Ben`](super::Ben), multiplicative; the window of `e1` begins at `i + 1`.
 ///
 /// Source: paper, section II-B, algorithm 5.
 ///
@@ -89,9 +90,12 @@ impl<'a, S: Sample, const F: usize> Scheme for BenToolbox<'a, S, F> {
             taps: self.taps,
             shift: self.shift,
             ratio: S::Residual::ratio(self.threshold),
-            residuals: Lookahead::new(),
-            owed: S::Residual::ZERO,
-            tally: Tally::default(),
+            state: State {
+                owed: S::Residual::ZERO,
+                cursor: Cursor::new(F),
+                tally: Tally::default(),
+            },
+            residuals: [S::Residual::ZERO; F],
         }
     }
 
@@ -106,43 +110,57 @@ pub struct BenToolboxEncoder<'a, S: Sample, const F: usize> {
     taps: &'a Taps<S, F>,
     shift: S,
     ratio: <S::Residual as Residual>::Ratio,
-    residuals: Lookahead<S::Residual, F>,
+    state: State<S::Residual, F>,
+    residuals: [S::Residual; F],
+}
+
+#[derive(Clone, Copy, Debug)]
+struct State<R, const F: usize> {
     /// The last tap of a spike just emitted, to be taken from the sample to come.
-    owed: S::Residual,
+    owed: R,
+    cursor: Cursor<F>,
     tally: Tally,
 }
 
+/// The sum of `|r|` over the window.
+#[inline]
+fn without_filter<R: Residual>(residuals: &[R]) -> R::Sum {
+    residuals.iter().fold(R::no_sum(), |sum, residual| residual.add_distance(R::ZERO, sum))
+}
+
+/// The sum of `|r - h|` over the window.
+#[inline]
+fn with_filter<S: Sample>(residuals: &[S::Residual], taps: &[S]) -> <S::Residual as Residual>::Sum {
+    let pairs = residuals.iter().zip(taps);
+    pairs
+        .fold(S::Residual::no_sum(), |sum, (residual, tap)| residual.add_distance(tap.widen(), sum))
+}
+
 impl<S: Sample, const F: usize> BenToolboxEncoder<'_, S, F> {
-    /// The sum of `|r|` over the window.
-    #[inline]
-    fn without_filter(&self) -> <S::Residual as Residual>::Sum {
-        let mut sum = S::Residual::no_sum();
-        for (residuals, _) in self.residuals.window(self.taps.as_array()) {
-            for residual in residuals {
-                sum = residual.add_distance(S::Residual::ZERO, sum);
-            }
+    #[inline(always)]
+    fn take(&mut self, sample: S, state: &mut State<S::Residual, F>) -> Option<Spike> {
+        if !sample.is_finite() {
+            state.tally.reject();
+            return None;
         }
-        sum
-    }
-
-    /// The sum of `|r - h|` over the window.
-    #[inline]
-    fn with_filter(&self) -> <S::Residual as Residual>::Sum {
-        let mut sum = S::Residual::no_sum();
-        for (residuals, taps) in self.residuals.window(self.taps.as_array()) {
-            for (residual, tap) in residuals.iter().zip(taps) {
-                sum = residual.add_distance(tap.widen(), sum);
-            }
+        let residual = sample.residual(self.shift, self.taps.magnitude()).minus(state.owed);
+        state.owed = S::Residual::ZERO;
+        let without = without_filter(&self.residuals);
+        let slot = state.cursor.next();
+        *self.residuals.get_mut(slot)? = residual;
+        if !state.cursor.advance() {
+            return None;
         }
-        sum
-    }
-
-    /// Subtracts the filter from one sample after the window's first on.
-    #[inline]
-    fn subtract(&mut self) {
-        let taps = self.taps.as_array();
-        self.residuals.subtract_later(taps);
-        self.owed = taps.last().map_or(S::Residual::ZERO, |tap| tap.widen());
+        let with = with_filter(&self.residuals, self.taps.ending_at(slot));
+        if !S::Residual::at_most(with, without, self.ratio) {
+            return Some(Spike::None);
+        }
+        // From one residual after the oldest on; the last tap is left over.
+        let oldest = self.residuals.get(state.cursor.next()).copied()?;
+        subtract(cells(&mut self.residuals), self.taps.ending_at(state.cursor.next()));
+        *self.residuals.get_mut(state.cursor.next())? = oldest;
+        state.owed = self.taps.as_array().last()?.widen();
+        Some(Spike::Up)
     }
 }
 
@@ -152,42 +170,37 @@ impl<S: Sample, const F: usize> Encoder for BenToolboxEncoder<'_, S, F> {
 
     #[inline]
     fn encode(&mut self, sample: S) -> Option<Spike> {
-        if !sample.is_finite() {
-            self.tally.reject();
-            return None;
+        let mut state = self.state;
+        let spike = self.take(sample, &mut state);
+        self.state = state;
+        spike
+    }
+
+    #[inline]
+    fn encode_slice(&mut self, samples: &[S], spikes: &mut [Option<Spike>]) -> usize {
+        let mut state = self.state;
+        for (spike, &sample) in spikes.iter_mut().zip(samples) {
+            *spike = self.take(sample, &mut state);
         }
-        let residual = sample.residual(self.shift, self.taps.magnitude()).minus(self.owed);
-        self.owed = S::Residual::ZERO;
-        if !self.residuals.is_full() {
-            self.residuals.push(residual);
-            return None;
-        }
-        let without = self.without_filter();
-        self.residuals.push(residual);
-        if S::Residual::at_most(self.with_filter(), without, self.ratio) {
-            self.subtract();
-            Some(Spike::Up)
-        } else {
-            Some(Spike::None)
-        }
+        self.state = state;
+        samples.len().min(spikes.len())
     }
 
     /// The last `F` samples never spike.
     fn finish_next(&mut self) -> Option<Spike> {
-        if self.residuals.is_empty() {
+        if self.state.cursor.missing() >= F {
             return None;
         }
-        self.residuals.pop();
+        self.state.cursor.pop();
         Some(Spike::None)
     }
 
     fn reset(&mut self) {
-        self.residuals = Lookahead::new();
-        self.owed = S::Residual::ZERO;
-        self.tally = Tally::default();
+        self.state =
+            State { owed: S::Residual::ZERO, cursor: Cursor::new(F), tally: Tally::default() };
     }
 
     fn rejected(&self) -> u32 {
-        self.tally.rejected()
+        self.state.tally.rejected()
     }
 }

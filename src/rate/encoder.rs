@@ -1,17 +1,25 @@
 //! The encoder that the rate codes share: each has its own rule for when the filter fits.
 
+use core::cell::Cell;
+
+use super::cursor::Cursor;
 use super::filter::Taps;
-use super::lookahead::{Lookahead, subtract};
-use super::residual::Rated;
-use crate::codec::{all_finite, encode_each};
+use super::residual::Residual;
 use crate::sample::Tally;
 use crate::{Encoder, Sample, Spike};
 
 /// When a filter fits under the signal. Sealed: only this crate can name it.
-pub trait Rule<S: Rated> {
-    /// Whether the sample spikes, given the runs of the residuals from it on beside their taps.
-    /// `is_whole` is false where the recording ends within the filter.
-    fn fits(&self, window: [(&[S::Residual], &[S]); 2], is_whole: bool) -> bool;
+pub trait Rule<R: Residual>: Copy {
+    /// Whether it is settled early where it goes from the first tap on. If not, whole windows go from
+    /// the first slot on in both forms.
+    const IN_ORDER: bool;
+
+    /// Whether the sample spikes, given the residuals from it on, each with its tap. `is_whole` is
+    /// false where the recording ends within the filter.
+    fn fits(&self, pairs: impl Iterator<Item = (R, R)>, is_whole: bool) -> bool;
+
+    /// The same for a whole window from the first slot on; `None` if that order cannot tell.
+    fn fits_by_slot(&self, pairs: impl Iterator<Item = (R, R)>) -> Option<bool>;
 }
 
 /// The encoder of the rate codes that look ahead over whole filters, with the rule `R` of its scheme.
@@ -22,97 +30,167 @@ pub struct RateEncoder<'a, S: Sample, R, const F: usize> {
     taps: &'a Taps<S, F>,
     shift: S,
     rule: R,
-    residuals: Lookahead<S::Residual, F>,
+    residuals: [S::Residual; F],
+    cursor: Cursor<F>,
     tally: Tally,
 }
 
-impl<'a, S: Sample, R: Rule<S>, const F: usize> RateEncoder<'a, S, R, F> {
+impl<'a, S: Sample, R: Rule<S::Residual>, const F: usize> RateEncoder<'a, S, R, F> {
     pub(super) fn new(taps: &'a Taps<S, F>, shift: S, rule: R) -> Self {
-        Self { taps, shift, rule, residuals: Lookahead::new(), tally: Tally::default() }
+        let residuals = [S::Residual::ZERO; F];
+        Self { taps, shift, rule, residuals, cursor: Cursor::new(F - 1), tally: Tally::default() }
     }
 
+    /// Takes up a sample, and returns the slot of its residual if that completes a window.
     #[inline]
-    fn decide(&mut self) -> Spike {
-        let taps = self.taps.as_array();
-        if self.rule.fits(self.residuals.window(taps), self.residuals.is_full()) {
-            self.residuals.subtract(taps);
-            Spike::Up
-        } else {
-            Spike::None
+    fn take(&mut self, sample: S) -> Option<usize> {
+        if !sample.is_finite() {
+            self.tally.reject();
+            return None;
         }
+        let slot = self.cursor.next();
+        *self.residuals.get_mut(slot)? = sample.residual(self.shift, self.taps.magnitude());
+        self.cursor.advance().then_some(slot)
+    }
+
+    /// Encodes a sample with the residuals where they are.
+    #[inline(always)]
+    fn encode_one(&mut self, sample: S) -> Option<Spike> {
+        let slot = self.take(sample)?;
+        let taps = self.taps.ending_at(slot);
+        let residuals = cells(&mut self.residuals);
+        match self.rule.fits_by_slot(pairs(residuals, taps)) {
+            Some(true) => {
+                subtract(residuals, taps);
+                Some(Spike::Up)
+            }
+            Some(false) => Some(Spike::None),
+            None => self.encode_apart(),
+        }
+    }
+
+    /// Encodes the first samples, about two filters of them and none that is not finite, and returns
+    /// how many. Each must complete a window.
+    ///
+    /// Residuals lie in one line of memory, three filters long on the stack, where windows do not
+    /// wrap: the taps do not turn, and stay in registers.
+    #[inline(never)]
+    fn encode_line(&mut self, samples: &[S], spikes: &mut [Option<Spike>]) -> usize {
+        let taps = *self.taps.as_array();
+        let (shift, magnitude, rule) = (self.shift, self.taps.magnitude(), self.rule);
+        let mut line = [self.residuals; 3];
+        let line = line.as_flattened_mut();
+        let oldest = self.cursor.next();
+        let windows = cells(line.get_mut(oldest + 1..).unwrap_or_default()).windows(F);
+        let mut length = 0;
+        for ((spike, &sample), window) in spikes.iter_mut().zip(samples).zip(windows) {
+            if !sample.is_finite() {
+                break;
+            }
+            length += 1;
+            if let Some(newest) = window.last() {
+                newest.set(sample.residual(shift, magnitude));
+            }
+            let fits = rule.fits(pairs(window, &taps), true);
+            if fits {
+                subtract(window, &taps);
+            }
+            *spike = Some(if fits { Spike::Up } else { Spike::None });
+        }
+        if let Some(last) = line.get(oldest + length..).and_then(<[_]>::first_chunk) {
+            self.residuals = *last;
+        }
+        self.cursor.restart();
+        length
+    }
+
+    /// The spike of the oldest residual, in order and with what is there of the window.
+    #[cold]
+    #[inline(never)]
+    fn encode_apart(&mut self) -> Option<Spike> {
+        let length = F.saturating_sub(self.cursor.missing());
+        let oldest = self.cursor.oldest();
+        let (late, early) = self.residuals.split_at_mut_checked(oldest)?;
+        let taps = self.taps.as_array().iter().map(|tap| tap.widen()).take(length);
+        let residuals = early.iter().chain(&*late).copied();
+        if !self.rule.fits(residuals.zip(taps.clone()), length == F) {
+            return Some(Spike::None);
+        }
+        for (residual, tap) in early.iter_mut().chain(late).zip(taps) {
+            *residual = residual.minus(tap);
+        }
+        Some(Spike::Up)
     }
 }
 
-impl<S: Sample, R: Rule<S>, const F: usize> Encoder for RateEncoder<'_, S, R, F> {
+/// Residuals, each with the tap beside it.
+#[inline(always)]
+fn pairs<S: Sample>(
+    residuals: &[Cell<S::Residual>],
+    taps: &[S],
+) -> impl Iterator<Item = (S::Residual, S::Residual)> {
+    residuals.iter().zip(taps).map(|(residual, tap)| (residual.get(), tap.widen()))
+}
+
+/// Residuals, for windows that overlap.
+#[inline]
+pub(super) fn cells<R>(residuals: &mut [R]) -> &[Cell<R>] {
+    Cell::from_mut(residuals).as_slice_of_cells()
+}
+
+/// Subtracts from every residual the tap beside it.
+#[inline(always)]
+pub(super) fn subtract<S: Sample>(residuals: &[Cell<S::Residual>], taps: &[S]) {
+    for (residual, tap) in residuals.iter().zip(taps) {
+        residual.set(residual.get().minus(tap.widen()));
+    }
+}
+
+impl<S: Sample, R: Rule<S::Residual>, const F: usize> Encoder for RateEncoder<'_, S, R, F> {
     type Sample = S;
     type Output = Option<Spike>;
 
     #[inline]
     fn encode(&mut self, sample: S) -> Option<Spike> {
-        if !sample.is_finite() {
-            self.tally.reject();
-            return None;
-        }
-        self.residuals.push(sample.residual(self.shift, self.taps.magnitude()));
-        self.residuals.is_full().then(|| self.decide())
+        self.encode_one(sample)
     }
 
-    /// Residuals lie in one line of memory, two filters long on the stack, where windows do not wrap.
-    /// Whether all samples are finite is asked once; if not, each is taken with care.
     #[inline]
     fn encode_slice(&mut self, samples: &[S], spikes: &mut [Option<Spike>]) -> usize {
-        if !all_finite(samples) {
-            return encode_each(self, samples, spikes);
-        }
+        let (mut samples, mut spikes) = (samples, spikes);
         let length = samples.len().min(spikes.len());
-        let lead = length.min(self.residuals.room());
-        encode_each(self, samples.get(..lead).unwrap_or_default(), spikes);
-        if lead == length {
+        if !R::IN_ORDER {
+            for (spike, &sample) in spikes.iter_mut().zip(samples) {
+                *spike = self.encode_one(sample);
+            }
             return length;
         }
-        let samples = samples.get(lead..length).unwrap_or_default();
-        let spikes = spikes.get_mut(lead..length).unwrap_or_default();
-        let taps = self.taps.as_array();
-        let mut line = [self.residuals.in_order(); 2];
-        let line = line.as_flattened_mut();
-        for (samples, spikes) in samples.chunks(F).zip(spikes.chunks_mut(F)) {
-            for (start, (spike, &sample)) in (1..).zip(spikes.iter_mut().zip(samples)) {
-                let Some(window) = line.get_mut(start..).and_then(<[_]>::first_chunk_mut::<F>)
-                else {
-                    break;
-                };
-                if let Some(newest) = window.last_mut() {
-                    *newest = sample.residual(self.shift, self.taps.magnitude());
-                }
-                let fits = self.rule.fits([(window, taps), (&[], &[])], true);
-                if fits {
-                    subtract(window, taps);
-                }
-                *spike = Some(if fits { Spike::Up } else { Spike::None });
+        while let (Some(&sample), Some(spike)) = (samples.first(), spikes.first_mut()) {
+            *spike = None;
+            let mut done = 0;
+            if self.cursor.missing() == 0 {
+                done = self.encode_line(samples, spikes);
             }
-            line.copy_within(samples.len().., 0);
-        }
-        if let Some(window) = line.first_chunk() {
-            self.residuals = Lookahead::full(*window);
+            if done == 0 {
+                self.take(sample);
+                done = 1;
+            }
+            samples = samples.get(done..).unwrap_or_default();
+            spikes = spikes.get_mut(done..).unwrap_or_default();
         }
         length
     }
 
     fn finish_next(&mut self) -> Option<Spike> {
-        // The oldest of a full window was decided when its last sample came.
-        if self.residuals.is_full() {
-            self.residuals.pop();
-        }
-        if self.residuals.is_empty() {
+        if self.cursor.missing() + 1 >= F {
             return None;
         }
-        let spike = self.decide();
-        self.residuals.pop();
-        Some(spike)
+        self.cursor.pop();
+        self.encode_apart()
     }
 
     fn reset(&mut self) {
-        self.residuals = Lookahead::new();
+        self.cursor = Cursor::new(F - 1);
         self.tally = Tally::default();
     }
 

@@ -7,6 +7,9 @@ use crate::{ConfigError, Sample};
 
 /// `F` filter taps, 1 to 4096, kept in flash and shared by any number of encoders and decoders.
 ///
+/// They take `8 F + 4` bytes in `f32`: each is there twice, so that a window that wraps meets them in
+/// one run of memory.
+///
 /// A filter of length zero does not compile:
 ///
 /// ```compile_fail
@@ -22,11 +25,21 @@ use crate::{ConfigError, Sample};
     serde(transparent, bound = "S: serde::Serialize")
 )]
 pub struct Taps<S, const F: usize> {
-    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array"))]
-    taps: [S; F],
+    /// Twice in a row, so that they can be read from any tap on and all around.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "once"))]
+    twice: [[S; F]; 2],
     /// The sum of the magnitudes, saturating.
     #[cfg_attr(feature = "serde", serde(skip))]
     magnitude: S,
+}
+
+/// Taps without their repetition.
+#[cfg(feature = "serde")]
+fn once<T: serde::Serialize, S: serde::Serializer, const F: usize>(
+    [taps, _]: &[[T; F]; 2],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    crate::serial::array(taps, serializer)
 }
 
 /// The shape of a filter.
@@ -126,7 +139,15 @@ impl<S, const F: usize> Taps<S, F> {
 
     /// The taps, first to last.
     pub const fn as_array(&self) -> &[S; F] {
-        &self.taps
+        let [taps, _] = &self.twice;
+        taps
+    }
+
+    /// The taps, turned so that the last of them is in place `slot`, which is below `F`.
+    #[inline]
+    pub(super) fn ending_at(&self, slot: usize) -> &[S; F] {
+        let turned = self.twice.as_flattened().get((F - 1).wrapping_sub(slot)..);
+        turned.and_then(<[S]>::first_chunk).unwrap_or(self.as_array())
     }
 }
 
@@ -144,7 +165,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
         }
         let largest = S::from_f64(f32::MAX.into()).to_f64();
         check_magnitude(magnitude, largest, Self::IS_WIDE)?;
-        Ok(Self { taps, magnitude: S::from_f64(magnitude) })
+        Ok(Self { twice: [taps; 2], magnitude: S::from_f64(magnitude) })
     }
 
     /// A shape, scaled and rounded to the sample type.
@@ -162,6 +183,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
         Self::new(core::array::from_fn(|k| S::from_f64(shape.at(k, F) * factor)))
     }
 
+    #[inline]
     pub(super) fn magnitude(&self) -> S {
         self.magnitude
     }
@@ -188,7 +210,7 @@ macro_rules! constants {
                 }
                 let largest: $sample = $nearest(f32::MAX as f64);
                 checked!(check_magnitude(magnitude, $to_f64(largest), Self::IS_WIDE));
-                Self { taps, magnitude: $nearest(magnitude) }
+                Self { twice: [taps; 2], magnitude: $nearest(magnitude) }
             }
 
             /// For constants: a shape, scaled and rounded. A bad scale fails the build.

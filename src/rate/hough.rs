@@ -3,6 +3,7 @@
 use super::decoder::RateDecoder;
 use super::encoder::{RateEncoder, Rule};
 use super::filter::Taps;
+use super::residual::Residual;
 use crate::error::finite;
 use crate::{ConfigError, Sample, Scheme};
 
@@ -11,7 +12,7 @@ use crate::{ConfigError, Sample, Scheme};
 /// With `r = x - shift`: a spike at `i` if `r[i+j] >= h[j]` for all `j`; then `r[i+j] -= h[j]`.
 /// At the end of a recording a window that is cut never spikes.
 ///
-/// - **Latency:** `F - 1` samples. **Memory:** `4 F + 16` bytes an encoder in `f32`; the taps are
+/// - **Latency:** `F - 1` samples. **Memory:** `4 F + 20` bytes an encoder in `f32`; the taps are
 ///   in flash, shared.
 /// - **Exactness:** `f32` rounds `x - shift` and each subtraction once; fixed point is exact within
 ///   the range of [`rate`](crate::rate).
@@ -75,16 +76,16 @@ impl<'a, S: Sample, const F: usize> Scheme for Hough<'a, S, F> {
 #[derive(Clone, Copy, Debug)]
 pub struct HoughRule;
 
-impl<S: Sample> Rule<S> for HoughRule {
-    #[inline]
-    fn fits(&self, window: [(&[S::Residual], &[S]); 2], is_whole: bool) -> bool {
-        for (residuals, taps) in window {
-            for (residual, tap) in residuals.iter().zip(taps) {
-                if *residual < tap.widen() {
-                    return false;
-                }
-            }
-        }
-        is_whole
+impl<R: Residual> Rule<R> for HoughRule {
+    const IN_ORDER: bool = true;
+
+    #[inline(always)]
+    fn fits(&self, mut pairs: impl Iterator<Item = (R, R)>, is_whole: bool) -> bool {
+        pairs.all(|(residual, tap)| residual >= tap) && is_whole
+    }
+
+    #[inline(always)]
+    fn fits_by_slot(&self, pairs: impl Iterator<Item = (R, R)>) -> Option<bool> {
+        Some(self.fits(pairs, true))
     }
 }

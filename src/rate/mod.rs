@@ -7,13 +7,17 @@
 //! A residual in 32-bit fixed point is exact while `|x - shift|` stays within the type's maximum
 //! less the sum of the taps' magnitudes; beyond, it saturates there. In 16 bits it is always exact.
 
+// A decision and the subtraction after it share what they load only where both are inlined.
+#![allow(clippy::inline_always)]
+
 mod ben;
 mod ben_toolbox;
+mod cursor;
 mod decoder;
 mod encoder;
 mod filter;
 mod hough;
-mod lookahead;
+
 mod residual;
 mod threshold_hough;
 

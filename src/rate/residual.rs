@@ -1,5 +1,7 @@
 //! What is left of a signal after the filters of its spikes are subtracted.
 
+use super::ben::Nearer;
+use super::threshold_hough::Lack;
 use crate::sample::for_each_integer;
 
 /// The sample type's part in the rate codes. Sealed: only this crate can name it.
@@ -17,11 +19,9 @@ pub trait Rated: Sized {
 }
 
 /// Arithmetic on residuals: `f32`, or exact 32-bit integers.
-pub trait Residual: Copy + PartialOrd + core::fmt::Debug {
+pub trait Residual: Copy + PartialOrd + core::fmt::Debug + Lack + Nearer {
     const ZERO: Self;
 
-    /// What T-HSA has left of its threshold.
-    type Budget: Copy + core::fmt::Debug;
     /// A sum of magnitudes.
     type Sum: Copy + core::fmt::Debug;
     /// The factor of the multiplicative BSA: `f32`, or 14 bits of fraction.
@@ -30,13 +30,6 @@ pub trait Residual: Copy + PartialOrd + core::fmt::Debug {
     fn plus(self, other: Self) -> Self;
     fn minus(self, other: Self) -> Self;
     fn negated(self) -> Self;
-
-    /// `|self - tap| - |self|`.
-    fn excess(self, tap: Self) -> Self;
-
-    fn budget(threshold: Self) -> Self::Budget;
-    /// What the budget leaves after `max(0, tap - self)`, or `None` where it is overdrawn.
-    fn pay(self, tap: Self, budget: Self::Budget) -> Option<Self::Budget>;
 
     fn no_sum() -> Self::Sum;
     /// `sum + |self - other|`.
@@ -69,7 +62,6 @@ impl Rated for f32 {
 impl Residual for f32 {
     const ZERO: f32 = 0.0;
 
-    type Budget = f32;
     type Sum = f32;
     type Ratio = f32;
 
@@ -86,25 +78,6 @@ impl Residual for f32 {
     #[inline]
     fn negated(self) -> f32 {
         -self
-    }
-
-    #[inline]
-    fn excess(self, tap: f32) -> f32 {
-        (self - tap).abs() - self.abs()
-    }
-
-    #[inline]
-    fn budget(threshold: f32) -> f32 {
-        threshold
-    }
-
-    #[inline]
-    fn pay(self, tap: f32, budget: f32) -> Option<f32> {
-        if self >= tap {
-            return Some(budget);
-        }
-        let left = budget - (tap - self);
-        (left >= 0.0).then_some(left)
     }
 
     #[inline]
@@ -133,7 +106,6 @@ impl Residual for f32 {
 impl Residual for i32 {
     const ZERO: i32 = 0;
 
-    type Budget = u32;
     type Sum = i64;
     type Ratio = u16;
 
@@ -150,24 +122,6 @@ impl Residual for i32 {
     #[inline]
     fn negated(self) -> i32 {
         self.wrapping_neg()
-    }
-
-    #[inline]
-    fn excess(self, tap: i32) -> i32 {
-        self.wrapping_sub(tap).wrapping_abs().wrapping_sub(self.wrapping_abs())
-    }
-
-    #[inline]
-    fn budget(threshold: i32) -> u32 {
-        threshold.unsigned_abs()
-    }
-
-    #[inline]
-    fn pay(self, tap: i32, budget: u32) -> Option<u32> {
-        if self >= tap {
-            return Some(budget);
-        }
-        budget.checked_sub(tap.abs_diff(self))
     }
 
     #[inline]

@@ -17,8 +17,8 @@ use crate::{ConfigError, Sample, Scheme};
 /// - **Threshold:** 0 or more, in the samples' unit; 0 makes it [`Hough`](super::Hough).
 /// - **Latency:** `F - 1` samples. **Memory:** `4 F + 20` bytes an encoder in `f32`; the taps are
 ///   in flash, shared.
-/// - **Exactness:** `f32` pays the error out of the threshold, first tap first, one rounding each,
-///   and spikes if 0 or more is left. Fixed point is exact within the range of
+/// - **Exactness:** `f32` sums `|r - h| - (r - h)`, which is twice the error, first tap first, and
+///   compares with twice the threshold. Fixed point is exact within the range of
 ///   [`rate`](crate::rate).
 ///
 /// Source: paper, section II-B, algorithm 4 (whose comparison is a slip for `<`).
@@ -81,13 +81,17 @@ for_each_sample!(constants);
 
 impl<'a, S: Sample, const F: usize> Scheme for ThresholdHough<'a, S, F> {
     type Sample = S;
-    type Encoder = RateEncoder<'a, S, ThresholdHoughRule<S>, F>;
+    type Encoder = RateEncoder<'a, S, ThresholdHoughRule<S::Residual>, F>;
     type Decoder = RateDecoder<'a, S, F>;
 
     const LATENCY: usize = F - 1;
 
     fn encoder(self) -> Self::Encoder {
-        RateEncoder::new(self.taps, self.shift, ThresholdHoughRule { threshold: self.threshold })
+        RateEncoder::new(
+            self.taps,
+            self.shift,
+            ThresholdHoughRule { threshold: self.threshold.widen() },
+        )
     }
 
     fn decoder(self) -> Self::Decoder {
@@ -97,22 +101,94 @@ impl<'a, S: Sample, const F: usize> Scheme for ThresholdHough<'a, S, F> {
 
 /// What the residuals lack to their taps is within the threshold.
 #[derive(Clone, Copy, Debug)]
-pub struct ThresholdHoughRule<S> {
-    threshold: S,
+pub struct ThresholdHoughRule<R> {
+    threshold: R,
 }
 
-impl<S: Sample> Rule<S> for ThresholdHoughRule<S> {
-    #[inline]
-    fn fits(&self, window: [(&[S::Residual], &[S]); 2], _: bool) -> bool {
-        let mut budget = S::Residual::budget(self.threshold.widen());
-        for (residuals, taps) in window {
-            for (residual, tap) in residuals.iter().zip(taps) {
-                match residual.pay(tap.widen(), budget) {
-                    Some(left) => budget = left,
-                    None => return false,
+impl<R: Residual> Rule<R> for ThresholdHoughRule<R> {
+    const IN_ORDER: bool = true;
+
+    #[inline(always)]
+    fn fits(&self, pairs: impl Iterator<Item = (R, R)>, _: bool) -> bool {
+        R::lacks_at_most(self.threshold, pairs)
+    }
+
+    #[inline(always)]
+    fn fits_by_slot(&self, pairs: impl Iterator<Item = (R, R)>) -> Option<bool> {
+        R::lacks_at_most_anyway(self.threshold, pairs)
+    }
+}
+
+/// What residuals lack to their taps. Sealed: only this crate can name it.
+pub trait Lack: Sized {
+    /// Whether the error is at most the threshold.
+    fn lacks_at_most(threshold: Self, pairs: impl Iterator<Item = (Self, Self)>) -> bool;
+
+    /// The same with the pairs in any order; `None` if the order matters.
+    fn lacks_at_most_anyway(
+        threshold: Self,
+        pairs: impl Iterator<Item = (Self, Self)>,
+    ) -> Option<bool>;
+}
+
+/// Twice the error, first pair first; `None` if it is more than `most`.
+#[inline(always)]
+fn twice_error(most: f32, pairs: impl Iterator<Item = (f32, f32)>) -> Option<f32> {
+    let mut error = 0.0;
+    for (count, (residual, tap)) in pairs.enumerate() {
+        let left = residual - tap;
+        error += left.abs() - left;
+        // It only grows, and is looked at every few taps.
+        if count % 4 == 3 && error > most {
+            return None;
+        }
+    }
+    (error <= most).then_some(error)
+}
+
+impl Lack for f32 {
+    #[inline(always)]
+    fn lacks_at_most(threshold: f32, pairs: impl Iterator<Item = (f32, f32)>) -> bool {
+        twice_error(threshold + threshold, pairs).is_some()
+    }
+
+    /// Two orders of the same terms, at most 4096 and none negative, make sums that differ by less
+    /// than 2⁻¹⁰ of them: where the limit is farther away than that, either sum tells.
+    #[inline(always)]
+    fn lacks_at_most_anyway(
+        threshold: f32,
+        pairs: impl Iterator<Item = (f32, f32)>,
+    ) -> Option<bool> {
+        const ABOVE: f32 = 1.0 + 1.0 / 1024.0;
+        let most = threshold + threshold;
+        match twice_error(most * ABOVE, pairs) {
+            None => Some(false),
+            Some(error) => (error * ABOVE <= most).then_some(true),
+        }
+    }
+}
+
+impl Lack for i32 {
+    #[inline(always)]
+    fn lacks_at_most(threshold: i32, pairs: impl Iterator<Item = (i32, i32)>) -> bool {
+        let mut left = threshold.unsigned_abs();
+        for (residual, tap) in pairs {
+            if residual < tap {
+                let error = tap.abs_diff(residual);
+                if error > left {
+                    return false;
                 }
+                left -= error;
             }
         }
         true
+    }
+
+    #[inline(always)]
+    fn lacks_at_most_anyway(
+        threshold: i32,
+        pairs: impl Iterator<Item = (i32, i32)>,
+    ) -> Option<bool> {
+        Some(i32::lacks_at_most(threshold, pairs))
     }
 }

@@ -7,8 +7,9 @@
 //! Toolbox: `e1` over `r[i+j+1]-h[j]`, `e2` over `r[i+j]`, spike iff `e1 <= e2*threshold`, and the
 //! subtraction at `r[i+j+2]`, left out beyond the last sample; for `i < L-F` only.
 //!
-//! All sums run over `j` ascending, from 0. The subtractive form sums one error,
-//! `|r-h| - |r|` a tap, and compares it with `-threshold`; the others sum `e1` and `e2` apart.
+//! `e1` and `e2` are summed apart, from 0: over a whole window by rising `(i+j) mod F`, the sample's
+//! number; over a window that is cut by rising `j`. The subtractive form compares `e1 - e2` with
+//! `-threshold`.
 
 use super::Real;
 
@@ -21,13 +22,7 @@ pub fn ben_subtractive<T: Real>(
     threshold: T,
     finish: bool,
 ) -> Vec<i8> {
-    aligned(x, taps, shift, finish, |window| {
-        let mut error = T::ZERO;
-        for (&r, &h) in window.iter().zip(taps) {
-            error = error + ((r - h).magnitude() - r.magnitude());
-        }
-        error <= -threshold
-    })
+    aligned(x, taps, shift, finish, |e1, e2| e1 - e2 <= -threshold)
 }
 
 /// Encodes a recording by the aligned form, `e1 <= e2*threshold`. Without `finish` only whole
@@ -39,14 +34,7 @@ pub fn ben_multiplicative<T: Real>(
     threshold: T,
     finish: bool,
 ) -> Vec<i8> {
-    aligned(x, taps, shift, finish, |window| {
-        let (mut e1, mut e2) = (T::ZERO, T::ZERO);
-        for (&r, &h) in window.iter().zip(taps) {
-            e1 = e1 + (r - h).magnitude();
-            e2 = e2 + r.magnitude();
-        }
-        e1 <= e2 * threshold
-    })
+    aligned(x, taps, shift, finish, |e1, e2| e1 <= e2 * threshold)
 }
 
 /// Encodes a recording by the toolbox's form. Without `finish` there are `L-F` entries; with it
@@ -56,8 +44,10 @@ pub fn ben_toolbox<T: Real>(x: &[T], taps: &[T], shift: T, threshold: T, finish:
     let mut spikes = Vec::with_capacity(x.len());
     for i in 0..x.len().saturating_sub(taps.len()) {
         let (mut e1, mut e2) = (T::ZERO, T::ZERO);
-        for (j, &h) in taps.iter().enumerate() {
-            e1 = e1 + (r[i + j + 1] - h).magnitude();
+        for j in by_slot(i + 1, taps.len()) {
+            e1 = e1 + (r[i + 1 + j] - taps[j]).magnitude();
+        }
+        for j in by_slot(i, taps.len()) {
             e2 = e2 + r[i + j].magnitude();
         }
         let spike = e1 <= e2 * threshold;
@@ -74,13 +64,18 @@ pub fn ben_toolbox<T: Real>(x: &[T], taps: &[T], shift: T, threshold: T, finish:
     spikes
 }
 
-/// The windows of the aligned form: `spikes` says whether the filter fits at the start of one.
+/// The places in a window of the samples from `first` on, by the samples' numbers modulo `length`.
+fn by_slot(first: usize, length: usize) -> impl Iterator<Item = usize> {
+    (0..length).map(move |slot| (slot + length - first % length) % length)
+}
+
+/// The windows of the aligned form: `fits` compares `e1` with `e2`.
 fn aligned<T: Real>(
     x: &[T],
     taps: &[T],
     shift: T,
     finish: bool,
-    fits: impl Fn(&[T]) -> bool,
+    fits: impl Fn(T, T) -> bool,
 ) -> Vec<i8> {
     let mut r: Vec<T> = x.iter().map(|&value| value - shift).collect();
     let whole = (x.len() + 1).saturating_sub(taps.len());
@@ -89,7 +84,15 @@ fn aligned<T: Real>(
     for i in 0..decided {
         let end = x.len().min(i + taps.len());
         let window = &mut r[i..end];
-        let spike = fits(window);
+        let is_whole = window.len() == taps.len();
+        let order: Vec<_> =
+            if is_whole { by_slot(i, taps.len()).collect() } else { (0..window.len()).collect() };
+        let (mut e1, mut e2) = (T::ZERO, T::ZERO);
+        for j in order {
+            e1 = e1 + (window[j] - taps[j]).magnitude();
+            e2 = e2 + window[j].magnitude();
+        }
+        let spike = fits(e1, e2);
         if spike {
             for (r, &h) in window.iter_mut().zip(taps) {
                 *r = *r - h;
@@ -102,7 +105,7 @@ fn aligned<T: Real>(
 
 #[cfg(test)]
 mod tests {
-    use super::{ben_multiplicative, ben_subtractive, ben_toolbox};
+    use super::{ben_multiplicative, ben_subtractive, ben_toolbox, by_slot};
 
     const TAPS: [f64; 3] = [0.25, 1.0, 0.5];
 
@@ -146,6 +149,18 @@ mod tests {
         assert_eq!(ben_multiplicative(&last, &TAPS, 0.0, 0.75, true), [0, 0, 1, 0]);
         assert!(ben_subtractive(&x[..2], &TAPS, 0.0, 0.25, false).is_empty());
         assert_eq!(ben_subtractive(&x[..2], &TAPS, 0.0, 0.25, true), [0, 0]);
+    }
+
+    #[test]
+    fn whole_windows_are_summed_by_the_samples_numbers() {
+        // The window at 1 holds the samples 1, 2 and 3, of which 3 is in place 0: 2^24 takes up
+        // neither 1, as it would if they came first.
+        let large = 16_777_216.0_f32;
+        let (x, taps) = ([0.0, 1.0, 1.0, large], [0.0, 0.0, large]);
+        assert!(by_slot(1, 3).eq([2, 0, 1]));
+        assert_eq!(ben_subtractive(&x, &taps, 0.0, large - 2.0, false), [0, 1]);
+        assert_eq!(ben_subtractive(&x, &taps, 0.0, large, false), [0, 0]);
+        assert_eq!(ben_subtractive(&x[1..], &taps, 0.0, large, false), [1]);
     }
 
     #[test]

@@ -4,8 +4,8 @@
 //! `error <= threshold`; then `r[i+j] -= h[j]`. At the end of a recording, samples past the end
 //! cost nothing, so that a tail of zeros can spike.
 //!
-//! The sum is taken from the threshold down: `left = threshold`, then for `j` ascending, where
-//! `h > r`, `left = left - (h - r)`; spike iff `left >= 0`.
+//! What is summed, for `j` ascending, is `|r-h| - (r-h)`, twice the error, which is compared with
+//! `threshold + threshold`.
 
 use super::Real;
 
@@ -24,13 +24,11 @@ pub fn threshold_hough<T: Real>(
     for i in 0..decided {
         let end = x.len().min(i + taps.len());
         let window = &mut r[i..end];
-        let mut left = threshold;
+        let mut error = T::ZERO;
         for (&r, &h) in window.iter().zip(taps) {
-            if h > r {
-                left = left - (h - r);
-            }
+            error = error + ((r - h).magnitude() - (r - h));
         }
-        let spike = left >= T::ZERO;
+        let spike = error <= threshold + threshold;
         if spike {
             for (r, &h) in window.iter_mut().zip(taps) {
                 *r = *r - h;
@@ -89,10 +87,10 @@ mod tests {
     }
 
     #[test]
-    fn errors_are_summed_from_the_threshold_down() {
+    fn errors_are_summed_first_tap_first_and_doubled() {
         let taps = [0.1_f32, 0.2, 0.3];
         let threshold = 0.6_f32;
-        let spikes = ((threshold - 0.1) - 0.2) - 0.3 >= 0.0;
+        let spikes = (0.1 + 0.1) + (0.2 + 0.2) + (0.3 + 0.3) <= 0.6_f32 + 0.6;
         let expected = [i8::from(spikes)];
         assert_eq!(threshold_hough(&[0.0; 3], &taps, 0.0, threshold, false), expected);
     }
