@@ -91,6 +91,23 @@ fn drawn_recordings() {
     drawn!(I32F0, few_lengths);
 }
 
+/// Thresholds that a window just keeps, and just misses, when it is summed first tap first: another
+/// order of the sum would decide some of them otherwise.
+#[test]
+fn at_the_limit() {
+    let taps = proptest::array::uniform8(0.1_f32..1.0);
+    let x = proptest::collection::vec(-1.0_f32..1.5, 8..40);
+    proptest!(cases(512), |(x in x, taps in taps, window in any::<prop::sample::Index>())| {
+        let window = &x[window.index(x.len() - 7)..][..8];
+        let lacks = taps.iter().zip(window).map(|(tap, x)| (x - tap).abs() - (x - tap));
+        let limit = lacks.fold(0.0, |sum: f32, lack| sum + lack) / 2.0;
+        let taps = Taps::new(taps).unwrap();
+        for threshold in [limit.next_down().max(0.0), limit, limit.next_up()] {
+            check(&taps, &x, threshold, 0.0);
+        }
+    });
+}
+
 /// In flight, where windows are whole, a threshold of 0 makes it HSA.
 #[test]
 fn without_tolerance_it_is_the_hough_spiker() {
