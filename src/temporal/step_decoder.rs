@@ -42,6 +42,23 @@ impl<S: Sample> Decoder for StepDecoder<S> {
         self.value
     }
 
+    /// The value stays in a register.
+    #[inline]
+    fn decode_slice(&mut self, spikes: &[Spike], values: &mut [S]) -> usize {
+        let steps = [S::ZERO.minus(self.step), S::ZERO, self.step];
+        let mut decoded = self.value;
+        for (value, &spike) in values.iter_mut().zip(spikes) {
+            if spike.is_fired()
+                && let Some(&step) = steps.get((spike.sign() + 1) as usize)
+            {
+                decoded = decoded.plus(step);
+            }
+            *value = decoded;
+        }
+        self.value = decoded;
+        spikes.len().min(values.len())
+    }
+
     fn resync(&mut self, value: S) {
         self.value = value;
     }
