@@ -83,9 +83,34 @@ pub(crate) fn encode_each<E: Encoder + ?Sized>(
     outputs: &mut [E::Output],
 ) -> usize {
     for (output, &sample) in outputs.iter_mut().zip(samples) {
-        *output = encoder.encode(sample);
+        *output = encode_apart(encoder, sample);
     }
     samples.len().min(outputs.len())
+}
+
+/// The same up to where a keyframe can be had: how many samples that takes.
+#[cold]
+#[inline(never)]
+pub(crate) fn encode_first<E: Encoder + ?Sized>(
+    encoder: &mut E,
+    samples: &[E::Sample],
+    outputs: &mut [E::Output],
+) -> usize {
+    let mut taken = 0;
+    for (output, &sample) in outputs.iter_mut().zip(samples) {
+        if encoder.keyframe().is_some() {
+            break;
+        }
+        *output = encode_apart(encoder, sample);
+        taken += 1;
+    }
+    taken
+}
+
+#[cold]
+#[inline(never)]
+fn encode_apart<E: Encoder + ?Sized>(encoder: &mut E, sample: E::Sample) -> E::Output {
+    encoder.encode(sample)
 }
 
 /// Whether every sample is finite, asked once for all.

@@ -82,14 +82,25 @@ impl Arithmetic for f32 {
 
     #[inline]
     fn step(self, previous: Self, threshold: Self) -> Spike {
-        let difference = self - previous;
-        if difference > threshold {
-            Spike::Up
-        } else if difference < -threshold {
-            Spike::Down
-        } else {
-            Spike::None
-        }
+        judge(self - previous, magnitude(threshold))
+    }
+}
+
+/// In the order of the values without their sign.
+#[inline]
+pub(crate) fn magnitude(value: f32) -> u32 {
+    value.to_bits() << 1
+}
+
+/// The spike of a difference that is not NaN, against the magnitude of a threshold.
+#[inline]
+pub(crate) fn judge(difference: f32, threshold: u32) -> Spike {
+    if magnitude(difference) <= threshold {
+        Spike::None
+    } else if difference.is_sign_positive() {
+        Spike::Up
+    } else {
+        Spike::Down
     }
 }
 
@@ -299,12 +310,13 @@ const fn clamp_i32(value: i64) -> i32 {
     }
 }
 
-/// Whether a first sample has been seen, and how many were rejected: four bytes.
+/// Whether a first sample has been seen, and how many were rejected, times 2: four bytes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tally(u32);
 
 impl Tally {
-    const PRIMED: u32 = 1 << 31;
+    const PRIMED: u32 = 1;
+    const ONE: u32 = 2;
 
     #[inline]
     pub(crate) fn is_primed(self) -> bool {
@@ -318,13 +330,11 @@ impl Tally {
 
     #[inline]
     pub(crate) fn reject(&mut self) {
-        if self.rejected() < !Self::PRIMED {
-            self.0 += 1;
-        }
+        self.0 = self.0.checked_add(Self::ONE).unwrap_or(self.0);
     }
 
     #[inline]
     pub(crate) fn rejected(self) -> u32 {
-        self.0 & !Self::PRIMED
+        self.0 / Self::ONE
     }
 }

@@ -1,7 +1,7 @@
 //! Temporal contrast (TBR): a spike when one sample differs enough from the one before.
 
 use super::StepDecoder;
-use crate::codec::encode_each;
+use crate::codec::{encode_each, encode_first};
 use crate::error::{checked, positive};
 use crate::sample::{Tally, for_each_sample};
 use crate::{Calibration, ConfigError, Encoder, Sample, Scheme, Spike};
@@ -160,26 +160,22 @@ impl<S: Sample> Encoder for TemporalContrastEncoder<S> {
 
     #[inline]
     fn encode(&mut self, sample: S) -> Spike {
-        if !sample.is_finite() {
-            self.tally.reject();
+        if !self.tally.is_primed() || !sample.is_finite() {
+            self.prime(sample);
             return Spike::None;
         }
         let previous = core::mem::replace(&mut self.previous, sample);
-        if self.tally.is_primed() {
-            sample.step(previous, self.threshold)
-        } else {
-            self.tally.prime();
-            Spike::None
-        }
+        sample.step(previous, self.threshold)
     }
 
     /// The last sample stays in a register, and whether all were finite is asked once: if not, the
     /// slice is taken again with care.
     #[inline]
     fn encode_slice(&mut self, samples: &[S], spikes: &mut [Spike]) -> usize {
-        if !self.tally.is_primed() {
-            return encode_each(self, samples, spikes);
-        }
+        let first = if self.tally.is_primed() { 0 } else { encode_first(self, samples, spikes) };
+        let samples = samples.get(first..).unwrap_or_default();
+        let spikes = spikes.get_mut(first..).unwrap_or_default();
+
         let mut previous = self.previous;
         let mut taint = S::ZERO;
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
@@ -187,11 +183,12 @@ impl<S: Sample> Encoder for TemporalContrastEncoder<S> {
             *spike = sample.step(previous, self.threshold);
             previous = sample;
         }
-        if !taint.is_finite() {
-            return encode_each(self, samples, spikes);
+        if taint.is_finite() {
+            self.previous = previous;
+        } else {
+            encode_each(self, samples, spikes);
         }
-        self.previous = previous;
-        samples.len().min(spikes.len())
+        first + samples.len().min(spikes.len())
     }
 
     /// The last sample.

@@ -1,7 +1,7 @@
 //! Step forward (SF): a spike when the signal leaves the band around a baseline that follows it.
 
 use super::StepDecoder;
-use crate::codec::encode_each;
+use crate::codec::{encode_each, encode_first};
 use crate::error::{checked, positive};
 use crate::sample::{Tally, for_each_sample};
 use crate::{ConfigError, Encoder, Sample, Scheme, Spike};
@@ -114,66 +114,86 @@ impl<S: Sample> StepForwardEncoder<S> {
     }
 }
 
+/// Where a sample emits nothing.
+#[derive(Clone, Copy)]
+struct Band<S> {
+    lower: S,
+    base: S,
+    upper: S,
+}
+
+impl<S: Sample> Band<S> {
+    #[inline]
+    fn around(base: S, threshold: S) -> Self {
+        Self { lower: base.minus(threshold), base, upper: base.plus(threshold) }
+    }
+
+    /// So it is above what is not a number.
+    #[inline]
+    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "true of what is not a number")]
+    fn is_above(self, sample: S) -> bool {
+        !(sample >= self.lower)
+    }
+}
+
 impl<S: Sample> Encoder for StepForwardEncoder<S> {
     type Sample = S;
     type Output = Spike;
 
     #[inline]
     fn encode(&mut self, sample: S) -> Spike {
+        let band = Band::around(self.base, self.threshold);
+        let (spike, base) = if sample > band.upper {
+            (Spike::Up, band.upper)
+        } else if band.is_above(sample) {
+            (Spike::Down, band.lower)
+        } else if self.tally.is_primed() {
+            return Spike::None;
+        } else {
+            (Spike::None, sample)
+        };
         if !sample.is_finite() {
             self.tally.reject();
-            return Spike::None;
-        }
-        if !self.tally.is_primed() {
+            Spike::None
+        } else if self.tally.is_primed() {
+            self.base = base;
+            spike
+        } else {
             self.base = sample;
             self.tally.prime();
-            return Spike::None;
-        }
-        let upper = self.base.plus(self.threshold);
-        let lower = self.base.minus(self.threshold);
-        if sample > upper {
-            self.base = upper;
-            Spike::Up
-        } else if sample < lower {
-            self.base = lower;
-            Spike::Down
-        } else {
             Spike::None
         }
     }
 
-    /// The band stays in registers, and whether all samples were finite is asked once: if not, the
-    /// slice is taken again with care.
+    /// The band stays in registers, and whether all samples that left it were finite is asked once:
+    /// if not, the slice is taken again with care.
     #[inline]
     fn encode_slice(&mut self, samples: &[S], spikes: &mut [Spike]) -> usize {
-        if !self.tally.is_primed() {
-            return encode_each(self, samples, spikes);
-        }
-        let mut base = self.base;
-        let mut upper = base.plus(self.threshold);
-        let mut lower = base.minus(self.threshold);
+        let first = if self.tally.is_primed() { 0 } else { encode_first(self, samples, spikes) };
+        let samples = samples.get(first..).unwrap_or_default();
+        let spikes = spikes.get_mut(first..).unwrap_or_default();
+
+        let threshold = self.threshold;
+        let mut band = Band::around(self.base, threshold);
         let mut taint = S::ZERO;
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
-            taint = taint.taint(sample);
-            *spike = if sample > upper {
-                base = upper;
-                upper = base.plus(self.threshold);
-                lower = base.minus(self.threshold);
-                Spike::Up
-            } else if sample < lower {
-                base = lower;
-                upper = base.plus(self.threshold);
-                lower = base.minus(self.threshold);
-                Spike::Down
-            } else {
-                Spike::None
-            };
+            *spike = Spike::None;
+            if sample > band.upper {
+                band = Band::around(band.upper, threshold);
+                taint = taint.taint(sample);
+                *spike = Spike::Up;
+            } else if band.is_above(sample) {
+                band = Band::around(band.lower, threshold);
+                taint = taint.taint(sample);
+                *spike = Spike::Down;
+            }
         }
-        if !taint.is_finite() {
-            return encode_each(self, samples, spikes);
+        if taint.is_finite() {
+            self.base = band.base;
+        } else {
+            encode_each(self, samples, spikes);
         }
-        self.base = base;
-        samples.len().min(spikes.len())
+        first + samples.len().min(spikes.len())
     }
 
     /// The baseline.
