@@ -45,6 +45,7 @@ fn check_all<S: Wire>(x: &[S], threshold: S, fill: &[S]) {
     check::<S, 3>(x, threshold, fill);
     check::<S, 5>(x, threshold, fill);
     check::<S, 6>(x, threshold, fill);
+    check::<S, 11>(x, threshold, fill);
     check::<S, 64>(x, threshold, fill);
 }
 

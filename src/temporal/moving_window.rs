@@ -1,11 +1,13 @@
 //! Moving window (MW): a spike when a sample leaves the band around the mean of those before it.
 
-use core::ops::{Add, Sub};
+use core::fmt::Debug;
+use core::hint::black_box;
+use core::ops::Sub;
+use core::slice::{from_mut, from_ref};
 
 use super::StepDecoder;
-use crate::codec::{all_finite, encode_each};
 use crate::error::{checked, positive};
-use crate::sample::{Tally, for_each_integer, for_each_sample};
+use crate::sample::{Tally, for_each_integer, for_each_sample, judge, magnitude};
 use crate::{ConfigError, Encoder, Sample, Scheme, Spike};
 
 /// Moving window: the baseline is the mean of the `N` samples before.
@@ -17,7 +19,7 @@ use crate::{ConfigError, Encoder, Sample, Scheme, Spike};
 ///
 /// - **Threshold:** above 0, in the samples' unit. **N:** 1 to 16 384.
 /// - **Latency:** 0 samples. **Memory:** `4 N + 16` bytes an encoder in `f32`.
-/// - **Exactness:** without division, `N x` is compared with `sum ± N threshold`. Fixed point is
+/// - **Exactness:** without division, `N x - sum` is compared with `± N threshold`. Fixed point is
 ///   exact over its whole range. `f32` takes the sum in this order, which keeps it free of drift:
 ///   samples fill blocks of `N` slots; the part of the window in the block before is summed from its
 ///   newest sample to its oldest, the part in the current block from its oldest to its newest, and
@@ -99,8 +101,8 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
         MovingWindowEncoder {
             ring: [S::ZERO; N],
             partial: S::Sum::default(),
-            margin: self.threshold.times(N),
-            next: 0,
+            margin: self.threshold.times(N).margin(),
+            next: FILLING,
             tally: Tally::default(),
         }
     }
@@ -110,12 +112,21 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
     }
 }
 
+/// Added to the next slot until the window is full: such a slot is not found.
+const FILLING: u16 = 1 << 15;
+
+/// The slice form takes a block of up to so many samples at once, in registers, and of a longer one
+/// groups of [`GROUP`].
+const SHORT: usize = 8;
+
+const GROUP: usize = 4;
+
 /// The encoder of [`MovingWindow`].
 #[derive(Clone, Copy, Debug)]
 pub struct MovingWindowEncoder<S: Sample, const N: usize> {
     ring: [S; N],
     partial: S::Sum,
-    margin: S::Sum,
+    margin: <S::Sum as Difference>::Margin,
     next: u16,
     tally: Tally,
 }
@@ -127,59 +138,91 @@ impl<S: Sample, const N: usize> MovingWindowEncoder<S, N> {
         if window.iter().all(S::is_finite) {
             self.clear_window();
             for &sample in window {
-                self.slide(sample);
+                self.encode_carefully(sample);
             }
         } else {
             self.tally.reject();
         }
     }
 
-    /// Takes a finite sample, and gives the spike that it is against a full window.
+    /// Takes groups of samples up to the end of a block, and says how many. It stops before a group
+    /// with a difference that is not finite, as that of a sample that is not.
     #[inline]
-    fn slide(&mut self, sample: S) -> Spike {
-        let Some(slot) = self.ring.get_mut(self.next as usize) else { return Spike::None };
-        let sum = S::slide(slot, &mut self.partial, sample);
-        self.next += 1;
-        if self.next as usize == N {
+    fn encode_groups<const M: usize>(
+        &mut self,
+        groups: &[[S; M]],
+        spikes: &mut [[Spike; M]],
+    ) -> usize {
+        let margin = if self.next < FILLING { self.margin } else { S::Sum::WIDEST };
+        let next = (self.next & !FILLING) as usize;
+        let slots = self.ring.get_mut(next..).unwrap_or_default().as_chunks_mut::<M>().0;
+        let mut partial = self.partial;
+        let mut taken = 0;
+        for ((spikes, &samples), slots) in spikes.iter_mut().zip(groups).zip(slots) {
+            let mut sum = partial;
+            let mut taint = S::Sum::default();
+            for ((spike, sample), &slot) in spikes.iter_mut().zip(samples).zip(slots.iter()) {
+                let difference = sample.times(N) - S::slide(&mut sum, slot, sample);
+                *spike = difference.judge(margin);
+                taint = taint.taint(difference);
+            }
+            if !taint.is_finite() {
+                break;
+            }
+            *slots = samples;
+            partial = sum;
+            taken += 1;
+        }
+        self.partial = partial;
+        self.next += (taken * M) as u16;
+        if next + taken * M == N {
             self.close_block();
         }
-        judge(sample.times(N), sum, self.margin)
+        taken
     }
 
-    /// The same for a slice against a full window: one run to the end of a block after the other, in
-    /// which nothing wraps.
-    #[inline]
-    fn slide_slice(&mut self, samples: &[S], spikes: &mut [Spike]) {
-        let mut pairs = spikes.iter_mut().zip(samples);
-        while pairs.len() > 0 {
-            let margin = self.margin;
-            let mut partial = self.partial;
-            let slots = self.ring.get_mut(self.next as usize..).unwrap_or_default();
-            let run = pairs.len().min(slots.len());
-            for (slot, (spike, &sample)) in slots.iter_mut().zip(&mut pairs) {
-                let sum = S::slide(slot, &mut partial, sample);
-                *spike = judge(sample.times(N), sum, margin);
-            }
-            self.partial = partial;
-            self.next += run as u16;
-            if self.next as usize == N {
-                self.close_block();
-            }
+    /// Takes a sample of any kind. Nothing is emitted if it is not finite, nor before the window is
+    /// full, nor for a difference that is not a number.
+    #[cold]
+    #[inline(never)]
+    fn encode_carefully(&mut self, sample: S) -> Option<Spike> {
+        let is_full = self.next < FILLING;
+        let next = (self.next & !FILLING) as usize;
+        let Some(slot) = self.ring.get_mut(next).filter(|_| sample.is_finite()) else {
+            self.tally.reject();
+            return None;
+        };
+        let difference = sample.times(N) - S::slide(&mut self.partial, *slot, sample);
+        *slot = sample;
+        self.next += 1;
+        if next + 1 == N {
+            self.close_block();
         }
+        (is_full && !difference.is_nan()).then(|| difference.judge(self.margin))
     }
 
     #[inline]
     fn close_block(&mut self) {
-        S::close_block(&mut self.ring, &mut self.partial);
         self.next = 0;
-        self.tally.prime();
+        if N <= SHORT {
+            S::close_block(&mut self.ring, &mut self.partial);
+        } else {
+            close_long_block(&mut self.ring, &mut self.partial);
+        }
     }
 
     fn clear_window(&mut self) {
         self.ring = [S::ZERO; N];
         self.partial = S::Sum::default();
-        self.next = 0;
+        self.next = FILLING;
     }
+}
+
+/// Of a length that the compiler does not know, or it would write out every slot.
+#[inline(never)]
+fn close_long_block<S: Windowed>(ring: &mut [S], partial: &mut S::Sum) {
+    let length = black_box(ring.len());
+    S::close_block(ring.get_mut(..length).unwrap_or_default(), partial);
 }
 
 impl<S: Sample, const N: usize> Encoder for MovingWindowEncoder<S, N> {
@@ -188,29 +231,56 @@ impl<S: Sample, const N: usize> Encoder for MovingWindowEncoder<S, N> {
 
     #[inline]
     fn encode(&mut self, sample: S) -> Spike {
-        if !sample.is_finite() {
-            self.tally.reject();
-            return Spike::None;
+        // The sample that closes a long block is left to the careful way, so that this one stays short.
+        let usual = if N <= SHORT { N } else { N - 1 };
+        let next = self.next as usize;
+        if let Some(slot) = self.ring.get_mut(..usual).and_then(|slots| slots.get_mut(next)) {
+            let mut partial = self.partial;
+            let difference = sample.times(N) - S::slide(&mut partial, *slot, sample);
+            if difference.is_finite() {
+                *slot = sample;
+                self.partial = partial;
+                self.next = next as u16 + 1;
+                if next + 1 == N {
+                    self.close_block();
+                }
+                return difference.judge(self.margin);
+            }
         }
-        let is_primed = self.tally.is_primed();
-        let spike = self.slide(sample);
-        if is_primed { spike } else { Spike::None }
+        self.encode_carefully(sample).unwrap_or_default()
     }
 
-    /// Whether all samples are finite is asked once; if not, each is taken with care.
     #[inline]
-    fn encode_slice(&mut self, samples: &[S], spikes: &mut [Spike]) -> usize {
-        if !all_finite(samples) || !self.tally.is_primed() {
-            return encode_each(self, samples, spikes);
+    fn encode_slice(&mut self, mut samples: &[S], mut spikes: &mut [Spike]) -> usize {
+        let length = samples.len().min(spikes.len());
+        samples = samples.get(..length).unwrap_or_default();
+        while let Some(&first) = samples.first() {
+            let taken = if N > SHORT {
+                let (groups, spikes) = (samples.as_chunks().0, spikes.as_chunks_mut().0);
+                GROUP * self.encode_groups::<GROUP>(groups, spikes)
+            } else if self.next == 0
+                && let Some(block) = samples.first_chunk()
+                && let Some(spikes) = spikes.first_chunk_mut()
+            {
+                N * self.encode_groups::<N>(from_ref(block), from_mut(spikes))
+            } else {
+                0
+            };
+            if taken > 0 {
+                samples = samples.get(taken..).unwrap_or_default();
+                spikes = spikes.get_mut(taken..).unwrap_or_default();
+            } else if let Some(spike) = spikes.split_off_first_mut() {
+                *spike = self.encode_carefully(first).unwrap_or_default();
+                samples = samples.get(1..).unwrap_or_default();
+            }
         }
-        self.slide_slice(samples, spikes);
-        samples.len().min(spikes.len())
+        length
     }
 
     /// The last sample, once the window is full.
     fn keyframe(&self) -> Option<S> {
         let newest = (self.next as usize).checked_sub(1).unwrap_or(N - 1);
-        self.ring.get(newest).copied().filter(|_| self.tally.is_primed())
+        self.ring.get(newest).copied()
     }
 
     fn reset(&mut self) {
@@ -223,40 +293,116 @@ impl<S: Sample, const N: usize> Encoder for MovingWindowEncoder<S, N> {
     }
 }
 
-/// The spike of `N` times a sample against the sum over the window.
-#[inline]
-fn judge<T: Copy + PartialOrd + Add<Output = T> + Sub<Output = T>>(
-    scaled: T,
-    sum: T,
-    margin: T,
-) -> Spike {
-    if scaled > sum + margin {
-        Spike::Up
-    } else if scaled < sum - margin {
-        Spike::Down
-    } else {
-        Spike::None
-    }
-}
-
 /// How a sample type sums a window. Sealed: only this crate can name it.
 pub trait Windowed: Sized {
     /// Wide enough for 16 384 samples.
-    type Sum: Copy
-        + Default
-        + core::fmt::Debug
-        + PartialOrd
-        + Add<Output = Self::Sum>
-        + Sub<Output = Self::Sum>;
+    type Sum: Difference;
 
     fn times(self, count: usize) -> Self::Sum;
 
-    /// Puts a sample in the oldest one's slot; gives the sum over the window before.
-    fn slide(slot: &mut Self, partial: &mut Self::Sum, sample: Self) -> Self::Sum;
+    /// Takes a sample into the partial sum; gives the sum over the window before, of which the slot is
+    /// the oldest part.
+    fn slide(partial: &mut Self::Sum, slot: Self, sample: Self) -> Self::Sum;
 
     /// At the end of a block, before the first slot's turn comes again.
     fn close_block(ring: &mut [Self], partial: &mut Self::Sum);
 }
+
+/// A sum, and the difference of `N` times a sample from it.
+pub trait Difference: Copy + Default + Debug + Sub<Output = Self> {
+    /// What it is compared with.
+    type Margin: Copy + Debug;
+
+    /// What no difference exceeds.
+    const WIDEST: Self::Margin;
+
+    fn margin(self) -> Self::Margin;
+
+    fn is_nan(self) -> bool;
+
+    fn is_finite(self) -> bool;
+
+    /// Takes up a difference, so that whether all of a group are finite can be asked once.
+    fn taint(self, difference: Self) -> Self;
+
+    /// The spike of a difference that is a number.
+    fn judge(self, margin: Self::Margin) -> Spike;
+}
+
+impl Difference for f32 {
+    type Margin = u32;
+
+    const WIDEST: u32 = f32::INFINITY.to_bits() << 1;
+
+    #[inline]
+    fn margin(self) -> u32 {
+        magnitude(self)
+    }
+
+    #[inline]
+    fn is_nan(self) -> bool {
+        f32::is_nan(self)
+    }
+
+    #[inline]
+    fn is_finite(self) -> bool {
+        magnitude(self) < Self::WIDEST
+    }
+
+    #[inline]
+    fn taint(self, difference: f32) -> f32 {
+        self + difference
+    }
+
+    #[inline]
+    fn judge(self, margin: u32) -> Spike {
+        judge(self, margin)
+    }
+}
+
+macro_rules! integer_difference {
+    ($($sum:ty)*) => {
+        $(
+            impl Difference for $sum {
+                type Margin = $sum;
+
+                const WIDEST: $sum = <$sum>::MAX;
+
+                #[inline]
+                fn margin(self) -> $sum {
+                    self
+                }
+
+                #[inline]
+                fn is_nan(self) -> bool {
+                    false
+                }
+
+                #[inline]
+                fn is_finite(self) -> bool {
+                    true
+                }
+
+                #[inline]
+                fn taint(self, _: $sum) -> $sum {
+                    self
+                }
+
+                #[inline]
+                fn judge(self, margin: $sum) -> Spike {
+                    if self > margin {
+                        Spike::Up
+                    } else if self < -margin {
+                        Spike::Down
+                    } else {
+                        Spike::None
+                    }
+                }
+            }
+        )*
+    };
+}
+integer_difference!(i32 i64);
 
 /// Slots whose turn has come in this block hold its samples, and `partial` their sum. The others hold,
 /// for each sample of the block before, the sum from it to that block's end.
@@ -269,8 +415,8 @@ impl Windowed for f32 {
     }
 
     #[inline]
-    fn slide(slot: &mut f32, partial: &mut f32, sample: f32) -> f32 {
-        let sum = core::mem::replace(slot, sample) + *partial;
+    fn slide(partial: &mut f32, slot: f32, sample: f32) -> f32 {
+        let sum = slot + *partial;
         *partial += sample;
         sum
     }
@@ -305,10 +451,9 @@ macro_rules! integer_window {
             }
 
             #[inline]
-            fn slide(slot: &mut Self, partial: &mut $sum, sample: Self) -> $sum {
+            fn slide(partial: &mut $sum, slot: Self, sample: Self) -> $sum {
                 let sum = *partial;
-                let oldest = core::mem::replace(slot, sample);
-                *partial += <$sum>::from($to_bits(sample)) - <$sum>::from($to_bits(oldest));
+                *partial += <$sum>::from($to_bits(sample)) - <$sum>::from($to_bits(slot));
                 sum
             }
 

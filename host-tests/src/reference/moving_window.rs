@@ -1,8 +1,8 @@
 //! MW, moving window.
 //!
 //! The base of `x[i]` is the mean of the `n = W+1` samples before it; +1 if
-//! `x > base + threshold`, -1 if `x < base - threshold`. Without a division:
-//! `n*x > sum + n*threshold` and `n*x < sum - n*threshold`.
+//! `x > base + threshold`, -1 if `x < base - threshold`. Without a division: `d = n*x - sum`, +1 if
+//! `d > n*threshold`, -1 if `d < -(n*threshold)`.
 //!
 //! The order of the sum ("two stacks"), which cannot drift: sample `i` lies in slot `i mod n` of
 //! block `i div n`. At slot `p` of a block the window is slots `p..n` of the block before (older)
@@ -30,12 +30,11 @@ pub fn moving_window<T: Real>(x: &[T], n: usize, threshold: T, primed: Option<&[
     let seen: Vec<T> = history.iter().chain(x).copied().collect();
     let mut spikes = vec![0; silent];
     for i in n..seen.len() {
-        let scaled = T::count(n) * seen[i];
+        let difference = T::count(n) * seen[i] - window_sum(&seen, i, n);
         let margin = T::count(n) * threshold;
-        let sum = window_sum(&seen, i, n);
-        spikes.push(if scaled > sum + margin {
+        spikes.push(if difference > margin {
             1
-        } else if scaled < sum - margin {
+        } else if difference < -margin {
             -1
         } else {
             0
