@@ -30,21 +30,20 @@ impl<'a, S: Sample, const F: usize> RateDecoder<'a, S, F> {
         Self { taps, shift, pending: [S::Residual::ZERO; F], next: 0 }
     }
 
-    #[inline]
-    fn add_filter(&mut self) {
+    #[inline(always)]
+    fn decode_one(&mut self, spike: Spike) -> S {
         let next = self.next as usize;
-        let (late, early) = self.pending.split_at_mut_checked(next).unwrap_or_default();
-        let (first, rest) = self.taps.as_array().split_at_checked(F - next).unwrap_or_default();
-        add(early, first);
-        add(late, rest);
-    }
-}
-
-/// Adds taps to sums, one by one.
-#[inline]
-fn add<S: Sample>(sums: &mut [S::Residual], taps: &[S]) {
-    for (sum, tap) in sums.iter_mut().zip(taps) {
-        *sum = sum.plus(tap.widen());
+        if spike == Spike::Up {
+            for (sum, tap) in self.pending.iter_mut().zip(self.taps.starting_at(next)) {
+                *sum = sum.plus(tap.widen());
+            }
+        }
+        let sum = match self.pending.get_mut(next) {
+            Some(slot) => core::mem::replace(slot, S::Residual::ZERO),
+            None => S::Residual::ZERO,
+        };
+        self.next = if next + 1 < F { next as u16 + 1 } else { 0 };
+        self.shift.restore(sum)
     }
 }
 
@@ -54,50 +53,15 @@ impl<S: Sample, const F: usize> Decoder for RateDecoder<'_, S, F> {
 
     #[inline]
     fn decode(&mut self, spike: Spike) -> S {
-        if spike == Spike::Up {
-            self.add_filter();
-        }
-        let sum = match self.pending.get_mut(self.next as usize) {
-            Some(slot) => core::mem::replace(slot, S::Residual::ZERO),
-            None => S::Residual::ZERO,
-        };
-        self.next += 1;
-        if self.next as usize == F {
-            self.next = 0;
-        }
-        self.shift.restore(sum)
+        self.decode_one(spike)
     }
 
-    /// Sums lie in one line of memory, two filters long on the stack, where a filter does not wrap.
     #[inline]
     fn decode_slice(&mut self, spikes: &[Spike], values: &mut [S]) -> usize {
-        let length = spikes.len().min(values.len());
-        let spikes = spikes.get(..length).unwrap_or_default();
-        let values = values.get_mut(..length).unwrap_or_default();
-        let mut pending = self.pending;
-        pending.rotate_left((self.next as usize).min(F));
-        let mut line = [pending, [S::Residual::ZERO; F]];
-        let line = line.as_flattened_mut();
-        for (spikes, values) in spikes.chunks(F).zip(values.chunks_mut(F)) {
-            for (start, &spike) in spikes.iter().enumerate() {
-                if spike == Spike::Up
-                    && let Some(sums) = line.get_mut(start..).and_then(<[_]>::first_chunk_mut::<F>)
-                {
-                    add(sums, self.taps.as_array());
-                }
-            }
-            for (value, &sum) in values.iter_mut().zip(line.iter()) {
-                *value = self.shift.restore(sum);
-            }
-            line.copy_within(spikes.len().., 0);
-            let (_, beyond) = line.split_at_mut_checked(2 * F - spikes.len()).unwrap_or_default();
-            beyond.fill(S::Residual::ZERO);
+        for (value, &spike) in values.iter_mut().zip(spikes) {
+            *value = self.decode_one(spike);
         }
-        if let Some(pending) = line.first_chunk() {
-            self.pending = *pending;
-            self.next = 0;
-        }
-        length
+        spikes.len().min(values.len())
     }
 
     /// Forgets the spikes of the past, whose filters would reach into the future; the value itself

@@ -69,25 +69,26 @@ impl<'a, S: Sample, R: Rule<S::Residual>, const F: usize> RateEncoder<'a, S, R, 
         }
     }
 
-    /// Encodes the first samples, about two filters of them and none that is not finite, and returns
+    /// Encodes the first samples, about three filters of them and none that is not finite, and returns
     /// how many. Each must complete a window.
     ///
-    /// Residuals lie in one line of memory, three filters long on the stack, where windows do not
+    /// Residuals lie in one line of memory, four filters long on the stack, where windows do not
     /// wrap: the taps do not turn, and stay in registers.
     #[inline(never)]
     fn encode_line(&mut self, samples: &[S], spikes: &mut [Option<Spike>]) -> usize {
         let taps = *self.taps.as_array();
         let (shift, magnitude, rule) = (self.shift, self.taps.magnitude(), self.rule);
-        let mut line = [self.residuals; 3];
+        let mut line = [self.residuals; 4];
         let line = line.as_flattened_mut();
-        let oldest = self.cursor.next();
+        let oldest = self.cursor.next().min(F - 1);
         let windows = cells(line.get_mut(oldest + 1..).unwrap_or_default()).windows(F);
-        let mut length = 0;
-        for ((spike, &sample), window) in spikes.iter_mut().zip(samples).zip(windows) {
+        let mut length = samples.len().min(spikes.len()).min(windows.len());
+        let all = spikes.iter_mut().zip(samples).zip(windows);
+        for (at, ((spike, &sample), window)) in all.enumerate() {
             if !sample.is_finite() {
+                length = at;
                 break;
             }
-            length += 1;
             if let Some(newest) = window.last() {
                 newest.set(sample.residual(shift, magnitude));
             }
@@ -157,7 +158,6 @@ impl<S: Sample, R: Rule<S::Residual>, const F: usize> Encoder for RateEncoder<'_
 
     #[inline]
     fn encode_slice(&mut self, samples: &[S], spikes: &mut [Option<Spike>]) -> usize {
-        let (mut samples, mut spikes) = (samples, spikes);
         let length = samples.len().min(spikes.len());
         if !R::IN_ORDER {
             for (spike, &sample) in spikes.iter_mut().zip(samples) {
@@ -165,18 +165,20 @@ impl<S: Sample, R: Rule<S::Residual>, const F: usize> Encoder for RateEncoder<'_
             }
             return length;
         }
-        while let (Some(&sample), Some(spike)) = (samples.first(), spikes.first_mut()) {
-            *spike = None;
-            let mut done = 0;
-            if self.cursor.missing() == 0 {
-                done = self.encode_line(samples, spikes);
-            }
-            if done == 0 {
+        let mut done = 0;
+        while let (Some(samples), Some(spikes)) = (samples.get(done..), spikes.get_mut(done..))
+            && let (Some(&sample), Some(_)) = (samples.first(), spikes.first())
+        {
+            let encoded =
+                if self.cursor.missing() == 0 { self.encode_line(samples, spikes) } else { 0 };
+            if encoded == 0 {
                 self.take(sample);
-                done = 1;
+                if let Some(spike) = spikes.first_mut() {
+                    *spike = None;
+                }
+                done += 1;
             }
-            samples = samples.get(done..).unwrap_or_default();
-            spikes = spikes.get_mut(done..).unwrap_or_default();
+            done += encoded;
         }
         length
     }
