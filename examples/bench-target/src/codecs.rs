@@ -1,4 +1,5 @@
-//! Every codec, with the parameters of the paper's benchmark, beside its plain transcription.
+//! Every codec, with the parameters of the paper's benchmark, beside its plain transcription, with which it must agree:
+//! spikes and values are compared before anything is counted.
 
 use core::{
     fmt::{self, Write},
@@ -9,14 +10,16 @@ use core::{
 use board::stopwatch::instructions;
 use rand_pcg::{Pcg32, rand_core::Rng};
 use spikewire::{
-    Calibration, ConfigError,
-    population::{Centres, Gaussian, Position, Probabilistic, ReceptiveFields, Slots},
+    Calibration, ConfigError, Decoder, Encoder, Output, Scheme, Spike,
+    population::{
+        Centres, Gaussian, Neuron, Pattern, Position, Probabilistic, ReceptiveFields, Slots, Volley,
+    },
     rate::{Ben, BenToolbox, Hough, Scale, Shape, Taps, ThresholdHough},
     temporal::{MovingWindow, StepForward, TemporalContrast},
 };
 
 use crate::{
-    measure::Subject,
+    measure::{CHUNK, Subject, decode_sample, encode_sample},
     plain,
     signal::{LENGTH, Measured, Signal},
 };
@@ -41,6 +44,9 @@ pub fn measure<S: Measured>(out: &mut impl Write, sample: &str, signal: Signal) 
 enum Failure {
     #[allow(dead_code)] // read by Debug
     Config(ConfigError),
+    /// A codec and its plain transcription, at this sample.
+    #[allow(dead_code)]
+    Differ(&'static str, usize),
     Console,
 }
 
@@ -59,6 +65,7 @@ impl From<fmt::Error> for Failure {
 impl<S: Measured> Buffers<S> {
     /// The compiler must not know their lengths, as it does not know those that the codecs get.
     fn slices(&mut self) -> (&mut [S], &mut [i8]) {
+        self.spikes.fill(0);
         (black_box(&mut self.signal[..]), black_box(&mut self.spikes[..]))
     }
 
@@ -90,12 +97,104 @@ impl<S: Measured> Buffers<S> {
         (encoding, decoding)
     }
 
-    /// The same of a population code. It has no plain decoder.
-    fn plain_population(&mut self, encode: impl FnOnce(&[S], &mut [i8])) -> (u32, u32) {
-        let (signal, spikes) = self.slices();
-        let encoding = instructions(|| encode(signal, spikes));
-        (encoding, 0)
+    /// The same of a code that says something of every neuron: as many samples at once as the spikes have room for.
+    /// Fails unless the codec does the same, and its values are off by no more than rounding.
+    fn plain_neurons<E, D, const M: usize>(
+        &mut self,
+        codec: &'static str,
+        (mut encoder, mut decoder, middle): (E, D, S),
+        code: impl Fn(&[i8]) -> D::Code,
+        mut encode: impl FnMut(&[S], &mut [i8]),
+        decode: impl Fn(&[i8], S, &mut [S]),
+    ) -> Result<(u32, u32), Failure>
+    where
+        E: Encoder<Sample = S, Output = D::Code>,
+        D: Decoder<Sample = S, Code: PartialEq + Output>,
+    {
+        let (mut encoding, mut decoding) = (0, 0);
+        let mut before = middle;
+        for chunk in self.signal.chunks_exact_mut(CHUNK) {
+            let (samples, spikes) = (black_box(chunk), black_box(&mut self.spikes[..CHUNK * M]));
+            encoding += instructions(|| encode(samples, spikes));
+            for (i, (&sample, spikes)) in samples.iter().zip(spikes.chunks(M)).enumerate() {
+                expect(codec, i, encode_sample(&mut encoder, sample) == code(spikes))?;
+            }
+            decoding += instructions(|| decode(spikes, before, samples));
+            before = samples[CHUNK - 1];
+            for (i, (&value, spikes)) in samples.iter().zip(spikes.chunks(M)).enumerate() {
+                let error = decode_sample(&mut decoder, code(spikes)).to_f64() - value.to_f64();
+                expect(codec, i, error.abs() <= S::MEAN)?;
+            }
+        }
+        Ok((encoding, decoding))
     }
+
+    /// Fails unless the codec's spikes and values are those of the transcription, which the buffers hold. Loads the
+    /// signal again.
+    fn agree<P: Scheme<Sample = S>>(
+        &mut self,
+        codec: &'static str,
+        source: Signal,
+        scheme: P,
+        to_plain: impl Fn(CodeOf<P>) -> i8,
+        of_plain: impl Fn(i8) -> CodeOf<P>,
+    ) -> Result<(), Failure> {
+        let mut decoder = scheme.decoder();
+        for (i, (&value, &spike)) in self.signal.iter().zip(&self.spikes).enumerate() {
+            expect(codec, i, decode_sample(&mut decoder, of_plain(spike)) == value)?;
+        }
+        source.load(&mut self.signal);
+        let mut encoder = scheme.encoder();
+        let mut spikes = self.spikes.iter().enumerate();
+        let mut check = |code| match spikes.next() {
+            Some((i, &spike)) => expect(codec, i, to_plain(code) == spike),
+            None => expect(codec, LENGTH, false),
+        };
+        for &sample in &self.signal {
+            encode_sample(&mut encoder, sample).code().map_or(Ok(()), &mut check)?;
+        }
+        while let Some(code) = encoder.finish_next() {
+            check(code)?;
+        }
+        expect(codec, LENGTH, spikes.next().is_none())
+    }
+
+    /// The same where spikes are 1, 0 and -1.
+    fn agree_signs<P: Scheme<Sample = S>>(
+        &mut self,
+        codec: &'static str,
+        source: Signal,
+        scheme: P,
+    ) -> Result<(), Failure>
+    where
+        P::Decoder: Decoder<Code = Spike>,
+        <P::Encoder as Encoder>::Output: Output<Code = Spike>,
+    {
+        let spike = |sign| match sign {
+            1 => Spike::Up,
+            0 => Spike::None,
+            _ => Spike::Down,
+        };
+        self.agree(codec, source, scheme, Spike::sign, spike)
+    }
+
+    /// The same where a neuron is its index.
+    fn agree_neurons<const M: usize>(
+        &mut self,
+        codec: &'static str,
+        source: Signal,
+        scheme: Position<'_, S, M>,
+    ) -> Result<(), Failure> {
+        let index = |neuron: Option<Neuron<M>>| neuron.map_or(-1, |neuron| neuron.index() as i8);
+        self.agree(codec, source, scheme, index, |index| Neuron::new(index as u16))
+    }
+}
+
+/// What a scheme's decoder takes.
+type CodeOf<P> = <<P as Scheme>::Decoder as Decoder>::Code;
+
+fn expect(codec: &'static str, sample: usize, agrees: bool) -> Result<(), Failure> {
+    if agrees { Ok(()) } else { Err(Failure::Differ(codec, sample)) }
 }
 
 fn all<S: Measured>(
@@ -121,7 +220,7 @@ fn all<S: Measured>(
         |signal, spikes| plain::temporal_contrast(signal, threshold, spikes),
         |spikes, values| plain::step_decode(spikes, step, values),
     );
-    source.load(&mut buffers.signal);
+    buffers.agree_signs("tbr", source, contrast)?;
     subject("tbr", 0, plain).measure(out, contrast, &buffers.signal)?;
 
     let threshold = part(0.5);
@@ -129,8 +228,9 @@ fn all<S: Measured>(
         |signal, spikes| plain::step_forward(signal, threshold, spikes),
         |spikes, values| plain::step_decode(spikes, threshold, values),
     );
-    source.load(&mut buffers.signal);
-    subject("sf", 0, plain).measure(out, StepForward::new(threshold)?, &buffers.signal)?;
+    let scheme = StepForward::new(threshold)?;
+    buffers.agree_signs("sf", source, scheme)?;
+    subject("sf", 0, plain).measure(out, scheme, &buffers.signal)?;
 
     moving_window::<S, 6>(out, subject("mw-5", 0, (0, 0)), part(0.25), source, buffers)?;
     moving_window::<S, 64>(out, subject("mw-63", 0, (0, 0)), part(0.25), source, buffers)?;
@@ -139,23 +239,17 @@ fn all<S: Measured>(
     let plain = buffers.plain_rate(min, taps.as_array(), |signal, spikes| {
         plain::hough(signal, taps.as_array(), spikes)
     });
-    source.load(&mut buffers.signal);
-    subject("hsa-15", size_of_val(&taps), plain).measure(
-        out,
-        Hough::new(&taps).with_shift(min)?,
-        &buffers.signal,
-    )?;
+    let scheme = Hough::new(&taps).with_shift(min)?;
+    buffers.agree_signs("hsa-15", source, scheme)?;
+    subject("hsa-15", size_of_val(&taps), plain).measure(out, scheme, &buffers.signal)?;
 
     let threshold = part(0.85);
     let plain = buffers.plain_rate(min, taps.as_array(), |signal, spikes| {
         plain::threshold_hough(signal, taps.as_array(), threshold, spikes);
     });
-    source.load(&mut buffers.signal);
-    subject("t-hsa-15", size_of_val(&taps), plain).measure(
-        out,
-        ThresholdHough::new(&taps, threshold)?.with_shift(min)?,
-        &buffers.signal,
-    )?;
+    let scheme = ThresholdHough::new(&taps, threshold)?.with_shift(min)?;
+    buffers.agree_signs("t-hsa-15", source, scheme)?;
+    subject("t-hsa-15", size_of_val(&taps), plain).measure(out, scheme, &buffers.signal)?;
 
     // The filter's sum is what a spike at every sample decodes to.
     let taps = Taps::<S, 24>::shaped(Shape::Hann, Scale::Sum(S::from_f64(range)))?;
@@ -163,30 +257,26 @@ fn all<S: Measured>(
     let plain = buffers.plain_rate(min, taps.as_array(), |signal, spikes| {
         plain::ben(signal, taps.as_array(), threshold, spikes);
     });
-    source.load(&mut buffers.signal);
-    subject("bsa-24", size_of_val(&taps), plain).measure(
-        out,
-        Ben::subtractive(&taps, threshold)?.with_shift(min)?,
-        &buffers.signal,
-    )?;
+    let scheme = Ben::subtractive(&taps, threshold)?.with_shift(min)?;
+    buffers.agree_signs("bsa-24", source, scheme)?;
+    subject("bsa-24", size_of_val(&taps), plain).measure(out, scheme, &buffers.signal)?;
     // As the paper's signal meets a filter of unit sum: it spikes nearly always.
     let taps = Taps::<S, 24>::shaped(Shape::Hann, Scale::Sum(part(1.0)))?;
     let threshold = part(0.955);
     let plain = buffers.plain_rate(min, taps.as_array(), |signal, spikes| {
         plain::ben(signal, taps.as_array(), threshold, spikes);
     });
-    source.load(&mut buffers.signal);
-    subject("bsa-24-busy", size_of_val(&taps), plain).measure(
-        out,
-        Ben::subtractive(&taps, threshold)?.with_shift(min)?,
-        &buffers.signal,
-    )?;
+    let scheme = Ben::subtractive(&taps, threshold)?.with_shift(min)?;
+    buffers.agree_signs("bsa-24-busy", source, scheme)?;
+    subject("bsa-24-busy", size_of_val(&taps), plain).measure(out, scheme, &buffers.signal)?;
 
     let taps = Taps::<S, 9>::shaped(Shape::Triangular, Scale::Peak(part(1.0)))?;
     let plain = buffers.plain_rate(min, taps.as_array(), |signal, spikes| {
         plain::ben_toolbox(signal, taps.as_array(), 1.15, spikes);
     });
-    source.load(&mut buffers.signal);
+    // The transcription has the ratio in 128ths.
+    let scheme = BenToolbox::new(&taps, 147.0 / 128.0)?.with_shift(min)?;
+    buffers.agree_signs("bsa-toolbox-9", source, scheme)?;
     subject("bsa-toolbox-9", size_of_val(&taps), plain).measure(
         out,
         BenToolbox::new(&taps, 1.15)?.with_shift(min)?,
@@ -194,27 +284,55 @@ fn all<S: Measured>(
     )?;
 
     let centres = Centres::<S, 20>::new_gaussian_spaced(min, max)?;
-    let plain = buffers
-        .plain_population(|signal, neurons| plain::position(signal, centres.as_array(), neurons));
-    subject("position-20", size_of_val(&centres), plain).measure(
-        out,
-        Position::new(&centres),
-        &buffers.signal,
-    )?;
+    let plain = buffers.plain(
+        |signal, neurons| plain::position(signal, centres.as_array(), neurons),
+        |neurons, values| plain::position_decode(neurons, centres.as_array(), values),
+    );
+    let scheme = Position::new(&centres);
+    buffers.agree_neurons("position-20", source, scheme)?;
+    subject("position-20", size_of_val(&centres), plain).measure(out, scheme, &buffers.signal)?;
 
     let centres = Centres::<S, 20>::new_linear(min, max)?;
-    let sigma = (range / 18.0) as f32;
-    let means = centres.as_array().map(|centre| centre.to_f64() as f32);
-    let plain =
-        buffers.plain_population(|signal, neurons| plain::gaussian(signal, &means, sigma, neurons));
-    subject("grf-20", size_of_val(&centres), plain).measure(
-        out,
-        Gaussian::new(&centres),
-        &buffers.signal,
-    )?;
+    let scheme = Gaussian::new(&centres);
+    let (sigma, means) = ((range / 18.0) as f32, means::<20>(min.to_f64(), range));
+    let (signal, neurons) = buffers.slices();
+    let encoding = instructions(|| plain::gaussian(signal, &means, sigma, neurons));
+    settle(signal, neurons, &means, sigma, scheme);
+    let decoding = instructions(|| plain::position_decode(neurons, centres.as_array(), signal));
+    buffers.agree_neurons("grf-20", source, scheme)?;
+    let plain = (encoding, decoding);
+    subject("grf-20", size_of_val(&centres), plain).measure(out, scheme, &buffers.signal)?;
 
-    slots(out, subject("grf-slots-15x10", 0, (0, 0)), (min, max), buffers)?;
-    probabilistic(out, subject("grf-random-15x16", 0, (0, 0)), (min, max), buffers)
+    slots(out, subject("grf-slots-15x10", 0, (0, 0)), (min, max), source, buffers)?;
+    probabilistic(out, subject("grf-random-15x16", 0, (0, 0)), (min, max), source, buffers)
+}
+
+/// The means of receptive fields, which are not rounded to whole numbers.
+fn means<const M: usize>(min: f64, range: f64) -> [f32; M] {
+    core::array::from_fn(|i| {
+        (min + (2.0 * i as f64 - 1.0) * range / (2.0 * (M as f64 - 2.0))) as f32
+    })
+}
+
+/// Between two neurons, so close to halfway that rounding decides which exponential is the larger, the transcription may
+/// say either: it is set right.
+#[inline(never)]
+fn settle<S: Measured>(
+    signal: &[S],
+    neurons: &mut [i8],
+    means: &[f32; 20],
+    sigma: f32,
+    scheme: Gaussian<'_, S, 20>,
+) {
+    let mut encoder = scheme.encoder();
+    for (&sample, neuron) in signal.iter().zip(neurons) {
+        let Some(nearest) = encode_sample(&mut encoder, sample) else { continue };
+        let response = |i: usize| plain::response(sample.to_f64() as f32, means[i], sigma);
+        let (ours, plain) = (response(nearest.index().into()), response(*neuron as usize));
+        if (ours - plain).abs() <= 2.0 * f32::EPSILON {
+            *neuron = nearest.index() as i8;
+        }
+    }
 }
 
 // Functions of their own, or their tables would all be on the stack together.
@@ -224,15 +342,34 @@ fn slots<S: Measured>(
     out: &mut impl Write,
     subject: Subject<'_>,
     (min, max): (S, S),
+    source: Signal,
     buffers: &mut Buffers<S>,
 ) -> Result<(), Failure> {
     let fields = ReceptiveFields::<S, 15, 10>::new(min, max, 1.5)?;
-    let sigma = ((max.to_f64() - min.to_f64()) / (1.5 * 13.0)) as f32;
-    let means = fields.centres().map(|centre| centre.to_f64() as f32);
-    let plain =
-        buffers.plain_population(|signal, slots| plain::slots(signal, &means, sigma, 10, slots));
+    let range = max.to_f64() - min.to_f64();
+    let (sigma, means) = ((range / (1.5 * 13.0)) as f32, means::<15>(min.to_f64(), range));
+    let scheme = Slots::new(&fields);
+    let volley = |slots: &[i8]| {
+        let mut fired = [0; 15];
+        let mut length = 0;
+        for &slot in slots.iter().filter(|&&slot| slot >= 0) {
+            fired[length] = slot as u8;
+            length += 1;
+        }
+        let first = slots.iter().take_while(|&&slot| slot < 0).count();
+        let first = if length == 0 { 0 } else { first };
+        Volley::new(first as u16, &fired[..length]).unwrap_or(Volley::EMPTY)
+    };
+    let plain = buffers.plain_neurons::<_, _, 15>(
+        "grf-slots-15x10",
+        (scheme.encoder(), scheme.decoder(), fields.centres()[7]),
+        volley,
+        |signal, slots| plain::slots(signal, &means, sigma, 10, slots),
+        |slots, before, values| plain::slots_decode(slots, fields.centres(), 10, before, values),
+    )?;
+    source.load(&mut buffers.signal);
     let subject = Subject { flash: size_of_val(&fields), plain, ..subject };
-    Ok(subject.measure(out, Slots::new(&fields), &buffers.signal)?)
+    Ok(subject.measure(out, scheme, &buffers.signal)?)
 }
 
 /// Not a scheme, as its encoder takes a generator, whose work is counted with it.
@@ -241,17 +378,31 @@ fn probabilistic<S: Measured>(
     out: &mut impl Write,
     subject: Subject<'_>,
     (min, max): (S, S),
+    source: Signal,
     buffers: &mut Buffers<S>,
 ) -> Result<(), Failure> {
     let fields = ReceptiveFields::<S, 15, 16>::new(min, max, 1.5)?;
-    let sigma = ((max.to_f64() - min.to_f64()) / (1.5 * 13.0)) as f32;
-    let means = fields.centres().map(|centre| centre.to_f64() as f32);
+    let range = max.to_f64() - min.to_f64();
+    let (sigma, means) = ((range / (1.5 * 13.0)) as f32, means::<15>(min.to_f64(), range));
     let generator = || Pcg32::new(2, 2);
     let mut random = generator();
-    let plain = buffers.plain_population(|signal, fired| {
-        plain::probabilistic(signal, &means, sigma, || random.next_u32(), fired);
-    });
     let scheme = Probabilistic::new(&fields);
+    let pattern = |fired: &[i8]| {
+        let neurons = (0..).zip(fired).filter(|&(_, &fired)| fired == 1).map(|(i, _)| i);
+        Pattern::new(neurons).unwrap_or(Pattern::EMPTY)
+    };
+    let plain = buffers.plain_neurons::<_, _, 15>(
+        "grf-random-15x16",
+        (scheme.encoder(generator()), scheme.decoder(), fields.centres()[7]),
+        pattern,
+        |signal, fired| {
+            plain::probabilistic(signal, &means, sigma, 16, || random.next_u32(), fired)
+        },
+        |fired, before, values| {
+            plain::probabilistic_decode(fired, fields.centres(), before, values)
+        },
+    )?;
+    source.load(&mut buffers.signal);
     let subject = Subject { flash: size_of_val(&fields), plain, ..subject };
     Ok(subject.measure_codec(
         out,
@@ -272,7 +423,7 @@ fn moving_window<S: Measured, const N: usize>(
         |signal, spikes| plain::moving_window(signal, N, threshold, spikes),
         |spikes, values| plain::step_decode(spikes, threshold, values),
     );
-    source.load(&mut buffers.signal);
     let scheme = MovingWindow::<S, N>::new(threshold)?;
+    buffers.agree_signs("mw", source, scheme)?;
     Ok(Subject { plain, ..subject }.measure(out, scheme, &buffers.signal)?)
 }

@@ -9,7 +9,7 @@ use crate::signal::LENGTH;
 
 /// Samples in one call of the slice form: the code of one sample takes up to 19 bytes, and a
 /// Cortex-M0 has 16 KiB.
-const CHUNK: usize = 100;
+pub const CHUNK: usize = 100;
 
 /// What is measured.
 pub struct Subject<'a> {
@@ -178,7 +178,7 @@ where
 // it. Their addresses are printed, so that the code can be found and weighed.
 
 #[inline(never)]
-fn encode_sample<E: Encoder>(encoder: &mut E, sample: E::Sample) -> E::Output {
+pub fn encode_sample<E: Encoder>(encoder: &mut E, sample: E::Sample) -> E::Output {
     encoder.encode(sample)
 }
 
@@ -188,7 +188,7 @@ fn encode_slice<E: Encoder>(encoder: &mut E, samples: &[E::Sample], outputs: &mu
 }
 
 #[inline(never)]
-fn decode_sample<D: Decoder>(decoder: &mut D, code: D::Code) -> D::Sample {
+pub fn decode_sample<D: Decoder>(decoder: &mut D, code: D::Code) -> D::Sample {
     decoder.decode(code)
 }
 

@@ -23,15 +23,25 @@ pub trait Plain: Sample + Into<Self::Wide> {
         + AddAssign
         + SubAssign;
 
+    /// By how much a mean of centres may be off, as whole numbers hold neither exactly.
+    const MEAN: f64;
+
     fn wide(value: f64) -> Self::Wide;
+    fn count(count: i16) -> Self::Wide;
     fn narrow(wide: Self::Wide) -> Self;
 }
 
 impl Plain for f32 {
     type Wide = f32;
 
+    const MEAN: f64 = 0.0;
+
     fn wide(value: f64) -> f32 {
         value as f32
+    }
+
+    fn count(count: i16) -> f32 {
+        count.into()
     }
 
     fn narrow(wide: f32) -> f32 {
@@ -42,8 +52,14 @@ impl Plain for f32 {
 impl Plain for i16 {
     type Wide = i32;
 
+    const MEAN: f64 = 1.0;
+
     fn wide(value: f64) -> i32 {
         value as i32
+    }
+
+    fn count(count: i16) -> i32 {
+        count.into()
     }
 
     fn narrow(wide: i32) -> i16 {
@@ -54,8 +70,14 @@ impl Plain for i16 {
 impl Plain for FixedI16<U8> {
     type Wide = FixedI32<U8>;
 
+    const MEAN: f64 = 1.0 / 256.0;
+
     fn wide(value: f64) -> FixedI32<U8> {
         FixedI32::from_num(value)
+    }
+
+    fn count(count: i16) -> FixedI32<U8> {
+        FixedI32::from_num(count)
     }
 
     fn narrow(wide: FixedI32<U8>) -> Self {
@@ -66,8 +88,14 @@ impl Plain for FixedI16<U8> {
 impl Plain for FixedI32<U16> {
     type Wide = FixedI64<U16>;
 
+    const MEAN: f64 = 1.0 / 65_536.0;
+
     fn wide(value: f64) -> FixedI64<U16> {
         FixedI64::from_num(value)
+    }
+
+    fn count(count: i16) -> FixedI64<U16> {
+        FixedI64::from_num(count)
     }
 
     fn narrow(wide: FixedI64<U16>) -> Self {
@@ -113,19 +141,19 @@ pub fn step_forward<S: Plain>(input: &[S], threshold: S, spikes: &mut [i8]) {
     }
 }
 
-/// Algorithm 8, from its second loop on.
+/// Algorithm 8, from its second loop on; times the samples averaged, as the mean of whole numbers need not be one.
 #[inline(never)]
 pub fn moving_window<S: Plain>(input: &[S], averaged: usize, threshold: S, spikes: &mut [i8]) {
-    let threshold = threshold.into();
+    let count = S::wide(averaged as f64);
+    let margin = threshold.into() * count;
     for i in averaged..input.len() {
         let mut sum = S::Wide::default();
         for j in i - averaged..i {
             sum += input[j].into();
         }
-        let base = sum / S::wide(averaged as f64);
-        spikes[i] = if input[i].into() > base + threshold {
+        spikes[i] = if input[i].into() * count > sum + margin {
             1
-        } else if input[i].into() < base - threshold {
+        } else if input[i].into() * count < sum - margin {
             -1
         } else {
             0
@@ -235,17 +263,17 @@ pub fn ben_toolbox<S: Plain>(input: &mut [S], filter: &[S], threshold: f64, spik
     }
 }
 
-/// The rate codes' decoder: a convolution.
+/// The rate codes' decoder: a convolution, the oldest spike first.
 #[inline(never)]
 pub fn rate_decode<S: Plain>(spikes: &[i8], filter: &[S], shift: S, values: &mut [S]) {
     for i in 0..spikes.len() {
-        let mut value = shift.into();
-        for j in 0..filter.len() {
+        let mut value = S::Wide::default();
+        for j in (0..filter.len()).rev() {
             if i >= j && spikes[i - j] == 1 {
                 value += filter[j].into();
             }
         }
-        values[i] = S::narrow(value);
+        values[i] = S::narrow(value + shift.into());
     }
 }
 
@@ -280,37 +308,94 @@ pub fn gaussian<S: Plain>(input: &[S], centres: &[f32], sigma: f32, neurons: &mu
     }
 }
 
-/// Algorithm 2 with its exponentials, in `f32` for every sample type: the slots, or -1.
+/// The centre of the neuron that fired.
+#[inline(never)]
+pub fn position_decode<S: Plain>(neurons: &[i8], centres: &[S], values: &mut [S]) {
+    for i in 0..neurons.len() {
+        values[i] = centres[neurons[i] as usize];
+    }
+}
+
+/// Algorithm 2 with its exponentials, in `f32` for every sample type: the slot of each neuron, or -1, one sample
+/// after the other.
 #[inline(never)]
 pub fn slots<S: Plain>(input: &[S], centres: &[f32], sigma: f32, levels: usize, slots: &mut [i8]) {
     for i in 0..input.len() {
         let x = input[i].to_f64() as f32;
         for j in 0..centres.len() {
             let level = (levels as f32 * response(x, centres[j], sigma) + 0.5) as usize;
-            slots[j] = if level > 0 { (levels - level) as i8 } else { -1 };
+            slots[i * centres.len() + j] = if level > 0 { (levels - level) as i8 } else { -1 };
         }
     }
 }
 
-/// Probabilistic spiking with its exponentials, in `f32` for every sample type: a draw for each neuron.
+/// The mean of the centres weighted by their levels; where none fired, the value before.
+#[inline(never)]
+pub fn slots_decode<S: Plain>(
+    slots: &[i8],
+    centres: &[S],
+    levels: usize,
+    mut value: S,
+    values: &mut [S],
+) {
+    for i in 0..values.len() {
+        let (mut sum, mut total) = (S::Wide::default(), 0);
+        for j in 0..centres.len() {
+            let slot = slots[i * centres.len() + j];
+            if slot >= 0 {
+                let level = levels - slot as usize;
+                sum += centres[j].into() * S::count(level as i16);
+                total += level;
+            }
+        }
+        if total > 0 {
+            value = S::narrow(sum / S::count(total as i16));
+        }
+        values[i] = value;
+    }
+}
+
+/// Probabilistic spiking with its exponentials, in `f32` for every sample type: a draw for each neuron that responds,
+/// of a number below the levels; whether each fired, one sample after the other.
 #[inline(never)]
 pub fn probabilistic<S: Plain>(
     input: &[S],
     centres: &[f32],
     sigma: f32,
+    levels: u32,
     mut draw: impl FnMut() -> u32,
     fired: &mut [i8],
 ) {
     for i in 0..input.len() {
         let x = input[i].to_f64() as f32;
         for j in 0..centres.len() {
-            let chance = draw() as f32 / 4_294_967_296.0;
-            fired[j] = (chance < response(x, centres[j], sigma)) as i8;
+            let level = (levels as f32 * response(x, centres[j], sigma) + 0.5) as u32;
+            let fires = level > 0 && draw() / (u32::MAX / levels + 1) < level;
+            fired[i * centres.len() + j] = fires as i8;
         }
     }
 }
 
-fn response(x: f32, centre: f32, sigma: f32) -> f32 {
+/// The mean of the centres that fired; where none did, the value before.
+#[inline(never)]
+pub fn probabilistic_decode<S: Plain>(fired: &[i8], centres: &[S], mut value: S, values: &mut [S]) {
+    for i in 0..values.len() {
+        let (mut sum, mut total) = (S::Wide::default(), 0);
+        for j in 0..centres.len() {
+            if fired[i * centres.len() + j] == 1 {
+                sum += centres[j].into();
+                total += 1;
+            }
+        }
+        if total > 0 {
+            value = S::narrow(sum / S::count(total as i16));
+        }
+        values[i] = value;
+    }
+}
+
+/// Of one receptive field.
+pub fn response(x: f32, centre: f32, sigma: f32) -> f32 {
     let u = (x - centre) / sigma;
     libm::expf(-u * u / 2.0)
 }
