@@ -113,12 +113,6 @@ fn encode_apart<E: Encoder + ?Sized>(encoder: &mut E, sample: E::Sample) -> E::O
     encoder.encode(sample)
 }
 
-/// Whether every sample is finite, asked once for all.
-#[inline]
-pub(crate) fn all_finite<S: Sample>(samples: &[S]) -> bool {
-    samples.iter().fold(S::ZERO, |taint, &sample| taint.taint(sample)).is_finite()
-}
-
 /// Turns spikes back into values, one output of the encoder at a time.
 pub trait Decoder {
     /// The numbers it works on.
