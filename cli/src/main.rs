@@ -12,6 +12,8 @@ mod output;
 mod plot;
 mod port;
 mod resolve;
+#[cfg(any(test, feature = "capture"))]
+mod rtt;
 mod sample_type;
 mod scheme;
 mod settings;
@@ -21,7 +23,7 @@ mod trial;
 mod values;
 
 use clap::{Parser, Subcommand};
-use commands::{convert, decode, encode, info, listen, score, signal};
+use commands::{capture, convert, decode, encode, info, listen, score, signal};
 use std::io;
 use std::process::ExitCode;
 
@@ -39,6 +41,7 @@ enum Command {
     Decode(decode::Decode),
     Listen(listen::Listen),
     Convert(convert::Convert),
+    Capture(capture::Capture),
     Score(score::Score),
     Bench(commands::bench::Bench),
     Plot(commands::plot::Plot),
@@ -55,6 +58,7 @@ fn main() -> ExitCode {
         Command::Decode(options) => decode::run(&options),
         Command::Listen(options) => listen::run(&options),
         Command::Convert(options) => convert::run(&options),
+        Command::Capture(options) => capture::run(&options),
         Command::Score(options) => score::run(&options),
         Command::Bench(options) => commands::bench::run(&options),
         Command::Plot(options) => commands::plot::run(&options),

@@ -1,6 +1,7 @@
 //! One file a command.
 
 pub(crate) mod bench;
+pub(crate) mod capture;
 pub(crate) mod convert;
 pub(crate) mod decode;
 pub(crate) mod encode;
