@@ -6,7 +6,7 @@ use common::{good, good_bytes, refused, spikewire_bytes};
 use std::fmt::Write;
 
 /// Formats that hold any event of 14 bits of address whose time rises by little.
-const FORMATS: [&str; 11] = [
+const FORMATS: [&str; 12] = [
     "link",
     "link,period=5000,channels=6,jitter=5",
     "edvs:e1",
@@ -17,6 +17,7 @@ const FORMATS: [&str; 11] = [
     "edvs:e4,up=0",
     "es",
     "evt2",
+    "eieio,base=9,step=1,signed=1",
     "csv",
 ];
 
@@ -99,6 +100,9 @@ fn datagrams_hold_a_time_step_of_up_to_255_keys() {
     let between = table([(1999, 0, 1)]);
     let told = convert("csv", "eieio", between.as_bytes()).told;
     assert!(told.contains("1 events will be read at another time, up to 999 µs away"), "{told}");
+    let both = table([(0, 3, -1), (0, 3, 1)]);
+    let there = convert("csv", "eieio,signed=1", both.as_bytes());
+    assert_eq!(there.output, [2, 0x38, 0, 0, 0, 0, 6, 0, 0, 0, 7, 0, 0, 0]);
     // Keys without a time stamp take the time of the last one; those below the base are no address.
     let bytes = [1, 0x38, 9, 0, 0, 0, 1, 0, 0, 0, 2, 8, 0, 0, 0, 0, 3, 0, 0, 0];
     let read = convert("eieio,base=1,step=1", "csv", &bytes);

@@ -12,7 +12,8 @@ use std::path::PathBuf;
 /// FORMAT is `link`, `edvs:e0` to `edvs:e4` (by how the camera sends times), `es` (Event Stream),
 /// `evt2` (a file .raw), `eieio` (datagrams one after the other) or `csv` (`tick,address,polarity`).
 /// After a comma: `link,period=5000,channels=6,jitter=5` for short frames; `edvs:e2,up=0` where a 0
-/// goes up; `eieio,base=0x70000,step=1000` for the key of address 0 and the µs of a time step.
+/// goes up; `eieio,base=0x70000,step=1000,signed=1` for the key of address 0, the µs of a time step,
+/// and two keys an address, down and up.
 #[derive(Args, Debug)]
 pub(crate) struct Convert {
     /// File of events; `-` is standard input

@@ -15,6 +15,33 @@ pub(crate) struct Board {
     pub base: u32,
     /// A time step in µs.
     pub step: NonZeroU32,
+    /// Whether an address has two keys, the first for down and the second for up.
+    pub is_signed: bool,
+}
+
+impl Board {
+    /// The key of an event, if it has one.
+    fn key(self, event: Event) -> Option<u32> {
+        let address = u32::from(event.address);
+        match (self.is_signed, event.polarity) {
+            (false, Polarity::Down) => None,
+            (false, Polarity::Up) => self.base.checked_add(address),
+            (true, polarity) => {
+                self.base.checked_add(2 * address + u32::from(polarity == Polarity::Up))
+            }
+        }
+    }
+
+    /// The event of a key at a time, if it is one of this board's.
+    fn event(self, key: u32, tick: u32) -> Option<Event> {
+        let key = key.checked_sub(self.base)?;
+        let (address, polarity) = match (self.is_signed, key & 1) {
+            (false, _) => (key, Polarity::Up),
+            (true, 0) => (key >> 1, Polarity::Down),
+            (true, _) => (key >> 1, Polarity::Up),
+        };
+        Some(Event { tick, address: address.try_into().ok()?, polarity })
+    }
 }
 
 const MAX_KEYS: usize = 255;
@@ -44,12 +71,9 @@ impl Reader {
                     *time = stamp.wrapping_mul(board.step.get());
                 }
                 for key in datagram.keys() {
-                    match key.checked_sub(board.base).map(u16::try_from) {
-                        Some(Ok(address)) => {
-                            let event = Event { tick: *time, address, polarity: Polarity::Up };
-                            items.push(Item::Event(event));
-                        }
-                        _ => *skipped += 4,
+                    match board.event(key, *time) {
+                        Some(event) => items.push(Item::Event(event)),
+                        None => *skipped += 4,
                     }
                 }
                 let stamp = if datagram.timestamp.is_some() { 4 } else { 0 };
@@ -129,14 +153,13 @@ impl Writer {
     }
 
     fn event(&mut self, event: Event, output: &mut dyn Write) -> Result<()> {
-        let key = self.board.base.checked_add(event.address.into());
-        let Some(key) = key.filter(|_| event.polarity == Polarity::Up) else {
+        let Some(key) = self.board.key(event) else {
             if self.drops {
                 self.dropped += 1;
                 return Ok(());
             }
             bail!(
-                "event {} at address {}: a key of 32 bits has no direction; --drop goes on without events that go down",
+                "event {} at address {}: a key of 32 bits has no direction; signed=1 gives an address two keys, --drop goes on",
                 self.events,
                 event.address
             );
@@ -168,8 +191,8 @@ impl EventWriter for Writer {
     }
 
     fn notes(&self) -> Vec<String> {
-        let dropped = (self.dropped > 0)
-            .then(|| format!("{} events dropped: a key has no direction", self.dropped));
+        let dropped =
+            (self.dropped > 0).then(|| format!("{} events dropped: no key for them", self.dropped));
         [dropped, self.retimed.note(), without(self.others)].into_iter().flatten().collect()
     }
 }

@@ -118,7 +118,8 @@ impl FromStr for Format {
                 let base = settings.number("base", 0)?;
                 let step = NonZeroU32::new(settings.number("step", 1_000)?)
                     .with_context(|| format!("{text}: the step must be above 0 µs"))?;
-                Self::Eieio(Board { base, step })
+                let is_signed = settings.bit("signed", false)?;
+                Self::Eieio(Board { base, step, is_signed })
             }
             "csv" => Self::Csv,
             _ => bail!("no format `{name}`; there are {NAMES}"),
@@ -129,11 +130,8 @@ impl FromStr for Format {
 }
 
 fn edvs(time: EdvsTime, settings: &mut Settings) -> Result<Format> {
-    let edvs = match settings.number::<u32>("up", 1)? {
-        1 => Edvs::new(time),
-        0 => Edvs::new(time).with_up_as_zero(),
-        other => bail!("up={other} must be 0 or 1, the bit of an event that goes up"),
-    };
+    let edvs = Edvs::new(time);
+    let edvs = if settings.bit("up", true)? { edvs } else { edvs.with_up_as_zero() };
     Ok(Format::Edvs(edvs, time != EdvsTime::None))
 }
 
@@ -161,6 +159,14 @@ impl<'a> Settings<'a> {
         };
         let number = number.ok().and_then(|number| number.try_into().ok());
         number.ok_or_else(|| anyhow!("{key}={text} is no number of its range"))
+    }
+
+    /// The 0 or 1 of this key.
+    fn bit(&mut self, key: &str, otherwise: bool) -> Result<bool> {
+        match self.number::<u32>(key, otherwise.into())? {
+            bit @ 0..=1 => Ok(bit == 1),
+            other => bail!("{key}={other} must be 0 or 1"),
+        }
     }
 
     fn end(self, name: &str) -> Result<()> {
