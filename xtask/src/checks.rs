@@ -95,6 +95,18 @@ pub fn laptop() -> Result<()> {
     spikewire(&format!("encode --scheme sf --threshold 0.1 {flight} -o {}", spikes.display()))?;
     let decoded = spikewire(&format!("decode {}", spikes.display()))?;
     ensure!(decoded.lines().count() == 1 + 3627, "the flight decodes to another number of samples");
+    let (stream, events) = (target.join("flight.es"), target.join("flight-events.csv"));
+    spikewire(&format!("convert --from csv --to es {} -o {}", spikes.display(), stream.display()))?;
+    spikewire(&format!(
+        "convert --from csv --to csv {} -o {}",
+        spikes.display(),
+        events.display()
+    ))?;
+    ensure!(
+        spikewire(&format!("listen --from es {}", stream.display()))?
+            == fs::read_to_string(events)?,
+        "the flight's events come out of an Event Stream otherwise"
+    );
     print!("{}", spikewire(&format!("score {flight}"))?);
     spikewire(&format!("plot --all {flight} -o {}", picture.display()))?;
     let tables = spikewire("bench")?;
