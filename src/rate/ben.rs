@@ -130,7 +130,10 @@ impl<'a, S: Sample, const F: usize> Scheme for Ben<'a, S, F> {
 
     fn encoder(self) -> Self::Encoder {
         let rule = match self.criterion {
-            Criterion::Subtractive(threshold) => BenRule::Subtractive(threshold.widen().negated()),
+            Criterion::Subtractive(threshold) => {
+                let taps = self.taps.as_array().iter().map(|tap| tap.widen());
+                BenRule::Subtractive(S::Residual::limit(threshold.widen(), taps))
+            }
             Criterion::Multiplicative(threshold) => {
                 BenRule::Multiplicative(S::Residual::ratio(threshold))
             }
@@ -146,7 +149,7 @@ impl<'a, S: Sample, const F: usize> Scheme for Ben<'a, S, F> {
 /// The error with the filter subtracted is smaller than without, by the criterion.
 #[derive(Clone, Copy, Debug)]
 pub enum BenRule<R: Residual> {
-    /// At most this excess, which is minus the threshold.
+    /// Within this limit, as [`Nearer::limit`] has it.
     Subtractive(R),
     /// At most this part.
     Multiplicative(R::Ratio),
@@ -164,10 +167,23 @@ impl<R: Residual> Rule<R> for BenRule<R> {
     fn fits_by_slot(&self, pairs: impl Iterator<Item = (R, R)>) -> Option<bool> {
         Some(R::is_nearer(self, pairs))
     }
+
+    fn cut(self, absent: impl Iterator<Item = R>) -> Self {
+        match self {
+            Self::Subtractive(limit) => Self::Subtractive(R::cut(limit, absent)),
+            Self::Multiplicative(ratio) => Self::Multiplicative(ratio),
+        }
+    }
 }
 
 /// Compares residuals with and without their taps. Sealed: only this crate can name it.
 pub trait Nearer: Sized {
+    /// What the subtractive criterion compares with.
+    fn limit(threshold: Self, taps: impl Iterator<Item = Self>) -> Self;
+
+    /// The limit for windows without these taps.
+    fn cut(limit: Self, absent: impl Iterator<Item = Self>) -> Self;
+
     /// Whether the taps bring the residuals nearer to zero, by the criterion.
     fn is_nearer(rule: &BenRule<Self>, pairs: impl Iterator<Item = (Self, Self)>) -> bool
     where
@@ -175,6 +191,15 @@ pub trait Nearer: Sized {
 }
 
 impl Nearer for f32 {
+    /// Of `e1 - e2`.
+    fn limit(threshold: f32, _: impl Iterator<Item = f32>) -> f32 {
+        -threshold
+    }
+
+    fn cut(limit: f32, _: impl Iterator<Item = f32>) -> f32 {
+        limit
+    }
+
     #[inline(always)]
     fn is_nearer(rule: &BenRule<f32>, pairs: impl Iterator<Item = (f32, f32)>) -> bool {
         let (mut with, mut without) = (0.0, 0.0);
@@ -183,33 +208,41 @@ impl Nearer for f32 {
             without += residual.abs();
         }
         match *rule {
-            BenRule::Subtractive(most) => with - without <= most,
+            BenRule::Subtractive(limit) => with - without <= limit,
             BenRule::Multiplicative(ratio) => with <= without * ratio,
         }
     }
 }
 
-/// `|residual - tap| - |residual|`.
-#[inline(always)]
-fn excess(residual: i32, tap: i32) -> i32 {
-    // Mostly, and whatever the tap's sign.
-    if residual >= tap && residual >= 0 {
-        return tap.wrapping_neg();
-    }
-    residual.wrapping_sub(tap).wrapping_abs().wrapping_sub(residual.wrapping_abs())
-}
-
 impl Nearer for i32 {
+    /// Of `e1 - e2 + sum |h|`, which no pair makes smaller: it tells as soon as it is passed.
+    fn limit(threshold: i32, taps: impl Iterator<Item = i32>) -> i32 {
+        taps.fold(threshold.wrapping_neg(), |limit, tap| limit.wrapping_add(tap.wrapping_abs()))
+    }
+
+    fn cut(limit: i32, absent: impl Iterator<Item = i32>) -> i32 {
+        absent.fold(limit, |limit, tap| limit.wrapping_sub(tap.wrapping_abs()))
+    }
+
     #[inline(always)]
     fn is_nearer(rule: &BenRule<i32>, pairs: impl Iterator<Item = (i32, i32)>) -> bool {
         match *rule {
-            // The excess has room: it is at most the sum of the taps' magnitudes.
-            BenRule::Subtractive(most) => {
-                let mut excess = 0_i32;
+            // For a tap of 0 or more, `|r-h| - |r| + |h|` is twice what r, if positive, lacks to it.
+            BenRule::Subtractive(limit) => {
+                let mut left = limit >> 1;
                 for (residual, tap) in pairs {
-                    excess = excess.wrapping_add(self::excess(residual, tap));
+                    // As `tap >= 0 && residual >= tap`.
+                    if residual.wrapping_sub(tap) | tap >= 0 {
+                        continue;
+                    }
+                    let residual = if tap < 0 { residual.wrapping_neg() } else { residual };
+                    let lack = tap.wrapping_abs().wrapping_sub(residual.max(0));
+                    left = left.wrapping_sub(lack.max(0));
+                    if left < 0 {
+                        return false;
+                    }
                 }
-                excess <= most
+                left >= 0
             }
             BenRule::Multiplicative(ratio) => {
                 let (mut with, mut without) = (i32::no_sum(), i32::no_sum());

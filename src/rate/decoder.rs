@@ -32,16 +32,16 @@ impl<'a, S: Sample, const F: usize> RateDecoder<'a, S, F> {
 
     #[inline(always)]
     fn decode_one(&mut self, spike: Spike) -> S {
-        let next = self.next as usize;
+        let next = (self.next as usize).min(F - 1);
         if spike == Spike::Up {
             for (sum, tap) in self.pending.iter_mut().zip(self.taps.starting_at(next)) {
                 *sum = sum.plus(tap.widen());
             }
         }
-        let sum = match self.pending.get_mut(next) {
-            Some(slot) => core::mem::replace(slot, S::Residual::ZERO),
-            None => S::Residual::ZERO,
-        };
+        let mut sum = S::Residual::ZERO;
+        if let Some(pending) = self.pending.get_mut(next) {
+            core::mem::swap(&mut sum, pending);
+        }
         self.next = if next + 1 < F { next as u16 + 1 } else { 0 };
         self.shift.restore(sum)
     }

@@ -20,6 +20,11 @@ pub trait Rule<R: Residual>: Copy {
 
     /// The same for a whole window from the first slot on; `None` if that order cannot tell.
     fn fits_by_slot(&self, pairs: impl Iterator<Item = (R, R)>) -> Option<bool>;
+
+    /// The rule for windows that the recording cuts, without these taps.
+    fn cut(self, _absent: impl Iterator<Item = R>) -> Self {
+        self
+    }
 }
 
 /// The encoder of the rate codes that look ahead over whole filters, with the rule `R` of its scheme.
@@ -112,9 +117,11 @@ impl<'a, S: Sample, R: Rule<S::Residual>, const F: usize> RateEncoder<'a, S, R, 
         let length = F.saturating_sub(self.cursor.missing());
         let oldest = self.cursor.oldest();
         let (late, early) = self.residuals.split_at_mut_checked(oldest)?;
-        let taps = self.taps.as_array().iter().map(|tap| tap.widen()).take(length);
+        let taps = self.taps.as_array().iter().map(|tap| tap.widen());
+        let rule = self.rule.cut(taps.clone().skip(length));
+        let taps = taps.take(length);
         let residuals = early.iter().chain(&*late).copied();
-        if !self.rule.fits(residuals.zip(taps.clone()), length == F) {
+        if !rule.fits(residuals.zip(taps.clone()), length == F) {
             return Some(Spike::None);
         }
         for (residual, tap) in early.iter_mut().chain(late).zip(taps) {

@@ -162,7 +162,8 @@ macro_rules! integer_rated {
 
             #[inline]
             fn restore(self, sum: i32) -> Self {
-                let value = i32::from($to_bits(self)).saturating_add(sum);
+                // No filter of 4096 taps of 16 bits overflows.
+                let value = i32::from($to_bits(self)).wrapping_add(sum);
                 $from_bits(value.clamp(i16::MIN.into(), i16::MAX.into()) as i16)
             }
         }
