@@ -18,10 +18,10 @@ impl<const F: usize> Cursor<F> {
         Self { next: 0, missing: look_ahead as u16 }
     }
 
-    /// The slot that is written next.
+    /// The slot that is written next. That it is one, the compiler sees here.
     #[inline]
     pub(super) fn next(self) -> usize {
-        self.next as usize
+        (self.next as usize).min(F - 1)
     }
 
     /// How many residuals are to come before the next one completes a window.
@@ -39,7 +39,7 @@ impl<const F: usize> Cursor<F> {
     /// Passes the slot that was written, and says whether that completed a window.
     #[inline]
     pub(super) fn advance(&mut self) -> bool {
-        let next = self.next as usize + 1;
+        let next = self.next() + 1;
         self.next = if next < F { next as u16 } else { 0 };
         let is_whole = self.missing == 0;
         if !is_whole {

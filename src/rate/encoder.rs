@@ -85,7 +85,7 @@ impl<'a, S: Sample, R: Rule<S::Residual>, const F: usize> RateEncoder<'a, S, R, 
         let (shift, magnitude, rule) = (self.shift, self.taps.magnitude(), self.rule);
         let mut line = [self.residuals; 4];
         let line = line.as_flattened_mut();
-        let oldest = self.cursor.next().min(F - 1);
+        let oldest = self.cursor.next();
         let windows = cells(line.get_mut(oldest + 1..).unwrap_or_default()).windows(F);
         let mut length = samples.len().min(spikes.len()).min(windows.len());
         let all = spikes.iter_mut().zip(samples).zip(windows);
