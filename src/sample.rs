@@ -88,7 +88,7 @@ impl Arithmetic for f32 {
 
 /// In the order of the values without their sign.
 #[inline]
-pub(crate) fn magnitude(value: f32) -> u32 {
+pub(crate) const fn magnitude(value: f32) -> u32 {
     value.to_bits() << 1
 }
 

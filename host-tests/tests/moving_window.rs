@@ -96,6 +96,19 @@ fn integers_do_not_wrap() {
     ends::<I32F0, 16_384>(I32F0::MIN, I32F0::MAX);
 }
 
+/// Sums change between 32 and 64 bits where samples become large, and back.
+#[test]
+fn the_width_of_a_sum_does_not_show() {
+    for end in [1 << 22, 1 << 25, 1 << 26, 1 << 27, 1 << 28, 1 << 29, i32::MAX] {
+        let swing = (0..200).map(|i| [i, end, -end, end - 1, -end - 1][i as usize % 5]);
+        let stay = [end - 1, -end, 3, end].into_iter().flat_map(|value| [value; 100]);
+        let x: Vec<_> = swing.chain(stay).map(I32F0::from_bits).collect();
+        for threshold in [1, end / 2 + 1, end] {
+            check_all(&x, I32F0::from_bits(threshold), &x[..5]);
+        }
+    }
+}
+
 #[test]
 fn a_rejected_priming_window_is_counted_and_ignored() {
     let mut encoder = MovingWindow::<f32, 2>::new(1.0).unwrap().encoder();
