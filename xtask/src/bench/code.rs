@@ -34,6 +34,10 @@ impl Code {
     }
 
     /// The bytes of the function there, and of those that it calls and that were not inlined.
+    ///
+    /// A slice form that falls back on the sample form, for what comes before the first sample and for
+    /// samples that are not finite, is counted with it: it does not work without. Who takes one sample
+    /// at a time links the sample form alone, which is counted for itself.
     pub fn bytes(&self, address: u32) -> u32 {
         let (mut found, mut waiting) = (BTreeSet::new(), vec![address & !1]);
         let mut bytes = 0;

@@ -62,7 +62,7 @@ pub fn text(rows: &[Row]) -> String {
         let title = format!("{}, {} signal, {}", encode.core, encode.signal, encode.sample);
         if title != table {
             text += &format!(
-                "\n{title:18} {:>8} {:>8} {:>6} {:>8} {:>8} {:>6} {:>9} {:>6} {:>6} {:>6} {:>5} {:>5} {:>5}\n",
+                "\n{title:18} {:>8} {:>8} {:>6} {:>8} {:>8} {:>6} {:>9} {:>6} {:>6} {:>8} {:>6} {:>5} {:>5} {:>5}\n",
                 "encode",
                 "1 sample",
                 "worst",
@@ -72,6 +72,7 @@ pub fn text(rows: &[Row]) -> String {
                 "plain",
                 "ratio",
                 "code",
+                "1 sample",
                 "decode",
                 "state",
                 "flash",
@@ -81,7 +82,7 @@ pub fn text(rows: &[Row]) -> String {
         }
         let (plain, ratio) = line.plain();
         text += &format!(
-            "{:24} {:>8.1} {:>8.1} {:>6} {:>8.1} {:>8.1} {:>6} {:>9} {:>6} {:>6} {:>6} {:>5} {:>5} {:>5}\n",
+            "{:24} {:>8.1} {:>8.1} {:>6} {:>8.1} {:>8.1} {:>6} {:>9} {:>6} {:>6} {:>8} {:>6} {:>5} {:>5} {:>5}\n",
             encode.codec,
             encode.instructions_mean,
             encode_sample.instructions_mean,
@@ -92,6 +93,7 @@ pub fn text(rows: &[Row]) -> String {
             plain,
             ratio,
             encode.code_bytes,
+            encode_sample.code_bytes,
             decode.code_bytes,
             encode.state_bytes,
             encode.flash_bytes,
@@ -118,8 +120,8 @@ fn codecs(rows: &[Row]) -> String {
     for (core, sample) in CORES.into_iter().zip(["f32", "q16.16"]) {
         text += &format!(
             "\nCortex-{core}, `{sample}`:\n\n\
-             | codec | encode slice | encode sample | worst sample | decode | plain | ratio | code | state | flash |\n\
-             |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
+             | codec | encode slice | encode sample | worst sample | decode | plain | ratio | code slice | code sample | state | flash |\n\
+             |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
         );
         for line in lines(rows) {
             let Line { encode, encode_sample, decode, .. } = &line;
@@ -128,13 +130,14 @@ fn codecs(rows: &[Row]) -> String {
             {
                 let (plain, ratio) = line.plain();
                 text += &format!(
-                    "| {} | {:.1} | {:.1} | {} | {:.1} | {plain} | {ratio} | {} | {} | {} |\n",
+                    "| {} | {:.1} | {:.1} | {} | {:.1} | {plain} | {ratio} | {} | {} | {} | {} |\n",
                     name(&encode.codec),
                     encode.instructions_mean,
                     encode_sample.instructions_mean,
                     encode_sample.instructions_max,
                     decode.instructions_mean,
                     encode.code_bytes,
+                    encode_sample.code_bytes,
                     encode.state_bytes,
                     encode.flash_bytes,
                 );
