@@ -108,6 +108,12 @@ fn datagrams_hold_a_time_step_of_up_to_255_keys() {
     let read = convert("eieio,base=1,step=1", "csv", &bytes);
     assert_eq!(rows(&read.output), table([(9, 0, 1), (9, 2, 1)]));
     assert!(read.told.contains("\n4 bytes skipped\n"), "{}", read.told);
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), [&bytes[..10], &[1, 8, 1, 0, 0, 0].repeat(20_000)].concat())
+        .unwrap();
+    let path = file.path().display();
+    let late = good(&format!("convert --from eieio,base=1,step=1 --to csv {path}"), "").output;
+    assert_eq!(late.matches("\n9,0,1").count(), 20_001);
 }
 
 #[test]

@@ -319,7 +319,7 @@ fn a_serial_port_is_heard_until_its_time_is_over() {
 fn a_camera_without_times_takes_those_of_arrival() {
     let (mut line, name, _open) = serial_line();
     let mut child =
-        spawn(&format!("listen --from edvs:e0 --baud 115200 --seconds 1 {name}"), Stdio::piped());
+        spawn(&format!("listen --from edvs:e0 --baud 115200 --seconds 3 {name}"), Stdio::piped());
     line.write_all(&[0x81, 0x82]).unwrap();
     let first = lines(&mut child, 2);
     std::thread::sleep(Duration::from_millis(20));
@@ -346,17 +346,15 @@ fn ctrl_c_keeps_what_was_heard() {
     let child = spawn(&format!("{options} -o {}", path.display()), Stdio::piped());
     wait_for_file(directory.path());
     line.write_all(&[0x81, 0x82, 0, 0, 0, 9, 0x81]).unwrap();
-    std::thread::sleep(Duration::from_millis(300));
     let told = interrupt(child);
     assert!(told.contains("7 bytes, 1 events") && told.contains("the end is cut"), "{told}");
     assert_eq!(fs::read(&path).unwrap(), b"tick,address,polarity\n9,130,1\n");
 }
 
-/// Until the program has opened its port and then its file, beside its place.
+/// Until the program hears: its file, beside its place, comes last.
 fn wait_for_file(directory: &Path) {
     for _ in 0..1000 {
         if fs::read_dir(directory).unwrap().count() > 0 {
-            std::thread::sleep(Duration::from_millis(300));
             return;
         }
         std::thread::sleep(Duration::from_millis(10));
@@ -385,7 +383,8 @@ fn a_port_that_goes_away_is_an_error_and_what_came_is_kept() {
     wait_for_file(directory.path());
     drop(open);
     line.write_all(&[0x81, 0x82, 0, 0, 0, 9]).unwrap();
-    std::thread::sleep(Duration::from_millis(300));
+    // Until it is read: what waits in a line that hangs up is gone.
+    std::thread::sleep(Duration::from_secs(1));
     drop(line);
     let done = child.wait_with_output().unwrap();
     let told = String::from_utf8(done.stderr).unwrap();

@@ -48,7 +48,7 @@ pub(crate) fn run(options: &Convert) -> Result<()> {
     let mut buffer = vec![0; 1 << 16];
     loop {
         match port.read(&mut buffer)? {
-            Bytes::Some(count) => stream.push(&buffer[..count], 0, &mut output)?,
+            Bytes::Some(count) => stream.push(&buffer[..count], None, &mut output)?,
             Bytes::NotYet => {}
             Bytes::End => break,
         }

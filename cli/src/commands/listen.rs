@@ -73,6 +73,7 @@ pub(crate) struct Listen {
 pub(crate) fn run(options: &Listen) -> Result<()> {
     let values = options.values()?;
     let mut port = Port::open(&options.input, options.baud)?;
+    let stop = Stop::new(options.seconds)?;
     let mut output = Output::open(options.output.as_deref())?;
     let (reader, writer) = match values {
         Some(values) => {
@@ -83,14 +84,14 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
         None => (options.from.reader(port.name()), options.to.writer(options.drop)),
     };
     let mut stream = Stream::new(reader, writer, options.from_zero);
-    let stop = Stop::new(options.seconds)?;
     let mut live = Live::new(options.output.is_none());
 
     let mut buffer = vec![0; 1 << 16];
     let heard = loop {
         match port.read(&mut buffer) {
             Ok(Bytes::Some(count)) => {
-                stream.push(&buffer[..count], stop.tick(), &mut output)?;
+                let arrival = options.baud.map(|_| stop.tick());
+                stream.push(&buffer[..count], arrival, &mut output)?;
                 if !port.is_file() {
                     output.flush()?;
                 }

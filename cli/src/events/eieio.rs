@@ -111,10 +111,6 @@ impl EventReader for Reader {
     fn tally(&self) -> Tally {
         Tally { skipped: self.skipped, ..Tally::default() }
     }
-
-    fn set_arrival(&mut self, tick: u32) {
-        self.time = tick;
-    }
 }
 
 /// Writes a datagram for each time step.

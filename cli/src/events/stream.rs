@@ -49,19 +49,21 @@ impl Stream {
         }
     }
 
-    /// Takes bytes that arrive at this time, cut anywhere.
+    /// Takes bytes, cut anywhere, that arrive at this time if it means anything.
     ///
     /// # Errors
     /// They cannot be read, or what they mean cannot be written.
     pub(crate) fn push(
         &mut self,
         bytes: &[u8],
-        arrival: u32,
+        arrival: Option<u32>,
         output: &mut dyn Write,
     ) -> Result<()> {
         /// So many that their items stay small.
         const PIECE: usize = 1 << 14;
-        self.reader.set_arrival(arrival);
+        if let Some(tick) = arrival {
+            self.reader.set_arrival(tick);
+        }
         for piece in bytes.chunks(PIECE) {
             self.bytes += piece.len() as u64;
             // What came before an error is still written.
