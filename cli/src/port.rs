@@ -64,14 +64,15 @@ impl Port {
     /// # Errors
     /// The port failed, or is gone.
     pub(crate) fn read(&mut self, buffer: &mut [u8]) -> Result<Bytes> {
-        use io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
+        use io::ErrorKind::{BrokenPipe, Interrupted, TimedOut, WouldBlock};
         match self.bytes.read(buffer) {
             Ok(0) => Ok(Bytes::End),
             Ok(count) => Ok(Bytes::Some(count)),
             Err(error) if matches!(error.kind(), Interrupted | TimedOut | WouldBlock) => {
                 Ok(Bytes::NotYet)
             }
-            // Told as text, as a broken pipe would pass for a reader who has read enough.
+            // Told as text: a broken pipe itself would pass for a reader who has read enough.
+            Err(error) if error.kind() == BrokenPipe => bail!("{}: the port is gone", self.name),
             Err(error) => bail!("{}: {error}", self.name),
         }
     }

@@ -390,7 +390,8 @@ fn a_port_that_goes_away_is_an_error_and_what_came_is_kept() {
     let told = String::from_utf8(done.stderr).unwrap();
     assert_eq!(done.status.code(), Some(2), "{told}");
     assert!(
-        told.contains("6 bytes, 1 events") && told.contains(&format!("error: {name}")),
+        told.contains("6 bytes, 1 events")
+            && told.contains(&format!("error: {name}: the port is gone")),
         "{told}"
     );
     assert_eq!(fs::read(&path).unwrap(), b"tick,address,polarity\n9,130,1\n");
