@@ -193,16 +193,31 @@ pub struct PositionDecoder<'a, S, const M: usize> {
     value: S,
 }
 
+impl<S: Sample, const M: usize> PositionDecoder<'_, S, M> {
+    #[inline]
+    fn centre(&self, neuron: Option<Neuron<M>>) -> Option<S> {
+        neuron.and_then(|Neuron(number)| self.centres.get(usize::from(number.get()) - 1))
+    }
+}
+
 impl<S: Sample, const M: usize> Decoder for PositionDecoder<'_, S, M> {
     type Sample = S;
     type Code = Option<Neuron<M>>;
 
     #[inline]
     fn decode(&mut self, neuron: Option<Neuron<M>>) -> S {
-        if let Some(centre) = neuron.and_then(|neuron| self.centres.get(neuron.index().into())) {
-            self.value = centre;
-        }
+        self.value = self.centre(neuron).unwrap_or(self.value);
         self.value
+    }
+
+    fn decode_slice(&mut self, neurons: &[Option<Neuron<M>>], values: &mut [S]) -> usize {
+        let mut decoded = self.value;
+        for (value, &neuron) in values.iter_mut().zip(neurons) {
+            decoded = self.centre(neuron).unwrap_or(decoded);
+            *value = decoded;
+        }
+        self.value = decoded;
+        neurons.len().min(values.len())
     }
 
     fn resync(&mut self, value: S) {
