@@ -162,6 +162,16 @@ fn edges() {
     });
 }
 
+/// An edge at 0, which -0 does not lie beyond, among centres too close for cells, and among others.
+#[test]
+fn edges_at_zero() {
+    let x = [-0.0, 0.0, 1e-45, -1e-45, 1.0, -1.0, 100.0];
+    check([-1.0, 1.0, 1.001, 1.002, 1.003, 100.0], &x);
+    check([-1.0, 1.0, 3.0], &x);
+    check([-1e-45, 0.0, 1e-45, 1.0, 100.0], &x);
+    check_linear::<f32, 4>(-1.0, 1.0, &x);
+}
+
 /// Even where one centre is too small to move the sum of both in double precision.
 #[test]
 fn edges_of_centres_of_any_size() {

@@ -16,8 +16,8 @@ use crate::{ConfigError, Sample};
 /// - **Memory:** the centres, as many edges, `2 M` bytes for a table of even cells, and 8 bytes.
 /// - **Work:** one multiplication finds a value's cell, the table a neuron for the cell, and one
 ///   comparison with an edge whether it is that or the next. Where two edges share a cell, as with
-///   Gaussian-spaced centres from about 140 on or the user's own, and beyond 256 neurons, it is a binary
-///   search instead.
+///   Gaussian-spaced centres from about 140 on or the user's own, beyond 256 neurons, and for `f32` without
+///   a float unit, it is a binary search instead.
 ///
 /// Fewer than three neurons do not compile:
 ///
@@ -163,7 +163,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
     /// Whether [`by_cell`](Self::by_cell) tells the neuron of every value.
     #[inline]
     pub(super) fn has_cells(&self) -> bool {
-        self.cells != Cells::ONE
+        S::HAS_CELLS && self.cells != Cells::ONE
     }
 
     /// As [`nearest`](Self::nearest), by cell; 1 for what is not a number.
@@ -171,20 +171,21 @@ impl<S: Sample, const M: usize> Centres<S, M> {
     pub(super) fn by_cell(&self, value: S) -> usize {
         let cell = value.cell(self.cells).min(2 * M - 1);
         let lowest = self.starts.as_flattened().get(cell).copied().map_or(1, usize::from);
-        if self.is_beyond(value, lowest - 1) { lowest + 1 } else { lowest }
+        let is_beyond = self.edges().get(lowest - 1).is_some_and(|&edge| value > edge);
+        if is_beyond { lowest + 1 } else { lowest }
     }
 
     /// As [`nearest`](Self::nearest), by binary search.
     #[inline(never)] // unrolled, and not to be so more than once
     pub(super) fn by_search(&self, value: S) -> usize {
-        1 + count_preceding(M - 1, |edge| self.is_beyond(value, edge))
+        let edges = self.edges();
+        1 + count_preceding(M - 1, |i| edges.get(i).is_some_and(|&edge| value.is_beyond(edge)))
     }
 
-    /// Whether the value lies beyond the edge of this neuron; beyond the last it does not.
+    /// Those of all neurons but the last, which has none.
     #[inline]
-    fn is_beyond(&self, value: S, neuron: usize) -> bool {
-        let edges = self.edges.get(..M - 1).unwrap_or_default();
-        edges.get(neuron).is_some_and(|&edge| value > edge)
+    fn edges(&self) -> &[S] {
+        self.edges.get(..M - 1).unwrap_or_default()
     }
 
     pub(super) fn get(&self, neuron: usize) -> Option<S> {

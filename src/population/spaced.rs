@@ -20,7 +20,13 @@ pub trait Spaced: Sized {
     /// Whether every distance of this value fits [`Short`](Self::Short).
     fn is_near(&self, near: Self::Near) -> bool;
 
+    /// Whether a multiplication is quicker than a search: not where floats have no unit.
+    const HAS_CELLS: bool;
+
     fn cell(self, cells: Cells) -> usize;
+
+    /// Whether a finite value exceeds an edge, by whole numbers: quick where floats have no unit.
+    fn is_beyond(&self, edge: Self) -> bool;
 
     /// Centres with the table for their edges.
     fn centres<const M: usize>(values: [Self; M], edges: [Self; M]) -> Centres<Self, M>;
@@ -204,9 +210,17 @@ impl Spaced for f32 {
         true
     }
 
+    const HAS_CELLS: bool = !cfg!(target_abi = "eabi");
+
     #[inline]
     fn cell(self, cells: Cells) -> usize {
         cells.of_float(self)
+    }
+
+    // No edge is -0: it is a sum or a float below one.
+    #[inline]
+    fn is_beyond(&self, edge: f32) -> bool {
+        self.total_cmp(&edge).is_gt()
     }
 
     #[inline]
@@ -248,9 +262,16 @@ macro_rules! integer {
                 is_near($to_bits(*self), near)
             }
 
+            const HAS_CELLS: bool = true;
+
             #[inline]
             fn cell(self, cells: Cells) -> usize {
                 cells.of_integer($to_bits(self).into())
+            }
+
+            #[inline]
+            fn is_beyond(&self, edge: Self) -> bool {
+                *self > edge
             }
 
             // At most 1024 neurons of 256 levels: neither this nor the sum of levels leaves 30 bits.
