@@ -187,6 +187,20 @@ fn a_floor_halfway_between_two_neurons() {
     });
 }
 
+/// Ranges whose distances just fit 32 bits, and just do not; values up to where they leave them.
+#[test]
+fn distances_about_32_bits_long() {
+    let range = (20..30_u32, 0..1_000_000).prop_map(|(bits, more)| (1 << bits) + more);
+    proptest!(cases(128), |(min in -1_000_000..1_000_000_i32, range in range, beta in 0.3_f32..4.0)| {
+        let x: Vec<_> = (-64..=64_i32)
+            .flat_map(|part| [min.saturating_add(part.saturating_mul(range >> 4)), part << 24])
+            .map(I32F0::from_bits)
+            .collect();
+        let (min, max) = (I32F0::from_bits(min), I32F0::from_bits(min.saturating_add(range)));
+        check_all(min, max, beta, &x);
+    });
+}
+
 #[test]
 fn drawn_floors() {
     proptest!(cases(64), |(x in proptest::collection::vec(float(), 40), floor in 1..=10_u16)| {
