@@ -74,6 +74,13 @@ impl<'a, S: Sample, R: Rule<S::Residual>, const F: usize> RateEncoder<'a, S, R, 
         }
     }
 
+    /// The same, called: the criteria of BSA in fixed point make one loop each, and the compiler would
+    /// put each into a loop over samples of its own.
+    #[inline(never)]
+    fn encode_called(&mut self, sample: S) -> Option<Spike> {
+        self.encode_one(sample)
+    }
+
     /// Encodes the first samples, about three filters of them and none that is not finite, and returns
     /// how many. Each must complete a window.
     ///
@@ -168,7 +175,11 @@ impl<S: Sample, R: Rule<S::Residual>, const F: usize> Encoder for RateEncoder<'_
         let length = samples.len().min(spikes.len());
         if !R::IN_ORDER {
             for (spike, &sample) in spikes.iter_mut().zip(samples) {
-                *spike = self.encode_one(sample);
+                *spike = if S::Residual::IS_EXACT {
+                    self.encode_called(sample)
+                } else {
+                    self.encode_one(sample)
+                };
             }
             return length;
         }

@@ -22,6 +22,9 @@ pub trait Rated: Sized {
 pub trait Residual: Copy + PartialOrd + core::fmt::Debug + Lack + Nearer {
     const ZERO: Self;
 
+    /// Whether sums are exact, in any order.
+    const IS_EXACT: bool;
+
     /// A sum of magnitudes.
     type Sum: Copy + core::fmt::Debug;
     /// The factor of the multiplicative BSA: `f32`, or 14 bits of fraction.
@@ -61,6 +64,7 @@ impl Rated for f32 {
 
 impl Residual for f32 {
     const ZERO: f32 = 0.0;
+    const IS_EXACT: bool = false;
 
     type Sum = f32;
     type Ratio = f32;
@@ -105,6 +109,7 @@ impl Residual for f32 {
 /// `wrapping` says so to the compiler.
 impl Residual for i32 {
     const ZERO: i32 = 0;
+    const IS_EXACT: bool = true;
 
     type Sum = i64;
     type Ratio = u16;
