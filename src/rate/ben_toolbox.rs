@@ -114,6 +114,7 @@ pub struct BenToolboxEncoder<'a, S: Sample, const F: usize> {
     residuals: [S::Residual; F],
 }
 
+/// What changes with a sample, besides the residuals: kept in registers over a slice.
 #[derive(Clone, Copy, Debug)]
 struct State<R, const F: usize> {
     /// The last tap of a spike just emitted, to be taken from the sample to come.
@@ -138,7 +139,7 @@ fn with_filter<S: Sample>(residuals: &[S::Residual], taps: &[S]) -> <S::Residual
 
 impl<S: Sample, const F: usize> BenToolboxEncoder<'_, S, F> {
     #[inline(always)]
-    fn take(&mut self, sample: S, state: &mut State<S::Residual, F>) -> Option<Spike> {
+    fn encode_one(&mut self, sample: S, state: &mut State<S::Residual, F>) -> Option<Spike> {
         if !sample.is_finite() {
             state.tally.reject();
             return None;
@@ -146,19 +147,20 @@ impl<S: Sample, const F: usize> BenToolboxEncoder<'_, S, F> {
         let residual = sample.residual(self.shift, self.taps.magnitude()).minus(state.owed);
         state.owed = S::Residual::ZERO;
         let without = without_filter(&self.residuals);
-        let slot = state.cursor.next();
-        *self.residuals.get_mut(slot)? = residual;
+        let newest = state.cursor.next();
+        *self.residuals.get_mut(newest)? = residual;
         if !state.cursor.advance() {
             return None;
         }
-        let with = with_filter(&self.residuals, self.taps.ending_at(slot));
+        let with = with_filter(&self.residuals, self.taps.starting_at(newest + 1));
         if !S::Residual::at_most(with, without, self.ratio) {
             return Some(Spike::None);
         }
-        // From one residual after the oldest on; the last tap is left over.
-        let oldest = self.residuals.get(state.cursor.next()).copied()?;
-        subtract(cells(&mut self.residuals), self.taps.ending_at(state.cursor.next()));
-        *self.residuals.get_mut(state.cursor.next())? = oldest;
+        // The taps begin one residual after the oldest; the last of them is left over.
+        let oldest = state.cursor.next();
+        let kept = self.residuals.get(oldest).copied()?;
+        subtract(cells(&mut self.residuals), self.taps.starting_at(oldest + 1));
+        *self.residuals.get_mut(oldest)? = kept;
         state.owed = self.taps.as_array().last()?.widen();
         Some(Spike::Up)
     }
@@ -171,7 +173,7 @@ impl<S: Sample, const F: usize> Encoder for BenToolboxEncoder<'_, S, F> {
     #[inline]
     fn encode(&mut self, sample: S) -> Option<Spike> {
         let mut state = self.state;
-        let spike = self.take(sample, &mut state);
+        let spike = self.encode_one(sample, &mut state);
         self.state = state;
         spike
     }
@@ -180,7 +182,7 @@ impl<S: Sample, const F: usize> Encoder for BenToolboxEncoder<'_, S, F> {
     fn encode_slice(&mut self, samples: &[S], spikes: &mut [Option<Spike>]) -> usize {
         let mut state = self.state;
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
-            *spike = self.take(sample, &mut state);
+            *spike = self.encode_one(sample, &mut state);
         }
         self.state = state;
         samples.len().min(spikes.len())

@@ -62,7 +62,7 @@ impl<'a, S: Sample, R: Rule<S::Residual>, const F: usize> RateEncoder<'a, S, R, 
     #[inline(always)]
     fn encode_one(&mut self, sample: S) -> Option<Spike> {
         let slot = self.take(sample)?;
-        let taps = self.taps.ending_at(slot);
+        let taps = self.taps.starting_at(slot + 1);
         let residuals = cells(&mut self.residuals);
         match self.rule.fits_by_slot(pairs(residuals, taps)) {
             Some(true) => {

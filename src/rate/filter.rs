@@ -143,17 +143,10 @@ impl<S, const F: usize> Taps<S, F> {
         taps
     }
 
-    /// The taps, turned so that the first of them is in place `slot`, which is below `F`.
+    /// The taps, turned so that the first of them is in place `slot`, which is at most `F`.
     #[inline]
     pub(super) fn starting_at(&self, slot: usize) -> &[S; F] {
         let turned = self.twice.as_flattened().get(F.wrapping_sub(slot)..);
-        turned.and_then(<[S]>::first_chunk).unwrap_or(self.as_array())
-    }
-
-    /// The taps, turned so that the last of them is in place `slot`, which is below `F`.
-    #[inline]
-    pub(super) fn ending_at(&self, slot: usize) -> &[S; F] {
-        let turned = self.twice.as_flattened().get((F - 1).wrapping_sub(slot)..);
         turned.and_then(<[S]>::first_chunk).unwrap_or(self.as_array())
     }
 }

@@ -12,8 +12,8 @@ use crate::{ConfigError, Sample, Scheme};
 /// With `r = x - shift`: a spike at `i` if `r[i+j] >= h[j]` for all `j`; then `r[i+j] -= h[j]`.
 /// At the end of a recording a window that is cut never spikes.
 ///
-/// - **Latency:** `F - 1` samples. **Memory:** `4 F + 20` bytes an encoder in `f32`; the taps are
-///   in flash, shared.
+/// - **Latency:** `F - 1` samples. **Memory:** `4 F + 16` bytes an encoder in `f32`, and `16 F` of
+///   stack for slices; the taps are in flash, shared.
 /// - **Exactness:** `f32` rounds `x - shift` and each subtraction once; fixed point is exact within
 ///   the range of [`rate`](crate::rate).
 /// - **Error:** up to rounding, the decoded value never exceeds the signal. It stays at the shift

@@ -15,8 +15,8 @@ use crate::{ConfigError, Sample, Scheme};
 /// nothing, so that a tail of zeros can spike.
 ///
 /// - **Threshold:** 0 or more, in the samples' unit; 0 makes it [`Hough`](super::Hough).
-/// - **Latency:** `F - 1` samples. **Memory:** `4 F + 20` bytes an encoder in `f32`; the taps are
-///   in flash, shared.
+/// - **Latency:** `F - 1` samples. **Memory:** `4 F + 20` bytes an encoder in `f32`, and `16 F` of
+///   stack for slices; the taps are in flash, shared.
 /// - **Exactness:** `f32` sums `|r - h| - (r - h)`, which is twice the error, first tap first, and
 ///   compares with twice the threshold. Fixed point is exact within the range of
 ///   [`rate`](crate::rate).
