@@ -122,17 +122,15 @@ impl<'a, S: Sample, R: Rule<S::Residual>, const F: usize> RateEncoder<'a, S, R, 
     #[inline(never)]
     fn encode_apart(&mut self) -> Option<Spike> {
         let length = F.saturating_sub(self.cursor.missing());
-        let oldest = self.cursor.oldest();
-        let (late, early) = self.residuals.split_at_mut_checked(oldest)?;
-        let taps = self.taps.as_array().iter().map(|tap| tap.widen());
-        let rule = self.rule.cut(taps.clone().skip(length));
-        let taps = taps.take(length);
-        let residuals = early.iter().chain(&*late).copied();
-        if !rule.fits(residuals.zip(taps.clone()), length == F) {
+        let (late, early) = cells(&mut self.residuals).split_at_checked(self.cursor.oldest())?;
+        let (taps, absent) = self.taps.as_array().split_at_checked(length)?;
+        let (first, rest) = taps.split_at_checked(early.len().min(length))?;
+        let rule = self.rule.cut(absent.iter().map(|tap| tap.widen()));
+        if !rule.fits(pairs(early, first).chain(pairs(late, rest)), length == F) {
             return Some(Spike::None);
         }
-        for (residual, tap) in early.iter_mut().chain(late).zip(taps) {
-            *residual = residual.minus(tap);
+        for (residual, tap) in early.iter().zip(first).chain(late.iter().zip(rest)) {
+            residual.set(residual.get().minus(tap.widen()));
         }
         Some(Spike::Up)
     }
