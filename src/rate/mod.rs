@@ -17,7 +17,6 @@ mod decoder;
 mod encoder;
 mod filter;
 mod hough;
-
 mod residual;
 mod threshold_hough;
 

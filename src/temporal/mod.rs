@@ -8,9 +8,10 @@ mod contrast;
 mod moving_window;
 mod step_decoder;
 mod step_forward;
+mod window_sum;
 
 pub use contrast::{TemporalContrast, TemporalContrastEncoder};
-pub(crate) use moving_window::Windowed;
 pub use moving_window::{MovingWindow, MovingWindowEncoder};
 pub use step_decoder::StepDecoder;
 pub use step_forward::{StepForward, StepForwardEncoder};
+pub(crate) use window_sum::Windowed;
