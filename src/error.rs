@@ -123,6 +123,20 @@ pub(crate) const fn positive(parameter: &'static str, value: f64) -> Result<(), 
     }
 }
 
+/// A step that takes no finite `f32` to infinity, as it is less than half the last place of the largest.
+pub(crate) const fn step(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
+    const MAX: f32 = 1e31;
+    match positive(parameter, value) {
+        Ok(()) if value > MAX as f64 => Err(ConfigError::OutOfRange {
+            parameter,
+            value: value as f32,
+            min: f32::from_bits(1),
+            max: MAX,
+        }),
+        result => result,
+    }
+}
+
 /// 0 or more and finite.
 pub(crate) const fn not_negative(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
     if value >= 0.0 && value.is_finite() {

@@ -89,9 +89,13 @@ fn thresholds_of_the_temporal_codes() {
         assert_eq!(refusal(MovingWindow::<_, 5>::new(fixed)), expected);
     }
     for value in [1e-45, f32::MAX] {
-        assert!(StepForward::new(value).is_ok() && MovingWindow::<_, 5>::new(value).is_ok());
+        assert!(MovingWindow::<_, 5>::new(value).is_ok());
         assert!(TemporalContrast::with_step(value, value).is_ok());
     }
+    assert!(StepForward::new(1e-45).is_ok() && StepForward::new(1e31).is_ok());
+    let (parameter, value, min, max) = ("threshold", 1e32, 1e-45, 1e31);
+    let expected = ConfigError::OutOfRange { parameter, value, min, max };
+    assert_eq!(StepForward::new(value), Err(expected));
     assert!(StepForward::new(I16F16::DELTA).is_ok());
 }
 

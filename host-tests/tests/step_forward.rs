@@ -11,11 +11,16 @@ use host_tests::compare::{
 use host_tests::reference::{step_decode_within, step_forward};
 use proptest::prelude::*;
 use spikewire::temporal::StepForward;
-use spikewire::{Decoder, Encoder, Scheme, Spike};
+use spikewire::{ConfigError, Decoder, Encoder, Scheme, Spike};
 
 /// Encoder and decoder against the reference, unprimed and primed.
 fn check<S: Wire>(x: &[S], threshold: S, primed: S) {
-    let scheme = StepForward::new(threshold).unwrap();
+    let scheme = StepForward::new(threshold);
+    if threshold.to_f64() > 1e31 {
+        assert!(matches!(scheme, Err(ConfigError::OutOfRange { parameter: "threshold", .. })));
+        return;
+    }
+    let scheme = scheme.unwrap();
     let recording = finite(x);
     let expected = step_forward(&recording.accepted, threshold.real(), None);
     let unprimed = encode(scheme, x);
@@ -123,8 +128,19 @@ fn flights() {
 #[test]
 fn hostile() {
     for x in hostile_recordings() {
-        for threshold in [1e-45, 0.5, 1.0, f32::MAX] {
+        for threshold in [1e-45, 0.5, 1.0, 1e31, f32::MAX] {
             check(&x, threshold, -0.0);
+        }
+    }
+}
+
+/// No threshold that is allowed makes a band that infinity lies within.
+#[test]
+fn largest_bands() {
+    for base in [f32::MAX, f32::MIN] {
+        let x = [base, f32::INFINITY, base, f32::NEG_INFINITY, f32::NAN, f32::MAX, f32::MIN];
+        for threshold in [1e-45, 1.0, 1e31, 1e31_f32.next_up()] {
+            check(&x, threshold, base);
         }
     }
 }

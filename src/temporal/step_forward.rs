@@ -2,7 +2,7 @@
 
 use super::StepDecoder;
 use crate::codec::{encode_each, encode_first};
-use crate::error::{checked, positive};
+use crate::error::{checked, step};
 use crate::sample::{Tally, for_each_sample};
 use crate::{ConfigError, Encoder, Sample, Scheme, Spike};
 
@@ -12,7 +12,7 @@ use crate::{ConfigError, Encoder, Sample, Scheme, Spike};
 /// If `x > base + threshold`: [`Spike::Up`] and `base += threshold`; if `x < base - threshold`:
 /// [`Spike::Down`] and `base -= threshold`.
 ///
-/// - **Threshold:** above 0, in the samples' unit.
+/// - **Threshold:** above 0, in the samples' unit; up to 10³¹ in `f32`, so that no band reaches infinity.
 /// - **Latency:** 0 samples. **Memory:** 12 bytes an encoder in `f32`.
 /// - **Exactness:** `f32` rounds `base ± threshold` once; fixed point is exact.
 /// - **Error:** while `|x[i] - x[i-1]| <= threshold`, the decoded value stays within the threshold
@@ -49,9 +49,9 @@ impl<S: Sample> StepForward<S> {
     /// A scheme with this threshold, which is also the decoder's step.
     ///
     /// # Errors
-    /// The threshold is not above 0, or not finite.
+    /// The threshold is not above 0, not finite, or above 10³¹.
     pub fn new(threshold: S) -> Result<Self, ConfigError> {
-        positive("threshold", threshold.to_f64())?;
+        step("threshold", threshold.to_f64())?;
         Ok(Self { threshold })
     }
 
@@ -64,12 +64,12 @@ impl<S: Sample> StepForward<S> {
 macro_rules! constants {
     ([$($generics:tt)*] $sample:ty, $to_f64:path, $nearest:path, $floor:path) => {
         impl<$($generics)*> StepForward<$sample> {
-            /// For constants: a threshold that is not above 0 fails the build.
+            /// For constants: a threshold that is not above 0, or above 10³¹, fails the build.
             ///
             /// # Panics
             /// On such a threshold; at compile time where it initialises a constant.
             pub const fn checked(threshold: $sample) -> Self {
-                checked!(positive("threshold", $to_f64(threshold)));
+                checked!(step("threshold", $to_f64(threshold)));
                 Self { threshold }
             }
         }
