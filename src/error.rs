@@ -123,17 +123,36 @@ pub(crate) const fn positive(parameter: &'static str, value: f64) -> Result<(), 
     }
 }
 
-/// A step that takes no finite `f32` to infinity, as it is less than half the last place of the largest.
+/// No finite `f32` reaches infinity by a step of this or less: half the last place of the largest is
+/// a little more.
+pub(crate) const LARGEST_STEP: f32 = 1e31;
+
+/// Above 0, and at most the largest step.
 pub(crate) const fn step(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
-    const MAX: f32 = 1e31;
     match positive(parameter, value) {
-        Ok(()) if value > MAX as f64 => Err(ConfigError::OutOfRange {
-            parameter,
-            value: value as f32,
-            min: f32::from_bits(1),
-            max: MAX,
-        }),
-        result => result,
+        Ok(()) => within(parameter, value, f32::from_bits(1), LARGEST_STEP),
+        error => error,
+    }
+}
+
+/// Finite, and within the largest step of 0.
+pub(crate) const fn offset(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
+    match finite(parameter, value) {
+        Ok(()) => within(parameter, value, -LARGEST_STEP, LARGEST_STEP),
+        error => error,
+    }
+}
+
+const fn within(
+    parameter: &'static str,
+    value: f64,
+    min: f32,
+    max: f32,
+) -> Result<(), ConfigError> {
+    if value >= min as f64 && value <= max as f64 {
+        Ok(())
+    } else {
+        Err(ConfigError::OutOfRange { parameter, value: value as f32, min, max })
     }
 }
 
@@ -150,11 +169,7 @@ pub(crate) const fn not_negative(parameter: &'static str, value: f64) -> Result<
 pub(crate) const fn ratio(parameter: &'static str, value: f32) -> Result<(), ConfigError> {
     const STEP: f32 = 1.0 / 16_384.0;
     const MAX: f32 = 4.0 - STEP;
-    if value >= STEP && value <= MAX {
-        Ok(())
-    } else {
-        Err(ConfigError::OutOfRange { parameter, value, min: STEP, max: MAX })
-    }
+    within(parameter, value as f64, STEP, MAX)
 }
 
 /// Finite.

@@ -133,7 +133,11 @@ fn shifts() {
         assert_eq!(refusal(Ben::subtractive(&taps, 0.0).unwrap().with_shift(value)), expected);
         assert_eq!(refusal(BenToolbox::new(&taps, 1.0).unwrap().with_shift(value)), expected);
     }
-    assert!(Hough::new(&taps).with_shift(f32::MIN).is_ok());
+    for value in [1e31, -1e31] {
+        assert!(Hough::new(&taps).with_shift(value).is_ok());
+        let beyond = out_of_range("shift", 10.0 * value, [-1e31, 1e31]);
+        assert_eq!(refusal(Hough::new(&taps).with_shift(10.0 * value)), beyond);
+    }
 }
 
 #[test]
@@ -152,7 +156,8 @@ fn taps() {
     let sum = refusal(Taps::new([I16F16::MAX, I16F16::NEG_ONE]));
     assert_eq!(sum, out_of_range(parameter, 32_769.0, most));
     let sum = refusal(Taps::new([f32::MAX, f32::MIN]));
-    assert_eq!(sum, out_of_range(parameter, f32::INFINITY, [0.0, f32::MAX]));
+    assert_eq!(sum, out_of_range(parameter, f32::INFINITY, [0.0, 1e31]));
+    assert!(Taps::new([1e31]).is_ok());
     // Sixteen bits widen, so that any taps will do.
     assert!(Taps::new([i16::MIN; 4096]).is_ok());
 

@@ -4,7 +4,7 @@ use super::decoder::RateDecoder;
 use super::encoder::{RateEncoder, Rule};
 use super::filter::Taps;
 use super::residual::Residual;
-use crate::error::{checked, finite, not_negative, ratio};
+use crate::error::{checked, not_negative, offset, ratio};
 use crate::sample::for_each_sample;
 use crate::{ConfigError, Sample, Scheme};
 
@@ -88,9 +88,9 @@ impl<'a, S: Sample, const F: usize> Ben<'a, S, F> {
     /// The same for signals with this minimum.
     ///
     /// # Errors
-    /// The shift is not finite.
+    /// The shift is not finite, or beyond ±10³¹ in `f32`.
     pub fn with_shift(self, shift: S) -> Result<Self, ConfigError> {
-        finite("shift", shift.to_f64())?;
+        offset("shift", shift.to_f64())?;
         Ok(Self { shift, ..self })
     }
 }

@@ -5,7 +5,7 @@ use super::decoder::RateDecoder;
 use super::encoder::{cells, subtract};
 use super::filter::Taps;
 use super::residual::Residual;
-use crate::error::{checked, finite, ratio};
+use crate::error::{checked, offset, ratio};
 use crate::sample::{Tally, for_each_sample};
 use crate::{ConfigError, Encoder, Sample, Scheme, Spike};
 
@@ -55,9 +55,9 @@ impl<'a, S: Sample, const F: usize> BenToolbox<'a, S, F> {
     /// The same for signals with this minimum.
     ///
     /// # Errors
-    /// The shift is not finite.
+    /// The shift is not finite, or beyond ±10³¹ in `f32`.
     pub fn with_shift(self, shift: S) -> Result<Self, ConfigError> {
-        finite("shift", shift.to_f64())?;
+        offset("shift", shift.to_f64())?;
         Ok(Self { shift, ..self })
     }
 }

@@ -1,7 +1,7 @@
 //! The filters of the rate codes.
 
 use crate::curve::{exp, sin_pi};
-use crate::error::{checked, finite, positive};
+use crate::error::{LARGEST_STEP, checked, finite, positive};
 use crate::sample::for_each_sample;
 use crate::{ConfigError, Sample};
 
@@ -115,7 +115,7 @@ impl Shape {
     }
 }
 
-/// What must hold for taps that sum up to `magnitude`, where `largest` is the type's maximum.
+/// What must hold for taps that sum up to `magnitude`, where `largest` is what the type allows.
 const fn check_magnitude(magnitude: f64, largest: f64, is_wide: bool) -> Result<(), ConfigError> {
     if magnitude == 0.0 {
         Err(ConfigError::AllZero { parameter: "filter taps" })
@@ -155,7 +155,8 @@ impl<S: Sample, const F: usize> Taps<S, F> {
     /// The user's own taps, of any sign.
     ///
     /// # Errors
-    /// A tap is not finite, all are 0, or their magnitudes sum up to more than the type holds.
+    /// A tap is not finite, all are 0, or their magnitudes sum up to more than the type holds
+    /// (10³¹ in `f32`).
     pub fn new(taps: [S; F]) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
         let mut magnitude = 0.0;
@@ -163,7 +164,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
             finite("filter tap", tap.to_f64())?;
             magnitude += tap.to_f64().abs();
         }
-        let largest = S::from_f64(f32::MAX.into()).to_f64();
+        let largest = S::from_f64(LARGEST_STEP.into()).to_f64();
         check_magnitude(magnitude, largest, Self::IS_WIDE)?;
         Ok(Self { twice: [taps; 2], magnitude: S::from_f64(magnitude) })
     }
@@ -208,7 +209,7 @@ macro_rules! constants {
                     magnitude += tap.abs();
                     k += 1;
                 }
-                let largest: $sample = $nearest(f32::MAX as f64);
+                let largest: $sample = $nearest(LARGEST_STEP as f64);
                 checked!(check_magnitude(magnitude, $to_f64(largest), Self::IS_WIDE));
                 Self { twice: [taps; 2], magnitude: $nearest(magnitude) }
             }

@@ -4,7 +4,7 @@ use super::decoder::RateDecoder;
 use super::encoder::{RateEncoder, Rule};
 use super::filter::Taps;
 use super::residual::Residual;
-use crate::error::finite;
+use crate::error::offset;
 use crate::{ConfigError, Sample, Scheme};
 
 /// The Hough spike algorithm.
@@ -49,9 +49,9 @@ impl<'a, S: Sample, const F: usize> Hough<'a, S, F> {
     /// The same for signals with this minimum.
     ///
     /// # Errors
-    /// The shift is not finite.
+    /// The shift is not finite, or beyond ±10³¹ in `f32`.
     pub fn with_shift(self, shift: S) -> Result<Self, ConfigError> {
-        finite("shift", shift.to_f64())?;
+        offset("shift", shift.to_f64())?;
         Ok(Self { shift, ..self })
     }
 }

@@ -123,6 +123,8 @@ pub(crate) trait Drawn: Sized + Clone + std::fmt::Debug + 'static {
     fn value() -> BoxedStrategy<Self>;
     /// Any finite value above 0.
     fn positive() -> BoxedStrategy<Self>;
+    /// A shift of a rate code, 0 often.
+    fn shift() -> BoxedStrategy<Self>;
     /// A tap of which 24 fit into the type's range.
     fn tap() -> BoxedStrategy<Self>;
 }
@@ -141,9 +143,12 @@ impl Drawn for f32 {
         prop_oneof![
             4 => (1..16_u8).prop_map(|eighths| f32::from(eighths) / 8.0),
             4 => 0.01_f32..1.0,
-            1 => finite_float().prop_map(|value| value / 32.0),
+            1 => finite_float().prop_map(|value| value.clamp(-4e29, 4e29)),
         ]
         .boxed()
+    }
+    fn shift() -> BoxedStrategy<f32> {
+        prop_oneof![Just(0.0), finite_float().prop_map(|value| value.clamp(-1e31, 1e31))].boxed()
     }
 }
 
@@ -162,6 +167,9 @@ macro_rules! drawn {
             fn positive() -> BoxedStrategy<Self> {
                 let max = <$bits>::MAX;
                 prop_oneof![1..=100 as $bits, 1..=max, Just(max)].prop_map($from_bits).boxed()
+            }
+            fn shift() -> BoxedStrategy<Self> {
+                prop_oneof![Just(<$sample>::default()), <$sample>::value()].boxed()
             }
             fn tap() -> BoxedStrategy<Self> {
                 let most = <$bits>::MAX / 24;
