@@ -284,7 +284,7 @@ const fn round(value: f64) -> i64 {
 }
 
 /// The largest integer that is not above `value`, saturating.
-const fn floor(value: f64) -> i64 {
+pub(crate) const fn floor(value: f64) -> i64 {
     let towards_zero = value as i64;
     if (towards_zero as f64) > value { towards_zero.saturating_sub(1) } else { towards_zero }
 }

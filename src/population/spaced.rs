@@ -106,6 +106,7 @@ pub(super) mod float {
 /// Set-up in integers of 16 bits, in units of the last place.
 pub(super) mod short {
     use super::Cells;
+    use crate::sample::floor;
 
     pub(crate) const fn units(value: i16) -> f64 {
         value as f64
@@ -121,7 +122,7 @@ pub(super) mod short {
 
     /// The largest value within a reach of a centre.
     pub(crate) const fn top(centre: f64, reach: f64) -> i16 {
-        super::floor(centre + reach + 1e-3) as i16
+        floor(centre + reach + 1e-3) as i16
     }
 
     pub(crate) const fn reach(distance: f64, neurons: usize) -> i32 {
@@ -135,6 +136,7 @@ pub(super) mod short {
 #[cfg(feature = "fixed")]
 pub(super) mod long {
     use super::Cells;
+    use crate::sample::floor;
 
     pub(crate) const fn units(value: i32) -> f64 {
         value as f64
@@ -150,7 +152,7 @@ pub(super) mod long {
 
     /// The largest value within a reach of a centre.
     pub(crate) const fn top(centre: f64, reach: f64) -> i32 {
-        super::floor(centre + reach + 1e-3) as i32
+        floor(centre + reach + 1e-3) as i32
     }
 
     pub(crate) const fn reach(distance: f64, neurons: usize) -> i64 {
@@ -168,11 +170,6 @@ pub(super) mod long {
             [i32::MAX, i32::MIN]
         }
     }
-}
-
-const fn floor(value: f64) -> i64 {
-    let towards_zero = value as i64;
-    if towards_zero as f64 > value { towards_zero - 1 } else { towards_zero }
 }
 
 /// Into how many parts a centre divides the unit.

@@ -90,11 +90,7 @@ impl<'a, S: Sample, const F: usize> Scheme for BenToolbox<'a, S, F> {
             taps: self.taps,
             shift: self.shift,
             ratio: S::Residual::ratio(self.threshold),
-            state: State {
-                owed: S::Residual::ZERO,
-                cursor: Cursor::new(F),
-                tally: Tally::default(),
-            },
+            state: State::new(),
             residuals: [S::Residual::ZERO; F],
         }
     }
@@ -121,6 +117,12 @@ struct State<R, const F: usize> {
     owed: R,
     cursor: Cursor<F>,
     tally: Tally,
+}
+
+impl<R: Residual, const F: usize> State<R, F> {
+    fn new() -> Self {
+        Self { owed: R::ZERO, cursor: Cursor::new(F), tally: Tally::default() }
+    }
 }
 
 /// The sum of `|r|` over the window.
@@ -198,8 +200,7 @@ impl<S: Sample, const F: usize> Encoder for BenToolboxEncoder<'_, S, F> {
     }
 
     fn reset(&mut self) {
-        self.state =
-            State { owed: S::Residual::ZERO, cursor: Cursor::new(F), tally: Tally::default() };
+        self.state = State::new();
     }
 
     fn rejected(&self) -> u32 {

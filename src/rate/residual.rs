@@ -32,7 +32,6 @@ pub trait Residual: Copy + PartialOrd + core::fmt::Debug + Lack + Nearer {
 
     fn plus(self, other: Self) -> Self;
     fn minus(self, other: Self) -> Self;
-    fn negated(self) -> Self;
 
     fn no_sum() -> Self::Sum;
     /// `sum + |self - other|`.
@@ -80,11 +79,6 @@ impl Residual for f32 {
     }
 
     #[inline]
-    fn negated(self) -> f32 {
-        -self
-    }
-
-    #[inline]
     fn no_sum() -> f32 {
         0.0
     }
@@ -122,11 +116,6 @@ impl Residual for i32 {
     #[inline]
     fn minus(self, other: i32) -> i32 {
         self.wrapping_sub(other)
-    }
-
-    #[inline]
-    fn negated(self) -> i32 {
-        self.wrapping_neg()
     }
 
     #[inline]
