@@ -95,9 +95,11 @@ impl<const N: usize> EventQueue<N> {
     /// The same for one who takes nothing back: an event that is refused is lost, and counted as such.
     #[inline]
     pub(crate) fn put(&self, event: Event) {
-        if self.push(event).is_err() {
-            self.with(|shared| shared.lost = shared.lost.saturating_add(1));
-        }
+        self.with(|shared| {
+            if shared.push(event, self.overflow).is_err() {
+                shared.lost = shared.lost.saturating_add(1);
+            }
+        });
     }
 
     /// Takes the oldest event.
