@@ -2,7 +2,7 @@
 
 use crate::{
     paths, setup,
-    shell::{cargo, output, run},
+    shell::{cargo, output, run, spikewire},
     toolchain::{TARGETS, cargo_for},
 };
 use anyhow::{Context, Result, ensure};
@@ -85,9 +85,7 @@ pub fn firmware() -> Result<()> {
 
 /// The laptop program on the recorded flight, and the paper's tables in full.
 pub fn laptop() -> Result<()> {
-    let spikewire = |args: &str| {
-        output(&mut cargo(&format!("run --release --quiet --package spikewire-cli -- {args}")))
-    };
+    let spikewire = |args: &str| output(&mut spikewire(args));
     let flight = "--column gyro_x data/hexarotor.csv";
     let target = paths::root().join("target");
     fs::create_dir_all(&target)?;

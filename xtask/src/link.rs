@@ -5,8 +5,7 @@ use anyhow::{Context, Result, bail, ensure};
 use std::{fs, fs::File};
 
 /// With the thresholds of the board's channels.
-const LISTEN: &str = "run --quiet --release --package spikewire-cli -- \
-    listen --scheme sf --thresholds 0.1,0.1,0.1,0.5,0.5,0.5";
+const LISTEN: &str = "listen --scheme sf --thresholds 0.1,0.1,0.1,0.5,0.5,0.5";
 
 /// The board sends frames out of its UART, `spikewire listen` decodes them: the values must be those that the board
 /// decoded itself, bit for bit.
@@ -23,8 +22,8 @@ pub fn link() -> Result<()> {
         "the board lost events or bytes"
     );
 
-    let heard = shell::output(shell::cargo(LISTEN).arg(&captured))?;
-    let piped = shell::output(shell::cargo(LISTEN).stdin(File::open(&captured)?))?;
+    let heard = shell::output(shell::spikewire(LISTEN).arg(&captured))?;
+    let piped = shell::output(shell::spikewire(LISTEN).stdin(File::open(&captured)?))?;
     ensure!(heard == piped, "a file and standard input give different values");
     let decoded = digest(&heard)?;
     println!("host:\n{decoded}");

@@ -21,6 +21,11 @@ pub fn cargo(args: &str) -> Command {
     command
 }
 
+/// The command line tool, its arguments separated by blanks.
+pub fn spikewire(args: &str) -> Command {
+    cargo(&format!("run --release --quiet --package spikewire-cli -- {args}"))
+}
+
 /// Prints the command, runs it with its output shown, and fails if it fails.
 pub fn run(command: &mut Command) -> Result<()> {
     println!("$ {}", shown(command));
