@@ -1,6 +1,6 @@
 //! `spikewire convert`: events from any format to any other, in constant memory.
 
-use crate::events::{Format, Stream};
+use crate::events::{Format, Stream, StreamOptions};
 use crate::output::Output;
 use crate::port::{Bytes, Port};
 use anyhow::Result;
@@ -28,12 +28,8 @@ pub(crate) struct Convert {
     /// File of events; standard output unless given
     #[arg(short, long)]
     output: Option<PathBuf>,
-    /// Take the first tick off all: some formats count from 0
-    #[arg(long)]
-    from_zero: bool,
-    /// Go on without the events that the format has no word for, and count them
-    #[arg(long)]
-    drop: bool,
+    #[command(flatten)]
+    stream: StreamOptions,
 }
 
 /// Runs the command.
@@ -41,10 +37,11 @@ pub(crate) struct Convert {
 /// # Errors
 /// The input cannot be read, or the output not be written.
 pub(crate) fn run(options: &Convert) -> Result<()> {
-    let Convert { input, from, to, output, from_zero, drop } = options;
+    let Convert { input, from, to, output, stream } = options;
     let mut port = Port::open(input, None)?;
     let mut output = Output::open(output.as_deref())?;
-    let mut stream = Stream::new(from.reader(port.name()), to.writer(*drop), *from_zero);
+    let mut stream =
+        Stream::new(from.reader(port.name()), to.writer(stream.drop), stream.from_zero);
     let mut buffer = vec![0; 1 << 16];
     loop {
         match port.read(&mut buffer)? {

@@ -1,7 +1,7 @@
 //! `spikewire listen`: what a board sends, as events or values, while it comes.
 
 use crate::codec::Calibrated;
-use crate::events::{Format, LinkReader, Stream, Values, values_writer};
+use crate::events::{Format, LinkReader, Stream, StreamOptions, Values, values_writer};
 use crate::live::Live;
 use crate::options::SchemeOptions;
 use crate::output::Output;
@@ -41,12 +41,8 @@ pub(crate) struct Listen {
     /// File of events or values; standard output unless given
     #[arg(short, long)]
     output: Option<PathBuf>,
-    /// Take the first tick off all: some formats count from 0
-    #[arg(long)]
-    from_zero: bool,
-    /// Go on without the events that the format has no word for, and count them
-    #[arg(long)]
-    drop: bool,
+    #[command(flatten)]
+    stream: StreamOptions,
     /// Decode a link's frames: tbr, sf or mw
     #[arg(long)]
     scheme: Option<SchemeName>,
@@ -81,9 +77,9 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
                 Box::new(LinkReader::new(Some(values)));
             (reader, values_writer(options.sample))
         }
-        None => (options.from.reader(port.name()), options.to.writer(options.drop)),
+        None => (options.from.reader(port.name()), options.to.writer(options.stream.drop)),
     };
-    let mut stream = Stream::new(reader, writer, options.from_zero);
+    let mut stream = Stream::new(reader, writer, options.stream.from_zero);
     let mut live = Live::new(options.output.is_none());
 
     let mut buffer = vec![0; 1 << 16];

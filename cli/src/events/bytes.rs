@@ -1,9 +1,10 @@
 //! The formats of events one after the other: eDVS, Event Stream, EVT2.
 
+use super::omitted::Omitted;
 use super::{EventReader, EventWriter, Item, Tally};
 use anyhow::{Result, bail};
+use spikewire::Event;
 use spikewire::format::{EventDecoder, EventFormat, FormatError};
-use spikewire::{Event, tick};
 use std::io::Write;
 
 /// Reads a format.
@@ -54,49 +55,14 @@ pub(super) struct Writer<E, D> {
     header: &'static [u8],
     drops: bool,
     events: u64,
-    dropped: u64,
-    retimed: Retimed,
-    /// Keyframes and losses.
-    others: u64,
-}
-
-/// Events that will be read at another time.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Retimed {
-    count: u64,
-    furthest: u32,
-}
-
-impl Retimed {
-    /// Counts an event if the two times differ.
-    pub(super) fn observe(&mut self, read: u32, event: u32) {
-        self.count += u64::from(read != event);
-        self.furthest = self.furthest.max(tick::difference(read, event).unsigned_abs());
-    }
-
-    /// Says so.
-    pub(super) fn note(self) -> Option<String> {
-        let Self { count, furthest } = self;
-        (count > 0).then(|| {
-            format!("{count} events will be read at another time, up to {furthest} µs away")
-        })
-    }
+    omitted: Omitted,
 }
 
 impl<E: EventFormat, D: EventDecoder> Writer<E, D> {
     /// Writes this header first. The decoder is the format's own. Events that the format has no word
     /// for are an error, or dropped and counted.
     pub(super) fn new(encoder: E, decoder: D, header: &'static [u8], drops: bool) -> Self {
-        Self {
-            encoder,
-            decoder,
-            header,
-            drops,
-            events: 0,
-            dropped: 0,
-            retimed: Retimed::default(),
-            others: 0,
-        }
+        Self { encoder, decoder, header, drops, events: 0, omitted: Omitted::default() }
     }
 
     fn event(&mut self, event: Event, output: &mut dyn Write) -> Result<()> {
@@ -106,7 +72,7 @@ impl<E: EventFormat, D: EventDecoder> Writer<E, D> {
                 Ok(written) => (written, true),
                 Err(FormatError::Full { written }) => (written, false),
                 Err(_) if self.drops => {
-                    self.dropped += 1;
+                    self.omitted.drop_event();
                     return Ok(());
                 }
                 Err(error) => bail!("event {}: {error}; --drop goes on", self.events),
@@ -114,7 +80,7 @@ impl<E: EventFormat, D: EventDecoder> Writer<E, D> {
             let bytes = &buffer[..written];
             output.write_all(bytes)?;
             for read in self.decoder.decode(bytes) {
-                self.retimed.observe(read.tick, event.tick);
+                self.omitted.observe_time(read.tick, event.tick);
             }
             if is_done {
                 self.events += 1;
@@ -136,8 +102,7 @@ impl<E: EventFormat, D: EventDecoder> EventWriter for Writer<E, D> {
         self.begin(output)?;
         match *item {
             Item::Event(event) => self.event(event, output)?,
-            Item::Restart => {}
-            _ => self.others += 1,
+            other => self.omitted.leave_out(other),
         }
         Ok(())
     }
@@ -147,13 +112,6 @@ impl<E: EventFormat, D: EventDecoder> EventWriter for Writer<E, D> {
     }
 
     fn notes(&self) -> Vec<String> {
-        let dropped = (self.dropped > 0)
-            .then(|| format!("{} events dropped: no word for them", self.dropped));
-        [dropped, self.retimed.note(), without(self.others)].into_iter().flatten().collect()
+        self.omitted.notes("word")
     }
-}
-
-/// What a format without keyframes leaves out.
-pub(super) fn without(others: u64) -> Option<String> {
-    (others > 0).then(|| format!("{others} keyframes and losses left out: no word for them"))
 }

@@ -1,6 +1,6 @@
 //! EIEIO datagrams, one after the other as in a recording of their payloads.
 
-use super::bytes::{Retimed, without};
+use super::omitted::Omitted;
 use super::{EventReader, EventWriter, Item, Tally};
 use anyhow::{Result, bail};
 use spikewire::format::eieio;
@@ -120,23 +120,12 @@ pub(super) struct Writer {
     stamp: u32,
     keys: Vec<u32>,
     events: u64,
-    dropped: u64,
-    retimed: Retimed,
-    others: u64,
+    omitted: Omitted,
 }
 
 impl Writer {
     pub(super) fn new(board: Board, drops: bool) -> Self {
-        Self {
-            board,
-            drops,
-            stamp: 0,
-            keys: Vec::new(),
-            events: 0,
-            dropped: 0,
-            retimed: Retimed::default(),
-            others: 0,
-        }
+        Self { board, drops, stamp: 0, keys: Vec::new(), events: 0, omitted: Omitted::default() }
     }
 
     fn datagram(&mut self, output: &mut dyn Write) -> Result<()> {
@@ -151,7 +140,7 @@ impl Writer {
     fn event(&mut self, event: Event, output: &mut dyn Write) -> Result<()> {
         let Some(key) = self.board.key(event) else {
             if self.drops {
-                self.dropped += 1;
+                self.omitted.drop_event();
                 return Ok(());
             }
             bail!(
@@ -167,7 +156,7 @@ impl Writer {
         self.stamp = stamp;
         self.keys.push(key);
         self.events += 1;
-        self.retimed.observe(stamp * self.board.step.get(), event.tick);
+        self.omitted.observe_time(stamp * self.board.step.get(), event.tick);
         Ok(())
     }
 }
@@ -176,8 +165,7 @@ impl EventWriter for Writer {
     fn write(&mut self, item: &Item, output: &mut dyn Write) -> Result<()> {
         match *item {
             Item::Event(event) => self.event(event, output)?,
-            Item::Restart => {}
-            _ => self.others += 1,
+            other => self.omitted.leave_out(other),
         }
         Ok(())
     }
@@ -187,8 +175,6 @@ impl EventWriter for Writer {
     }
 
     fn notes(&self) -> Vec<String> {
-        let dropped =
-            (self.dropped > 0).then(|| format!("{} events dropped: no key for them", self.dropped));
-        [dropped, self.retimed.note(), without(self.others)].into_iter().flatten().collect()
+        self.omitted.notes("key")
     }
 }

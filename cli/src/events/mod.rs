@@ -7,12 +7,13 @@ mod csv;
 mod eieio;
 mod format;
 mod link;
+mod omitted;
 mod stream;
 mod tally;
 
 pub(crate) use format::{Format, values_writer};
 pub(crate) use link::{LinkReader, Values};
-pub(crate) use stream::Stream;
+pub(crate) use stream::{Stream, StreamOptions};
 pub(crate) use tally::{LinkTally, Tally};
 
 use anyhow::Result;

@@ -2,9 +2,21 @@
 
 use super::{EventReader, EventWriter, Item, Tally};
 use anyhow::Result;
+use clap::Args;
 use spikewire::tick;
 use std::fmt;
 use std::io::Write;
+
+/// How events go through.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct StreamOptions {
+    /// Take the first tick off all: some formats count from 0
+    #[arg(long)]
+    pub from_zero: bool,
+    /// Go on without the events that the format has no word for, and count them
+    #[arg(long)]
+    pub drop: bool,
+}
 
 /// A reader, a writer, and counts of what went through.
 pub(crate) struct Stream {

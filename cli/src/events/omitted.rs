@@ -1,0 +1,46 @@
+//! What a format cannot hold, counted.
+
+use super::Item;
+use spikewire::tick;
+
+/// What was left out, and events that will be read at another time.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Omitted {
+    dropped: u64,
+    retimed: u64,
+    furthest: u32,
+    /// Keyframes and losses.
+    others: u64,
+}
+
+impl Omitted {
+    /// Counts an event that the format has no word for.
+    pub(super) fn drop_event(&mut self) {
+        self.dropped += 1;
+    }
+
+    /// Counts an event if it will be read at another time.
+    pub(super) fn observe_time(&mut self, read: u32, event: u32) {
+        self.retimed += u64::from(read != event);
+        self.furthest = self.furthest.max(tick::difference(read, event).unsigned_abs());
+    }
+
+    /// Counts what is no event.
+    pub(super) fn leave_out(&mut self, item: Item) {
+        self.others += u64::from(item != Item::Restart);
+    }
+
+    /// Says so; `what` the dropped events have none of.
+    pub(super) fn notes(self, what: &str) -> Vec<String> {
+        let Self { dropped, retimed, furthest, others } = self;
+        let all = [
+            (dropped, format!("{dropped} events dropped: no {what} for them")),
+            (
+                retimed,
+                format!("{retimed} events will be read at another time, up to {furthest} µs away"),
+            ),
+            (others, format!("{others} keyframes and losses left out: no word for them")),
+        ];
+        all.into_iter().filter(|&(count, _)| count > 0).map(|(_, note)| note).collect()
+    }
+}
