@@ -42,18 +42,6 @@ impl<'a> Cursor<'a> {
         Some(())
     }
 
-    /// Appends a byte, if it fits.
-    #[cfg(feature = "link")]
-    #[inline]
-    pub(crate) fn push(&mut self, byte: u8) -> Option<()> {
-        if self.written >= self.limit {
-            return None;
-        }
-        *self.bytes.get_mut(self.written)? = byte;
-        self.written += 1;
-        Some(())
-    }
-
     /// What has been written.
     #[cfg(feature = "link")]
     pub(crate) fn as_slice(&self) -> &[u8] {

@@ -2,13 +2,52 @@
 
 use crate::bytes::Cursor;
 
-/// Appends bits to a buffer.
+/// What bits can be put into.
+pub(super) trait PutBits {
+    /// Appends a value of `count` bits, up to 32.
+    fn put(&mut self, value: u32, count: u32);
+
+    /// Appends `code(value, k)`, for values below 2³²-1 and `k` up to 15.
+    fn put_code(&mut self, value: u32, k: u32);
+}
+
+/// `value` as `code(value, k)`: a number, how many bits that has, and the low `k` bits.
+#[inline]
+fn code(value: u32, k: u32) -> (u32, u32, u32) {
+    let number = (value >> k) + 1;
+    (number, 32 - number.leading_zeros(), value & ((1 << k) - 1))
+}
+
+/// A string of fewer than 32 bits. One that became longer knows only that it did.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Word {
+    bits: u32,
+    count: u32,
+}
+
+impl PutBits for Word {
+    #[inline]
+    fn put(&mut self, value: u32, count: u32) {
+        self.bits = self.bits.wrapping_shl(count) | value;
+        self.count += count;
+    }
+
+    #[inline]
+    fn put_code(&mut self, value: u32, k: u32) {
+        let (number, bits, low) = code(value, k);
+        self.put(number << k | low, 2 * bits - 1 + k);
+    }
+}
+
+/// Appends bits to a buffer, 32 at a time.
 #[derive(Debug)]
 pub(super) struct BitWriter<'a> {
     bytes: Cursor<'a>,
-    /// The low `pending` bits are not in the buffer yet, fewer than 8; those above are.
+    /// The low `pending` bits are not in the buffer yet, fewer than 32; those above are.
     bits: u32,
     pending: u32,
+    /// Whether bits found no room.
+    is_full: bool,
 }
 
 /// A place to go back to.
@@ -22,7 +61,7 @@ pub(super) struct Mark {
 impl<'a> BitWriter<'a> {
     /// Goes on after what is written.
     pub(super) fn new(bytes: Cursor<'a>) -> Self {
-        Self { bytes, bits: 0, pending: 0 }
+        Self { bytes, bits: 0, pending: 0, is_full: false }
     }
 
     pub(super) fn mark(&self) -> Mark {
@@ -31,41 +70,25 @@ impl<'a> BitWriter<'a> {
 
     pub(super) fn back_to(&mut self, mark: Mark) {
         self.bytes.truncate(mark.written);
-        (self.bits, self.pending) = (mark.bits, mark.pending);
+        (self.bits, self.pending, self.is_full) = (mark.bits, mark.pending, false);
     }
 
-    /// Appends the low `count` bits, up to 32.
+    /// Appends a word, if it is one and fits.
     #[inline]
-    pub(super) fn put(&mut self, value: u32, count: u32) -> Option<()> {
-        if count > 16 {
-            self.put_few(value >> 16, count - 16)?;
-            self.put_few(value, 16)
-        } else {
-            self.put_few(value, count)
-        }
+    pub(super) fn put_word(&mut self, word: Word) -> Option<()> {
+        let fits = word.count < 32 && self.pending + word.count <= 8 * self.bytes.room() as u32;
+        fits.then(|| self.put(word.bits, word.count))
     }
 
-    /// Appends the low `count` bits, up to 16.
-    fn put_few(&mut self, value: u32, count: u32) -> Option<()> {
-        self.bits = self.bits << count | value & ((1 << count) - 1);
-        self.pending += count;
-        while self.pending >= 8 {
-            self.bytes.push((self.bits >> (self.pending - 8)) as u8)?;
-            self.pending -= 8;
-        }
-        Some(())
-    }
-
-    /// `code(value, k)`, for values below 2³²-1 and `k` up to 15.
-    pub(super) fn put_code(&mut self, value: u32, k: u32) -> Option<()> {
-        let number = (value >> k).saturating_add(1);
-        let bits = 32 - number.leading_zeros();
-        if 2 * bits - 1 + k <= 16 {
-            return self.put_few(number << k | value & ((1 << k) - 1), 2 * bits - 1 + k);
-        }
-        self.put(0, bits - 1)?;
-        self.put(number, bits)?;
-        self.put_few(value, k)
+    /// Appends bits that complete 32.
+    #[inline(never)]
+    fn put_across(&mut self, value: u32, count: u32) {
+        let free = 32 - self.pending;
+        let rest = count - free;
+        let bits = self.bits.unbounded_shl(free) | value >> rest;
+        self.is_full |= self.bytes.put(&bits.to_be_bytes()).is_none();
+        self.bits = value;
+        self.pending = rest;
     }
 
     /// Appends whole bytes, before any bits; those that do not fit are left out.
@@ -78,15 +101,68 @@ impl<'a> BitWriter<'a> {
         self.bytes.room()
     }
 
-    /// Whether there is room for the last byte too, if it is not full.
+    /// Whether there was room for all bits, and is for those that are not in the buffer yet.
     pub(super) fn is_within_limit(&self) -> bool {
-        self.pending == 0 || self.bytes.room() > 0
+        !self.is_full && self.pending <= 8 * self.bytes.room() as u32
     }
 
-    /// Fills up the last byte with 0.
+    /// Writes what is not in the buffer yet, with the last byte filled up with 0.
     pub(super) fn finish(mut self) -> Cursor<'a> {
-        let _ = self.put(0, (8 - self.pending) % 8);
+        let bytes = self.bits.unbounded_shl(32 - self.pending).to_be_bytes();
+        let count = self.pending.div_ceil(8) as usize;
+        let _ = self.bytes.put(bytes.get(..count).unwrap_or_default());
         self.bytes
+    }
+}
+
+impl PutBits for BitWriter<'_> {
+    #[inline]
+    fn put(&mut self, value: u32, count: u32) {
+        if self.pending + count < 32 {
+            self.bits = self.bits << count | value;
+            self.pending += count;
+        } else {
+            self.put_across(value, count);
+        }
+    }
+
+    fn put_code(&mut self, value: u32, k: u32) {
+        let (number, bits, low) = code(value, k);
+        self.put(0, bits - 1);
+        self.put(number, bits);
+        self.put(low, k);
+    }
+}
+
+/// What bits can be taken from.
+pub(super) trait TakeBits {
+    /// The next `count` bits, 1 to 32.
+    fn take(&mut self, count: u32) -> Option<u32>;
+
+    /// The value of the next `code(value, k)`, for `k` up to 15.
+    fn take_code(&mut self, k: u32) -> Option<u32>;
+}
+
+/// The bits that come next, from the highest on. Who takes more than there are gets anything.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Glance {
+    bits: u32,
+    taken: u32,
+}
+
+impl TakeBits for Glance {
+    #[inline]
+    fn take(&mut self, count: u32) -> Option<u32> {
+        let value = self.bits.wrapping_shr(32_u32.wrapping_sub(count));
+        self.bits = self.bits.wrapping_shl(count);
+        self.taken += count;
+        Some(value)
+    }
+
+    #[inline]
+    fn take_code(&mut self, k: u32) -> Option<u32> {
+        let number = self.take(2 * self.bits.leading_zeros() + 1 + k)?;
+        Some(number.wrapping_sub(1 << k))
     }
 }
 
@@ -94,85 +170,72 @@ impl<'a> BitWriter<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BitReader<'a> {
     bytes: &'a [u8],
-    /// The next bits, from the highest on, and then 0.
-    window: u32,
-    /// How many of them there are.
-    available: u32,
+    /// How many bits are taken.
+    taken: usize,
 }
 
 impl<'a> BitReader<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, window: 0, available: 0 }
+        Self { bytes, taken: 0 }
     }
 
-    /// The next `count` bits, up to 32.
+    /// The next 25 bits or more, and 0 after the last.
     #[inline]
-    pub(super) fn take(&mut self, count: u32) -> Option<u32> {
-        if count > 16 {
-            let high = self.take_few(count - 16)?;
-            Some(high << 16 | self.take_few(16)?)
-        } else {
-            self.take_few(count)
+    pub(super) fn glance(&self) -> Glance {
+        let rest = self.bytes.get(self.taken / 8..).unwrap_or_default();
+        let bytes = rest.first_chunk().copied().unwrap_or_else(|| end(rest));
+        Glance { bits: u32::from_be_bytes(bytes) << (self.taken % 8), taken: 0 }
+    }
+
+    /// Takes what was taken at a glance, if there was as much.
+    #[inline]
+    pub(super) fn pass(&mut self, glance: Glance) -> Option<()> {
+        let taken = glance.taken as usize;
+        if glance.taken > 25 || taken > self.left() {
+            return None;
         }
+        self.taken += taken;
+        Some(())
     }
 
-    /// The value of the next `code(value, k)`.
-    pub(super) fn take_code(&mut self, k: u32) -> Option<u32> {
-        self.fill();
-        let zeros = self.window.leading_zeros();
-        let number =
-            if 2 * zeros < self.available { self.shift(2 * zeros + 1) } else { self.take_long()? };
-        Some((number - 1).unbounded_shl(k) | self.take_few(k)?)
+    #[inline]
+    fn left(&self) -> usize {
+        8 * self.bytes.len() - self.taken
     }
 
-    /// A number after as many 0 as it has bits after its first, longer than the window.
-    fn take_long(&mut self) -> Option<u32> {
+    /// Whether all that is left are fewer than 8 bits of 0.
+    pub(super) fn is_padding(self) -> bool {
+        self.left() < 8 && self.glance().bits == 0
+    }
+}
+
+/// The last bytes, fewer than 4, and 0.
+#[cold]
+#[inline(never)]
+fn end(bytes: &[u8]) -> [u8; 4] {
+    core::array::from_fn(|i| bytes.get(i).copied().unwrap_or_default())
+}
+
+impl TakeBits for BitReader<'_> {
+    fn take(&mut self, count: u32) -> Option<u32> {
+        let mut value = 0;
+        for _ in 0..count {
+            let mut glance = self.glance();
+            value = value << 1 | glance.take(1)?;
+            self.pass(glance)?;
+        }
+        Some(value)
+    }
+
+    fn take_code(&mut self, k: u32) -> Option<u32> {
         let mut zeros = 0;
-        while self.take_few(1)? == 0 {
+        while self.take(1)? == 0 {
             zeros += 1;
             if zeros == 32 {
                 return None;
             }
         }
-        Some(1_u32 << zeros | self.take(zeros)?)
+        let number = 1_u32 << zeros | self.take(zeros)?;
+        Some((number - 1).unbounded_shl(k) | self.take(k)?)
     }
-
-    /// Up to 16.
-    fn take_few(&mut self, count: u32) -> Option<u32> {
-        self.fill();
-        (count <= self.available).then(|| self.shift(count))
-    }
-
-    /// At least 25 bits in the window, if there are.
-    fn fill(&mut self) {
-        while self.available <= 24 {
-            let Some((&byte, rest)) = self.bytes.split_first() else { return };
-            self.window |= u32::from(byte) << (24 - self.available);
-            self.available += 8;
-            self.bytes = rest;
-        }
-    }
-
-    /// The first `count` bits of the window, which has so many.
-    fn shift(&mut self, count: u32) -> u32 {
-        let bits = self.window.unbounded_shr(32 - count);
-        self.window = self.window.unbounded_shl(count);
-        self.available -= count;
-        bits
-    }
-
-    /// Whether all that is left are fewer than 8 bits of 0.
-    pub(super) fn is_padding(self) -> bool {
-        self.bytes.is_empty() && self.available < 8 && self.window == 0
-    }
-}
-
-/// 0, -1, 1, -2 … to 0, 1, 2, 3 …
-pub(super) fn zigzag(value: i32) -> u32 {
-    (value << 1 ^ value >> 31) as u32
-}
-
-/// The inverse of [`zigzag`].
-pub(super) fn unzigzag(code: u32) -> i32 {
-    (code >> 1) as i32 ^ -((code & 1) as i32)
 }

@@ -4,9 +4,10 @@ use core::num::NonZeroU16;
 
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 
-use super::LinkError;
-use super::bits::{BitReader, unzigzag};
-use crate::{Event, Polarity};
+use super::bits::BitReader;
+use super::delta::Place;
+use super::{Coding, LinkError};
+use crate::Event;
 
 /// The bytes of a frame without keyframes and events.
 pub const MIN_FRAME: usize = HEADER + CHECKSUM;
@@ -54,8 +55,7 @@ pub struct FrameView<'a> {
     flags: u8,
     sequence: u16,
     tick: u32,
-    period: NonZeroU16,
-    coding: u8,
+    coding: Coding,
     keyframes: &'a [u8],
     events: &'a [u8],
 }
@@ -87,8 +87,7 @@ impl<'a> FrameView<'a> {
             flags,
             sequence: u16::from_le_bytes([s0, s1]),
             tick: u32::from_le_bytes([t0, t1, t2, t3]),
-            period: NonZeroU16::new(u16::from_le_bytes([p0, p1]))?,
-            coding,
+            coding: Coding::from_byte(NonZeroU16::new(u16::from_le_bytes([p0, p1]))?, coding),
             keyframes,
             events,
         })
@@ -156,13 +155,7 @@ impl<'a> FrameView<'a> {
 
     /// The events, in the order they were written.
     pub fn events(&self) -> Events<'a> {
-        Events {
-            bits: BitReader::new(self.events),
-            period: self.period.get(),
-            coding: self.coding,
-            tick: self.tick,
-            next_address: 0,
-        }
+        Events { bits: BitReader::new(self.events), place: Place::new(self.coding, self.tick) }
     }
 }
 
@@ -182,11 +175,7 @@ fn split_keyframes(flags: u8, payload: &[u8]) -> Option<(&[u8], &[u8])> {
 #[derive(Clone, Debug)]
 pub struct Events<'a> {
     bits: BitReader<'a>,
-    period: u16,
-    coding: u8,
-    tick: u32,
-    /// The lowest address of an event at the same tick; 65 536 after the highest.
-    next_address: u32,
+    place: Place,
 }
 
 impl Events<'_> {
@@ -196,22 +185,16 @@ impl Events<'_> {
         self.bits.is_padding()
     }
 
-    fn event(&mut self) -> Option<Event> {
-        let mut ahead = self.clone();
-        let (address_bits, jitter_bits) =
-            (u32::from(ahead.coding & 0xF), u32::from(ahead.coding >> 4));
-        if ahead.bits.take(1)? == 1 {
-            let steps = unzigzag(ahead.bits.take_code(0)?).wrapping_add(1);
-            let jitter = unzigzag(ahead.bits.take_code(jitter_bits)?);
-            let since = steps.wrapping_mul(self.period.into()).wrapping_add(jitter);
-            ahead.tick = ahead.tick.wrapping_add_signed(since);
-            ahead.next_address = 0;
+    /// An event that a glance does not show: longer, or none.
+    #[cold]
+    #[inline(never)]
+    fn take_long(&mut self) -> Option<Event> {
+        if self.is_complete() {
+            return None;
         }
-        let address = ahead.next_address.checked_add(ahead.bits.take_code(address_bits)?)?;
-        let polarity = if ahead.bits.take(1)? == 1 { Polarity::Up } else { Polarity::Down };
-        let event = Event { tick: ahead.tick, address: address.try_into().ok()?, polarity };
-        ahead.next_address = address + 1;
-        *self = ahead;
+        let mut bits = self.bits;
+        let event = self.place.take(&mut bits)?;
+        self.bits = bits;
         Some(event)
     }
 }
@@ -220,6 +203,12 @@ impl Iterator for Events<'_> {
     type Item = Event;
 
     fn next(&mut self) -> Option<Event> {
-        self.event()
+        let mut glance = self.bits.glance();
+        let event = match self.place.take(&mut glance) {
+            Some(event) if self.bits.pass(glance).is_some() => event,
+            _ => self.take_long()?,
+        };
+        self.place.pass(event);
+        Some(event)
     }
 }

@@ -77,6 +77,7 @@
 //! ```
 
 mod bits;
+mod delta;
 mod error;
 mod frame;
 mod raw;

@@ -105,7 +105,8 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
             }
             self.pending = None;
         }
-        while let Some(event) = self.held.take().or_else(|| events.next_event()) {
+        let mut next = self.held.take();
+        while let Some(event) = next {
             let is_behind =
                 |pending: &Pending<S, N>| tick::is_before(pending.snapshot.tick, event.tick);
             if events.lost() != self.lost
@@ -116,6 +117,7 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
                 break;
             }
             self.sent = Some(event.tick);
+            next = events.next_event();
         }
         if frame.is_empty() && !self.owes_loss {
             return Err(LinkError::Full);

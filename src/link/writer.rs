@@ -1,15 +1,16 @@
 //! Writing frames into the caller's buffer.
 
-use core::num::{NonZeroU16, NonZeroU32};
+use core::num::NonZeroU16;
 
-use super::bits::{BitWriter, zigzag};
+use super::bits::{BitWriter, Word};
+use super::delta::Place;
 use super::frame::{
     CHECKSUM, FLAGS_AT, HEADER, LENGTH_AT, MAGIC, MAX_LENGTH, VERSION, checksum, flag,
     keyframe_size,
 };
 use super::{Keyframe, LinkError, Raw};
+use crate::Event;
 use crate::bytes::Cursor;
-use crate::{Event, Polarity, tick};
 
 /// How a sender spends the bits of an event. Any choice carries any event; a good one is shorter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -43,11 +44,23 @@ impl Coding {
         Self { jitter_bits, ..self }
     }
 
-    const fn byte(self) -> u8 {
+    const fn within_limits(self) -> Self {
         const fn nibble(bits: u8) -> u8 {
             if bits > 15 { 15 } else { bits }
         }
-        nibble(self.jitter_bits) << 4 | nibble(self.address_bits)
+        Self {
+            address_bits: nibble(self.address_bits),
+            jitter_bits: nibble(self.jitter_bits),
+            ..self
+        }
+    }
+
+    pub(super) const fn byte(self) -> u8 {
+        self.jitter_bits << 4 | self.address_bits
+    }
+
+    pub(super) const fn from_byte(period: NonZeroU16, byte: u8) -> Self {
+        Self { period, address_bits: byte & 0xF, jitter_bits: byte >> 4 }
     }
 }
 
@@ -78,7 +91,7 @@ pub struct Framer {
 impl Framer {
     /// A sender whose first frame is number 0.
     pub const fn new(coding: Coding) -> Self {
-        Self { coding, sequence: 0, flags: flag::RESTART }
+        Self { coding: coding.within_limits(), sequence: 0, flags: flag::RESTART }
     }
 
     /// Says in the next frame that events were lost before it.
@@ -99,8 +112,9 @@ impl Framer {
         let limit = buffer.len().checked_sub(CHECKSUM).ok_or(LinkError::Full)?;
         let [s0, s1] = self.sequence.to_le_bytes();
         let [t0, t1, t2, t3] = tick.to_le_bytes();
-        let [p0, p1] = self.coding.period.get().to_le_bytes();
-        let header = [MAGIC, 0, s0, s1, t0, t1, t2, t3, p0, p1, self.coding.byte(), 0];
+        let coding = self.coding;
+        let [p0, p1] = coding.period.get().to_le_bytes();
+        let header = [MAGIC, 0, s0, s1, t0, t1, t2, t3, p0, p1, coding.byte(), 0];
 
         let mut bytes = Cursor::new(buffer);
         bytes.set_limit(limit.min(HEADER + MAX_LENGTH));
@@ -113,8 +127,7 @@ impl Framer {
             flags,
             keyframes: 0,
             events: 0,
-            tick,
-            next_address: 0,
+            place: Place::new(coding, tick),
         })
     }
 }
@@ -127,13 +140,8 @@ pub struct FrameWriter<'f, 'a> {
     flags: u8,
     keyframes: u8,
     events: u32,
-    tick: u32,
-    /// As in [`Events`](super::Events).
-    next_address: u32,
+    place: Place,
 }
-
-/// The longest time between two events of a frame, in µs: 17.9 minutes.
-const MAX_SINCE: u32 = 1 << 30;
 
 impl<'a> FrameWriter<'_, 'a> {
     /// Appends what the decoder of an address holds at the frame's tick.
@@ -171,41 +179,27 @@ impl<'a> FrameWriter<'_, 'a> {
     /// [`LinkError::Full`]: it does not fit, or lies more than 2³⁰ µs from the one before; the frame is
     /// as it was.
     pub fn event(&mut self, event: Event) -> Result<(), LinkError> {
-        let mark = self.bits.mark();
-        if self.put_event(event).is_none() {
-            self.bits.back_to(mark);
-            return Err(LinkError::Full);
+        let mut word = Word::default();
+        self.place.put(event, &mut word).ok_or(LinkError::Full)?;
+        if self.bits.put_word(word).is_none() {
+            self.put_long(event)?;
         }
-        self.tick = event.tick;
-        self.next_address = u32::from(event.address) + 1;
+        self.place.pass(event);
         self.events = self.events.saturating_add(1);
         Ok(())
     }
 
-    fn put_event(&mut self, event: Event) -> Option<()> {
-        let Coding { period, address_bits, jitter_bits } = self.framer.coding;
-        let [address_bits, jitter_bits] =
-            [address_bits, jitter_bits].map(|bits| u32::from(bits).min(15));
-        let address = u32::from(event.address);
-        let since = tick::difference(event.tick, self.tick);
-        match address.checked_sub(self.next_address) {
-            Some(distance) if since == 0 => {
-                self.bits.put(0, 1)?;
-                self.bits.put_code(distance, address_bits)?;
-            }
-            _ => {
-                if since.unsigned_abs() > MAX_SINCE {
-                    return None;
-                }
-                let (steps, jitter) = nearest_step(since, period.into());
-                self.bits.put(1, 1)?;
-                self.bits.put_code(zigzag(steps.wrapping_sub(1)), 0)?;
-                self.bits.put_code(zigzag(jitter), jitter_bits)?;
-                self.bits.put_code(address, address_bits)?;
-            }
+    /// An event that is no word, or does not fit.
+    #[cold]
+    #[inline(never)]
+    fn put_long(&mut self, event: Event) -> Result<(), LinkError> {
+        let mark = self.bits.mark();
+        self.place.put(event, &mut self.bits).ok_or(LinkError::Full)?;
+        if !self.bits.is_within_limit() {
+            self.bits.back_to(mark);
+            return Err(LinkError::Full);
         }
-        self.bits.put((event.polarity == Polarity::Up).into(), 1)?;
-        self.bits.is_within_limit().then_some(())
+        Ok(())
     }
 
     /// How many events it has.
@@ -236,11 +230,4 @@ impl<'a> FrameWriter<'_, 'a> {
         self.framer.flags = 0;
         bytes.into_slice()
     }
-}
-
-/// `since` as steps of the period, and what is left: at most half a period.
-fn nearest_step(since: i32, period: NonZeroU32) -> (i32, i32) {
-    let magnitude = (since.unsigned_abs() + period.get() / 2) / period;
-    let steps = if since < 0 { -(magnitude as i32) } else { magnitude as i32 };
-    (steps, since.wrapping_sub(steps.wrapping_mul(period.get() as i32)))
 }
