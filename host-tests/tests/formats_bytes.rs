@@ -1,9 +1,12 @@
 //! The event formats: golden bytes, round trips, and decoders of cut, damaged and random bytes.
 
+use std::num::NonZeroU16;
+
 use proptest::prelude::*;
 use spikewire::format::{
     Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, FormatError, eieio,
 };
+use spikewire::link::{Coding, Snapshot, Transmitter};
 use spikewire::sink::{Batch, Formatted};
 use spikewire::{Event, Polarity};
 
@@ -234,7 +237,33 @@ fn events_out_of_order_are_retimed_and_counted() {
     check!(Evt2::encoder(), Evt2::decoder(), []);
 }
 
+/// Sends all events in the shortest batches.
+fn goes_on<B: Batch>(mut batch: B, events: &[Event]) {
+    let mut source = events.iter().copied();
+    let mut bytes = vec![0; B::SHORTEST];
+    while source.len() > 0 {
+        assert!(batch.fill(&mut source, &mut bytes) > 0);
+    }
+}
+
 proptest! {
+    #[test]
+    fn the_shortest_batch_always_holds_something(
+        near in events(100_000, u16::MAX),
+        far in events(u32::MAX, 0x3FFF),
+        (period, address_bits, jitter_bits) in any::<(NonZeroU16, u8, u8)>(),
+        keyframe in any::<[Option<f32>; 20]>(),
+    ) {
+        for time in [EdvsTime::None, EdvsTime::Delta, EdvsTime::Bits16, EdvsTime::Bits24, EdvsTime::Bits32] {
+            goes_on(Formatted::new(Edvs::new(time).encoder()), &far);
+        }
+        goes_on(Formatted::new(EventStream::encoder()), &near);
+        goes_on(Formatted::new(Evt2::encoder()), &far);
+        let mut link = Transmitter::new(Coding { period, address_bits, jitter_bits });
+        link.keyframe(Snapshot { tick: 0, values: keyframe, lost: 0 });
+        goes_on(link, &far);
+    }
+
     #[test]
     fn edvs_round_trips(
         (time, events) in prop_oneof![

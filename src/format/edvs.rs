@@ -92,6 +92,8 @@ pub struct EdvsEncoder {
 }
 
 impl EventFormat for EdvsEncoder {
+    const LONGEST: usize = 6;
+
     fn encode(&mut self, event: Event, bytes: &mut [u8]) -> Result<usize, FormatError> {
         let Event { tick, address, polarity } = event;
         if address > MAX_ADDRESS {

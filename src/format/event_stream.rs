@@ -60,6 +60,8 @@ pub struct EventStreamEncoder {
 }
 
 impl EventFormat for EventStreamEncoder {
+    const LONGEST: usize = 5;
+
     /// Writes an event. Time that passes is written as far as it fits, a byte for every 254 µs, and
     /// not written again.
     fn encode(&mut self, event: Event, bytes: &mut [u8]) -> Result<usize, FormatError> {

@@ -68,6 +68,8 @@ pub struct Evt2Encoder {
 }
 
 impl EventFormat for Evt2Encoder {
+    const LONGEST: usize = 4;
+
     fn encode(&mut self, event: Event, bytes: &mut [u8]) -> Result<usize, FormatError> {
         let last = self.time.unwrap_or(event.tick.into());
         let delta = tick::difference(event.tick, last as u32);

@@ -29,6 +29,10 @@ pub use evt2::{Evt2, Evt2Decoder, Evt2Encoder};
 
 /// Writes events, one after the other.
 pub trait EventFormat {
+    /// The bytes of the longest piece that is written at once: in as many, an event, or some of the
+    /// time before it, always fits.
+    const LONGEST: usize;
+
     /// Writes an event at the start of `bytes` and returns its length.
     ///
     /// # Errors

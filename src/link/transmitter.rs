@@ -162,6 +162,8 @@ impl<S: Raw, const N: usize> Pending<S, N> {
 
 /// One frame a batch, for a sink. A buffer too short for any frame sends nothing.
 impl<S: Raw, const N: usize> Batch for Transmitter<S, N> {
+    const SHORTEST: usize = 64;
+
     fn fill(&mut self, events: &mut impl EventSource, bytes: &mut [u8]) -> usize {
         match self.write_frame(events, bytes) {
             Ok(Some(frame)) => frame.len(),

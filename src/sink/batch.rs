@@ -6,6 +6,10 @@ use crate::{Event, EventSource};
 /// Turns events into the bytes of one transfer: an [event format](crate::format) by way of
 /// [`Formatted`], or the frames of a link's transmitter.
 pub trait Batch {
+    /// The bytes in which any event, keyframe or frame fits. A batch of fewer may be too short for the
+    /// next one, and then stays empty.
+    const SHORTEST: usize;
+
     /// Takes events while they fit, writes their bytes, and returns how many bytes there are; 0 if
     /// there is nothing to send.
     ///
@@ -14,6 +18,8 @@ pub trait Batch {
 }
 
 impl<B: Batch> Batch for &mut B {
+    const SHORTEST: usize = B::SHORTEST;
+
     fn fill(&mut self, events: &mut impl EventSource, bytes: &mut [u8]) -> usize {
         (**self).fill(events, bytes)
     }
@@ -55,6 +61,8 @@ impl<F: EventFormat> Formatted<F> {
 }
 
 impl<F: EventFormat> Batch for Formatted<F> {
+    const SHORTEST: usize = F::LONGEST;
+
     fn fill(&mut self, events: &mut impl EventSource, bytes: &mut [u8]) -> usize {
         let mut written = 0;
         while let Some(event) = self.held.take().or_else(|| events.next_event()) {

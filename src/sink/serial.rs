@@ -7,7 +7,8 @@ use crate::EventSource;
 
 /// Sends events over an `embedded-io` writer.
 ///
-/// - **Batches:** up to `N` bytes. A port may take fewer at a time; the rest is kept.
+/// - **Batches:** up to `N` bytes, at least [`Batch::SHORTEST`]. A port may take fewer at a time; the
+///   rest is kept.
 /// - **Errors** come back with what was not taken kept: the next [`send`](Self::send) goes on there, so
 ///   that no byte is sent twice or left out.
 /// - **Memory:** `N` bytes, and those of its parts.
@@ -23,6 +24,15 @@ use crate::EventSource;
 /// assert_eq!(sink.send([event, event].into_iter()), Ok(4));
 /// assert_eq!(port, [0x80, 0x85, 0x80, 0x85]);
 /// ```
+///
+/// Batches too short for an event do not compile:
+///
+/// ```compile_fail
+/// # use spikewire::{format::{Edvs, EdvsTime}, sink::{Formatted, SerialSink}};
+/// # let mut port = [0; 4];
+/// let format = Edvs::new(EdvsTime::None).encoder();
+/// let sink = SerialSink::<_, _, 5>::new(&mut port[..], Formatted::new(format));
+/// ```
 #[derive(Debug)]
 pub struct SerialSink<W, B, const N: usize> {
     port: W,
@@ -36,6 +46,7 @@ pub struct SerialSink<W, B, const N: usize> {
 impl<W: Write, B: Batch, const N: usize> SerialSink<W, B, N> {
     /// A sink on this port.
     pub const fn new(port: W, batch: B) -> Self {
+        const { assert!(N >= B::SHORTEST, "a batch is too short: see Batch::SHORTEST") };
         Self { port, batch, bytes: [0; N], start: 0, end: 0 }
     }
 

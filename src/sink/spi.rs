@@ -30,7 +30,7 @@ macro_rules! spi_sink {
     ($(#[$documentation:meta])* $name:ident, $device:path, [$($asynchronous:tt)?], [$($wait:tt)*]) => {
         $(#[$documentation])*
         ///
-        /// - **Batches:** up to `N` bytes, in one transaction.
+        /// - **Batches:** up to `N` bytes, in one transaction; `N` is at least [`Batch::SHORTEST`].
         /// - **Ready pin:** high when the receiver takes bytes; a busy pin is one inverted. It is
         ///   looked at once a batch, never waited for.
         /// - **Errors** come back with the batch kept: the next [`send`](Self::send) begins with the
@@ -50,6 +50,7 @@ macro_rules! spi_sink {
         impl<D, B: Batch, const N: usize> $name<D, B, N> {
             /// A receiver that is always ready.
             pub const fn new(device: D, batch: B) -> Self {
+                const { assert!(N >= B::SHORTEST, "a batch is too short: see Batch::SHORTEST") };
                 Self { device, batch, ready: AlwaysReady, bytes: [0; N], waiting: 0 }
             }
         }
@@ -57,6 +58,7 @@ macro_rules! spi_sink {
         impl<D: $device, B: Batch, const N: usize, R: InputPin> $name<D, B, N, R> {
             /// A receiver with a ready pin.
             pub const fn with_ready(device: D, batch: B, ready: R) -> Self {
+                const { assert!(N >= B::SHORTEST, "a batch is too short: see Batch::SHORTEST") };
                 Self { device, batch, ready, bytes: [0; N], waiting: 0 }
             }
 
@@ -119,6 +121,15 @@ spi_sink! {
     /// let event = Event { tick: 0, address: 5, polarity: Polarity::Up };
     /// assert_eq!(sink.send([event].into_iter()), Ok(8));
     /// # sink.release().0.done();
+    /// ```
+    ///
+    /// Batches too short for a word do not compile:
+    ///
+    /// ```compile_fail
+    /// # use embedded_hal_mock::eh1::spi::Mock;
+    /// # use spikewire::{format::Evt2, sink::{Formatted, SpiSink}};
+    /// let spi = Mock::<u8>::new(&[]);
+    /// let sink = SpiSink::<_, _, 3>::new(spi, Formatted::new(Evt2::encoder()));
     /// ```
     SpiSink, embedded_hal::spi::SpiDevice, [], []
 }

@@ -64,6 +64,8 @@ fn format(
 struct Raw;
 
 impl EventFormat for Raw {
+    const LONGEST: usize = 7;
+
     #[inline]
     fn encode(&mut self, event: Event, bytes: &mut [u8]) -> Result<usize, FormatError> {
         let target: &mut [u8; 7] =
