@@ -78,6 +78,28 @@ fn times_are_kept_and_gaps_are_told() {
 }
 
 #[test]
+fn sub_timesteps_have_times_of_their_own() {
+    let signal = "time_us,x\n100,0.1\n1100,0.5\n2100,0.9\n";
+    let slots = "--scheme grf-slots --neurons 4 --slots 10 --min 0 --max 1";
+    let spikes = good(&format!("encode {slots} -"), signal).output;
+    let rows: Vec<&str> = spikes.lines().filter(|line| !line.starts_with('#')).skip(1).collect();
+    assert!(rows.len() > 6, "{spikes}");
+    for row in &rows {
+        let index: u32 = row.split(',').next().unwrap().parse().unwrap();
+        assert!(row.ends_with(&format!(",{}", 100 + index * 100)), "{row}");
+    }
+    let table = good("convert --from csv --to csv", &spikes).output;
+    let ticks = table.lines().skip(1).map(|line| line.split(',').next().unwrap());
+    assert!(ticks.eq(rows.iter().map(|row| row.rsplit(',').next().unwrap())), "{table}");
+    let as_before = spikes.lines().map(|line| match line.rsplit_once(',') {
+        Some((row, time)) if time.parse::<u32>().is_ok() => format!("{row},100\n"),
+        _ => format!("{line}\n"),
+    });
+    let decoded = good("decode", &spikes).output;
+    assert_eq!(good("decode", &as_before.collect::<String>()).output, decoded);
+}
+
+#[test]
 fn info_lists_topics_fields_rates_and_gaps() {
     let [hexarotor, _] = flight_logs();
     let told = good(&format!("info {}", hexarotor.display()), "").output;

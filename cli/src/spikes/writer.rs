@@ -15,6 +15,8 @@ use std::io::Write;
 pub(crate) struct Writer<W> {
     output: W,
     slots: u64,
+    /// From sample to sample, in µs, as far as it is known.
+    period: u64,
     is_timed: bool,
     /// Finite samples whose events may still come: their index and time.
     pending: VecDeque<(u64, i64)>,
@@ -52,6 +54,7 @@ impl<W: Write> Writer<W> {
         Ok(Self {
             output,
             slots: header.settings.slots() as u64,
+            period: header.rate.map_or(0, |rate| (1e6 / rate).round() as u64),
             is_timed,
             pending: VecDeque::new(),
             first_pending: 0,
@@ -114,8 +117,9 @@ impl<W: Write> Writer<W> {
                 b",-1"
             });
             if self.is_timed {
+                let within = self.period.saturating_mul(event.slot.into()) / self.slots;
                 self.line.push(b',');
-                self.line.extend(digits.format(time).as_bytes());
+                self.line.extend(digits.format(time.saturating_add_unsigned(within)).as_bytes());
             }
             self.line.push(b'\n');
             self.summary.events += 1;
