@@ -227,6 +227,20 @@ fn a_table_holds_all_that_a_link_does() {
 }
 
 #[test]
+fn a_link_says_what_comes_after_its_last_event() {
+    for (end, read) in [
+        ("# lost_events\n", "# lost_events\n"),
+        ("# lost_frames=2\n", "# lost_events\n"),
+        ("# lost_events\n# restart\n# restart\n", "# lost_events\n# restart\n# restart\n"),
+    ] {
+        let start = "tick,address,polarity\n# restart\n1,0,1\n";
+        let link = convert("csv", "link", format!("{start}{end}").as_bytes()).output;
+        let back = convert("link", "csv", &link);
+        assert_eq!(str::from_utf8(&back.output).unwrap(), format!("{start}{read}"));
+    }
+}
+
+#[test]
 fn spikes_of_a_recording_are_events_too() {
     let scheme = "encode --scheme sf --threshold 0.1 --column gyro_x";
     let spikes = good(&format!("{scheme} {}", common::flight("hexarotor.csv")), "").output;

@@ -66,7 +66,7 @@ impl EventReader for LinkReader {
             ..self.tally
         };
         let skipped = u64::from(reader.skipped()).saturating_sub(self.padding);
-        Tally { skipped, is_cut: false, link: Some(link) }
+        Tally { skipped, link: Some(link), ..Tally::default() }
     }
 }
 
@@ -111,6 +111,8 @@ pub(super) struct Writer {
     /// When all of them hold.
     tick: u32,
     events: Vec<Event>,
+    /// Whether a loss or restart waits for a frame to say it.
+    owes_mark: bool,
 }
 
 /// How many events wait for their frames at most.
@@ -119,12 +121,28 @@ const BATCH: usize = 1024;
 impl Writer {
     pub(super) fn new(coding: Coding) -> Self {
         let framer = Framer::new(coding);
-        Self { framer, coding, keyframes: Vec::new(), tick: 0, events: Vec::new() }
+        Self {
+            framer,
+            coding,
+            keyframes: Vec::new(),
+            tick: 0,
+            events: Vec::new(),
+            owes_mark: false,
+        }
+    }
+
+    /// Writes all frames, and an empty one where none was left to say what was to be said.
+    fn all_frames(&mut self, output: &mut dyn Write) -> Result<()> {
+        self.frames(true, output)?;
+        if std::mem::take(&mut self.owes_mark) {
+            output.write_all(self.framer.start(self.tick, &mut [0; MAX_FRAME])?.finish())?;
+        }
+        Ok(())
     }
 
     /// Writes frames; the last only if nothing may be added to it.
     fn frames(&mut self, with_last: bool, output: &mut dyn Write) -> Result<()> {
-        let Self { framer, keyframes, tick, events, .. } = self;
+        let Self { framer, keyframes, tick, events, owes_mark, .. } = self;
         let mut buffer = [0; MAX_FRAME];
         loop {
             let start = match (keyframes.first(), events.first()) {
@@ -144,6 +162,7 @@ impl Writer {
                 return Ok(());
             }
             output.write_all(frame.finish())?;
+            *owes_mark = false;
             keyframes.drain(..keys);
             events.drain(..fired);
         }
@@ -182,12 +201,14 @@ impl EventWriter for Writer {
                 self.keyframes.push((keyframe, is_wide));
             }
             Item::LostFrames(_) | Item::LostEvents => {
-                self.frames(true, output)?;
+                self.all_frames(output)?;
                 self.framer.mark_loss();
+                self.owes_mark = true;
             }
             Item::Restart => {
-                self.frames(true, output)?;
+                self.all_frames(output)?;
                 self.framer = Framer::new(self.coding);
+                self.owes_mark = true;
             }
             Item::Value { .. } => {}
         }
@@ -195,7 +216,7 @@ impl EventWriter for Writer {
     }
 
     fn finish(&mut self, output: &mut dyn Write) -> Result<()> {
-        self.frames(true, output)
+        self.all_frames(output)
     }
 
     fn notes(&self) -> Vec<String> {
