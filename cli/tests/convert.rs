@@ -241,12 +241,29 @@ fn a_link_says_what_comes_after_its_last_event() {
 }
 
 #[test]
+fn ticks_of_more_than_32_bits_wrap() {
+    let start = 1_700_000_000_000_000_u64;
+    let late = format!("tick,address,polarity\n{start},0,1\n{},1,-1\n", start + 777);
+    let link = convert("csv", "link", late.as_bytes());
+    assert!(link.told.contains("\n2 ticks kept their low 32 bits\n"), "{}", link.told);
+    let tick = start as u32;
+    let back = convert("link", "csv", &link.output).output;
+    assert_eq!(rows(&back), table([(tick, 0, 1), (tick + 777, 1, -1)]));
+    let moved = good_bytes("convert --from-zero --from csv --to es", late.as_bytes()).output;
+    assert_eq!(rows(&convert("es", "csv", &moved).output), table([(0, 0, 1), (777, 1, -1)]));
+}
+
+#[test]
 fn spikes_of_a_recording_are_events_too() {
     let scheme = "encode --scheme sf --threshold 0.1 --column gyro_x";
     let spikes = good(&format!("{scheme} {}", common::flight("hexarotor.csv")), "").output;
     let table = convert("csv", "csv", spikes.as_bytes());
     assert!(table.told.contains("1406 events at 1 addresses"), "{}", table.told);
     assert!(str::from_utf8(&table.output).unwrap().contains("\n4297129,0,-1\n"));
+    let cut = spikes.match_indices('\n').nth(500).unwrap().0;
+    for (length, word) in [(cut, "cut short"), (spikes.len() - 2, "its end says 140")] {
+        refused("convert --from csv --to link", &spikes[..length], &["standard input: ", word]);
+    }
     let untimed = good("encode --scheme sf --threshold 0.5 -", &common::table(&[0.0, 1.0])).output;
     refused("convert --from csv --to es", &untimed, &["line ", "tick,address,polarity"]);
 }
@@ -312,7 +329,7 @@ fn what_makes_no_sense_is_refused() {
     refused(to_es, "1,2,3\n", &["line 1", "`1,2,3`", "tick,address,polarity"]);
     let with = |row: &str| format!("tick,address,polarity\n1,2,1\n{row}\n");
     refused(to_es, &with("-1,2,1"), &["line 3", "tick `-1`"]);
-    refused(to_es, &with("4294967296,2,1"), &["line 3", "4294967295", "wrap"]);
+    refused(to_es, &with("18446744073709551616,2,1"), &["line 3", "tick `18446744073709551616`"]);
     refused(to_es, &with("1,65536,1"), &["line 3", "address `65536`", "65535"]);
     refused(to_es, &with("1,2,0"), &["line 3", "polarity `0`"]);
     refused(to_es, &with("1,2"), &["line 3", "polarity ``"]);

@@ -1,10 +1,11 @@
 //! Tables of events: `tick,address,polarity`, and in comments what is no event.
 
+use super::told::Told;
 use super::{EventReader, EventWriter, Item, Known, Tally};
 use crate::sample_type::SampleType;
 use anyhow::{Context, Result, bail};
 use spikewire::link::Keyframe;
-use spikewire::{Event, Polarity};
+use spikewire::{Event, Polarity, tick};
 use std::io::Write;
 
 const HEADER: &str = "tick,address,polarity";
@@ -17,6 +18,10 @@ pub(super) struct Reader {
     line: Vec<u8>,
     number: u64,
     columns: Option<Columns>,
+    events: u64,
+    /// Ticks of more than 32 bits.
+    long_ticks: u64,
+    told: Told,
 }
 
 /// Where in a line things are.
@@ -29,7 +34,15 @@ struct Columns {
 
 impl Reader {
     pub(super) fn new(file: &str) -> Self {
-        Self { file: file.to_owned(), line: Vec::new(), number: 0, columns: None }
+        Self {
+            file: file.to_owned(),
+            line: Vec::new(),
+            number: 0,
+            columns: None,
+            events: 0,
+            long_ticks: 0,
+            told: Told::default(),
+        }
     }
 
     fn end_line(&mut self, items: &mut Vec<Item>) -> Result<()> {
@@ -38,9 +51,13 @@ impl Reader {
         let text = String::from_utf8_lossy(&line);
         let text = text.trim();
         let item = if let Some(note) = text.strip_prefix('#') {
-            note_item(note.trim())
+            self.told.observe(note.trim()).and_then(|()| note_item(note.trim()))
         } else if let Some(columns) = self.columns {
-            if text.is_empty() { Ok(None) } else { event_item(text, columns).map(Some) }
+            if text.is_empty() {
+                Ok(None)
+            } else {
+                event_item(text, columns, &mut self.long_ticks).map(Some)
+            }
         } else {
             header(text).map(|columns| {
                 self.columns = Some(columns);
@@ -48,6 +65,7 @@ impl Reader {
             })
         };
         let item = item.with_context(|| format!("{}: line {}", self.file, self.number))?;
+        self.events += u64::from(matches!(item, Some(Item::Event(_))));
         items.extend(item);
         Ok(())
     }
@@ -79,11 +97,11 @@ impl EventReader for Reader {
         if self.columns.is_none() {
             bail!("{}: empty; a table of events starts with `{HEADER}`", self.file);
         }
-        Ok(())
+        self.told.check(self.events).with_context(|| self.file.clone())
     }
 
     fn tally(&self) -> Tally {
-        Tally::default()
+        Tally { long_ticks: self.long_ticks, ..Tally::default() }
     }
 }
 
@@ -96,12 +114,13 @@ fn header(text: &str) -> Result<Columns> {
     }
 }
 
-fn event_item(text: &str, columns: Columns) -> Result<Item> {
+fn event_item(text: &str, columns: Columns, long_ticks: &mut u64) -> Result<Item> {
     let field = |column: usize| text.split(',').nth(column).map_or("", str::trim);
     let (tick, address) = (field(columns.tick), field(columns.address));
-    let tick = tick.parse().with_context(|| {
-        format!("tick `{tick}` is not a number of µs from 0 to {}, where ticks wrap", u32::MAX)
-    })?;
+    let micros: u64 =
+        tick.parse().with_context(|| format!("tick `{tick}` is not a number of µs from 0 on"))?;
+    let tick = tick::from_micros(micros);
+    *long_ticks += u64::from(u64::from(tick) != micros);
     let address = address
         .parse()
         .with_context(|| format!("address `{address}` is not a number from 0 to {}", u16::MAX))?;

@@ -10,6 +10,7 @@ mod link;
 mod omitted;
 mod stream;
 mod tally;
+mod told;
 
 pub(crate) use format::{Format, values_writer};
 pub(crate) use link::{LinkReader, Values};

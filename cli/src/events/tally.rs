@@ -9,6 +9,8 @@ pub(crate) struct Tally {
     pub skipped: u64,
     /// Whether the end was cut.
     pub is_cut: bool,
+    /// Ticks of more than 32 bits.
+    pub long_ticks: u64,
     /// Of a link only.
     pub link: Option<LinkTally>,
 }
@@ -65,6 +67,9 @@ impl fmt::Display for Tally {
             }
         }
         writeln!(f, "{} bytes skipped", self.skipped)?;
+        if self.long_ticks > 0 {
+            writeln!(f, "{} ticks kept their low 32 bits", self.long_ticks)?;
+        }
         if self.is_cut {
             writeln!(f, "the end is cut within an event")?;
         }
