@@ -272,13 +272,19 @@ fn spikes_of_a_recording_are_events_too() {
 fn a_file_that_is_cut_anywhere_gives_the_events_before_the_cut() {
     let events = table((0..9).map(|i| (i * 400, i as u16, 1)));
     let whole = rows(events.as_bytes());
+    // Before the first event or frame it may be of any format.
+    let cut = |format: &str, bytes: &[u8]| {
+        let read = spikewire_bytes(&format!("convert --from {format} --to csv"), bytes);
+        assert!(read.status == 0 || read.told.contains("another format"), "{}", read.told);
+        read
+    };
     for format in ["link", "edvs:e1", "edvs:e4", "es", "evt2", "eieio,step=1"] {
         let bytes = convert("csv", format, events.as_bytes()).output;
         for length in (0..bytes.len()).step_by(5) {
-            let read = convert(format, "csv", &bytes[..length]);
+            let read = cut(format, &bytes[..length]);
             assert!(whole.starts_with(&rows(&read.output)), "{format} cut to {length}");
         }
-        let read = convert(format, "csv", &bytes[..bytes.len() - 1]);
+        let read = cut(format, &bytes[..bytes.len() - 1]);
         let is_told =
             read.told.contains("the end is cut") || !read.told.contains("\n0 bytes skipped");
         assert!(is_told, "{format}: {}", read.told);
@@ -351,6 +357,27 @@ fn what_makes_no_sense_is_refused() {
     }
     let none = spikewire_bytes("convert --to csv", b"");
     assert_eq!(none.status, 2);
+}
+
+#[test]
+fn bytes_of_another_format_are_refused() {
+    let words = "nothing that any of these would say\n".repeat(9);
+    for (format, what) in [
+        ("link", "no link frame in the 324 bytes"),
+        ("edvs:e4", "no edvs:e4 event in the 324 bytes"),
+        ("eieio", "no eieio event in the 324 bytes"),
+    ] {
+        let from = format!("--from {format}");
+        refused(&format!("convert {from} --to es"), &words, &[what, "standard input; is it of"]);
+        refused(&format!("listen {from}"), &words, &[what, "\n324 bytes skipped\n"]);
+    }
+    let zeros = "\x7f".repeat(400);
+    refused("convert --from evt2 --to csv", &zeros, &["no evt2 event in the 400 bytes"]);
+    for format in FORMATS.iter().filter(|format| !format.contains("csv")) {
+        good(&format!("convert --from {format} --to csv"), "");
+        let none = convert("csv", format, table([]).as_bytes()).output;
+        good_bytes(&format!("listen --from {format}"), &none);
+    }
 }
 
 #[test]

@@ -316,6 +316,16 @@ fn a_serial_port_is_heard_until_its_time_is_over() {
 }
 
 #[test]
+fn a_port_may_say_nothing_that_is_understood() {
+    let (mut line, name, _open) = serial_line();
+    let child = spawn(&format!("listen --baud 115200 --seconds 1 {name}"), Stdio::piped());
+    line.write_all(b"hello").unwrap();
+    let done = child.wait_with_output().unwrap();
+    let told = String::from_utf8(done.stderr).unwrap();
+    assert!(done.status.success() && told.contains("no link frame in the 5 bytes"), "{told}");
+}
+
+#[test]
 fn a_camera_without_times_takes_those_of_arrival() {
     let (mut line, name, _open) = serial_line();
     let mut child =

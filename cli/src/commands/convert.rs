@@ -51,7 +51,7 @@ pub(crate) fn run(options: &Convert) -> Result<()> {
         }
     }
     stream.finish(&mut output)?;
-    output.finish()?;
     eprint!("{stream}");
-    Ok(())
+    stream.check_format(*from, port.name())?;
+    output.finish()
 }

@@ -103,9 +103,14 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
     };
     // What came before a port failed is kept.
     stream.finish(&mut output)?;
-    output.finish()?;
     live.clear();
     eprint!("{stream}");
+    match stream.check_format(options.from, port.name()) {
+        // It may yet speak, or at another speed.
+        Err(error) if options.baud.is_some() => eprintln!("{error}"),
+        checked => checked?,
+    }
+    output.finish()?;
     heard
 }
 

@@ -7,6 +7,7 @@ use crate::sample_type::SampleType;
 use anyhow::{Context, Error, Result, anyhow, bail};
 use spikewire::format::{Edvs, EdvsTime, EventStream, Evt2};
 use spikewire::link::Coding;
+use std::fmt;
 use std::num::NonZeroU32;
 use std::str::FromStr;
 
@@ -15,8 +16,8 @@ use std::str::FromStr;
 pub(crate) enum Format {
     /// The crate's link.
     Link(Coding),
-    /// eDVS, and whether its events bring a time.
-    Edvs(Edvs, bool),
+    /// eDVS, and how its events bring a time.
+    Edvs(Edvs, EdvsTime),
     /// Event Stream, a file `.es`.
     EventStream,
     /// EVT2, a file `.raw`.
@@ -32,7 +33,8 @@ impl Format {
     pub(crate) fn reader(self, file: &str) -> Box<dyn EventReader> {
         match self {
             Self::Link(_) => Box::new(LinkReader::new(None)),
-            Self::Edvs(edvs, is_timed) => {
+            Self::Edvs(edvs, time) => {
+                let is_timed = time != EdvsTime::None;
                 let set_arrival: fn(&mut _, u32) = spikewire::format::EdvsDecoder::set_tick;
                 let hooks =
                     Hooks { check: |_| Ok(()), set_arrival: (!is_timed).then_some(set_arrival) };
@@ -87,6 +89,24 @@ pub(crate) fn values_writer(sample: SampleType) -> Box<dyn EventWriter> {
     Box::new(csv::Writer::new(Some(sample)))
 }
 
+/// Its name without settings.
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Link(_) => "link",
+            Self::Edvs(_, EdvsTime::None) => "edvs:e0",
+            Self::Edvs(_, EdvsTime::Delta) => "edvs:e1",
+            Self::Edvs(_, EdvsTime::Bits16) => "edvs:e2",
+            Self::Edvs(_, EdvsTime::Bits24) => "edvs:e3",
+            Self::Edvs(_, EdvsTime::Bits32) => "edvs:e4",
+            Self::EventStream => "es",
+            Self::Evt2 => "evt2",
+            Self::Eieio(_) => "eieio",
+            Self::Csv => "csv",
+        })
+    }
+}
+
 /// What `--from` and `--to` take.
 pub(crate) const NAMES: &str = "link, edvs:e0 to edvs:e4, es, evt2, eieio, csv";
 
@@ -132,7 +152,7 @@ impl FromStr for Format {
 fn edvs(time: EdvsTime, settings: &mut Settings) -> Result<Format> {
     let edvs = Edvs::new(time);
     let edvs = if settings.bit("up", true)? { edvs } else { edvs.with_up_as_zero() };
-    Ok(Format::Edvs(edvs, time != EdvsTime::None))
+    Ok(Format::Edvs(edvs, time))
 }
 
 /// `key=value` pairs that are not taken yet.

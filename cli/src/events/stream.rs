@@ -1,7 +1,7 @@
 //! Bytes of one format in, bytes of another out.
 
-use super::{EventReader, EventWriter, Item, Tally};
-use anyhow::Result;
+use super::{EventReader, EventWriter, Format, Item, Tally};
+use anyhow::{Result, bail};
 use clap::Args;
 use spikewire::tick;
 use std::fmt;
@@ -156,6 +156,21 @@ impl Stream {
     /// How many bytes went in.
     pub(crate) fn bytes(&self) -> u64 {
         self.bytes
+    }
+
+    /// Refuses bytes none of which meant anything in this format.
+    ///
+    /// # Errors
+    /// Some were skipped, and there was neither event nor frame.
+    pub(crate) fn check_format(&self, format: Format, file: &str) -> Result<()> {
+        let Tally { skipped, link, .. } = self.tally();
+        let frames = link.map_or(0, |link| link.frames);
+        if skipped > 0 && self.count() == 0 && frames == 0 {
+            let what = if link.is_some() { "frame" } else { "event" };
+            let bytes = self.bytes;
+            bail!("no {format} {what} in the {bytes} bytes of {file}; is it of another format?");
+        }
+        Ok(())
     }
 
     /// What there was besides events.
