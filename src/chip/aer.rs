@@ -1,5 +1,7 @@
 //! Address events over parallel wires, by the 4-phase handshake.
 
+use crate::Event;
+
 /// The wires of a chip's two address-event buses and its reset, all active high.
 ///
 /// One port-wide write each for the data, rather than single pins, keeps words whole: on an STM32 a
@@ -51,54 +53,129 @@ pub trait AerPort {
     fn set_reset(&mut self, is_high: bool) -> Result<(), Self::Error>;
 }
 
-/// The phases of a handshake in which the chip can fail to answer.
+/// Where a handshake stands, or stands still.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Phase {
-    /// ACK is high before REQ. The word was not sent.
+    /// ACK is high before REQ, or the word before this one is still under way. This one was not sent.
     Idle,
-    /// ACK does not rise after REQ; REQ was taken back. The chip may have taken the word.
+    /// ACK has not risen after REQ. The word is under way: it stays on the bus, with REQ, until the chip
+    /// takes it or is reset.
     Acknowledge,
-    /// ACK does not fall after REQ has. The chip has taken the word.
+    /// ACK has not fallen after REQ has. The chip has taken the word.
     Release,
 }
 
-/// Why a word was not sent.
+/// Why a word is not through.
 #[derive(Debug)]
 pub(super) enum AerError<E> {
     Port(E),
     Timeout(Phase),
 }
 
+impl<E> From<E> for AerError<E> {
+    fn from(error: E) -> Self {
+        Self::Port(error)
+    }
+}
+
 /// The microcontroller's side of both buses.
+///
+/// The chip reads the word for as long as it works on it, and acknowledges whatever REQ it then finds.
+/// So a word once begun is kept up until it is acknowledged, over as many calls as that takes.
 #[derive(Debug)]
 pub(super) struct Aer<P> {
     pub(super) port: P,
     /// How often a wait looks at the pins.
     polls: u32,
-    is_requesting: bool,
+    /// Of the word that was begun last.
+    phase: Phase,
+    /// What that word stands for, until it is acknowledged.
+    pub(super) event: Option<Event>,
+    /// Whether the last call to [`send`](Self::send) began its word, even if an error followed.
+    pub(super) is_begun: bool,
+    /// REQ, where it is known.
+    is_requesting: Option<bool>,
     is_acknowledging: bool,
-    /// Whether the chip acknowledged the last word, even if an error followed.
-    pub(super) is_taken: bool,
 }
 
 impl<P: AerPort> Aer<P> {
     pub(super) const fn new(port: P, polls: u32) -> Self {
-        Self { port, polls, is_requesting: false, is_acknowledging: false, is_taken: false }
+        Self {
+            port,
+            polls,
+            phase: Phase::Idle,
+            event: None,
+            is_begun: false,
+            is_requesting: None,
+            is_acknowledging: false,
+        }
     }
 
-    /// Lowers both of our wires, whatever they were.
+    /// Lowers both of our wires, whatever they were, and drops the word under way.
     pub(super) fn release(&mut self) -> Result<(), P::Error> {
-        self.port.set_input_request(false)?;
-        self.is_requesting = false;
+        (self.phase, self.is_requesting) = (Phase::Idle, None);
+        self.request(false)?;
         self.port.set_output_acknowledge(false)?;
         self.is_acknowledging = false;
         Ok(())
     }
 
-    /// One step of the output bus's handshake, if the chip waits for one.
-    pub(super) fn serve(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
+    /// One step of either bus's handshake, if the chip waits for one. Returns whether the input bus is
+    /// free.
+    pub(super) fn step(&mut self, on_output: &mut impl FnMut(u8)) -> Result<bool, P::Error> {
+        self.serve(on_output)?;
+        self.request(self.phase == Phase::Acknowledge)?;
+        let is_acknowledged = self.port.input_acknowledge()?;
+        match (self.phase, is_acknowledged) {
+            (Phase::Acknowledge, true) => (self.phase, self.event) = (Phase::Release, None),
+            (Phase::Release, false) => self.phase = Phase::Idle,
+            _ => {}
+        }
+        Ok(self.phase == Phase::Idle && !is_acknowledged)
+    }
+
+    /// Sends a word, which stands for this event, once the one under way is through.
+    pub(super) fn send(
+        &mut self,
+        word: u32,
+        event: Option<Event>,
+        on_output: &mut impl FnMut(u8),
+    ) -> Result<(), AerError<P::Error>> {
+        self.is_begun = false;
+        if !self.is_free(on_output)? {
+            return Err(AerError::Timeout(Phase::Idle));
+        }
+        self.port.set_input(word)?;
+        (self.phase, self.event, self.is_begun) = (Phase::Acknowledge, event, true);
+        self.finish(on_output)
+    }
+
+    /// Brings the word under way to its end, if there is one.
+    pub(super) fn finish(
+        &mut self,
+        on_output: &mut impl FnMut(u8),
+    ) -> Result<(), AerError<P::Error>> {
+        if self.phase == Phase::Idle || self.is_free(on_output)? {
+            Ok(())
+        } else {
+            Err(AerError::Timeout(self.phase))
+        }
+    }
+
+    /// Waits for it. While an output event waits the chip acknowledges no input, so this serves the
+    /// output bus as well.
+    fn is_free(&mut self, on_output: &mut impl FnMut(u8)) -> Result<bool, P::Error> {
+        for _ in 0..self.polls {
+            if self.step(on_output)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn serve(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
         match (self.port.output_request()?, self.is_acknowledging) {
             (true, false) => {
                 let address = self.port.output()?;
@@ -115,48 +192,12 @@ impl<P: AerPort> Aer<P> {
         Ok(())
     }
 
-    /// Sends a word. While an output event waits the chip acknowledges no input, so every wait serves
-    /// the output bus.
-    pub(super) fn send(
-        &mut self,
-        word: u32,
-        on_output: &mut impl FnMut(u8),
-    ) -> Result<(), AerError<P::Error>> {
-        self.is_taken = false;
-        if self.is_requesting {
-            self.request(false)?; // left over from a port that failed
+    fn request(&mut self, is_high: bool) -> Result<(), P::Error> {
+        if self.is_requesting != Some(is_high) {
+            self.is_requesting = None; // until known otherwise
+            self.port.set_input_request(is_high)?;
+            self.is_requesting = Some(is_high);
         }
-        self.wait_for(false, Phase::Idle, on_output)?;
-        self.port.set_input(word).map_err(AerError::Port)?;
-        self.request(true)?;
-        if let Err(error) = self.wait_for(true, Phase::Acknowledge, on_output) {
-            self.request(false)?;
-            return Err(error);
-        }
-        self.is_taken = true;
-        self.request(false)?;
-        self.wait_for(false, Phase::Release, on_output)
-    }
-
-    fn request(&mut self, is_high: bool) -> Result<(), AerError<P::Error>> {
-        self.is_requesting = true; // until known otherwise
-        self.port.set_input_request(is_high).map_err(AerError::Port)?;
-        self.is_requesting = is_high;
         Ok(())
-    }
-
-    fn wait_for(
-        &mut self,
-        is_high: bool,
-        phase: Phase,
-        on_output: &mut impl FnMut(u8),
-    ) -> Result<(), AerError<P::Error>> {
-        for _ in 0..self.polls {
-            self.serve(on_output).map_err(AerError::Port)?;
-            if self.port.input_acknowledge().map_err(AerError::Port)? == is_high {
-                return Ok(());
-            }
-        }
-        Err(AerError::Timeout(phase))
     }
 }

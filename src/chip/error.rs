@@ -4,6 +4,7 @@ use core::convert::Infallible;
 use core::fmt;
 
 use super::Phase;
+use super::aer::AerError;
 
 /// Why a chip did not do what it was asked: `B` is the error of its bus, `P` that of its port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +16,7 @@ pub enum ChipError<B, P = Infallible> {
     Bus(B),
     /// The port failed.
     Port(P),
-    /// The chip did not answer in this phase of a handshake.
+    /// The chip did not answer in this phase of a handshake, which says what became of the word.
     Handshake(Phase),
     /// The chip did not finish its time step.
     Unfinished,
@@ -72,6 +73,15 @@ impl<B: fmt::Debug, P: fmt::Debug> fmt::Display for ChipError<B, P> {
 }
 
 impl<B: fmt::Debug, P: fmt::Debug> core::error::Error for ChipError<B, P> {}
+
+impl<B, P> From<AerError<P>> for ChipError<B, P> {
+    fn from(error: AerError<P>) -> Self {
+        match error {
+            AerError::Port(error) => Self::Port(error),
+            AerError::Timeout(phase) => Self::Handshake(phase),
+        }
+    }
+}
 
 /// `value` within `0..=max`.
 pub(super) fn at_most<B, P>(

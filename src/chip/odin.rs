@@ -65,6 +65,9 @@ pub enum OdinInput {
 impl Input for OdinInput {
     const LEAK_ALL: Self = Self::LeakAll;
     const NEURON_BYTES: u8 = 16;
+    /// `BistabilityAll` takes 64 clocks a neuron, and waits for up to 33 spikes of 512 each. The others
+    /// take 1600 at most: `LeakAll` 512, after no more than two spikes.
+    const MAX_CLOCKS: u32 = 34_000;
 
     fn word<B, P>(self) -> Result<u32, ChipError<B, P>> {
         let word = |high: u8, low: u8| Ok(u32::from(high) << 8 | u32::from(low));

@@ -5,7 +5,7 @@ use core::num::NonZeroU32;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::SpiDevice;
 
-use super::aer::{Aer, AerError};
+use super::aer::Aer;
 use super::error::at_most;
 use super::{AerPort, ChipError};
 use crate::{Event, EventSource, tick};
@@ -16,6 +16,9 @@ pub trait Input: Copy {
     const LEAK_ALL: Self;
     /// How many bytes a neuron has in memory.
     const NEURON_BYTES: u8;
+    /// The most clocks of the chip from a word's REQ to its ACK, of all words and with the queue full;
+    /// outputs that wait and spikes that the chip sends itself come on top.
+    const MAX_CLOCKS: u32;
 
     /// The word, or what is wrong with it.
     ///
@@ -34,7 +37,9 @@ pub trait Input: Copy {
 ///   a byte that does not read back, all is refused until the next reset, which is
 ///   [counted](Self::resets).
 /// - **Waits** look at the pins a given number of times, then give up.
-/// - **Events** that could not be sent are held and come first the next time.
+/// - **Words** that the chip has not acknowledged by then stay under way: every call that sends finishes
+///   them first, [`poll`](Self::poll) goes on with them, a reset drops them.
+/// - **Events** that could not be sent are held and come first the next time, after a reset too.
 #[derive(Debug)]
 pub struct OdinChip<I, D, P> {
     device: D,
@@ -78,6 +83,9 @@ const RESET_US: u32 = 10;
 
 impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// A chip that must be [reset](Self::reset) first. Every wait looks at the pins `polls` times.
+    ///
+    /// [`Input::MAX_CLOCKS`] polls suffice if one takes a clock of the chip or longer. Fewer do no harm
+    /// but that long words time out and have to be finished later.
     pub const fn new(device: D, port: P, polls: u32) -> Self {
         Self {
             device,
@@ -98,13 +106,15 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     }
 
     /// Pulses reset, which brings chip and bus into step. Configuration registers have no reset value:
-    /// configure them anew.
+    /// configure them anew. What the chip has taken and not worked off is gone, and a word under way is
+    /// dropped; if that was an event of [`feed`](Self::feed), it is held again.
     ///
     /// # Errors
     /// The port failed.
     pub fn reset(&mut self, delay: &mut impl DelayNs) -> Result<(), ChipError<D::Error, P::Error>> {
         self.state = State::NotReset;
         self.aer.release().map_err(ChipError::Port)?;
+        self.held = self.aer.event.take().or(self.held);
         self.aer.port.set_reset(true).map_err(ChipError::Port)?;
         delay.delay_us(RESET_US);
         self.aer.port.set_reset(false).map_err(ChipError::Port)?;
@@ -236,7 +246,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// Sends one input, and hands the neurons that fire meanwhile to `on_output`.
     ///
     /// # Errors
-    /// The input is not valid, the chip is gated or does not answer, or the port failed.
+    /// The input is not valid, the chip is gated or does not answer, or the port failed. After
+    /// [`Phase::Idle`](super::Phase::Idle) the input was not sent; after any other
+    /// [`Handshake`](ChipError::Handshake) it is under way, and not to be sent again.
     pub fn send(
         &mut self,
         input: I,
@@ -250,8 +262,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// even if events come faster than the chip takes them.
     ///
     /// # Errors
-    /// As [`send`](Self::send). An event that the chip did not acknowledge is held and comes first the
-    /// next time; one whose input is not valid is dropped.
+    /// As [`send`](Self::send), but whatever the error, call it again with the events that remain: none
+    /// is lost or sent twice. Only one whose input is not valid is dropped.
     pub fn feed(
         &mut self,
         mut events: impl EventSource,
@@ -259,13 +271,14 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         mut on_output: impl FnMut(u8),
     ) -> Result<u32, ChipError<D::Error, P::Error>> {
         self.expect_running()?;
+        self.aer.finish(&mut on_output)?;
         let mut sent = 0;
         while let Some(event) = self.held.take().or_else(|| events.next_event()) {
             let word = to_input(event).word()?;
             self.held = Some(event);
             self.advance_with(event.tick, &mut on_output)?;
-            let result = self.put_word(word, &mut on_output);
-            if self.aer.is_taken {
+            let result = self.put_word(word, Some(event), &mut on_output);
+            if self.aer.is_begun {
                 self.held = None;
             }
             result?;
@@ -287,8 +300,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.advance_with(now, &mut on_output)
     }
 
-    /// Takes the neurons that have fired, without sending. Looks at the pins a bounded number of
-    /// times: call it often, as the chip stands still while an output waits.
+    /// Takes the neurons that have fired, and goes on with a word under way. Looks at the pins a bounded
+    /// number of times: call it often, as the chip stands still while an output waits.
     ///
     /// # Errors
     /// The port failed.
@@ -298,7 +311,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     ) -> Result<(), ChipError<D::Error, P::Error>> {
         // Up, and down again.
         for _ in 0..2 {
-            self.aer.serve(&mut on_output).map_err(ChipError::Port)?;
+            self.aer.step(&mut on_output).map_err(ChipError::Port)?;
         }
         Ok(())
     }
@@ -324,19 +337,17 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         on_output: &mut impl FnMut(u8),
     ) -> Result<(), ChipError<D::Error, P::Error>> {
         let word = input.word()?;
-        self.put_word(word, on_output)
+        self.put_word(word, None, on_output)
     }
 
     fn put_word(
         &mut self,
         word: u32,
+        event: Option<Event>,
         on_output: &mut impl FnMut(u8),
     ) -> Result<(), ChipError<D::Error, P::Error>> {
         self.expect_running()?;
-        self.aer.send(word, on_output).map_err(|error| match error {
-            AerError::Port(error) => ChipError::Port(error),
-            AerError::Timeout(phase) => ChipError::Handshake(phase),
-        })
+        Ok(self.aer.send(word, event, on_output)?)
     }
 
     fn advance_with(
@@ -353,7 +364,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.time = Some(Time { step, last: Some(last) });
         for _ in skipped..due {
             let result = self.put(I::LEAK_ALL, on_output);
-            if self.aer.is_taken {
+            if self.aer.is_begun {
                 last = last.wrapping_add(step.get());
                 self.time = Some(Time { step, last: Some(last) });
             }

@@ -49,6 +49,9 @@ pub enum TinyOdinInput {
 impl Input for TinyOdinInput {
     const LEAK_ALL: Self = Self::LeakAll;
     const NEURON_BYTES: u8 = 4;
+    /// `LeakAll` takes 2 clocks for each neuron up to the highest in use, and waits for up to two spikes
+    /// that take as many.
+    const MAX_CLOCKS: u32 = 1_600;
 
     fn word<B, P>(self) -> Result<u32, ChipError<B, P>> {
         let out_of_range = |what, value: i16, min, max| {

@@ -40,7 +40,11 @@ mod app {
     use core::{num::NonZeroU32, sync::atomic::Ordering::Relaxed};
     use embedded_hal::{delay::DelayNs, spi::MODE_0};
     use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
-    use spikewire::{Bank, chip::TinyOdin, temporal::StepForwardEncoder};
+    use spikewire::{
+        Bank,
+        chip::{Input as _, TinyOdin, TinyOdinInput},
+        temporal::StepForwardEncoder,
+    };
     use stm32f4xx_hal::{
         gpio::{Edge, Input, Output, PA3, PA4, PB12, Speed},
         pac::{SPI1, SPI2},
@@ -61,8 +65,9 @@ mod app {
     type ImuDevice = ExclusiveDevice<Spi<SPI1>, PA4<Output>, NoDelay>;
     type ChipDevice = ExclusiveDevice<Spi<SPI2>, PB12<Output>, NoDelay>;
 
-    /// How often a wait looks at the chip's pins: well below a millisecond.
-    const POLLS: u32 = 1_000;
+    /// How often a wait looks at the chip's pins: as often as the chip may have clocks to work, and a look
+    /// takes longer than a clock from 10 MHz on. Well below a millisecond.
+    const POLLS: u32 = TinyOdinInput::MAX_CLOCKS;
     /// The time step of the chip's neurons, in µs: so often they leak.
     const TIME_STEP: NonZeroU32 = NonZeroU32::new(1_000).unwrap();
     /// How often the counters are logged, in µs.
