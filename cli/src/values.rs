@@ -1,6 +1,6 @@
 //! From frames to values, with the receiver that runs on boards, in any sample type.
 
-use crate::events::{Item, Known, Values};
+use crate::events::{Held, Item, Known, Values};
 use crate::sample_type::{SampleType, for_sample_type};
 use crate::settings::Settings;
 use anyhow::{Result, bail};
@@ -16,11 +16,14 @@ const MOST: usize = 256;
 /// # Errors
 /// A scheme whose decoder does not add up steps, or a parameter that makes no sense.
 pub(crate) fn receiver(sample: SampleType, settings: &[Settings]) -> Result<Box<dyn Values>> {
+    // The keyframes of the others are samples, from which their decoders start again.
+    let are_held = settings.iter().all(|settings| matches!(settings, Settings::StepForward(_)));
     for_sample_type!(sample, S => {
         let decoders = settings.iter().map(|settings| {
             decoder::<S>(&settings.scaled(sample.one()))
         });
-        Ok(Box::new(Receiving::<S>::new(&decoders.collect::<Result<Vec<_>>>()?, sample.one())?))
+        let decoders = decoders.collect::<Result<Vec<_>>>()?;
+        Ok(Box::new(Receiving::<S>::new(&decoders, sample.one(), are_held)?))
     })
 }
 
@@ -53,11 +56,14 @@ struct Receiving<S> {
     one: f64,
     /// Beside what the receiver itself counts.
     outside: u64,
+    /// Whether keyframes are what a decoder holds already.
+    are_held: bool,
+    held: Held,
     decoded: Vec<(u16, u32, S)>,
 }
 
 impl<S: Raw> Receiving<S> {
-    fn new(decoders: &[StepDecoder<S>], one: f64) -> Result<Self> {
+    fn new(decoders: &[StepDecoder<S>], one: f64, are_held: bool) -> Result<Self> {
         let (channels, same) = match decoders {
             [one] => (MOST, Some(*one)),
             [first, ..] if decoders.len() <= MOST => (decoders.len(), Some(*first)),
@@ -66,13 +72,31 @@ impl<S: Raw> Receiving<S> {
         let Some(same) = same else { bail!("a receiver has 1 to {MOST} channels") };
         let decoders = std::array::from_fn(|channel| *decoders.get(channel).unwrap_or(&same));
         let receiver = Receiver::from_decoders(decoders);
-        Ok(Self { receiver, channels, one, outside: 0, decoded: Vec::new() })
+        let (held, decoded) = (Held::default(), Vec::new());
+        Ok(Self { receiver, channels, one, outside: 0, are_held, held, decoded })
+    }
+
+    /// Compares keyframes with what their channels hold before them, where that is exact.
+    fn compare(&mut self, received: &Received<'_>) {
+        let frame = &received.frame;
+        if received.gap.is_some() || frame.is_after_loss() || frame.is_restart() {
+            return;
+        }
+        for keyframe in frame.keyframes() {
+            if let Some(value) = self.receiver.exact(keyframe.address) {
+                self.held.compared += 1;
+                self.held.contradicted += u64::from(value.to_raw() != keyframe.raw);
+            }
+        }
     }
 }
 
 impl<S: Raw> Values for Receiving<S> {
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>) {
-        let Self { receiver, channels, one, outside, decoded } = self;
+        if self.are_held {
+            self.compare(received);
+        }
+        let Self { receiver, channels, one, outside, decoded, .. } = self;
         let frame = &received.frame;
         // Keyframes come first.
         let applied = |address: u16| usize::from(address) < MOST && frame.is_wide() == S::IS_WIDE;
@@ -100,5 +124,9 @@ impl<S: Raw> Values for Receiving<S> {
 
     fn misfits(&self) -> u64 {
         self.receiver.misfits().into()
+    }
+
+    fn held(&self) -> Held {
+        self.held
     }
 }

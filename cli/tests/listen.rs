@@ -206,6 +206,23 @@ fn what_no_decoder_is_there_for_is_counted() {
 }
 
 #[test]
+fn keyframes_of_step_forward_tell_wrong_parameters() {
+    let bytes = three_floats().frames.concat();
+    let told = |options: &str| good_bytes(&format!("listen {options}"), &bytes).told;
+    assert!(!told(THREE).contains("contradict"));
+    // Those after the first of each of 3 channels.
+    let all = "12 of 12 keyframes contradict the values before them: are --scheme, --threshold and";
+    for wrong in ["--scheme sf --thresholds 7.5,6.2,12.7", "--scheme sf --threshold 1"] {
+        assert!(told(wrong).contains(" of 12 keyframes contradict"), "{}", told(wrong));
+    }
+    assert!(told("--scheme sf --threshold 9 --sample q16.16").contains(all));
+    // Theirs are samples.
+    let contrast = board([TemporalContrast::<f32>::with_step(1.5, 3.0).unwrap(); 3]);
+    let told = good_bytes("listen --scheme tbr --threshold 9", &contrast.frames.concat()).told;
+    assert!(!told.contains("contradict"), "{told}");
+}
+
+#[test]
 fn a_loss_at_the_sender_is_told() {
     let mut framer = Framer::new(Coding::for_channels(1, 1000));
     let mut buffer = [0; 64];

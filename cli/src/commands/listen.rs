@@ -20,7 +20,9 @@ use std::path::PathBuf;
 /// Listen to what a board sends: events, or with `--scheme` the values they mean.
 ///
 /// Formats are called as in `convert`. Values come from a link, by the receiver that runs on boards:
-/// bit for bit those of the sender's own decoder from a keyframe on until something is lost.
+/// bit for bit those of the sender's own decoder from a keyframe on until something is lost. For sf the
+/// value just before a keyframe equals it; for tbr and mw, whose decoders drift, it is the sample itself,
+/// from which they go on.
 #[derive(Args, Debug)]
 pub(crate) struct Listen {
     /// Serial port, or file of captured bytes; `-` is standard input

@@ -1,6 +1,6 @@
 //! The crate's link.
 
-use super::{EventReader, EventWriter, Item, LinkTally, Tally};
+use super::{EventReader, EventWriter, Held, Item, LinkTally, Tally};
 use anyhow::Result;
 use fixed::types::I16F16;
 use spikewire::Event;
@@ -19,6 +19,9 @@ pub(crate) trait Values {
 
     /// How many keyframes had the width of another sample type.
     fn misfits(&self) -> u64;
+
+    /// How keyframes compare with the values before them.
+    fn held(&self) -> Held;
 }
 
 /// Reads a link: its events, or its values.
@@ -63,6 +66,7 @@ impl EventReader for LinkReader {
             repeated: reader.repeated().into(),
             outside: values.map_or(0, Values::outside),
             misfits: values.map_or(0, Values::misfits),
+            held: values.map_or_else(Held::default, Values::held),
             ..self.tally
         };
         let skipped = u64::from(reader.skipped()).saturating_sub(self.padding);

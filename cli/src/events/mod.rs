@@ -15,7 +15,7 @@ mod told;
 pub(crate) use format::{Format, values_writer};
 pub(crate) use link::{LinkReader, Values};
 pub(crate) use stream::{Stream, StreamOptions};
-pub(crate) use tally::{LinkTally, Tally};
+pub(crate) use tally::{Held, LinkTally, Tally};
 
 use anyhow::Result;
 use spikewire::Event;

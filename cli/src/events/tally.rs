@@ -40,6 +40,17 @@ pub(crate) struct LinkTally {
     pub outside: u64,
     /// Keyframes with the width of another sample type.
     pub misfits: u64,
+    /// Of keyframes and the values before them.
+    pub held: Held,
+}
+
+/// Keyframes of a code whose decoder should hold them already.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Held {
+    /// Those that followed an exact value.
+    pub compared: u64,
+    /// Those that were another.
+    pub contradicted: u64,
 }
 
 impl fmt::Display for Tally {
@@ -64,6 +75,14 @@ impl fmt::Display for Tally {
             ];
             for (count, what) in rare.into_iter().filter(|(count, _)| *count > 0) {
                 writeln!(f, "{count} {what}")?;
+            }
+            let Held { compared, contradicted } = link.held;
+            if contradicted > 0 {
+                writeln!(
+                    f,
+                    "{contradicted} of {compared} keyframes contradict the values before them: \
+                     are --scheme, --threshold and --sample the sender's?"
+                )?;
             }
         }
         writeln!(f, "{} bytes skipped", self.skipped)?;
