@@ -15,9 +15,11 @@ mod resolve;
 #[cfg(any(test, feature = "capture"))]
 mod rtt;
 mod sample_type;
+mod saturated;
 mod scheme;
 mod settings;
 mod spikes;
+mod steep;
 mod stop;
 mod trial;
 mod values;

@@ -5,6 +5,7 @@ use crate::input::{Chunk, Clock, InputOptions};
 use crate::options::SchemeOptions;
 use crate::resolve::{Known, resolve};
 use crate::sample_type::SampleType;
+use crate::saturated::Saturated;
 use crate::scheme::SchemeName;
 use crate::settings::Settings;
 use anyhow::{Result, anyhow, bail};
@@ -18,9 +19,8 @@ pub(crate) struct Recording {
     /// Samples a second, if known.
     pub rate: Option<f64>,
     /// How many samples were not finite.
-    pub rejected: usize,
-    /// What there is to say of gaps, if times are recorded.
-    pub gaps: Option<String>,
+    rejected: usize,
+    clock: Clock,
 }
 
 impl Recording {
@@ -41,8 +41,18 @@ impl Recording {
         if values.is_empty() {
             bail!("{}: no finite sample", input.input.display());
         }
-        let gaps = (!times.is_empty()).then(|| clock.to_string());
-        Ok(Self { rejected: all - values.len(), values, times, rate: clock.rate(), gaps })
+        Ok(Self { rejected: all - values.len(), values, times, rate: clock.rate(), clock })
+    }
+
+    /// What a user should know of it in this sample type, a line each.
+    pub(crate) fn notes(&self, sample: SampleType) -> String {
+        let rejected = match self.rejected {
+            0 => String::new(),
+            count => format!("{count} samples were not finite and emitted nothing\n"),
+        };
+        let mut saturated = Saturated::new(sample);
+        saturated.observe(&self.values);
+        format!("{rejected}{saturated}{}\n", self.clock)
     }
 
     /// How long it is in seconds, if that is known.

@@ -132,6 +132,37 @@ fn scores_are_those_of_a_signal_worked_by_hand() {
 }
 
 #[test]
+fn scores_and_pictures_say_what_they_left_out() {
+    let directory = tempfile::tempdir().unwrap();
+    let (signal, picture) = (directory.path().join("signal.csv"), directory.path().join("p.svg"));
+    std::fs::write(&signal, table(&[0.0, 200.0, f64::NAN, -300.0, 1.0])).unwrap();
+    let options = "--scheme sf --threshold 1 --sample q8.8 --skip-non-finite";
+    let (signal, picture) = (signal.display(), picture.display());
+    for command in
+        [format!("score {options} {signal}"), format!("plot {options} -o {picture} {signal}")]
+    {
+        let told = good(&command, "").told;
+        assert!(told.contains("1 samples were not finite and emitted nothing\n"), "{told}");
+        assert!(told.contains("2 samples were cut to the range of q8.8, -128 to "), "{told}");
+        assert!(told.contains("no times are recorded, so gaps cannot be seen\n"), "{told}");
+    }
+}
+
+#[test]
+fn slopes_that_step_forward_cannot_follow_are_told() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), table(&[0.0, 0.5, 2.0, 2.5, 2.0])).unwrap();
+    let told = |options: &str| {
+        good(&format!("score --scheme sf {options} {}", file.path().display()), "").told
+    };
+    let steep = told("--threshold 1 --rate 100");
+    assert!(steep.contains("1 of 5 samples step further"), "{steep}");
+    assert!(steep.contains("100 a second, must exceed the steepest slope, 150 a"), "{steep}");
+    assert!(told("--threshold 1").contains("1 a sample, must exceed the steepest slope, 1.5 a"));
+    assert!(!told("--threshold 1.5").contains("SF follows"));
+}
+
+#[test]
 fn pictures_are_drawn_in_both_formats() {
     let directory = tempfile::tempdir().unwrap();
     let path = |name: &str| directory.path().join(name).display().to_string();

@@ -6,6 +6,7 @@ use crate::options::SchemeOptions;
 use crate::output::Output;
 use crate::resolve::{Known, missing, resolve};
 use crate::sample_type::SampleType;
+use crate::saturated::Saturated;
 use crate::scheme::SchemeName;
 use crate::spikes::{Header, Summary, Writer};
 use anyhow::{Result, bail};
@@ -77,7 +78,7 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
     codec.finish(&mut events);
     let (output, summary) = writer.finish(&mut events)?;
     output.finish()?;
-    report(&summary, &clock, &saturated, is_timed);
+    report(&summary, &clock, &saturated);
     Ok(())
 }
 
@@ -98,38 +99,13 @@ pub(crate) fn calibrate(input: &InputOptions, sample: SampleType) -> Result<Cali
     }
 }
 
-/// Counts samples that the type cannot hold.
-struct Saturated {
-    sample: SampleType,
-    count: u64,
-}
-
-impl Saturated {
-    fn new(sample: SampleType) -> Self {
-        Self { sample, count: 0 }
-    }
-
-    fn observe(&mut self, values: &[f64]) {
-        let (min, max) = self.sample.range();
-        self.count += values.iter().filter(|&&value| value < min || value > max).count() as u64;
-    }
-}
-
 /// What a user should know, on standard error.
-fn report(summary: &Summary, clock: &Clock, saturated: &Saturated, is_timed: bool) {
+fn report(summary: &Summary, clock: &Clock, saturated: &Saturated) {
     let Summary { samples, rejected, events } = *summary;
     eprintln!("{samples} samples, {events} spikes");
     if rejected > 0 {
         eprintln!("{rejected} samples were not finite and emitted nothing");
     }
-    if saturated.count > 0 {
-        let (min, max) = saturated.sample.range();
-        eprintln!(
-            "{} samples were cut to the range of {}, {min} to {max}",
-            saturated.count, saturated.sample
-        );
-    }
-    if is_timed {
-        eprintln!("{clock}");
-    }
+    eprint!("{saturated}");
+    eprintln!("{clock}");
 }

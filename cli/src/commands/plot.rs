@@ -55,9 +55,7 @@ pub(crate) fn run(options: &Plot) -> Result<()> {
         .filter(is_drawn)
         .map(|scheme| Trial::new(scheme, &parameters, *sample, &recording))
         .collect::<Result<Vec<_>>>()?;
-    if let Some(gaps) = &recording.gaps {
-        eprintln!("{gaps}");
-    }
+    eprint!("{}", recording.notes(*sample));
     draw(output, &Picture { recording: &recording, trials: &trials, shown })
 }
 

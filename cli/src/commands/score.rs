@@ -4,6 +4,7 @@ use crate::input::InputOptions;
 use crate::options::SchemeOptions;
 use crate::sample_type::SampleType;
 use crate::scheme::SchemeName;
+use crate::steep;
 use crate::trial::{Recording, Trial};
 use anyhow::{Result, bail};
 use clap::Args;
@@ -51,17 +52,15 @@ pub(crate) fn run(options: &Score) -> Result<()> {
     let Score { scheme, sample, input, parameters, json } = options;
     let (schemes, parameters) = chosen(*scheme, parameters)?;
     let recording = Recording::read(input)?;
-    let figures = schemes
-        .into_iter()
-        .map(|scheme| {
-            Ok(figures(&recording, &Trial::new(scheme, &parameters, *sample, &recording)?))
-        })
-        .collect::<Result<Vec<_>>>()?;
-    if recording.rejected > 0 {
-        eprintln!("{} samples were not finite and emitted nothing", recording.rejected);
-    }
-    if let Some(gaps) = &recording.gaps {
-        eprintln!("{gaps}");
+    let scored = schemes.into_iter().map(|scheme| {
+        let trial = Trial::new(scheme, &parameters, *sample, &recording)?;
+        Ok((figures(&recording, &trial), steep::note(&recording, &trial.settings)))
+    });
+    let (figures, steep): (Vec<_>, Vec<_>) =
+        scored.collect::<Result<Vec<_>>>()?.into_iter().unzip();
+    eprint!("{}", recording.notes(*sample));
+    for note in steep.iter().flatten() {
+        eprintln!("{note}");
     }
     if *json {
         writeln!(stdout(), "{}", serde_json::to_string_pretty(&figures)?)?;
