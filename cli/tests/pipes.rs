@@ -78,6 +78,24 @@ fn times_are_kept_and_gaps_are_told() {
 }
 
 #[test]
+fn times_are_known_by_their_column_or_said_to_be_missing() {
+    for (name, second) in [
+        ("timestamp_ns", "5000000"),
+        ("timestamp_us", "5000"),
+        ("timestamp_ms", "5"),
+        ("timestamp_s", "0.005"),
+        ("time_ns", "5000000"),
+        ("time_ms", "5"),
+    ] {
+        let signal = format!("{name},x\n0,0\n{second},1\n");
+        let spikes = good("encode --scheme sf --threshold 0.5 -", &signal).output;
+        assert!(spikes.contains("\n1,0,1,5000\n") && spikes.contains("# rate=200\n"), "{spikes}");
+    }
+    let told = good("encode --scheme sf --threshold 0.5 -", &table(&[0.0, 1.0])).told;
+    assert!(told.contains("no times are recorded, so gaps cannot be seen\n"), "{told}");
+}
+
+#[test]
 fn sub_timesteps_have_times_of_their_own() {
     let signal = "time_us,x\n100,0.1\n1100,0.5\n2100,0.9\n";
     let slots = "--scheme grf-slots --neurons 4 --slots 10 --min 0 --max 1";

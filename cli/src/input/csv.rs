@@ -6,8 +6,19 @@ use csv::{ByteRecord, Reader, ReaderBuilder};
 use std::io::Read;
 
 /// Names of columns that hold times or counts unless the user says otherwise.
-const TIMES: [&str; 8] =
-    ["time_us", "time_ms", "time_ns", "time_s", "timestamp", "timestamp_us", "time", "t"];
+const TIMES: [&str; 11] = [
+    "time_us",
+    "time_ms",
+    "time_ns",
+    "time_s",
+    "timestamp",
+    "timestamp_us",
+    "timestamp_ms",
+    "timestamp_ns",
+    "timestamp_s",
+    "time",
+    "t",
+];
 const COUNTS: [&str; 3] = ["index", "sample", "i"];
 
 /// A column, and perhaps another with the times.
