@@ -124,7 +124,32 @@ fn parameters() {
         &["no sample type `f16`", "q"],
     );
     refused("encode --scheme what -", &signal, &["what", "grf-slots"]);
-    refused("bench --tests 1", "", &["--tests 1"]);
+    refused("bench --tests 1", "", &["--tests 1 must lie in 2..=1000000"]);
+    let most = usize::MAX;
+    refused(&format!("bench --tests {most}"), "", &["2..=1000000"]);
+    refused(&format!("signal --seconds {most}"), "", &["1000000 at most"]);
+    let window = format!("encode --scheme mw --threshold 1 --window {most} -");
+    refused(&window, &signal, &["not compiled in"]);
+    for number in ["nan", "inf", "0", "-1"] {
+        let words = ["must be a number above 0"];
+        refused(&format!("{SF} --gap={number} -"), &signal, &words);
+        refused(&format!("{SF} --rate={number} -"), &signal, &words);
+        refused(&format!("info --gap={number} log.ulg"), "", &words);
+    }
+}
+
+#[test]
+fn options_that_the_input_does_not_take() {
+    refused(
+        &format!("{SF} --accept-cut -"),
+        &table(&[1.0]),
+        &["a CSV table takes no --accept-cut"],
+    );
+    let timed = "time_us,x\n0,1\n5000,2\n";
+    refused(&format!("{SF} --rate 200 -"), timed, &["--rate 200 contradicts", "column time_us"]);
+    let log = flight_logs()[0].display().to_string();
+    let channel = "--topic sensor_combined --field gyro_rad[0]";
+    refused(&format!("{SF} --rate 200 {channel} {log}"), "", &["a flight log takes no --rate"]);
 }
 
 #[test]

@@ -14,6 +14,9 @@ use recipe::{COLUMNS, Outcome};
 use signal::Waveform;
 use statistics::Statistics;
 
+/// Signals a case, each with a generator of its own.
+pub(crate) const MOST_TESTS: usize = 1_000_000;
+
 /// One case of the benchmark: what came out of all its tests, by scheme.
 pub(crate) struct CaseResult {
     /// The signals' duration in seconds.
@@ -47,7 +50,7 @@ fn run_case(
     let outcomes: Vec<[Outcome; COLUMNS]> = (0..tests)
         .into_par_iter()
         .map(|test| {
-            let signal = waveform.with_noise(seed, (case * 1_000_000 + test) as u64);
+            let signal = waveform.with_noise(seed, (case * MOST_TESTS + test) as u64);
             let outcomes = recipe::run(&signal);
             tick(signal.len() as u64);
             outcomes

@@ -21,7 +21,7 @@ pub(super) fn moving_window<S: Sample>(settings: &settings::MovingWindow) -> Res
     let threshold = S::from_f64(settings.threshold);
     macro_rules! with_window {
         ($($n:literal)*) => {
-            match settings.window + 1 {
+            match settings.window.saturating_add(1) {
                 $($n => Ok(erase(MovingWindow::<S, $n>::new(threshold)?)),)*
                 _ => Err(unsupported("window", settings.window, &[$($n - 1),*])),
             }

@@ -30,8 +30,9 @@ pub(crate) struct Bench {
 /// The options make no sense.
 pub(crate) fn run(options: &Bench) -> Result<()> {
     let &Bench { tests, cases, seed, json } = options;
-    if tests < 2 {
-        bail!("--tests {tests}: a standard deviation takes 2 at least");
+    if !(2..=bench::MOST_TESTS).contains(&tests) {
+        let most = bench::MOST_TESTS;
+        bail!("--tests {tests} must lie in 2..={most}; a standard deviation takes 2");
     }
     let most = paper::CASES.len();
     if !(1..=most).contains(&cases) {

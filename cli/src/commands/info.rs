@@ -1,6 +1,6 @@
 //! `spikewire info`: what a flight log holds.
 
-use crate::input::{Clock, Log, is_flight_log};
+use crate::input::{Clock, Log, above_zero, is_flight_log};
 use anyhow::{Result, bail};
 use clap::Args;
 use std::io::{Write, stdout};
@@ -12,7 +12,7 @@ pub(crate) struct Info {
     /// PX4 flight log (`ULog`)
     log: PathBuf,
     /// Report steps in time above this many usual steps
-    #[arg(long, default_value_t = 1.5)]
+    #[arg(long, default_value_t = 1.5, value_parser = above_zero)]
     gap: f64,
     /// Take the whole messages of a log that is cut short
     #[arg(long)]

@@ -2,7 +2,7 @@
 
 use crate::bench::signal::{RATE, Waveform};
 use crate::output::Output;
-use anyhow::Result;
+use anyhow::{Result, bail};
 use clap::Args;
 use std::io::Write;
 use std::path::PathBuf;
@@ -26,6 +26,11 @@ pub(crate) struct Signal {
 /// # Errors
 /// The output cannot be written.
 pub(crate) fn run(options: &Signal) -> Result<()> {
+    // All of it is held in memory.
+    const MOST: usize = 1_000_000;
+    if options.seconds > MOST {
+        bail!("--seconds {} must be {MOST} at most", options.seconds);
+    }
     let mut output = Output::open(options.output.as_deref())?;
     writeln!(output, "time_us,signal")?;
     for (step, value) in (1..).zip(Waveform::new(options.seconds).with_noise(options.seed, 0)) {

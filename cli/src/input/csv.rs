@@ -63,6 +63,9 @@ impl<R: Read> Table<R> {
             None => only(&names, time.as_ref(), file)?,
         };
         let time = time.filter(|time| time.index != column.index);
+        if let (Some(time), Some(rate)) = (&time, options.rate) {
+            bail!("{file}: --rate {rate} contradicts the times that column {} records", time.name);
+        }
         let origin = vec![("column", column.name.clone())];
         Ok(Self {
             reader,

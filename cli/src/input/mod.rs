@@ -37,10 +37,10 @@ pub(crate) struct InputOptions {
     #[arg(long, help_heading = "Input")]
     pub field: Option<String>,
     /// Samples a second, where no time is recorded
-    #[arg(long, help_heading = "Input")]
+    #[arg(long, value_parser = above_zero, help_heading = "Input")]
     pub rate: Option<f64>,
     /// Report steps in time above this many usual steps
-    #[arg(long, default_value_t = 1.5, help_heading = "Input")]
+    #[arg(long, default_value_t = 1.5, value_parser = above_zero, help_heading = "Input")]
     pub gap: f64,
     /// Go on over values that are not finite: they emit nothing and are counted
     #[arg(long, help_heading = "Input")]
@@ -77,22 +77,27 @@ impl InputOptions {
     /// # Errors
     /// There is no such file, column, topic or field, or nothing in it.
     pub(crate) fn open(&self) -> Result<Box<dyn Source>> {
-        if let Some(rate) =
-            self.rate.filter(|&rate| rate.is_nan() || rate <= 0.0 || rate.is_infinite())
-        {
-            bail!("--rate {rate} must be above 0 and finite");
-        }
+        let of_logs = [
+            ("--topic", self.topic.is_some()),
+            ("--field", self.field.is_some()),
+            ("--accept-cut", self.accept_cut),
+        ];
+        let of_tables = [
+            ("--column", self.column.is_some()),
+            ("--time", self.time.is_some()),
+            ("--rate", self.rate.is_some()),
+        ];
         if self.is_stdin() {
-            self.refuse(&[("--topic", &self.topic), ("--field", &self.field)], "a CSV table")?;
+            self.refuse(&of_logs, "a CSV table")?;
             return Ok(Box::new(csv::Table::open(io::stdin().lock(), "standard input", self)?));
         }
         let name = self.input.display().to_string();
         let file = File::open(&self.input).with_context(|| format!("{name}: cannot be opened"))?;
         if is_flight_log(&self.input)? {
-            self.refuse(&[("--column", &self.column), ("--time", &self.time)], "a flight log")?;
+            self.refuse(&of_tables, "a flight log")?;
             return Ok(Box::new(ulog::Channel::open(self)?));
         }
-        self.refuse(&[("--topic", &self.topic), ("--field", &self.field)], "a CSV table")?;
+        self.refuse(&of_logs, "a CSV table")?;
         Ok(Box::new(csv::Table::open(file, &name, self)?))
     }
 
@@ -118,11 +123,19 @@ impl InputOptions {
         }
     }
 
-    fn refuse(&self, options: &[(&str, &Option<String>)], kind: &str) -> Result<()> {
-        match options.iter().find(|(_, value)| value.is_some()) {
+    fn refuse(&self, options: &[(&str, bool)], kind: &str) -> Result<()> {
+        match options.iter().find(|(_, is_given)| *is_given) {
             Some((name, _)) => bail!("{}: {kind} takes no {name}", self.input.display()),
             None => Ok(()),
         }
+    }
+}
+
+/// A number of an option that makes sense above 0 only.
+pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
+        _ => Err("must be a number above 0 and finite".to_owned()),
     }
 }
 
