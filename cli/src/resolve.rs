@@ -17,6 +17,8 @@ pub(crate) struct Known<'a> {
     pub calibrated: Option<&'a Calibrated>,
     /// The first samples, finite; enough for any window.
     pub first: &'a [f64],
+    /// Whether the whole of it could be read before, as `--paper` needs.
+    pub can_calibrate: bool,
 }
 
 /// The options that would make a calibration over the whole signal unnecessary.
@@ -57,7 +59,8 @@ pub(crate) fn resolve(
     };
     let name = scheme.name();
     let needs = |what: &str| {
-        anyhow!("{name} needs --{what} (or --paper, for the paper's settings scaled to the signal)")
+        let otherwise = " (or --paper, for the paper's settings scaled to the signal)";
+        anyhow!("{name} needs --{what}{}", if known.can_calibrate { otherwise } else { "" })
     };
     let threshold = || finite("threshold", options.threshold.ok_or_else(|| needs("threshold"))?);
     let start = || match options.start {

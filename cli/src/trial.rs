@@ -89,7 +89,8 @@ impl Trial {
     ) -> Result<Self> {
         let mut calibrated = Calibrated::new(sample);
         calibrated.observe(&recording.values);
-        let known = Known { calibrated: Some(&calibrated), first: &recording.values };
+        let known =
+            Known { calibrated: Some(&calibrated), first: &recording.values, can_calibrate: true };
         let settings = resolve(scheme, options, known)?;
         let mut codec = Codec::new(sample, &settings)?;
         let (mut events, mut decoded) = (Vec::new(), Vec::new());

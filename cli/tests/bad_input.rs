@@ -153,6 +153,18 @@ fn options_that_the_input_does_not_take() {
 }
 
 #[test]
+fn paper_is_advised_where_it_is_taken() {
+    let timed = "time_us,x\n0,1\n5000,2\n";
+    let file = tempfile::NamedTempFile::new().unwrap();
+    fs::write(file.path(), timed).unwrap();
+    refused(&format!("encode --scheme sf {}", file.path().display()), "", &["or --paper"]);
+    for command in ["listen --scheme sf", "encode --scheme sf -"] {
+        let told = common::spikewire(command, timed).told;
+        assert_eq!(told, "error: sf needs --threshold\n");
+    }
+}
+
+#[test]
 fn filters_from_files() {
     let file = tempfile::NamedTempFile::new().unwrap();
     let path = file.path().display();

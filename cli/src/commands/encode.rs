@@ -52,8 +52,9 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
     source.next(&mut chunk)?;
     let mut clock = Clock::new(&chunk.times, input.rate, input.gap);
     let first: Vec<f64> = chunk.values.iter().copied().filter(|value| value.is_finite()).collect();
-    let settings =
-        resolve(*scheme, parameters, Known { calibrated: calibrated.as_ref(), first: &first })?;
+    let known =
+        Known { calibrated: calibrated.as_ref(), first: &first, can_calibrate: !input.is_stdin() };
+    let settings = resolve(*scheme, parameters, known)?;
     let mut codec = Codec::new(*sample, &settings)?;
 
     let mut notes = source.origin().to_vec();

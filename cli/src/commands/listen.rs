@@ -1,6 +1,5 @@
 //! `spikewire listen`: what a board sends, as events or values, while it comes.
 
-use crate::codec::Calibrated;
 use crate::events::{Format, LinkReader, Stream, StreamOptions, Values, values_writer};
 use crate::live::Live;
 use crate::options::SchemeOptions;
@@ -151,6 +150,5 @@ fn settings(scheme: SchemeName, options: &SchemeOptions) -> Result<Settings> {
     if let Some(what) = missing(scheme, options) {
         bail!("{}: there is no signal to calibrate over; give {what}", scheme.name());
     }
-    let calibrated: Option<&Calibrated> = None;
-    resolve(scheme, options, Known { calibrated, first: &[0.0] })
+    resolve(scheme, options, Known { calibrated: None, first: &[0.0], can_calibrate: false })
 }
