@@ -82,7 +82,8 @@ impl<S: Raw> Receiving<S> {
         if received.gap.is_some() || frame.is_after_loss() || frame.is_restart() {
             return;
         }
-        for keyframe in frame.keyframes() {
+        let has_decoder = |address: u16| usize::from(address) < self.channels;
+        for keyframe in frame.keyframes().filter(|keyframe| has_decoder(keyframe.address)) {
             if let Some(value) = self.receiver.exact(keyframe.address) {
                 self.held.compared += 1;
                 self.held.contradicted += u64::from(value.to_raw() != keyframe.raw);

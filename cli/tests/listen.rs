@@ -195,7 +195,7 @@ fn what_no_decoder_is_there_for_is_counted() {
     let two = good_bytes("listen --scheme sf --thresholds 7.5,3.1", &board.frames.concat());
     let outside = board.values.iter().filter(|(_, address, _)| *address == 2).count() + 5;
     let told = format!("\n{outside} events and keyframes at addresses without a decoder\n");
-    assert!(two.told.contains(&told), "{}", two.told);
+    assert!(two.told.contains(&told) && !two.told.contains("contradict"), "{}", two.told);
     assert!(values(&two.output).iter().all(|value| value.address < 2));
 
     let narrow =
