@@ -716,6 +716,16 @@ fn leak_events_are_the_time_step() {
     assert_eq!((model.borrow().taken.len(), chip.skipped_steps()), (8 + 255, 745));
 }
 
+#[test]
+fn events_of_a_step_that_is_over_are_sent_in_the_present_one_and_counted() {
+    let model = Chip::new(0);
+    let mut chip = running(&model, 4).with_time_step(NonZeroU32::new(1_000).unwrap());
+    let events = [0, 2_500, 2_000, 1_999, 3_000, 0].map(|tick| event(tick, 9));
+    assert_eq!(chip.feed(events.into_iter(), spike, drop), Ok(6));
+    assert_eq!(model.borrow().taken, [9, 0x1FF, 0x1FF, 9, 9, 9, 0x1FF, 9, 9]);
+    assert_eq!(chip.late_events(), 2);
+}
+
 /// The paper's loop, with a chip that passes every neuron through: a position code in, the chip's
 /// output spikes out, a thrust command back.
 #[test]

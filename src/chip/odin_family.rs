@@ -49,6 +49,7 @@ pub struct OdinChip<I, D, P> {
     held: Option<Event>,
     time: Option<Time>,
     skipped_steps: u32,
+    late_events: u32,
     input: core::marker::PhantomData<I>,
 }
 
@@ -95,11 +96,15 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
             held: None,
             time: None,
             skipped_steps: 0,
+            late_events: 0,
             input: core::marker::PhantomData,
         }
     }
 
     /// Sends a leak event to all neurons for every `step` µs that pass between events.
+    ///
+    /// Call [`advance`](Self::advance) at least every 35 minutes: a tick 2³¹ µs ahead lies in the past,
+    /// and no leaks are sent until time has caught up.
     #[must_use]
     pub fn with_time_step(self, step: NonZeroU32) -> Self {
         Self { time: Some(Time { step, last: None }), ..self }
@@ -261,6 +266,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// between them. Returns how many events were sent. From a queue take `EVENTS.drain()`, which ends
     /// even if events come faster than the chip takes them.
     ///
+    /// Events must come in the order of time. One from a time step that is over is sent in the present
+    /// one, and counted as [late](Self::late_events).
+    ///
     /// # Errors
     /// As [`send`](Self::send), but whatever the error, call it again with the events that remain: none
     /// is lost or sent twice. Only one whose input is not valid is dropped.
@@ -273,7 +281,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.expect_running()?;
         self.aer.finish(&mut on_output)?;
         let mut sent = 0;
-        while let Some(event) = self.held.take().or_else(|| events.next_event()) {
+        while let Some(event) = self.held.take().or_else(|| self.next_of(&mut events)) {
             let word = to_input(event).word()?;
             self.held = Some(event);
             self.advance_with(event.tick, &mut on_output)?;
@@ -326,9 +334,23 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.skipped_steps
     }
 
+    /// How many events were [fed](Self::feed) after their time step was over.
+    pub const fn late_events(&self) -> u32 {
+        self.late_events
+    }
+
     /// The device and the port, for other uses.
     pub fn release(self) -> (D, P) {
         (self.device, self.aer.port)
+    }
+
+    fn next_of(&mut self, events: &mut impl EventSource) -> Option<Event> {
+        let event = events.next_event()?;
+        if let Some(Time { last: Some(last), .. }) = self.time {
+            let is_late = tick::is_before(event.tick, last);
+            self.late_events = self.late_events.saturating_add(is_late.into());
+        }
+        Some(event)
     }
 
     fn put(

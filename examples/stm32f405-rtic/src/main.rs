@@ -195,7 +195,7 @@ mod app {
             if now().wrapping_sub(last_report) >= REPORT {
                 last_report = last_report.wrapping_add(REPORT);
                 defmt::info!(
-                    "{} events sent, {} lost, peak {}; {} reads and {} handshakes failed, {} resets, {} steps skipped; fired {}",
+                    "{} events sent, {} lost, peak {}; {} reads and {} handshakes failed, {} resets, {} steps skipped, {} events late; fired {}",
                     sent,
                     EVENTS.lost(),
                     EVENTS.peak(),
@@ -203,6 +203,7 @@ mod app {
                     failures,
                     chip.resets(),
                     chip.skipped_steps(),
+                    chip.late_events(),
                     fired,
                 );
             }
