@@ -4,7 +4,7 @@
 //! |---|---|---|---|
 //! | [`TinyOdin`], [`Odin`] | parallel bus, 4-phase handshake | the same | bytes and words of the RTL in simulation; a model of the handshake |
 //! | [`Akd1500`] | a window onto memory, over SPI | the same | bytes of the vendor's library |
-//! | [`Xylo`] | counts in registers | a status register | the register layout alone |
+//! | [`Xylo`] | counts in registers | a status register | the registers in the vendor's sources |
 //!
 //! None of this has been seen on hardware. None of the buses has a checksum: what can be read back
 //! should be, and every chip here can verify what it writes.

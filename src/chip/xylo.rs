@@ -46,38 +46,57 @@ pub enum InputBank {
     Second,
 }
 
-/// Where a member of the family has its registers. The status registers are in the vendor's package
-/// `rockpool`; take them from there.
+/// Where a member of the family has its registers, and what they say.
+///
+/// Checked against the sources of `rockpool` alone: `syns65302/reg.py` for Audio 3,
+/// `syns61201/xa2_devkit_utils.py` for A2. Both poll for the end of a time step as
+/// [`step`](Xylo::step) does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct XyloMap {
     /// The first register of the first bank; the second bank is two further.
     pub input: u16,
-    /// Where the time step is triggered.
+    /// Where a time step is triggered: WO.
     pub control: u16,
-    /// The outputs that fired: bit `i` is output `i`.
-    pub stat1: u16,
-    /// Whether the time step is done: bit 0.
-    pub stat2: u16,
+    /// What is written there, and nothing else: bit 0 is the reset.
+    pub trigger: u32,
+    /// Where it says whether the time step is done.
+    pub status: u16,
+    /// The bit of it.
+    pub done: u32,
+    /// Where the outputs are that fired.
+    pub outputs: u16,
+    /// The bits of them: bit `i` is output `i`.
+    pub output_bits: u32,
 }
 
 impl XyloMap {
-    /// Xylo Audio 3.
-    pub const fn audio3(stat1: u16, stat2: u16) -> Self {
-        Self { input: 0x149, control: 0x10, stat1, stat2 }
-    }
+    /// Xylo Audio 3: 32 outputs.
+    pub const AUDIO_3: Self = Self {
+        input: 0x149,
+        control: 0x10,
+        trigger: 1 << 4,
+        status: 0x153,
+        done: 1,
+        outputs: 0x152,
+        output_bits: u32::MAX,
+    };
 
-    /// Xylo Audio A2.
-    pub const fn a2(stat1: u16, stat2: u16) -> Self {
-        Self { input: 0x11, control: 0x10, stat1, stat2 }
+    /// Xylo Audio A2: 8 outputs. The word that triggers a time step has to come from the vendor:
+    /// `rockpool` leaves that to `samna`, which is not open.
+    pub const fn a2(trigger: u32) -> Self {
+        Self {
+            input: 0x11,
+            control: 0x0E,
+            trigger,
+            status: 0x15,
+            done: 1 << 16,
+            outputs: 0x15,
+            output_bits: 0xFF,
+        }
     }
 }
-
-/// Bit 4 of the control register.
-const STEP: u32 = 1 << 4;
-/// Bit 0 of `stat2`.
-const DONE: u32 = 1;
 
 /// Xylo Audio 3 and A2, stepped by hand: counts in, a time step, the outputs that fired.
 ///
@@ -121,12 +140,12 @@ impl<R: Registers> Xylo<R> {
     /// # Errors
     /// The bus failed, or the time step did not finish.
     pub fn step(&mut self) -> Result<u32, ChipError<R::Error>> {
-        let control = self.registers.read(self.map.control).map_err(ChipError::Bus)?;
-        self.registers.write(self.map.control, control | STEP).map_err(ChipError::Bus)?;
+        let XyloMap { control, trigger, status, done, outputs, output_bits, .. } = self.map;
+        self.registers.write(control, trigger).map_err(ChipError::Bus)?;
         for _ in 0..self.polls {
-            let status = self.registers.read(self.map.stat2).map_err(ChipError::Bus)?;
-            if status & DONE != 0 {
-                return self.registers.read(self.map.stat1).map_err(ChipError::Bus);
+            if self.registers.read(status).map_err(ChipError::Bus)? & done != 0 {
+                let fired = self.registers.read(outputs).map_err(ChipError::Bus)?;
+                return Ok(fired & output_bits);
             }
         }
         Err(ChipError::Unfinished)

@@ -162,7 +162,7 @@ fn memory() {
 
 fn counts() {
     let mut bins = black_box(Bins::<16>::new(0, NonZeroU32::MAX)).with_limit(black_box(15));
-    let mut xylo = black_box(Xylo::new(Bus, XyloMap::a2(1, 2), 3));
+    let mut xylo = black_box(Xylo::new(Bus, XyloMap::a2(1), 3));
     while let Some(event) = (&EVENTS).next_event() {
         if bins.add(event).is_err() {
             hide((
