@@ -136,7 +136,11 @@ spi_sink! {
 
 #[cfg(feature = "async")]
 spi_sink! {
-    /// Sends events over an `embedded-hal-async` SPI device; see [`SpiSink`]. A `send` that is dropped
-    /// keeps its batch.
+    /// Sends events over an `embedded-hal-async` SPI device; see [`SpiSink`].
+    ///
+    /// A `send` that is dropped keeps its batch, and the next one begins with the same bytes. Until
+    /// then a device such as the `ExclusiveDevice` of `embedded-hal-bus` leaves chip select low: the
+    /// receiver sees a torn batch, then the whole one, in one selection. A link's reader
+    /// resynchronises.
     AsyncSpiSink, embedded_hal_async::spi::SpiDevice, [async], [.await]
 }
