@@ -2,6 +2,7 @@
 
 mod bus;
 
+use std::cell::Cell;
 use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::future::Future;
@@ -13,6 +14,7 @@ use embedded_hal::digital::{ErrorType, InputPin};
 use embedded_hal::spi::ErrorKind;
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Level};
 use embedded_hal_mock::eh1::spi::{Mock, Transaction};
+use embedded_io::WriteReady;
 use spikewire::format::{Edvs, EdvsEncoder, EdvsTime};
 use spikewire::link::{Coding, MAX_FRAME, Reader, Transmitter};
 use spikewire::sink::{
@@ -206,6 +208,79 @@ fn a_serial_port_gets_every_byte_once_whatever_happens() {
             assert_eq!(sink.release().taken, bytes(0..10));
         }
     }
+}
+
+/// Keeps what it takes until there are 64 bytes, as a USB port does, or until it is flushed.
+struct Packets<'a> {
+    kept: Vec<u8>,
+    arrived: Vec<u8>,
+    is_read: &'a Cell<bool>,
+}
+
+impl<'a> Packets<'a> {
+    fn new(is_read: &'a Cell<bool>) -> Self {
+        Self { kept: vec![], arrived: vec![], is_read }
+    }
+}
+
+impl embedded_io::ErrorType for Packets<'_> {
+    type Error = Infallible;
+}
+
+impl embedded_io::Write for Packets<'_> {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
+        assert!(self.write_ready()?, "waits for ever");
+        if self.kept.len() == 64 {
+            self.arrived.append(&mut self.kept);
+        }
+        let length = bytes.len().min(64 - self.kept.len());
+        self.kept.extend(&bytes[..length]);
+        Ok(length)
+    }
+
+    fn flush(&mut self) -> Result<(), Infallible> {
+        self.arrived.append(&mut self.kept);
+        Ok(())
+    }
+}
+
+impl WriteReady for Packets<'_> {
+    fn write_ready(&mut self) -> Result<bool, Infallible> {
+        Ok(self.kept.len() < 64 || self.is_read.get())
+    }
+}
+
+#[test]
+fn what_a_port_keeps_arrives_by_flushing() {
+    let is_read = Cell::new(true);
+    let mut sink = SerialSink::<_, _, 64>::new(Packets::new(&is_read), batch());
+    assert_eq!(sink.send(events(9).into_iter()), Ok(18));
+    assert_eq!(sink.flush(), Ok(()));
+    assert_eq!(sink.release().arrived, bytes(0..9));
+}
+
+#[test]
+fn flushing_sends_what_waits_in_the_sink_too() {
+    let calls = VecDeque::from([3, 0, 1]);
+    let mut sink = SerialSink::<_, _, 8>::new(Port { calls, taken: vec![] }, batch());
+    assert!(sink.send(events(4).into_iter()).is_err());
+    assert_eq!((sink.waiting(), sink.flush()), (5, Ok(())));
+    assert_eq!(sink.release().taken, bytes(0..4));
+}
+
+#[test]
+fn a_port_that_nobody_reads_is_never_waited_for() {
+    let is_read = Cell::new(false);
+    let mut sink = SerialSink::<_, _, 48>::new(Packets::new(&is_read), batch());
+    let mut source = events(48).into_iter();
+    assert_eq!(sink.try_send(&mut source), Ok(48));
+    assert_eq!(sink.try_send(&mut source), Err(SinkError::Busy));
+    assert_eq!(sink.waiting(), 32);
+    assert_eq!(sink.try_send(&mut source), Err(SinkError::Busy));
+    is_read.set(true);
+    assert_eq!(sink.try_send(&mut source), Ok(32));
+    let port = sink.release();
+    assert_eq!([port.arrived, port.kept].concat(), bytes(0..48));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Events over a UART or USB serial port.
 
-use embedded_io::Write;
+use embedded_io::{Write, WriteReady};
 
 use super::{Batch, SinkError};
 use crate::EventSource;
@@ -11,6 +11,10 @@ use crate::EventSource;
 ///   rest is kept.
 /// - **Errors** come back with what was not taken kept: the next [`send`](Self::send) goes on there, so
 ///   that no byte is sent twice or left out.
+/// - **Waiting:** [`send`](Self::send) and [`flush`](Self::flush) wait as long as the port's own calls
+///   do, for ever on a USB port that nobody reads and that no driver drains.
+///   [`try_send`](Self::try_send) never waits.
+/// - **Buffers:** a port may keep up to a packet of what it took; [`flush`](Self::flush) sends it on.
 /// - **Memory:** `N` bytes, and those of its parts.
 ///
 /// ```
@@ -55,16 +59,41 @@ impl<W: Write, B: Batch, const N: usize> SerialSink<W, B, N> {
     /// # Errors
     /// The port failed, or takes no more bytes.
     pub fn send(&mut self, mut events: impl EventSource) -> Result<usize, SinkError<W::Error>> {
+        self.refill(&mut events);
+        self.write(|_| Ok(true))
+    }
+
+    /// Sends what waits here, and has the port send what it keeps. Call it when [`send`](Self::send)
+    /// has returned 0: nothing of a burst is left behind then.
+    ///
+    /// # Errors
+    /// The port failed, or takes no more bytes.
+    pub fn flush(&mut self) -> Result<(), SinkError<W::Error>> {
+        self.write(|_| Ok(true))?;
+        self.port.flush().map_err(SinkError::Bus)
+    }
+
+    /// Takes the next batch, unless some of the last one waits.
+    fn refill(&mut self, events: &mut impl EventSource) {
         if self.start == self.end {
-            (self.start, self.end) = (0, self.batch.fill(&mut events, &mut self.bytes));
+            (self.start, self.end) = (0, self.batch.fill(events, &mut self.bytes));
         }
+    }
+
+    /// Writes what waits while the port is ready, and says how many bytes it took.
+    fn write(
+        &mut self,
+        is_ready: impl Fn(&mut W) -> Result<bool, W::Error>,
+    ) -> Result<usize, SinkError<W::Error>> {
         let before = self.start;
         while let Some(rest) = self.bytes.get(self.start..self.end).filter(|rest| !rest.is_empty())
         {
-            match self.port.write(rest) {
-                Ok(0) => return Err(SinkError::Closed),
-                Ok(taken) => self.start += taken.min(rest.len()),
-                Err(error) => return Err(SinkError::Bus(error)),
+            if !is_ready(&mut self.port).map_err(SinkError::Bus)? {
+                return Err(SinkError::Busy);
+            }
+            match self.port.write(rest).map_err(SinkError::Bus)? {
+                0 => return Err(SinkError::Closed),
+                taken => self.start += taken.min(rest.len()),
             }
         }
         Ok(self.start - before)
@@ -83,5 +112,17 @@ impl<W: Write, B: Batch, const N: usize> SerialSink<W, B, N> {
     /// The port, for other uses.
     pub fn release(self) -> W {
         self.port
+    }
+}
+
+impl<W: Write + WriteReady, B: Batch, const N: usize> SerialSink<W, B, N> {
+    /// The same as [`send`](Self::send) without waiting: asks the port before each write.
+    ///
+    /// # Errors
+    /// [`SinkError::Busy`]: the port has no room, and the rest waits for the next call. As well those
+    /// of [`send`](Self::send).
+    pub fn try_send(&mut self, mut events: impl EventSource) -> Result<usize, SinkError<W::Error>> {
+        self.refill(&mut events);
+        self.write(W::write_ready)
     }
 }

@@ -123,7 +123,8 @@ fn sinks() {
     hide((sink.send(&EVENTS).is_ok(), sink.waiting()));
     let transmitter = Transmitter::<i16, 3>::new(black_box(Coding::for_channels(3, 1)));
     let mut sink = black_box(SerialSink::<_, _, 64>::new(Bus, transmitter));
-    hide((sink.send(&EVENTS).is_ok(), sink.waiting()));
+    hide((sink.send(&EVENTS).is_ok(), sink.try_send(&EVENTS).is_ok()));
+    hide((sink.flush().is_ok(), sink.waiting()));
 }
 
 fn family<I: Input>(chip: OdinChip<I, Bus, Bus>) {
@@ -232,6 +233,12 @@ impl embedded_io::Write for Bus {
 
     fn flush(&mut self) -> Result<(), embedded_io::ErrorKind> {
         black_box(Ok(()))
+    }
+}
+
+impl embedded_io::WriteReady for Bus {
+    fn write_ready(&mut self) -> Result<bool, embedded_io::ErrorKind> {
+        Ok(black_box(true))
     }
 }
 
