@@ -237,6 +237,34 @@ fn events_out_of_order_are_retimed_and_counted() {
     check!(Evt2::encoder(), Evt2::decoder(), []);
 }
 
+#[test]
+fn a_log_may_begin_long_after_boot() {
+    const BOOT_TO_LOG: u32 = 40 * 60 * 1_000_000; // more than half the ticks
+    let late = event(BOOT_TO_LOG + 300, 0x0102, true);
+
+    let mut from_boot = EventStream::encoder();
+    assert_eq!(from_boot.encode(late, &mut [0; 8]), Ok(5));
+    assert_eq!(from_boot.retimed(), 1, "it looks earlier than boot");
+
+    let mut from_start = EventStream::encoder_from(BOOT_TO_LOG);
+    let mut file = [EventStream::HEADER.as_slice(), &[0; 6]].concat();
+    assert_eq!(from_start.encode(late, &mut file[16..]), Ok(6));
+    assert_eq!(from_start.retimed(), 0);
+    assert_eq!(decode(EventStream::decoder_from(BOOT_TO_LOG), &file, 5), [late]);
+    assert_eq!(decode(EventStream::decoder(), &file, 5), [Event { tick: 300, ..late }]);
+
+    for time in [EdvsTime::Delta, EdvsTime::Bits16, EdvsTime::Bits24] {
+        let camera = Edvs::new(time);
+        let mut encoder = camera.encoder_from(BOOT_TO_LOG);
+        let mut bytes = [0; 6];
+        let length = encoder.encode(late, &mut bytes).unwrap();
+        let mut decoder = camera.decoder();
+        decoder.set_tick(BOOT_TO_LOG);
+        assert!(decoder.decode(&bytes[..length]).eq([late]));
+        assert_eq!(encoder.retimed(), 0);
+    }
+}
+
 /// Sends all events in the shortest batches.
 fn goes_on<B: Batch>(mut batch: B, events: &[Event]) {
     let mut source = events.iter().copied();
@@ -283,6 +311,22 @@ proptest! {
     }
 
     #[test]
+    fn every_event_read_at_another_time_is_counted(ticks in prop::collection::vec(any::<u32>(), 0..20)) {
+        let events: Vec<_> = ticks.iter().map(|&tick| event(tick, 0, true)).collect();
+        for time in [EdvsTime::Delta, EdvsTime::Bits16, EdvsTime::Bits24, EdvsTime::Bits32] {
+            let mut encoder = Edvs::new(time).encoder();
+            let mut decoder = Edvs::new(time).decoder();
+            let mut retimed = 0;
+            for &event in &events {
+                let mut bytes = [0; 6];
+                let length = encoder.encode(event, &mut bytes).unwrap();
+                retimed += decoder.decode(&bytes[..length]).filter(|&read| read != event).count();
+                prop_assert_eq!(encoder.retimed() as usize, retimed);
+            }
+        }
+    }
+
+    #[test]
     fn edvs_without_time_takes_that_of_arrival(events in events(1, 0x3FFF), now: u32) {
         let format = Edvs::new(EdvsTime::None);
         let bytes = encode(format.encoder(), &events, 2);
@@ -316,7 +360,7 @@ proptest! {
 
     #[test]
     fn random_and_damaged_bytes_never_panic(
-        events in events(100_000, 0x3FFF),
+        events in events(1 << 16, 0x3FFF),
         flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..20),
         random in prop::collection::vec(any::<u8>(), 0..300),
         is_file in any::<bool>(),

@@ -71,10 +71,15 @@ impl Edvs {
 
     /// Writes events; the first delta counts from tick 0.
     pub const fn encoder(self) -> EdvsEncoder {
-        EdvsEncoder { protocol: self, clock: Clock { tick: 0, retimed: 0 } }
+        self.encoder_from(0)
     }
 
-    /// Reads events; the first delta counts from tick 0.
+    /// The same where it counts from this tick, and the short times of E2 and E3 lie after it.
+    pub const fn encoder_from(self, start: u32) -> EdvsEncoder {
+        EdvsEncoder { protocol: self, clock: Clock::starting_at(start) }
+    }
+
+    /// Reads events; the first delta counts from tick 0, unless [told](EdvsDecoder::set_tick).
     pub const fn decoder(self) -> EdvsDecoder {
         EdvsDecoder { protocol: self, tick: 0, state: State::First, skipped: 0 }
     }
@@ -100,11 +105,13 @@ impl EventFormat for EdvsEncoder {
             return Err(FormatError::Address { address, max: MAX_ADDRESS });
         }
         let up = if (polarity == Polarity::Up) == self.protocol.up_is_zero { 0 } else { UP };
-        let (delta, is_retimed) = match self.protocol.time {
-            EdvsTime::Delta => self.clock.since(tick),
-            _ => (0, false),
+        let ahead = tick.wrapping_sub(self.clock.tick);
+        let delta = match self.protocol.time {
+            EdvsTime::None | EdvsTime::Bits32 => ahead,
+            EdvsTime::Delta => self.clock.since(tick).0.min(MAX_DELTA),
+            EdvsTime::Bits16 => ahead & 0xFFFF,
+            EdvsTime::Bits24 => ahead & 0xFF_FFFF,
         };
-        let delta = delta.min(MAX_DELTA);
 
         let mut out = Cursor::new(bytes);
         out.put(&[FIRST | (address >> 7) as u8, up | (address & 0x7F) as u8])
@@ -119,7 +126,7 @@ impl EventFormat for EdvsEncoder {
                 EdvsTime::Bits32 => out.put(&tick.to_be_bytes()),
             })
             .ok_or(FormatError::Full { written: 0 })?;
-        self.clock.advance(delta, is_retimed);
+        self.clock.advance(delta, delta != ahead);
         Ok(out.written())
     }
 

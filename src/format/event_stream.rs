@@ -42,14 +42,28 @@ impl EventStream {
     /// The first bytes of a file: magic, version 2.0.0, type 0.
     pub const HEADER: [u8; 16] = *b"Event Stream\x02\0\0\0";
 
-    /// Writes events, from tick 0 on; write the [header](Self::HEADER) before the first.
+    /// Writes events, whose file begins at tick 0; write the [header](Self::HEADER) before the first.
+    ///
+    /// For a log that begins long after boot see [`encoder_from`](Self::encoder_from).
     pub const fn encoder() -> EventStreamEncoder {
-        EventStreamEncoder { clock: Clock { tick: 0, retimed: 0 } }
+        Self::encoder_from(0)
     }
 
-    /// Reads a file, from its header on.
+    /// The same for a file that begins at this tick: it counts time from there, and does not say which
+    /// tick it was. From tick 0 it would write a byte for every 254 µs since boot, and after 35.8
+    /// minutes no event at its time.
+    pub const fn encoder_from(start: u32) -> EventStreamEncoder {
+        EventStreamEncoder { clock: Clock::starting_at(start) }
+    }
+
+    /// Reads a file, from its header on; it begins at tick 0.
     pub const fn decoder() -> EventStreamDecoder {
-        EventStreamDecoder { tick: 0, state: State::Header(0), skipped: 0 }
+        Self::decoder_from(0)
+    }
+
+    /// The same for a file that begins at this tick.
+    pub const fn decoder_from(start: u32) -> EventStreamDecoder {
+        EventStreamDecoder { tick: start, state: State::Header(0), skipped: 0 }
     }
 }
 

@@ -11,8 +11,10 @@
 //! caller's buffer; decoders take a byte at a time, from anywhere in a stream, never panic, and count
 //! what they skip.
 //!
-//! The formats but [`eieio`] have no way to step back in time: an event earlier than the one before
-//! it is written at that one's time and counted as retimed.
+//! The formats but [`eieio`] and eDVS E4 have no way to step back in time: an event earlier than the
+//! one before it is written at that one's time, or, by eDVS E2 and E3, at a later one. One that comes
+//! 2³¹ µs (35.8 minutes) or more after the one before looks as if it were earlier. Every event that
+//! will be read at another time is counted as retimed.
 
 mod edvs;
 pub mod eieio;
@@ -39,7 +41,7 @@ pub trait EventFormat {
     /// The event does not fit, or the format has no word for its address.
     fn encode(&mut self, event: Event, bytes: &mut [u8]) -> Result<usize, FormatError>;
 
-    /// How many events were written later than they happened.
+    /// How many events were written so that they are read at another time than theirs.
     fn retimed(&self) -> u32;
 }
 
@@ -94,7 +96,7 @@ impl fmt::Display for FormatError {
 
 impl core::error::Error for FormatError {}
 
-/// The time of the event written last, which the next may not precede.
+/// The time at which a reader that began with the writer is.
 #[derive(Clone, Copy, Debug, Default)]
 struct Clock {
     tick: u32,
@@ -102,13 +104,17 @@ struct Clock {
 }
 
 impl Clock {
-    /// How much later an event is than the last, in microseconds, and whether it had to be retimed.
+    const fn starting_at(tick: u32) -> Self {
+        Self { tick, retimed: 0 }
+    }
+
+    /// How much later an event is, in microseconds, and whether it is earlier and has to be retimed.
     fn since(self, tick: u32) -> (u32, bool) {
         let delta = tick::difference(tick, self.tick);
         (delta.max(0) as u32, delta < 0)
     }
 
-    /// Goes on to an event that was written.
+    /// Goes on by time that was written.
     fn advance(&mut self, delta: u32, is_retimed: bool) {
         self.tick = self.tick.wrapping_add(delta);
         self.retimed = self.retimed.saturating_add(is_retimed.into());
