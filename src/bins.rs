@@ -9,6 +9,9 @@ use crate::{Event, tick};
 /// - **Step:** 1 to 2³¹-1 µs; longer ones are cut to that. **Counts:** saturate at the limit, 255
 ///   unless [told](Self::with_limit).
 /// - **Memory:** `N + 28` bytes. **Work:** constant, an event.
+/// - **Order:** give it events in the order of time; one that comes after its step was taken is not
+///   counted but [`late`](Self::late), and so is one 2³¹ µs (35.8 minutes) or more after the step's
+///   start.
 /// - **Polarity** is not told apart: give each its own address where it matters.
 /// - What is not counted has a counter: [`saturated`](Self::saturated), [`late`](Self::late),
 ///   [`outside`](Self::outside).
@@ -97,7 +100,7 @@ impl<const N: usize> Bins<N> {
         self.saturated
     }
 
-    /// How many events belonged to a time step already taken.
+    /// How many events lay before the time step: in one already taken, or before the first.
     pub const fn late(&self) -> u32 {
         self.late
     }
