@@ -265,6 +265,17 @@ fn a_log_may_begin_long_after_boot() {
     }
 }
 
+#[test]
+fn edvs_does_not_see_a_lost_byte_where_all_have_bit_7() {
+    let events: Vec<_> = (1..100).map(|address| event(0, address, true)).collect();
+    for time in [EdvsTime::None, EdvsTime::Delta] {
+        let bytes = encode(Edvs::new(time).encoder(), &events, 64);
+        let mut decoder = Edvs::new(time).decoder();
+        assert_eq!(decoder.decode(&bytes[1..]).filter(|read| events.contains(read)).count(), 0);
+        assert_eq!(decoder.skipped(), 0);
+    }
+}
+
 /// Sends all events in the shortest batches.
 fn goes_on<B: Batch>(mut batch: B, events: &[Event]) {
     let mut source = events.iter().copied();
@@ -388,6 +399,30 @@ proptest! {
         decode(Evt2::decoder(), &damage(evt2), 50);
         if let Some(datagram) = eieio::decode(&random) {
             datagram.keys().for_each(drop);
+        }
+    }
+
+    #[test]
+    fn edvs_with_up_as_zero_finds_back_among_events_that_all_go_up(
+        mut events in events(1 << 21, 0x3FFF),
+        lost in any::<prop::sample::Index>(),
+    ) {
+        for event in &mut events {
+            event.polarity = Polarity::Up;
+        }
+        for time in [EdvsTime::None, EdvsTime::Delta] {
+            let format = Edvs::new(time).with_up_as_zero();
+            let mut bytes = encode(format.encoder(), &events, 64);
+            if bytes.is_empty() {
+                break;
+            }
+            let at = lost.index(bytes.len());
+            bytes.remove(at);
+            let whole = format.decoder().decode(&bytes[..at]).count();
+            let read: Vec<_> = format.decoder().decode(&bytes).map(|event| event.address).collect();
+            let sent: Vec<_> = events.iter().map(|event| event.address).collect();
+            let right = sent.get(whole + 3..).unwrap_or_default();
+            prop_assert!(read.ends_with(right), "{time:?}");
         }
     }
 

@@ -28,7 +28,11 @@ pub enum EdvsTime {
 ///   [told](Self::with_up_as_zero).
 /// - **Length:** 2 bytes, and 1 to 4 of time.
 /// - **Resynchronisation:** the first byte of an event has bit 7 set; bytes before one are skipped.
-///   Later bytes may have it too, so that a start in the middle can read a few wrong events.
+///   Later bytes may have it too: after a lost byte, or a start in the middle, a few events are wrong.
+///   Where all have `p = 1`, as those of rate and population codes, all that follow may be, with no
+///   byte skipped. Send those [with up as zero](Self::with_up_as_zero): E0, and E1 while less than
+///   2 s pass between events, are right again after three events at most; E2 to E4, whose times are
+///   any bytes, may take longer.
 ///
 /// Source: eDVS user guide; libcaer, `edvs.c`.
 ///
