@@ -143,7 +143,8 @@ pub(crate) const fn offset(parameter: &'static str, value: f64) -> Result<(), Co
     }
 }
 
-const fn within(
+/// From `min` to `max`.
+pub(crate) const fn within(
     parameter: &'static str,
     value: f64,
     min: f32,

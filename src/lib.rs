@@ -88,7 +88,7 @@ pub use codec::{Decoder, Encoder, Output, Scheme};
 pub use error::ConfigError;
 pub use readout::{Assemble, Readout};
 pub use sample::Sample;
-pub use source::EventSource;
+pub use source::{EventSource, Mark};
 pub use spike::{Code, Event, Firing, Polarity, Spike};
 
 /// The README's code, for doctests alone.

@@ -1,8 +1,9 @@
 //! Events back to values, channel by channel: the inverse of a bank.
 
+use crate::error::within;
 use crate::population::{Neuron, Volley};
 use crate::spike::{Code, Firing, Polarity};
-use crate::{Decoder, Event, Scheme, Spike, tick};
+use crate::{ConfigError, Decoder, Event, Scheme, Spike, tick};
 
 /// A code that can be put together from the neurons that fired in one time step.
 ///
@@ -74,7 +75,7 @@ impl<const M: usize, const N: usize> Assemble for Volley<M, N> {
 /// `N` decoders of one kind side by side: the events of a time step in, a value of every channel out.
 ///
 /// Addresses are those of a [`Bank`](crate::Bank): channel `c`, neuron `n` has the address
-/// `c * NEURONS + n`. So are sub-timesteps. A chip's output neurons are addresses already.
+/// `c * NEURONS + n` from the first on. So are sub-timesteps. A chip's output neurons are addresses already.
 ///
 /// - **Work:** one pass over the events for each channel.
 /// - **Time:** events outside the time step belong to another: give this one only its own.
@@ -93,6 +94,7 @@ impl<const M: usize, const N: usize> Assemble for Volley<M, N> {
 #[derive(Clone, Copy, Debug)]
 pub struct Readout<D, const N: usize> {
     channels: [D; N],
+    first_address: u16,
     slot_ticks: u32,
 }
 
@@ -116,7 +118,17 @@ where
             assert!(N >= 1, "a readout has at least one channel");
             assert!(N * D::Code::NEURONS <= 1 << 16, "addresses have 16 bits");
         }
-        Self { channels, slot_ticks: 0 }
+        Self { channels, first_address: 0, slot_ticks: 0 }
+    }
+
+    /// The same with addresses from this one on, 0 unless told; events of lower ones are left out.
+    ///
+    /// # Errors
+    /// The last address would be above 65 535.
+    pub fn with_first_address(self, first_address: u16) -> Result<Self, ConfigError> {
+        let max = (1 << 16) - N * D::Code::NEURONS;
+        within("first address", first_address.into(), 0.0, max as f32)?;
+        Ok(Self { first_address, ..self })
     }
 
     /// The same with sub-timesteps of this many microseconds; 0 unless told.
@@ -129,7 +141,7 @@ where
     pub fn decode(&mut self, tick: u32, events: &[Event]) -> [D::Sample; N] {
         let slot_ticks = self.slot_ticks;
         let mut values = [D::Sample::default(); N];
-        let mut first = 0_u16;
+        let mut first = self.first_address;
         for (decoder, value) in self.channels.iter_mut().zip(&mut values) {
             let firings = events.iter().filter_map(|event| {
                 let since = tick::difference(event.tick, tick).max(0) as u32;

@@ -91,6 +91,9 @@ pub trait Code: Copy {
     /// How many neurons a channel of this code has.
     const NEURONS: usize;
 
+    /// How many sub-timesteps a sample of this code has.
+    const SLOTS: usize = 1;
+
     /// The neurons that fire, by rising index.
     fn firings(&self) -> impl Iterator<Item = Firing>;
 }

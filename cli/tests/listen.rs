@@ -7,7 +7,7 @@ use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use spikewire::link::{Coding, Framer, MAX_FRAME, Raw, Transmitter};
 use spikewire::temporal::{MovingWindow, StepForward, TemporalContrast};
-use spikewire::{Bank, Decoder, Encoder, Output, Sample, Scheme, Spike};
+use spikewire::{Bank, Decoder, Encoder, Mark, Output, Sample, Scheme, Spike};
 use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::Path;
@@ -44,7 +44,7 @@ where
         }
         // At 3 the moving window has filled.
         if sample == 3 || sample % 100 == 0 {
-            let snapshot = bank.snapshot(tick, 0);
+            let snapshot = bank.snapshot(tick, Mark::default());
             // What the board's decoders start from.
             for (decoder, value) in decoders.iter_mut().zip(snapshot.values) {
                 if let Some(value) = value {

@@ -11,7 +11,7 @@ use spikewire::population::{Centres, Position, ReceptiveFields, Slots};
 use spikewire::rate::{Hough, Taps};
 use spikewire::sink::{EventQueue, Overflow};
 use spikewire::temporal::StepForward;
-use spikewire::{Bank, Code, Encoder, Event, Output, Polarity, Scheme};
+use spikewire::{Bank, Code, ConfigError, Encoder, Event, Mark, Output, Polarity, Scheme};
 
 /// One recording a channel, sample by sample through a bank.
 fn events<E: Encoder<Sample = f32>, const N: usize>(
@@ -44,14 +44,20 @@ where
     let neurons = <<P::Encoder as Encoder>::Output as Output>::Code::NEURONS;
     let mut events = Vec::new();
     for (i, &tick) in ticks.iter().enumerate() {
+        let mut firings = Vec::new();
         for (channel, outputs) in runs.iter().enumerate() {
             let Some(code) = outputs[i].code() else { continue };
-            events.extend(code.firings().map(|firing| Event {
-                tick: tick.wrapping_add(slot_ticks.wrapping_mul(firing.slot.into())),
-                address: (channel * neurons) as u16 + firing.neuron,
-                polarity: firing.polarity,
+            firings.extend(code.firings().map(|firing| {
+                let event = Event {
+                    tick: tick.wrapping_add(slot_ticks.wrapping_mul(firing.slot.into())),
+                    address: (channel * neurons) as u16 + firing.neuron,
+                    polarity: firing.polarity,
+                };
+                (if slot_ticks > 0 { firing.slot } else { 0 }, event)
             }));
         }
+        firings.sort_by_key(|&(slot, _)| slot);
+        events.extend(firings.into_iter().map(|(_, event)| event));
     }
     events
 }
@@ -72,7 +78,8 @@ fn addresses_times_and_polarities_by_hand() {
     );
     assert_eq!(bank.rejected(), 1);
     let values = [Some(1.0), Some(-1.0), Some(5.0)];
-    assert_eq!(bank.snapshot(30, 7), Snapshot { tick: 30, lost: 7, values });
+    let mark = Mark { lost: 7, place: Some(2) };
+    assert_eq!(bank.snapshot(30, mark), Snapshot { tick: 30, mark, values });
     bank.reset();
     assert_eq!((bank.rejected(), bank.channels()[0].keyframe()), (0, None));
 }
@@ -85,7 +92,7 @@ fn slots_are_times() {
     let channels = [vec![99.0], vec![0.1]];
     let events = events(&mut bank, &channels, &[u32::MAX]);
     let told: Vec<_> = events.iter().map(|event| (event.tick, event.address)).collect();
-    assert_eq!(told, [(209, 4), (49, 5), (424, 6)]);
+    assert_eq!(told, [(49, 5), (209, 4), (424, 6)]);
 }
 
 #[test]
@@ -94,6 +101,20 @@ fn channels_may_have_parameters_of_their_own() {
     let channels = [vec![0.0, 1.5], vec![0.0, 1.5]];
     let told = events(&mut bank, &channels, &[1, 2]);
     assert_eq!(told, [Event { tick: 2, address: 0, polarity: Polarity::Up }]);
+}
+
+#[test]
+fn banks_share_the_addresses() {
+    let bank = Bank::<_, 3>::new(StepForward::<i16>::checked(1));
+    let mut behind = bank.with_first_address(0xFFFD).unwrap();
+    let mut addresses = Vec::new();
+    for sample in [0, 5] {
+        behind.encode(0, [sample; 3], |event| addresses.push(event.address));
+    }
+    assert_eq!(addresses, [0xFFFD, 0xFFFE, 0xFFFF]);
+    let (parameter, min, max) = ("first address", 0.0, 65_533.0);
+    let error = ConfigError::OutOfRange { parameter, value: 65_534.0, min, max };
+    assert_eq!(bank.with_first_address(0xFFFE).err(), Some(error));
 }
 
 #[test]
@@ -108,7 +129,7 @@ fn a_queue_counts_what_a_bank_has_no_room_for() {
         bank.encode_into(1, [0; 3], &queue);
         bank.encode_into(2, [5; 3], &queue);
         assert_eq!((queue.lost(), queue.refused()), (1, refused), "{overflow:?}");
-        assert!(queue.drain().map(|event| event.address).eq(expected), "{overflow:?}");
+        assert!(queue.drain().into_iter().map(|event| event.address).eq(expected), "{overflow:?}");
     }
 }
 

@@ -8,7 +8,7 @@ use rand_pcg::Pcg32;
 use spikewire::link::{Coding, MAX_FRAME, Raw, Reader, Receiver, Snapshot, Transmitter};
 use spikewire::sink::{EventQueue, Overflow};
 use spikewire::temporal::{StepDecoder, StepForward};
-use spikewire::{Bank, Decoder, Event, Sample, Scheme};
+use spikewire::{Bank, Decoder, Event, Mark, Sample, Scheme};
 
 /// What arrives, and what should.
 struct Tally {
@@ -41,7 +41,7 @@ fn fly<S: Raw>(scheme: StepForward<S>, convert: fn(f32) -> S, per_cent: u32) -> 
         });
         if sample.time_us >= next_keyframe {
             next_keyframe += 1_000_000;
-            transmitter.keyframe(bank.snapshot(sample.time_us, 0));
+            transmitter.keyframe(bank.snapshot(sample.time_us, Mark::default()));
             for (decoder, encoder) in lossless.iter_mut().zip(bank.channels()) {
                 decoder.resync(spikewire::Encoder::keyframe(encoder).unwrap());
             }
@@ -148,13 +148,13 @@ fn events_lost_in_the_queue_make_the_receiver_stale_until_the_next_keyframe() {
         };
 
         let now = encode(&mut bank, 3);
-        transmitter.keyframe(bank.snapshot(now, queue.lost()));
+        transmitter.keyframe(bank.snapshot(now, queue.mark()));
         flush(&mut transmitter, &mut receiver);
         assert_eq!(receiver.exact(0), base(&bank));
 
         // A keyframe that may lie before a loss must not hide it.
         let now = encode(&mut bank, 2);
-        transmitter.keyframe(bank.snapshot(now, queue.lost()));
+        transmitter.keyframe(bank.snapshot(now, queue.mark()));
         encode(&mut bank, 5);
         assert_eq!(queue.lost(), 3);
         flush(&mut transmitter, &mut receiver);
@@ -162,7 +162,7 @@ fn events_lost_in_the_queue_make_the_receiver_stale_until_the_next_keyframe() {
 
         // One that was taken after it makes up for it.
         let now = encode(&mut bank, 2);
-        transmitter.keyframe(bank.snapshot(now, queue.lost()));
+        transmitter.keyframe(bank.snapshot(now, queue.mark()));
         encode(&mut bank, 1);
         flush(&mut transmitter, &mut receiver);
         assert_eq!(receiver.exact(0), base(&bank));
@@ -183,11 +183,11 @@ fn a_keyframe_that_comes_late_does_not_take_the_receiver_back() {
         receiver.apply(&reader.next_frame(&mut bytes).unwrap(), |_, _, _| ());
         receiver.exact(0)
     };
-    transmitter.keyframe(Snapshot { tick: 1, lost: 0, values: [Some(100)] });
+    transmitter.keyframe(Snapshot { tick: 1, mark: Mark::default(), values: [Some(100)] });
     assert_eq!(send(&mut transmitter, 2), Some(110));
-    transmitter.keyframe(Snapshot { tick: 1, lost: 0, values: [Some(100)] });
+    transmitter.keyframe(Snapshot { tick: 1, mark: Mark::default(), values: [Some(100)] });
     assert_eq!((send(&mut transmitter, 3), transmitter.dropped_keyframes()), (Some(120), 1));
-    transmitter.keyframe(Snapshot { tick: 3, lost: 0, values: [Some(121)] }); // as late as can be
+    transmitter.keyframe(Snapshot { tick: 3, mark: Mark::default(), values: [Some(121)] }); // as late as can be
     assert_eq!((send(&mut transmitter, 4), transmitter.dropped_keyframes()), (Some(131), 1));
 }
 
@@ -195,7 +195,7 @@ fn a_keyframe_that_comes_late_does_not_take_the_receiver_back() {
 #[test]
 fn a_snapshot_before_any_value_sends_nothing() {
     let mut transmitter = Transmitter::<i16, 2>::new(Coding::for_channels(2, 1));
-    transmitter.keyframe(Snapshot { tick: 1, lost: 0, values: [None; 2] });
+    transmitter.keyframe(Snapshot { tick: 1, mark: Mark::default(), values: [None; 2] });
     assert_eq!(transmitter.next_frame(std::iter::empty(), &mut [0; 64]), Ok(None));
     assert_eq!(transmitter.dropped_keyframes(), 0);
 }

@@ -50,7 +50,7 @@ proptest! {
             prop_assert_eq!(queue.len(), model.len());
         }
         prop_assert_eq!((queue.lost(), queue.refused(), queue.peak()), (lost, refused, peak));
-        prop_assert!(queue.drain().eq(model));
+        prop_assert!(queue.drain().into_iter().eq(model));
         prop_assert!(queue.is_empty());
     }
 }
@@ -60,7 +60,8 @@ fn a_drain_ends_although_events_keep_coming() {
     let queue = EventQueue::<4>::new(Overflow::DropOldest);
     queue.push(event(0)).unwrap();
     queue.push(event(1)).unwrap();
-    let drained: Vec<_> = queue.drain().inspect(|_| queue.push(event(9)).unwrap()).collect();
+    let drained: Vec<_> =
+        queue.drain().into_iter().inspect(|_| queue.push(event(9)).unwrap()).collect();
     assert_eq!(drained, [event(0), event(1)]);
     assert_eq!(queue.len(), 2);
 }

@@ -49,7 +49,7 @@
 //! [`Receiver`] applies them to decoders and says which are exact.
 //!
 //! ```
-//! use spikewire::{Bank, link::*, temporal::StepForward};
+//! use spikewire::{Bank, Mark, link::*, temporal::StepForward};
 //!
 //! const GYRO: StepForward<f32> = StepForward::<f32>::checked(0.1);
 //! let mut bank = Bank::<_, 3>::new(GYRO);
@@ -61,7 +61,7 @@
 //! for (tick, rate) in [(1_000, 0.0), (2_000, 0.3), (3_000, 0.35)] {
 //!     bank.encode(tick, [rate, 0.0, -rate], |event| events.push(event));
 //! }
-//! transmitter.keyframe(bank.snapshot(3_000, 0)); // once a second, after a sample
+//! transmitter.keyframe(bank.snapshot(3_000, Mark::default())); // once a second, after a sample
 //!
 //! let mut buffer = [0; MAX_FRAME];
 //! let mut events = events.into_iter();

@@ -7,12 +7,12 @@ use crate::{Event, EventSource, tick};
 /// Draws events from a source and turns them into frames for `N` channels of a step code, numbered
 /// from address 0.
 ///
-/// - **Keyframes** are put after the events up to their tick and before those after it, wherever
-///   those are in the queue.
+/// - **Keyframes** are put after the events that the queue held when the snapshot was taken, and before
+///   all others. Where the source numbers no events, their ticks decide, which must not fall.
 /// - **Losses** of the source are told to the receiver, in the first frame after them, and a keyframe
 ///   that may lie before a loss is dropped, as it would claim too much. So is one that comes after
 ///   later events were sent already, as it would take the decoder back.
-/// - **Memory:** `8 N + 48` bytes in `f32`.
+/// - **Memory:** `8 N + 64` bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
 pub struct Transmitter<S, const N: usize> {
     framer: Framer,
@@ -20,9 +20,16 @@ pub struct Transmitter<S, const N: usize> {
     pending: Option<Pending<S, N>>,
     lost: u32,
     owes_loss: bool,
-    /// The tick up to which all is sent.
-    sent: Option<u32>,
+    sent: Sent,
     dropped_keyframes: u32,
+}
+
+/// Up to where all is sent.
+#[derive(Clone, Copy, Debug)]
+struct Sent {
+    tick: Option<u32>,
+    /// The number of the first event that is not, if the source numbers them.
+    place: Option<u32>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +49,7 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
             pending: None,
             lost: 0,
             owes_loss: false,
-            sent: None,
+            sent: Sent { tick: None, place: None },
             dropped_keyframes: 0,
         }
     }
@@ -52,7 +59,11 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
         if snapshot.values.iter().all(Option::is_none) {
             return;
         }
-        let is_late = self.sent.is_some_and(|sent| tick::is_before(snapshot.tick, sent));
+        let is_late = snapshot.mark.lost < self.lost
+            || match (snapshot.mark.place, self.sent.place) {
+                (Some(place), Some(sent)) => tick::is_before(place, sent),
+                _ => self.sent.tick.is_some_and(|sent| tick::is_before(snapshot.tick, sent)),
+            };
         if is_late || self.pending.is_some() {
             self.dropped_keyframes = self.dropped_keyframes.saturating_add(1);
         }
@@ -85,7 +96,7 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
         self.note_loss(events.lost());
 
         let due = match (&self.pending, &self.held) {
-            (Some(pending), Some(event)) => tick::is_before(pending.snapshot.tick, event.tick),
+            (Some(pending), Some(event)) => pending.is_before(*event, events),
             (pending, _) => pending.is_some(),
         };
         let keyframes = if due { self.pending.as_mut() } else { None };
@@ -98,7 +109,7 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
 
         let mut frame = self.framer.start(start, buffer)?;
         if let Some(pending) = keyframes {
-            self.sent = Some(pending.snapshot.tick);
+            self.sent.tick = Some(pending.snapshot.tick);
             if !pending.write(&mut frame)? {
                 self.owes_loss = false;
                 return Ok(Some(frame.finish()));
@@ -107,23 +118,37 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
         }
         let mut next = self.held.take();
         while let Some(event) = next {
-            let is_behind =
-                |pending: &Pending<S, N>| tick::is_before(pending.snapshot.tick, event.tick);
-            if events.lost() != self.lost
-                || self.pending.as_ref().is_some_and(is_behind)
-                || frame.event(event).is_err()
-            {
+            if frame.event(event).is_err() {
                 self.held = Some(event);
                 break;
             }
-            self.sent = Some(event.tick);
+            self.sent.tick = Some(event.tick);
             next = events.next_event();
+            if let Some(event) = next
+                && (events.lost() != self.lost
+                    || self
+                        .pending
+                        .as_ref()
+                        .is_some_and(|pending| pending.is_before(event, events)))
+            {
+                self.held = next;
+                break;
+            }
         }
+        let held = u32::from(self.held.is_some());
+        self.sent.place = events.place().map(|place| place.wrapping_sub(held));
         if frame.is_empty() && !self.owes_loss {
             return Err(LinkError::Full);
         }
         self.owes_loss = false;
         Ok(Some(frame.finish()))
+    }
+
+    /// Tells the receiver that the encoders changed without events, as by a
+    /// [`Bank::reset`](crate::Bank::reset): what it has is not exact until the next keyframe.
+    pub fn mark_break(&mut self) {
+        self.framer.mark_loss();
+        self.owes_loss = true;
     }
 
     /// How many keyframes were not sent: another came before its turn, a loss did, or it came late.
@@ -136,15 +161,23 @@ impl<S: Raw, const N: usize> Transmitter<S, N> {
             return;
         }
         self.lost = lost;
-        self.owes_loss = true;
-        self.framer.mark_loss();
-        if self.pending.take_if(|pending| pending.snapshot.lost != lost).is_some() {
+        self.mark_break();
+        if self.pending.take_if(|pending| pending.snapshot.mark.lost != lost).is_some() {
             self.dropped_keyframes = self.dropped_keyframes.saturating_add(1);
         }
     }
 }
 
 impl<S: Raw, const N: usize> Pending<S, N> {
+    /// Whether an event just drawn from a source comes after the keyframes.
+    fn is_before(&self, event: Event, events: &impl EventSource) -> bool {
+        let Snapshot { tick, mark, .. } = self.snapshot;
+        match (mark.place, events.place()) {
+            (Some(place), Some(next)) => tick::is_before(place, next),
+            _ => tick::is_before(tick, event.tick),
+        }
+    }
+
     /// Writes keyframes as far as they fit, and says whether that was all.
     fn write(&mut self, frame: &mut FrameWriter<'_, '_>) -> Result<bool, LinkError> {
         while let Some(value) = self.snapshot.values.get(self.next) {

@@ -185,6 +185,7 @@ impl<const M: usize, const N: usize> Volley<M, N> {
 
 impl<const M: usize, const N: usize> Code for Volley<M, N> {
     const NEURONS: usize = M;
+    const SLOTS: usize = N;
 
     fn firings(&self) -> impl Iterator<Item = Firing> {
         self.iter().map(|(neuron, slot)| Firing { neuron, slot, polarity: Polarity::Up })

@@ -16,7 +16,7 @@ mod spi;
 pub use batch::{Batch, Formatted};
 pub use error::SinkError;
 #[cfg(feature = "queue")]
-pub use queue::{Drain, EventQueue, Overflow, Refused};
+pub use queue::{Drain, Drained, EventQueue, Overflow, Refused};
 #[cfg(feature = "embedded-io")]
 pub use serial::SerialSink;
 #[cfg(feature = "async")]

@@ -5,7 +5,7 @@ use core::cell::RefCell;
 use critical_section::Mutex;
 use heapless::Deque;
 
-use crate::{Event, EventSource};
+use crate::{Event, EventSource, Mark};
 
 /// What becomes of an event for which a full queue has no room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -36,7 +36,7 @@ impl core::error::Error for Refused {}
 /// `N` events, shared between interrupts and main.
 ///
 /// - **Never blocks.** Each call holds off interrupts for one event's copy.
-/// - **Memory:** `8 N + 28` bytes on a 32-bit part.
+/// - **Memory:** `8 N + 32` bytes on a 32-bit part.
 /// - **Nothing is dropped uncounted:** see [`lost`](Self::lost) and [`refused`](Self::refused). A
 ///   step decoder must be told of every loss; a link's transmitter takes the count and does so.
 ///
@@ -50,7 +50,7 @@ impl core::error::Error for Refused {}
 ///     EVENTS.push(Event { tick, address: 0, polarity: Polarity::Up })?;
 /// }
 /// // In main:
-/// assert!(EVENTS.drain().map(|event| event.tick).eq([2, 3]));
+/// assert!(EVENTS.drain().into_iter().map(|event| event.tick).eq([2, 3]));
 /// assert_eq!(EVENTS.lost(), 1);
 /// # Ok::<(), spikewire::sink::Refused>(())
 /// ```
@@ -70,6 +70,8 @@ pub struct EventQueue<const N: usize> {
 #[derive(Debug)]
 struct Shared<const N: usize> {
     events: Deque<Event, N>,
+    /// How many events have left it, by either end; wraps.
+    taken: u32,
     lost: u32,
     refused: u32,
     peak: usize,
@@ -79,7 +81,7 @@ impl<const N: usize> EventQueue<N> {
     /// An empty queue, for a `static`.
     pub const fn new(overflow: Overflow) -> Self {
         const { assert!(N >= 1, "a queue has room for at least one event") };
-        let shared = Shared { events: Deque::new(), lost: 0, refused: 0, peak: 0 };
+        let shared = Shared { events: Deque::new(), taken: 0, lost: 0, refused: 0, peak: 0 };
         Self { overflow, shared: Mutex::new(RefCell::new(shared)) }
     }
 
@@ -104,10 +106,10 @@ impl<const N: usize> EventQueue<N> {
 
     /// Takes the oldest event.
     pub fn pop(&self) -> Option<Event> {
-        self.with(|shared| shared.events.pop_front()).flatten()
+        self.with(Shared::pop).flatten()
     }
 
-    /// Takes the events that are in the queue now, oldest first.
+    /// Takes the events that are in the queue now, oldest first, as an iterator or a source.
     ///
     /// Interrupts may push meanwhile: at most as many events come out as were in when it was
     /// called, so that it ends even under a storm.
@@ -128,6 +130,15 @@ impl<const N: usize> EventQueue<N> {
     /// How many events found no room and were dropped; stays at `u32::MAX` once there.
     pub fn lost(&self) -> u32 {
         self.with(|shared| shared.lost).unwrap_or_default()
+    }
+
+    /// Where it stands, for a keyframe that comes after the events pushed so far.
+    pub fn mark(&self) -> Mark {
+        self.with(|shared| Mark {
+            lost: shared.lost,
+            place: Some(shared.taken.wrapping_add(shared.events.len() as u32)),
+        })
+        .unwrap_or_default()
     }
 
     /// How often an event went back to the caller; stays at `u32::MAX` once there.
@@ -153,7 +164,7 @@ impl<const N: usize> Shared<N> {
         if self.events.is_full() {
             match overflow {
                 Overflow::DropOldest => {
-                    self.events.pop_front();
+                    self.pop();
                     self.lost = self.lost.saturating_add(1);
                 }
                 Overflow::DropNewest => {
@@ -170,6 +181,12 @@ impl<const N: usize> Shared<N> {
         self.peak = self.peak.max(self.events.len());
         pushed
     }
+
+    fn pop(&mut self) -> Option<Event> {
+        let event = self.events.pop_front()?;
+        self.taken = self.taken.wrapping_add(1);
+        Some(event)
+    }
 }
 
 /// The events of a queue, taken one by one; see [`EventQueue::drain`].
@@ -179,12 +196,61 @@ pub struct Drain<'a, const N: usize> {
     left: usize,
 }
 
-impl<const N: usize> Iterator for Drain<'_, N> {
+impl<const N: usize> Drain<'_, N> {
+    fn pop(&mut self) -> Option<Event> {
+        self.left = self.left.checked_sub(1)?;
+        self.queue.pop()
+    }
+}
+
+impl<'a, const N: usize> IntoIterator for Drain<'a, N> {
+    type Item = Event;
+    type IntoIter = Drained<'a, N>;
+
+    fn into_iter(self) -> Drained<'a, N> {
+        Drained(self)
+    }
+}
+
+/// The iterator of a [`Drain`]. For a link take the `Drain` itself, which tells what the queue lost.
+#[derive(Debug)]
+pub struct Drained<'a, const N: usize>(Drain<'a, N>);
+
+impl<const N: usize> Iterator for Drained<'_, N> {
     type Item = Event;
 
     fn next(&mut self) -> Option<Event> {
-        self.left = self.left.checked_sub(1)?;
-        self.queue.pop()
+        self.0.pop()
+    }
+}
+
+/// A sink takes `EVENTS.drain()`, and no more than is there now.
+impl<const N: usize> EventSource for Drain<'_, N> {
+    fn next_event(&mut self) -> Option<Event> {
+        self.pop()
+    }
+
+    fn lost(&self) -> u32 {
+        self.queue.lost()
+    }
+
+    fn place(&self) -> Option<u32> {
+        EventSource::place(&self.queue)
+    }
+}
+
+/// For several frames from one drain.
+impl<const N: usize> EventSource for &mut Drain<'_, N> {
+    fn next_event(&mut self) -> Option<Event> {
+        self.pop()
+    }
+
+    fn lost(&self) -> u32 {
+        self.queue.lost()
+    }
+
+    fn place(&self) -> Option<u32> {
+        EventSource::place(&self.queue)
     }
 }
 
@@ -196,5 +262,9 @@ impl<const N: usize> EventSource for &EventQueue<N> {
 
     fn lost(&self) -> u32 {
         EventQueue::lost(self)
+    }
+
+    fn place(&self) -> Option<u32> {
+        self.with(|shared| shared.taken)
     }
 }

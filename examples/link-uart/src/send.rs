@@ -65,7 +65,7 @@ impl Sampler {
             }
         }
         if self.next.is_multiple_of(KEYFRAME_EVERY) {
-            let snapshot = bank.snapshot(tick, EVENTS.lost());
+            let snapshot = bank.snapshot(tick, EVENTS.mark());
             critical_section::with(|cs| KEYFRAME.borrow(cs).set(Some(snapshot)));
         }
         self.next += 1;

@@ -52,7 +52,7 @@ fn queue() {
         hide(queue.is_err());
     }
     hide((own.pop(), EVENTS.len(), EVENTS.lost(), EVENTS.refused(), EVENTS.peak()));
-    EVENTS.drain().for_each(hide);
+    EVENTS.drain().into_iter().for_each(hide);
     let (a, b) = black_box((1, 2));
     hide((tick::difference(a, b), tick::widen(a, black_box(3)), tick::compare(a, b)));
 }
@@ -64,7 +64,7 @@ fn framed<S: Raw>(scheme: StepForward<S>) {
     bank.encode_into(black_box(0), black_box([S::default(); 3]), &EVENTS);
 
     let mut transmitter = black_box(Transmitter::<S, 3>::new(coding));
-    transmitter.keyframe(bank.snapshot(black_box(5), EVENTS.lost()));
+    transmitter.keyframe(bank.snapshot(black_box(5), EVENTS.mark()));
     let mut reader = black_box(Reader::<MAX_FRAME>::new());
     let mut receiver: Receiver<S, 3> = Receiver::new(scheme);
     let mut buffer = black_box([0; 300]);

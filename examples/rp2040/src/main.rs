@@ -61,7 +61,7 @@ impl Sampler {
         self.samples_to_keyframe -= 1;
         if self.samples_to_keyframe == 0 {
             self.samples_to_keyframe = KEYFRAME_EVERY;
-            let snapshot = self.bank.snapshot(tick, EVENTS.lost());
+            let snapshot = self.bank.snapshot(tick, EVENTS.mark());
             critical_section::with(|cs| KEYFRAME.borrow(cs).set(Some(snapshot)));
         }
     }

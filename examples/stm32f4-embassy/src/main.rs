@@ -58,7 +58,7 @@ async fn sample(mut imu: imu::Imu<board::SpiDevice>, mut data_ready: ExtiInput<'
             }
         }
         // No sample has come since the last one, so now is as good a tick as its own.
-        KEYFRAME.signal(bank.snapshot(now(), EVENTS.lost()));
+        KEYFRAME.signal(bank.snapshot(now(), EVENTS.mark()));
     }
 }
 

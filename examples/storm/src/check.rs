@@ -55,7 +55,7 @@ fn what_stays(overflow: Overflow, queue: &EventQueue<ROOM>) -> Result<(), &'stat
     ensure(source.refused.load(SeqCst) == refused, "what was refused did not come back")?;
     ensure(queue.len() == ROOM && queue.peak() == ROOM, "the queue was not full")?;
     let numbers = (first..).take(ROOM).map(|number| Some((0, number)));
-    ensure(queue.drain().map(read).eq(numbers), "other events stayed than the policy says")?;
+    ensure(queue.drain().into_iter().map(read).eq(numbers), "other events stayed than the policy says")?;
     ensure(queue.is_empty(), "an event stayed")
 }
 
@@ -90,7 +90,7 @@ fn outlast(overflow: Overflow, queue: &EventQueue<ROOM>) -> Result<Outcome, &'st
         (0..30).for_each(|_| spin_loop()); // the rest of main's work
     }
     weather::stop();
-    queue.drain().try_for_each(|event| main.take(read(event)))?;
+    queue.drain().into_iter().try_for_each(|event| main.take(read(event)))?;
 
     let count = |counter: fn(&crate::source::Source) -> u32| SOURCES.each_ref().map(counter);
     let offered = count(|source| source.offered.load(SeqCst));

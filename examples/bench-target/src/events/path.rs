@@ -116,8 +116,8 @@ impl<S: Measured + Raw> Way<S> {
                 let mut main = 0;
                 if tick >= keyframe_at {
                     let bank = &self.bank;
-                    let lost = EVENTS.lost();
-                    main += instructions(|| self.transmitter.keyframe(bank.snapshot(tick, lost)));
+                    let mark = EVENTS.mark();
+                    main += instructions(|| self.transmitter.keyframe(bank.snapshot(tick, mark)));
                     keyframe_at = tick + KEYFRAMES;
                 }
                 let mut buffer = [0; 2 * MAX_FRAME];
