@@ -1,4 +1,4 @@
-//! Framed events over any byte transport: UART, SPI to an FPGA, USB, UDP.
+//! Framed events over any transport of bytes that keeps their order: UART, SPI to an FPGA, USB, TCP.
 //!
 //! # Specification, version 1
 //!

@@ -36,7 +36,7 @@ impl core::error::Error for Refused {}
 /// `N` events, shared between interrupts and main.
 ///
 /// - **Never blocks.** Each call holds off interrupts for one event's copy.
-/// - **Memory:** `8 N + 32` bytes on a 32-bit part.
+/// - **Memory:** `8 N + 36` bytes on a 32-bit part.
 /// - **Nothing is dropped uncounted:** see [`lost`](Self::lost) and [`refused`](Self::refused). A
 ///   step decoder must be told of every loss; a link's transmitter takes the count and does so.
 ///

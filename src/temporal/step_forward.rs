@@ -102,8 +102,8 @@ pub struct StepForwardEncoder<S> {
 }
 
 impl<S: Sample> StepForwardEncoder<S> {
-    /// Sets the baseline, which else is the first sample. A value that is not finite is counted and
-    /// ignored.
+    /// Sets the baseline, which else is the first sample; a decoder must be told, as by a keyframe. A
+    /// value that is not finite is counted and ignored.
     pub fn prime(&mut self, base: S) {
         if base.is_finite() {
             self.base = base;
