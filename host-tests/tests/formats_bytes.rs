@@ -8,7 +8,7 @@ use spikewire::format::{
 };
 use spikewire::link::{Coding, Snapshot, Transmitter};
 use spikewire::sink::{Batch, Formatted};
-use spikewire::{Event, Polarity};
+use spikewire::{Event, Mark, Polarity};
 
 fn event(tick: u32, address: u16, is_up: bool) -> Event {
     Event { tick, address, polarity: if is_up { Polarity::Up } else { Polarity::Down } }
@@ -299,7 +299,7 @@ proptest! {
         goes_on(Formatted::new(EventStream::encoder()), &near);
         goes_on(Formatted::new(Evt2::encoder()), &far);
         let mut link = Transmitter::new(Coding { period, address_bits, jitter_bits });
-        link.keyframe(Snapshot { tick: 0, values: keyframe, lost: 0 });
+        link.keyframe(Snapshot { tick: 0, values: keyframe, mark: Mark::default() });
         goes_on(link, &far);
     }
 

@@ -4,7 +4,7 @@ use rand_core::Rng;
 use rand_pcg::Pcg32;
 use spikewire::link::{Coding, MAX_FRAME, Raw, Reader, Receiver, Snapshot, Transmitter};
 use spikewire::temporal::{MovingWindow, StepDecoder, TemporalContrast};
-use spikewire::{Calibration, Encoder, Mark, Event, Scheme, Spike};
+use spikewire::{Calibration, Encoder, Event, Mark, Scheme, Spike};
 
 const RATE: usize = 100;
 const SECONDS: usize = 100;
@@ -39,7 +39,11 @@ where
         let event = spike.polarity().map(|polarity| Event { tick, address: 0, polarity });
         let is_first = index == 10;
         if is_first || (keyframes && index > 0 && index % RATE == 0) {
-            transmitter.keyframe(Snapshot { tick, mark: Mark::default(), values: [encoder.keyframe()] });
+            transmitter.keyframe(Snapshot {
+                tick,
+                mark: Mark::default(),
+                values: [encoder.keyframe()],
+            });
         }
         let mut source = event.into_iter();
         let mut buffer = [0; 64];
