@@ -91,64 +91,54 @@ pub(super) struct Aer<P> {
     polls: u32,
     /// Of the word that was begun last.
     phase: Phase,
-    /// What that word stands for, until it is acknowledged.
+    /// What that word stands for, if it is an event.
     pub(super) event: Option<Event>,
     /// Whether the last call to [`send`](Self::send) began its word, even if an error followed.
     pub(super) is_begun: bool,
-    /// REQ, where it is known.
-    is_requesting: Option<bool>,
     is_acknowledging: bool,
 }
 
 impl<P: AerPort> Aer<P> {
     pub(super) const fn new(port: P, polls: u32) -> Self {
-        Self {
-            port,
-            polls,
-            phase: Phase::Idle,
-            event: None,
-            is_begun: false,
-            is_requesting: None,
-            is_acknowledging: false,
-        }
+        let phase = Phase::Idle;
+        Self { port, polls, phase, event: None, is_begun: false, is_acknowledging: false }
     }
 
-    /// Lowers both of our wires, whatever they were, and drops the word under way.
-    pub(super) fn release(&mut self) -> Result<(), P::Error> {
-        (self.phase, self.is_requesting) = (Phase::Idle, None);
-        self.request(false)?;
-        self.port.set_output_acknowledge(false)?;
+    /// Lowers both of our wires, whatever they were, and drops the word under way. Its event comes back.
+    pub(super) fn release(&mut self) -> (Option<Event>, Result<(), P::Error>) {
+        let event = self.event.take().filter(|_| self.phase == Phase::Acknowledge);
+        self.phase = Phase::Idle;
         self.is_acknowledging = false;
-        Ok(())
+        let request = self.port.set_input_request(false);
+        (event, request.and_then(|()| self.port.set_output_acknowledge(false)))
     }
 
-    /// One step of either bus's handshake, if the chip waits for one. Returns whether the input bus is
-    /// free.
-    pub(super) fn step(&mut self, on_output: &mut impl FnMut(u8)) -> Result<bool, P::Error> {
-        self.serve(on_output)?;
-        self.request(self.phase == Phase::Acknowledge)?;
-        let is_acknowledged = self.port.input_acknowledge()?;
-        match (self.phase, is_acknowledged) {
-            (Phase::Acknowledge, true) => (self.phase, self.event) = (Phase::Release, None),
-            (Phase::Release, false) => self.phase = Phase::Idle,
-            _ => {}
+    /// Goes on with both buses, in a few looks at the pins.
+    pub(super) fn poll(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
+        // Up, and down again.
+        for _ in 0..2 {
+            self.serve(on_output)?;
         }
-        Ok(self.phase == Phase::Idle && !is_acknowledged)
+        match self.finish_within(1, on_output) {
+            Ok(()) | Err(AerError::Timeout(_)) => Ok(()),
+            Err(AerError::Port(error)) => Err(error),
+        }
     }
 
-    /// Sends a word, which stands for this event, once the one under way is through.
+    /// Sends a word, once the one under way is through.
     pub(super) fn send(
         &mut self,
         word: u32,
-        event: Option<Event>,
         on_output: &mut impl FnMut(u8),
     ) -> Result<(), AerError<P::Error>> {
         self.is_begun = false;
-        if !self.is_free(on_output)? {
-            return Err(AerError::Timeout(Phase::Idle));
-        }
+        self.finish(on_output).map_err(|error| match error {
+            AerError::Timeout(_) => AerError::Timeout(Phase::Idle),
+            port @ AerError::Port(_) => port,
+        })?;
+        self.wait_for(false, self.polls, on_output)?;
         self.port.set_input(word)?;
-        (self.phase, self.event, self.is_begun) = (Phase::Acknowledge, event, true);
+        (self.phase, self.event, self.is_begun) = (Phase::Acknowledge, None, true);
         self.finish(on_output)
     }
 
@@ -157,24 +147,45 @@ impl<P: AerPort> Aer<P> {
         &mut self,
         on_output: &mut impl FnMut(u8),
     ) -> Result<(), AerError<P::Error>> {
-        if self.phase == Phase::Idle || self.is_free(on_output)? {
-            Ok(())
-        } else {
-            Err(AerError::Timeout(self.phase))
-        }
+        self.finish_within(self.polls, on_output)
     }
 
-    /// Waits for it. While an output event waits the chip acknowledges no input, so this serves the
+    fn finish_within(
+        &mut self,
+        polls: u32,
+        on_output: &mut impl FnMut(u8),
+    ) -> Result<(), AerError<P::Error>> {
+        if self.phase == Phase::Acknowledge {
+            self.port.set_input_request(true)?;
+            self.wait_for(true, polls, on_output)?;
+            self.phase = Phase::Release;
+        }
+        if self.phase == Phase::Release {
+            self.port.set_input_request(false)?;
+            self.wait_for(false, polls, on_output)?;
+            self.phase = Phase::Idle;
+        }
+        Ok(())
+    }
+
+    /// Waits for ACK. While an output event waits the chip acknowledges no input, so this serves the
     /// output bus as well.
-    fn is_free(&mut self, on_output: &mut impl FnMut(u8)) -> Result<bool, P::Error> {
-        for _ in 0..self.polls {
-            if self.step(on_output)? {
-                return Ok(true);
+    fn wait_for(
+        &mut self,
+        is_high: bool,
+        polls: u32,
+        on_output: &mut impl FnMut(u8),
+    ) -> Result<(), AerError<P::Error>> {
+        for _ in 0..polls {
+            self.serve(on_output)?;
+            if self.port.input_acknowledge()? == is_high {
+                return Ok(());
             }
         }
-        Ok(false)
+        Err(AerError::Timeout(self.phase))
     }
 
+    /// One step of the output bus's handshake, if the chip waits for one.
     fn serve(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
         match (self.port.output_request()?, self.is_acknowledging) {
             (true, false) => {
@@ -188,15 +199,6 @@ impl<P: AerPort> Aer<P> {
                 self.is_acknowledging = false;
             }
             _ => {}
-        }
-        Ok(())
-    }
-
-    fn request(&mut self, is_high: bool) -> Result<(), P::Error> {
-        if self.is_requesting != Some(is_high) {
-            self.is_requesting = None; // until known otherwise
-            self.port.set_input_request(is_high)?;
-            self.is_requesting = Some(is_high);
         }
         Ok(())
     }

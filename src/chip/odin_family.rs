@@ -118,8 +118,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// The port failed.
     pub fn reset(&mut self, delay: &mut impl DelayNs) -> Result<(), ChipError<D::Error, P::Error>> {
         self.state = State::NotReset;
-        self.aer.release().map_err(ChipError::Port)?;
-        self.held = self.aer.event.take().or(self.held);
+        let (event, released) = self.aer.release();
+        self.held = event.or(self.held);
+        released.map_err(ChipError::Port)?;
         self.aer.port.set_reset(true).map_err(ChipError::Port)?;
         delay.delay_us(RESET_US);
         self.aer.port.set_reset(false).map_err(ChipError::Port)?;
@@ -285,9 +286,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
             let word = to_input(event).word()?;
             self.held = Some(event);
             self.advance_with(event.tick, &mut on_output)?;
-            let result = self.put_word(word, Some(event), &mut on_output);
+            let result = self.put_word(word, &mut on_output);
             if self.aer.is_begun {
-                self.held = None;
+                self.aer.event = self.held.take();
             }
             result?;
             sent += 1;
@@ -317,11 +318,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         &mut self,
         mut on_output: impl FnMut(u8),
     ) -> Result<(), ChipError<D::Error, P::Error>> {
-        // Up, and down again.
-        for _ in 0..2 {
-            self.aer.step(&mut on_output).map_err(ChipError::Port)?;
-        }
-        Ok(())
+        self.aer.poll(&mut on_output).map_err(ChipError::Port)
     }
 
     /// How often the chip was reset: the first time, and to bring it into step again.
@@ -359,17 +356,16 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         on_output: &mut impl FnMut(u8),
     ) -> Result<(), ChipError<D::Error, P::Error>> {
         let word = input.word()?;
-        self.put_word(word, None, on_output)
+        self.put_word(word, on_output)
     }
 
     fn put_word(
         &mut self,
         word: u32,
-        event: Option<Event>,
         on_output: &mut impl FnMut(u8),
     ) -> Result<(), ChipError<D::Error, P::Error>> {
         self.expect_running()?;
-        Ok(self.aer.send(word, event, on_output)?)
+        Ok(self.aer.send(word, on_output)?)
     }
 
     fn advance_with(
