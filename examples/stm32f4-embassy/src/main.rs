@@ -29,7 +29,7 @@ const CHANNELS: usize = imu::SCHEMES.len();
 const KEYFRAME_EVERY: u16 = imu::SAMPLE_RATE;
 /// From one look at the queue to the next.
 const SEND_EVERY: Duration = Duration::from_millis(5);
-/// A frame takes half of that at 1 MHz.
+/// A full frame takes 1.7 ms at the bridge's 1.3125 MHz.
 const SEND_LIMIT: Duration = Duration::from_millis(4);
 const REPORT_EVERY: Duration = Duration::from_secs(1);
 
@@ -82,7 +82,9 @@ async fn main(spawner: Spawner) {
         if let Some(snapshot) = KEYFRAME.try_take() {
             link.batch().keyframe(snapshot);
         }
-        // A frame that was not sent, for whatever reason, is kept for the next time.
+        // A frame that was not sent, for whatever reason, is kept for the next time. One that was too late
+        // leaves chip select low until then: the bridge sees its beginning and then all of it in one
+        // piece, in which the link's reader finds the frame.
         match with_timeout(SEND_LIMIT, link.send(&EVENTS)).await {
             Ok(Ok(count)) => bytes = bytes.wrapping_add(count as u32),
             Ok(Err(_)) => failures = failures.wrapping_add(1),
