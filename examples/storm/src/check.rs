@@ -55,7 +55,10 @@ fn what_stays(overflow: Overflow, queue: &EventQueue<ROOM>) -> Result<(), &'stat
     ensure(source.refused.load(SeqCst) == refused, "what was refused did not come back")?;
     ensure(queue.len() == ROOM && queue.peak() == ROOM, "the queue was not full")?;
     let numbers = (first..).take(ROOM).map(|number| Some((0, number)));
-    ensure(queue.drain().into_iter().map(read).eq(numbers), "other events stayed than the policy says")?;
+    ensure(
+        queue.drain().into_iter().map(read).eq(numbers),
+        "other events stayed than the policy says",
+    )?;
     ensure(queue.is_empty(), "an event stayed")
 }
 
