@@ -10,9 +10,12 @@ use crate::{Decoder, Scheme};
 /// channel therefore holds from its event on until the next: read it after each event, from the
 /// call-back, or whenever it is wanted, from [`exact`](Self::exact).
 ///
-/// After a loss a channel is not exact until its next keyframe; then it is what the encoder's own
-/// decoder holds, bit for bit. So it is before the first keyframe. Meanwhile events go on being
-/// applied, which gives an [`estimate`](Self::estimate).
+/// After a loss a channel is not exact until its next keyframe, nor is it before its first. Meanwhile
+/// events go on being applied, which gives an [`estimate`](Self::estimate).
+///
+/// Exact is what a decoder beside the encoder holds that goes on from the same keyframes, bit for bit.
+/// How near that is to the signal is the scheme's affair: SF follows one threshold a sample, and TBR
+/// and MW drift from keyframe to keyframe.
 #[derive(Clone, Copy, Debug)]
 pub struct Receiver<S, const N: usize> {
     channels: [Channel<S>; N],
