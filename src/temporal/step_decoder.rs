@@ -42,21 +42,33 @@ impl<S: Sample> Decoder for StepDecoder<S> {
         self.value
     }
 
-    /// The value stays in a register.
+    /// The value stays in a register, and eight samples share a turn of the loop.
     #[inline]
     fn decode_slice(&mut self, spikes: &[Spike], values: &mut [S]) -> usize {
         let steps = [S::ZERO.minus(self.step), S::ZERO, self.step];
         let mut decoded = self.value;
-        for (value, &spike) in values.iter_mut().zip(spikes) {
+        let mut decode = |value: &mut S, spike: Spike| {
             if spike.is_fired()
                 && let Some(&step) = steps.get((spike.sign() + 1) as usize)
             {
                 decoded = decoded.plus(step);
             }
             *value = decoded;
+        };
+        let length = spikes.len().min(values.len());
+        let (spikes, last_spikes) = spikes.get(..length).unwrap_or_default().as_chunks::<8>();
+        let (values, last_values) =
+            values.get_mut(..length).unwrap_or_default().as_chunks_mut::<8>();
+        for (values, spikes) in values.iter_mut().zip(spikes) {
+            for (value, &spike) in values.iter_mut().zip(spikes) {
+                decode(value, spike);
+            }
+        }
+        for (value, &spike) in last_values.iter_mut().zip(last_spikes) {
+            decode(value, spike);
         }
         self.value = decoded;
-        spikes.len().min(values.len())
+        length
     }
 
     fn resync(&mut self, value: S) {
