@@ -224,34 +224,29 @@ impl<const N: usize> Iterator for Drained<'_, N> {
     }
 }
 
-/// A sink takes `EVENTS.drain()`, and no more than is there now.
-impl<const N: usize> EventSource for Drain<'_, N> {
-    fn next_event(&mut self) -> Option<Event> {
-        self.pop()
-    }
+macro_rules! drain_is_source {
+    ($(#[$documentation:meta] $drain:ty),*) => {$(
+        #[$documentation]
+        impl<const N: usize> EventSource for $drain {
+            fn next_event(&mut self) -> Option<Event> {
+                self.pop()
+            }
 
-    fn lost(&self) -> u32 {
-        self.queue.lost()
-    }
+            fn lost(&self) -> u32 {
+                self.queue.lost()
+            }
 
-    fn place(&self) -> Option<u32> {
-        EventSource::place(&self.queue)
-    }
+            fn place(&self) -> Option<u32> {
+                EventSource::place(&self.queue)
+            }
+        }
+    )*};
 }
-
-/// For several frames from one drain.
-impl<const N: usize> EventSource for &mut Drain<'_, N> {
-    fn next_event(&mut self) -> Option<Event> {
-        self.pop()
-    }
-
-    fn lost(&self) -> u32 {
-        self.queue.lost()
-    }
-
-    fn place(&self) -> Option<u32> {
-        EventSource::place(&self.queue)
-    }
+drain_is_source! {
+    /// A sink takes `EVENTS.drain()`, and no more than is there now.
+    Drain<'_, N>,
+    /// For several frames from one drain.
+    &mut Drain<'_, N>
 }
 
 /// A sink takes `&EVENTS`.
