@@ -78,12 +78,12 @@ impl<S: Raw> Receiving<S> {
 
     /// Compares keyframes with what their channels hold before them, where that is exact.
     fn compare(&mut self, received: &Received<'_>) {
-        let frame = &received.frame;
-        if received.gap.is_some() || frame.is_after_loss() || frame.is_restart() {
+        if received.is_after_break() {
             return;
         }
         let has_decoder = |address: u16| usize::from(address) < self.channels;
-        for keyframe in frame.keyframes().filter(|keyframe| has_decoder(keyframe.address)) {
+        for keyframe in received.frame.keyframes().filter(|keyframe| has_decoder(keyframe.address))
+        {
             if let Some(value) = self.receiver.exact(keyframe.address) {
                 self.held.compared += 1;
                 self.held.contradicted += u64::from(value.to_raw() != keyframe.raw);

@@ -22,6 +22,14 @@ pub struct Received<'a> {
     pub frame: FrameView<'a>,
 }
 
+impl Received<'_> {
+    /// Whether it does not simply go on from the frame before: something was lost, or the sender began
+    /// anew. No decoder is exact then but by the keyframes of this frame.
+    pub fn is_after_break(&self) -> bool {
+        self.gap.is_some() || self.frame.is_after_loss() || self.frame.is_restart()
+    }
+}
+
 /// Finds frames of up to `N` bytes; [`MAX_FRAME`](super::MAX_FRAME) takes all.
 ///
 /// - **Memory:** `N + 40` bytes. **Work:** a checksum a frame; after damage up to one for each byte

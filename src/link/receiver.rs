@@ -51,7 +51,7 @@ impl<S: Raw, const N: usize> Receiver<S, N> {
     /// `on_value`, in order.
     pub fn apply(&mut self, received: &Received<'_>, mut on_value: impl FnMut(u16, u32, S)) {
         let frame = &received.frame;
-        if received.gap.is_some() || frame.is_after_loss() || frame.is_restart() {
+        if received.is_after_break() {
             self.mark_stale();
         }
         for keyframe in frame.keyframes() {
