@@ -1,6 +1,6 @@
 //! Channels side by side: samples in, addressed and time-stamped events out.
 
-use crate::error::within;
+use crate::error;
 #[cfg(feature = "queue")]
 use crate::sink::EventQueue;
 use crate::spike::{Code, Event, Firing};
@@ -69,8 +69,7 @@ impl<E: Encoder, const N: usize> Bank<E, N> {
     /// # Errors
     /// The last address would be above 65 535.
     pub fn with_first_address(self, first_address: u16) -> Result<Self, ConfigError> {
-        let max = (1 << 16) - N * CodeOf::<E>::NEURONS;
-        within("first address", first_address.into(), 0.0, max as f32)?;
+        error::first_address(first_address, N * CodeOf::<E>::NEURONS)?;
         Ok(Self { first_address, ..self })
     }
 

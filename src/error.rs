@@ -157,6 +157,11 @@ pub(crate) const fn within(
     }
 }
 
+/// The first of so many addresses, which all have 16 bits.
+pub(crate) const fn first_address(value: u16, addresses: usize) -> Result<(), ConfigError> {
+    within("first address", value as f64, 0.0, ((1 << 16) - addresses) as f32)
+}
+
 /// 0 or more and finite.
 pub(crate) const fn not_negative(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
     if value >= 0.0 && value.is_finite() {

@@ -1,6 +1,6 @@
 //! Events back to values, channel by channel: the inverse of a bank.
 
-use crate::error::within;
+use crate::error;
 use crate::population::{Neuron, Volley};
 use crate::spike::{Code, Firing, Polarity};
 use crate::{ConfigError, Decoder, Event, Scheme, Spike, tick};
@@ -126,8 +126,7 @@ where
     /// # Errors
     /// The last address would be above 65 535.
     pub fn with_first_address(self, first_address: u16) -> Result<Self, ConfigError> {
-        let max = (1 << 16) - N * D::Code::NEURONS;
-        within("first address", first_address.into(), 0.0, max as f32)?;
+        error::first_address(first_address, N * D::Code::NEURONS)?;
         Ok(Self { first_address, ..self })
     }
 

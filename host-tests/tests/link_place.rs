@@ -32,6 +32,11 @@ impl Link {
         self.bank.encode_into(tick, [(tick / 1_000) as i16 * 11], queue);
     }
 
+    /// Hands over what the encoder holds now.
+    fn keyframe(&mut self, tick: u32, queue: &EventQueue<8>) {
+        self.transmitter.keyframe(self.bank.snapshot(tick, queue.mark()));
+    }
+
     fn receive(&mut self, mut bytes: &[u8]) {
         while let Some(received) = self.reader.next_frame(&mut bytes) {
             self.receiver.apply(&received, |_, _, _| ());
@@ -96,7 +101,7 @@ fn sub_timesteps_share_a_link_with_a_step_code() {
     for tick in (1_000..100_000_u32).step_by(1_000) {
         slots.encode_into(tick, [(tick as f32).sin()], &queue);
         link.sample(tick, &queue);
-        link.transmitter.keyframe(link.bank.snapshot(tick, queue.mark()));
+        link.keyframe(tick, &queue);
         send!(link, &queue);
         assert_eq!(link.receiver.exact(0), link.held());
     }
@@ -109,7 +114,7 @@ fn a_drain_tells_what_the_queue_lost() {
     let queue = EventQueue::<8>::new(Overflow::DropOldest);
     let mut link = Link::new();
     link.sample(1_000, &queue);
-    link.transmitter.keyframe(link.bank.snapshot(1_000, queue.mark()));
+    link.keyframe(1_000, &queue);
     let mut drain = queue.drain();
     send!(link, &mut drain);
     assert_eq!(link.receiver.exact(0), link.held());
@@ -139,7 +144,7 @@ fn a_break_is_told() {
     let queue = EventQueue::<8>::new(Overflow::DropOldest);
     let mut link = Link::new();
     link.sample(1_000, &queue);
-    link.transmitter.keyframe(link.bank.snapshot(1_000, queue.mark()));
+    link.keyframe(1_000, &queue);
     send!(link, &queue);
     assert!(link.receiver.exact(0).is_some());
     link.bank.reset();

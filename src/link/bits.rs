@@ -76,8 +76,13 @@ impl<'a> BitWriter<'a> {
     /// Appends a word, if it is one and fits.
     #[inline]
     pub(super) fn put_word(&mut self, word: Word) -> Option<()> {
-        let fits = word.count < 32 && self.pending + word.count <= 8 * self.bytes.room() as u32;
-        fits.then(|| self.put(word.bits, word.count))
+        (word.count < 32 && self.fits(word.count)).then(|| self.put(word.bits, word.count))
+    }
+
+    /// Whether there is room for so many bits more.
+    #[inline]
+    fn fits(&self, count: u32) -> bool {
+        self.pending + count <= 8 * self.bytes.room() as u32
     }
 
     /// Appends bits that complete 32.
@@ -103,7 +108,7 @@ impl<'a> BitWriter<'a> {
 
     /// Whether there was room for all bits, and is for those that are not in the buffer yet.
     pub(super) fn is_within_limit(&self) -> bool {
-        !self.is_full && self.pending <= 8 * self.bytes.room() as u32
+        !self.is_full && self.fits(0)
     }
 
     /// Writes what is not in the buffer yet, with the last byte filled up with 0.

@@ -2,7 +2,7 @@
 
 use super::fields::ReceptiveFields;
 use super::spaced::Distance;
-use crate::error::ConfigError;
+use crate::error::{ConfigError, within};
 use crate::sample::Tally;
 use crate::spike::{Code, Firing, Polarity};
 use crate::{Decoder, Encoder, Output, Sample, Scheme};
@@ -50,15 +50,9 @@ impl<'a, S: Sample, const M: usize, const N: usize> Slots<'a, S, M, N> {
     /// # Errors
     /// The floor is not within 1 to `N`.
     pub const fn with_floor(self, floor: u16) -> Result<Self, ConfigError> {
-        if floor >= 1 && floor as usize <= N {
-            Ok(Self { fields: self.fields, floor })
-        } else {
-            Err(ConfigError::OutOfRange {
-                parameter: "floor",
-                value: floor as f32,
-                min: 1.0,
-                max: N as f32,
-            })
+        match within("floor", floor as f64, 1.0, N as f32) {
+            Ok(()) => Ok(Self { fields: self.fields, floor }),
+            Err(error) => Err(error),
         }
     }
 }
