@@ -57,41 +57,15 @@
 #[cfg(test)]
 extern crate std;
 
-mod bank;
-mod bins;
-mod bytes;
-mod calibrate;
-#[cfg(feature = "embedded-hal")]
-pub mod chip;
-mod codec;
-mod curve;
 mod error;
-pub mod format;
-#[cfg(feature = "link")]
-pub mod link;
-pub mod population;
-pub mod rate;
-mod readout;
-mod sample;
+mod num;
+mod scheme;
 #[cfg(feature = "serde")]
 mod serial;
-pub mod sink;
-mod source;
-mod spike;
-pub mod temporal;
-pub mod tick;
 
-pub use bank::Bank;
-pub use bins::{Bins, StepOver};
-pub use calibrate::{Calibration, Differences};
-pub use codec::{Decoder, Encoder, Output, Scheme};
 pub use error::ConfigError;
-pub use readout::{Assemble, Readout};
-pub use sample::Sample;
-pub use source::{EventSource, Mark};
-pub use spike::{Code, Event, Firing, Polarity, Spike};
-
-/// The README's code, for doctests alone.
-#[cfg(all(doctest, feature = "fixed", feature = "queue", feature = "link"))]
-#[doc = include_str!("../README.md")]
-pub struct Readme;
+pub use num::{Sample, SampleKind};
+pub use scheme::{
+    Calibration, Code, Decoder, Differences, Encoder, Firing, Output, Polarity, Recovery, Scheme,
+    Spike, Start, population, rate, temporal,
+};

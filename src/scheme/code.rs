@@ -1,0 +1,150 @@
+//! What a sample becomes: a spike, or the neurons that fire.
+
+use core::cmp::Ordering;
+
+/// What a step or rate code emits for one sample.
+///
+/// One byte. Rate codes use only [`Spike::Up`] and [`Spike::None`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[repr(i8)]
+pub enum Spike {
+    /// The signal fell by a step (-1).
+    Down = -1,
+    /// No spike (0).
+    #[default]
+    None = 0,
+    /// The signal rose by a step, or the filter fired (+1).
+    Up = 1,
+}
+
+impl Spike {
+    /// -1, 0 or +1, as in the paper.
+    pub const fn sign(self) -> i8 {
+        self as i8
+    }
+
+    /// Whether there is a spike of either polarity.
+    pub const fn is_fired(self) -> bool {
+        !matches!(self, Self::None)
+    }
+
+    /// The polarity, if there is a spike.
+    pub const fn polarity(self) -> Option<Polarity> {
+        match self {
+            Self::Up => Some(Polarity::Up),
+            Self::Down => Some(Polarity::Down),
+            Self::None => None,
+        }
+    }
+
+    /// Up for a signal above its band, down for one below.
+    #[inline]
+    pub(crate) const fn from_side(side: Ordering) -> Self {
+        match side {
+            Ordering::Greater => Self::Up,
+            Ordering::Equal => Self::None,
+            Ordering::Less => Self::Down,
+        }
+    }
+}
+
+/// The direction of a spike that did fire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Polarity {
+    /// -1.
+    Down,
+    /// +1, and every spike of a rate or population code.
+    Up,
+}
+
+impl From<Polarity> for Spike {
+    fn from(polarity: Polarity) -> Self {
+        match polarity {
+            Polarity::Up => Self::Up,
+            Polarity::Down => Self::Down,
+        }
+    }
+}
+
+/// One neuron's spike within the code of one sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Firing {
+    /// The neuron within its channel, from 0.
+    pub neuron: u16,
+    /// The sub-timestep within the sample, from 0; 0 for codes without sub-timesteps.
+    pub slot: u16,
+    /// The direction.
+    pub polarity: Polarity,
+}
+
+/// The code of one sample: any number of neurons that fire.
+pub trait Code: Copy {
+    /// How many neurons a channel of this code has.
+    const NEURONS: usize;
+
+    /// How many sub-timesteps a sample of this code has.
+    const SLOTS: usize = 1;
+
+    /// The neurons that fire, by rising index.
+    fn firings(&self) -> impl Iterator<Item = Firing>;
+
+    /// The code of these firings, which come in any order.
+    ///
+    /// A bank's own events give back its codes. A chip may also fire too often, or neurons that no encoder
+    /// would have fired together; each code says what it makes of that. Neurons and slots beyond those of
+    /// the code are left out.
+    fn assemble(firings: impl Iterator<Item = Firing>) -> Self;
+}
+
+impl Code for Spike {
+    const NEURONS: usize = 1;
+
+    fn firings(&self) -> impl Iterator<Item = Firing> {
+        self.polarity().map(|polarity| Firing { neuron: 0, slot: 0, polarity }).into_iter()
+    }
+
+    /// The direction of most spikes; none if as many went up as down.
+    fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
+        let balance =
+            firings.filter(|firing| firing.neuron == 0).fold(0_i32, |balance, firing| match firing
+                .polarity
+            {
+                Polarity::Up => balance.saturating_add(1),
+                Polarity::Down => balance.saturating_sub(1),
+            });
+        Self::from_side(balance.cmp(&0))
+    }
+}
+
+/// What an encoder returns for a sample: a code, or nothing yet.
+pub trait Output: Copy {
+    /// The code within, which a decoder takes.
+    type Code: Code;
+
+    /// The code, or `None` while the encoder still waits for its look-ahead.
+    fn code(self) -> Option<Self::Code>;
+}
+
+impl Output for Spike {
+    type Code = Self;
+
+    fn code(self) -> Option<Self> {
+        Some(self)
+    }
+}
+
+/// Rate codes: `None` until the first window is full, then the spike of the sample
+/// [`LATENCY`](crate::Scheme::LATENCY) ago.
+impl Output for Option<Spike> {
+    type Code = Spike;
+
+    fn code(self) -> Option<Spike> {
+        self
+    }
+}
