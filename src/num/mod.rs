@@ -21,7 +21,7 @@ pub(crate) use cells::Cells;
 pub(crate) use convert::{floor_from_f64, from_f64, to_f64, units, word};
 pub(crate) use distance::{Distance, Spaced, cell, cells, near, reach, top};
 pub use kind::SampleKind;
-pub(crate) use nearer::Nearer;
+pub(crate) use nearer::{Bound, Nearer};
 pub(crate) use residual::{Rated, Ratio, Residual};
 pub use sample::Sample;
 pub(crate) use shortfall::Shortfall;

@@ -15,12 +15,22 @@ pub(crate) trait Nearer: Sized {
     /// `left <= right * ratio`.
     fn at_most(left: Self::Sum, right: Self::Sum, ratio: Ratio) -> bool;
 
-    /// Whether `e1 <= e2 - threshold`. `magnitude` is the sum of the taps' magnitudes over the pairs.
-    fn is_nearer_by(
-        threshold: Self,
+    /// Whether the taps bring the residuals nearer to zero, by the bound. `magnitude` is the sum of the
+    /// taps' magnitudes over the pairs.
+    fn is_nearer(
+        bound: Bound<Self>,
         magnitude: Self,
         pairs: impl Iterator<Item = (Self, Self)>,
     ) -> bool;
+}
+
+/// What `e1` must not exceed.
+#[derive(Clone, Copy)]
+pub(crate) enum Bound<R> {
+    /// `e2` less this.
+    Less(R),
+    /// This part of `e2`.
+    Part(Ratio),
 }
 
 impl Nearer for f32 {
@@ -39,13 +49,16 @@ impl Nearer for f32 {
     }
 
     #[inline(always)]
-    fn is_nearer_by(threshold: f32, _: f32, pairs: impl Iterator<Item = (f32, f32)>) -> bool {
+    fn is_nearer(bound: Bound<f32>, _: f32, pairs: impl Iterator<Item = (f32, f32)>) -> bool {
         let (mut with, mut without) = (0.0, 0.0);
         for (residual, tap) in pairs {
             with += (residual - tap).abs();
             without += residual.abs();
         }
-        with - without <= -threshold
+        match bound {
+            Bound::Less(threshold) => with - without <= -threshold,
+            Bound::Part(ratio) => f32::at_most(with, without, ratio),
+        }
     }
 }
 
@@ -64,27 +77,39 @@ impl Nearer for i32 {
         left << 14 <= right * i64::from(ratio.fixed)
     }
 
-    /// `e1 - e2 + sum |tap|` grows with every pair, so that it decides as soon as it exceeds its limit.
     #[inline(always)]
-    fn is_nearer_by(
-        threshold: i32,
+    fn is_nearer(
+        bound: Bound<i32>,
         magnitude: i32,
         pairs: impl Iterator<Item = (i32, i32)>,
     ) -> bool {
-        // For a tap of 0 or more, `|r - h| - |r| + |h|` is twice what `r`, if positive, lacks to it.
-        let mut left = magnitude.wrapping_sub(threshold) >> 1;
-        for (residual, tap) in pairs {
-            // As `tap >= 0 && residual >= tap`.
-            if residual.wrapping_sub(tap) | tap >= 0 {
-                continue;
+        match bound {
+            // `e1 - e2 + sum |tap|` grows with every pair, so that it decides as soon as it exceeds its limit.
+            // For a tap of 0 or more, `|r - h| - |r| + |h|` is twice what `r`, if positive, lacks to it.
+            Bound::Less(threshold) => {
+                let mut left = magnitude.wrapping_sub(threshold) >> 1;
+                for (residual, tap) in pairs {
+                    // As `tap >= 0 && residual >= tap`.
+                    if residual.wrapping_sub(tap) | tap >= 0 {
+                        continue;
+                    }
+                    let residual = if tap < 0 { residual.wrapping_neg() } else { residual };
+                    let lack = tap.wrapping_abs().wrapping_sub(residual.max(0));
+                    left = left.wrapping_sub(lack.max(0));
+                    if left < 0 {
+                        return false;
+                    }
+                }
+                left >= 0
             }
-            let residual = if tap < 0 { residual.wrapping_neg() } else { residual };
-            let lack = tap.wrapping_abs().wrapping_sub(residual.max(0));
-            left = left.wrapping_sub(lack.max(0));
-            if left < 0 {
-                return false;
+            Bound::Part(ratio) => {
+                let (mut with, mut without) = (i32::EMPTY, i32::EMPTY);
+                for (residual, tap) in pairs {
+                    with = residual.add_distance(tap, with);
+                    without = residual.add_distance(0, without);
+                }
+                i32::at_most(with, without, ratio)
             }
         }
-        left >= 0
     }
 }

@@ -10,11 +10,9 @@ use core::{
 use board::stopwatch::instructions;
 use rand_pcg::{Pcg32, rand_core::Rng};
 use spikewire::{
-    Calibration, ConfigError, Decoder, Encoder, Output, Scheme, Spike,
-    population::{
-        Centres, Gaussian, Neuron, Pattern, Position, Probabilistic, ReceptiveFields, Slots, Volley,
-    },
-    rate::{Ben, BenToolbox, Hough, Scale, Shape, Taps, ThresholdHough},
+    Calibration, ConfigError, Output, Scheme, Spike, Start,
+    population::{FiredNeurons, Gaussian, Neuron, Position, Probabilistic, SlotSpikes, Slots},
+    rate::{Bsa, BsaToolbox, Hough, Scale, Shape, Taps, ThresholdHough},
     temporal::{MovingWindow, StepForward, TemporalContrast},
 };
 
@@ -99,30 +97,30 @@ impl<S: Measured> Buffers<S> {
 
     /// The same of a code that says something of every neuron: as many samples at once as the spikes have room for.
     /// Fails unless the codec does the same, and its values are off by no more than rounding.
-    fn plain_neurons<E, D, const M: usize>(
+    fn plain_neurons<P, const M: usize>(
         &mut self,
         codec: &'static str,
-        (mut encoder, mut decoder, middle): (E, D, S),
-        code: impl Fn(&[i8]) -> D::Code,
+        (scheme, mut encoder, middle): (&P, P::EncoderState, S),
+        code: impl Fn(&[i8]) -> P::Code,
         mut encode: impl FnMut(&[S], &mut [i8]),
         decode: impl Fn(&[i8], S, &mut [S]),
     ) -> Result<(u32, u32), Failure>
     where
-        E: Encoder<Sample = S, Output = D::Code>,
-        D: Decoder<Sample = S, Code: PartialEq + Output>,
+        P: Scheme<Sample = S, Code: PartialEq>,
     {
+        let mut decoder = scheme.decoder_state();
         let (mut encoding, mut decoding) = (0, 0);
         let mut before = middle;
         for chunk in self.signal.chunks_exact_mut(CHUNK) {
             let (samples, spikes) = (black_box(chunk), black_box(&mut self.spikes[..CHUNK * M]));
             encoding += instructions(|| encode(samples, spikes));
             for (i, (&sample, spikes)) in samples.iter().zip(spikes.chunks(M)).enumerate() {
-                expect(codec, i, encode_sample(&mut encoder, sample) == code(spikes))?;
+                expect(codec, i, encode_sample(scheme, &mut encoder, sample).code() == Some(code(spikes)))?;
             }
             decoding += instructions(|| decode(spikes, before, samples));
             before = samples[CHUNK - 1];
             for (i, (&value, spikes)) in samples.iter().zip(spikes.chunks(M)).enumerate() {
-                let error = decode_sample(&mut decoder, code(spikes)).to_f64() - value.to_f64();
+                let error = decode_sample(scheme, &mut decoder, code(spikes)).to_f64() - value.to_f64();
                 expect(codec, i, error.abs() <= S::MEAN)?;
             }
         }
@@ -131,45 +129,41 @@ impl<S: Measured> Buffers<S> {
 
     /// Fails unless the codec's spikes and values are those of the transcription, which the buffers hold. Loads the
     /// signal again.
-    fn agree<P: Scheme<Sample = S>>(
+    fn agree<P: Start<Sample = S>>(
         &mut self,
         codec: &'static str,
         source: Signal,
-        scheme: P,
-        to_plain: impl Fn(CodeOf<P>) -> i8,
-        of_plain: impl Fn(i8) -> CodeOf<P>,
+        scheme: &P,
+        to_plain: impl Fn(P::Code) -> i8,
+        of_plain: impl Fn(i8) -> P::Code,
     ) -> Result<(), Failure> {
-        let mut decoder = scheme.decoder();
+        let mut decoder = scheme.decoder_state();
         for (i, (&value, &spike)) in self.signal.iter().zip(&self.spikes).enumerate() {
-            expect(codec, i, decode_sample(&mut decoder, of_plain(spike)) == value)?;
+            expect(codec, i, decode_sample(scheme, &mut decoder, of_plain(spike)) == value)?;
         }
         source.load(&mut self.signal);
-        let mut encoder = scheme.encoder();
+        let mut encoder = P::START;
         let mut spikes = self.spikes.iter().enumerate();
         let mut check = |code| match spikes.next() {
             Some((i, &spike)) => expect(codec, i, to_plain(code) == spike),
             None => expect(codec, LENGTH, false),
         };
         for &sample in &self.signal {
-            encode_sample(&mut encoder, sample).code().map_or(Ok(()), &mut check)?;
+            encode_sample(scheme, &mut encoder, sample).code().map_or(Ok(()), &mut check)?;
         }
-        while let Some(code) = encoder.finish_next() {
+        while let Some(code) = scheme.finish_next(&mut encoder) {
             check(code)?;
         }
         expect(codec, LENGTH, spikes.next().is_none())
     }
 
     /// The same where spikes are 1, 0 and -1.
-    fn agree_signs<P: Scheme<Sample = S>>(
+    fn agree_signs<P: Start<Sample = S, Code = Spike>>(
         &mut self,
         codec: &'static str,
         source: Signal,
-        scheme: P,
-    ) -> Result<(), Failure>
-    where
-        P::Decoder: Decoder<Code = Spike>,
-        <P::Encoder as Encoder>::Output: Output<Code = Spike>,
-    {
+        scheme: &P,
+    ) -> Result<(), Failure> {
         let spike = |sign| match sign {
             1 => Spike::Up,
             0 => Spike::None,
@@ -183,15 +177,12 @@ impl<S: Measured> Buffers<S> {
         &mut self,
         codec: &'static str,
         source: Signal,
-        scheme: Position<'_, S, M>,
+        scheme: &Position<S, M>,
     ) -> Result<(), Failure> {
         let index = |neuron: Option<Neuron<M>>| neuron.map_or(-1, |neuron| neuron.index() as i8);
         self.agree(codec, source, scheme, index, |index| Neuron::new(index as u16))
     }
 }
-
-/// What a scheme's decoder takes.
-type CodeOf<P> = <<P as Scheme>::Decoder as Decoder>::Code;
 
 fn expect(codec: &'static str, sample: usize, agrees: bool) -> Result<(), Failure> {
     if agrees { Ok(()) } else { Err(Failure::Differ(codec, sample)) }
@@ -220,88 +211,86 @@ fn all<S: Measured>(
         |signal, spikes| plain::temporal_contrast(signal, threshold, spikes),
         |spikes, values| plain::step_decode(spikes, step, values),
     );
-    buffers.agree_signs("tbr", source, contrast)?;
-    subject("tbr", 0, plain).measure(out, contrast, &buffers.signal)?;
+    buffers.agree_signs("tbr", source, &contrast)?;
+    subject("tbr", size_of_val(&contrast), plain).measure(out, &contrast, &buffers.signal)?;
 
     let threshold = part(0.5);
     let plain = buffers.plain(
         |signal, spikes| plain::step_forward(signal, threshold, spikes),
         |spikes, values| plain::step_decode(spikes, threshold, values),
     );
-    let scheme = StepForward::new(threshold)?;
-    buffers.agree_signs("sf", source, scheme)?;
-    subject("sf", 0, plain).measure(out, scheme, &buffers.signal)?;
+    let scheme = StepForward::try_new(threshold)?;
+    buffers.agree_signs("sf", source, &scheme)?;
+    subject("sf", size_of_val(&scheme), plain).measure(out, &scheme, &buffers.signal)?;
 
     moving_window::<S, 6>(out, subject("mw-5", 0, (0, 0)), part(0.25), source, buffers)?;
     moving_window::<S, 64>(out, subject("mw-63", 0, (0, 0)), part(0.25), source, buffers)?;
 
-    let taps = Taps::<S, 15>::shaped(Shape::Triangular, Scale::Peak(part(1.0)))?;
+    let taps = Taps::<S, 15>::try_shaped(Shape::Triangular, Scale::Peak(part(1.0)))?;
     let plain = buffers.plain_rate(min, taps.as_array(), |signal, spikes| {
         plain::hough(signal, taps.as_array(), spikes)
     });
-    let scheme = Hough::new(&taps).with_shift(min)?;
-    buffers.agree_signs("hsa-15", source, scheme)?;
-    subject("hsa-15", size_of_val(&taps), plain).measure(out, scheme, &buffers.signal)?;
+    let scheme = Hough::new(taps).try_with_shift(min)?;
+    buffers.agree_signs("hsa-15", source, &scheme)?;
+    subject("hsa-15", size_of_val(&scheme), plain).measure(out, &scheme, &buffers.signal)?;
 
     let threshold = part(0.85);
     let plain = buffers.plain_rate(min, taps.as_array(), |signal, spikes| {
         plain::threshold_hough(signal, taps.as_array(), threshold, spikes);
     });
-    let scheme = ThresholdHough::new(&taps, threshold)?.with_shift(min)?;
-    buffers.agree_signs("t-hsa-15", source, scheme)?;
-    subject("t-hsa-15", size_of_val(&taps), plain).measure(out, scheme, &buffers.signal)?;
+    let scheme = ThresholdHough::try_new(taps, threshold)?.try_with_shift(min)?;
+    buffers.agree_signs("t-hsa-15", source, &scheme)?;
+    subject("t-hsa-15", size_of_val(&scheme), plain).measure(out, &scheme, &buffers.signal)?;
 
     // The filter's sum is what a spike at every sample decodes to.
-    let taps = Taps::<S, 24>::shaped(Shape::Hann, Scale::Sum(S::from_f64(range)))?;
+    let taps = Taps::<S, 24>::try_shaped(Shape::Hann, Scale::Sum(S::from_f64(range)))?;
     let threshold = S::from_f64(0.955 * range);
     let plain = buffers.plain_rate(min, taps.as_array(), |signal, spikes| {
         plain::ben(signal, taps.as_array(), threshold, spikes);
     });
-    let scheme = Ben::subtractive(&taps, threshold)?.with_shift(min)?;
-    buffers.agree_signs("bsa-24", source, scheme)?;
-    subject("bsa-24", size_of_val(&taps), plain).measure(out, scheme, &buffers.signal)?;
+    let scheme = Bsa::try_subtractive(taps, threshold)?.try_with_shift(min)?;
+    buffers.agree_signs("bsa-24", source, &scheme)?;
+    subject("bsa-24", size_of_val(&scheme), plain).measure(out, &scheme, &buffers.signal)?;
     // As the paper's signal meets a filter of unit sum: it spikes nearly always.
-    let taps = Taps::<S, 24>::shaped(Shape::Hann, Scale::Sum(part(1.0)))?;
+    let taps = Taps::<S, 24>::try_shaped(Shape::Hann, Scale::Sum(part(1.0)))?;
     let threshold = part(0.955);
     let plain = buffers.plain_rate(min, taps.as_array(), |signal, spikes| {
         plain::ben(signal, taps.as_array(), threshold, spikes);
     });
-    let scheme = Ben::subtractive(&taps, threshold)?.with_shift(min)?;
-    buffers.agree_signs("bsa-24-busy", source, scheme)?;
-    subject("bsa-24-busy", size_of_val(&taps), plain).measure(out, scheme, &buffers.signal)?;
+    let scheme = Bsa::try_subtractive(taps, threshold)?.try_with_shift(min)?;
+    buffers.agree_signs("bsa-24-busy", source, &scheme)?;
+    subject("bsa-24-busy", size_of_val(&scheme), plain).measure(out, &scheme, &buffers.signal)?;
 
-    let taps = Taps::<S, 9>::shaped(Shape::Triangular, Scale::Peak(part(1.0)))?;
+    let taps = Taps::<S, 9>::try_shaped(Shape::Triangular, Scale::Peak(part(1.0)))?;
     let plain = buffers.plain_rate(min, taps.as_array(), |signal, spikes| {
         plain::ben_toolbox(signal, taps.as_array(), 1.15, spikes);
     });
     // The transcription has the ratio in 128ths.
-    let scheme = BenToolbox::new(&taps, 147.0 / 128.0)?.with_shift(min)?;
-    buffers.agree_signs("bsa-toolbox-9", source, scheme)?;
-    subject("bsa-toolbox-9", size_of_val(&taps), plain).measure(
+    let scheme = BsaToolbox::try_new(taps, 147.0 / 128.0)?.try_with_shift(min)?;
+    buffers.agree_signs("bsa-toolbox-9", source, &scheme)?;
+    subject("bsa-toolbox-9", size_of_val(&scheme), plain).measure(
         out,
-        BenToolbox::new(&taps, 1.15)?.with_shift(min)?,
+        &BsaToolbox::try_new(taps, 1.15)?.try_with_shift(min)?,
         &buffers.signal,
     )?;
 
-    let centres = Centres::<S, 20>::new_gaussian_spaced(min, max)?;
+    let scheme = Position::<S, 20>::try_gaussian_spaced(min..=max)?;
     let plain = buffers.plain(
-        |signal, neurons| plain::position(signal, centres.as_array(), neurons),
-        |neurons, values| plain::position_decode(neurons, centres.as_array(), values),
+        |signal, neurons| plain::position(signal, scheme.centres(), neurons),
+        |neurons, values| plain::position_decode(neurons, scheme.centres(), values),
     );
-    let scheme = Position::new(&centres);
-    buffers.agree_neurons("position-20", source, scheme)?;
-    subject("position-20", size_of_val(&centres), plain).measure(out, scheme, &buffers.signal)?;
+    buffers.agree_neurons("position-20", source, &scheme)?;
+    subject("position-20", size_of_val(&scheme), plain).measure(out, &scheme, &buffers.signal)?;
 
-    let centres = Centres::<S, 20>::new_linear(min, max)?;
-    let scheme = Gaussian::new(&centres);
+    let scheme = Gaussian::<S, 20>::try_linear(min..=max)?;
     let (sigma, means) = ((range / 18.0) as f32, means::<20>(min.to_f64(), range));
     let (signal, neurons) = buffers.slices();
     let encoding = instructions(|| plain::gaussian(signal, &means, sigma, neurons));
-    settle(signal, neurons, &means, sigma, scheme);
-    let decoding = instructions(|| plain::position_decode(neurons, centres.as_array(), signal));
-    buffers.agree_neurons("grf-20", source, scheme)?;
+    settle(signal, neurons, &means, sigma, &scheme);
+    let decoding = instructions(|| plain::position_decode(neurons, scheme.centres(), signal));
+    buffers.agree_neurons("grf-20", source, &scheme)?;
     let plain = (encoding, decoding);
-    subject("grf-20", size_of_val(&centres), plain).measure(out, scheme, &buffers.signal)?;
+    subject("grf-20", size_of_val(&scheme), plain).measure(out, &scheme, &buffers.signal)?;
 
     slots(out, subject("grf-slots-15x10", 0, (0, 0)), (min, max), source, buffers)?;
     probabilistic(out, subject("grf-random-15x16", 0, (0, 0)), (min, max), source, buffers)
@@ -322,11 +311,11 @@ fn settle<S: Measured>(
     neurons: &mut [i8],
     means: &[f32; 20],
     sigma: f32,
-    scheme: Gaussian<'_, S, 20>,
+    scheme: &Gaussian<S, 20>,
 ) {
-    let mut encoder = scheme.encoder();
+    let mut encoder = Gaussian::<S, 20>::START;
     for (&sample, neuron) in signal.iter().zip(neurons) {
-        let Some(nearest) = encode_sample(&mut encoder, sample) else { continue };
+        let Some(nearest) = encode_sample(scheme, &mut encoder, sample) else { continue };
         let response = |i: usize| plain::response(sample.to_f64() as f32, means[i], sigma);
         let (ours, plain) = (response(nearest.index().into()), response(*neuron as usize));
         if (ours - plain).abs() <= 2.0 * f32::EPSILON {
@@ -345,11 +334,10 @@ fn slots<S: Measured>(
     source: Signal,
     buffers: &mut Buffers<S>,
 ) -> Result<(), Failure> {
-    let fields = ReceptiveFields::<S, 15, 10>::new(min, max, 1.5)?;
+    let scheme = Slots::<S, 15, 10>::try_new(min..=max, 1.5)?;
     let range = max.to_f64() - min.to_f64();
     let (sigma, means) = ((range / (1.5 * 13.0)) as f32, means::<15>(min.to_f64(), range));
-    let scheme = Slots::new(&fields);
-    let volley = |slots: &[i8]| {
+    let spikes_of = |slots: &[i8]| {
         let mut fired = [0; 15];
         let mut length = 0;
         for &slot in slots.iter().filter(|&&slot| slot >= 0) {
@@ -358,18 +346,18 @@ fn slots<S: Measured>(
         }
         let first = slots.iter().take_while(|&&slot| slot < 0).count();
         let first = if length == 0 { 0 } else { first };
-        Volley::new(first as u16, &fired[..length]).unwrap_or(Volley::EMPTY)
+        SlotSpikes::new(first as u16, &fired[..length]).unwrap_or(SlotSpikes::EMPTY)
     };
-    let plain = buffers.plain_neurons::<_, _, 15>(
+    let plain = buffers.plain_neurons::<_, 15>(
         "grf-slots-15x10",
-        (scheme.encoder(), scheme.decoder(), fields.centres()[7]),
-        volley,
+        (&scheme, Slots::<S, 15, 10>::START, scheme.centres()[7]),
+        spikes_of,
         |signal, slots| plain::slots(signal, &means, sigma, 10, slots),
-        |slots, before, values| plain::slots_decode(slots, fields.centres(), 10, before, values),
+        |slots, before, values| plain::slots_decode(slots, scheme.centres(), 10, before, values),
     )?;
     source.load(&mut buffers.signal);
-    let subject = Subject { flash: size_of_val(&fields), plain, ..subject };
-    Ok(subject.measure(out, scheme, &buffers.signal)?)
+    let subject = Subject { flash: size_of_val(&scheme), plain, ..subject };
+    Ok(subject.measure(out, &scheme, &buffers.signal)?)
 }
 
 /// Not a scheme, as its encoder takes a generator, whose work is counted with it.
@@ -381,33 +369,33 @@ fn probabilistic<S: Measured>(
     source: Signal,
     buffers: &mut Buffers<S>,
 ) -> Result<(), Failure> {
-    let fields = ReceptiveFields::<S, 15, 16>::new(min, max, 1.5)?;
+    let scheme = Probabilistic::<S, Pcg32, 15, 16>::try_new(min..=max, 1.5)?;
     let range = max.to_f64() - min.to_f64();
     let (sigma, means) = ((range / (1.5 * 13.0)) as f32, means::<15>(min.to_f64(), range));
     let generator = || Pcg32::new(2, 2);
+    let start = || Probabilistic::<S, Pcg32, 15, 16>::state(generator());
     let mut random = generator();
-    let scheme = Probabilistic::new(&fields);
-    let pattern = |fired: &[i8]| {
+    let fired_of = |fired: &[i8]| {
         let neurons = (0..).zip(fired).filter(|&(_, &fired)| fired == 1).map(|(i, _)| i);
-        Pattern::new(neurons).unwrap_or(Pattern::EMPTY)
+        FiredNeurons::new(neurons).unwrap_or(FiredNeurons::EMPTY)
     };
-    let plain = buffers.plain_neurons::<_, _, 15>(
+    let plain = buffers.plain_neurons::<_, 15>(
         "grf-random-15x16",
-        (scheme.encoder(generator()), scheme.decoder(), fields.centres()[7]),
-        pattern,
+        (&scheme, start(), scheme.centres()[7]),
+        fired_of,
         |signal, fired| {
             plain::probabilistic(signal, &means, sigma, 16, || random.next_u32(), fired)
         },
         |fired, before, values| {
-            plain::probabilistic_decode(fired, fields.centres(), before, values)
+            plain::probabilistic_decode(fired, scheme.centres(), before, values)
         },
     )?;
     source.load(&mut buffers.signal);
-    let subject = Subject { flash: size_of_val(&fields), plain, ..subject };
+    let subject = Subject { flash: size_of_val(&scheme), plain, ..subject };
     Ok(subject.measure_codec(
         out,
-        || scheme.encoder(generator()),
-        || scheme.decoder(),
+        &scheme,
+        &start,
         &buffers.signal,
     )?)
 }
@@ -423,7 +411,7 @@ fn moving_window<S: Measured, const N: usize>(
         |signal, spikes| plain::moving_window(signal, N, threshold, spikes),
         |spikes, values| plain::step_decode(spikes, threshold, values),
     );
-    let scheme = MovingWindow::<S, N>::new(threshold)?;
-    buffers.agree_signs("mw", source, scheme)?;
-    Ok(Subject { plain, ..subject }.measure(out, scheme, &buffers.signal)?)
+    let scheme = MovingWindow::<S, N>::try_new(threshold)?;
+    buffers.agree_signs("mw", source, &scheme)?;
+    Ok(Subject { plain, flash: size_of_val(&scheme), ..subject }.measure(out, &scheme, &buffers.signal)?)
 }

@@ -3,7 +3,7 @@
 use core::{fmt, hint::black_box, mem::size_of};
 
 use board::stopwatch::{instructions, keep, stack_depth};
-use spikewire::{Decoder, Encoder, Output, Scheme};
+use spikewire::{Output, Scheme, Start};
 
 use crate::signal::LENGTH;
 
@@ -53,31 +53,27 @@ impl Cost {
 
 impl Subject<'_> {
     /// Measures a scheme, encoding and decoding.
-    pub fn measure<P: Scheme>(
+    pub fn measure<P: Start>(
         &self,
         out: &mut impl fmt::Write,
-        scheme: P,
+        scheme: &P,
         signal: &[P::Sample; LENGTH],
     ) -> fmt::Result {
-        self.measure_codec(out, || scheme.encoder(), || scheme.decoder(), signal)
+        self.measure_codec(out, scheme, &|| P::START, signal)
     }
 
-    /// Measures an encoder and its decoder.
-    pub fn measure_codec<E, D>(
+    /// Measures a scheme whose encoders start so.
+    pub fn measure_codec<P: Scheme>(
         &self,
         out: &mut impl fmt::Write,
-        encoder: impl Fn() -> E,
-        decoder: impl Fn() -> D,
-        signal: &[E::Sample; LENGTH],
-    ) -> fmt::Result
-    where
-        E: Encoder,
-        D: Decoder<Sample = E::Sample, Code = <E::Output as Output>::Code>,
-    {
-        for cost in encoding(&encoder, signal) {
+        scheme: &P,
+        start: &impl Fn() -> P::EncoderState,
+        signal: &[P::Sample; LENGTH],
+    ) -> fmt::Result {
+        for cost in encoding(scheme, start, signal) {
             self.print(out, &cost, self.plain.0)?;
         }
-        for cost in decoding(&encoder, decoder, signal) {
+        for cost in decoding(scheme, start, signal) {
             self.print(out, &cost, self.plain.1)?;
         }
         Ok(())
@@ -95,79 +91,85 @@ impl Subject<'_> {
 }
 
 #[inline(never)] // its buffer leaves the stack before decoding
-fn encoding<E: Encoder>(new: &impl Fn() -> E, signal: &[E::Sample; LENGTH]) -> [Cost; 2] {
-    let state = size_of::<E>();
+fn encoding<P: Scheme>(
+    scheme: &P,
+    start: &impl Fn() -> P::EncoderState,
+    signal: &[P::Sample; LENGTH],
+) -> [Cost; 2] {
+    let size = size_of::<P::EncoderState>();
 
-    let mut each = Cost::new("encode", "sample", encode_sample::<E> as *const (), state);
-    let mut encoder = new();
+    let mut each = Cost::new("encode", "sample", encode_sample::<P> as *const (), size);
+    let mut state = start();
     for &sample in signal {
-        let call = instructions(|| take_one(&mut encoder, black_box(sample)));
-        let count = instructions(|| keep(&encode_sample(&mut encoder, black_box(sample))));
+        let call = instructions(|| take_one(scheme, &mut state, black_box(sample)));
+        let count = instructions(|| keep(&encode_sample(scheme, &mut state, black_box(sample))));
         each.add(1, call, count);
     }
-    let mut encoder = new();
-    each.stack = stack_depth(|| signal.iter().for_each(|&x| keep(&encode_sample(&mut encoder, x))));
+    let mut state = start();
+    each.stack = stack_depth(|| {
+        signal.iter().for_each(|&x| keep(&encode_sample(scheme, &mut state, x)));
+    });
 
-    let mut slice = Cost::new("encode", "slice", encode_slice::<E> as *const (), state);
-    let mut outputs = [encode_sample(&mut new(), signal[0]); CHUNK];
-    let mut encoder = new();
+    let mut slice = Cost::new("encode", "slice", encode_slice::<P> as *const (), size);
+    let mut outputs = [encode_sample(scheme, &mut start(), signal[0]); CHUNK];
+    let mut state = start();
     for chunk in signal.chunks_exact(CHUNK) {
-        let call = instructions(|| take_slices(&mut encoder, black_box(chunk), &mut outputs));
-        let count = instructions(|| encode_slice(&mut encoder, black_box(chunk), &mut outputs));
+        let call = instructions(|| take_slices(scheme, &mut state, black_box(chunk), &mut outputs));
+        let count =
+            instructions(|| encode_slice(scheme, &mut state, black_box(chunk), &mut outputs));
         slice.add(CHUNK, call, count);
         keep(&outputs);
     }
-    let mut encoder = new();
+    let mut state = start();
     slice.stack = stack_depth(|| {
-        signal.chunks_exact(CHUNK).for_each(|x| encode_slice(&mut encoder, x, &mut outputs));
+        let chunks = signal.chunks_exact(CHUNK);
+        chunks.for_each(|x| encode_slice(scheme, &mut state, x, &mut outputs));
     });
     [each, slice]
 }
 
 #[inline(never)]
-fn decoding<E, D>(
-    encoder: &impl Fn() -> E,
-    new: impl Fn() -> D,
-    signal: &[E::Sample; LENGTH],
-) -> [Cost; 2]
-where
-    E: Encoder,
-    D: Decoder<Sample = E::Sample, Code = <E::Output as Output>::Code>,
-{
-    let state = size_of::<D>();
-    let mut each = Cost::new("decode", "sample", decode_sample::<D> as *const (), state);
-    let mut slice = Cost::new("decode", "slice", decode_slice::<D> as *const (), state);
+fn decoding<P: Scheme>(
+    scheme: &P,
+    start: &impl Fn() -> P::EncoderState,
+    signal: &[P::Sample; LENGTH],
+) -> [Cost; 2] {
+    let size = size_of::<P::DecoderState>();
+    let mut each = Cost::new("decode", "sample", decode_sample::<P> as *const (), size);
+    let mut slice = Cost::new("decode", "slice", decode_slice::<P> as *const (), size);
     // One decoder for each thing measured, as every one sees every code once.
-    let mut decoders = [new(), new(), new(), new()];
+    let mut decoders = [scheme.decoder_state(); 4];
     let [one, one_stack, many, many_stack] = &mut decoders;
 
-    let mut first = encoder();
-    let code = signal.iter().find_map(|&sample| encode_sample(&mut first, sample).code());
+    let mut first = start();
+    let code = signal.iter().find_map(|&sample| encode_sample(scheme, &mut first, sample).code());
     let Some(code) = code else { return [each, slice] };
     let mut codes = [code; CHUNK];
     let mut values = [signal[0]; CHUNK];
-    let mut encoder = encoder();
+    let mut encoder = start();
     for chunk in signal.chunks_exact(CHUNK) {
         let mut length = 0;
         for &sample in chunk {
-            if let Some(code) = encode_sample(&mut encoder, sample).code() {
+            if let Some(code) = encode_sample(scheme, &mut encoder, sample).code() {
                 codes[length] = code;
                 length += 1;
             }
         }
         let codes = &codes[..length];
         for &code in codes {
-            let call = instructions(|| take_one(one, black_box(code)));
-            let count = instructions(|| keep(&decode_sample(one, black_box(code))));
+            let call = instructions(|| take_one(scheme, one, black_box(code)));
+            let count = instructions(|| keep(&decode_sample(scheme, one, black_box(code))));
             each.add(1, call, count);
         }
-        let call = instructions(|| take_slices(many, black_box(codes), &mut values));
-        let count = instructions(|| decode_slice(many, black_box(codes), &mut values));
+        let call = instructions(|| take_slices(scheme, many, black_box(codes), &mut values));
+        let count = instructions(|| decode_slice(scheme, many, black_box(codes), &mut values));
         slice.add(length, call, count);
 
-        let depth = stack_depth(|| codes.iter().for_each(|&x| keep(&decode_sample(one_stack, x))));
+        let depth = stack_depth(|| {
+            codes.iter().for_each(|&x| keep(&decode_sample(scheme, one_stack, x)));
+        });
         each.stack = each.stack.max(depth);
-        let depth = stack_depth(|| decode_slice(many_stack, codes, &mut values));
+        let depth = stack_depth(|| decode_slice(scheme, many_stack, codes, &mut values));
         slice.stack = slice.stack.max(depth);
         keep(&values);
     }
@@ -178,28 +180,47 @@ where
 // it. Their addresses are printed, so that the code can be found and weighed.
 
 #[inline(never)]
-pub fn encode_sample<E: Encoder>(encoder: &mut E, sample: E::Sample) -> E::Output {
-    encoder.encode(sample)
+pub fn encode_sample<P: Scheme>(
+    scheme: &P,
+    state: &mut P::EncoderState,
+    sample: P::Sample,
+) -> P::Output {
+    scheme.encode(state, sample)
 }
 
 #[inline(never)]
-fn encode_slice<E: Encoder>(encoder: &mut E, samples: &[E::Sample], outputs: &mut [E::Output]) {
-    encoder.encode_slice(samples, outputs);
+fn encode_slice<P: Scheme>(
+    scheme: &P,
+    state: &mut P::EncoderState,
+    samples: &[P::Sample],
+    outputs: &mut [P::Output],
+) {
+    scheme.encode_slice(state, samples, outputs);
 }
 
 #[inline(never)]
-pub fn decode_sample<D: Decoder>(decoder: &mut D, code: D::Code) -> D::Sample {
-    decoder.decode(code)
+pub fn decode_sample<P: Scheme>(
+    scheme: &P,
+    state: &mut P::DecoderState,
+    code: P::Code,
+) -> P::Sample {
+    scheme.decode(state, code)
 }
 
 #[inline(never)]
-fn decode_slice<D: Decoder>(decoder: &mut D, codes: &[D::Code], values: &mut [D::Sample]) {
-    decoder.decode_slice(codes, values);
+fn decode_slice<P: Scheme>(
+    scheme: &P,
+    state: &mut P::DecoderState,
+    codes: &[P::Code],
+    values: &mut [P::Sample],
+) {
+    scheme.decode_slice(state, codes, values);
 }
 
 #[inline(never)]
-fn take_one<C, T>(codec: &mut C, value: T) {
-    keep(codec);
+fn take_one<P, C, T>(scheme: &P, state: &mut C, value: T) {
+    keep(scheme);
+    keep(state);
     // What does not fit in registers comes by address, and is copied there by the caller.
     if size_of::<T>() > 8 {
         keep(&value);
@@ -207,8 +228,9 @@ fn take_one<C, T>(codec: &mut C, value: T) {
 }
 
 #[inline(never)]
-fn take_slices<C, A, B>(codec: &mut C, inputs: &[A], outputs: &mut [B]) {
-    keep(codec);
+fn take_slices<P, C, A, B>(scheme: &P, state: &mut C, inputs: &[A], outputs: &mut [B]) {
+    keep(scheme);
+    keep(state);
     keep(inputs);
     keep(outputs);
 }

@@ -34,7 +34,7 @@ pub(super) struct Centres<S, const M: usize> {
     edges: [S; M],
     #[cfg_attr(feature = "serde", serde(skip))]
     cells: Cells,
-    /// The index of the lowest neuron of each cell's values.
+    /// The number of the lowest neuron, from 1, of each cell's values.
     #[cfg_attr(feature = "serde", serde(skip))]
     starts: [[u8; 2]; M],
 }
@@ -191,11 +191,11 @@ impl<S: Sample, const M: usize> Centres<S, M> {
         let count = 2 * M;
         let width = (units(edges[M - 2]) - lowest) / (count - 1) as f64;
         let cells = cells::<S>(lowest - width / 16.0, width, count);
-        let mut starts = [[0; 2]; M];
+        let mut starts = [[1; 2]; M];
         let mut edge = 0;
         let mut i = 0;
-        while i < count && edge <= u8::MAX as usize {
-            starts[i / 2][i % 2] = edge as u8;
+        while i < count && edge < u8::MAX as usize {
+            starts[i / 2][i % 2] = edge as u8 + 1;
             if edge < M - 1 && cell(cells, edges[edge]) == i {
                 edge += 1;
             }
@@ -222,9 +222,9 @@ impl<S: Sample, const M: usize> Centres<S, M> {
     #[inline]
     pub(super) fn by_cell(&self, value: S) -> usize {
         let cell = value.cell(self.cells).min(2 * M - 1);
-        let below = self.starts.as_flattened().get(cell).copied().map_or(0, usize::from);
-        let is_beyond = self.edges().get(below).is_some_and(|&edge| value > edge);
-        below + 1 + usize::from(is_beyond)
+        let lowest = self.starts.as_flattened().get(cell).copied().map_or(1, usize::from);
+        let is_beyond = self.edges().get(lowest - 1).is_some_and(|&edge| value > edge);
+        if is_beyond { lowest + 1 } else { lowest }
     }
 
     /// The number of a finite value's neuron, by binary search.

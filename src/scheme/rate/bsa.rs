@@ -5,7 +5,7 @@ use super::decoder::{RateDecoderState, decode_rate};
 use super::encoder::{RateState, Rule, rate_scheme};
 use super::filtered::{Filtered, with_shift};
 use crate::error::{not_negative, ratio, unwrap};
-use crate::num::{Nearer, Ratio, Residual, to_f64};
+use crate::num::{Bound, Nearer, Ratio, to_f64};
 use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 
 /// Ben's spiker algorithm, as published: errors and subtraction aligned with the sample.
@@ -135,8 +135,13 @@ impl<S: Sample, const F: usize> Bsa<S, F> {
 }
 
 /// The error with the filter subtracted is smaller than without, by the criterion.
-impl<S: Sample, const F: usize> Rule<S::Residual> for Bsa<S, F> {
+impl<S: Sample, const F: usize> Rule<S, F> for Bsa<S, F> {
     const IN_ORDER: bool = false;
+
+    #[inline(always)]
+    fn filtered(&self) -> &Filtered<S, F> {
+        &self.filtered
+    }
 
     #[inline(always)]
     fn fits(
@@ -145,19 +150,11 @@ impl<S: Sample, const F: usize> Rule<S::Residual> for Bsa<S, F> {
         pairs: impl Iterator<Item = (S::Residual, S::Residual)>,
         _: bool,
     ) -> bool {
-        match self.limit {
-            Limit::Subtractive(threshold) => {
-                S::Residual::is_nearer_by(threshold.widen(), magnitude, pairs)
-            }
-            Limit::Multiplicative(ratio) => {
-                let (mut with, mut without) = (S::Residual::EMPTY, S::Residual::EMPTY);
-                for (residual, tap) in pairs {
-                    with = residual.add_distance(tap, with);
-                    without = residual.add_distance(S::Residual::ZERO, without);
-                }
-                S::Residual::at_most(with, without, ratio)
-            }
-        }
+        let bound = match self.limit {
+            Limit::Subtractive(threshold) => Bound::Less(threshold.widen()),
+            Limit::Multiplicative(ratio) => Bound::Part(ratio),
+        };
+        S::Residual::is_nearer(bound, magnitude, pairs)
     }
 
     #[inline(always)]

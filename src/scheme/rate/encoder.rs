@@ -8,17 +8,28 @@ use crate::num::{Residual, Tally};
 use crate::{Sample, Spike};
 
 /// When a filter fits under the signal.
-pub(super) trait Rule<R: Residual> {
+pub(super) trait Rule<S: Sample, const F: usize> {
     /// Whether it is settled early where it goes from the first tap on. If not, whole windows go from
     /// the first slot on in both forms.
     const IN_ORDER: bool;
 
+    fn filtered(&self) -> &Filtered<S, F>;
+
     /// Whether the sample spikes, given the residuals from it on, each with its tap. `magnitude` is the sum
     /// of these taps' magnitudes; `is_whole` is false where the recording ends within the filter.
-    fn fits(&self, magnitude: R, pairs: impl Iterator<Item = (R, R)>, is_whole: bool) -> bool;
+    fn fits(
+        &self,
+        magnitude: S::Residual,
+        pairs: impl Iterator<Item = (S::Residual, S::Residual)>,
+        is_whole: bool,
+    ) -> bool;
 
     /// Whether a whole window spikes, given from the first slot on; `None` if that order cannot tell.
-    fn fits_by_slot(&self, magnitude: R, pairs: impl Iterator<Item = (R, R)>) -> Option<bool>;
+    fn fits_by_slot(
+        &self,
+        magnitude: S::Residual,
+        pairs: impl Iterator<Item = (S::Residual, S::Residual)>,
+    ) -> Option<bool>;
 }
 
 /// The state of a rate code's encoder: what the spikes so far have left of the last `F` samples.
@@ -55,11 +66,11 @@ impl<S: Sample, const F: usize> RateState<S, F> {
     #[inline(always)]
     pub(super) fn encode(
         &mut self,
-        filtered: &Filtered<S, F>,
-        rule: &impl Rule<S::Residual>,
+        rule: &impl Rule<S, F>,
         sample: S,
     ) -> Option<Spike> {
-        let slot = self.take(filtered, sample)?;
+        let slot = self.take(rule.filtered(), sample)?;
+        let filtered = rule.filtered();
         let taps = filtered.taps.starting_at(slot + 1);
         let residuals = cells(&mut self.residuals);
         match rule.fits_by_slot(filtered.taps.magnitude(), pairs(residuals, taps)) {
@@ -68,7 +79,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
                 Some(Spike::Up)
             }
             Some(false) => Some(Spike::None),
-            None => self.encode_apart(filtered, rule),
+            None => self.encode_apart(rule),
         }
     }
 
@@ -77,17 +88,15 @@ impl<S: Sample, const F: usize> RateState<S, F> {
     #[inline(never)]
     fn encode_called(
         &mut self,
-        filtered: &Filtered<S, F>,
-        rule: &impl Rule<S::Residual>,
+        rule: &impl Rule<S, F>,
         sample: S,
     ) -> Option<Spike> {
-        self.encode(filtered, rule, sample)
+        self.encode(rule, sample)
     }
 
     #[inline(always)]
-    pub(super) fn encode_slice<R: Rule<S::Residual>>(
+    pub(super) fn encode_slice<R: Rule<S, F>>(
         &mut self,
-        filtered: &Filtered<S, F>,
         rule: &R,
         samples: &[S],
         spikes: &mut [Option<Spike>],
@@ -96,9 +105,9 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         if !R::IN_ORDER {
             for (spike, &sample) in spikes.iter_mut().zip(samples) {
                 *spike = if S::Residual::IS_EXACT {
-                    self.encode_called(filtered, rule, sample)
+                    self.encode_called(rule, sample)
                 } else {
-                    self.encode(filtered, rule, sample)
+                    self.encode(rule, sample)
                 };
             }
             return length;
@@ -108,12 +117,12 @@ impl<S: Sample, const F: usize> RateState<S, F> {
             && let (Some(&sample), Some(_)) = (samples.first(), spikes.first())
         {
             let encoded = if self.cursor.missing() == 0 {
-                self.encode_line(filtered, rule, samples, spikes)
+                self.encode_line(rule, samples, spikes)
             } else {
                 0
             };
             if encoded == 0 {
-                self.take(filtered, sample);
+                self.take(rule.filtered(), sample);
                 if let Some(spike) = spikes.first_mut() {
                     *spike = None;
                 }
@@ -132,11 +141,11 @@ impl<S: Sample, const F: usize> RateState<S, F> {
     #[inline(never)]
     fn encode_line(
         &mut self,
-        filtered: &Filtered<S, F>,
-        rule: &impl Rule<S::Residual>,
+        rule: &impl Rule<S, F>,
         samples: &[S],
         spikes: &mut [Option<Spike>],
     ) -> usize {
+        let filtered = rule.filtered();
         let taps = *filtered.taps.as_array();
         let (shift, magnitude) = (filtered.shift, filtered.taps.magnitude());
         let mut line = [self.residuals; 4];
@@ -171,9 +180,9 @@ impl<S: Sample, const F: usize> RateState<S, F> {
     #[inline(never)]
     fn encode_apart(
         &mut self,
-        filtered: &Filtered<S, F>,
-        rule: &impl Rule<S::Residual>,
+        rule: &impl Rule<S, F>,
     ) -> Option<Spike> {
+        let filtered = rule.filtered();
         let length = F.saturating_sub(self.cursor.missing());
         let (late, early) = cells(&mut self.residuals).split_at_checked(self.cursor.oldest())?;
         let (taps, absent) = filtered.taps.as_array().split_at_checked(length)?;
@@ -193,14 +202,13 @@ impl<S: Sample, const F: usize> RateState<S, F> {
 
     pub(super) fn finish_next(
         &mut self,
-        filtered: &Filtered<S, F>,
-        rule: &impl Rule<S::Residual>,
+        rule: &impl Rule<S, F>,
     ) -> Option<Spike> {
         if self.cursor.missing() + 1 >= F {
             return None;
         }
         self.cursor.pop();
-        self.encode_apart(filtered, rule)
+        self.encode_apart(rule)
     }
 }
 
@@ -247,7 +255,7 @@ macro_rules! rate_scheme {
 
             #[inline]
             fn encode(&self, state: &mut RateState<S, F>, sample: S) -> Option<Spike> {
-                state.encode(&self.filtered, self, sample)
+                state.encode(self, sample)
             }
 
             #[inline]
@@ -257,11 +265,11 @@ macro_rules! rate_scheme {
                 samples: &[S],
                 spikes: &mut [Option<Spike>],
             ) -> usize {
-                state.encode_slice(&self.filtered, self, samples, spikes)
+                state.encode_slice(self, samples, spikes)
             }
 
             fn finish_next(&self, state: &mut RateState<S, F>) -> Option<Spike> {
-                state.finish_next(&self.filtered, self)
+                state.finish_next(self)
             }
 
             fn rejected(state: &RateState<S, F>) -> u32 {

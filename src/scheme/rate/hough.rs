@@ -48,8 +48,13 @@ impl<S: Sample, const F: usize> Hough<S, F> {
 }
 
 /// Every residual reaches its tap.
-impl<S: Sample, const F: usize> Rule<S::Residual> for Hough<S, F> {
+impl<S: Sample, const F: usize> Rule<S, F> for Hough<S, F> {
     const IN_ORDER: bool = true;
+
+    #[inline(always)]
+    fn filtered(&self) -> &Filtered<S, F> {
+        &self.filtered
+    }
 
     #[inline(always)]
     fn fits(

@@ -70,8 +70,13 @@ impl<S: Sample, const F: usize> ThresholdHough<S, F> {
 }
 
 /// The residuals fall short of their taps by the threshold at most.
-impl<S: Sample, const F: usize> Rule<S::Residual> for ThresholdHough<S, F> {
+impl<S: Sample, const F: usize> Rule<S, F> for ThresholdHough<S, F> {
     const IN_ORDER: bool = true;
+
+    #[inline(always)]
+    fn filtered(&self) -> &Filtered<S, F> {
+        &self.filtered
+    }
 
     #[inline(always)]
     fn fits(
