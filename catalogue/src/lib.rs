@@ -1,0 +1,74 @@
+//! Every scheme of the crate once.
+//!
+//! A scheme's file under `schemes` says its names, its parameters with their units and the paper's presets, which
+//! instances of it the firmware flies and counts, its plain transcription, and, with the feature `run`, how to build it
+//! from options. Firmware, tests, instruction counts and the laptop program are visitors: they ask for all entries and
+//! know none by name.
+//!
+//! To add a scheme: write its file in the crate, its file under `schemes`, and its line in the list below.
+
+#![cfg_attr(not(feature = "run"), no_std)]
+
+mod channel;
+mod entry;
+mod info;
+pub mod plain;
+#[cfg(feature = "run")]
+pub mod run;
+mod signal;
+
+pub use channel::Channel;
+pub use entry::{Count, Entry, Flight};
+pub use info::{Info, Kind, Parameter, Paper, Unit};
+pub use signal::Scaled;
+
+/// Declares the modules of the schemes, and what runs over all of them.
+macro_rules! schemes {
+    ($($module:ident),* $(,)?) => {
+        /// The entries, a file each.
+        pub mod schemes {
+            $(pub mod $module;)*
+        }
+
+        /// What is known of every scheme, in the order of the catalogue.
+        pub const INFO: &[Info] = &[$(<schemes::$module::Scheme as Entry>::INFO),*];
+
+        /// Hands every flown instance of every scheme to a visitor.
+        ///
+        /// # Errors
+        /// Those of the visitor, and parameters that a channel's calibration makes bad.
+        pub fn fly<V: Flight>(
+            channel: &Channel<V::Sample>,
+            visitor: &mut V,
+        ) -> Result<(), V::Error> {
+            $(<schemes::$module::Scheme as Entry>::fly(channel, visitor)?;)*
+            Ok(())
+        }
+
+        /// Hands every counted instance of every scheme, with its plain transcription, to a visitor.
+        ///
+        /// # Errors
+        /// Those of the visitor, and parameters that the signal makes bad.
+        pub fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+            $(<schemes::$module::Scheme as Entry>::count(signal, visitor)?;)*
+            Ok(())
+        }
+
+        /// Every scheme, to be chosen at run time.
+        #[cfg(feature = "run")]
+        pub static ALL: &[&dyn run::RunTime] = &[$(&schemes::$module::Scheme),*];
+    };
+}
+
+schemes![
+    tbr,
+    sf,
+    mw,
+    hsa,
+    t_hsa,
+    bsa,
+    position,
+    grf,
+    grf_slots,
+    grf_prob,
+];

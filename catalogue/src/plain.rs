@@ -1,0 +1,157 @@
+//! What the plain transcriptions share: the numbers that they are written in, and the decoders that several codes use.
+//!
+//! A transcription is the paper's pseudo-code: whole recordings, one index after the other, its slips of sign and index
+//! mended. It is what the codecs are measured against, in the same sample type, for the same core, by the same compiler.
+
+#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
+
+use core::ops::{Add, AddAssign, Div, Mul, Sub, SubAssign};
+
+use fixed::{
+    FixedI16, FixedI32, FixedI64,
+    types::extra::{U8, U16},
+};
+use spikewire::Sample;
+
+/// What the pseudo-code needs of a number: a type that its sums and products fit in.
+pub trait Plain: Sample + Into<Self::Wide> {
+    /// Sums and products.
+    type Wide: Copy
+        + Default
+        + PartialOrd
+        + Add<Output = Self::Wide>
+        + Sub<Output = Self::Wide>
+        + Mul<Output = Self::Wide>
+        + Div<Output = Self::Wide>
+        + AddAssign
+        + SubAssign;
+
+    /// By how much a mean of centres may be off, as whole numbers hold neither exactly.
+    const MEAN: f64;
+
+    /// A number.
+    fn wide(value: f64) -> Self::Wide;
+    /// A count.
+    fn count(count: i16) -> Self::Wide;
+    /// Back to the sample type, which holds it.
+    fn narrow(wide: Self::Wide) -> Self;
+}
+
+impl Plain for f32 {
+    type Wide = f32;
+
+    const MEAN: f64 = 0.0;
+
+    fn wide(value: f64) -> f32 {
+        value as f32
+    }
+
+    fn count(count: i16) -> f32 {
+        count.into()
+    }
+
+    fn narrow(wide: f32) -> f32 {
+        wide
+    }
+}
+
+impl Plain for i16 {
+    type Wide = i32;
+
+    const MEAN: f64 = 1.0;
+
+    fn wide(value: f64) -> i32 {
+        value as i32
+    }
+
+    fn count(count: i16) -> i32 {
+        count.into()
+    }
+
+    fn narrow(wide: i32) -> i16 {
+        wide as i16
+    }
+}
+
+impl Plain for FixedI16<U8> {
+    type Wide = FixedI32<U8>;
+
+    const MEAN: f64 = 1.0 / 256.0;
+
+    fn wide(value: f64) -> FixedI32<U8> {
+        FixedI32::from_num(value)
+    }
+
+    fn count(count: i16) -> FixedI32<U8> {
+        FixedI32::from_num(count)
+    }
+
+    fn narrow(wide: FixedI32<U8>) -> Self {
+        Self::from_bits(wide.to_bits() as i16)
+    }
+}
+
+impl Plain for FixedI32<U16> {
+    type Wide = FixedI64<U16>;
+
+    const MEAN: f64 = 1.0 / 65_536.0;
+
+    fn wide(value: f64) -> FixedI64<U16> {
+        FixedI64::from_num(value)
+    }
+
+    fn count(count: i16) -> FixedI64<U16> {
+        FixedI64::from_num(count)
+    }
+
+    fn narrow(wide: FixedI64<U16>) -> Self {
+        Self::from_bits(wide.to_bits() as i32)
+    }
+}
+
+/// Without its sign.
+pub fn magnitude<W: Copy + Default + PartialOrd + Sub<Output = W>>(value: W) -> W {
+    if value < W::default() { W::default() - value } else { value }
+}
+
+/// The temporal codes' decoder.
+#[inline(never)]
+pub fn step_decode<S: Plain>(spikes: &[i8], step: S, values: &mut [S]) {
+    let mut value = S::Wide::default();
+    for i in 0..spikes.len() {
+        if spikes[i] == 1 {
+            value += step.into();
+        } else if spikes[i] == -1 {
+            value -= step.into();
+        }
+        values[i] = S::narrow(value);
+    }
+}
+
+/// The rate codes' decoder: a convolution, the oldest spike first.
+#[inline(never)]
+pub fn rate_decode<S: Plain>(spikes: &[i8], filter: &[S], shift: S, values: &mut [S]) {
+    for i in 0..spikes.len() {
+        let mut value = S::Wide::default();
+        for j in (0..filter.len()).rev() {
+            if i >= j && spikes[i - j] == 1 {
+                value += filter[j].into();
+            }
+        }
+        values[i] = S::narrow(value + shift.into());
+    }
+}
+
+/// The centre of the neuron that fired.
+#[inline(never)]
+pub fn position_decode<S: Plain>(neurons: &[i8], centres: &[S], values: &mut [S]) {
+    for i in 0..neurons.len() {
+        values[i] = centres[neurons[i] as usize];
+    }
+}
+
+/// Of one receptive field.
+pub fn response(x: f32, centre: f32, sigma: f32) -> f32 {
+    let u = (x - centre) / sigma;
+    libm::expf(-u * u / 2.0)
+}

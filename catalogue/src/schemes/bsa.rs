@@ -1,0 +1,152 @@
+//! Ben's spiker (BSA), as published and as in the paper's toolbox.
+
+#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
+
+use spikewire::{Sample, Start};
+use spikewire::rate::{Bsa, BsaToolbox, Scale, Shape, Taps};
+
+use crate::plain::{Plain, magnitude};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+
+/// Ben's spiker.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme;
+
+impl Entry for Scheme {
+    const INFO: Info = Info {
+        name: "bsa",
+        title: "BSA",
+        words: "Ben's spiker (BSA)",
+        good_for: "a rate code of either sign of taps; with the toolbox's indices the paper's tables",
+        is_signed: false,
+        has_first_value: false,
+        parameters: &[
+            Parameter::filter("triang:9"),
+            Parameter::SHIFT,
+            Parameter::new(
+                "form",
+                Kind::Choice(&["aligned", "toolbox"]),
+                Unit::None,
+                "as published (aligned, unless given), or as in the paper's tables (toolbox)",
+            )
+            .with_paper(Paper::Text("toolbox")),
+            Parameter::new(
+                "criterion",
+                Kind::Choice(&["sub", "mul"]),
+                Unit::None,
+                "aligned: e1 <= e2 - threshold (sub, unless given) or e1 <= e2 * threshold (mul)",
+            ),
+            Parameter::new(
+                "threshold",
+                Kind::Number,
+                Unit::None,
+                "sub: 0 or more, in the signal's unit; mul and toolbox: a factor above 0 and below 4",
+            )
+            .with_paper(Paper::Text("1.15")),
+        ],
+    };
+
+    fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        published(channel, visitor)?;
+        let scale = Scale::Peak(channel.fraction(0.2));
+        let taps = Taps::<_, 9>::try_shaped(Shape::Triangular, scale)?;
+        let scheme = BsaToolbox::try_new(taps, 1.15)?.try_with_shift(channel.min)?;
+        visitor.visit("bsa-toolbox", "Ben's spiker, as in the toolbox", &scheme, BsaToolbox::START)
+    }
+
+    fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let range = signal.range;
+        // The filter's sum is what a spike at every sample decodes to.
+        let whole = V::Sample::from_f64(range);
+        aligned("bsa-24", whole, V::Sample::from_f64(0.955 * range), signal, visitor)?;
+        // As the paper's signal meets a filter of unit sum: it spikes nearly always.
+        aligned("bsa-24-busy", signal.part(1.0), signal.part(0.955), signal, visitor)?;
+        toolbox(signal, visitor)
+    }
+}
+
+#[inline(never)]
+fn published<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+    let taps = Taps::<_, 24>::try_shaped(Shape::Hann, Scale::Sum(channel.fraction(1.0)))?;
+    let scheme = Bsa::try_subtractive(taps, channel.fraction(0.955))?;
+    let scheme = scheme.try_with_shift(channel.min)?;
+    visitor.visit("bsa", Scheme::INFO.words, &scheme, Bsa::START)?;
+
+    let taps = Taps::<_, 24>::try_shaped(Shape::Hann, Scale::Sum(channel.fraction(2.0)))?;
+    let scheme = Bsa::try_multiplicative(taps, 0.92)?.try_with_shift(channel.min)?;
+    visitor.visit("bsa-mul", "Ben's spiker, multiplicative", &scheme, Bsa::START)
+}
+
+#[inline(never)]
+fn aligned<V: Count>(
+    name: &'static str,
+    sum: V::Sample,
+    threshold: V::Sample,
+    signal: &Scaled<V::Sample>,
+    visitor: &mut V,
+) -> Result<(), V::Error> {
+    let taps = Taps::<_, 24>::try_shaped(Shape::Hann, Scale::Sum(sum))?;
+    let scheme = Bsa::try_subtractive(taps, threshold)?.try_with_shift(signal.min)?;
+    let taps = scheme.taps().as_array();
+    visitor.rate(name, &scheme, &scheme, taps, signal.min, |signal, spikes| {
+        transcribed(signal, taps, threshold, spikes);
+    })
+}
+
+#[inline(never)]
+fn toolbox<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+    let taps = Taps::<_, 9>::try_triangular(signal.part(1.0))?;
+    let scheme = BsaToolbox::try_new(taps, 1.15)?.try_with_shift(signal.min)?;
+    // The transcription has the ratio in 128ths.
+    let agreeing = BsaToolbox::try_new(taps, 147.0 / 128.0)?.try_with_shift(signal.min)?;
+    let taps = scheme.taps().as_array();
+    visitor.rate("bsa-toolbox-9", &scheme, &agreeing, taps, signal.min, |signal, spikes| {
+        transcribed_toolbox(signal, taps, 1.15, spikes);
+    })
+}
+
+/// BSA as published, subtractive, on the shifted input.
+#[inline(never)]
+pub fn transcribed<S: Plain>(input: &mut [S], filter: &[S], threshold: S, spikes: &mut [i8]) {
+    for i in 0..input.len() {
+        let (mut e1, mut e2) = (S::Wide::default(), S::Wide::default());
+        for j in 0..filter.len() {
+            if i + j < input.len() {
+                e1 += magnitude(input[i + j].into() - filter[j].into());
+                e2 += magnitude(input[i + j].into());
+            }
+        }
+        spikes[i] = 0;
+        if e1 <= e2 - threshold.into() {
+            spikes[i] = 1;
+            for j in 0..filter.len() {
+                if i + j < input.len() {
+                    input[i + j] = S::narrow(input[i + j].into() - filter[j].into());
+                }
+            }
+        }
+    }
+}
+
+/// The paper's algorithm 5, on the shifted input; the ratio in 14 bits of fraction where products are whole.
+#[inline(never)]
+pub fn transcribed_toolbox<S: Plain>(input: &mut [S], filter: &[S], threshold: f64, spikes: &mut [i8]) {
+    // The ratio in 128ths, so that counts can take part; the paper's 1.15 is then 1.1484.
+    let (parts, threshold) = (S::wide(128.0), S::wide((threshold * 128.0) as i32 as f64));
+    for i in 0..input.len() - filter.len() {
+        let (mut e1, mut e2) = (S::Wide::default(), S::Wide::default());
+        for j in 0..filter.len() {
+            e1 += magnitude(input[i + j + 1].into() - filter[j].into());
+            e2 += magnitude(input[i + j].into());
+        }
+        spikes[i] = 0;
+        if e1 * parts <= e2 * threshold {
+            spikes[i] = 1;
+            for j in 0..filter.len() {
+                if i + j + 2 < input.len() {
+                    input[i + j + 2] = S::narrow(input[i + j + 2].into() - filter[j].into());
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! Gaussian receptive fields (GRF), winner takes all.
+
+#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
+
+use spikewire::population::{Gaussian};
+use spikewire::Start;
+
+use crate::plain::{Plain, response};
+use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
+
+/// Gaussian receptive fields, one spike a sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme;
+
+impl Entry for Scheme {
+    const INFO: Info = Info {
+        name: "grf",
+        title: "GRF",
+        words: "Gaussian receptive fields (GRF)",
+        good_for: "a value over an even range",
+        is_signed: false,
+        has_first_value: false,
+        parameters: &[Parameter::neurons("20"), Parameter::MIN, Parameter::MAX],
+    };
+
+    fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let scheme = Gaussian::<_, 20>::try_linear(channel.min..=channel.max)?;
+        visitor.visit("grf", Self::INFO.words, &scheme, Gaussian::<V::Sample, 20>::START)
+    }
+
+    fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let scheme = Gaussian::<_, 20>::try_linear(signal.min..=signal.max)?;
+        let (sigma, means) = ((signal.range / 18.0) as f32, signal.means::<20>());
+        visitor.winner("grf-20", &scheme, &means, sigma, |signal, neurons| {
+            transcribed(signal, &means, sigma, neurons);
+        })
+    }
+}
+
+/// The paper's algorithm 2 with its exponentials, in `f32` for every sample type: the winner.
+#[inline(never)]
+pub fn transcribed<S: Plain>(input: &[S], centres: &[f32], sigma: f32, neurons: &mut [i8]) {
+    for i in 0..input.len() {
+        let x = input[i].to_f64() as f32;
+        let (mut winner, mut largest) = (0, 0.0);
+        for j in 0..centres.len() {
+            let response = response(x, centres[j], sigma);
+            if response > largest {
+                (winner, largest) = (j, response);
+            }
+        }
+        neurons[i] = winner as i8;
+    }
+}

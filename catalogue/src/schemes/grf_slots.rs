@@ -1,0 +1,111 @@
+//! Gaussian receptive fields with sub-timesteps.
+
+#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
+
+use spikewire::population::{SlotSpikes, Slots};
+use spikewire::Start;
+
+use crate::plain::{Plain, response};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+
+/// Gaussian receptive fields with sub-timesteps.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme;
+
+impl Entry for Scheme {
+    const INFO: Info = Info {
+        name: "grf-slots",
+        title: "GRF, slots",
+        words: "GRF with sub-timesteps",
+        good_for: "a value finer than the neurons, by spike time",
+        is_signed: false,
+        has_first_value: false,
+        parameters: &[
+            Parameter::neurons("15"),
+            Parameter::MIN,
+            Parameter::MAX,
+            Parameter::new("slots", Kind::Count, Unit::None, "sub-timesteps a sample, 2 to 256")
+                .with_paper(Paper::Text("10")),
+            Parameter::BETA,
+            Parameter::new(
+                "floor",
+                Kind::Count,
+                Unit::None,
+                "neurons below this level of --slots are silent; 1 unless given",
+            ),
+        ],
+    };
+
+    fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let scheme = Slots::<_, 15, 10>::try_new(channel.min..=channel.max, 1.5)?;
+        visitor.visit("grf-slots", Self::INFO.words, &scheme, Slots::<V::Sample, 15, 10>::START)
+    }
+
+    fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let scheme = Slots::<_, 15, 10>::try_new(signal.min..=signal.max, 1.5)?;
+        let (sigma, means) = ((signal.range / (1.5 * 13.0)) as f32, signal.means::<15>());
+        visitor.neurons::<_, 15>(
+            "grf-slots-15x10",
+            &scheme,
+            &|| Slots::<V::Sample, 15, 10>::START,
+            spikes_of,
+            |signal, slots| transcribed(signal, &means, sigma, 10, slots),
+            |slots, before, values| {
+                transcribed_decoder(slots, scheme.centres(), 10, before, values);
+            },
+        )
+    }
+}
+
+/// The code that the transcription writes: the slot of each neuron, or -1.
+fn spikes_of(slots: &[i8]) -> SlotSpikes<15, 10> {
+    let mut fired = [0; 15];
+    let mut length = 0;
+    for (fired, &slot) in fired.iter_mut().zip(slots.iter().filter(|&&slot| slot >= 0)) {
+        *fired = slot as u8;
+        length += 1;
+    }
+    let first = slots.iter().take_while(|&&slot| slot < 0).count();
+    let first = if length == 0 { 0 } else { first };
+    let fired = fired.get(..length).unwrap_or_default();
+    SlotSpikes::new(first as u16, fired).unwrap_or(SlotSpikes::EMPTY)
+}
+
+/// The paper's algorithm 2 with its exponentials, in `f32` for every sample type: the slot of each neuron, or -1, one sample
+/// after the other.
+#[inline(never)]
+pub fn transcribed<S: Plain>(input: &[S], centres: &[f32], sigma: f32, levels: usize, slots: &mut [i8]) {
+    for i in 0..input.len() {
+        let x = input[i].to_f64() as f32;
+        for j in 0..centres.len() {
+            let level = (levels as f32 * response(x, centres[j], sigma) + 0.5) as usize;
+            slots[i * centres.len() + j] = if level > 0 { (levels - level) as i8 } else { -1 };
+        }
+    }
+}
+
+/// The mean of the centres weighted by their levels; where none fired, the value before.
+#[inline(never)]
+pub fn transcribed_decoder<S: Plain>(
+    slots: &[i8],
+    centres: &[S],
+    levels: usize,
+    mut value: S,
+    values: &mut [S],
+) {
+    for i in 0..values.len() {
+        let (mut sum, mut total) = (S::Wide::default(), 0);
+        for j in 0..centres.len() {
+            let slot = slots[i * centres.len() + j];
+            if slot >= 0 {
+                let level = levels - slot as usize;
+                sum += centres[j].into() * S::count(level as i16);
+                total += level;
+            }
+        }
+        if total > 0 {
+            value = S::narrow(sum / S::count(total as i16));
+        }
+        values[i] = value;
+    }
+}

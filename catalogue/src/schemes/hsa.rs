@@ -1,0 +1,61 @@
+//! Hough spiker (HSA).
+
+#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
+
+use spikewire::Start;
+use spikewire::rate::{Hough, Scale, Shape, Taps};
+
+use crate::plain::Plain;
+use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
+
+/// Hough spiker.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme;
+
+impl Entry for Scheme {
+    const INFO: Info = Info {
+        name: "hsa",
+        title: "HSA",
+        words: "Hough spiker (HSA)",
+        good_for: "a value that is never above the signal",
+        is_signed: false,
+        has_first_value: false,
+        parameters: &[Parameter::filter("triang:15"), Parameter::SHIFT],
+    };
+
+    fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let scale = Scale::Peak(channel.fraction(0.1));
+        let scheme = Hough::<_, 15>::new(Taps::try_shaped(Shape::Triangular, scale)?);
+        let scheme = scheme.try_with_shift(channel.min)?;
+        visitor.visit("hsa", Self::INFO.words, &scheme, Hough::START)
+    }
+
+    fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let taps = Taps::<_, 15>::try_triangular(signal.part(1.0))?;
+        let scheme = Hough::new(taps).try_with_shift(signal.min)?;
+        let taps = scheme.taps().as_array();
+        visitor.rate("hsa-15", &scheme, &scheme, taps, signal.min, |signal, spikes| {
+            transcribed(signal, taps, spikes);
+        })
+    }
+}
+
+/// The paper's algorithm 3, on the shifted input.
+#[inline(never)]
+pub fn transcribed<S: Plain>(input: &mut [S], filter: &[S], spikes: &mut [i8]) {
+    for i in 0..input.len() {
+        let mut count = 0;
+        for j in 0..filter.len() {
+            if i + j < input.len() && input[i + j] >= filter[j] {
+                count += 1;
+            }
+        }
+        spikes[i] = 0;
+        if count == filter.len() {
+            spikes[i] = 1;
+            for j in 0..filter.len() {
+                input[i + j] = S::narrow(input[i + j].into() - filter[j].into());
+            }
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Moving window (MW).
+
+#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
+
+use spikewire::Start;
+use spikewire::temporal::MovingWindow;
+
+use crate::plain::Plain;
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+
+/// Moving window.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme;
+
+impl Entry for Scheme {
+    const INFO: Info = Info {
+        name: "mw",
+        title: "MW",
+        words: "moving window (MW)",
+        good_for: "changes against a short past; drifts",
+        is_signed: true,
+        has_first_value: true,
+        parameters: &[
+            Parameter::threshold("what the distance from the mean must exceed, above 0; the decoder's step", 0.25),
+            Parameter::new(
+                "window",
+                Kind::Count,
+                Unit::Samples,
+                "the mean is taken over one sample more, 0 to 16383",
+            )
+            .with_paper(Paper::Text("5")),
+            Parameter::START,
+        ],
+    };
+
+    fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let scheme = MovingWindow::<_, 6>::try_new(channel.fraction(0.02))?;
+        visitor.visit("mw", Self::INFO.words, &scheme, MovingWindow::START)
+    }
+
+    fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        window::<V, 6>("mw-5", signal, visitor)?;
+        window::<V, 64>("mw-63", signal, visitor)
+    }
+}
+
+#[inline(never)] // its window leaves the stack before the next one comes
+fn window<V: Count, const N: usize>(
+    name: &'static str,
+    signal: &Scaled<V::Sample>,
+    visitor: &mut V,
+) -> Result<(), V::Error> {
+    let threshold = signal.part(0.25);
+    let scheme = MovingWindow::<_, N>::try_new(threshold)?;
+    visitor.steps(name, &scheme, threshold, |signal, spikes| {
+        transcribed(signal, N, threshold, spikes);
+    })
+}
+
+/// The paper's algorithm 8, from its second loop on; times the samples averaged, as the mean of whole numbers need not be one.
+#[inline(never)]
+pub fn transcribed<S: Plain>(input: &[S], averaged: usize, threshold: S, spikes: &mut [i8]) {
+    let count = S::wide(averaged as f64);
+    let margin = threshold.into() * count;
+    for i in averaged..input.len() {
+        let mut sum = S::Wide::default();
+        for j in i - averaged..i {
+            sum += input[j].into();
+        }
+        spikes[i] = if input[i].into() * count > sum + margin {
+            1
+        } else if input[i].into() * count < sum - margin {
+            -1
+        } else {
+            0
+        };
+    }
+}

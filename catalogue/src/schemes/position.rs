@@ -1,0 +1,85 @@
+//! Position coding.
+
+#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
+
+use spikewire::population::{Neuron, Position};
+use spikewire::Start;
+
+use crate::plain::{self, Plain, magnitude};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
+
+/// Position coding.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme;
+
+impl Entry for Scheme {
+    const INFO: Info = Info {
+        name: "position",
+        title: "Position",
+        words: "position",
+        good_for: "a value, dense where it matters",
+        is_signed: false,
+        has_first_value: false,
+        parameters: &[
+            Parameter::new(
+                "centres",
+                Kind::Text,
+                Unit::Signal,
+                "`linear` (unless given), `gaussian`, or a rising list such as `-1,-0.2,0,0.2,1`",
+            ),
+            Parameter::neurons("20"),
+            Parameter::MIN,
+            Parameter::MAX,
+        ],
+    };
+
+    fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        linear(channel, visitor)?;
+        let scheme = Position::<_, 20>::try_gaussian_spaced(channel.min..=channel.max)?;
+        visitor.visit("position-gauss", "position, dense in the middle", &scheme, Position::<V::Sample, 20>::START)
+    }
+
+    fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let scheme = Position::<_, 20>::try_gaussian_spaced(signal.min..=signal.max)?;
+        let centres = scheme.centres();
+        visitor.coded(
+            "position-20",
+            &scheme,
+            index_of,
+            neuron_of,
+            |signal, neurons| transcribed(signal, centres, neurons),
+            |neurons, values| plain::position_decode(neurons, centres, values),
+        )
+    }
+}
+
+#[inline(never)]
+fn linear<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+    let scheme = Position::<_, 20>::try_linear(channel.min..=channel.max)?;
+    visitor.visit("position", Scheme::INFO.words, &scheme, Position::<V::Sample, 20>::START)
+}
+
+/// A neuron as the transcription writes it.
+pub fn index_of<const M: usize>(neuron: Option<Neuron<M>>) -> i8 {
+    neuron.map_or(-1, |neuron| neuron.index() as i8)
+}
+
+/// A neuron as the transcription reads it.
+pub fn neuron_of<const M: usize>(index: i8) -> Option<Neuron<M>> {
+    Neuron::new(index as u16)
+}
+
+/// The paper's algorithm 1.
+#[inline(never)]
+pub fn transcribed<S: Plain>(input: &[S], centres: &[S], neurons: &mut [i8]) {
+    for i in 0..input.len() {
+        let (mut winner, mut least) = (0, magnitude(input[i].into() - centres[0].into()));
+        for j in 1..centres.len() {
+            let distance = magnitude(input[i].into() - centres[j].into());
+            if distance < least {
+                (winner, least) = (j, distance);
+            }
+        }
+        neurons[i] = winner as i8;
+    }
+}

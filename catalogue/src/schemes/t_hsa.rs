@@ -1,0 +1,69 @@
+//! Threshold Hough spiker (T-HSA).
+
+#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
+
+use spikewire::Start;
+use spikewire::rate::{Scale, Shape, Taps, ThresholdHough};
+
+use crate::plain::Plain;
+use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
+
+/// Threshold Hough spiker.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme;
+
+impl Entry for Scheme {
+    const INFO: Info = Info {
+        name: "t-hsa",
+        title: "T-HSA",
+        words: "threshold Hough spiker (T-HSA)",
+        good_for: "the nearest reconstruction of the rate codes at the paper's settings",
+        is_signed: false,
+        has_first_value: false,
+        parameters: &[
+            Parameter::filter("triang:15"),
+            Parameter::SHIFT,
+            Parameter::threshold("by how much the signal may fall short of the filter in all, 0 or more", 0.85),
+        ],
+    };
+
+    fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let scale = Scale::Peak(channel.fraction(0.1));
+        let taps = Taps::<_, 15>::try_shaped(Shape::Triangular, scale)?;
+        let scheme = ThresholdHough::try_new(taps, channel.fraction(0.085))?;
+        let scheme = scheme.try_with_shift(channel.min)?;
+        visitor.visit("t-hsa", Self::INFO.words, &scheme, ThresholdHough::START)
+    }
+
+    fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let threshold = signal.part(0.85);
+        let taps = Taps::<_, 15>::try_triangular(signal.part(1.0))?;
+        let scheme = ThresholdHough::try_new(taps, threshold)?.try_with_shift(signal.min)?;
+        let taps = scheme.taps().as_array();
+        visitor.rate("t-hsa-15", &scheme, &scheme, taps, signal.min, |signal, spikes| {
+            transcribed(signal, taps, threshold, spikes);
+        })
+    }
+}
+
+/// The paper's algorithm 4, on the shifted input.
+#[inline(never)]
+pub fn transcribed<S: Plain>(input: &mut [S], filter: &[S], threshold: S, spikes: &mut [i8]) {
+    for i in 0..input.len() {
+        let mut error = S::Wide::default();
+        for j in 0..filter.len() {
+            if i + j < input.len() && input[i + j] < filter[j] {
+                error += filter[j].into() - input[i + j].into();
+            }
+        }
+        spikes[i] = 0;
+        if error <= threshold.into() {
+            spikes[i] = 1;
+            for j in 0..filter.len() {
+                if i + j < input.len() {
+                    input[i + j] = S::narrow(input[i + j].into() - filter[j].into());
+                }
+            }
+        }
+    }
+}
