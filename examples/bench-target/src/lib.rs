@@ -11,7 +11,6 @@ mod codecs;
 #[cfg(any())]
 mod events;
 mod measure;
-mod plain;
 mod signal;
 
 use core::fmt::{self, Write};

@@ -9,7 +9,7 @@ use fixed::{
 use rand_pcg::{Pcg32, rand_core::Rng};
 use spikewire::Sample;
 
-use crate::plain::Plain;
+use catalogue::plain::Plain;
 
 /// Samples of either signal.
 pub const LENGTH: usize = 2000;
