@@ -46,50 +46,60 @@
 //! | `rand` | probabilistic spiking, from any `rand_core` generator |
 //! | `defmt` | `defmt::Format` on public data |
 //! | `serde` | `Serialize` on public data, and `Deserialize` where nothing has to be checked |
-//! | `queue` | [`sink`]: a bounded queue of events from an interrupt to main |
+//! | `queue` | bounded queues from interrupts to main |
 //! | `link` | `link`: framed events over any byte transport |
-//! | `embedded-hal` | [`sink`]: SPI; `chip`: neuromorphic chips |
-//! | `async` | [`sink`]: asynchronous SPI |
-//! | `embedded-io` | [`sink`]: UART and USB serial |
+//! | `embedded-hal` | [`out`]: SPI; `chip`: neuromorphic chips |
+//! | `async` | [`out`]: asynchronous SPI; waiting on a queue |
+//! | `embedded-io` | [`out`]: UART and USB serial |
 #![no_std]
 #![forbid(unsafe_code)]
 
 #[cfg(test)]
 extern crate std;
 
-mod bank;
-mod bins;
-mod bytes;
 mod calibrate;
 #[cfg(feature = "embedded-hal")]
 pub mod chip;
 mod codec;
 mod curve;
 mod error;
-pub mod format;
-#[cfg(feature = "link")]
-pub mod link;
+mod event;
+mod num {
+    mod kind;
+    pub use kind::SampleKind;
+}
+pub mod out;
 pub mod population;
 pub mod rate;
-mod readout;
 mod sample;
+mod scheme {
+    pub(crate) mod code;
+}
 #[cfg(feature = "serde")]
 mod serial;
-pub mod sink;
-mod source;
-mod spike;
 pub mod temporal;
-pub mod tick;
+mod wire;
 
-pub use bank::Bank;
-pub use bins::{Bins, StepOver};
+use scheme::code as spike;
+
 pub use calibrate::{Calibration, Differences};
 pub use codec::{Decoder, Encoder, Output, Scheme};
 pub use error::ConfigError;
-pub use readout::{Assemble, Readout};
+pub use event::{
+    Assemble, AtMost, Bank, Bins, Event, FromEvents, FromItems, Item, Keyframe, Put, Raw, Readout,
+    Source, StepOver, Taken, Tick,
+};
+#[cfg(feature = "queue")]
+pub use event::{
+    Consumer, EventQueue, Overflow, Queue, QueueView, Refused, SpscConsumer, SpscProducer,
+    SpscQueue,
+};
+pub use num::SampleKind;
 pub use sample::Sample;
-pub use source::{EventSource, Mark};
-pub use spike::{Code, Event, Firing, Polarity, Spike};
+pub use scheme::code::{Code, Firing, Polarity, Spike};
+pub use wire::format;
+#[cfg(feature = "link")]
+pub use wire::link;
 
 /// The README's code, for doctests alone.
 #[cfg(all(doctest, feature = "fixed", feature = "queue", feature = "link"))]

@@ -1,0 +1,19 @@
+//! Address events: which neuron fired, when, and in which direction.
+
+use super::Tick;
+use crate::Polarity;
+
+/// An address event: which neuron fired, when, and in which direction.
+///
+/// Eight bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Event {
+    /// When.
+    pub tick: Tick,
+    /// The neuron. A [`Bank`](crate::Bank) numbers its channels' neurons one after the other.
+    pub address: u16,
+    /// The direction.
+    pub polarity: Polarity,
+}
