@@ -57,36 +57,20 @@
 #[cfg(test)]
 extern crate std;
 
-mod calibrate;
 #[cfg(feature = "embedded-hal")]
 pub mod chip;
-mod codec;
-mod curve;
 mod error;
 mod event;
-mod num {
-    mod kind;
-    pub use kind::SampleKind;
-}
+mod num;
 pub mod out;
-pub mod population;
-pub mod rate;
-mod sample;
-mod scheme {
-    pub(crate) mod code;
-}
+mod scheme;
 #[cfg(feature = "serde")]
 mod serial;
-pub mod temporal;
 mod wire;
 
-use scheme::code as spike;
-
-pub use calibrate::{Calibration, Differences};
-pub use codec::{Decoder, Encoder, Output, Scheme};
 pub use error::ConfigError;
 pub use event::{
-    Assemble, AtMost, Bank, Bins, Event, FromEvents, FromItems, Item, Keyframe, Put, Raw, Readout,
+    AtMost, Bank, Bins, Event, FromEvents, FromItems, Item, Keyframe, Put, Readout, Schemes,
     Source, StepOver, Taken, Tick,
 };
 #[cfg(feature = "queue")]
@@ -94,9 +78,11 @@ pub use event::{
     Consumer, EventQueue, Overflow, Queue, QueueView, Refused, SpscConsumer, SpscProducer,
     SpscQueue,
 };
-pub use num::SampleKind;
-pub use sample::Sample;
-pub use scheme::code::{Code, Firing, Polarity, Spike};
+pub use num::{Sample, SampleKind};
+pub use scheme::{
+    Calibration, Code, Decoder, Differences, Encoder, Firing, Output, Polarity, Recovery, Scheme,
+    Spike, Start, population, rate, temporal,
+};
 pub use wire::format;
 #[cfg(feature = "link")]
 pub use wire::link;

@@ -17,3 +17,10 @@ pub struct Event {
     /// The direction.
     pub polarity: Polarity,
 }
+
+#[cfg(feature = "link")]
+impl Event {
+    /// What fills a buffer.
+    pub(crate) const ZERO: Self =
+        Self { tick: Tick::from_micros(0), address: 0, polarity: Polarity::Down };
+}

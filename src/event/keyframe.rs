@@ -1,7 +1,7 @@
 //! Keyframes: what the decoder of a channel should hold at one place among the events.
 
-use super::{Raw, Tick};
-use crate::SampleKind;
+use super::Tick;
+use crate::{Sample, SampleKind};
 
 /// The value that the decoder of an address should hold, after all events before the keyframe and
 /// before all events behind it.
@@ -32,12 +32,12 @@ pub struct Keyframe {
 
 impl Keyframe {
     /// The keyframe of an address whose decoder should hold this sample.
-    pub fn new<S: Raw>(tick: Tick, address: u16, sample: S) -> Self {
+    pub fn new<S: Sample>(tick: Tick, address: u16, sample: S) -> Self {
         Self { tick, address, kind: S::KIND, bits: sample.to_bits32() }
     }
 
     /// The sample; `None` if it has another type than `S`.
-    pub fn value<S: Raw>(&self) -> Option<S> {
+    pub fn value<S: Sample>(&self) -> Option<S> {
         (self.kind == S::KIND).then(|| S::from_bits32(self.bits))
     }
 }

@@ -2,7 +2,6 @@
 //! values).
 
 mod address;
-mod assemble;
 mod bank;
 mod bins;
 mod item;
@@ -10,13 +9,12 @@ mod keyframe;
 mod put;
 #[cfg(feature = "queue")]
 mod queue;
-mod raw;
 mod readout;
+mod schemes;
 mod source;
 mod tick;
 
 pub use address::Event;
-pub use assemble::Assemble;
 pub use bank::Bank;
 pub use bins::{Bins, StepOver};
 pub use item::{Item, Taken};
@@ -27,7 +25,9 @@ pub use queue::{
     Consumer, EventQueue, Overflow, Queue, QueueView, Refused, SpscConsumer, SpscProducer,
     SpscQueue,
 };
-pub use raw::Raw;
+pub(crate) use readout::Addresses;
 pub use readout::Readout;
+pub use schemes::Schemes;
+pub(crate) use schemes::{CodeOf, DecoderStateOf, SampleOf};
 pub use source::{AtMost, FromEvents, FromItems, Source};
 pub use tick::Tick;

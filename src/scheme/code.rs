@@ -1,4 +1,6 @@
-//! What a sample becomes: a spike, or the neurons of a population that fire.
+//! What a sample becomes: a spike, or the neurons that fire.
+
+use core::cmp::Ordering;
 
 /// What a step or rate code emits for one sample.
 ///
@@ -36,9 +38,19 @@ impl Spike {
             Self::None => None,
         }
     }
+
+    /// Up for a signal above its band, down for one below.
+    #[inline]
+    pub(crate) const fn from_side(side: Ordering) -> Self {
+        match side {
+            Ordering::Greater => Self::Up,
+            Ordering::Equal => Self::None,
+            Ordering::Less => Self::Down,
+        }
+    }
 }
 
-/// The direction of a spike.
+/// The direction of a spike that did fire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -81,6 +93,13 @@ pub trait Code: Copy {
 
     /// The neurons that fire, by rising index.
     fn firings(&self) -> impl Iterator<Item = Firing>;
+
+    /// The code of these firings, which come in any order.
+    ///
+    /// A bank's own events give back its codes. A chip may also fire too often, or neurons that no encoder
+    /// would have fired together; each code says what it makes of that. Neurons and slots beyond those of
+    /// the code are left out.
+    fn assemble(firings: impl Iterator<Item = Firing>) -> Self;
 }
 
 impl Code for Spike {
@@ -88,5 +107,44 @@ impl Code for Spike {
 
     fn firings(&self) -> impl Iterator<Item = Firing> {
         self.polarity().map(|polarity| Firing { neuron: 0, slot: 0, polarity }).into_iter()
+    }
+
+    /// The direction of most spikes; none if as many went up as down.
+    fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
+        let balance =
+            firings.filter(|firing| firing.neuron == 0).fold(0_i32, |balance, firing| match firing
+                .polarity
+            {
+                Polarity::Up => balance.saturating_add(1),
+                Polarity::Down => balance.saturating_sub(1),
+            });
+        Self::from_side(balance.cmp(&0))
+    }
+}
+
+/// What an encoder returns for a sample: a code, or nothing yet.
+pub trait Output: Copy {
+    /// The code within, which a decoder takes.
+    type Code: Code;
+
+    /// The code, or `None` while the encoder still waits for its look-ahead.
+    fn code(self) -> Option<Self::Code>;
+}
+
+impl Output for Spike {
+    type Code = Self;
+
+    fn code(self) -> Option<Self> {
+        Some(self)
+    }
+}
+
+/// Rate codes: `None` until the first window is full, then the spike of the sample
+/// [`LATENCY`](crate::Scheme::LATENCY) ago.
+impl Output for Option<Spike> {
+    type Code = Spike;
+
+    fn code(self) -> Option<Spike> {
+        self
     }
 }

@@ -153,7 +153,7 @@ impl<'a> FrameView<'a> {
 
 /// The bytes of a keyframe: its address and its sample.
 pub(super) const fn keyframe_size(kind: SampleKind) -> usize {
-    2 + kind.bytes()
+    2 + kind.size()
 }
 
 /// The keyframes with their sample type, and the events.

@@ -54,12 +54,12 @@
 //! ```
 //! use spikewire::{Bank, EventQueue, Overflow, Tick, link::*, temporal::StepForward};
 //!
-//! const GYRO: StepForward<f32> = StepForward::<f32>::checked(0.1);
-//! let mut bank = Bank::<_, 3>::new(GYRO);
+//! static GYRO: StepForward<f32> = StepForward::new(0.1);
+//! let mut bank = Bank::<_, 3>::new(&GYRO);
 //! static EVENTS: EventQueue<64> = EventQueue::new(Overflow::DropOldest);
 //! let mut transmitter = Transmitter::new(Coding::for_channels(3, 1_000), 1);
 //! let mut reader = Reader::<MAX_FRAME>::new();
-//! let mut receiver = Receiver::<_, 3>::new(GYRO);
+//! let mut receiver = Receiver::<_, 3>::new(&GYRO);
 //!
 //! // In the interrupt:
 //! for (micros, rate) in [(1_000, 0.0), (2_000, 0.3), (3_000, 0.35)] {

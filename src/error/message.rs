@@ -1,0 +1,156 @@
+//! The words of an error in a constant, where formatting is not to be had.
+
+use super::ConfigError;
+
+/// The value, or a panic that names the parameter and what is allowed: in a constant it fails the build.
+///
+/// # Panics
+/// On an error.
+#[track_caller]
+pub(crate) const fn unwrap<T: Copy>(result: Result<T, ConfigError>) -> T {
+    match result {
+        Ok(value) => value,
+        Err(error) => fail(error),
+    }
+}
+
+#[cold]
+#[track_caller]
+const fn fail(error: ConfigError) -> ! {
+    let message = Message::EMPTY;
+    let message = match error {
+        ConfigError::NotPositive { parameter, .. } => {
+            message.text(parameter).text(" must be above 0 and finite")
+        }
+        ConfigError::Negative { parameter, .. } => {
+            message.text(parameter).text(" must be 0 or more and finite")
+        }
+        ConfigError::NotFinite { parameter, .. } => message.text(parameter).text(" must be finite"),
+        ConfigError::OutOfRange { parameter, min, max, .. } => {
+            message.text(parameter).text(" must lie in ").number(min).text("..=").number(max)
+        }
+        ConfigError::NotRising { parameter, index, .. } => {
+            message.text(parameter).text(" must rise strictly; see number ").integer(index as u64)
+        }
+        ConfigError::AllZero { parameter } => {
+            message.text(parameter).text(" are all 0; at least one must not be")
+        }
+        ConfigError::TooFewSamples { needed, .. } => {
+            message.text("a calibration needs samples, at least ").integer(needed as u64)
+        }
+    };
+    panic!("{}", message.as_str())
+}
+
+/// Text of up to 96 bytes; what is longer is cut.
+struct Message {
+    bytes: [u8; 96],
+    length: usize,
+}
+
+// Constants have no iterators, and every index is compared first.
+#[allow(clippy::indexing_slicing)]
+impl Message {
+    const EMPTY: Self = Self { bytes: [0; 96], length: 0 };
+
+    const fn byte(mut self, byte: u8) -> Self {
+        if self.length < self.bytes.len() {
+            self.bytes[self.length] = byte;
+            self.length += 1;
+        }
+        self
+    }
+
+    const fn text(mut self, text: &str) -> Self {
+        let mut i = 0;
+        while i < text.len() {
+            self = self.byte(text.as_bytes()[i]);
+            i += 1;
+        }
+        self
+    }
+
+    const fn integer(mut self, value: u64) -> Self {
+        let mut place = 1;
+        while value / place >= 10 {
+            place *= 10;
+        }
+        while place > 0 {
+            self = self.byte(b'0' + (value / place % 10) as u8);
+            place /= 10;
+        }
+        self
+    }
+
+    /// Up to four digits, with a power of ten where the number is large or small.
+    const fn number(mut self, value: f32) -> Self {
+        if value < 0.0 {
+            return self.byte(b'-').number(-value);
+        }
+        if value <= 1e6 && value as u32 as f32 == value {
+            return self.integer(value as u64);
+        }
+        let mut mantissa = value as f64;
+        let mut exponent = 0;
+        while mantissa >= 9.9995 {
+            mantissa /= 10.0;
+            exponent += 1;
+        }
+        while mantissa < 0.999_95 {
+            mantissa *= 10.0;
+            exponent -= 1;
+        }
+        let mut digits = (mantissa * 1e3 + 0.5) as u64;
+        let mut places = 3;
+        while places > 0 && digits % 10 == 0 {
+            digits /= 10;
+            places -= 1;
+        }
+        let one = 10_u64.pow(places);
+        self = self.integer(digits / one);
+        if places > 0 {
+            self = self.byte(b'.');
+            let rest = digits % one;
+            let mut place = one / 10;
+            while place > 0 {
+                self = self.byte(b'0' + (rest / place % 10) as u8);
+                place /= 10;
+            }
+        }
+        match exponent {
+            0 => self,
+            1.. => self.byte(b'e').integer(exponent as u64),
+            _ => self.byte(b'e').byte(b'-').integer(-exponent as u64),
+        }
+    }
+
+    const fn as_str(&self) -> &str {
+        let (text, _) = self.bytes.split_at(self.length);
+        match core::str::from_utf8(text) {
+            Ok(text) => text,
+            Err(_) => "a parameter is out of its range",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Message;
+
+    #[test]
+    fn numbers() {
+        for (value, text) in [
+            (0.0, "0"),
+            (-3.0, "-3"),
+            (1e6, "1000000"),
+            (1e31, "1e31"),
+            (-1e31, "-1e31"),
+            (0.5, "5e-1"),
+            (1.0 / 16_384.0, "6.104e-5"),
+            (4.0 - 1.0 / 16_384.0, "4"),
+            (2.25, "2.25"),
+        ] {
+            assert_eq!(Message::EMPTY.number(value).as_str(), text);
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! What can be wrong with parameters, said once, when a scheme is built.
+
+mod message;
+
+use core::fmt;
+
+pub(crate) use message::unwrap;
+
+/// A parameter that makes no sense.
+///
+/// Every variant names the parameter, what it was and what is allowed. Values are shown as `f32`,
+/// whatever the sample type.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub enum ConfigError {
+    /// The value must be above 0 and finite.
+    NotPositive {
+        /// Which parameter.
+        parameter: &'static str,
+        /// What it was.
+        value: f32,
+    },
+    /// The value must be 0 or more and finite.
+    Negative {
+        /// Which parameter.
+        parameter: &'static str,
+        /// What it was.
+        value: f32,
+    },
+    /// The value must be finite.
+    NotFinite {
+        /// Which parameter.
+        parameter: &'static str,
+        /// What it was.
+        value: f32,
+    },
+    /// The value must lie in `min..=max`.
+    OutOfRange {
+        /// Which parameter.
+        parameter: &'static str,
+        /// What it was.
+        value: f32,
+        /// The smallest value allowed.
+        min: f32,
+        /// The largest value allowed.
+        max: f32,
+    },
+    /// A list must rise strictly, and `values[index]` does not exceed its predecessor.
+    NotRising {
+        /// Which parameter.
+        parameter: &'static str,
+        /// The index of the value that does not rise.
+        index: usize,
+        /// That value.
+        value: f32,
+        /// The value before it, which it must exceed.
+        previous: f32,
+    },
+    /// All taps are 0: the filter would fire without end and decode to nothing.
+    AllZero {
+        /// Which parameter.
+        parameter: &'static str,
+    },
+    /// A calibration has seen too few samples.
+    TooFewSamples {
+        /// How many it has seen.
+        seen: u32,
+        /// How many it needs.
+        needed: u32,
+    },
+}
+
+impl fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::NotPositive { parameter, value } => {
+                write!(f, "{parameter} {value} must be above 0 and finite")
+            }
+            Self::Negative { parameter, value } => {
+                write!(f, "{parameter} {value} must be 0 or more and finite")
+            }
+            Self::NotFinite { parameter, value } => {
+                write!(f, "{parameter} {value} must be finite")
+            }
+            Self::OutOfRange { parameter, value, min, max } => {
+                write!(f, "{parameter} {value} must lie in {min}..={max}")
+            }
+            Self::NotRising { parameter, index, value, previous } => write!(
+                f,
+                "{parameter} must rise strictly, but number {index} is {value} after {previous}"
+            ),
+            Self::AllZero { parameter } => {
+                write!(f, "{parameter} are all 0; at least one must not be")
+            }
+            Self::TooFewSamples { seen, needed } => {
+                write!(f, "the calibration has seen {seen} samples and needs at least {needed}")
+            }
+        }
+    }
+}
+
+impl core::error::Error for ConfigError {}
+
+/// Above 0 and finite.
+pub(crate) const fn positive(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
+    if value > 0.0 && value.is_finite() {
+        Ok(())
+    } else {
+        Err(ConfigError::NotPositive { parameter, value: value as f32 })
+    }
+}
+
+/// No finite `f32` reaches infinity by a step of this or less: half the last place of the largest is
+/// a little more.
+pub(crate) const LARGEST_STEP: f32 = 1e31;
+
+/// Above 0, and at most the largest step.
+pub(crate) const fn step(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
+    match positive(parameter, value) {
+        Ok(()) => within(parameter, value, f32::from_bits(1), LARGEST_STEP),
+        error => error,
+    }
+}
+
+/// Finite, and within the largest step of 0.
+pub(crate) const fn offset(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
+    match finite(parameter, value) {
+        Ok(()) => within(parameter, value, -LARGEST_STEP, LARGEST_STEP),
+        error => error,
+    }
+}
+
+/// From `min` to `max`.
+pub(crate) const fn within(
+    parameter: &'static str,
+    value: f64,
+    min: f32,
+    max: f32,
+) -> Result<(), ConfigError> {
+    if value >= min as f64 && value <= max as f64 {
+        Ok(())
+    } else {
+        Err(ConfigError::OutOfRange { parameter, value: value as f32, min, max })
+    }
+}
+
+/// The first of so many addresses, which all have 16 bits.
+pub(crate) const fn first_address(value: u16, addresses: usize) -> Result<(), ConfigError> {
+    within("first address", value as f64, 0.0, ((1 << 16) - addresses) as f32)
+}
+
+/// 0 or more and finite.
+pub(crate) const fn not_negative(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
+    if value >= 0.0 && value.is_finite() {
+        Ok(())
+    } else {
+        Err(ConfigError::Negative { parameter, value: value as f32 })
+    }
+}
+
+/// The factor of a multiplicative BSA, which fixed point keeps in 2 bits and 14 of fraction.
+pub(crate) const fn ratio(parameter: &'static str, value: f32) -> Result<(), ConfigError> {
+    const STEP: f32 = 1.0 / 16_384.0;
+    const MAX: f32 = 4.0 - STEP;
+    within(parameter, value as f64, STEP, MAX)
+}
+
+/// Finite.
+pub(crate) const fn finite(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
+    if value.is_finite() {
+        Ok(())
+    } else {
+        Err(ConfigError::NotFinite { parameter, value: value as f32 })
+    }
+}

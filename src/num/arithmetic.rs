@@ -1,0 +1,126 @@
+//! The arithmetic of the step codes.
+
+use core::cmp::Ordering;
+
+/// Steps and comparisons: rounded once in `f32`, saturating and exact in fixed point.
+pub(crate) trait Arithmetic: Sized {
+    const ZERO: Self;
+
+    fn is_finite(&self) -> bool;
+
+    /// Takes up a sample, so that whether all of a slice were finite can be asked once at its end: a
+    /// sum in `f32`, which no later sample makes finite again; nothing in fixed point.
+    fn taint(self, sample: Self) -> Self;
+
+    /// `self + step`.
+    fn plus(self, step: Self) -> Self;
+
+    /// `self - step`.
+    fn minus(self, step: Self) -> Self;
+
+    /// Whether the difference from `previous` is above the threshold, or below its negative.
+    fn step(self, previous: Self, threshold: Self) -> Ordering;
+}
+
+impl Arithmetic for f32 {
+    const ZERO: Self = 0.0;
+
+    #[inline]
+    fn is_finite(&self) -> bool {
+        f32::is_finite(*self)
+    }
+
+    #[inline]
+    fn taint(self, sample: Self) -> Self {
+        self + sample
+    }
+
+    #[inline]
+    fn plus(self, step: Self) -> Self {
+        self + step
+    }
+
+    #[inline]
+    fn minus(self, step: Self) -> Self {
+        self - step
+    }
+
+    #[inline]
+    fn step(self, previous: Self, threshold: Self) -> Ordering {
+        beyond(self - previous, magnitude(threshold))
+    }
+}
+
+/// In the order of the values without their sign.
+#[inline]
+pub(super) const fn magnitude(value: f32) -> u32 {
+    value.to_bits() << 1
+}
+
+/// Whether a difference that is not NaN is above a threshold, given as its magnitude, or below its negative.
+#[inline]
+pub(super) fn beyond(difference: f32, threshold: u32) -> Ordering {
+    if magnitude(difference) <= threshold {
+        Ordering::Equal
+    } else if difference.is_sign_positive() {
+        Ordering::Greater
+    } else {
+        Ordering::Less
+    }
+}
+
+/// Calls a macro once for each integer type with its generics, its raw integer, and the conversions
+/// between the two.
+macro_rules! for_each_integer {
+    ($callback:ident) => {
+        $callback! { [] i16, i16, core::convert::identity, core::convert::identity }
+        #[cfg(feature = "fixed")]
+        $callback! { [Frac: fixed::types::extra::LeEqU16 + 'static] fixed::FixedI16<Frac>, i16,
+        fixed::FixedI16::to_bits, fixed::FixedI16::from_bits }
+        #[cfg(feature = "fixed")]
+        $callback! { [Frac: fixed::types::extra::LeEqU32 + 'static] fixed::FixedI32<Frac>, i32,
+        fixed::FixedI32::to_bits, fixed::FixedI32::from_bits }
+    };
+}
+pub(super) use for_each_integer;
+
+macro_rules! integer_arithmetic {
+    ([$($generics:tt)*] $sample:ty, $bits:ty, $to_bits:path, $from_bits:path) => {
+        impl<$($generics)*> Arithmetic for $sample {
+            const ZERO: Self = $from_bits(0);
+
+            #[inline]
+            fn is_finite(&self) -> bool {
+                true
+            }
+
+            #[inline]
+            fn taint(self, _: Self) -> Self {
+                self
+            }
+
+            #[inline]
+            fn plus(self, step: Self) -> Self {
+                self.saturating_add(step)
+            }
+
+            #[inline]
+            fn minus(self, step: Self) -> Self {
+                self.saturating_sub(step)
+            }
+
+            // No sample lies beyond a saturated bound, nor would it beyond the exact one.
+            #[inline]
+            fn step(self, previous: Self, threshold: Self) -> Ordering {
+                if self > previous.saturating_add(threshold) {
+                    Ordering::Greater
+                } else if self < previous.saturating_sub(threshold) {
+                    Ordering::Less
+                } else {
+                    Ordering::Equal
+                }
+            }
+        }
+    };
+}
+for_each_integer!(integer_arithmetic);

@@ -1,0 +1,117 @@
+//! Samples to doubles and back, also in constants.
+//!
+//! Trait methods cannot be called in constants. These functions are generic all the same: they look at the
+//! sample's bytes, which is safe for plain old data, and at its [`SampleKind`].
+
+use bytemuck::{Pod, must_cast_slice};
+
+use super::{Sample, SampleKind};
+
+/// The value as a double, exactly.
+pub(crate) const fn to_f64<S: Sample>(value: S) -> f64 {
+    let values = [value];
+    let bytes: &[u8] = must_cast_slice(&values);
+    match (S::KIND, bytes) {
+        (SampleKind::F32, &[a, b, c, d]) => f32::from_ne_bytes([a, b, c, d]) as f64,
+        (SampleKind::Fixed16 { fraction }, &[a, b]) => {
+            i16::from_ne_bytes([a, b]) as f64 / power_of_two(fraction)
+        }
+        (SampleKind::Fixed32 { fraction }, &[a, b, c, d]) => {
+            i32::from_ne_bytes([a, b, c, d]) as f64 / power_of_two(fraction)
+        }
+        _ => 0.0,
+    }
+}
+
+/// The value in units of the type's last place, exactly; as it is in `f32`.
+pub(crate) const fn units<S: Sample>(value: S) -> f64 {
+    match S::KIND {
+        SampleKind::F32 => to_f64(value),
+        SampleKind::Fixed16 { fraction } | SampleKind::Fixed32 { fraction } => {
+            to_f64(value) * power_of_two(fraction)
+        }
+    }
+}
+
+/// The nearest value of the type, halves upwards, saturating; NaN gives 0 in fixed point.
+pub(crate) const fn from_f64<S: Sample>(value: f64) -> S {
+    match S::KIND {
+        SampleKind::F32 => word((value as f32).to_bits() as u64),
+        SampleKind::Fixed16 { fraction } => integer(round(value * power_of_two(fraction))),
+        SampleKind::Fixed32 { fraction } => integer(round(value * power_of_two(fraction))),
+    }
+}
+
+/// The largest value of the type that is not above `value`, saturating.
+pub(crate) const fn floor_from_f64<S: Sample>(value: f64) -> S {
+    match S::KIND {
+        SampleKind::F32 => {
+            let nearest = value as f32;
+            let floor = if nearest as f64 > value { nearest.next_down() } else { nearest };
+            word(floor.to_bits() as u64)
+        }
+        SampleKind::Fixed16 { fraction } => integer(floor(value * power_of_two(fraction))),
+        SampleKind::Fixed32 { fraction } => integer(floor(value * power_of_two(fraction))),
+    }
+}
+
+/// The number of 2, 4 or 8 bytes with these low bits.
+pub(crate) const fn word<T: Pod>(bits: u64) -> T {
+    // Wherever the machine keeps the low half of a word, it is there.
+    let filled = match size_of::<T>() {
+        2 => {
+            let half = bits & 0xffff;
+            half | half << 16 | half << 32 | half << 48
+        }
+        4 => {
+            let half = bits & 0xffff_ffff;
+            half | half << 32
+        }
+        _ => bits,
+    };
+    let words = [filled];
+    let values: &[T] = must_cast_slice(&words);
+    match values {
+        [first, ..] => *first,
+        [] => panic!("a number has no more than 8 bytes"),
+    }
+}
+
+/// The sample of this raw integer, saturating.
+const fn integer<S: Sample>(value: i64) -> S {
+    let (min, max) = match S::KIND {
+        SampleKind::Fixed16 { .. } => (i16::MIN as i64, i16::MAX as i64),
+        _ => (i32::MIN as i64, i32::MAX as i64),
+    };
+    let value = if value < min {
+        min
+    } else if value > max {
+        max
+    } else {
+        value
+    };
+    word(value as u64)
+}
+
+const fn power_of_two(exponent: u8) -> f64 {
+    (1_u64 << exponent) as f64
+}
+
+/// The nearest integer, halves upwards, saturating.
+const fn round(value: f64) -> i64 {
+    let towards_zero = value as i64;
+    let rest = value - towards_zero as f64;
+    if rest >= 0.5 {
+        towards_zero.saturating_add(1)
+    } else if rest < -0.5 {
+        towards_zero.saturating_sub(1)
+    } else {
+        towards_zero
+    }
+}
+
+/// The largest integer that is not above `value`, saturating.
+pub(super) const fn floor(value: f64) -> i64 {
+    let towards_zero = value as i64;
+    if (towards_zero as f64) > value { towards_zero.saturating_sub(1) } else { towards_zero }
+}

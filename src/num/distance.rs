@@ -1,0 +1,250 @@
+//! Arithmetic of the population codes: cells, distances and means.
+
+use bytemuck::Pod;
+
+use super::convert::{floor, units};
+use super::{Cells, Sample, SampleKind, word};
+
+/// What a sample type computes of centres and distances.
+pub(crate) trait Spaced: Sized {
+    /// A distance from a centre, in tables: the bits of an `f32`, which have its order, or an integer in
+    /// units of the type's last place over `2 (M - 2)`, in which every centre is whole.
+    type Reach: Distance<Self> + Pod + core::fmt::Debug;
+    /// A distance of values near the range.
+    type Short: Distance<Self>;
+    /// Centres times levels, summed.
+    type Weighted: Default;
+
+    /// Whether every distance of this value fits [`Short`](Self::Short); `near` is from [`near`].
+    fn is_near(&self, near: [Self; 2]) -> bool;
+
+    /// Whether a multiplication is quicker than a search: not where floats have no unit.
+    const HAS_CELLS: bool;
+
+    fn cell(self, cells: Cells) -> usize;
+
+    /// Whether a finite value exceeds an edge, by whole numbers: quick where floats have no unit.
+    fn is_beyond(&self, edge: Self) -> bool;
+
+    fn weigh(sum: Self::Weighted, centre: Self, neuron: usize, level: u32) -> Self::Weighted;
+
+    fn mean(sum: Self::Weighted, levels: u32, neurons: usize, min: Self, max: Self) -> Self;
+}
+
+/// How far a value is from a centre.
+pub(crate) trait Distance<S: Spaced>: Copy + PartialOrd {
+    fn between(value: S, centre: S, neuron: usize, neurons: usize, min: S, max: S) -> Self;
+
+    fn of(reach: S::Reach) -> Self;
+}
+
+/// Even cells from an origin, both in [`units`].
+pub(crate) const fn cells<S: Sample>(origin: f64, width: f64, count: usize) -> Cells {
+    match S::KIND {
+        SampleKind::F32 => Cells::of_floats(origin, width),
+        _ => Cells::of_integers(origin, width, count),
+    }
+}
+
+/// The cell of a value.
+pub(crate) const fn cell<S: Sample>(cells: Cells, value: S) -> usize {
+    match S::KIND {
+        SampleKind::F32 => cells.of_float(units(value) as f32),
+        _ => cells.of_integer(units(value) as i32),
+    }
+}
+
+/// A distance in [`units`] as tables have it, rounded down in fixed point.
+pub(crate) const fn reach<S: Sample>(distance: f64, neurons: usize) -> S::Reach {
+    match S::KIND {
+        SampleKind::F32 => word((distance as f32).to_bits() as u64),
+        SampleKind::Fixed16 { .. } => word((distance * parts(neurons)) as i32 as u64),
+        SampleKind::Fixed32 { .. } => word((distance * parts(neurons)) as i64 as u64),
+    }
+}
+
+/// A value not below the largest within a reach of a centre, both in [`units`]; in `f32` whose rounded
+/// distance may be.
+pub(crate) const fn top<S: Sample>(centre: f64, reach: f64) -> S {
+    let bits = match S::KIND {
+        SampleKind::F32 => {
+            let centre = centre as f32 as f64;
+            ((centre + reach * (1.0 + 1e-6)) as f32).next_up().to_bits() as u64
+        }
+        SampleKind::Fixed16 { .. } => floor(centre + reach + 1e-3) as i16 as u64,
+        SampleKind::Fixed32 { .. } => floor(centre + reach + 1e-3) as i32 as u64,
+    };
+    word(bits)
+}
+
+/// The lowest and the highest value whose distances from every centre fit 32 bits: an empty range, if
+/// `reach`, the largest of the table, does not. All in [`units`]; only 32-bit fixed point asks.
+pub(crate) const fn near<S: Sample>(min: f64, max: f64, neurons: usize, reach: f64) -> [S; 2] {
+    let parts = parts(neurons);
+    let room = (i32::MAX as f64 - 2.0 * neurons as f64 * (max - min)) / parts - 1.0;
+    let [low, high] = if reach * parts < i32::MAX as f64 && room > 0.0 {
+        [(min - room) as i32, (min + room) as i32]
+    } else {
+        [i32::MAX, i32::MIN]
+    };
+    [word(low as u64), word(high as u64)]
+}
+
+/// Into how many parts a centre divides the unit.
+const fn parts(neurons: usize) -> f64 {
+    2.0 * (neurons as f64 - 2.0)
+}
+
+impl Spaced for f32 {
+    type Reach = u32;
+    type Short = u32;
+    type Weighted = f32;
+
+    #[inline]
+    fn is_near(&self, _: [f32; 2]) -> bool {
+        true
+    }
+
+    const HAS_CELLS: bool = !cfg!(target_abi = "eabi");
+
+    #[inline]
+    fn cell(self, cells: Cells) -> usize {
+        cells.of_float(self)
+    }
+
+    // No edge is -0: it is a sum or a float below one.
+    #[inline]
+    fn is_beyond(&self, edge: f32) -> bool {
+        self.total_cmp(&edge).is_gt()
+    }
+
+    #[inline]
+    fn weigh(sum: f32, centre: f32, _: usize, level: u32) -> f32 {
+        sum + centre * level as f32
+    }
+
+    #[inline]
+    fn mean(sum: f32, levels: u32, _: usize, _: f32, _: f32) -> f32 {
+        sum / levels as f32
+    }
+}
+
+impl Distance<f32> for u32 {
+    #[inline]
+    fn between(value: f32, centre: f32, _: usize, _: usize, _: f32, _: f32) -> u32 {
+        (value - centre).abs().to_bits()
+    }
+
+    #[inline]
+    fn of(reach: u32) -> u32 {
+        reach
+    }
+}
+
+macro_rules! integer {
+    ([$($generics:tt)*] $sample:ty, $bits:ty, $reach:ty, $is_near:expr, $to_bits:path, $from_bits:path) => {
+        impl<$($generics)*> Spaced for $sample {
+            type Reach = $reach;
+            type Short = i32;
+            type Weighted = i32;
+
+                    #[inline]
+            fn is_near(&self, near: [Self; 2]) -> bool {
+                let is_near: fn($bits, [$bits; 2]) -> bool = $is_near;
+                is_near($to_bits(*self), near.map($to_bits))
+            }
+
+            const HAS_CELLS: bool = true;
+
+            #[inline]
+            fn cell(self, cells: Cells) -> usize {
+                cells.of_integer($to_bits(self).into())
+            }
+
+            #[inline]
+            fn is_beyond(&self, edge: Self) -> bool {
+                *self > edge
+            }
+
+            // At most 1024 neurons of 256 levels: neither this nor the sum of levels leaves 30 bits.
+            #[inline]
+            fn weigh(sum: i32, _: Self, neuron: usize, level: u32) -> i32 {
+                sum + (2 * neuron as i32 - 1) * level as i32
+            }
+
+            #[inline]
+            fn mean(sum: i32, levels: u32, neurons: usize, min: Self, max: Self) -> Self {
+                let parts = (neurons as i32 - 2) * levels as i32;
+                let value = mean($to_bits(min).into(), $to_bits(max).into(), sum, parts);
+                $from_bits(value.clamp(<$bits>::MIN.into(), <$bits>::MAX.into()) as $bits)
+            }
+        }
+    };
+}
+
+/// `min + (max - min) * sum / (2 * parts)`, to the nearest, halves upwards, saturating. Where 32 bits have room
+/// for the product, the division is one of 32 bits.
+fn mean(min: i32, max: i32, sum: i32, parts: i32) -> i32 {
+    let product = max.checked_sub(min).and_then(|range| range.checked_mul(sum));
+    let Some(dividend) = product.and_then(|product| product.checked_add(parts)) else {
+        return long_mean(min, max, sum, parts);
+    };
+    // The floor, also of a negative quotient.
+    let sign = dividend >> 31;
+    let quotient = ((dividend ^ sign) as u32).checked_div(2 * parts as u32).unwrap_or(0);
+    min.saturating_add(quotient as i32 ^ sign)
+}
+
+#[cold]
+fn long_mean(min: i32, max: i32, sum: i32, parts: i32) -> i32 {
+    let [min, max, sum, parts] = [min, max, sum, parts].map(i64::from);
+    let value = min + ((max - min) * sum + parts).div_euclid(2 * parts.max(1));
+    value.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+}
+
+macro_rules! distance {
+    ([$($generics:tt)*] $sample:ty, $distance:ty, $to_bits:path) => {
+        impl<$($generics)*> Distance<$sample> for $distance {
+            #[inline]
+            fn between(
+                value: $sample,
+                _: $sample,
+                neuron: usize,
+                neurons: usize,
+                min: $sample,
+                max: $sample,
+            ) -> Self {
+                let min = Self::from($to_bits(min));
+                let offset = Self::from($to_bits(value)).wrapping_sub(min);
+                let range = Self::from($to_bits(max)).wrapping_sub(min);
+                let centre = (2 * neuron as Self - 1).wrapping_mul(range);
+                offset.wrapping_mul(2 * (neurons as Self - 2)).wrapping_sub(centre).wrapping_abs()
+            }
+
+            #[inline]
+            fn of(reach: <$sample as Spaced>::Reach) -> Self {
+                reach as Self
+            }
+        }
+    };
+}
+
+integer!([] i16, i16, i32, |_, _| true, core::convert::identity, core::convert::identity);
+distance!([] i16, i32, core::convert::identity);
+
+#[cfg(feature = "fixed")]
+mod fixed_point {
+    use super::{Cells, Distance, Spaced, mean};
+    use fixed::types::extra::{LeEqU16, LeEqU32};
+    use fixed::{FixedI16, FixedI32};
+
+    integer!([Frac: LeEqU16 + 'static] FixedI16<Frac>, i16, i32, |_, _| true,
+        FixedI16::to_bits, FixedI16::from_bits);
+    distance!([Frac: LeEqU16 + 'static] FixedI16<Frac>, i32, FixedI16::to_bits);
+
+    integer!([Frac: LeEqU32 + 'static] FixedI32<Frac>, i32, i64,
+        |value, [low, high]| value >= low && value <= high,
+        FixedI32::to_bits, FixedI32::from_bits);
+    distance!([Frac: LeEqU32 + 'static] FixedI32<Frac>, i32, FixedI32::to_bits);
+    distance!([Frac: LeEqU32 + 'static] FixedI32<Frac>, i64, FixedI32::to_bits);
+}

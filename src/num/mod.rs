@@ -1,0 +1,29 @@
+//! Numbers: the sample types, their arithmetic, and the curves from which tables are made.
+//!
+//! The arithmetic traits are private to the crate. `Sample` has them as its supertraits, so that only the
+//! crate can implement it, and only the crate can call them.
+
+mod arithmetic;
+mod cells;
+mod convert;
+pub(crate) mod curve;
+mod distance;
+mod kind;
+mod nearer;
+mod residual;
+mod sample;
+mod shortfall;
+mod tally;
+mod window_sum;
+
+pub(crate) use arithmetic::Arithmetic;
+pub(crate) use cells::Cells;
+pub(crate) use convert::{floor_from_f64, from_f64, to_f64, units, word};
+pub(crate) use distance::{Distance, Spaced, cell, cells, near, reach, top};
+pub use kind::SampleKind;
+pub(crate) use nearer::Nearer;
+pub(crate) use residual::{Rated, Ratio, Residual};
+pub use sample::Sample;
+pub(crate) use shortfall::Shortfall;
+pub(crate) use tally::Tally;
+pub(crate) use window_sum::{Difference, Windowed, margin};

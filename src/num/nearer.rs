@@ -1,0 +1,90 @@
+//! Arithmetic of BSA: whether taps bring residuals nearer to zero.
+
+use super::Ratio;
+
+/// Compares `e1 = sum |residual - tap|` with `e2 = sum |residual|` over pairs.
+pub(crate) trait Nearer: Sized {
+    /// A sum of magnitudes.
+    type Sum: Copy + core::fmt::Debug;
+
+    const EMPTY: Self::Sum;
+
+    /// `sum + |self - other|`.
+    fn add_distance(self, other: Self, sum: Self::Sum) -> Self::Sum;
+
+    /// `left <= right * ratio`.
+    fn at_most(left: Self::Sum, right: Self::Sum, ratio: Ratio) -> bool;
+
+    /// Whether `e1 <= e2 - threshold`. `magnitude` is the sum of the taps' magnitudes over the pairs.
+    fn is_nearer_by(
+        threshold: Self,
+        magnitude: Self,
+        pairs: impl Iterator<Item = (Self, Self)>,
+    ) -> bool;
+}
+
+impl Nearer for f32 {
+    type Sum = f32;
+
+    const EMPTY: f32 = 0.0;
+
+    #[inline(always)]
+    fn add_distance(self, other: f32, sum: f32) -> f32 {
+        sum + (self - other).abs()
+    }
+
+    #[inline]
+    fn at_most(left: f32, right: f32, ratio: Ratio) -> bool {
+        left <= right * ratio.float
+    }
+
+    #[inline(always)]
+    fn is_nearer_by(threshold: f32, _: f32, pairs: impl Iterator<Item = (f32, f32)>) -> bool {
+        let (mut with, mut without) = (0.0, 0.0);
+        for (residual, tap) in pairs {
+            with += (residual - tap).abs();
+            without += residual.abs();
+        }
+        with - without <= -threshold
+    }
+}
+
+impl Nearer for i32 {
+    type Sum = i64;
+
+    const EMPTY: i64 = 0;
+
+    #[inline(always)]
+    fn add_distance(self, other: i32, sum: i64) -> i64 {
+        sum + i64::from(self.abs_diff(other))
+    }
+
+    #[inline]
+    fn at_most(left: i64, right: i64, ratio: Ratio) -> bool {
+        left << 14 <= right * i64::from(ratio.fixed)
+    }
+
+    /// `e1 - e2 + sum |tap|` grows with every pair, so that it decides as soon as it exceeds its limit.
+    #[inline(always)]
+    fn is_nearer_by(
+        threshold: i32,
+        magnitude: i32,
+        pairs: impl Iterator<Item = (i32, i32)>,
+    ) -> bool {
+        // For a tap of 0 or more, `|r - h| - |r| + |h|` is twice what `r`, if positive, lacks to it.
+        let mut left = magnitude.wrapping_sub(threshold) >> 1;
+        for (residual, tap) in pairs {
+            // As `tap >= 0 && residual >= tap`.
+            if residual.wrapping_sub(tap) | tap >= 0 {
+                continue;
+            }
+            let residual = if tap < 0 { residual.wrapping_neg() } else { residual };
+            let lack = tap.wrapping_abs().wrapping_sub(residual.max(0));
+            left = left.wrapping_sub(lack.max(0));
+            if left < 0 {
+                return false;
+            }
+        }
+        left >= 0
+    }
+}

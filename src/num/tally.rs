@@ -1,0 +1,48 @@
+//! The count of rejected samples.
+
+use super::Sample;
+
+/// How many samples were rejected, up to 2³¹-1, and whether a first sample has been seen: four bytes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Tally(u32);
+
+impl Tally {
+    /// Nothing seen, nothing rejected.
+    pub(crate) const NONE: Self = Self(0);
+
+    const PRIMED: u32 = 1;
+    const ONE: u32 = 2;
+
+    #[inline]
+    pub(crate) fn is_primed(self) -> bool {
+        self.0 & Self::PRIMED != 0
+    }
+
+    #[inline]
+    pub(crate) fn prime(&mut self) {
+        self.0 |= Self::PRIMED;
+    }
+
+    #[inline]
+    pub(crate) fn reject(&mut self) {
+        self.0 = self.0.checked_add(Self::ONE).unwrap_or(self.0);
+    }
+
+    /// The last of these values, from which an encoder is primed. A value that is not finite counts as
+    /// rejected, and there is none then.
+    pub(crate) fn last_of<S: Sample>(&mut self, past: &[S]) -> Option<S> {
+        let last = past.last().copied()?;
+        if past.iter().all(S::is_finite) {
+            self.prime();
+            Some(last)
+        } else {
+            self.reject();
+            None
+        }
+    }
+
+    #[inline]
+    pub(crate) const fn rejected(self) -> u32 {
+        self.0 / Self::ONE
+    }
+}

@@ -1,0 +1,331 @@
+//! The contract that every scheme keeps: parameters in flash, a small state for each channel.
+
+use core::fmt::Debug;
+
+use super::code::{Code, Output};
+use crate::Sample;
+
+/// A coding scheme: checked parameters, plain data, in a `const` or a `static`.
+///
+/// It owns its taps, centres and thresholds. What changes with a sample is a state without parameters, so
+/// that any number of channels share one scheme. [`Encoder`] and [`Decoder`] are a reference to the scheme
+/// and a state; made by one scheme, they cannot disagree on a parameter.
+///
+/// Encoding cannot fail and never panics. A sample that is not finite emits nothing, leaves the state as it
+/// was and is counted.
+pub trait Scheme: Sized {
+    /// The numbers it works on.
+    type Sample: Sample;
+    /// The code of one sample, which a decoder takes.
+    type Code: Code;
+    /// What encoding a sample returns: its code, or nothing yet.
+    type Output: Output<Code = Self::Code>;
+    /// What an encoder keeps from sample to sample.
+    type EncoderState;
+    /// What a decoder keeps from sample to sample.
+    type DecoderState: Copy + Debug;
+
+    /// How many samples after its own the code of a sample comes out.
+    const LATENCY: usize;
+
+    /// How a decoder becomes exact again after codes were lost.
+    const RECOVERY: Recovery;
+
+    /// Takes one sample and says what is emitted.
+    fn encode(&self, state: &mut Self::EncoderState, sample: Self::Sample) -> Self::Output;
+
+    /// Encodes samples in order into `outputs`: the bits that [`encode`](Self::encode) gives for each. Stops
+    /// at the end of the shorter slice and returns its length.
+    fn encode_slice(
+        &self,
+        state: &mut Self::EncoderState,
+        samples: &[Self::Sample],
+        outputs: &mut [Self::Output],
+    ) -> usize {
+        encode_each(self, state, samples, outputs)
+    }
+
+    /// The next code of the tail at the end of a recording; see [`Encoder::finish`].
+    fn finish_next(&self, _state: &mut Self::EncoderState) -> Option<Self::Code> {
+        None
+    }
+
+    /// Lets an encoder start from the samples before the first, oldest first, as far as it looks back.
+    /// A past with a value that is not finite is counted as one rejected sample and ignored.
+    fn prime(&self, _state: &mut Self::EncoderState, _past: &[Self::Sample]) {}
+
+    /// The value that a decoder should hold now, for a keyframe on a link that may lose spikes.
+    ///
+    /// `None` before the first sample, and for schemes whose decoders recover without keyframes.
+    fn keyframe(&self, _state: &Self::EncoderState) -> Option<Self::Sample> {
+        None
+    }
+
+    /// How many samples were not finite, up to 2³¹-1.
+    fn rejected(state: &Self::EncoderState) -> u32;
+
+    /// The state of a decoder that has decoded nothing.
+    fn decoder_state(&self) -> Self::DecoderState;
+
+    /// Takes the code of one sample and gives its value.
+    fn decode(&self, state: &mut Self::DecoderState, code: Self::Code) -> Self::Sample;
+
+    /// Decodes in order into `values`: the bits that [`decode`](Self::decode) gives for each. Stops at the
+    /// end of the shorter slice and returns its length.
+    fn decode_slice(
+        &self,
+        state: &mut Self::DecoderState,
+        codes: &[Self::Code],
+        values: &mut [Self::Sample],
+    ) -> usize {
+        for (value, &code) in values.iter_mut().zip(codes) {
+            *value = self.decode(state, code);
+        }
+        codes.len().min(values.len())
+    }
+
+    /// The value that a decoder holds until the next spike; `None` for rate codes, whose values change
+    /// between spikes.
+    fn held(&self, _state: &Self::DecoderState) -> Option<Self::Sample> {
+        None
+    }
+
+    /// Lets a decoder go on from a known value, such as a keyframe's, as if it had just decoded it. Rate
+    /// codes have no such value and only forget their spikes.
+    fn resync(&self, state: &mut Self::DecoderState, value: Self::Sample);
+
+    /// An encoder in its initial state.
+    fn encoder(&self) -> Encoder<'_, Self>
+    where
+        Self: Start,
+    {
+        Encoder::new(self)
+    }
+
+    /// A decoder in its initial state.
+    fn decoder(&self) -> Decoder<'_, Self> {
+        Decoder { scheme: self, state: self.decoder_state() }
+    }
+
+    /// How many samples after its own the code of a sample comes out.
+    fn latency(&self) -> usize {
+        Self::LATENCY
+    }
+}
+
+/// A scheme whose encoder needs nothing but its parameters: all but those that draw from a generator.
+pub trait Start: Scheme<EncoderState: Copy> {
+    /// The state of an encoder that has seen nothing.
+    const START: Self::EncoderState;
+}
+
+/// How a decoder becomes exact again after codes were lost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Recovery {
+    /// At the next keyframe: errors add up until then.
+    Keyframe,
+    /// After so many samples without a loss.
+    Samples(usize),
+    /// At the next sample whose code has a spike.
+    Spike,
+}
+
+/// Turns samples into spikes, one sample at a time: a reference to a scheme, and a state.
+pub struct Encoder<'a, P: Scheme> {
+    scheme: &'a P,
+    state: P::EncoderState,
+}
+
+impl<P: Scheme<EncoderState: Clone>> Clone for Encoder<'_, P> {
+    fn clone(&self) -> Self {
+        Self { scheme: self.scheme, state: self.state.clone() }
+    }
+}
+
+impl<P: Scheme<EncoderState: Copy>> Copy for Encoder<'_, P> {}
+
+impl<P: Scheme<EncoderState: Debug>> Debug for Encoder<'_, P> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Encoder").field("state", &self.state).finish_non_exhaustive()
+    }
+}
+
+impl<'a, P: Scheme> Encoder<'a, P> {
+    /// An encoder in its initial state.
+    pub const fn new(scheme: &'a P) -> Self
+    where
+        P: Start,
+    {
+        Self { scheme, state: P::START }
+    }
+
+    /// An encoder that goes on from this state.
+    pub const fn with_state(scheme: &'a P, state: P::EncoderState) -> Self {
+        Self { scheme, state }
+    }
+
+    /// The scheme.
+    pub const fn scheme(&self) -> &'a P {
+        self.scheme
+    }
+
+    /// The state.
+    pub const fn state(&self) -> &P::EncoderState {
+        &self.state
+    }
+
+    /// Takes one sample and says what is emitted.
+    #[inline]
+    pub fn encode(&mut self, sample: P::Sample) -> P::Output {
+        self.scheme.encode(&mut self.state, sample)
+    }
+
+    /// Encodes samples in order into `outputs`: the bits that [`encode`](Self::encode) gives for each. Stops
+    /// at the end of the shorter slice and returns its length.
+    #[inline]
+    pub fn encode_slice(&mut self, samples: &[P::Sample], outputs: &mut [P::Output]) -> usize {
+        self.scheme.encode_slice(&mut self.state, samples, outputs)
+    }
+
+    /// The next code of the tail at the end of a recording.
+    pub fn finish_next(&mut self) -> Option<P::Code> {
+        self.scheme.finish_next(&mut self.state)
+    }
+
+    /// Where a recording ends, the codes of the samples that still wait for their look-ahead.
+    ///
+    /// Empty for schemes of latency 0. Never needed in flight. Run it to its end, then
+    /// [`reset`](Self::reset) before the next recording.
+    pub fn finish(&mut self) -> impl Iterator<Item = P::Code> {
+        core::iter::from_fn(|| self.finish_next())
+    }
+
+    /// Starts from the samples before the first, oldest first: for temporal contrast and step forward the
+    /// last of them, for a moving window its whole window. Without, the encoder starts from the first
+    /// sample. A past with a value that is not finite is counted as one rejected sample and ignored.
+    pub fn prime(&mut self, past: &[P::Sample]) {
+        self.scheme.prime(&mut self.state, past);
+    }
+
+    /// The value that a decoder should hold now, for a keyframe on a link that may lose spikes.
+    ///
+    /// `None` before the first sample, and for schemes whose decoders recover without keyframes.
+    pub fn keyframe(&self) -> Option<P::Sample> {
+        self.scheme.keyframe(&self.state)
+    }
+
+    /// Forgets every sample, and the count of rejected ones.
+    pub fn reset(&mut self)
+    where
+        P: Start,
+    {
+        self.state = P::START;
+    }
+
+    /// How many samples were not finite, up to 2³¹-1.
+    pub fn rejected(&self) -> u32 {
+        P::rejected(&self.state)
+    }
+}
+
+/// Turns spikes back into values, one sample's code at a time: a reference to a scheme, and a state.
+pub struct Decoder<'a, P: Scheme> {
+    scheme: &'a P,
+    state: P::DecoderState,
+}
+
+impl<P: Scheme> Clone for Decoder<'_, P> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<P: Scheme> Copy for Decoder<'_, P> {}
+
+impl<P: Scheme> Debug for Decoder<'_, P> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Decoder").field("state", &self.state).finish_non_exhaustive()
+    }
+}
+
+impl<'a, P: Scheme> Decoder<'a, P> {
+    /// The scheme.
+    pub const fn scheme(&self) -> &'a P {
+        self.scheme
+    }
+
+    /// Takes the code of one sample and gives its value.
+    #[inline]
+    pub fn decode(&mut self, code: P::Code) -> P::Sample {
+        self.scheme.decode(&mut self.state, code)
+    }
+
+    /// Decodes in order into `values`: the bits that [`decode`](Self::decode) gives for each. Stops at the
+    /// end of the shorter slice and returns its length.
+    #[inline]
+    pub fn decode_slice(&mut self, codes: &[P::Code], values: &mut [P::Sample]) -> usize {
+        self.scheme.decode_slice(&mut self.state, codes, values)
+    }
+
+    /// The value that it holds until the next spike; `None` for rate codes.
+    pub fn held(&self) -> Option<P::Sample> {
+        self.scheme.held(&self.state)
+    }
+
+    /// Goes on from a known value, such as the first sample or a keyframe, as if it had just decoded it.
+    /// Rate codes have no such value and only forget their spikes.
+    pub fn resync(&mut self, value: P::Sample) {
+        self.scheme.resync(&mut self.state, value);
+    }
+
+    /// Back to the initial state.
+    pub fn reset(&mut self) {
+        self.state = self.scheme.decoder_state();
+    }
+}
+
+/// The slice form by the sample form: apart, so that the usual path of a codec stays small.
+#[cold]
+#[inline(never)]
+pub(super) fn encode_each<P: Scheme>(
+    scheme: &P,
+    state: &mut P::EncoderState,
+    samples: &[P::Sample],
+    outputs: &mut [P::Output],
+) -> usize {
+    for (output, &sample) in outputs.iter_mut().zip(samples) {
+        *output = encode_apart(scheme, state, sample);
+    }
+    samples.len().min(outputs.len())
+}
+
+/// Encodes until there is a keyframe; returns how many samples that took.
+#[cold]
+#[inline(never)]
+pub(super) fn encode_first<P: Scheme>(
+    scheme: &P,
+    state: &mut P::EncoderState,
+    samples: &[P::Sample],
+    outputs: &mut [P::Output],
+) -> usize {
+    let mut taken = 0;
+    for (output, &sample) in outputs.iter_mut().zip(samples) {
+        if scheme.keyframe(state).is_some() {
+            break;
+        }
+        *output = encode_apart(scheme, state, sample);
+        taken += 1;
+    }
+    taken
+}
+
+#[cold]
+#[inline(never)]
+fn encode_apart<P: Scheme>(
+    scheme: &P,
+    state: &mut P::EncoderState,
+    sample: P::Sample,
+) -> P::Output {
+    scheme.encode(state, sample)
+}

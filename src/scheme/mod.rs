@@ -1,0 +1,12 @@
+//! The coding schemes: parameters, states, and the laws between samples and spikes.
+
+mod calibrate;
+mod code;
+mod codec;
+pub mod population;
+pub mod rate;
+pub mod temporal;
+
+pub use calibrate::{Calibration, Differences};
+pub use code::{Code, Firing, Output, Polarity, Spike};
+pub use codec::{Decoder, Encoder, Recovery, Scheme, Start};

@@ -1,0 +1,254 @@
+//! Where the neurons of a population are centred.
+
+use core::ops::RangeInclusive;
+
+use super::search::count_preceding;
+use crate::error::finite;
+use crate::num::curve::normal_quantile;
+use crate::num::{Cells, cell, cells, floor_from_f64, from_f64, to_f64, units};
+use crate::{ConfigError, Sample, SampleKind};
+
+/// The centres of `M` neurons, 3 to 1024, and the edges halfway between them.
+///
+/// The neuron of a value is the one whose centre is nearest, exactly, in every sample type: a value
+/// halfway between two belongs to the lower, a value outside to the neuron at that end. Even centres are
+/// compared as they are before they are rounded to the sample type, others as rounded.
+///
+/// - **Memory:** the centres, as many edges, `4 M` bytes for a table of even cells, and 8 bytes.
+/// - **Work:** one multiplication finds a value's cell, the table a neuron for the cell, and one
+///   comparison with an edge whether it is that or the next. Where two edges share a cell, as with
+///   Gaussian-spaced centres from about 140 on or the user's own, and for `f32` without a float unit, it
+///   is a binary search instead.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(transparent, bound = "S: serde::Serialize")
+)]
+pub(super) struct Centres<S, const M: usize> {
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array"))]
+    values: [S; M],
+    /// `edges[i]` is the largest value that still belongs to neuron `i`; the last is not used.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    edges: [S; M],
+    #[cfg_attr(feature = "serde", serde(skip))]
+    cells: Cells,
+    /// The index of the lowest neuron of each cell's values.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    starts: [[u8; 2]; M],
+}
+
+/// `min < max`, both finite.
+pub(super) const fn check_range(min: f64, max: f64) -> Result<(), ConfigError> {
+    match (finite("min", min), finite("max", max)) {
+        (Err(error), _) | (_, Err(error)) => Err(error),
+        _ if min < max => Ok(()),
+        _ => Err(not_rising("min and max", 1, max, min)),
+    }
+}
+
+const fn not_rising(
+    parameter: &'static str,
+    index: usize,
+    value: f64,
+    previous: f64,
+) -> ConfigError {
+    ConfigError::NotRising { parameter, index, value: value as f32, previous: previous as f32 }
+}
+
+/// Halfway between two, rounded to the next double below where it is none: `f32` centres may be of
+/// very different size.
+const fn halfway(low: f64, high: f64) -> f64 {
+    let sum = low + high;
+    let rest = sum - low;
+    let error = (low - (sum - rest)) + (high - rest);
+    if error < 0.0 { (sum / 2.0).next_down() } else { sum / 2.0 }
+}
+
+/// `mu[i] = min + (2i - 1) / 2 * (max - min) / (m - 2)`.
+pub(super) const fn even_centre(min: f64, max: f64, i: usize, m: usize) -> f64 {
+    min + (2.0 * i as f64 - 1.0) * (max - min) / (2.0 * (m as f64 - 2.0))
+}
+
+/// The largest value not above the edge halfway between `mu[i]` and `mu[i+1]`, which is
+/// `min + i (max - min) / (m - 2)`.
+const fn even_edge<S: Sample>(min: f64, max: f64, i: usize, m: usize) -> S {
+    let parts = m as f64 - 2.0;
+    let near = min + i as f64 * (max - min) / parts;
+    if !matches!(S::KIND, SampleKind::F32) {
+        return floor_from_f64(near);
+    }
+    // A double holds each of these products of a float exactly, but not their sum.
+    let (from_min, from_max) = ((parts - i as f64) * min, i as f64 * max);
+    let sum = from_min + from_max;
+    let rest = sum - from_min;
+    let error = (from_min - (sum - rest)) + (from_max - rest);
+    let mut edge = (sum / parts) as f32;
+    while !is_at_most(edge as f64 * parts, sum, error) {
+        edge = edge.next_down();
+    }
+    while is_at_most(edge.next_up() as f64 * parts, sum, error) {
+        edge = edge.next_up();
+    }
+    from_f64(edge as f64)
+}
+
+/// Whether `value <= sum + error`, where the error is that of a rounded sum.
+const fn is_at_most(value: f64, sum: f64, error: f64) -> bool {
+    value < sum || value - sum <= error
+}
+
+/// Quantile `(2i + 1) / 2m` of a normal distribution whose outermost quantiles lie at min and max.
+const fn gaussian_centre(min: f64, max: f64, i: usize, m: usize) -> f64 {
+    let middle = f64::midpoint(min, max);
+    let mirrored = if 2 * i + 1 < m { m - 1 - i } else { i };
+    let outermost = normal_quantile((2 * m - 1) as f64 / (2 * m) as f64);
+    let offset =
+        (max - min) / 2.0 * normal_quantile((2 * mirrored + 1) as f64 / (2 * m) as f64) / outermost;
+    if mirrored == i { middle + offset } else { middle - offset }
+}
+
+// Constants have no iterators, and every index is compared first.
+#[allow(clippy::indexing_slicing)]
+impl<S: Sample, const M: usize> Centres<S, M> {
+    pub(super) const SHAPE: () =
+        assert!(M >= 3 && M <= 1024, "a population takes 3 to 1024 neurons");
+
+    /// The user's own centres, strictly rising.
+    ///
+    /// # Errors
+    /// A centre is not finite, or does not exceed the one before.
+    pub(super) const fn try_new(values: [S; M]) -> Result<Self, ConfigError> {
+        const { Self::SHAPE };
+        let mut edges = values;
+        let mut i = 0;
+        while i < M {
+            let value = to_f64(values[i]);
+            if let Err(error) = finite("centre", value) {
+                return Err(error);
+            }
+            if i > 0 {
+                let below = to_f64(values[i - 1]);
+                if value <= below {
+                    return Err(not_rising("centres", i, value, below));
+                }
+                edges[i - 1] = floor_from_f64(halfway(below, value));
+            }
+            i += 1;
+        }
+        Ok(Self::with_cells(values, edges))
+    }
+
+    /// Even centres over a range, half a spacing beyond it at either end:
+    /// `mu[i] = min + (2i - 1) / 2 * (max - min) / (M - 2)`, rounded to the sample type. The edges are
+    /// halfway between the centres before rounding.
+    ///
+    /// # Errors
+    /// The ends are not finite, or do not rise, or the sample type is too coarse to tell the centres apart.
+    pub(super) const fn try_linear(range: &RangeInclusive<S>) -> Result<Self, ConfigError> {
+        let (min, max) = (to_f64(*range.start()), to_f64(*range.end()));
+        if let Err(error) = check_range(min, max) {
+            return Err(error);
+        }
+        let mut values = [S::ZERO; M];
+        let mut edges = [S::ZERO; M];
+        let mut i = 0;
+        while i < M {
+            values[i] = from_f64(even_centre(min, max, i, M));
+            edges[i] = even_edge(min, max, i, M);
+            i += 1;
+        }
+        match Self::try_new(values) {
+            Ok(_) => Ok(Self::with_cells(values, edges)),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Centres over a range spaced as the quantiles of a normal distribution: dense around the middle.
+    ///
+    /// # Errors
+    /// As for [`try_linear`](Self::try_linear).
+    pub(super) const fn try_gaussian_spaced(
+        range: &RangeInclusive<S>,
+    ) -> Result<Self, ConfigError> {
+        let (min, max) = (to_f64(*range.start()), to_f64(*range.end()));
+        if let Err(error) = check_range(min, max) {
+            return Err(error);
+        }
+        let mut values = [S::ZERO; M];
+        let mut i = 0;
+        while i < M {
+            values[i] = from_f64(gaussian_centre(min, max, i, M));
+            i += 1;
+        }
+        Self::try_new(values)
+    }
+
+    /// With the table for the edges, where no two of them share a cell.
+    const fn with_cells(values: [S; M], edges: [S; M]) -> Self {
+        let lowest = units(edges[0]);
+        let count = 2 * M;
+        let width = (units(edges[M - 2]) - lowest) / (count - 1) as f64;
+        let cells = cells::<S>(lowest - width / 16.0, width, count);
+        let mut starts = [[0; 2]; M];
+        let mut edge = 0;
+        let mut i = 0;
+        while i < count && edge <= u8::MAX as usize {
+            starts[i / 2][i % 2] = edge as u8;
+            if edge < M - 1 && cell(cells, edges[edge]) == i {
+                edge += 1;
+            }
+            i += 1;
+        }
+        // Two edges in one cell, and the second was not passed; or more neurons than the table can name.
+        let cells = if edge == M - 1 && i == count { cells } else { Cells::ONE };
+        Self { values, edges, cells, starts }
+    }
+
+    /// The number of a finite value's neuron, from 1.
+    #[inline]
+    pub(super) fn nearest(&self, value: S) -> usize {
+        if self.has_cells() { self.by_cell(value) } else { self.by_search(value) }
+    }
+
+    /// Whether [`by_cell`](Self::by_cell) tells the neuron of every value.
+    #[inline]
+    pub(super) fn has_cells(&self) -> bool {
+        S::HAS_CELLS && self.cells != Cells::ONE
+    }
+
+    /// The number of a finite value's neuron, by cell; 1 for what is not a number.
+    #[inline]
+    pub(super) fn by_cell(&self, value: S) -> usize {
+        let cell = value.cell(self.cells).min(2 * M - 1);
+        let below = self.starts.as_flattened().get(cell).copied().map_or(0, usize::from);
+        let is_beyond = self.edges().get(below).is_some_and(|&edge| value > edge);
+        below + 1 + usize::from(is_beyond)
+    }
+
+    /// The number of a finite value's neuron, by binary search.
+    #[inline(never)] // unrolled, and not to be so more than once
+    pub(super) fn by_search(&self, value: S) -> usize {
+        let edges = self.edges();
+        1 + count_preceding(M - 1, |i| edges.get(i).is_some_and(|&edge| value.is_beyond(edge)))
+    }
+
+    /// The edges of all neurons but the last, which has none.
+    #[inline]
+    fn edges(&self) -> &[S] {
+        self.edges.get(..M - 1).unwrap_or_default()
+    }
+
+    pub(super) fn get(&self, neuron: usize) -> Option<S> {
+        self.values.get(neuron).copied()
+    }
+
+    pub(super) fn middle(&self) -> S {
+        self.get(M / 2).unwrap_or(S::ZERO)
+    }
+
+    pub(super) const fn as_array(&self) -> &[S; M] {
+        &self.values
+    }
+}

@@ -1,0 +1,181 @@
+//! Gaussian receptive fields of equal width, as distances instead of exponentials.
+
+use core::ops::RangeInclusive;
+
+use super::centres::{Centres, even_centre};
+use super::search::count_preceding;
+use crate::error::positive;
+use crate::num::curve::{ln, sqrt};
+use crate::num::{Cells, Distance, cell, cells, near, reach, top, units};
+use crate::{ConfigError, Sample};
+
+/// `M` neurons, 3 to 1024, whose responses to a value are told apart in `N` levels, 2 to 256.
+///
+/// The response is `r = exp(-(x - mu)² / (2 sigma²))` with even centres and
+/// `sigma = (max - min) / (beta (M - 2))`; its level is `N r`, rounded half up. A level is reached
+/// within a distance from the centre, so that a table of `N` distances replaces the exponential.
+///
+/// - **Memory:** `4 M + 4 N + 28` bytes in `f32`.
+/// - **Exactness:** `f32` compares the distance to the rounded centre, rounded once, with the
+///   rounded table; fixed point compares exact distances to the unrounded centre.
+///
+/// Source: Bohté et al. 2002; paper, section II-A.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(bound = "S: serde::Serialize"))]
+pub(super) struct ReceptiveFields<S: Sample, const M: usize, const N: usize> {
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array"))]
+    centres: [S; M],
+    min: S,
+    max: S,
+    beta: f32,
+    /// A value in cell `i` is out of reach of the neurons below `i`.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    cells: Cells,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    near: [S; 2],
+    /// `reaches[slot]` is the largest distance with a level of at least `N - slot`: rising.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    reaches: [S::Reach; N],
+}
+
+/// Without the tables, which follow from the rest.
+#[cfg(feature = "defmt")]
+impl<S: Sample + defmt::Format, const M: usize, const N: usize> defmt::Format
+    for ReceptiveFields<S, M, N>
+{
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let Self { centres, min, max, beta, .. } = self;
+        defmt::write!(
+            f,
+            "ReceptiveFields {{ centres: {}, min: {}, max: {}, beta: {} }}",
+            centres,
+            min,
+            max,
+            beta
+        );
+    }
+}
+
+/// The distance from its centre at which a response of `N` levels falls below level `k`.
+const fn radius(min: f64, max: f64, beta: f64, m: usize, k: usize, n: usize) -> f64 {
+    let sigma = (max - min) / (beta * (m as f64 - 2.0));
+    sigma * sqrt(2.0 * ln(n as f64 / (k as f64 - 0.5)))
+}
+
+// Constants have no iterators, and every index is compared first.
+#[allow(clippy::indexing_slicing)]
+impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
+    const SHAPE: () = {
+        let () = Centres::<S, M>::SHAPE;
+        assert!(N >= 2 && N <= 256, "a response has 2 to 256 levels");
+    };
+
+    /// Fields over a range; the wider, the smaller `beta`.
+    ///
+    /// # Errors
+    /// `beta` is not above 0, or as for [`Centres::try_linear`].
+    pub(super) const fn try_new(range: &RangeInclusive<S>, beta: f32) -> Result<Self, ConfigError> {
+        const { Self::SHAPE };
+        if let Err(error) = positive("beta", beta as f64) {
+            return Err(error);
+        }
+        let centres = match Centres::<S, M>::try_linear(range) {
+            Ok(centres) => *centres.as_array(),
+            Err(error) => return Err(error),
+        };
+        let (min, max) = (*range.start(), *range.end());
+        let (low, high) = (units(min), units(max));
+        let mut reaches = [reach::<S>(0.0, M); N];
+        let mut k = 0;
+        while k < N {
+            reaches[k] = reach::<S>(radius(low, high, beta as f64, M, N - k, N), M);
+            k += 1;
+        }
+        let farthest = radius(low, high, beta as f64, M, 1, N);
+        let width = (high - low) / (M as f64 - 2.0);
+        // A 32nd of a cell for what is rounded.
+        let cells = cells::<S>(low + farthest - 1.46875 * width, width, M + 2);
+        let mut hold = true;
+        let mut i = 0;
+        while i < M {
+            let top = top::<S>(even_centre(low, high, i, M), farthest);
+            hold &= cell(cells, top) <= i;
+            i += 1;
+        }
+        let cells = if hold { cells } else { Cells::ONE };
+        Ok(Self { centres, min, max, beta, cells, near: near(low, high, M, farthest), reaches })
+    }
+
+    /// The centres, lowest first.
+    pub(super) const fn centres(&self) -> &[S; M] {
+        &self.centres
+    }
+
+    pub(super) fn middle(&self) -> S {
+        self.centres.get(M / 2).copied().unwrap_or(S::ZERO)
+    }
+
+    /// Whether the distances of a value fit [`Short`](Spaced::Short).
+    #[inline]
+    pub(super) fn is_near(&self, value: S) -> bool {
+        value.is_near(self.near)
+    }
+
+    /// The first neuron that may respond to a finite value: it, or the next if the value
+    /// [is above](Self::is_above) it.
+    #[inline]
+    pub(super) fn first(&self, value: S) -> usize {
+        value.cell(self.cells)
+    }
+
+    #[inline]
+    pub(super) fn is_above(&self, value: S, neuron: usize) -> bool {
+        self.centres.get(neuron).is_some_and(|&centre| value > centre)
+    }
+
+    /// The distances of a finite value from this neuron and those after it, if there is one.
+    #[inline]
+    pub(super) fn distances<'f, D: Distance<S> + 'f>(
+        &'f self,
+        value: S,
+        first: usize,
+    ) -> Option<impl ExactSizeIterator<Item = D> + 'f> {
+        let &Self { min, max, .. } = self;
+        let centres = self.centres.get(first..).filter(|_| first < M)?;
+        let distance = move |(i, &centre)| D::between(value, centre, first + i, M, min, max);
+        Some(centres.iter().enumerate().map(distance))
+    }
+
+    /// The largest distance with at least this level, 1 to `N`.
+    #[inline]
+    pub(super) fn reach<D: Distance<S>>(&self, level: usize) -> Option<D> {
+        self.reaches.get(N.wrapping_sub(level)).copied().map(D::of)
+    }
+
+    /// `N` less the level at this distance, which is at least 1.
+    #[inline]
+    pub(super) fn slot<D: Distance<S>>(&self, distance: D) -> usize {
+        count_preceding(N - 1, |slot| {
+            self.reaches.get(slot).is_some_and(|&reach| distance > D::of(reach))
+        })
+    }
+
+    /// The mean of the centres from `first` on that have levels, weighted by these, or `None` without any.
+    #[inline]
+    pub(super) fn mean(
+        &self,
+        first: usize,
+        levels: impl ExactSizeIterator<Item = Option<u32>>,
+    ) -> Option<S> {
+        let centres = self.centres.get(first..first + levels.len())?;
+        let mut weighted = S::Weighted::default();
+        let mut total = 0;
+        for (i, (level, &centre)) in levels.zip(centres).enumerate() {
+            if let Some(level) = level {
+                weighted = S::weigh(weighted, centre, first + i, level);
+                total += level;
+            }
+        }
+        (total > 0).then(|| S::mean(weighted, total, M, self.min, self.max))
+    }
+}

@@ -1,0 +1,71 @@
+//! Any neurons of a population, as the code of a sample.
+
+use crate::{Code, Firing, Output, Polarity};
+
+/// Which neurons fired for one sample.
+///
+/// `M` bytes, rounded up to words.
+#[repr(align(4))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct FiredNeurons<const M: usize> {
+    pub(super) fired: [bool; M],
+}
+
+impl<const M: usize> FiredNeurons<M> {
+    /// No spike.
+    pub const EMPTY: Self = Self { fired: [false; M] };
+
+    /// These neurons, as they came over a link or from a file. `None` if one is not below `M`, or
+    /// comes twice.
+    pub fn new(neurons: impl IntoIterator<Item = u16>) -> Option<Self> {
+        let mut all = Self::EMPTY;
+        for neuron in neurons {
+            let fired = all.fired.get_mut(usize::from(neuron))?;
+            if core::mem::replace(fired, true) {
+                return None;
+            }
+        }
+        Some(all)
+    }
+
+    /// The neurons that fired, by rising index.
+    pub fn iter(&self) -> impl Iterator<Item = u16> {
+        (0..).zip(&self.fired).filter_map(|(neuron, &fired)| fired.then_some(neuron))
+    }
+}
+
+impl<const M: usize> Code for FiredNeurons<M> {
+    const NEURONS: usize = M;
+
+    fn firings(&self) -> impl Iterator<Item = Firing> {
+        self.iter().map(|neuron| Firing { neuron, slot: 0, polarity: Polarity::Up })
+    }
+
+    /// Every neuron that fired, once or more often.
+    fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
+        let mut neurons = Self::EMPTY;
+        for firing in firings {
+            if let Some(fired) = neurons.fired.get_mut(usize::from(firing.neuron)) {
+                *fired = true;
+            }
+        }
+        neurons
+    }
+}
+
+impl<const M: usize> Output for FiredNeurons<M> {
+    type Code = Self;
+
+    fn code(self) -> Option<Self> {
+        Some(self)
+    }
+}
+
+/// The neurons that fired: `[2, 3]`.
+#[cfg(feature = "serde")]
+impl<const M: usize> serde::Serialize for FiredNeurons<M> {
+    fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        crate::serial::sequence(|| self.iter(), serializer)
+    }
+}

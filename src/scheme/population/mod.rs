@@ -1,0 +1,26 @@
+//! Population codes: which neuron of `M` fires tells the value.
+
+mod centres;
+mod fields;
+#[cfg(feature = "rand")]
+mod fired_neurons;
+mod gaussian;
+mod held;
+mod neuron;
+mod position;
+#[cfg(feature = "rand")]
+mod probabilistic;
+mod search;
+mod slot_spikes;
+mod slots;
+
+#[cfg(feature = "rand")]
+pub use fired_neurons::FiredNeurons;
+pub use gaussian::Gaussian;
+pub use held::Held;
+pub use neuron::Neuron;
+pub use position::{Position, PositionState};
+#[cfg(feature = "rand")]
+pub use probabilistic::{Probabilistic, ProbabilisticState};
+pub use slot_spikes::SlotSpikes;
+pub use slots::{Slots, SlotsState};

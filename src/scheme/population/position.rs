@@ -1,0 +1,230 @@
+//! Position coding: the neuron whose centre is nearest fires.
+
+use core::ops::RangeInclusive;
+
+use super::Neuron;
+use super::centres::Centres;
+use super::held::Held;
+use crate::error::unwrap;
+use crate::num::Tally;
+use crate::{ConfigError, Recovery, Sample, Scheme, Start};
+
+/// Position coding: every sample fires the one neuron whose centre is nearest.
+///
+/// - **Centres:** `M`, 3 to 1024: [linear](Self::linear), [Gaussian-spaced](Self::gaussian_spaced) or the
+///   [user's](Self::new). A value halfway between two fires the lower; a value outside fires the neuron at
+///   that end.
+/// - **Latency:** 0 samples. **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes
+///   `10 M + 8` bytes of flash in `f32`.
+/// - **Work:** one multiplication finds a value's cell, a table a neuron for the cell, and one comparison
+///   with an edge whether it is that or the next. Where two edges share a cell, as with Gaussian-spaced
+///   centres from about 140 on or the user's own, beyond 256 neurons, and for `f32` without a float unit,
+///   it is a binary search instead.
+/// - **Exactness:** the nearest centre exactly, in every sample type. Linear centres are compared as they
+///   are before they are rounded to the sample type, others as rounded.
+/// - **Error:** at most half the distance between two centres, inside the centres' range.
+///
+/// Source: paper, section II-A, algorithm 1.
+///
+/// ```
+/// use spikewire::{Scheme, population::Position};
+///
+/// const ERROR: Position<f32, 5> = Position::new([-2.0, -0.5, 0.0, 0.5, 2.0]);
+///
+/// let neuron = ERROR.encoder().encode(0.2);
+/// assert_eq!(neuron.map(|n| n.index()), Some(2));
+/// assert_eq!(ERROR.decoder().decode(neuron), 0.0);
+/// ```
+///
+/// Fewer than three neurons do not compile:
+///
+/// ```compile_fail
+/// # use spikewire::population::Position;
+/// const NONE: Position<f32, 2> = Position::linear(-1.0..=1.0);
+/// # let _ = &NONE;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(bound = "S: serde::Serialize"))]
+pub struct Position<S: Sample, const M: usize> {
+    centres: Centres<S, M>,
+}
+
+impl<S: Sample, const M: usize> Position<S, M> {
+    /// The user's own centres, strictly rising. For constants, where bad centres fail the build.
+    ///
+    /// # Panics
+    /// As [`try_new`](Self::try_new) fails.
+    pub const fn new(centres: [S; M]) -> Self {
+        unwrap(Self::try_new(centres))
+    }
+
+    /// The user's own centres, strictly rising.
+    ///
+    /// # Errors
+    /// A centre is not finite, or does not exceed the one before.
+    pub const fn try_new(centres: [S; M]) -> Result<Self, ConfigError> {
+        Self::of(Centres::try_new(centres))
+    }
+
+    /// Even centres over a range, half a spacing beyond it at either end:
+    /// `mu[i] = min + (2i - 1) / 2 * (max - min) / (M - 2)`, rounded to the sample type. For constants,
+    /// where a bad range fails the build.
+    ///
+    /// # Panics
+    /// As [`try_linear`](Self::try_linear) fails.
+    pub const fn linear(range: RangeInclusive<S>) -> Self {
+        unwrap(Self::of(Centres::try_linear(&range)))
+    }
+
+    /// Even centres over a range, half a spacing beyond it at either end:
+    /// `mu[i] = min + (2i - 1) / 2 * (max - min) / (M - 2)`, rounded to the sample type.
+    ///
+    /// # Errors
+    /// The ends are not finite, or do not rise, or the sample type is too coarse to tell the centres apart.
+    pub const fn try_linear(range: RangeInclusive<S>) -> Result<Self, ConfigError> {
+        Self::of(Centres::try_linear(&range))
+    }
+
+    /// Centres over a range spaced as the quantiles of a normal distribution: dense around the middle, for
+    /// an error around its set point. For constants, where a bad range fails the build.
+    ///
+    /// # Panics
+    /// As [`try_gaussian_spaced`](Self::try_gaussian_spaced) fails.
+    pub const fn gaussian_spaced(range: RangeInclusive<S>) -> Self {
+        unwrap(Self::of(Centres::try_gaussian_spaced(&range)))
+    }
+
+    /// Centres over a range spaced as the quantiles of a normal distribution: dense around the middle, for
+    /// an error around its set point.
+    ///
+    /// # Errors
+    /// As for [`try_linear`](Self::try_linear).
+    pub const fn try_gaussian_spaced(range: RangeInclusive<S>) -> Result<Self, ConfigError> {
+        Self::of(Centres::try_gaussian_spaced(&range))
+    }
+
+    const fn of(centres: Result<Centres<S, M>, ConfigError>) -> Result<Self, ConfigError> {
+        match centres {
+            Ok(centres) => Ok(Self { centres }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The centres, lowest first, rounded to the sample type.
+    pub const fn centres(&self) -> &[S; M] {
+        self.centres.as_array()
+    }
+
+    /// Apart, so that the usual path stays small.
+    #[cold]
+    #[inline(never)]
+    fn search_each(
+        &self,
+        state: &mut PositionState,
+        samples: &[S],
+        outputs: &mut [Option<Neuron<M>>],
+    ) {
+        for (output, &sample) in outputs.iter_mut().zip(samples) {
+            *output = None;
+            if sample.is_finite() {
+                *output = Neuron::counted(self.centres.by_search(sample) as u16);
+            } else {
+                state.tally.reject();
+            }
+        }
+    }
+
+    #[inline]
+    fn centre(&self, neuron: Option<Neuron<M>>) -> Option<S> {
+        neuron.and_then(|neuron| self.centres.get(usize::from(neuron.index())))
+    }
+}
+
+/// The state of a [`Position`] encoder: the count of rejected samples. 4 bytes.
+#[derive(Clone, Copy, Debug)]
+pub struct PositionState {
+    tally: Tally,
+}
+
+impl<S: Sample, const M: usize> Start for Position<S, M> {
+    const START: PositionState = PositionState { tally: Tally::NONE };
+}
+
+impl<S: Sample, const M: usize> Scheme for Position<S, M> {
+    type Sample = S;
+    type Code = Option<Neuron<M>>;
+    type Output = Option<Neuron<M>>;
+    type EncoderState = PositionState;
+    type DecoderState = Held<S>;
+
+    const LATENCY: usize = 0;
+    const RECOVERY: Recovery = Recovery::Spike;
+
+    #[inline]
+    fn encode(&self, state: &mut PositionState, sample: S) -> Option<Neuron<M>> {
+        if !sample.is_finite() {
+            state.tally.reject();
+            return None;
+        }
+        Neuron::counted(self.centres.nearest(sample) as u16)
+    }
+
+    fn encode_slice(
+        &self,
+        state: &mut PositionState,
+        samples: &[S],
+        outputs: &mut [Option<Neuron<M>>],
+    ) -> usize {
+        let centres = &self.centres;
+        let mut taint = S::ZERO;
+        if centres.has_cells() {
+            // As if all were finite; if one was not, all over again.
+            for (output, &sample) in outputs.iter_mut().zip(samples) {
+                taint = taint.taint(sample);
+                *output = Neuron::counted(centres.by_cell(sample) as u16);
+            }
+        }
+        if !centres.has_cells() || !taint.is_finite() {
+            self.search_each(state, samples, outputs);
+        }
+        samples.len().min(outputs.len())
+    }
+
+    fn rejected(state: &PositionState) -> u32 {
+        state.tally.rejected()
+    }
+
+    /// The middle centre.
+    fn decoder_state(&self) -> Held<S> {
+        Held::at(self.centres.middle())
+    }
+
+    /// The centre of the neuron; where none fired, the value before.
+    #[inline]
+    fn decode(&self, state: &mut Held<S>, neuron: Option<Neuron<M>>) -> S {
+        state.or_hold(self.centre(neuron))
+    }
+
+    fn decode_slice(
+        &self,
+        state: &mut Held<S>,
+        neurons: &[Option<Neuron<M>>],
+        values: &mut [S],
+    ) -> usize {
+        let mut held = *state;
+        for (value, &neuron) in values.iter_mut().zip(neurons) {
+            *value = held.or_hold(self.centre(neuron));
+        }
+        *state = held;
+        neurons.len().min(values.len())
+    }
+
+    fn held(&self, state: &Held<S>) -> Option<S> {
+        Some(state.value())
+    }
+
+    fn resync(&self, state: &mut Held<S>, value: S) {
+        *state = Held::at(value);
+    }
+}

@@ -1,0 +1,222 @@
+//! Gaussian receptive fields with probabilistic spiking: the stronger the response, the likelier the
+//! spike.
+
+use core::marker::PhantomData;
+use core::ops::RangeInclusive;
+
+use rand_core::Rng;
+
+use super::FiredNeurons;
+use super::fields::ReceptiveFields;
+use super::held::Held;
+use crate::error::unwrap;
+use crate::num::{Distance, Tally};
+use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
+
+/// Gaussian receptive fields in which a neuron fires with the probability of its response, from a
+/// generator that the caller passes in.
+///
+/// The probability is rounded to a multiple of `1 / N`, half up: a neuron of level `k` (see
+/// [`Slots`](super::Slots)) fires if the top bits of a 32-bit draw, a number below `N`, are below `k`.
+/// One draw is taken for each neuron that responds with level 1 or more, by rising index. `N` must
+/// be a power of two.
+///
+/// - **Latency:** 0 samples. **Memory:** 4 bytes a channel and the generator, 4 to decode in `f32`;
+///   the scheme takes `4 M + 4 N + 28` bytes of flash in `f32`.
+/// - **Work:** one comparison with the table a neuron; no exponential.
+/// - **Decoder:** the mean of the centres that fired; where none did, the value before. Fixed point gives
+///   the exact mean, rounded to the nearest, halves upwards.
+///
+/// Its encoder needs the generator, so it has an [`encoder`](Self::encoder) of its own and is no
+/// [`Start`](crate::Start).
+///
+/// Source: paper, section II-A.
+///
+/// ```
+/// use spikewire::{Scheme, population::Probabilistic};
+/// # struct Counter(u32);
+/// # impl rand_core::TryRng for Counter {
+/// #     type Error = core::convert::Infallible;
+/// #     fn try_next_u32(&mut self) -> Result<u32, Self::Error> { self.0 = self.0.wrapping_add(0x1000_0000); Ok(self.0) }
+/// #     fn try_next_u64(&mut self) -> Result<u64, Self::Error> { unimplemented!() }
+/// #     fn try_fill_bytes(&mut self, _: &mut [u8]) -> Result<(), Self::Error> { unimplemented!() }
+/// # }
+/// # let generator = Counter(0);
+///
+/// static TILT: Probabilistic<f32, Counter, 5, 256> = Probabilistic::new(0.0..=3.0, 1.5);
+///
+/// let fired = TILT.encoder(generator).encode(1.5);
+/// assert!(fired.iter().any(|neuron| neuron == 2)); // response 1: it always fires
+/// ```
+#[derive(Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(bound = "S: serde::Serialize"))]
+pub struct Probabilistic<S: Sample, G, const M: usize, const N: usize> {
+    fields: ReceptiveFields<S, M, N>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    generator: PhantomData<fn() -> G>,
+}
+
+#[cfg(feature = "defmt")]
+impl<S: Sample + defmt::Format, G, const M: usize, const N: usize> defmt::Format
+    for Probabilistic<S, G, M, N>
+{
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "Probabilistic {{ fields: {} }}", self.fields);
+    }
+}
+
+impl<S: Sample, G, const M: usize, const N: usize> Clone for Probabilistic<S, G, M, N> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S: Sample, G, const M: usize, const N: usize> Copy for Probabilistic<S, G, M, N> {}
+
+impl<S: Sample, G, const M: usize, const N: usize> PartialEq for Probabilistic<S, G, M, N> {
+    fn eq(&self, other: &Self) -> bool {
+        self.fields == other.fields
+    }
+}
+
+impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N> {
+    const SHAPE: () =
+        assert!(N.is_power_of_two(), "a probability takes a power of two as its levels");
+
+    /// Fields over a range; the smaller `beta`, the wider they are. For constants, where bad parameters fail
+    /// the build.
+    ///
+    /// # Panics
+    /// As [`try_new`](Self::try_new) fails.
+    pub const fn new(range: RangeInclusive<S>, beta: f32) -> Self {
+        unwrap(Self::try_of(&range, beta))
+    }
+
+    /// Fields over a range; the smaller `beta`, the wider they are.
+    ///
+    /// # Errors
+    /// The ends are not finite, or do not rise, or the sample type is too coarse to tell the centres apart;
+    /// `beta` is not above 0.
+    pub const fn try_new(range: RangeInclusive<S>, beta: f32) -> Result<Self, ConfigError> {
+        Self::try_of(&range, beta)
+    }
+
+    const fn try_of(range: &RangeInclusive<S>, beta: f32) -> Result<Self, ConfigError> {
+        const { Self::SHAPE };
+        match ReceptiveFields::try_new(range, beta) {
+            Ok(fields) => Ok(Self { fields, generator: PhantomData }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The centres, lowest first, rounded to the sample type.
+    pub const fn centres(&self) -> &[S; M] {
+        self.fields.centres()
+    }
+
+    /// The state of an encoder that draws from this generator, for a bank.
+    pub const fn state(generator: G) -> ProbabilisticState<G> {
+        ProbabilisticState { generator, tally: Tally::NONE }
+    }
+
+    /// An encoder that draws from this generator.
+    pub const fn encoder(&self, generator: G) -> Encoder<'_, Self> {
+        Encoder::with_state(self, Self::state(generator))
+    }
+
+    /// Encodes into what is empty.
+    #[inline]
+    fn encode_into(
+        &self,
+        state: &mut ProbabilisticState<G>,
+        sample: S,
+        neurons: &mut FiredNeurons<M>,
+    ) {
+        if !sample.is_finite() {
+            state.tally.reject();
+        } else if self.fields.is_near(sample) {
+            self.fire::<S::Short>(&mut state.generator, sample, neurons);
+        } else {
+            self.fire::<S::Reach>(&mut state.generator, sample, neurons);
+        }
+    }
+
+    #[inline(never)] // one copy, with the registers to itself
+    fn fire<D: Distance<S>>(&self, generator: &mut G, sample: S, neurons: &mut FiredNeurons<M>) {
+        let fields = &self.fields;
+        let first = fields.first(sample);
+        let Some(reach) = fields.reach::<D>(1) else { return };
+        let Some(distances) = fields.distances::<D>(sample, first) else { return };
+        let fired = neurons.fired.iter_mut().enumerate().skip(first);
+        let mut responds = false;
+        for ((neuron, fired), distance) in fired.zip(distances) {
+            if distance <= reach {
+                let draw = (generator.next_u32() >> (32 - N.ilog2())) as usize;
+                *fired = fields.reach(draw + 1).is_some_and(|reach| distance <= reach);
+                responds = true;
+            } else if responds || !fields.is_above(sample, neuron) {
+                break;
+            }
+        }
+    }
+}
+
+/// The state of a [`Probabilistic`] encoder: the generator, and the count of rejected samples.
+#[derive(Clone, Copy, Debug)]
+pub struct ProbabilisticState<G> {
+    generator: G,
+    tally: Tally,
+}
+
+impl<S: Sample, G: Rng, const M: usize, const N: usize> Scheme for Probabilistic<S, G, M, N> {
+    type Sample = S;
+    type Code = FiredNeurons<M>;
+    type Output = FiredNeurons<M>;
+    type EncoderState = ProbabilisticState<G>;
+    type DecoderState = Held<S>;
+
+    const LATENCY: usize = 0;
+    const RECOVERY: Recovery = Recovery::Spike;
+
+    #[inline]
+    fn encode(&self, state: &mut ProbabilisticState<G>, sample: S) -> FiredNeurons<M> {
+        let mut neurons = FiredNeurons::EMPTY;
+        self.encode_into(state, sample, &mut neurons);
+        neurons
+    }
+
+    fn encode_slice(
+        &self,
+        state: &mut ProbabilisticState<G>,
+        samples: &[S],
+        outputs: &mut [FiredNeurons<M>],
+    ) -> usize {
+        for (neurons, &sample) in outputs.iter_mut().zip(samples) {
+            *neurons = FiredNeurons::EMPTY;
+            self.encode_into(state, sample, neurons);
+        }
+        samples.len().min(outputs.len())
+    }
+
+    fn rejected(state: &ProbabilisticState<G>) -> u32 {
+        state.tally.rejected()
+    }
+
+    /// The middle centre.
+    fn decoder_state(&self) -> Held<S> {
+        Held::at(self.fields.middle())
+    }
+
+    fn decode(&self, state: &mut Held<S>, neurons: FiredNeurons<M>) -> S {
+        let levels = neurons.fired.iter().map(|&fired| fired.then_some(1));
+        state.or_hold(self.fields.mean(0, levels))
+    }
+
+    fn held(&self, state: &Held<S>) -> Option<S> {
+        Some(state.value())
+    }
+
+    fn resync(&self, state: &mut Held<S>, value: S) {
+        *state = Held::at(value);
+    }
+}

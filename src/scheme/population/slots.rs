@@ -1,0 +1,229 @@
+//! Gaussian receptive fields with sub-timesteps: the stronger the response, the earlier the spike.
+
+use core::ops::RangeInclusive;
+
+use super::SlotSpikes;
+use super::fields::ReceptiveFields;
+use super::held::Held;
+use crate::error::{unwrap, within};
+use crate::num::{Distance, Tally};
+use crate::{ConfigError, Recovery, Sample, Scheme, Start};
+
+/// Gaussian receptive fields with `N` sub-timesteps, slots, a sample.
+///
+/// `M` neurons with even centres `mu` respond by `r = exp(-(x - mu)² / (2 sigma²))`, where
+/// `sigma = (max - min) / (beta (M - 2))`. The level `k` of a response is `N r`, rounded half up. A level
+/// fires in slot `N - k`; a level below the floor is silent. A level is reached within a distance from the
+/// centre, so that a table of `N` distances replaces the exponential.
+///
+/// - **M:** 3 to 1024. **N:** 2 to 256. **Beta:** above 0; the paper takes 1.5.
+/// - **Floor:** 1 to `N`; 1 unless [told](Self::with_floor).
+/// - **Latency:** 0 samples, within which the slots last as long as the caller makes them.
+///   **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes
+///   `4 M + 4 N + 32` bytes of flash in `f32`.
+/// - **Work:** only neurons that respond, and one more at either end, are visited; no exponential.
+/// - **Exactness:** `f32` compares the distance to the rounded centre, rounded once, with the rounded table;
+///   fixed point compares exact distances to the unrounded centre.
+/// - **Range:** a value so far outside the range that no neuron reaches the floor fires none.
+/// - **Decoder:** the mean of the centres weighted by their levels, `N - slot`; where no neuron
+///   fired, the value before. One division a sample. Fixed point gives the exact mean, rounded to the
+///   nearest, halves upwards.
+///
+/// Source: Bohté et al. 2002; paper, section II-A.
+///
+/// ```
+/// use spikewire::{Scheme, population::Slots};
+///
+/// static TILT: Slots<f32, 4, 100> = Slots::new(0.0..=1.0, 1.5);
+///
+/// let spikes = TILT.encoder().encode(0.1);
+/// assert!(spikes.iter().eq([(0, 42), (1, 10), (2, 85)]));
+/// assert!((TILT.decoder().decode(spikes) - 0.1).abs() < 0.05);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(bound = "S: serde::Serialize"))]
+pub struct Slots<S: Sample, const M: usize, const N: usize> {
+    fields: ReceptiveFields<S, M, N>,
+    floor: u16,
+}
+
+impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
+    /// Fields over a range, in which every level from 1 fires; the smaller `beta`, the wider they are. For
+    /// constants, where bad parameters fail the build.
+    ///
+    /// # Panics
+    /// As [`try_new`](Self::try_new) fails.
+    pub const fn new(range: RangeInclusive<S>, beta: f32) -> Self {
+        unwrap(Self::try_of(&range, beta))
+    }
+
+    /// Fields over a range, in which every level from 1 fires; the smaller `beta`, the wider they are.
+    ///
+    /// # Errors
+    /// The ends are not finite, or do not rise, or the sample type is too coarse to tell the centres apart;
+    /// `beta` is not above 0.
+    pub const fn try_new(range: RangeInclusive<S>, beta: f32) -> Result<Self, ConfigError> {
+        Self::try_of(&range, beta)
+    }
+
+    const fn try_of(range: &RangeInclusive<S>, beta: f32) -> Result<Self, ConfigError> {
+        match ReceptiveFields::try_new(range, beta) {
+            Ok(fields) => Ok(Self { fields, floor: 1 }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Silence below this level. For constants, where a bad floor fails the build.
+    ///
+    /// # Panics
+    /// The floor is not within 1 to `N`.
+    #[must_use]
+    pub const fn with_floor(self, floor: u16) -> Self {
+        unwrap(self.try_with_floor(floor))
+    }
+
+    /// Silence below this level.
+    ///
+    /// # Errors
+    /// The floor is not within 1 to `N`.
+    pub const fn try_with_floor(self, floor: u16) -> Result<Self, ConfigError> {
+        match within("floor", floor as f64, 1.0, N as f32) {
+            Ok(()) => Ok(Self { floor, ..self }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The centres, lowest first, rounded to the sample type.
+    pub const fn centres(&self) -> &[S; M] {
+        self.fields.centres()
+    }
+
+    /// The spikes of a finite sample, in an empty spikes.
+    #[inline]
+    fn fire(&self, sample: S, spikes: &mut SlotSpikes<M, N>) {
+        if self.fields.is_near(sample) {
+            self.fire_near(sample, spikes);
+        } else {
+            self.fire_anywhere::<S::Reach>(sample, spikes);
+        }
+    }
+
+    #[inline(never)] // one copy, with the registers to itself
+    fn fire_near(&self, sample: S, spikes: &mut SlotSpikes<M, N>) {
+        if !self.fire_from::<S::Short>(sample, self.fields.first(sample), spikes) {
+            self.fire_anywhere::<S::Short>(sample, spikes);
+        }
+    }
+
+    /// Where the first neuron does not fire, the next may.
+    #[cold]
+    #[inline(never)]
+    fn fire_anywhere<D: Distance<S>>(&self, sample: S, spikes: &mut SlotSpikes<M, N>) {
+        let mut first = self.fields.first(sample);
+        while !self.fire_from::<D>(sample, first, spikes) && self.fields.is_above(sample, first) {
+            first += 1;
+        }
+    }
+
+    /// Fires the neurons from `first` on that have a finite sample within reach, and says whether any has.
+    #[inline]
+    fn fire_from<D: Distance<S>>(
+        &self,
+        sample: S,
+        first: usize,
+        spikes: &mut SlotSpikes<M, N>,
+    ) -> bool {
+        let reach = self.fields.reach::<D>(self.floor.into());
+        let distances = self.fields.distances::<D>(sample, first);
+        let (Some(reach), Some(distances)) = (reach, distances) else { return false };
+        let mut length = 0_usize;
+        for (slot, distance) in spikes.slots.iter_mut().zip(distances) {
+            if distance > reach {
+                break;
+            }
+            *slot = self.fields.slot(distance) as u8;
+            length += 1;
+        }
+        if length > 0 {
+            spikes.first = first as u16;
+            spikes.length = length as u16;
+        }
+        length > 0
+    }
+}
+
+/// The state of a [`Slots`] encoder: the count of rejected samples. 4 bytes.
+#[derive(Clone, Copy, Debug)]
+pub struct SlotsState {
+    tally: Tally,
+}
+
+impl<S: Sample, const M: usize, const N: usize> Start for Slots<S, M, N> {
+    const START: SlotsState = SlotsState { tally: Tally::NONE };
+}
+
+impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
+    /// Encodes into what is empty.
+    #[inline]
+    fn encode_into(&self, state: &mut SlotsState, sample: S, spikes: &mut SlotSpikes<M, N>) {
+        if sample.is_finite() {
+            self.fire(sample, spikes);
+        } else {
+            state.tally.reject();
+        }
+    }
+}
+
+impl<S: Sample, const M: usize, const N: usize> Scheme for Slots<S, M, N> {
+    type Sample = S;
+    type Code = SlotSpikes<M, N>;
+    type Output = SlotSpikes<M, N>;
+    type EncoderState = SlotsState;
+    type DecoderState = Held<S>;
+
+    const LATENCY: usize = 0;
+    const RECOVERY: Recovery = Recovery::Spike;
+
+    #[inline]
+    fn encode(&self, state: &mut SlotsState, sample: S) -> SlotSpikes<M, N> {
+        let mut spikes = SlotSpikes::EMPTY;
+        self.encode_into(state, sample, &mut spikes);
+        spikes
+    }
+
+    fn encode_slice(
+        &self,
+        state: &mut SlotsState,
+        samples: &[S],
+        outputs: &mut [SlotSpikes<M, N>],
+    ) -> usize {
+        for (spikes, &sample) in outputs.iter_mut().zip(samples) {
+            *spikes = SlotSpikes::EMPTY;
+            self.encode_into(state, sample, spikes);
+        }
+        samples.len().min(outputs.len())
+    }
+
+    fn rejected(state: &SlotsState) -> u32 {
+        state.tally.rejected()
+    }
+
+    /// The middle centre.
+    fn decoder_state(&self) -> Held<S> {
+        Held::at(self.fields.middle())
+    }
+
+    fn decode(&self, state: &mut Held<S>, spikes: SlotSpikes<M, N>) -> S {
+        let levels = spikes.slots().iter().map(|&slot| Some(N as u32 - u32::from(slot)));
+        state.or_hold(self.fields.mean(spikes.first(), levels))
+    }
+
+    fn held(&self, state: &Held<S>) -> Option<S> {
+        Some(state.value())
+    }
+
+    fn resync(&self, state: &mut Held<S>, value: S) {
+        *state = Held::at(value);
+    }
+}

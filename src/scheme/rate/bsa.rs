@@ -1,0 +1,173 @@
+//! Ben's spiker (BSA): a spike where subtracting the filter brings the signal nearer to zero.
+
+use super::Taps;
+use super::decoder::{RateDecoderState, decode_rate};
+use super::encoder::{RateState, Rule, rate_scheme};
+use super::filtered::{Filtered, with_shift};
+use crate::error::{not_negative, ratio, unwrap};
+use crate::num::{Nearer, Ratio, Residual, to_f64};
+use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
+
+/// Ben's spiker algorithm, as published: errors and subtraction aligned with the sample.
+///
+/// With `r = x - shift`, `e1 = sum |r[i+j] - h[j]|` and `e2 = sum |r[i+j]|`: a spike at `i` if
+/// `e1 <= e2 - threshold` ([`subtractive`](Self::subtractive)) or `e1 <= e2 * threshold`
+/// ([`multiplicative`](Self::multiplicative)); then `r[i+j] -= h[j]`. At the end of a recording both
+/// sums are cut to what is left.
+///
+/// - **Threshold:** subtractive: 0 or more, in the samples' unit. Multiplicative: above 0 and below
+///   4; with samples in fixed point it is rounded to a multiple of 2⁻¹⁴.
+/// - **Latency:** `F - 1` samples. **Memory:** `4 F + 8` bytes a channel in `f32`.
+/// - **Exactness:** `f32` sums `e1` and `e2` apart, by rising `(i + j) mod F` over a whole window
+///   (which is how it lies in memory), first tap first over a cut one; subtractive compares
+///   `e1 - e2` with `-threshold`. Fixed point is exact within the range of [`rate`](crate::rate).
+///
+/// Source: Schrauwen and Van Campenhout, BSA, 2003; paper, section II-B. The paper's own indices are
+/// those of [`BsaToolbox`](super::BsaToolbox).
+///
+/// ```
+/// use spikewire::{Scheme, Spike, rate::{Bsa, Scale, Shape, Taps}};
+///
+/// const TAPS: Taps<f32, 24> = Taps::shaped(Shape::Hann, Scale::Sum(1.0));
+/// static LIFT: Bsa<f32, 24> = Bsa::subtractive(TAPS, 0.955);
+///
+/// let mut encoder = LIFT.encoder();
+/// let spikes = (0..1000).filter(|_| encoder.encode(0.5) == Some(Spike::Up)).count();
+/// assert!((480..520).contains(&spikes)); // the rate is the value
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(bound = "S: serde::Serialize"))]
+pub struct Bsa<S: Sample, const F: usize> {
+    filtered: Filtered<S, F>,
+    limit: Limit<S>,
+}
+
+/// What [`Bsa`] compares the two errors by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Criterion<S> {
+    /// `e1 <= e2 - threshold`.
+    Subtractive(S),
+    /// `e1 <= e2 * threshold`.
+    Multiplicative(f32),
+}
+
+/// A checked criterion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+enum Limit<S> {
+    Subtractive(S),
+    Multiplicative(Ratio),
+}
+
+impl<S: Sample, const F: usize> Bsa<S, F> {
+    /// A scheme with these taps and either criterion. For constants, where a bad threshold fails the build.
+    ///
+    /// # Panics
+    /// The threshold is out of its range, or not finite.
+    pub const fn new(taps: Taps<S, F>, criterion: Criterion<S>) -> Self {
+        unwrap(Self::try_new(taps, criterion))
+    }
+
+    /// A scheme with these taps and either criterion.
+    ///
+    /// # Errors
+    /// The threshold is out of its range, or not finite.
+    pub const fn try_new(taps: Taps<S, F>, criterion: Criterion<S>) -> Result<Self, ConfigError> {
+        let (checked, limit) = match criterion {
+            Criterion::Subtractive(threshold) => {
+                (not_negative("threshold", to_f64(threshold)), Limit::Subtractive(threshold))
+            }
+            Criterion::Multiplicative(threshold) => {
+                (ratio("threshold", threshold), Limit::Multiplicative(Ratio::new(threshold)))
+            }
+        };
+        match checked {
+            Ok(()) => Ok(Self { filtered: Filtered::new(taps), limit }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// `e1 <= e2 - threshold`. For constants, where a bad threshold fails the build.
+    ///
+    /// # Panics
+    /// The threshold is negative or not finite.
+    pub const fn subtractive(taps: Taps<S, F>, threshold: S) -> Self {
+        unwrap(Self::try_subtractive(taps, threshold))
+    }
+
+    /// `e1 <= e2 - threshold`.
+    ///
+    /// # Errors
+    /// The threshold is negative or not finite.
+    pub const fn try_subtractive(taps: Taps<S, F>, threshold: S) -> Result<Self, ConfigError> {
+        Self::try_new(taps, Criterion::Subtractive(threshold))
+    }
+
+    /// `e1 <= e2 * threshold`. For constants, where a bad threshold fails the build.
+    ///
+    /// # Panics
+    /// The threshold is not above 0 and below 4.
+    pub const fn multiplicative(taps: Taps<S, F>, threshold: f32) -> Self {
+        unwrap(Self::try_multiplicative(taps, threshold))
+    }
+
+    /// `e1 <= e2 * threshold`.
+    ///
+    /// # Errors
+    /// The threshold is not above 0 and below 4.
+    pub const fn try_multiplicative(taps: Taps<S, F>, threshold: f32) -> Result<Self, ConfigError> {
+        Self::try_new(taps, Criterion::Multiplicative(threshold))
+    }
+
+    with_shift!();
+
+    /// What it compares the two errors by.
+    pub const fn criterion(&self) -> Criterion<S> {
+        match self.limit {
+            Limit::Subtractive(threshold) => Criterion::Subtractive(threshold),
+            Limit::Multiplicative(ratio) => Criterion::Multiplicative(ratio.factor()),
+        }
+    }
+}
+
+/// The error with the filter subtracted is smaller than without, by the criterion.
+impl<S: Sample, const F: usize> Rule<S::Residual> for Bsa<S, F> {
+    const IN_ORDER: bool = false;
+
+    #[inline(always)]
+    fn fits(
+        &self,
+        magnitude: S::Residual,
+        pairs: impl Iterator<Item = (S::Residual, S::Residual)>,
+        _: bool,
+    ) -> bool {
+        match self.limit {
+            Limit::Subtractive(threshold) => {
+                S::Residual::is_nearer_by(threshold.widen(), magnitude, pairs)
+            }
+            Limit::Multiplicative(ratio) => {
+                let (mut with, mut without) = (S::Residual::EMPTY, S::Residual::EMPTY);
+                for (residual, tap) in pairs {
+                    with = residual.add_distance(tap, with);
+                    without = residual.add_distance(S::Residual::ZERO, without);
+                }
+                S::Residual::at_most(with, without, ratio)
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn fits_by_slot(
+        &self,
+        magnitude: S::Residual,
+        pairs: impl Iterator<Item = (S::Residual, S::Residual)>,
+    ) -> Option<bool> {
+        Some(self.fits(magnitude, pairs, true))
+    }
+}
+
+rate_scheme!(Bsa);

@@ -1,0 +1,190 @@
+//! Ben's spiker (BSA) with the indices of the paper's toolbox.
+
+use super::Taps;
+use super::cursor::Cursor;
+use super::decoder::{RateDecoderState, decode_rate};
+use super::encoder::{cells, subtract};
+use super::filtered::{Filtered, with_shift};
+use crate::error::{ratio, unwrap};
+use crate::num::{Nearer, Ratio, Residual, Tally};
+use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
+
+/// Ben's spiker algorithm as the paper's tables were made with: the filter is compared one sample
+/// later and subtracted two samples later than in [`Bsa`](super::Bsa).
+///
+/// With `r = x - shift`, `e1 = sum |r[i+j+1] - h[j]|` and `e2 = sum |r[i+j]|`: a spike at `i` if
+/// `e1 <= e2 * threshold`; then `r[i+j+2] -= h[j]`. The last `F` samples of a recording never spike.
+///
+/// - **Threshold:** above 0 and below 4; with samples in fixed point it is rounded to a multiple of
+///   2⁻¹⁴.
+/// - **Latency:** `F` samples. **Memory:** `4 F + 12` bytes a channel in `f32`.
+/// - **Exactness:** as [`Bsa`](super::Bsa), multiplicative; the window of `e1` begins at `i + 1`.
+///
+/// Source: paper, section II-B, algorithm 5.
+///
+/// ```
+/// use spikewire::{Scheme, rate::{BsaToolbox, Taps}};
+///
+/// static LIFT: BsaToolbox<f32, 9> = BsaToolbox::new(Taps::triangular(1.0), 1.15);
+///
+/// let mut encoder = LIFT.encoder();
+/// let first = (0..).find(|_| encoder.encode(1.0).is_some());
+/// assert_eq!(first, Some(LIFT.latency()));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(bound = "S: serde::Serialize"))]
+pub struct BsaToolbox<S: Sample, const F: usize> {
+    filtered: Filtered<S, F>,
+    #[cfg_attr(feature = "serde", serde(rename = "threshold"))]
+    ratio: Ratio,
+}
+
+impl<S: Sample, const F: usize> BsaToolbox<S, F> {
+    /// A scheme with these taps and this threshold. For constants, where a bad threshold fails the build.
+    ///
+    /// # Panics
+    /// The threshold is not above 0 and below 4.
+    pub const fn new(taps: Taps<S, F>, threshold: f32) -> Self {
+        unwrap(Self::try_new(taps, threshold))
+    }
+
+    /// A scheme with these taps and this threshold.
+    ///
+    /// # Errors
+    /// The threshold is not above 0 and below 4.
+    pub const fn try_new(taps: Taps<S, F>, threshold: f32) -> Result<Self, ConfigError> {
+        match ratio("threshold", threshold) {
+            Ok(()) => Ok(Self { filtered: Filtered::new(taps), ratio: Ratio::new(threshold) }),
+            Err(error) => Err(error),
+        }
+    }
+
+    with_shift!();
+
+    /// What part of `e2` is allowed.
+    pub const fn threshold(&self) -> f32 {
+        self.ratio.factor()
+    }
+
+    #[inline(always)]
+    fn encode_one(
+        &self,
+        residuals: &mut [S::Residual; F],
+        state: &mut Registers<S::Residual, F>,
+        sample: S,
+    ) -> Option<Spike> {
+        let taps = &self.filtered.taps;
+        if !sample.is_finite() {
+            state.tally.reject();
+            return None;
+        }
+        let residual = self.filtered.residual(sample).minus(state.owed);
+        state.owed = S::Residual::ZERO;
+        let without = without_filter(residuals);
+        let newest = state.cursor.next();
+        *residuals.get_mut(newest)? = residual;
+        if !state.cursor.advance() {
+            return None;
+        }
+        let with = with_filter(residuals, taps.starting_at(newest + 1));
+        if !S::Residual::at_most(with, without, self.ratio) {
+            return Some(Spike::None);
+        }
+        // The taps begin one residual after the oldest; the last of them is left over.
+        let oldest = state.cursor.next();
+        let kept = residuals.get(oldest).copied()?;
+        subtract(cells(residuals), taps.starting_at(oldest + 1));
+        *residuals.get_mut(oldest)? = kept;
+        state.owed = taps.as_array().last()?.widen();
+        Some(Spike::Up)
+    }
+}
+
+/// The state of a [`BsaToolbox`] encoder. `4 F + 12` bytes in `f32`.
+#[derive(Clone, Copy, Debug)]
+pub struct BsaToolboxState<S: Sample, const F: usize> {
+    registers: Registers<S::Residual, F>,
+    residuals: [S::Residual; F],
+}
+
+/// What changes with a sample, besides the residuals: kept in registers over a slice.
+#[derive(Clone, Copy, Debug)]
+struct Registers<R, const F: usize> {
+    /// The last tap of a spike just emitted, to be taken from the sample to come.
+    owed: R,
+    cursor: Cursor<F>,
+    tally: Tally,
+}
+
+impl<R: Residual, const F: usize> Registers<R, F> {
+    const START: Self = Self { owed: R::ZERO, cursor: Cursor::new(F), tally: Tally::NONE };
+}
+
+/// The sum of `|r|` over the window.
+#[inline]
+fn without_filter<R: Residual>(residuals: &[R]) -> R::Sum {
+    residuals.iter().fold(R::EMPTY, |sum, residual| residual.add_distance(R::ZERO, sum))
+}
+
+/// The sum of `|r - h|` over the window.
+#[inline]
+fn with_filter<S: Sample>(residuals: &[S::Residual], taps: &[S]) -> <S::Residual as Nearer>::Sum {
+    let pairs = residuals.iter().zip(taps);
+    pairs.fold(S::Residual::EMPTY, |sum, (residual, tap)| residual.add_distance(tap.widen(), sum))
+}
+
+impl<S: Sample, const F: usize> Start for BsaToolbox<S, F> {
+    const START: BsaToolboxState<S, F> =
+        BsaToolboxState { registers: Registers::START, residuals: [S::Residual::ZERO; F] };
+}
+
+impl<S: Sample, const F: usize> Scheme for BsaToolbox<S, F> {
+    type Sample = S;
+    type Code = Spike;
+    type Output = Option<Spike>;
+    type EncoderState = BsaToolboxState<S, F>;
+    type DecoderState = RateDecoderState<S, F>;
+
+    const LATENCY: usize = F;
+    const RECOVERY: Recovery = Recovery::Samples(F);
+
+    #[inline]
+    fn encode(&self, state: &mut BsaToolboxState<S, F>, sample: S) -> Option<Spike> {
+        let mut registers = state.registers;
+        let spike = self.encode_one(&mut state.residuals, &mut registers, sample);
+        state.registers = registers;
+        spike
+    }
+
+    #[inline]
+    fn encode_slice(
+        &self,
+        state: &mut BsaToolboxState<S, F>,
+        samples: &[S],
+        spikes: &mut [Option<Spike>],
+    ) -> usize {
+        let mut registers = state.registers;
+        for (spike, &sample) in spikes.iter_mut().zip(samples) {
+            *spike = self.encode_one(&mut state.residuals, &mut registers, sample);
+        }
+        state.registers = registers;
+        samples.len().min(spikes.len())
+    }
+
+    /// The last `F` samples never spike.
+    fn finish_next(&self, state: &mut BsaToolboxState<S, F>) -> Option<Spike> {
+        let cursor = &mut state.registers.cursor;
+        if cursor.missing() >= F {
+            return None;
+        }
+        cursor.pop();
+        Some(Spike::None)
+    }
+
+    fn rejected(state: &BsaToolboxState<S, F>) -> u32 {
+        state.registers.tally.rejected()
+    }
+
+    decode_rate!();
+}

@@ -1,0 +1,79 @@
+//! How all rate codes decode: they add up the filters of the spikes.
+
+use super::filtered::Filtered;
+use crate::num::Residual;
+use crate::{Sample, Spike};
+
+/// The state of a rate code's decoder: what the spikes so far add to the next `F` values.
+///
+/// `y[i] = shift + sum over j of s[i-j] h[j]`.
+///
+/// - **Range:** the sum takes the oldest spike first, one rounding each in `f32`; fixed point is
+///   exact and saturates at the type's ends.
+/// - **Work:** one addition a tap for each spike, two operations for each sample without.
+/// - **Memory:** `4 F + 4` bytes in `f32`.
+/// - **Loss:** a lost spike is forgotten after `F` samples, so a rate decoder needs no keyframes.
+///
+/// [`Spike::Down`], which no rate code emits, decodes as [`Spike::None`].
+///
+/// Source: paper, section II-B.
+#[derive(Clone, Copy, Debug)]
+pub struct RateDecoderState<S: Sample, const F: usize> {
+    /// From `next` on, and around.
+    pending: [S::Residual; F],
+    next: u16,
+}
+
+impl<S: Sample, const F: usize> RateDecoderState<S, F> {
+    pub(super) const START: Self = Self { pending: [S::Residual::ZERO; F], next: 0 };
+
+    #[inline(always)]
+    pub(super) fn decode(&mut self, filtered: &Filtered<S, F>, spike: Spike) -> S {
+        let next = (self.next as usize).min(F - 1);
+        if spike == Spike::Up {
+            for (sum, tap) in self.pending.iter_mut().zip(filtered.taps.starting_at(next)) {
+                *sum = sum.plus(tap.widen());
+            }
+        }
+        let mut sum = S::Residual::ZERO;
+        if let Some(pending) = self.pending.get_mut(next) {
+            core::mem::swap(&mut sum, pending);
+        }
+        self.next = if next + 1 < F { next as u16 + 1 } else { 0 };
+        filtered.shift.restore(sum)
+    }
+}
+
+/// The decoding half of a rate scheme's [`Scheme`](crate::Scheme), with a field `filtered`.
+macro_rules! decode_rate {
+    () => {
+        fn decoder_state(&self) -> RateDecoderState<S, F> {
+            RateDecoderState::START
+        }
+
+        #[inline]
+        fn decode(&self, state: &mut RateDecoderState<S, F>, spike: Spike) -> S {
+            state.decode(&self.filtered, spike)
+        }
+
+        #[inline]
+        fn decode_slice(
+            &self,
+            state: &mut RateDecoderState<S, F>,
+            spikes: &[Spike],
+            values: &mut [S],
+        ) -> usize {
+            for (value, &spike) in values.iter_mut().zip(spikes) {
+                *value = state.decode(&self.filtered, spike);
+            }
+            spikes.len().min(values.len())
+        }
+
+        /// Forgets the spikes of the past, whose filters reach into the future. A rate decoder's values come
+        /// from spikes alone.
+        fn resync(&self, state: &mut RateDecoderState<S, F>, _: S) {
+            *state = RateDecoderState::START;
+        }
+    };
+}
+pub(super) use decode_rate;

@@ -1,0 +1,275 @@
+//! How the rate codes encode: each has its own rule for when the filter fits.
+
+use core::cell::Cell;
+
+use super::cursor::Cursor;
+use super::filtered::Filtered;
+use crate::num::{Residual, Tally};
+use crate::{Sample, Spike};
+
+/// When a filter fits under the signal.
+pub(super) trait Rule<R: Residual> {
+    /// Whether it is settled early where it goes from the first tap on. If not, whole windows go from
+    /// the first slot on in both forms.
+    const IN_ORDER: bool;
+
+    /// Whether the sample spikes, given the residuals from it on, each with its tap. `magnitude` is the sum
+    /// of these taps' magnitudes; `is_whole` is false where the recording ends within the filter.
+    fn fits(&self, magnitude: R, pairs: impl Iterator<Item = (R, R)>, is_whole: bool) -> bool;
+
+    /// Whether a whole window spikes, given from the first slot on; `None` if that order cannot tell.
+    fn fits_by_slot(&self, magnitude: R, pairs: impl Iterator<Item = (R, R)>) -> Option<bool>;
+}
+
+/// The state of a rate code's encoder: what the spikes so far have left of the last `F` samples.
+///
+/// `4 F + 8` bytes in `f32`.
+#[derive(Clone, Copy, Debug)]
+pub struct RateState<S: Sample, const F: usize> {
+    residuals: [S::Residual; F],
+    cursor: Cursor<F>,
+    tally: Tally,
+}
+
+impl<S: Sample, const F: usize> RateState<S, F> {
+    pub(super) const START: Self =
+        Self { residuals: [S::Residual::ZERO; F], cursor: Cursor::new(F - 1), tally: Tally::NONE };
+
+    pub(super) const fn rejected(&self) -> u32 {
+        self.tally.rejected()
+    }
+
+    /// Takes up a sample, and returns the slot of its residual if that completes a window.
+    #[inline]
+    fn take(&mut self, filtered: &Filtered<S, F>, sample: S) -> Option<usize> {
+        if !sample.is_finite() {
+            self.tally.reject();
+            return None;
+        }
+        let slot = self.cursor.next();
+        *self.residuals.get_mut(slot)? = filtered.residual(sample);
+        self.cursor.advance().then_some(slot)
+    }
+
+    /// Encodes a sample with the residuals where they are.
+    #[inline(always)]
+    pub(super) fn encode(
+        &mut self,
+        filtered: &Filtered<S, F>,
+        rule: &impl Rule<S::Residual>,
+        sample: S,
+    ) -> Option<Spike> {
+        let slot = self.take(filtered, sample)?;
+        let taps = filtered.taps.starting_at(slot + 1);
+        let residuals = cells(&mut self.residuals);
+        match rule.fits_by_slot(filtered.taps.magnitude(), pairs(residuals, taps)) {
+            Some(true) => {
+                subtract(residuals, taps);
+                Some(Spike::Up)
+            }
+            Some(false) => Some(Spike::None),
+            None => self.encode_apart(filtered, rule),
+        }
+    }
+
+    /// [`encode`](Self::encode), called: the criteria of BSA in fixed point make one loop each, and the
+    /// compiler would put each into a loop over samples of its own.
+    #[inline(never)]
+    fn encode_called(
+        &mut self,
+        filtered: &Filtered<S, F>,
+        rule: &impl Rule<S::Residual>,
+        sample: S,
+    ) -> Option<Spike> {
+        self.encode(filtered, rule, sample)
+    }
+
+    #[inline(always)]
+    pub(super) fn encode_slice<R: Rule<S::Residual>>(
+        &mut self,
+        filtered: &Filtered<S, F>,
+        rule: &R,
+        samples: &[S],
+        spikes: &mut [Option<Spike>],
+    ) -> usize {
+        let length = samples.len().min(spikes.len());
+        if !R::IN_ORDER {
+            for (spike, &sample) in spikes.iter_mut().zip(samples) {
+                *spike = if S::Residual::IS_EXACT {
+                    self.encode_called(filtered, rule, sample)
+                } else {
+                    self.encode(filtered, rule, sample)
+                };
+            }
+            return length;
+        }
+        let mut done = 0;
+        while let (Some(samples), Some(spikes)) = (samples.get(done..), spikes.get_mut(done..))
+            && let (Some(&sample), Some(_)) = (samples.first(), spikes.first())
+        {
+            let encoded = if self.cursor.missing() == 0 {
+                self.encode_line(filtered, rule, samples, spikes)
+            } else {
+                0
+            };
+            if encoded == 0 {
+                self.take(filtered, sample);
+                if let Some(spike) = spikes.first_mut() {
+                    *spike = None;
+                }
+                done += 1;
+            }
+            done += encoded;
+        }
+        length
+    }
+
+    /// Encodes the first samples, about three filters of them and none that is not finite, and returns
+    /// how many. Each must complete a window.
+    ///
+    /// Residuals lie in one line of memory, four filters long on the stack, where windows do not
+    /// wrap: the taps do not turn, and stay in registers.
+    #[inline(never)]
+    fn encode_line(
+        &mut self,
+        filtered: &Filtered<S, F>,
+        rule: &impl Rule<S::Residual>,
+        samples: &[S],
+        spikes: &mut [Option<Spike>],
+    ) -> usize {
+        let taps = *filtered.taps.as_array();
+        let (shift, magnitude) = (filtered.shift, filtered.taps.magnitude());
+        let mut line = [self.residuals; 4];
+        let line = line.as_flattened_mut();
+        let oldest = self.cursor.next();
+        let windows = cells(line.get_mut(oldest + 1..).unwrap_or_default()).windows(F);
+        let mut length = samples.len().min(spikes.len()).min(windows.len());
+        let all = spikes.iter_mut().zip(samples).zip(windows);
+        for (at, ((spike, &sample), window)) in all.enumerate() {
+            if !sample.is_finite() {
+                length = at;
+                break;
+            }
+            if let Some(newest) = window.last() {
+                newest.set(sample.residual(shift, magnitude));
+            }
+            let fits = rule.fits(magnitude, pairs(window, &taps), true);
+            if fits {
+                subtract(window, &taps);
+            }
+            *spike = Some(if fits { Spike::Up } else { Spike::None });
+        }
+        if let Some(last) = line.get(oldest + length..).and_then(<[_]>::first_chunk) {
+            self.residuals = *last;
+        }
+        self.cursor.restart();
+        length
+    }
+
+    /// The spike of the oldest residual, in order and with what is there of the window.
+    #[cold]
+    #[inline(never)]
+    fn encode_apart(
+        &mut self,
+        filtered: &Filtered<S, F>,
+        rule: &impl Rule<S::Residual>,
+    ) -> Option<Spike> {
+        let length = F.saturating_sub(self.cursor.missing());
+        let (late, early) = cells(&mut self.residuals).split_at_checked(self.cursor.oldest())?;
+        let (taps, absent) = filtered.taps.as_array().split_at_checked(length)?;
+        let (first, rest) = taps.split_at_checked(early.len().min(length))?;
+        let magnitude = absent.iter().fold(filtered.taps.magnitude(), |magnitude, tap| {
+            let tap = tap.widen();
+            if tap < S::Residual::ZERO { magnitude.plus(tap) } else { magnitude.minus(tap) }
+        });
+        if !rule.fits(magnitude, pairs(early, first).chain(pairs(late, rest)), length == F) {
+            return Some(Spike::None);
+        }
+        for (residual, tap) in early.iter().zip(first).chain(late.iter().zip(rest)) {
+            residual.set(residual.get().minus(tap.widen()));
+        }
+        Some(Spike::Up)
+    }
+
+    pub(super) fn finish_next(
+        &mut self,
+        filtered: &Filtered<S, F>,
+        rule: &impl Rule<S::Residual>,
+    ) -> Option<Spike> {
+        if self.cursor.missing() + 1 >= F {
+            return None;
+        }
+        self.cursor.pop();
+        self.encode_apart(filtered, rule)
+    }
+}
+
+/// Residuals, each with the tap beside it.
+#[inline(always)]
+fn pairs<S: Sample>(
+    residuals: &[Cell<S::Residual>],
+    taps: &[S],
+) -> impl Iterator<Item = (S::Residual, S::Residual)> {
+    residuals.iter().zip(taps).map(|(residual, tap)| (residual.get(), tap.widen()))
+}
+
+/// Residuals, for windows that overlap.
+#[inline]
+pub(super) fn cells<R>(residuals: &mut [R]) -> &[Cell<R>] {
+    Cell::from_mut(residuals).as_slice_of_cells()
+}
+
+/// Subtracts from every residual the tap beside it.
+#[inline(always)]
+pub(super) fn subtract<S: Sample>(residuals: &[Cell<S::Residual>], taps: &[S]) {
+    for (residual, tap) in residuals.iter().zip(taps) {
+        residual.set(residual.get().minus(tap.widen()));
+    }
+}
+
+/// The [`Scheme`](crate::Scheme) of a rate code that looks ahead over whole filters: it has a field
+/// `filtered`, and this is its rule.
+macro_rules! rate_scheme {
+    ($scheme:ident) => {
+        impl<S: Sample, const F: usize> Start for $scheme<S, F> {
+            const START: RateState<S, F> = RateState::START;
+        }
+
+        impl<S: Sample, const F: usize> Scheme for $scheme<S, F> {
+            type Sample = S;
+            type Code = Spike;
+            type Output = Option<Spike>;
+            type EncoderState = RateState<S, F>;
+            type DecoderState = RateDecoderState<S, F>;
+
+            const LATENCY: usize = F - 1;
+            const RECOVERY: Recovery = Recovery::Samples(F);
+
+            #[inline]
+            fn encode(&self, state: &mut RateState<S, F>, sample: S) -> Option<Spike> {
+                state.encode(&self.filtered, self, sample)
+            }
+
+            #[inline]
+            fn encode_slice(
+                &self,
+                state: &mut RateState<S, F>,
+                samples: &[S],
+                spikes: &mut [Option<Spike>],
+            ) -> usize {
+                state.encode_slice(&self.filtered, self, samples, spikes)
+            }
+
+            fn finish_next(&self, state: &mut RateState<S, F>) -> Option<Spike> {
+                state.finish_next(&self.filtered, self)
+            }
+
+            fn rejected(state: &RateState<S, F>) -> u32 {
+                state.rejected()
+            }
+
+            decode_rate!();
+        }
+    };
+}
+pub(super) use rate_scheme;

@@ -1,0 +1,262 @@
+//! The filters of the rate codes.
+
+use crate::error::{LARGEST_STEP, finite, positive, unwrap};
+use crate::num::curve::{exp, sin_pi};
+use crate::num::{from_f64, to_f64, word};
+use crate::{ConfigError, Sample, SampleKind};
+
+/// `F` filter taps, 1 to 4096.
+///
+/// **Memory:** `8 F + 4` bytes in `f32`, in the scheme that owns them: each tap is there twice, so that a
+/// window that wraps meets them in one run of memory.
+///
+/// ```
+/// use spikewire::rate::Taps;
+///
+/// const TAPS: Taps<f32, 3> = Taps::triangular(1.0);
+/// assert_eq!(TAPS.as_array(), &[0.5, 1.0, 0.5]);
+/// ```
+///
+/// A filter of length zero does not compile:
+///
+/// ```compile_fail
+/// # use spikewire::rate::Taps;
+/// const NONE: Taps<f32, 0> = Taps::triangular(1.0);
+/// # let _ = &NONE;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(transparent, bound = "S: serde::Serialize")
+)]
+pub struct Taps<S: Sample, const F: usize> {
+    /// Twice in a row, so that they can be read from any tap on and all around.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "once"))]
+    twice: [[S; F]; 2],
+    /// The sum of the magnitudes.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    magnitude: S::Residual,
+}
+
+#[cfg(feature = "defmt")]
+impl<S: Sample + defmt::Format, const F: usize> defmt::Format for Taps<S, F> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "Taps({})", self.as_array());
+    }
+}
+
+/// Taps without their repetition.
+#[cfg(feature = "serde")]
+fn once<T: serde::Serialize, S: serde::Serializer, const F: usize>(
+    [taps, _]: &[[T; F]; 2],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    crate::serial::array(taps, serializer)
+}
+
+/// The shape of a filter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Shape {
+    /// As MATLAB's `triang(n)`.
+    Triangular,
+    /// `sin²(pi (k + 1) / (n + 1))`: Hann without the zeros at its ends.
+    Hann,
+    /// As MATLAB's `gausswin(n, alpha)`: `exp(-½ (alpha (2k - n + 1) / (n - 1))²)`.
+    Gaussian {
+        /// The reciprocal of the width; MATLAB takes 2.5 unless told.
+        alpha: f64,
+    },
+}
+
+/// What a shape is scaled to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Scale<S> {
+    /// The value where the shape is 1.
+    Peak(S),
+    /// The sum over all taps.
+    Sum(S),
+}
+
+impl Shape {
+    /// Tap `k` of `n`, with 1 at the top of the shape.
+    pub const fn at(self, k: usize, n: usize) -> f64 {
+        let (position, length) = (k as f64, n as f64);
+        match self {
+            Self::Triangular => {
+                let from_end = if 2 * k < n { position } else { length - 1.0 - position };
+                if n % 2 == 1 {
+                    2.0 * (from_end + 1.0) / (length + 1.0)
+                } else {
+                    (2.0 * from_end + 1.0) / length
+                }
+            }
+            Self::Hann => {
+                let root = sin_pi((position + 1.0) / (length + 1.0));
+                root * root
+            }
+            Self::Gaussian { .. } if n == 1 => 1.0,
+            Self::Gaussian { alpha } => {
+                let u = alpha * (2.0 * position - length + 1.0) / (length - 1.0);
+                exp(-u * u / 2.0)
+            }
+        }
+    }
+
+    const fn factor(self, n: usize, is_sum: bool, target: f64) -> f64 {
+        if !is_sum {
+            return target;
+        }
+        let mut sum = 0.0;
+        let mut k = 0;
+        while k < n {
+            sum += self.at(k, n);
+            k += 1;
+        }
+        target / sum
+    }
+
+    const fn check(self) -> Result<(), ConfigError> {
+        match self {
+            Self::Gaussian { alpha } => positive("alpha", alpha),
+            Self::Triangular | Self::Hann => Ok(()),
+        }
+    }
+}
+
+/// What must hold for taps that sum up to `magnitude`. Sixteen bits widen to 32 when summed; wider types
+/// must hold the sum themselves.
+const fn check_magnitude<S: Sample>(magnitude: f64) -> Result<(), ConfigError> {
+    let largest = to_f64(from_f64::<S>(LARGEST_STEP as f64));
+    if magnitude == 0.0 {
+        Err(ConfigError::AllZero { parameter: "filter taps" })
+    } else if size_of::<S>() > 2 && magnitude > largest {
+        Err(ConfigError::OutOfRange {
+            parameter: "sum of the filter taps' magnitudes",
+            value: magnitude as f32,
+            min: 0.0,
+            max: largest as f32,
+        })
+    } else {
+        Ok(())
+    }
+}
+
+// Constants have no iterators, and every index is compared first.
+#[allow(clippy::indexing_slicing)]
+impl<S: Sample, const F: usize> Taps<S, F> {
+    const SHAPE: () = assert!(F >= 1 && F <= 4096, "a filter takes 1 to 4096 taps");
+
+    /// The user's own taps, of any sign. For constants, where bad taps fail the build.
+    ///
+    /// # Panics
+    /// As [`try_new`](Self::try_new) fails.
+    pub const fn new(taps: [S; F]) -> Self {
+        unwrap(Self::try_new(taps))
+    }
+
+    /// The user's own taps, of any sign.
+    ///
+    /// # Errors
+    /// A tap is not finite, all are 0, or their magnitudes sum up to more than the type holds
+    /// (10³¹ in `f32`).
+    pub const fn try_new(taps: [S; F]) -> Result<Self, ConfigError> {
+        const { Self::SHAPE };
+        let mut magnitude = 0.0;
+        let mut k = 0;
+        while k < F {
+            let tap = to_f64(taps[k]);
+            if let Err(error) = finite("filter tap", tap) {
+                return Err(error);
+            }
+            magnitude += tap.abs();
+            k += 1;
+        }
+        match check_magnitude::<S>(magnitude) {
+            Ok(()) => Ok(Self { twice: [taps; 2], magnitude: sum::<S>(magnitude) }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// A shape, scaled and rounded to the sample type. For constants, where a bad scale fails the build.
+    ///
+    /// # Panics
+    /// As [`try_shaped`](Self::try_shaped) fails.
+    pub const fn shaped(shape: Shape, scale: Scale<S>) -> Self {
+        unwrap(Self::try_shaped(shape, scale))
+    }
+
+    /// A shape, scaled and rounded to the sample type.
+    ///
+    /// # Errors
+    /// The scale is not above 0 and finite, or as for [`try_new`](Self::try_new).
+    pub const fn try_shaped(shape: Shape, scale: Scale<S>) -> Result<Self, ConfigError> {
+        let (is_sum, target) = match scale {
+            Scale::Peak(peak) => (false, to_f64(peak)),
+            Scale::Sum(sum) => (true, to_f64(sum)),
+        };
+        match (shape.check(), positive("filter scale", target)) {
+            (Err(error), _) | (_, Err(error)) => Err(error),
+            _ => {
+                let factor = shape.factor(F, is_sum, target);
+                let mut taps = [S::ZERO; F];
+                let mut k = 0;
+                while k < F {
+                    taps[k] = from_f64(shape.at(k, F) * factor);
+                    k += 1;
+                }
+                Self::try_new(taps)
+            }
+        }
+    }
+
+    /// [`Shape::Triangular`] with this value where the shape is 1. For constants, where a bad peak fails the
+    /// build.
+    ///
+    /// # Panics
+    /// As [`try_triangular`](Self::try_triangular) fails.
+    pub const fn triangular(peak: S) -> Self {
+        unwrap(Self::try_triangular(peak))
+    }
+
+    /// [`Shape::Triangular`] with this value where the shape is 1.
+    ///
+    /// # Errors
+    /// As for [`try_shaped`](Self::try_shaped).
+    pub const fn try_triangular(peak: S) -> Result<Self, ConfigError> {
+        Self::try_shaped(Shape::Triangular, Scale::Peak(peak))
+    }
+
+    /// The taps, first to last.
+    pub const fn as_array(&self) -> &[S; F] {
+        let [taps, _] = &self.twice;
+        taps
+    }
+
+    /// The taps, turned so that the first of them is in place `slot`, which is at most `F`.
+    #[inline]
+    pub(super) fn starting_at(&self, slot: usize) -> &[S; F] {
+        let turned = self.twice.as_flattened().get(F.wrapping_sub(slot)..);
+        turned.and_then(<[S]>::first_chunk).unwrap_or(self.as_array())
+    }
+
+    /// The sum of the taps' magnitudes.
+    #[inline]
+    pub(super) const fn magnitude(&self) -> S::Residual {
+        self.magnitude
+    }
+}
+
+/// A sum of taps, as the residuals have it.
+const fn sum<S: Sample>(value: f64) -> S::Residual {
+    match S::KIND {
+        SampleKind::F32 => word((value as f32).to_bits() as u64),
+        SampleKind::Fixed16 { fraction } | SampleKind::Fixed32 { fraction } => {
+            word((value * (1_u64 << fraction) as f64) as i64 as u64)
+        }
+    }
+}

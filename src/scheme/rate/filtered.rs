@@ -1,0 +1,71 @@
+//! What every rate code owns: a filter, and the signal's minimum.
+
+use super::Taps;
+use crate::error::offset;
+use crate::num::to_f64;
+use crate::{ConfigError, Sample};
+
+/// Taps, and the shift that brings the signal's minimum to 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(bound = "S: serde::Serialize"))]
+pub(super) struct Filtered<S: Sample, const F: usize> {
+    pub(super) taps: Taps<S, F>,
+    pub(super) shift: S,
+}
+
+impl<S: Sample, const F: usize> Filtered<S, F> {
+    pub(super) const fn new(taps: Taps<S, F>) -> Self {
+        Self { taps, shift: S::ZERO }
+    }
+
+    /// Finite, and within ±10³¹ in `f32`.
+    pub(super) const fn try_with_shift(self, shift: S) -> Result<Self, ConfigError> {
+        match offset("shift", to_f64(shift)) {
+            Ok(()) => Ok(Self { shift, ..self }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// `sample - shift`.
+    #[inline]
+    pub(super) fn residual(&self, sample: S) -> S::Residual {
+        sample.residual(self.shift, self.taps.magnitude())
+    }
+}
+
+/// The constructors of the shift, for a scheme with a field `filtered`.
+macro_rules! with_shift {
+    () => {
+        /// The signal's minimum, 0 unless told. For constants, where a bad shift fails the build.
+        ///
+        /// # Panics
+        /// The shift is not finite, or beyond ±10³¹ in `f32`.
+        #[must_use]
+        pub const fn with_shift(self, shift: S) -> Self {
+            unwrap(self.try_with_shift(shift))
+        }
+
+        /// The signal's minimum, 0 unless told.
+        ///
+        /// # Errors
+        /// The shift is not finite, or beyond ±10³¹ in `f32`.
+        pub const fn try_with_shift(self, shift: S) -> Result<Self, ConfigError> {
+            match self.filtered.try_with_shift(shift) {
+                Ok(filtered) => Ok(Self { filtered, ..self }),
+                Err(error) => Err(error),
+            }
+        }
+
+        /// The taps of its filter.
+        pub const fn taps(&self) -> &Taps<S, F> {
+            &self.filtered.taps
+        }
+
+        /// The signal's minimum.
+        pub const fn shift(&self) -> S {
+            self.filtered.shift
+        }
+    };
+}
+pub(super) use with_shift;

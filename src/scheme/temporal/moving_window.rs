@@ -1,0 +1,302 @@
+//! Moving window (MW): a spike when a sample leaves the band around the mean of those before it.
+
+use core::hint::black_box;
+use core::slice::{from_mut, from_ref};
+
+use super::StepState;
+use super::steps::decode_steps;
+use crate::error::{positive, unwrap};
+use crate::num::{Difference, Tally, Windowed, margin, to_f64};
+use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
+
+/// Moving window: the baseline is the mean of the `N` samples before.
+///
+/// [`Spike::Up`] if `x > mean + threshold`, [`Spike::Down`] if `x < mean - threshold`. The paper's
+/// window is `W = N - 1`. Nothing is emitted before `N` samples have been seen, unless the encoder
+/// was [primed](crate::Encoder::prime); primed with the first `N` samples of a recording it
+/// compares those with their own mean, as the paper does. Only so may the first sample spike. Its value is
+/// known then, and its spike changes nothing: decode from the second sample on.
+///
+/// - **Threshold:** above 0, in the samples' unit. **N:** 1 to 16 384.
+/// - **Latency:** 0 samples. **Memory:** `4 N + 12` bytes a channel in `f32`, 4 to decode.
+/// - **Exactness:** without division, `N x - sum` is compared with `± N threshold`. Fixed point is
+///   exact over its whole range. `f32` takes the sum in this order, which keeps it free of drift:
+///   samples fill blocks of `N` slots; the part of the window in the block before is summed from its
+///   newest sample to its oldest, the part in the current block from its oldest to its newest, and
+///   the two are added. That costs constant work a sample on average and one pass of `N` additions
+///   every `N` samples. Samples must stay below `f32::MAX / N`. `FixedI32` takes fewer instructions
+///   while samples stay below `2^28 / N` units in the last place.
+/// - **Error:** the decoded value drifts without bound. Resynchronise it.
+///
+/// Source: paper, section II-C, algorithm 8.
+///
+/// ```
+/// use spikewire::{Scheme, Spike, temporal::MovingWindow};
+///
+/// const CLIMB: MovingWindow<f32, 2> = MovingWindow::new(0.5);
+/// let mut encoder = CLIMB.encoder();
+/// let spikes = [0.0, 1.0, 1.1, 0.4].map(|x| encoder.encode(x));
+/// assert_eq!(spikes, [Spike::None, Spike::None, Spike::Up, Spike::Down]);
+/// ```
+///
+/// A window without samples does not compile:
+///
+/// ```compile_fail
+/// # use spikewire::temporal::MovingWindow;
+/// const CLIMB: MovingWindow<f32, 0> = MovingWindow::new(0.5);
+/// # let _ = CLIMB;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct MovingWindow<S: Sample, const N: usize> {
+    threshold: S,
+    /// `N` times the threshold, to compare differences with.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    margin: <S::Sum as Difference>::Margin,
+}
+
+#[cfg(feature = "defmt")]
+impl<S: Sample + defmt::Format, const N: usize> defmt::Format for MovingWindow<S, N> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "MovingWindow {{ threshold: {} }}", self.threshold);
+    }
+}
+
+impl<S: Sample, const N: usize> MovingWindow<S, N> {
+    const SHAPE: () = assert!(N >= 1 && N <= 16_384, "a moving window takes 1 to 16384 samples");
+
+    /// A scheme with this threshold, which is also the decoder's step. For constants, where a bad threshold
+    /// fails the build.
+    ///
+    /// # Panics
+    /// The threshold is not above 0, or not finite.
+    pub const fn new(threshold: S) -> Self {
+        unwrap(Self::try_new(threshold))
+    }
+
+    /// A scheme with this threshold, which is also the decoder's step.
+    ///
+    /// # Errors
+    /// The threshold is not above 0, or not finite.
+    pub const fn try_new(threshold: S) -> Result<Self, ConfigError> {
+        const { Self::SHAPE };
+        match positive("threshold", to_f64(threshold)) {
+            Ok(()) => Ok(Self { threshold, margin: margin(threshold, N) }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The threshold, in the samples' unit.
+    pub const fn threshold(&self) -> S {
+        self.threshold
+    }
+}
+
+/// Added to the next slot until the window is full: such a slot is not found.
+const FILLING: u16 = 1 << 15;
+
+/// The slice form takes a block of up to so many samples at once, in registers, and of a longer one
+/// groups of [`GROUP`].
+const SHORT: usize = 8;
+
+const GROUP: usize = 4;
+
+/// The state of a [`MovingWindow`] encoder: the window and its sum. `4 N + 12` bytes in `f32`.
+#[derive(Clone, Copy, Debug)]
+pub struct MovingWindowState<S: Sample, const N: usize> {
+    ring: [S; N],
+    partial: S::Sum,
+    next: u16,
+    tally: Tally,
+}
+
+impl<S: Sample, const N: usize> Start for MovingWindow<S, N> {
+    const START: MovingWindowState<S, N> = MovingWindowState {
+        ring: [S::ZERO; N],
+        partial: S::Sum::ZERO,
+        next: FILLING,
+        tally: Tally::NONE,
+    };
+}
+
+impl<S: Sample, const N: usize> MovingWindowState<S, N> {
+    /// Takes groups of samples up to the end of a block, and says how many. It stops before a group
+    /// that the fast sum is not wide enough for, as it is not for a sample that is not finite.
+    #[inline]
+    fn encode_groups<const M: usize>(
+        &mut self,
+        margin: <S::Sum as Difference>::Margin,
+        groups: &[[S; M]],
+        spikes: &mut [[Spike; M]],
+    ) -> usize {
+        let Some(mut partial) = S::fast(self.partial) else { return 0 };
+        let is_full = self.next < FILLING;
+        let margin = if is_full { S::fast_margin(margin) } else { S::Fast::WIDEST };
+        let next = (self.next & !FILLING) as usize;
+        let slots = self.ring.get_mut(next..).unwrap_or_default().as_chunks_mut::<M>().0;
+        let mut taken = 0;
+        for ((spikes, &samples), slots) in spikes.iter_mut().zip(groups).zip(slots) {
+            if !S::are_small(N, &samples, slots) {
+                break;
+            }
+            let mut sum = partial;
+            let mut taint = S::Fast::ZERO;
+            for ((spike, sample), &slot) in spikes.iter_mut().zip(samples).zip(slots.iter()) {
+                let difference = sample.excess(N, slot, &mut sum);
+                *spike = Spike::from_side(difference.beyond(margin));
+                taint = taint.taint(difference);
+            }
+            if !taint.is_finite() {
+                break;
+            }
+            *slots = samples;
+            partial = sum;
+            taken += 1;
+        }
+        self.partial = S::exact(partial);
+        self.next += (taken * M) as u16;
+        if next + taken * M == N {
+            self.close_block();
+        }
+        taken
+    }
+
+    /// Takes any sample. Nothing is emitted if it is not finite, nor before the window is full, nor for
+    /// a difference that is not a number.
+    #[cold]
+    #[inline(never)]
+    fn encode_carefully(
+        &mut self,
+        margin: <S::Sum as Difference>::Margin,
+        sample: S,
+    ) -> Option<Spike> {
+        let is_full = self.next < FILLING;
+        let next = (self.next & !FILLING) as usize;
+        let Some(slot) = self.ring.get_mut(next).filter(|_| sample.is_finite()) else {
+            self.tally.reject();
+            return None;
+        };
+        let difference = sample.excess(N, *slot, &mut self.partial);
+        *slot = sample;
+        self.next += 1;
+        if next + 1 == N {
+            self.close_block();
+        }
+        (is_full && !difference.is_nan()).then(|| Spike::from_side(difference.beyond(margin)))
+    }
+
+    #[inline]
+    fn close_block(&mut self) {
+        self.next = 0;
+        if N <= SHORT {
+            S::close_block(&mut self.ring, &mut self.partial);
+        } else {
+            close_long_block(&mut self.ring, &mut self.partial);
+        }
+    }
+
+    fn clear_window(&mut self) {
+        self.ring = [S::ZERO; N];
+        self.partial = S::Sum::ZERO;
+        self.next = FILLING;
+    }
+}
+
+/// Of a length that the compiler does not know, or it would write out every slot.
+#[inline(never)]
+fn close_long_block<S: Windowed>(ring: &mut [S], partial: &mut S::Sum) {
+    let length = black_box(ring.len());
+    S::close_block(ring.get_mut(..length).unwrap_or_default(), partial);
+}
+
+impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
+    type Sample = S;
+    type Code = Spike;
+    type Output = Spike;
+    type EncoderState = MovingWindowState<S, N>;
+    type DecoderState = StepState<S>;
+
+    const LATENCY: usize = 0;
+    const RECOVERY: Recovery = Recovery::Keyframe;
+
+    #[inline]
+    fn encode(&self, state: &mut MovingWindowState<S, N>, sample: S) -> Spike {
+        // The sample that closes a long block is left to the careful way, so that this one stays short.
+        let usual = if N <= SHORT { N } else { N - 1 };
+        let next = state.next as usize;
+        if let Some(slot) = state.ring.get_mut(..usual).and_then(|slots| slots.get_mut(next))
+            && let Some(mut partial) = S::fast(state.partial)
+            && S::are_small(N, &[sample], &[*slot])
+        {
+            let difference = sample.excess(N, *slot, &mut partial);
+            if difference.is_finite() {
+                *slot = sample;
+                state.partial = S::exact(partial);
+                state.next = next as u16 + 1;
+                if next + 1 == N {
+                    state.close_block();
+                }
+                return Spike::from_side(difference.beyond(S::fast_margin(self.margin)));
+            }
+        }
+        state.encode_carefully(self.margin, sample).unwrap_or_default()
+    }
+
+    #[inline]
+    fn encode_slice(
+        &self,
+        state: &mut MovingWindowState<S, N>,
+        mut samples: &[S],
+        mut spikes: &mut [Spike],
+    ) -> usize {
+        let length = samples.len().min(spikes.len());
+        samples = samples.get(..length).unwrap_or_default();
+        while !samples.is_empty() {
+            let taken = if N > SHORT {
+                let (groups, spikes) = (samples.as_chunks().0, spikes.as_chunks_mut().0);
+                GROUP * state.encode_groups::<GROUP>(self.margin, groups, spikes)
+            } else if state.next == 0
+                && let Some(block) = samples.first_chunk()
+                && let Some(spikes) = spikes.first_chunk_mut()
+            {
+                N * state.encode_groups::<N>(self.margin, from_ref(block), from_mut(spikes))
+            } else {
+                0
+            };
+            if taken > 0 {
+                samples = samples.get(taken..).unwrap_or_default();
+                spikes = spikes.get_mut(taken..).unwrap_or_default();
+            } else if let (Some(&sample), Some(spike)) =
+                (samples.split_off_first(), spikes.split_off_first_mut())
+            {
+                *spike = state.encode_carefully(self.margin, sample).unwrap_or_default();
+            }
+        }
+        length
+    }
+
+    /// The last `N` of the past fill the window; a shorter past is ignored.
+    fn prime(&self, state: &mut MovingWindowState<S, N>, past: &[S]) {
+        let Some(window) = past.last_chunk::<N>() else { return };
+        if window.iter().all(S::is_finite) {
+            state.clear_window();
+            for &sample in window {
+                state.encode_carefully(self.margin, sample);
+            }
+        } else {
+            state.tally.reject();
+        }
+    }
+
+    /// The last sample, once the window is full.
+    fn keyframe(&self, state: &MovingWindowState<S, N>) -> Option<S> {
+        let newest = (state.next as usize).checked_sub(1).unwrap_or(N - 1);
+        state.ring.get(newest).copied()
+    }
+
+    fn rejected(state: &MovingWindowState<S, N>) -> u32 {
+        state.tally.rejected()
+    }
+
+    decode_steps!(threshold);
+}

@@ -1,0 +1,198 @@
+//! Step forward (SF): a spike when the signal leaves the band around a baseline that follows it.
+
+use super::StepState;
+use super::steps::decode_steps;
+use crate::error::{step, unwrap};
+use crate::num::{Tally, to_f64};
+use crate::scheme::codec::{encode_each, encode_first};
+use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
+
+/// Step forward: the baseline starts at the first sample and follows the signal by one threshold
+/// a spike.
+///
+/// If `x > base + threshold`: [`Spike::Up`] and `base += threshold`; if `x < base - threshold`:
+/// [`Spike::Down`] and `base -= threshold`.
+///
+/// - **Threshold:** above 0, in the samples' unit; up to 10³¹ in `f32`, so that no band reaches infinity.
+/// - **Latency:** 0 samples. **Memory:** 8 bytes a channel in `f32`, 4 to decode.
+/// - **Exactness:** `f32` rounds `base ± threshold` once; fixed point is exact.
+/// - **Error:** while `|x[i] - x[i-1]| <= threshold`, the decoded value stays within the threshold
+///   of the signal.
+///
+/// Source: paper, section II-C, algorithm 7 (whose second `base + threshold` is a slip for `-`).
+///
+/// ```
+/// use spikewire::{Scheme, Spike, temporal::StepForward};
+///
+/// const ROLL: StepForward<f32> = StepForward::new(0.25);
+/// let mut encoder = ROLL.encoder();
+/// let mut decoder = ROLL.decoder();
+/// let spikes = [0.0, 0.3, 0.6, 0.6, 0.1].map(|x| encoder.encode(x));
+/// assert_eq!(spikes, [Spike::None, Spike::Up, Spike::Up, Spike::None, Spike::Down]);
+/// assert_eq!(spikes.map(|s| decoder.decode(s)), [0.0, 0.25, 0.5, 0.5, 0.25]);
+/// ```
+///
+/// A threshold that makes no sense does not compile:
+///
+/// ```compile_fail
+/// # use spikewire::temporal::StepForward;
+/// const ROLL: StepForward<f32> = StepForward::new(0.0);
+/// # let _ = ROLL;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct StepForward<S> {
+    threshold: S,
+}
+
+impl<S: Sample> StepForward<S> {
+    /// A scheme with this threshold, which is also the decoder's step. For constants, where a bad threshold
+    /// fails the build.
+    ///
+    /// # Panics
+    /// The threshold is not above 0, not finite, or above 10³¹.
+    pub const fn new(threshold: S) -> Self {
+        unwrap(Self::try_new(threshold))
+    }
+
+    /// A scheme with this threshold, which is also the decoder's step.
+    ///
+    /// # Errors
+    /// The threshold is not above 0, not finite, or above 10³¹.
+    pub const fn try_new(threshold: S) -> Result<Self, ConfigError> {
+        match step("threshold", to_f64(threshold)) {
+            Ok(()) => Ok(Self { threshold }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The threshold, in the samples' unit.
+    pub const fn threshold(&self) -> S {
+        self.threshold
+    }
+}
+
+/// The state of a [`StepForward`] encoder: the baseline. 8 bytes in `f32`.
+#[derive(Clone, Copy, Debug)]
+pub struct StepForwardState<S> {
+    base: S,
+    tally: Tally,
+}
+
+impl<S: Sample> Start for StepForward<S> {
+    const START: StepForwardState<S> = StepForwardState { base: S::ZERO, tally: Tally::NONE };
+}
+
+/// Where a sample emits nothing.
+#[derive(Clone, Copy)]
+struct Band<S> {
+    lower: S,
+    base: S,
+    upper: S,
+}
+
+impl<S: Sample> Band<S> {
+    #[inline]
+    fn around(base: S, threshold: S) -> Self {
+        Self { lower: base.minus(threshold), base, upper: base.plus(threshold) }
+    }
+
+    /// Whether the sample is below the band, or not a number.
+    #[inline]
+    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "true of what is not a number")]
+    fn is_above(self, sample: S) -> bool {
+        !(sample >= self.lower)
+    }
+}
+
+impl<S: Sample> Scheme for StepForward<S> {
+    type Sample = S;
+    type Code = Spike;
+    type Output = Spike;
+    type EncoderState = StepForwardState<S>;
+    type DecoderState = StepState<S>;
+
+    const LATENCY: usize = 0;
+    const RECOVERY: Recovery = Recovery::Keyframe;
+
+    #[inline]
+    fn encode(&self, state: &mut StepForwardState<S>, sample: S) -> Spike {
+        let band = Band::around(state.base, self.threshold);
+        let (spike, base) = if sample > band.upper {
+            (Spike::Up, band.upper)
+        } else if band.is_above(sample) {
+            (Spike::Down, band.lower)
+        } else if state.tally.is_primed() {
+            return Spike::None;
+        } else {
+            (Spike::None, sample)
+        };
+        if !sample.is_finite() {
+            state.tally.reject();
+            Spike::None
+        } else if state.tally.is_primed() {
+            state.base = base;
+            spike
+        } else {
+            state.base = sample;
+            state.tally.prime();
+            Spike::None
+        }
+    }
+
+    /// The band stays in registers, and whether all samples that left it were finite is asked once:
+    /// if not, the slice is taken again with care.
+    #[inline]
+    fn encode_slice(
+        &self,
+        state: &mut StepForwardState<S>,
+        samples: &[S],
+        spikes: &mut [Spike],
+    ) -> usize {
+        let first =
+            if state.tally.is_primed() { 0 } else { encode_first(self, state, samples, spikes) };
+        let samples = samples.get(first..).unwrap_or_default();
+        let spikes = spikes.get_mut(first..).unwrap_or_default();
+
+        let threshold = self.threshold;
+        let mut band = Band::around(state.base, threshold);
+        let mut taint = S::ZERO;
+        for (spike, &sample) in spikes.iter_mut().zip(samples) {
+            *spike = Spike::None;
+            if sample > band.upper {
+                band = Band::around(band.upper, threshold);
+                taint = taint.taint(sample);
+                *spike = Spike::Up;
+            } else if band.is_above(sample) {
+                band = Band::around(band.lower, threshold);
+                taint = taint.taint(sample);
+                *spike = Spike::Down;
+            }
+        }
+        if taint.is_finite() {
+            state.base = band.base;
+        } else {
+            encode_each(self, state, samples, spikes);
+        }
+        first + samples.len().min(spikes.len())
+    }
+
+    /// The last of the past becomes the baseline; a decoder must be told, as by a keyframe.
+    fn prime(&self, state: &mut StepForwardState<S>, past: &[S]) {
+        if let Some(base) = state.tally.last_of(past) {
+            state.base = base;
+        }
+    }
+
+    /// The baseline.
+    fn keyframe(&self, state: &StepForwardState<S>) -> Option<S> {
+        state.tally.is_primed().then_some(state.base)
+    }
+
+    fn rejected(state: &StepForwardState<S>) -> u32 {
+        state.tally.rejected()
+    }
+
+    decode_steps!(threshold);
+}

@@ -1,0 +1,98 @@
+//! What the decoders of the temporal codes share: they add up steps.
+
+use crate::{Sample, Spike};
+
+/// The state of a temporal code's decoder: the value decoded last. 4 bytes in `f32`.
+///
+/// `y[i] = y[i-1] + step * s[i]`, from 0 or from the value it was resynchronised to. One rounding a spike in
+/// `f32`; exact in fixed point until the value reaches an end of the type, where it saturates.
+///
+/// Source: paper, section II-C.
+#[derive(Clone, Copy, Debug)]
+pub struct StepState<S> {
+    value: S,
+}
+
+impl<S: Sample> StepState<S> {
+    pub(super) const ZERO: Self = Self { value: S::ZERO };
+
+    pub(super) const fn at(value: S) -> Self {
+        Self { value }
+    }
+
+    pub(super) const fn value(&self) -> S {
+        self.value
+    }
+
+    #[inline]
+    pub(super) fn decode(&mut self, step: S, spike: Spike) -> S {
+        match spike {
+            Spike::Up => self.value = self.value.plus(step),
+            Spike::Down => self.value = self.value.minus(step),
+            Spike::None => {}
+        }
+        self.value
+    }
+
+    /// The value stays in a register, and eight samples share a turn of the loop.
+    #[inline]
+    pub(super) fn decode_slice(&mut self, step: S, spikes: &[Spike], values: &mut [S]) -> usize {
+        let steps = [S::ZERO.minus(step), S::ZERO, step];
+        let mut decoded = self.value;
+        let mut decode = |value: &mut S, spike: Spike| {
+            if spike.is_fired()
+                && let Some(&step) = steps.get((spike.sign() + 1) as usize)
+            {
+                decoded = decoded.plus(step);
+            }
+            *value = decoded;
+        };
+        let length = spikes.len().min(values.len());
+        let (spikes, last_spikes) = spikes.get(..length).unwrap_or_default().as_chunks::<8>();
+        let (values, last_values) =
+            values.get_mut(..length).unwrap_or_default().as_chunks_mut::<8>();
+        for (values, spikes) in values.iter_mut().zip(spikes) {
+            for (value, &spike) in values.iter_mut().zip(spikes) {
+                decode(value, spike);
+            }
+        }
+        for (value, &spike) in last_values.iter_mut().zip(last_spikes) {
+            decode(value, spike);
+        }
+        self.value = decoded;
+        length
+    }
+}
+
+/// The decoding half of a temporal scheme's [`Scheme`](crate::Scheme), with this field as the step.
+macro_rules! decode_steps {
+    ($step:ident) => {
+        fn decoder_state(&self) -> StepState<S> {
+            StepState::ZERO
+        }
+
+        #[inline]
+        fn decode(&self, state: &mut StepState<S>, spike: Spike) -> S {
+            state.decode(self.$step, spike)
+        }
+
+        #[inline]
+        fn decode_slice(
+            &self,
+            state: &mut StepState<S>,
+            spikes: &[Spike],
+            values: &mut [S],
+        ) -> usize {
+            state.decode_slice(self.$step, spikes, values)
+        }
+
+        fn held(&self, state: &StepState<S>) -> Option<S> {
+            Some(state.value())
+        }
+
+        fn resync(&self, state: &mut StepState<S>, value: S) {
+            *state = StepState::at(value);
+        }
+    };
+}
+pub(super) use decode_steps;
