@@ -3,7 +3,7 @@
 use crate::{
     paths, setup,
     shell::{cargo, output, run, spikewire},
-    toolchain::{TARGETS, cargo_for},
+    toolchain::{TARGETS, cargo_for, cargo_for_each},
 };
 use anyhow::{Context, Result, ensure};
 use std::fs;
@@ -58,10 +58,13 @@ pub fn features() -> Result<()> {
     Ok(())
 }
 
+/// The firmware is compiled to the end elsewhere; here it is about every feature on every core.
 pub fn targets() -> Result<()> {
-    for target in TARGETS {
-        run(&mut cargo_for(target, "build --package spikewire --no-default-features")?)?;
-        run(&mut cargo_for(target, "build --package spikewire --all-features")?)?;
+    for features in ["--no-default-features", "--all-features"] {
+        let check = format!("check --package spikewire {features}");
+        for mut cargo in cargo_for_each(&TARGETS, &check)? {
+            run(&mut cargo)?;
+        }
     }
     Ok(())
 }

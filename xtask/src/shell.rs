@@ -1,6 +1,6 @@
 //! Running other programs: what runs is printed first, and failure is an error.
 
-use crate::paths;
+use crate::{paths, progress};
 use anyhow::{Context, Result, bail};
 use std::{
     path::Path,
@@ -29,6 +29,7 @@ pub fn spikewire(args: &str) -> Command {
 /// Prints the command, runs it with its output shown, and fails if it fails.
 pub fn run(command: &mut Command) -> Result<()> {
     println!("$ {}", shown(command));
+    let _running = progress::running(short(command));
     let status =
         command.status().with_context(|| format!("`{}` does not start", shown(command)))?;
     if !status.success() {
@@ -39,6 +40,7 @@ pub fn run(command: &mut Command) -> Result<()> {
 
 /// Runs the command quietly and returns its standard output; what it said stands in the error if it fails.
 pub fn output(command: &mut Command) -> Result<String> {
+    let _running = progress::running(short(command));
     let Output { status, stdout, stderr } =
         command.output().with_context(|| format!("`{}` does not start", shown(command)))?;
     if !status.success() {
@@ -57,6 +59,21 @@ pub fn succeeds(command: &mut Command) -> bool {
 pub fn has(program: &str) -> bool {
     std::env::var_os("PATH")
         .is_some_and(|path| std::env::split_paths(&path).any(|dir| dir.join(program).is_file()))
+}
+
+/// The command's beginning, for a line of progress.
+fn short(command: &Command) -> String {
+    let shown = shown(command);
+    let words = shown.split(' ').skip_while(|word| word.contains('='));
+    let mut short = String::new();
+    for word in words.take_while(|word| *word != "--") {
+        if short.len() + word.len() > 72 {
+            return short + "…";
+        }
+        short += word;
+        short.push(' ');
+    }
+    short.trim_end().into()
 }
 
 /// The command as one would type it at the repository's top.
