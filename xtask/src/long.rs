@@ -3,6 +3,7 @@
 use crate::{
     bench, paths,
     shell::{cargo, run},
+    toolchain::cargo_for,
 };
 use anyhow::{Context, Result, ensure};
 use std::fs;
@@ -28,17 +29,28 @@ pub fn recordings() -> Result<()> {
     Ok(())
 }
 
-/// Exhaustive sweeps. Those against other people's programs have a check of their own.
+/// Every test, optimised and with many more cases. Those against other people's programs have a check of their own.
 pub fn sweeps() -> Result<()> {
-    let tests = "test --release --package spikewire --package host-tests --all-features --tests";
-    run(&mut cargo(&format!("{tests} -- --ignored --skip peers")))
+    let tests =
+        "test --release --package spikewire --package host-tests --package spikewire-cli --tests";
+    let mut cargo =
+        cargo(&format!("{tests} -- --include-ignored --skip its_own_program --skip expelliarmus"));
+    run(cargo.env("CASES_TIMES", "20"))
 }
 
-/// Lints and tests the laptop program with all features.
+/// What `clippy` and the builds of firmware lint, and what they leave out.
+pub fn lints() -> Result<()> {
+    let warnings = ["--", "-D", "warnings"];
+    run(cargo("clippy --workspace --all-targets --all-features").args(warnings))?;
+    let firmware = "clippy --workspace --manifest-path examples/Cargo.toml";
+    run(cargo(firmware).args(warnings))?;
+    // One core stands for all: the firmware's source has no conditions on the core.
+    run(cargo_for("thumbv7em-none-eabihf", firmware)?.args(warnings))
+}
+
+/// Tests the part of the laptop program that a feature brings.
 pub fn capture() -> Result<()> {
-    let package = "--package spikewire-cli --all-features";
-    run(&mut cargo(&format!("clippy {package} --all-targets -- -D warnings")))?;
-    run(&mut cargo(&format!("test {package} --test capture")))
+    run(&mut cargo("test --package spikewire-cli --all-features --test capture"))
 }
 
 /// The counts of the cores that `cargo verify` leaves out are shown; there is no baseline of them.

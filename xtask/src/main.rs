@@ -1,6 +1,7 @@
 //! Set-up and checks. `cargo xtask` lists the commands.
 
 mod bench;
+mod bits;
 mod boards;
 mod checks;
 mod core_library;
@@ -9,10 +10,14 @@ mod demo;
 mod distribution;
 mod firmware;
 mod flown;
+mod host;
+mod image;
 mod link;
 mod logging;
 mod long;
 mod markdown;
+#[cfg(test)]
+mod modules;
 mod names;
 mod needs;
 mod package;
@@ -42,7 +47,7 @@ cargo xtask <command>
 
   setup                 compiler targets, QEMU and binutils for Cortex-M; does only what is missing
   firmware [PROGRAM]... runs the example programs on every emulated board and compares with the host
-  firmware --write FILE the same for flight-log alone, as a table in FILE, between its markers
+  firmware --write      puts the spike counts of flight-log, and which bits agree, into docs/bits.md
   demo                  real flight data through encoder, emulated flight controller and decoder
   bench-target          what every codec costs on every emulated board, in instructions and bytes
   verify [STEP]...      every check, or the named ones; `cargo verify --help` lists them

@@ -25,13 +25,13 @@ struct Step {
 const STEPS: &[Step] = &[
     step(SETUP, "compiler targets, QEMU, binutils", checks::setup),
     step("fmt", "rustfmt", checks::fmt),
-    step("clippy", "clippy, host and firmware", checks::clippy),
+    step("clippy", "clippy on the host's code, which builds the tests", checks::clippy),
     step("test", "host tests and doctests", checks::test),
     step("peers", "event formats against other programs", checks::peers),
     step("readme", "the README's code runs", checks::readme),
     step("doc", "documentation without warnings", checks::doc),
     step("package", "what is published has all that its pages show", package::package),
-    step("features", "every feature alone, on the host", checks::features),
+    step("features", "every feature alone, on the host", checks::each_feature),
     step("targets", "the crate for every Cortex-M", checks::targets),
     step("no-panic", "every codec links without a panic handler", checks::no_panic),
     step("recipe", "the guide's firmware, outside this workspace, in QEMU", recipe::recipe),
@@ -48,7 +48,8 @@ const STEPS: &[Step] = &[
 /// Those that take too long for every change.
 const LONG: &[Step] = &[
     step("recordings", "the flights come out of the published logs again", long::recordings),
-    step("sweeps", "the tests marked `#[ignore]`, optimised", long::sweeps),
+    step("sweeps", "all tests, optimised, with twenty times as many cases", long::sweeps),
+    step("lints", "clippy on all at once: every feature, firmware on host and core", long::lints),
     step("capture", "the laptop program with a debug probe's driver", long::capture),
     step("cores", "instruction counts on all five cores", long::cores),
 ];
