@@ -33,8 +33,7 @@ pub fn recordings() -> Result<()> {
 pub fn sweeps() -> Result<()> {
     let tests =
         "test --release --package spikewire --package host-tests --package spikewire-cli --tests";
-    let mut cargo =
-        cargo(&format!("{tests} -- --include-ignored --skip its_own_program --skip expelliarmus"));
+    let mut cargo = cargo(&format!("{tests} -- --include-ignored --skip formats_peers"));
     run(cargo.env("CASES_TIMES", "20"))
 }
 
