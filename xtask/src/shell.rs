@@ -64,31 +64,41 @@ pub fn has(program: &str) -> bool {
         .is_some_and(|path| std::env::split_paths(&path).any(|dir| dir.join(program).is_file()))
 }
 
-/// The command's beginning, for a line of progress.
+/// The command's beginning without its environment, for a line of progress.
 fn short(command: &Command) -> String {
-    let shown = shown(command);
-    let words = shown.split(' ').skip_while(|word| word.contains('='));
-    let mut short = String::new();
-    for word in words.take_while(|word| *word != "--") {
-        if short.len() + word.len() > 72 {
-            return short + "…";
-        }
-        short += word;
-        short.push(' ');
+    let words = words(command);
+    match words.char_indices().nth(72) {
+        Some((end, _)) => format!("{}…", &words[..end]),
+        None => words,
     }
-    short.trim_end().into()
 }
 
 /// The command as one would type it at the repository's top.
 fn shown(command: &Command) -> String {
-    let root = format!("{}/", paths::root().display());
     let set = command
         .get_envs()
         .filter_map(|(name, value)| Some((name, value?)))
-        .map(|(name, value)| format!("{}='{}'", name.display(), value.display()));
-    let words = [command.get_program()]
-        .into_iter()
-        .chain(command.get_args())
-        .map(|word| Path::new(word).display().to_string().replace(&root, ""));
-    set.chain(words).collect::<Vec<_>>().join(" ")
+        .map(|(name, value)| format!("{}='{}' ", name.display(), value.display()));
+    set.chain([words(command)]).collect()
+}
+
+fn words(command: &Command) -> String {
+    let root = format!("{}/", paths::root().display());
+    let words = [command.get_program()].into_iter().chain(command.get_args());
+    let words = words.map(|word| Path::new(word).display().to_string().replace(&root, ""));
+    words.collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn progress_shows_no_environment() {
+        let mut command = command("cargo");
+        command.arg("build").env("FLAGS", "-C a -C b");
+        assert_eq!(short(&command), "cargo build");
+        assert_eq!(shown(&command), "FLAGS='-C a -C b' cargo build");
+        assert_eq!(short(command.arg("µ".repeat(80))).chars().count(), 73);
+    }
 }
