@@ -24,10 +24,9 @@ pub fn build_all(package: &str, programs: &[&str], board: &Board) -> Result<Path
 /// differs between two boards is in the compiler's flags, which cargo tells apart. The images have a place for each
 /// board, as two of them share a target.
 fn building(package: &str, board: &Board) -> Result<Command> {
-    let mut cargo =
-        toolchain::cargo_for(board.target, "build --release --manifest-path examples/Cargo.toml")?;
+    let build = format!("build --release --package {package} --manifest-path examples/Cargo.toml");
+    let mut cargo = toolchain::cargo_for(board.target, &build)?;
     cargo
-        .args(["--package", package])
         .env("BOARD", board.machine)
         .env("TICKS_PER_GIGAINSTRUCTION", board.ticks_per_gigainstruction().to_string())
         // Names that tell Rust's functions from the runtime's, for `bench/code.rs`.
