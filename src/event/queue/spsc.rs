@@ -16,7 +16,7 @@ use crate::event::{Item, Put, Source, Taken, Tick};
 /// - **Ends:** [`split`](Self::split) makes a [`SpscProducer`] for the interrupt and a [`SpscConsumer`]
 ///   for main.
 /// - **Memory:** `16 N + 16` bytes on a 32-bit part.
-/// - **Losses** are said as by [`EventQueue`](super::EventQueue).
+/// - **Losses** are said as by [`EventQueue`](super::EventQueue), modulo 2³² between two items taken.
 ///
 /// ```
 /// use spikewire::{Event, Polarity, Source, SpscQueue, Tick};
@@ -34,8 +34,6 @@ use crate::event::{Item, Put, Source, Taken, Tick};
 pub struct SpscQueue<const N: usize> {
     items: spsc::Queue<Entry, N>,
     loss: Loss,
-    /// Of the producer: whether the last push was lost, for counts that wrapped all the way round.
-    is_after_loss: bool,
     /// Of the consumer: the count of losses that were said.
     known: u32,
 }
@@ -60,17 +58,14 @@ impl<const N: usize> SpscQueue<N> {
     pub const fn new() -> Self {
         const { assert!(N >= 2, "a queue has room for at least one item") };
         let loss = Loss { count: AtomicU32::new(0), tick: AtomicU32::new(0) };
-        Self { items: spsc::Queue::new(), loss, is_after_loss: false, known: 0 }
+        Self { items: spsc::Queue::new(), loss, known: 0 }
     }
 
     /// The two ends. What the queue holds stays in it.
     pub fn split(&mut self) -> (SpscProducer<'_>, SpscConsumer<'_>) {
-        let Self { items, loss, is_after_loss, known } = self;
+        let Self { items, loss, known } = self;
         let (producer, consumer) = items.split();
-        (
-            SpscProducer { items: producer, loss, is_after_loss },
-            SpscConsumer { items: consumer, loss, known },
-        )
+        (SpscProducer { items: producer, loss }, SpscConsumer { items: consumer, loss, known })
     }
 }
 
@@ -90,7 +85,6 @@ impl<const N: usize> fmt::Debug for SpscQueue<N> {
 pub struct SpscProducer<'a> {
     items: spsc::Producer<'a, Entry>,
     loss: &'a Loss,
-    is_after_loss: &'a mut bool,
 }
 
 impl SpscProducer<'_> {
@@ -98,10 +92,8 @@ impl SpscProducer<'_> {
     #[inline]
     pub fn push(&mut self, item: impl Into<Item>) {
         let lost = self.loss.count.load(Ordering::Relaxed);
-        let slot = Slot::from(item.into()).with_lost((*self.is_after_loss).into());
-        *self.is_after_loss = false;
+        let slot = Slot::from(item.into());
         if let Err(entry) = self.items.enqueue(Entry { slot, lost }) {
-            *self.is_after_loss = true;
             self.loss.tick.store(entry.slot.tick().micros(), Ordering::Relaxed);
             self.loss.count.store(lost.wrapping_add(1), Ordering::Release);
         }
@@ -170,7 +162,7 @@ impl Source for SpscConsumer<'_> {
                 (Slot::lost_at(Tick::from_micros(tick.into())), count)
             }
         };
-        let lost = now.wrapping_sub(*self.known).max(slot.lost.into());
+        let lost = now.wrapping_sub(*self.known);
         *self.known = now;
         Some(Taken { lost, item: slot.item() })
     }
