@@ -1,6 +1,6 @@
 //! A bank: `N` encoders side by side, their codes as events with time, address and polarity.
 
-mod common;
+use crate::common;
 
 use common::{cases, flight_channels, float};
 use host_tests::compare::encode;

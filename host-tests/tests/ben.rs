@@ -1,7 +1,7 @@
 //! BSA aligned: with `e1 = sum |r[i+j] - h[j]|` and `e2 = sum |r[i+j]|` a spike if
 //! `e1 <= e2 - threshold` or `e1 <= e2 * threshold`; then `r[i+j] -= h[j]`.
 
-mod common;
+use crate::common;
 
 use common::rate::{all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle};
 use common::{Drawn, cases, flight_channels, hostile_recordings};

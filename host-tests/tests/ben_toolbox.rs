@@ -1,7 +1,7 @@
 //! BSA as the paper's toolbox has it: `e1 = sum |r[i+j+1] - h[j]|`, `e2 = sum |r[i+j]|`, a spike if
 //! `e1 <= e2 * threshold`; then `r[i+j+2] -= h[j]`. The last `F` samples never spike.
 
-mod common;
+use crate::common;
 
 use common::rate::{all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle};
 use common::{Drawn, cases, flight_channels, hostile_recordings};

@@ -1,6 +1,6 @@
 //! AKD1500: golden bytes, blocks, and errors at every transaction.
 
-mod bus;
+use crate::bus;
 
 use bus::Failing;
 use embedded_hal::spi::ErrorKind;

@@ -6,7 +6,7 @@
     reason = "the model is written like the RTL"
 )]
 
-mod bus;
+use crate::bus;
 
 use std::cell::RefCell;
 use std::collections::VecDeque;

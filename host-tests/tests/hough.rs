@@ -1,7 +1,7 @@
 //! HSA, the Hough spike algorithm: a spike at `i` if `r[i+j] >= h[j]` for all `j`; then
 //! `r[i+j] -= h[j]`.
 
-mod common;
+use crate::common;
 
 use common::rate::{all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle};
 use common::{Drawn, cases, flight_channels, hostile_recordings};

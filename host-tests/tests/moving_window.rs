@@ -1,6 +1,6 @@
 //! MW, moving window: a spike when the sample leaves the band around the mean of the `N` before.
 
-mod common;
+use crate::common;
 
 use common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};

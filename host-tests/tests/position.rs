@@ -1,7 +1,7 @@
 //! Position coding: the neuron with the nearest centre fires; halfway the lower one, outside the one
 //! at that end.
 
-mod common;
+use crate::common;
 
 use common::{Drawn, cases, flight_channels, float, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};

@@ -1,7 +1,7 @@
 //! GRF with probabilistic spiking: a neuron of level `k` of `N` fires if the top bits of a draw, a
 //! number below `N`, are below `k`. One draw a neuron of level 1 or more, by rising index.
 
-mod common;
+use crate::common;
 
 use std::convert::Infallible;
 

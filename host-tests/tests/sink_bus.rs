@@ -1,6 +1,6 @@
 //! The sinks for SPI and serial ports: exact transactions, and nothing lost on any error.
 
-mod bus;
+use crate::bus;
 
 use std::cell::Cell;
 use std::collections::VecDeque;

@@ -1,6 +1,6 @@
 //! GRF with sub-timesteps: a response of level `k` of `N` fires in slot `N - k`.
 
-mod common;
+use crate::common;
 
 use common::fields::Fields;
 use common::{Drawn, cases, flight_channels, float, hostile_recordings};

@@ -1,7 +1,7 @@
 //! SF, step forward: a spike when the sample leaves `base ± threshold`, and the base follows by one
 //! threshold.
 
-mod common;
+use crate::common;
 
 use common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};

@@ -1,6 +1,6 @@
 //! The filters of the rate codes: shapes, scales, and where their sums end.
 
-mod common;
+use crate::common;
 
 use common::cases;
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};

@@ -1,6 +1,6 @@
 //! TBR, temporal contrast: `d = x[i] - x[i-1]`; up if `d > threshold`, down if `d < -threshold`.
 
-mod common;
+use crate::common;
 
 use common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};

@@ -1,7 +1,7 @@
 //! T-HSA, the threshold Hough spike algorithm: `error = sum over j of max(0, h[j] - r[i+j])`; a spike
 //! if `error <= threshold`; then `r[i+j] -= h[j]`.
 
-mod common;
+use crate::common;
 
 use common::rate::{all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle};
 use common::{Drawn, cases, flight_channels, hostile_recordings};

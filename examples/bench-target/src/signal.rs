@@ -18,11 +18,10 @@ pub const LENGTH: usize = 2000;
 const RECORD: usize = 28;
 
 /// The recording's beginning.
-static FLIGHT: [u8; LENGTH * RECORD] =
-    match include_bytes!("../../../data/hexarotor.f32le").first_chunk() {
-        Some(beginning) => *beginning,
-        None => panic!("the recording is too short"),
-    };
+static FLIGHT: [u8; LENGTH * RECORD] = match flight_data::HEXAROTOR.first_chunk() {
+    Some(beginning) => *beginning,
+    None => panic!("the recording is too short"),
+};
 
 #[derive(Clone, Copy)]
 pub enum Signal {

@@ -30,7 +30,7 @@ fn run(out: &mut impl Write) -> fmt::Result {
 
 /// The gyroscope of a hexarotor that takes off and flies: time in µs, rates in rad/s.
 fn gyro() -> impl Iterator<Item = (u32, [f32; 3])> {
-    static RECORDING: &[u8] = include_bytes!("../../../data/hexarotor.f32le");
+    static RECORDING: &[u8] = flight_data::HEXAROTOR;
     let (records, _) = RECORDING.as_chunks::<28>();
     records.iter().take(2000).map(|record| {
         let (words, _) = record.as_chunks::<4>();

@@ -5,7 +5,7 @@ use crate::send::CHANNELS;
 /// One record: time in microseconds as u32, then the channels as f32, all little endian.
 const RECORD: usize = 4 + 4 * CHANNELS;
 
-static RECORDS: &[u8] = include_bytes!("../../../data/hexarotor.f32le");
+static RECORDS: &[u8] = flight_data::HEXAROTOR;
 
 /// The sample of this number: its time, and six channels in rad/s and m/s².
 pub fn sample(number: usize) -> Option<(u32, [f32; CHANNELS])> {

@@ -15,7 +15,7 @@ pub const PERIOD: u16 = 5_038;
 /// A time stamp in µs, then the channels, four bytes each.
 const RECORD: usize = 4 + 4 * CHANNELS;
 
-static RECORDS: &[u8] = include_bytes!("../../../../data/hexarotor.f32le");
+static RECORDS: &[u8] = flight_data::HEXAROTOR;
 
 pub type Six<S> = Bank<StepForwardEncoder<S>, CHANNELS>;
 

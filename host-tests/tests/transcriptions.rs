@@ -4,12 +4,7 @@
 //! Spikes and values are the same, to the bit, with two exceptions that are said at their comparison: the winner by
 //! exponentials where two of them differ by rounding only, and fixed-point means of centres, whose last place may differ.
 
-#[allow(clippy::pedantic, dead_code, unreachable_pub)]
-#[path = "../../examples/bench-target/src/plain.rs"]
-mod plain;
-#[allow(clippy::pedantic, dead_code, unreachable_pub)]
-#[path = "../../examples/bench-target/src/signal.rs"]
-mod signal;
+use crate::{plain, signal};
 
 use fixed::types::{I8F8, I16F16};
 use host_tests::compare::{Wire, decode, encode, run, signs_of, spikes_of};

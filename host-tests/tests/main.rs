@@ -1,0 +1,58 @@
+//! All comparisons with the reference, as one program: what they share is compiled and linked once.
+
+mod bus;
+mod common;
+
+mod bank;
+mod ben;
+mod ben_toolbox;
+mod calibration;
+mod chip_akd1500;
+mod chip_odin;
+mod chip_xylo;
+mod config_errors;
+mod defmt;
+mod formats_bytes;
+mod formats_peers;
+mod gaussian;
+mod hough;
+mod link_bytes;
+mod link_drift;
+mod link_frames;
+mod link_loss;
+mod link_place;
+mod link_readout;
+mod link_time;
+mod moving_window;
+mod position;
+mod probabilistic;
+mod queue;
+mod samples;
+mod serde;
+mod sink_bus;
+mod slots;
+mod step_forward;
+mod taps;
+mod temporal_contrast;
+mod threshold_hough;
+mod transcriptions;
+
+/// The pseudo-code as it is counted, and what it is counted on.
+#[allow(clippy::pedantic, dead_code, unreachable_pub)]
+#[path = "../../examples/bench-target/src/plain.rs"]
+mod plain;
+#[allow(clippy::pedantic, dead_code, unreachable_pub)]
+#[path = "../../examples/bench-target/src/signal.rs"]
+mod signal;
+
+/// A file that is not in the list above would be no test.
+#[test]
+fn every_file_is_listed() {
+    let tests = concat!(env!("CARGO_MANIFEST_DIR"), "/tests");
+    for entry in std::fs::read_dir(tests).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        let listed = include_str!("main.rs").contains(&format!("mod {name};\n"));
+        assert!(listed || name == "main", "tests/{name} is not in tests/main.rs");
+    }
+}
