@@ -250,9 +250,19 @@ impl<P: Scheme> Debug for Decoder<'_, P> {
 }
 
 impl<'a, P: Scheme> Decoder<'a, P> {
+    /// A decoder that goes on from this state.
+    pub const fn with_state(scheme: &'a P, state: P::DecoderState) -> Self {
+        Self { scheme, state }
+    }
+
     /// The scheme.
     pub const fn scheme(&self) -> &'a P {
         self.scheme
+    }
+
+    /// The state.
+    pub const fn state(&self) -> &P::DecoderState {
+        &self.state
     }
 
     /// Takes the code of one sample and gives its value.
