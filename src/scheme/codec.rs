@@ -134,7 +134,7 @@ pub enum Recovery {
 /// Turns samples into spikes, one sample at a time: a reference to a scheme, and a state.
 pub struct Encoder<'a, P: Scheme> {
     scheme: &'a P,
-    state: P::EncoderState,
+    pub(super) state: P::EncoderState,
 }
 
 impl<P: Scheme<EncoderState: Clone>> Clone for Encoder<'_, P> {

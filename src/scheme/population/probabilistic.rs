@@ -161,6 +161,13 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
     }
 }
 
+impl<S: Sample, G: Rng, const M: usize, const N: usize> Encoder<'_, Probabilistic<S, G, M, N>> {
+    /// Forgets the count of rejected samples. The generator goes on from where it is.
+    pub fn restart(&mut self) {
+        self.state.tally = Tally::NONE;
+    }
+}
+
 /// The state of a [`Probabilistic`] encoder: the generator, and the count of rejected samples.
 #[derive(Clone, Copy, Debug)]
 pub struct ProbabilisticState<G> {
