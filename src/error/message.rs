@@ -17,29 +17,7 @@ pub(crate) const fn unwrap<T: Copy>(result: Result<T, ConfigError>) -> T {
 #[cold]
 #[track_caller]
 const fn fail(error: ConfigError) -> ! {
-    let message = Message::EMPTY;
-    let message = match error {
-        ConfigError::NotPositive { parameter, .. } => {
-            message.text(parameter).text(" must be above 0 and finite")
-        }
-        ConfigError::Negative { parameter, .. } => {
-            message.text(parameter).text(" must be 0 or more and finite")
-        }
-        ConfigError::NotFinite { parameter, .. } => message.text(parameter).text(" must be finite"),
-        ConfigError::OutOfRange { parameter, min, max, .. } => {
-            message.text(parameter).text(" must lie in ").number(min).text("..=").number(max)
-        }
-        ConfigError::NotRising { parameter, index, .. } => {
-            message.text(parameter).text(" must rise strictly; see number ").integer(index as u64)
-        }
-        ConfigError::AllZero { parameter } => {
-            message.text(parameter).text(" are all 0; at least one must not be")
-        }
-        ConfigError::TooFewSamples { needed, .. } => {
-            message.text("a calibration needs samples, at least ").integer(needed as u64)
-        }
-    };
-    panic!("{}", message.as_str())
+    panic!("{}", Message::of(error).as_str())
 }
 
 /// Text of up to 96 bytes; what is longer is cut.
@@ -52,6 +30,35 @@ struct Message {
 #[allow(clippy::indexing_slicing)]
 impl Message {
     const EMPTY: Self = Self { bytes: [0; 96], length: 0 };
+
+    /// The parameter, and what is allowed.
+    const fn of(error: ConfigError) -> Self {
+        let message = Self::EMPTY;
+        match error {
+            ConfigError::NotPositive { parameter, .. } => {
+                message.text(parameter).text(" must be above 0 and finite")
+            }
+            ConfigError::Negative { parameter, .. } => {
+                message.text(parameter).text(" must be 0 or more and finite")
+            }
+            ConfigError::NotFinite { parameter, .. } => {
+                message.text(parameter).text(" must be finite")
+            }
+            ConfigError::OutOfRange { parameter, min, max, .. } => {
+                message.text(parameter).text(" must lie in ").number(min).text("..=").number(max)
+            }
+            ConfigError::NotRising { parameter, index, .. } => message
+                .text(parameter)
+                .text(" must rise strictly; see number ")
+                .integer(index as u64),
+            ConfigError::AllZero { parameter } => {
+                message.text(parameter).text(" are all 0; at least one must not be")
+            }
+            ConfigError::TooFewSamples { needed, .. } => {
+                message.text("a calibration needs samples, at least ").integer(needed as u64)
+            }
+        }
+    }
 
     const fn byte(mut self, byte: u8) -> Self {
         if self.length < self.bytes.len() {
@@ -135,7 +142,67 @@ impl Message {
 
 #[cfg(test)]
 mod tests {
-    use super::Message;
+    use super::{ConfigError, Message, unwrap};
+
+    #[test]
+    fn every_message_names_the_parameter_and_its_range() {
+        let (parameter, value) = ("threshold", -0.5);
+        let table = [
+            (ConfigError::NotPositive { parameter, value }, "threshold must be above 0 and finite"),
+            (ConfigError::Negative { parameter, value }, "threshold must be 0 or more and finite"),
+            (ConfigError::NotFinite { parameter, value }, "threshold must be finite"),
+            (
+                ConfigError::OutOfRange { parameter, value, min: 1e-45, max: 1e31 },
+                "threshold must lie in 1.401e-45..=1e31",
+            ),
+            (
+                ConfigError::OutOfRange { parameter: "floor", value, min: 1.0, max: 10.0 },
+                "floor must lie in 1..=10",
+            ),
+            (
+                ConfigError::NotRising { parameter: "centres", index: 12, value, previous: 0.0 },
+                "centres must rise strictly; see number 12",
+            ),
+            (
+                ConfigError::AllZero { parameter: "filter taps" },
+                "filter taps are all 0; at least one must not be",
+            ),
+            (
+                ConfigError::TooFewSamples { seen: 2, needed: 3 },
+                "a calibration needs samples, at least 3",
+            ),
+            (
+                ConfigError::OutOfRange {
+                    parameter: "sum of the filter taps' magnitudes",
+                    value,
+                    min: 0.0,
+                    max: f32::MAX,
+                },
+                "sum of the filter taps' magnitudes must lie in 0..=3.403e38",
+            ),
+        ];
+        for (error, text) in table {
+            assert_eq!(Message::of(error).as_str(), text);
+        }
+    }
+
+    #[test]
+    fn what_is_too_long_is_cut() {
+        let parameter = "0123456789_0123456789_0123456789_0123456789_0123456789_0123456789_0123456789_0123456789_0123456789";
+        let message = Message::of(ConfigError::NotFinite { parameter, value: 0.0 });
+        assert_eq!(message.as_str(), &parameter[..96]);
+    }
+
+    #[test]
+    #[should_panic(expected = "step must be above 0 and finite")]
+    fn a_refusal_panics_with_its_message() {
+        unwrap(crate::error::positive("step", -1.0));
+    }
+
+    #[test]
+    fn a_value_passes() {
+        assert_eq!(unwrap(Ok(5)), 5);
+    }
 
     #[test]
     fn numbers() {
