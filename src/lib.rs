@@ -4,9 +4,9 @@
 //! time, in fixed capacity: no heap, no panic, no unsafe code. The same bits on every machine.
 //!
 //! ```
-//! use spikewire::{Decoder, Encoder, Scheme, temporal::StepForward};
+//! use spikewire::{Scheme, temporal::StepForward};
 //!
-//! const ROLL: StepForward<f32> = StepForward::<f32>::checked(0.35); // a bad constant fails the build
+//! const ROLL: StepForward<f32> = StepForward::new(0.35); // a bad constant fails the build
 //!
 //! let mut encoder = ROLL.encoder(); // the first sample becomes the baseline
 //! let mut decoder = ROLL.decoder();
@@ -24,10 +24,10 @@
 //! | [`temporal`] | [`TemporalContrast`](temporal::TemporalContrast) (TBR) | changes, as an event camera sees them |
 //! | | [`StepForward`](temporal::StepForward) (SF) | following a signal closely with few spikes |
 //! | | [`MovingWindow`](temporal::MovingWindow) (MW) | changes against a short past |
-//! | [`rate`] | [`Hough`](rate::Hough) (HSA) | few spikes, never above the signal |
-//! | | [`ThresholdHough`](rate::ThresholdHough) (T-HSA) | the same, nearer to the signal |
-//! | | [`Ben`](rate::Ben) (BSA) | the best reconstruction of a rate code |
-//! | | [`BenToolbox`](rate::BenToolbox) | BSA as in the paper's tables |
+//! | [`rate`] | [`Hough`](rate::Hough) (HSA) | a reconstruction that never exceeds the signal |
+//! | | [`ThresholdHough`](rate::ThresholdHough) (T-HSA) | a closer reconstruction than HSA |
+//! | | [`Bsa`](rate::Bsa) (BSA) | smooth signals, with a filter of unit sum |
+//! | | [`BsaToolbox`](rate::BsaToolbox) | BSA as in the paper's tables |
 //! | [`population`] | [`Position`](population::Position) | a value, dense where it matters |
 //! | | [`Gaussian`](population::Gaussian) (GRF) | a value over an even range |
 //! | | [`Slots`](population::Slots) | a value finer than the neurons, by spike time |

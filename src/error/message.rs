@@ -1,8 +1,9 @@
-//! The words of an error in a constant, where formatting is not to be had.
+//! The message of a bad constant, put together without `core::fmt`, which does not run at compile time.
 
 use super::ConfigError;
 
-/// The value, or a panic that names the parameter and what is allowed: in a constant it fails the build.
+/// Returns the value, or panics with a message that names the parameter and its range. In a constant the panic
+/// fails the build.
 ///
 /// # Panics
 /// On an error.
@@ -20,7 +21,7 @@ const fn fail(error: ConfigError) -> ! {
     panic!("{}", Message::of(error).as_str())
 }
 
-/// Text of up to 96 bytes; what is longer is cut.
+/// A text of up to 96 bytes. Longer texts are cut.
 struct Message {
     bytes: [u8; 96],
     length: usize,
@@ -31,7 +32,7 @@ struct Message {
 impl Message {
     const EMPTY: Self = Self { bytes: [0; 96], length: 0 };
 
-    /// The parameter, and what is allowed.
+    /// Names the parameter and its range.
     const fn of(error: ConfigError) -> Self {
         let message = Self::EMPTY;
         match error {
@@ -109,7 +110,7 @@ impl Message {
         }
         let mut digits = (mantissa * 1e3 + 0.5) as u64;
         let mut places = 3;
-        while places > 0 && digits % 10 == 0 {
+        while places > 0 && digits.is_multiple_of(10) {
             digits /= 10;
             places -= 1;
         }

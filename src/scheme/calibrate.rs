@@ -1,4 +1,4 @@
-//! What a scheme needs to know about a signal before it flies.
+//! Minimum, maximum and differences of a signal, from which the parameters of a scheme follow.
 
 use crate::error::finite;
 use crate::{ConfigError, Sample};
@@ -82,7 +82,7 @@ impl<S: Sample> Default for Calibration<S> {
 }
 
 impl<S: Sample> Calibration<S> {
-    /// A calibration that has seen nothing.
+    /// A calibration before its first sample.
     pub fn new() -> Self {
         Self {
             previous: S::ZERO,
@@ -178,7 +178,7 @@ impl<S: Sample> Calibration<S> {
 
 #[cfg(test)]
 mod tests {
-    use super::Calibration;
+    use super::{Calibration, Differences};
 
     /// A calibration of a signal that rises and falls by 10, as it is after this many samples.
     fn after(seen: u32) -> Calibration<f32> {
@@ -209,10 +209,10 @@ mod tests {
         ] {
             calibration.observe(sample);
             assert_eq!((calibration.seen(), calibration.ignored()), (seen, ignored), "{sample}");
-            let magnitudes = calibration.magnitudes().unwrap();
-            assert_eq!((magnitudes.mean, magnitudes.deviation), (10.0, 0.0), "{sample}");
-            let differences = calibration.differences().unwrap();
-            assert!(differences.mean.abs() < 1e-8, "{sample}");
+            let expected = Differences { mean: 10.0, deviation: 0.0 };
+            assert_eq!(calibration.magnitudes(), Ok(expected), "{sample}");
+            let is_level = calibration.differences().is_ok_and(|level| level.mean.abs() < 1e-8);
+            assert!(is_level, "{sample}");
             assert_eq!((calibration.min(), calibration.max()), (Some(0.0), Some(10.0)));
         }
         assert_eq!(calibration.rejected(), 1);

@@ -124,7 +124,7 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
         Encoder::with_state(self, Self::state(generator))
     }
 
-    /// Encodes into what is empty.
+    /// Encodes into `neurons`, which is empty.
     #[inline]
     fn encode_into(
         &self,
