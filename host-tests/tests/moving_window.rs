@@ -121,16 +121,16 @@ fn whole_recordings_from_their_first_sample() {
         assert_same_values(&ours, &saturated::<S>(&expected));
         signs[0] != 0
     }
-    let mut fired = 0;
+    let mut count = 0;
     for channel in flight_channels() {
         let x = &channel[..300];
-        fired += usize::from(check::<_, 6>(x, 0.01));
+        count += usize::from(check::<_, 6>(x, 0.01));
         let fixed: Vec<_> = x.iter().map(|&x| I16F16::from_num(x)).collect();
-        fired += usize::from(check::<_, 6>(&fixed, I16F16::from_num(0.01)));
+        count += usize::from(check::<_, 6>(&fixed, I16F16::from_num(0.01)));
         let fixed: Vec<_> = x.iter().map(|&x| I8F8::from_num(x)).collect();
-        fired += usize::from(check::<_, 2>(&fixed, I8F8::DELTA));
+        count += usize::from(check::<_, 2>(&fixed, I8F8::DELTA));
     }
-    assert!(fired > 3, "{fired} recordings spiked at their first sample");
+    assert!(count > 3, "{count} recordings spiked at their first sample");
 }
 
 /// The last `N` of a longer past fill the window; a shorter one is ignored, as is what comes before them.

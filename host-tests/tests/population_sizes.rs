@@ -2,6 +2,7 @@
 //!
 //! The neuron of a value is the number of edges below it, `min + i (max - min) / (M - 2)`: here in whole numbers
 //! for integers, and in whole numbers of 2⁻¹⁴⁹ for floats.
+#![allow(clippy::cast_possible_wrap, reason = "there are at most 1024 neurons")]
 
 mod common;
 
