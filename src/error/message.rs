@@ -90,7 +90,8 @@ impl Message {
         self
     }
 
-    /// Up to four digits, with a power of ten where the number is large or small.
+    /// Up to six digits, which tell the end of a range from the next whole number, with a power of ten where the
+    /// number is large or small.
     const fn number(mut self, value: f32) -> Self {
         if value < 0.0 {
             return self.byte(b'-').number(-value);
@@ -100,16 +101,16 @@ impl Message {
         }
         let mut mantissa = value as f64;
         let mut exponent = 0;
-        while mantissa >= 9.9995 {
+        while mantissa >= 9.999_995 {
             mantissa /= 10.0;
             exponent += 1;
         }
-        while mantissa < 0.999_95 {
+        while mantissa < 0.999_999_5 {
             mantissa *= 10.0;
             exponent -= 1;
         }
-        let mut digits = (mantissa * 1e3 + 0.5) as u64;
-        let mut places = 3;
+        let mut digits = (mantissa * 1e5 + 0.5) as u64;
+        let mut places = 5;
         while places > 0 && digits.is_multiple_of(10) {
             digits /= 10;
             places -= 1;
@@ -154,7 +155,7 @@ mod tests {
             (ConfigError::NotFinite { parameter, value }, "threshold must be finite"),
             (
                 ConfigError::OutOfRange { parameter, value, min: 1e-45, max: 1e31 },
-                "threshold must lie in 1.401e-45..=1e31",
+                "threshold must lie in 1.4013e-45..=1e31",
             ),
             (
                 ConfigError::OutOfRange { parameter: "floor", value, min: 1.0, max: 10.0 },
@@ -179,7 +180,7 @@ mod tests {
                     min: 0.0,
                     max: f32::MAX,
                 },
-                "sum of the filter taps' magnitudes must lie in 0..=3.403e38",
+                "sum of the filter taps' magnitudes must lie in 0..=3.40282e38",
             ),
         ];
         for (error, text) in table {
@@ -214,8 +215,8 @@ mod tests {
             (1e31, "1e31"),
             (-1e31, "-1e31"),
             (0.5, "5e-1"),
-            (1.0 / 16_384.0, "6.104e-5"),
-            (4.0 - 1.0 / 16_384.0, "4"),
+            (1.0 / 16_384.0, "6.10352e-5"),
+            (4.0 - 1.0 / 16_384.0, "3.99994"),
             (2.25, "2.25"),
         ] {
             assert_eq!(Message::EMPTY.number(value).as_str(), text);
