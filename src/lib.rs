@@ -28,9 +28,9 @@
 //! | [`temporal`] | [`TemporalContrast`](temporal::TemporalContrast) (TBR) | changes, as an event camera sees them |
 //! | | [`StepForward`](temporal::StepForward) (SF) | following a signal closely with few spikes |
 //! | | [`MovingWindow`](temporal::MovingWindow) (MW) | changes against a short past |
-//! | [`rate`] | [`Hough`](rate::Hough) (HSA) | a value that is never above the signal |
-//! | | [`ThresholdHough`](rate::ThresholdHough) (T-HSA) | the nearest of the rate codes at the paper's settings |
-//! | | [`Bsa`](rate::Bsa) | the fewest spikes of the rate codes |
+//! | [`rate`] | [`Hough`](rate::Hough) (HSA) | a reconstruction that never exceeds the signal |
+//! | | [`ThresholdHough`](rate::ThresholdHough) (T-HSA) | a closer reconstruction than HSA |
+//! | | [`Bsa`](rate::Bsa) (BSA) | smooth signals, with a filter of unit sum |
 //! | | [`BsaToolbox`](rate::BsaToolbox) | BSA as in the paper's tables |
 //! | [`population`] | [`Position`](population::Position) | a value, dense where it matters |
 //! | | [`Gaussian`](population::Gaussian) (GRF) | a value over an even range |
