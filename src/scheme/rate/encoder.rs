@@ -36,10 +36,11 @@ pub(super) trait Rule<S: Sample, const F: usize> {
 ///
 /// `4 F + 8` bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)] // residuals not at the beginning, or loops over them take two more instructions a turn
 pub struct RateState<S: Sample, const F: usize> {
-    residuals: [S::Residual; F],
     cursor: Cursor<F>,
     tally: Tally,
+    residuals: [S::Residual; F],
 }
 
 impl<S: Sample, const F: usize> RateState<S, F> {

@@ -161,30 +161,6 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
         taken
     }
 
-    /// Takes any sample. Nothing is emitted if it is not finite, nor before the window is full, nor for
-    /// a difference that is not a number.
-    #[cold]
-    #[inline(never)]
-    fn encode_carefully(
-        &mut self,
-        margin: <S::Sum as Difference>::Margin,
-        sample: S,
-    ) -> Option<Spike> {
-        let is_full = self.next < FILLING;
-        let next = (self.next & !FILLING) as usize;
-        let Some(slot) = self.ring.get_mut(next).filter(|_| sample.is_finite()) else {
-            self.tally.reject();
-            return None;
-        };
-        let difference = sample.excess(N, *slot, &mut self.partial);
-        *slot = sample;
-        self.next += 1;
-        if next + 1 == N {
-            self.close_block();
-        }
-        (is_full && !difference.is_nan()).then(|| Spike::from_side(difference.beyond(margin)))
-    }
-
     #[inline]
     fn close_block(&mut self) {
         self.next = 0;
@@ -207,6 +183,35 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
 fn close_long_block<S: Windowed>(ring: &mut [S], partial: &mut S::Sum) {
     let length = black_box(ring.len());
     S::close_block(ring.get_mut(..length).unwrap_or_default(), partial);
+}
+
+impl<S: Sample, const N: usize> MovingWindow<S, N> {
+    /// Takes any sample. Nothing is emitted if it is not finite, nor before the window is full, nor for
+    /// a difference that is not a number.
+    ///
+    /// Its arguments and its result are those of [`encode`](Scheme::encode), in that order: they stay in
+    /// their registers, and the usual path needs no stack.
+    #[cold]
+    #[inline(never)]
+    fn encode_carefully(&self, state: &mut MovingWindowState<S, N>, sample: S) -> Spike {
+        let is_full = state.next < FILLING;
+        let next = (state.next & !FILLING) as usize;
+        let Some(slot) = state.ring.get_mut(next).filter(|_| sample.is_finite()) else {
+            state.tally.reject();
+            return Spike::None;
+        };
+        let difference = sample.excess(N, *slot, &mut state.partial);
+        *slot = sample;
+        state.next += 1;
+        if next + 1 == N {
+            state.close_block();
+        }
+        if is_full && !difference.is_nan() {
+            Spike::from_side(difference.beyond(self.margin))
+        } else {
+            Spike::None
+        }
+    }
 }
 
 impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
@@ -239,7 +244,7 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
                 return Spike::from_side(difference.beyond(S::fast_margin(self.margin)));
             }
         }
-        state.encode_carefully(self.margin, sample).unwrap_or_default()
+        self.encode_carefully(state, sample)
     }
 
     #[inline]
@@ -269,7 +274,7 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
             } else if let (Some(&sample), Some(spike)) =
                 (samples.split_off_first(), spikes.split_off_first_mut())
             {
-                *spike = state.encode_carefully(self.margin, sample).unwrap_or_default();
+                *spike = self.encode_carefully(state, sample);
             }
         }
         length
@@ -281,7 +286,7 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
         if window.iter().all(S::is_finite) {
             state.clear_window();
             for &sample in window {
-                state.encode_carefully(self.margin, sample);
+                self.encode_carefully(state, sample);
             }
         } else {
             state.tally.reject();
