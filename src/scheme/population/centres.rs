@@ -215,7 +215,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
     /// Whether [`by_cell`](Self::by_cell) tells the neuron of every value.
     #[inline]
     pub(super) fn has_cells(&self) -> bool {
-        S::HAS_CELLS && self.cells != Cells::ONE
+        S::HAS_CELLS && !self.cells.is_one()
     }
 
     /// The number of a finite value's neuron, by cell; 1 for what is not a number.

@@ -1,5 +1,6 @@
 //! Gaussian receptive fields of equal width, as distances instead of exponentials.
 
+use core::hint::black_box;
 use core::ops::RangeInclusive;
 
 use super::centres::{Centres, even_centre};
@@ -181,10 +182,13 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
     /// The mean of the centres of the neurons that fired, or `None` without any.
     #[inline]
     pub(super) fn mean_of(&self, neurons: &FiredNeurons<M>) -> Option<S> {
+        // Where the compiler cannot tell that a centre may be read in vain, it passes by the neurons that did not
+        // fire, which are the most, instead of adding their centres and dropping the sum.
+        let centres = black_box(&self.centres);
         let mut weighted = S::Weighted::default();
         let mut total = 0;
         neurons.for_each(|neuron| {
-            if let Some(&centre) = self.centres.get(neuron) {
+            if let Some(&centre) = centres.get(neuron) {
                 weighted = S::weigh(weighted, centre, neuron, 1);
                 total += 1;
             }

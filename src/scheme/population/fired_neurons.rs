@@ -34,22 +34,23 @@ impl<const M: usize> FiredNeurons<M> {
         (0..).zip(&self.fired).filter_map(|(neuron, &fired)| fired.then_some(neuron))
     }
 
-    /// Takes every neuron that fired, by rising index: one step for four neurons, and one for each spike.
+    /// Takes every neuron that fired, by rising index. Four that did not are passed by at once.
     #[inline]
     pub(super) fn for_each(&self, mut take: impl FnMut(usize)) {
-        let mut take_word = |first: usize, fired: &[bool]| {
-            // One bit for each neuron that fired, in its own byte: the first in the lowest.
-            let mut word = fired.iter().rev().fold(0, |word, &fired| word << 8 | u32::from(fired));
-            while word != 0 {
-                take(first + (word.trailing_zeros() / 8) as usize);
-                word &= word - 1;
+        let mut take_fired = |first: usize, neurons: &[bool]| {
+            for (neuron, &fired) in (first..).zip(neurons) {
+                if fired {
+                    take(neuron);
+                }
             }
         };
         let (quartets, rest) = self.fired.as_chunks::<4>();
         for (i, quartet) in quartets.iter().enumerate() {
-            take_word(4 * i, quartet);
+            if *quartet != [false; 4] {
+                take_fired(4 * i, quartet);
+            }
         }
-        take_word(4 * quartets.len(), rest);
+        take_fired(M - M % 4, rest);
     }
 }
 

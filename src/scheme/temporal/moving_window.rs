@@ -161,6 +161,17 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
         taken
     }
 
+    /// [`encode_groups`](Self::encode_groups) of a long block, with the registers to itself.
+    #[inline(never)]
+    fn encode_long(
+        &mut self,
+        margin: <S::Sum as Difference>::Margin,
+        groups: &[[S; GROUP]],
+        spikes: &mut [[Spike; GROUP]],
+    ) -> usize {
+        self.encode_groups(margin, groups, spikes)
+    }
+
     #[inline]
     fn close_block(&mut self) {
         self.next = 0;
@@ -261,7 +272,7 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
         while !samples.is_empty() {
             let taken = if N > SHORT {
                 let (groups, spikes) = (samples.as_chunks().0, spikes.as_chunks_mut().0);
-                GROUP * state.encode_groups::<GROUP>(self.margin, groups, spikes)
+                GROUP * state.encode_long(self.margin, groups, spikes)
             } else if state.next == 0
                 && let Some(block) = samples.first_chunk()
                 && let Some(spikes) = spikes.first_chunk_mut()
