@@ -152,17 +152,24 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         let mut line = [self.residuals; 4];
         let line = line.as_flattened_mut();
         let oldest = self.cursor.next();
-        let windows = cells(line.get_mut(oldest + 1..).unwrap_or_default()).windows(F);
-        let mut length = samples.len().min(spikes.len()).min(windows.len());
-        let all = spikes.iter_mut().zip(samples).zip(windows);
-        for (at, ((spike, &sample), window)) in all.enumerate() {
-            if !sample.is_finite() {
-                length = at;
-                break;
-            }
-            if let Some(newest) = window.last() {
-                newest.set(sample.residual(shift, magnitude));
-            }
+        let (newest, windows) = {
+            let line = cells(line);
+            let after = line.get(oldest + 1..).unwrap_or_default();
+            (line.get(oldest + F..).unwrap_or_default(), after.windows(F))
+        };
+        let mut length = samples.len().min(spikes.len()).min(newest.len());
+        // Residuals first, as a loop of their own leaves the next one more registers.
+        let samples = samples.get(..length).unwrap_or_default();
+        let mut taint = S::ZERO;
+        for (residual, &sample) in newest.iter().zip(samples) {
+            taint = taint.taint(sample);
+            residual.set(sample.residual(shift, magnitude));
+        }
+        if !taint.is_finite() {
+            length = samples.iter().position(|sample| !sample.is_finite()).unwrap_or(length);
+        }
+        let spikes = spikes.get_mut(..length).unwrap_or_default();
+        for (spike, window) in spikes.iter_mut().zip(windows) {
             let fits = rule.fits(magnitude, pairs(window, &taps), true);
             if fits {
                 subtract(window, &taps);
