@@ -157,30 +157,29 @@ impl<S: Sample, const F: usize> RateState<S, F> {
             let after = line.get(oldest + 1..).unwrap_or_default();
             (line.get(oldest + F..).unwrap_or_default(), after.windows(F))
         };
-        let mut length = samples.len().min(spikes.len()).min(newest.len());
+        let length = samples.len().min(spikes.len()).min(newest.len());
         // Residuals first, as a loop of their own leaves the next one more registers.
-        let samples = samples.get(..length).unwrap_or_default();
+        let mut samples = samples.get(..length).unwrap_or_default();
         let mut taint = S::ZERO;
         for (residual, &sample) in newest.iter().zip(samples) {
             taint = taint.taint(sample);
             residual.set(sample.residual(shift, magnitude));
         }
         if !taint.is_finite() {
-            length = samples.iter().position(|sample| !sample.is_finite()).unwrap_or(length);
+            samples = finite(samples);
         }
-        let spikes = spikes.get_mut(..length).unwrap_or_default();
-        for (spike, window) in spikes.iter_mut().zip(windows) {
+        for ((spike, _), window) in spikes.iter_mut().zip(samples).zip(windows) {
             let fits = rule.fits(magnitude, pairs(window, &taps), true);
             if fits {
                 subtract(window, &taps);
             }
             *spike = Some(if fits { Spike::Up } else { Spike::None });
         }
-        if let Some(last) = line.get(oldest + length..).and_then(<[_]>::first_chunk) {
+        if let Some(last) = line.get(oldest + samples.len()..).and_then(<[_]>::first_chunk) {
             self.residuals = *last;
         }
         self.cursor.restart();
-        length
+        samples.len()
     }
 
     /// The spike of the oldest residual, in order and with what is there of the window.
@@ -218,6 +217,13 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         self.cursor.pop();
         self.encode_apart(rule)
     }
+}
+
+/// The samples before the first that is not finite.
+#[cold]
+#[inline(never)]
+fn finite<S: Sample>(samples: &[S]) -> &[S] {
+    samples.split(|sample| !sample.is_finite()).next().unwrap_or_default()
 }
 
 /// Residuals, each with the tap beside it.

@@ -6,7 +6,7 @@ use core::slice::{from_mut, from_ref};
 use super::StepState;
 use super::steps::decode_steps;
 use crate::error::{positive, unwrap};
-use crate::num::{Difference, Tally, Windowed, margin, to_f64};
+use crate::num::{Difference, Tally, Windowed, fast_margin, margin, to_f64};
 use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 
 /// Moving window: the baseline is the mean of the `N` samples before.
@@ -53,6 +53,9 @@ pub struct MovingWindow<S: Sample, const N: usize> {
     /// `N` times the threshold, to compare differences with.
     #[cfg_attr(feature = "serde", serde(skip))]
     margin: <S::Sum as Difference>::Margin,
+    /// The same for fast sums.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    fast_margin: <S::Fast as Difference>::Margin,
 }
 
 #[cfg(feature = "defmt")]
@@ -81,7 +84,11 @@ impl<S: Sample, const N: usize> MovingWindow<S, N> {
     pub const fn try_new(threshold: S) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
         match positive("threshold", to_f64(threshold)) {
-            Ok(()) => Ok(Self { threshold, margin: margin(threshold, N) }),
+            Ok(()) => Ok(Self {
+                threshold,
+                margin: margin(threshold, N),
+                fast_margin: fast_margin(threshold, N),
+            }),
             Err(error) => Err(error),
         }
     }
@@ -125,13 +132,13 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
     #[inline]
     fn encode_groups<const M: usize>(
         &mut self,
-        margin: <S::Sum as Difference>::Margin,
+        margin: <S::Fast as Difference>::Margin,
         groups: &[[S; M]],
         spikes: &mut [[Spike; M]],
     ) -> usize {
         let Some(mut partial) = S::fast(self.partial) else { return 0 };
         let is_full = self.next < FILLING;
-        let margin = if is_full { S::fast_margin(margin) } else { S::Fast::WIDEST };
+        let margin = if is_full { margin } else { S::Fast::WIDEST };
         let next = (self.next & !FILLING) as usize;
         let slots = self.ring.get_mut(next..).unwrap_or_default().as_chunks_mut::<M>().0;
         let mut taken = 0;
@@ -165,7 +172,7 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
     #[inline(never)]
     fn encode_long(
         &mut self,
-        margin: <S::Sum as Difference>::Margin,
+        margin: <S::Fast as Difference>::Margin,
         groups: &[[S; GROUP]],
         spikes: &mut [[Spike; GROUP]],
     ) -> usize {
@@ -247,14 +254,16 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
             && S::are_small(N, &[sample], &[*slot])
         {
             let difference = sample.excess(N, *slot, &mut partial);
-            if difference.is_finite() {
+            let side = difference.beyond(self.fast_margin);
+            // Within the margin, it is finite.
+            if side.is_eq() || difference.is_finite() {
                 *slot = sample;
                 state.partial = S::exact(partial);
                 state.next = next as u16 + 1;
                 if next + 1 == N {
                     state.close_block();
                 }
-                return Spike::from_side(difference.beyond(S::fast_margin(self.margin)));
+                return Spike::from_side(side);
             }
         }
         self.encode_carefully(state, sample)
@@ -272,12 +281,12 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
         while !samples.is_empty() {
             let taken = if N > SHORT {
                 let (groups, spikes) = (samples.as_chunks().0, spikes.as_chunks_mut().0);
-                GROUP * state.encode_long(self.margin, groups, spikes)
+                GROUP * state.encode_long(self.fast_margin, groups, spikes)
             } else if state.next == 0
                 && let Some(block) = samples.first_chunk()
                 && let Some(spikes) = spikes.first_chunk_mut()
             {
-                N * state.encode_groups::<N>(self.margin, from_ref(block), from_mut(spikes))
+                N * state.encode_groups::<N>(self.fast_margin, from_ref(block), from_mut(spikes))
             } else {
                 0
             };
