@@ -29,15 +29,18 @@ impl<S: Sample, const F: usize> RateDecoderState<S, F> {
 
     #[inline(always)]
     pub(super) fn decode(&mut self, filtered: &Filtered<S, F>, spike: Spike) -> S {
-        let next = usize::from(self.next);
+        let next = (self.next as usize).min(F - 1);
         if spike == Spike::Up {
             for (sum, tap) in self.pending.iter_mut().zip(filtered.taps.starting_at(next)) {
                 *sum = sum.plus(tap.widen());
             }
         }
-        let sum = self.pending.get_mut(next).map(|sum| core::mem::replace(sum, S::Residual::ZERO));
-        self.next = if next + 1 < F { self.next + 1 } else { 0 };
-        filtered.shift.restore(sum.unwrap_or(S::Residual::ZERO))
+        let mut sum = S::Residual::ZERO;
+        if let Some(pending) = self.pending.get_mut(next) {
+            core::mem::swap(&mut sum, pending);
+        }
+        self.next = if next + 1 < F { next as u16 + 1 } else { 0 };
+        filtered.shift.restore(sum)
     }
 }
 

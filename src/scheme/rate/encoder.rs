@@ -1,6 +1,7 @@
 //! How the rate codes encode: each has its own rule for when the filter fits.
 
 use core::cell::Cell;
+use core::hint::black_box;
 
 use super::cursor::Cursor;
 use super::filtered::Filtered;
@@ -164,6 +165,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         for (residual, &sample) in newest.iter().zip(samples) {
             taint = taint.taint(sample);
             residual.set(sample.residual(shift, magnitude));
+            black_box(()); // or the compiler would write out four turns
         }
         if !taint.is_finite() {
             samples = finite(samples);
@@ -223,7 +225,8 @@ impl<S: Sample, const F: usize> RateState<S, F> {
 #[cold]
 #[inline(never)]
 fn finite<S: Sample>(samples: &[S]) -> &[S] {
-    samples.split(|sample| !sample.is_finite()).next().unwrap_or_default()
+    let is_finite = |sample: &&S| black_box(*sample).is_finite();
+    samples.get(..samples.iter().take_while(is_finite).count()).unwrap_or_default()
 }
 
 /// Residuals, each with the tap beside it.

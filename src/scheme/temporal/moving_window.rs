@@ -254,16 +254,14 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
             && S::are_small(N, &[sample], &[*slot])
         {
             let difference = sample.excess(N, *slot, &mut partial);
-            let side = difference.beyond(self.fast_margin);
-            // Within the margin, it is finite.
-            if side.is_eq() || difference.is_finite() {
+            if difference.is_finite() {
                 *slot = sample;
                 state.partial = S::exact(partial);
                 state.next = next as u16 + 1;
                 if next + 1 == N {
                     state.close_block();
                 }
-                return Spike::from_side(side);
+                return Spike::from_side(difference.beyond(self.fast_margin));
             }
         }
         self.encode_carefully(state, sample)
