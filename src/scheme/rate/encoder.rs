@@ -158,30 +158,36 @@ impl<S: Sample, const F: usize> RateState<S, F> {
             let after = line.get(oldest + 1..).unwrap_or_default();
             (line.get(oldest + F..).unwrap_or_default(), after.windows(F))
         };
-        let length = samples.len().min(spikes.len()).min(newest.len());
-        // Residuals first, as a loop of their own leaves the next one more registers.
-        let mut samples = samples.get(..length).unwrap_or_default();
-        let mut taint = S::ZERO;
-        for (residual, &sample) in newest.iter().zip(samples) {
-            taint = taint.taint(sample);
-            residual.set(sample.residual(shift, magnitude));
-            black_box(()); // or the compiler would write out four turns
+        let mut length = samples.len().min(spikes.len()).min(newest.len());
+        if S::Residual::IS_EXACT {
+            // In a loop of its own, as the limits of a residual take registers that the next one needs.
+            for (residual, &sample) in newest.iter().zip(samples).take(length) {
+                residual.set(sample.residual(shift, magnitude));
+                black_box(()); // or the compiler would write out four turns
+            }
         }
-        if !taint.is_finite() {
-            samples = finite(samples);
-        }
-        for ((spike, _), window) in spikes.iter_mut().zip(samples).zip(windows) {
+        let all = spikes.iter_mut().zip(samples).zip(windows);
+        for (at, ((spike, &sample), window)) in all.enumerate() {
+            if !sample.is_finite() {
+                length = at;
+                break;
+            }
+            if !S::Residual::IS_EXACT
+                && let Some(newest) = window.last()
+            {
+                newest.set(sample.residual(shift, magnitude));
+            }
             let fits = rule.fits(magnitude, pairs(window, &taps), true);
             if fits {
                 subtract(window, &taps);
             }
             *spike = Some(if fits { Spike::Up } else { Spike::None });
         }
-        if let Some(last) = line.get(oldest + samples.len()..).and_then(<[_]>::first_chunk) {
+        if let Some(last) = line.get(oldest + length..).and_then(<[_]>::first_chunk) {
             self.residuals = *last;
         }
         self.cursor.restart();
-        samples.len()
+        length
     }
 
     /// The spike of the oldest residual, in order and with what is there of the window.
@@ -219,14 +225,6 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         self.cursor.pop();
         self.encode_apart(rule)
     }
-}
-
-/// The samples before the first that is not finite.
-#[cold]
-#[inline(never)]
-fn finite<S: Sample>(samples: &[S]) -> &[S] {
-    let is_finite = |sample: &&S| black_box(*sample).is_finite();
-    samples.get(..samples.iter().take_while(is_finite).count()).unwrap_or_default()
 }
 
 /// Residuals, each with the tap beside it.
