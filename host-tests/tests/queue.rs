@@ -11,7 +11,8 @@ use std::thread;
 
 use proptest::prelude::*;
 use spikewire::{
-    Event, EventQueue, Item, Keyframe, Overflow, Polarity, Put, Refused, Source, SpscQueue, Taken, Tick,
+    Event, EventQueue, Item, Keyframe, Overflow, Polarity, Put, Refused, Source, SpscQueue, Taken,
+    Tick,
 };
 
 const POLICIES: [Overflow; 3] = [Overflow::DropOldest, Overflow::DropNewest, Overflow::Refuse];
@@ -147,7 +148,8 @@ fn any_number_of_losses_is_said() {
             (&queue).put(item(9));
             said.extend(std::iter::from_fn(|| consumer.take()));
             let losses: Vec<u32> = said.iter().map(|taken| taken.lost).collect();
-            let expected = if overflow == Overflow::DropOldest { [lost, 0, 0] } else { [0, 0, lost] };
+            let expected =
+                if overflow == Overflow::DropOldest { [lost, 0, 0] } else { [0, 0, lost] };
             assert_eq!(losses, expected, "{overflow:?}");
             assert_eq!(queue.lost(), lost);
         }
@@ -160,7 +162,8 @@ fn long_losses_at_several_places() {
     let queue = EventQueue::<3>::new(Overflow::DropNewest);
     let mut consumer = queue.consumer().unwrap();
     let mut number = 0..;
-    let mut put = |count: usize| number.by_ref().take(count).for_each(|number| (&queue).put(item(number)));
+    let mut put =
+        |count: usize| number.by_ref().take(count).for_each(|number| (&queue).put(item(number)));
     put(3 + 300);
     consumer.take();
     put(1 + 400);
@@ -199,7 +202,8 @@ fn what_waits_ends_although_items_keep_coming() {
 
 #[test]
 fn queues_of_any_room_go_behind_one_reference() {
-    let (small, large) = (EventQueue::<1>::new(Overflow::Refuse), EventQueue::<9>::new(Overflow::Refuse));
+    let (small, large) =
+        (EventQueue::<1>::new(Overflow::Refuse), EventQueue::<9>::new(Overflow::Refuse));
     let rooms = [&*small, &*large].map(spikewire::QueueView::capacity);
     assert_eq!(rooms, [1, 9]);
 }
@@ -261,7 +265,8 @@ fn a_storm_loses_nothing_unsaid() {
     static OLDEST: EventQueue<16> = EventQueue::new(Overflow::DropOldest);
     static NEWEST: EventQueue<16> = EventQueue::new(Overflow::DropNewest);
     for queue in [&OLDEST, &NEWEST] {
-        let storm = thread::spawn(|| (0..STORM).for_each(|number| queue.push(item(number)).unwrap()));
+        let storm =
+            thread::spawn(|| (0..STORM).for_each(|number| queue.push(item(number)).unwrap()));
         outlast(queue.consumer().unwrap(), || storm.is_finished());
         storm.join().unwrap();
         assert!(queue.peak() <= 16);
