@@ -175,8 +175,8 @@ fn a_queue_counts_what_a_bank_has_no_room_for() {
         let events = std::iter::from_fn(|| consumer.take_event());
         assert!(events.map(|event| event.address).eq(expected), "{overflow:?}");
     }
-    let mut queue = SpscQueue::<3>::new();
-    let (mut producer, mut consumer) = queue.split();
+    let queue = SpscQueue::<3>::new();
+    let (mut producer, mut consumer) = queue.split().unwrap();
     let mut bank = Bank::<_, 3>::new(&COUNTS);
     samples.map(|sample| bank.encode_into(Tick::default(), sample, &mut producer));
     assert_eq!(producer.lost(), 1);

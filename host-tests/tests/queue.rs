@@ -114,21 +114,18 @@ proptest! {
 
     #[test]
     fn the_queue_without_locks_drops_the_newest(actions in prop::collection::vec(any::<bool>(), 0..400)) {
-        let mut queue = SpscQueue::<4>::new();
+        let queue = SpscQueue::<4>::new();
+        let (mut producer, mut consumer) = queue.split().unwrap();
+        prop_assert!(queue.split().is_none());
         let mut model = Model::new(Overflow::DropNewest, 3);
-        let mut numbers = 1..;
-        for actions in actions.chunks(50) {
-            let (mut producer, mut consumer) = queue.split(); // again and again
-            for &is_push in actions {
-                if is_push {
-                    let number = numbers.next().unwrap();
-                    model.push(number, false);
-                    producer.push(item(number));
-                } else {
-                    prop_assert_eq!(consumer.take(), model.take());
-                }
-                prop_assert_eq!((consumer.len(), consumer.lost()), (model.items.len(), model.lost));
+        for (number, is_push) in (1..).zip(actions) {
+            if is_push {
+                model.push(number, false);
+                producer.push(item(number));
+            } else {
+                prop_assert_eq!(consumer.take(), model.take());
             }
+            prop_assert_eq!((consumer.len(), consumer.lost()), (model.items.len(), model.lost));
         }
     }
 }
@@ -275,8 +272,8 @@ fn a_storm_loses_nothing_unsaid() {
 
 #[test]
 fn a_storm_without_locks_loses_nothing_unsaid() {
-    let mut queue = SpscQueue::<16>::new();
-    let (mut producer, consumer) = queue.split();
+    let queue = SpscQueue::<16>::new();
+    let (mut producer, consumer) = queue.split().unwrap();
     thread::scope(|scope| {
         let storm = scope.spawn(move || (0..STORM).for_each(|number| producer.push(item(number))));
         outlast(consumer, || storm.is_finished());
