@@ -212,7 +212,8 @@ impl QueueView {
     /// Adds an item, and says whether it was taken.
     #[inline]
     fn add(&self, slot: Slot, giver: Giver) -> bool {
-        let (is_taken, _wake) = critical_section::with(|section| {
+        #[cfg_attr(not(feature = "async"), expect(unused_variables))]
+        let (is_taken, waker) = critical_section::with(|section| {
             let is_taken = if self.state.borrow(section).len.get() < self.places.len() {
                 self.append(section, slot);
                 true
@@ -228,7 +229,7 @@ impl QueueView {
         });
         // Outside of the critical section: it runs code of the executor's.
         #[cfg(feature = "async")]
-        if let Some(waker) = _wake {
+        if let Some(waker) = waker {
             waker.wake();
         }
         is_taken
@@ -304,13 +305,11 @@ impl QueueView {
     #[inline]
     pub(super) fn take(&self) -> Option<Taken> {
         let slot = critical_section::with(|section| self.remove(section));
-        match slot.and_then(Slot::plain_event) {
-            Some(event) => Some(Taken::whole(Item::Event(event))),
-            None => {
-                let (tick, bits, rest) = slot.unwrap_or(Slot::EMPTY).words();
-                self.take_apart(slot.is_some(), tick, bits, rest)
-            }
+        if let Some(event) = slot.and_then(Slot::plain_event) {
+            return Some(Taken::whole(Item::Event(event)));
         }
+        let (tick, bits, rest) = slot.unwrap_or(Slot::EMPTY).words();
+        self.take_apart(slot.is_some(), tick, bits, rest)
     }
 
     /// What a slot says that is no plain event. Where there was no slot, one that came meanwhile, or the losses

@@ -60,12 +60,10 @@ struct Entry {
 }
 
 impl Entry {
-    const EMPTY: Self = Self {
-        tick: AtomicU32::new(0),
-        bits: AtomicU32::new(0),
-        rest: AtomicU32::new(0),
-        lost: AtomicU32::new(0),
-    };
+    const fn empty() -> Self {
+        let [tick, bits, rest, lost] = [const { AtomicU32::new(0) }; 4];
+        Self { tick, bits, rest, lost }
+    }
 }
 
 impl<const N: usize> SpscQueue<N> {
@@ -78,7 +76,7 @@ impl<const N: usize> SpscQueue<N> {
             lost: AtomicU32::new(0),
             lost_tick: AtomicU32::new(0),
             is_split: AtomicU32::new(0),
-            entries: [Entry::EMPTY; N],
+            entries: [const { Entry::empty() }; N],
         })
     }
 
