@@ -77,14 +77,14 @@ fn no_order_of_events_makes_a_receiver_wrong() {
         // Interrupts alone.
         Case { interrupts: 4, frames: 1, ..SMALL },
         Case { interrupts: 2, nested: 3, frames: 1, ..SMALL },
-        Case { interrupts: 2, resets: 1, ..SMALL },
+        Case { interrupts: 2, resets: 2, frames: 1, ..SMALL },
         // The line.
-        Case { interrupts: 2, line_faults: 1, ..SMALL },
-        Case { interrupts: 1, line_faults: 2, frames: 3, room: 24, ..SMALL },
-        Case { interrupts: 1, line_faults: 1, resets: 1, readers: 1, ..SMALL },
+        Case { interrupts: 2, line_faults: 2, frames: 3, ..SMALL },
+        Case { interrupts: 2, line_faults: 2, frames: 3, room: 24, ..SMALL },
+        Case { interrupts: 2, line_faults: 1, resets: 1, readers: 1, ..SMALL },
         // Reboots.
-        Case { interrupts: 1, line_faults: 2, reboots: 1, ..SMALL },
-        Case { interrupts: 1, line_faults: 2, reboots: 2, frames: 3, ..SMALL },
+        Case { interrupts: 2, line_faults: 2, reboots: 1, ..SMALL },
+        Case { interrupts: 1, line_faults: 3, reboots: 2, frames: 4, ..SMALL },
     ];
     let totals = cases.map(search_all);
     let schedules: u64 = totals.iter().map(|total| total.0).sum();
@@ -145,7 +145,10 @@ fn the_faults_put_back_are_found() {
     finds::<2>(Fault::LossReadApart, Case { interrupts: 4, frames: 1, ..SMALL });
     // With room for all, so that nothing is lost.
     finds::<16>(Fault::KeyframesBeside, Case { interrupts: 2, frames: 1, ..SMALL });
-    finds::<16>(Fault::KeyframeKeptOverReset, Case { interrupts: 2, resets: 1, frames: 1, ..SMALL });
+    finds::<16>(
+        Fault::KeyframeKeptOverReset,
+        Case { interrupts: 2, resets: 1, frames: 1, ..SMALL },
+    );
     finds::<16>(Fault::SessionsAlike, Case { interrupts: 2, line_faults: 2, reboots: 1, ..SMALL });
 }
 

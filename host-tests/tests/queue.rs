@@ -11,7 +11,8 @@ use std::thread;
 
 use proptest::prelude::*;
 use spikewire::{
-    Event, EventQueue, Item, Keyframe, Overflow, Polarity, Put, Refused, Source, SpscQueue, Taken, Tick,
+    Event, EventQueue, Item, Keyframe, Overflow, Polarity, Put, Refused, Source, SpscQueue, Taken,
+    Tick,
 };
 
 const POLICIES: [Overflow; 3] = [Overflow::DropOldest, Overflow::DropNewest, Overflow::Refuse];
@@ -113,21 +114,18 @@ proptest! {
 
     #[test]
     fn the_queue_without_locks_drops_the_newest(actions in prop::collection::vec(any::<bool>(), 0..400)) {
-        let mut queue = SpscQueue::<4>::new();
+        let queue = SpscQueue::<4>::new();
+        let (mut producer, mut consumer) = queue.split().unwrap();
+        prop_assert!(queue.split().is_none());
         let mut model = Model::new(Overflow::DropNewest, 3);
-        let mut numbers = 1..;
-        for actions in actions.chunks(50) {
-            let (mut producer, mut consumer) = queue.split(); // again and again
-            for &is_push in actions {
-                if is_push {
-                    let number = numbers.next().unwrap();
-                    model.push(number, false);
-                    producer.push(item(number));
-                } else {
-                    prop_assert_eq!(consumer.take(), model.take());
-                }
-                prop_assert_eq!((consumer.len(), consumer.lost()), (model.items.len(), model.lost));
+        for (number, is_push) in (1..).zip(actions) {
+            if is_push {
+                model.push(number, false);
+                producer.push(item(number));
+            } else {
+                prop_assert_eq!(consumer.take(), model.take());
             }
+            prop_assert_eq!((consumer.len(), consumer.lost()), (model.items.len(), model.lost));
         }
     }
 }
@@ -147,7 +145,8 @@ fn any_number_of_losses_is_said() {
             (&queue).put(item(9));
             said.extend(std::iter::from_fn(|| consumer.take()));
             let losses: Vec<u32> = said.iter().map(|taken| taken.lost).collect();
-            let expected = if overflow == Overflow::DropOldest { [lost, 0, 0] } else { [0, 0, lost] };
+            let expected =
+                if overflow == Overflow::DropOldest { [lost, 0, 0] } else { [0, 0, lost] };
             assert_eq!(losses, expected, "{overflow:?}");
             assert_eq!(queue.lost(), lost);
         }
@@ -160,7 +159,8 @@ fn long_losses_at_several_places() {
     let queue = EventQueue::<3>::new(Overflow::DropNewest);
     let mut consumer = queue.consumer().unwrap();
     let mut number = 0..;
-    let mut put = |count: usize| number.by_ref().take(count).for_each(|number| (&queue).put(item(number)));
+    let mut put =
+        |count: usize| number.by_ref().take(count).for_each(|number| (&queue).put(item(number)));
     put(3 + 300);
     consumer.take();
     put(1 + 400);
@@ -199,7 +199,8 @@ fn what_waits_ends_although_items_keep_coming() {
 
 #[test]
 fn queues_of_any_room_go_behind_one_reference() {
-    let (small, large) = (EventQueue::<1>::new(Overflow::Refuse), EventQueue::<9>::new(Overflow::Refuse));
+    let (small, large) =
+        (EventQueue::<1>::new(Overflow::Refuse), EventQueue::<9>::new(Overflow::Refuse));
     let rooms = [&*small, &*large].map(spikewire::QueueView::capacity);
     assert_eq!(rooms, [1, 9]);
 }
@@ -261,7 +262,8 @@ fn a_storm_loses_nothing_unsaid() {
     static OLDEST: EventQueue<16> = EventQueue::new(Overflow::DropOldest);
     static NEWEST: EventQueue<16> = EventQueue::new(Overflow::DropNewest);
     for queue in [&OLDEST, &NEWEST] {
-        let storm = thread::spawn(|| (0..STORM).for_each(|number| queue.push(item(number)).unwrap()));
+        let storm =
+            thread::spawn(|| (0..STORM).for_each(|number| queue.push(item(number)).unwrap()));
         outlast(queue.consumer().unwrap(), || storm.is_finished());
         storm.join().unwrap();
         assert!(queue.peak() <= 16);
@@ -270,8 +272,8 @@ fn a_storm_loses_nothing_unsaid() {
 
 #[test]
 fn a_storm_without_locks_loses_nothing_unsaid() {
-    let mut queue = SpscQueue::<16>::new();
-    let (mut producer, consumer) = queue.split();
+    let queue = SpscQueue::<16>::new();
+    let (mut producer, consumer) = queue.split().unwrap();
     thread::scope(|scope| {
         let storm = scope.spawn(move || (0..STORM).for_each(|number| producer.push(item(number))));
         outlast(consumer, || storm.is_finished());

@@ -258,7 +258,8 @@ impl<'a> World<'a> {
         // Both are exact at first.
         (0..2).for_each(|channel| self.sample(channel));
         (0..2).for_each(|channel| self.keyframe(channel));
-        let quiet = self.left.replace(Case { interrupts: 0, nested: 0, line_faults: 0, ..self.case });
+        let quiet =
+            self.left.replace(Case { interrupts: 0, nested: 0, line_faults: 0, ..self.case });
         self.left.borrow_mut().resets = 0;
         self.send(&mut transmitter, &mut far)?;
         self.left.replace(quiet);
@@ -277,7 +278,8 @@ impl<'a> World<'a> {
         }
 
         // Quiet from here on: everything arrives, and keyframes make all exact.
-        *self.left.borrow_mut() = Case { interrupts: 0, nested: 0, line_faults: 0, resets: 0, ..self.case };
+        *self.left.borrow_mut() =
+            Case { interrupts: 0, nested: 0, line_faults: 0, resets: 0, ..self.case };
         self.send(&mut transmitter, &mut far)?;
         for channel in 0..2 {
             self.sample(channel);
