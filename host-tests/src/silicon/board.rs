@@ -226,6 +226,12 @@ impl<K: Kind> AerPort for Port<K> {
     fn set_reset(&mut self, is_high: bool) -> Result<(), u64> {
         self.call(|pins| pins.chip.set_reset(is_high))
     }
+
+    /// Read with the other pins: takes no time of its own.
+    fn queue_full(&mut self) -> Result<Option<bool>, u64> {
+        let pins = self.0.pins();
+        Ok(pins.has_full_pin.then(|| pins.chip.is_full()))
+    }
 }
 
 /// Delays are of the chip's clock, taken as 10 MHz.

@@ -1,0 +1,228 @@
+//! Address events over parallel wires, by the 4-phase handshake.
+
+use super::AerPort;
+use crate::Event;
+
+/// Where a handshake stands, or stands still.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Phase {
+    /// ACK is high before REQ, or the word before this one is still under way. This one was not sent.
+    Idle,
+    /// ACK has not risen after REQ. The word is under way: it stays on the bus, with REQ, until the chip
+    /// takes it or is reset.
+    Acknowledge,
+    /// ACK has not fallen after REQ has. The chip has taken the word.
+    Release,
+}
+
+/// Why a word is not through.
+#[derive(Debug)]
+pub(in crate::chip) enum AerError<E> {
+    Port(E),
+    Timeout(Phase),
+}
+
+impl<E> From<E> for AerError<E> {
+    fn from(error: E) -> Self {
+        Self::Port(error)
+    }
+}
+
+/// What the word under way stands for.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Carries {
+    /// A word of the caller's.
+    Word,
+    /// A question whether the chip runs.
+    Probe,
+    /// A time step.
+    Step,
+    /// An event that was fed.
+    Event(Event),
+}
+
+/// What is known of our ACK on the output bus. A call that fails may have acted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Answer {
+    /// Low: the next REQ is a new output.
+    Idle,
+    /// The output is with the caller; ACK may be high or low.
+    Raising,
+    /// High.
+    High,
+    /// REQ has fallen; ACK may be high or low.
+    Lowering,
+}
+
+/// The microcontroller's side of both buses.
+///
+/// The chip reads the word for as long as it works on it, and acknowledges whatever REQ it then finds.
+/// So a word once begun is kept up until it is acknowledged, over as many calls as that takes.
+#[derive(Debug)]
+pub(super) struct Aer<P> {
+    pub(super) port: P,
+    /// How often a wait looks at the pins.
+    polls: u32,
+    /// Of the word that was begun last.
+    phase: Phase,
+    carries: Carries,
+    answer: Answer,
+    is_full: bool,
+    /// How often the queue was seen to become full.
+    pub(super) overflows: u32,
+}
+
+impl<P: AerPort> Aer<P> {
+    pub(super) const fn new(port: P, polls: u32) -> Self {
+        Self {
+            port,
+            polls,
+            phase: Phase::Idle,
+            carries: Carries::Word,
+            answer: Answer::Idle,
+            is_full: false,
+            overflows: 0,
+        }
+    }
+
+    /// Raises reset while REQ stays as it is: a word that the chip takes in between waits for REQ to fall
+    /// and is gone with the reset, before it has acted. Both of our wires are low after.
+    ///
+    /// Returns what was under way and has not been seen to be taken, and whether an output was lost.
+    pub(super) fn reset(&mut self) -> Result<(Option<Carries>, bool), P::Error> {
+        if self.phase == Phase::Acknowledge && matches!(self.port.input_acknowledge(), Ok(true)) {
+            self.phase = Phase::Release;
+        }
+        let is_output_lost =
+            self.answer == Answer::Idle && matches!(self.port.output_request(), Ok(true));
+        self.port.set_reset(true)?;
+        self.port.set_input_request(false)?;
+        self.port.set_output_acknowledge(false)?;
+        let is_under_way = self.phase == Phase::Acknowledge;
+        (self.phase, self.answer) = (Phase::Idle, Answer::Idle);
+        Ok((is_under_way.then_some(self.carries), is_output_lost))
+    }
+
+    /// Goes on with both buses, in a few looks at the pins.
+    pub(super) fn poll(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
+        // Up, and down again.
+        for _ in 0..2 {
+            self.serve(on_output)?;
+        }
+        match self.finish_within(1, on_output) {
+            Ok(()) | Err(AerError::Timeout(_)) => Ok(()),
+            Err(AerError::Port(error)) => Err(error),
+        }
+    }
+
+    /// Puts a word under way, once the one before is through. After an error it is not under way.
+    pub(super) fn begin(
+        &mut self,
+        word: u32,
+        carries: Carries,
+        on_output: &mut impl FnMut(u8),
+    ) -> Result<(), AerError<P::Error>> {
+        self.finish(on_output).map_err(|error| match error {
+            AerError::Timeout(_) => AerError::Timeout(Phase::Idle),
+            port @ AerError::Port(_) => port,
+        })?;
+        self.wait_for(false, self.polls, on_output)?;
+        self.port.set_input(word)?;
+        (self.phase, self.carries) = (Phase::Acknowledge, carries);
+        Ok(())
+    }
+
+    /// Brings the word under way to its end, if there is one.
+    pub(super) fn finish(
+        &mut self,
+        on_output: &mut impl FnMut(u8),
+    ) -> Result<(), AerError<P::Error>> {
+        self.finish_within(self.polls, on_output)
+    }
+
+    pub(super) fn finish_within(
+        &mut self,
+        polls: u32,
+        on_output: &mut impl FnMut(u8),
+    ) -> Result<(), AerError<P::Error>> {
+        if self.phase == Phase::Acknowledge {
+            self.port.set_input_request(true)?;
+            self.wait_for(true, polls, on_output)?;
+            self.phase = Phase::Release;
+        }
+        if self.phase == Phase::Release {
+            self.port.set_input_request(false)?;
+            self.wait_for(false, polls, on_output)?;
+            self.phase = Phase::Idle;
+        }
+        Ok(())
+    }
+
+    /// Waits until the output bus has been still for this many looks, of no more than `limit` in all.
+    pub(super) fn rest(
+        &mut self,
+        looks: u32,
+        limit: u32,
+        on_output: &mut impl FnMut(u8),
+    ) -> Result<bool, P::Error> {
+        let mut still = 0;
+        for _ in 0..limit {
+            if still >= looks {
+                return Ok(true);
+            }
+            let was_idle = self.answer == Answer::Idle;
+            self.serve(on_output)?;
+            let is_still = was_idle && self.answer == Answer::Idle;
+            still = if is_still { still + 1 } else { 0 };
+        }
+        Ok(false)
+    }
+
+    /// Waits for ACK. While an output event waits the chip acknowledges no input, so this serves the
+    /// output bus as well.
+    fn wait_for(
+        &mut self,
+        is_high: bool,
+        polls: u32,
+        on_output: &mut impl FnMut(u8),
+    ) -> Result<(), AerError<P::Error>> {
+        for _ in 0..polls {
+            self.serve(on_output)?;
+            if self.port.input_acknowledge()? == is_high {
+                return Ok(());
+            }
+        }
+        Err(AerError::Timeout(self.phase))
+    }
+
+    /// One step of the output bus's handshake, if the chip waits for one.
+    fn serve(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
+        if let Some(is_full) = self.port.queue_full()? {
+            self.overflows = self.overflows.saturating_add((is_full && !self.is_full).into());
+            self.is_full = is_full;
+        }
+        match (self.port.output_request()?, self.answer) {
+            (true, Answer::Idle) => {
+                on_output(self.port.output()?);
+                self.raise()
+            }
+            (true, Answer::Raising) => self.raise(),
+            (false, Answer::Raising | Answer::High) | (_, Answer::Lowering) => {
+                self.answer = Answer::Lowering;
+                self.port.set_output_acknowledge(false)?;
+                self.answer = Answer::Idle;
+                Ok(())
+            }
+            (true, Answer::High) | (false, Answer::Idle) => Ok(()),
+        }
+    }
+
+    fn raise(&mut self) -> Result<(), P::Error> {
+        self.answer = Answer::Raising;
+        self.port.set_output_acknowledge(true)?;
+        self.answer = Answer::High;
+        Ok(())
+    }
+}
