@@ -80,11 +80,12 @@ fn the_bytes_on_the_bus_are_golden() {
     let taken = || std::mem::take(&mut *frames.borrow_mut());
     assert_eq!(taken()[..2], [[0, 0, 0, 0, 1], [0, 0, 0x10, 0, 1]], "gated, in open loop");
     gated.set_neuron_byte(5, 1, 0x30).unwrap();
-    assert_eq!(taken(), [[0x50, 0x10, 0x50, 0, 0x30], [0x90, 0x10, 0x50, 0, 0]]);
-    gated.set_synapse(7, 5, 3).unwrap();
-    gated.set_synapse(7, 4, -5).unwrap();
+    assert_eq!(taken()[..2], [[0x50, 0x10, 0x50, 0, 0x30], [0x90, 0x10, 0x50, 0, 0]]);
     let read = [0xA4, 0x0E, 0, 0, 0];
-    assert_eq!(taken(), [[0x64, 0x0E, 0, 0x0F, 0x30], read, [0x64, 0x0E, 0, 0xF0, 0x0B], read]);
+    gated.set_synapse(7, 5, 3).unwrap();
+    assert_eq!(taken()[..2], [[0x64, 0x0E, 0, 0x0F, 0x30], read]);
+    gated.set_synapse(7, 4, -5).unwrap();
+    assert_eq!(taken()[..2], [[0x64, 0x0E, 0, 0xF0, 0x0B], read]);
     assert_eq!((gated.synapse(7, 5), gated.synapse(7, 4)), (Ok(3), Ok(-5)));
     taken();
     gated.run(&TinyOdinRegisters { last_neuron: 32, ..OPEN }).unwrap();

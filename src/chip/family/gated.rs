@@ -13,7 +13,10 @@ const PROBE_LOOKS: u32 = 1_000;
 /// A chip that takes no events and whose memories can be accessed. Its loop is open, so that no write makes
 /// a neuron fire.
 ///
-/// All that is written is read back. When it does not read back, the chip must be reset.
+/// All that is written is read back, and after every call the bus is known to be in step: one clock lost or
+/// doubled is an error, at the cost of 5 frames a call. Where there is much to write,
+/// [`load`](Self::load) does it with 2 frames a byte. After an error of the kind, what the memories hold is
+/// not known: reset the chip, and write all of it again.
 #[derive(Debug)]
 pub struct Gated<'a, I: Input, D, P> {
     pub(super) chip: &'a mut OdinChip<I, D, P>,
@@ -58,7 +61,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
         for (byte, value) in (0..I::NEURON_BYTES).zip(bytes) {
             self.chip.write_byte(Address::neuron(neuron, byte), 0, value)?;
         }
-        Ok(())
+        self.chip.check_step()
     }
 
     /// Reads a neuron's parameters and state, and checks that the bus is in step.
@@ -78,7 +81,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     pub fn set_synapse(&mut self, pre: u8, post: u8, synapse: I::Synapse) -> Outcome<(), D, P> {
         let bits = I::synapse_bits(synapse)?;
         let (keep, value) = if post & 1 == 0 { (0xF0, bits) } else { (0x0F, bits << 4) };
-        self.chip.write_byte(Address::synapse(pre, post), keep, value)
+        self.chip.write_byte(Address::synapse(pre, post), keep, value)?;
+        self.chip.check_step()
     }
 
     /// Reads the synapse from `pre` to `post`, and checks that the bus is in step.
@@ -97,7 +101,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// There is no such byte, the bus failed, or it does not read back: then reset the chip.
     pub fn set_neuron_byte(&mut self, neuron: u8, byte: u8, value: u8) -> Outcome<(), D, P> {
         at_most("byte", byte.into(), u32::from(I::NEURON_BYTES) - 1)?;
-        self.chip.write_byte(Address::neuron(neuron, byte), 0, value)
+        self.chip.write_byte(Address::neuron(neuron, byte), 0, value)?;
+        self.chip.check_step()
     }
 
     /// Reads a byte of a neuron, and checks that the bus is in step.

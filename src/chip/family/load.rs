@@ -3,6 +3,7 @@
 use embedded_hal::spi::SpiDevice;
 
 use super::network::check;
+use super::step::DISABLE;
 use super::wire::Address;
 use super::{AerPort, ChipError, Describe, Gated, Input, Outcome};
 
@@ -18,9 +19,6 @@ pub struct Progress {
 
 /// The chips' neurons.
 const NEURONS: u16 = 256;
-/// Of a neuron's last byte: all but the bit that disables it.
-const KEEP_PARAMETERS: u8 = 0x7F;
-const DISABLE: u8 = 0x80;
 
 impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
     /// Writes a network, disables all other neurons, and then reads all of it back. What the rows hold
@@ -102,7 +100,7 @@ fn each_byte<I: Input, B, P>(
                 done += 1;
             }
         } else {
-            visit(Address::neuron(neuron, last), KEEP_PARAMETERS, DISABLE)?;
+            visit(Address::neuron(neuron, last), !DISABLE, DISABLE)?;
             done += 1;
         }
         progress(done);

@@ -137,7 +137,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     }
 
     /// Pulses reset, which brings chip and bus into step, gates the chip, opens its loop, and checks that it
-    /// listens. What the chip has taken and not worked off is gone, and a word under way is dropped; if
+    /// listens: a neuron [`Input::PROBED`] that was never written is disabled for it. What the chip has taken and not worked off is gone, and a word under way is dropped; if
     /// that was an event of [`Running::feed`], it is held again unless the chip has acknowledged it.
     ///
     /// # Errors
@@ -152,6 +152,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.counters.resets = self.counters.resets.saturating_add(1);
         (self.anchor, self.beacon) = (None, None);
         self.shut()?;
+        self.find_beacon()?;
         Ok(Gated::new(self))
     }
 

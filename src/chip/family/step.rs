@@ -8,6 +8,9 @@ use super::{AerPort, ChipError, Input, OdinChip, Outcome, State};
 /// The gate's register.
 const GATE_ACTIVITY: u16 = 0;
 
+/// In a neuron's last byte: it never fires.
+pub(super) const DISABLE: u8 = 0x80;
+
 /// What a byte of a neuron's parameters holds: not 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beacon {
@@ -36,6 +39,22 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// Opens the gate.
     pub(super) fn open(&mut self) -> Outcome<(), D, P> {
         self.configure(GATE_ACTIVITY, 0)
+    }
+
+    /// Looks for a byte that is not 0 among the parameters of neuron [`Input::PROBED`]. Where they are all 0 it
+    /// was never written: it is disabled, so that there is one.
+    pub(super) fn find_beacon(&mut self) -> Outcome<(), D, P> {
+        let last = I::NEURON_BYTES.saturating_sub(1);
+        for byte in (0..=last).rev() {
+            let address = Address::neuron(I::PROBED, byte);
+            let value = self.read_byte(address)?;
+            self.note(address, 0xFF, value);
+            if self.beacon.is_some() {
+                return self.check_step();
+            }
+        }
+        self.write_byte(Address::neuron(I::PROBED, last), !DISABLE, DISABLE)?;
+        self.check_step()
     }
 
     /// Writes a register, which cannot be read back, and sees that the bus is still in step.
