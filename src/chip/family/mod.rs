@@ -34,7 +34,7 @@ pub use counters::Counters;
 pub use gated::Gated;
 pub use input::Input;
 pub use load::Progress;
-pub use network::{Describe, Inputs, Network};
+pub use network::{Describe, Inputs, Network, neurons_from};
 pub use outputs::Spikes;
 pub use port::AerPort;
 pub use running::Running;

@@ -99,6 +99,40 @@ pub enum Inputs<const IN: usize, const N: usize> {
     Virtual([(u8, i8); IN]),
 }
 
+impl<const IN: usize, const N: usize> Inputs<IN, N> {
+    /// Each input drives the neuron of its number, with this weight, and no other.
+    #[must_use]
+    pub const fn one_to_one(weight: i8) -> Self {
+        let mut rows = [[0; N]; IN];
+        let mut n = 0;
+        while n < IN && n < N {
+            #[allow(clippy::indexing_slicing)] // n is below both
+            {
+                rows[n][n] = weight;
+            }
+            n += 1;
+        }
+        Self::Rows(rows)
+    }
+}
+
+/// The neurons from `first` on, for [`Network::outputs`]. In a constant, more than 256 fail the build.
+#[must_use]
+pub const fn neurons_from<const OUT: usize>(first: u8) -> [u8; OUT] {
+    let mut neurons = [0; OUT];
+    let mut n = 0;
+    while n < OUT {
+        let neuron = first as usize + n;
+        assert!(neuron < 256, "a chip has 256 neurons");
+        #[allow(clippy::indexing_slicing)] // n is below
+        {
+            neurons[n] = neuron as u8;
+        }
+        n += 1;
+    }
+    neurons
+}
+
 /// A network of `N` neurons, with `IN` inputs and `OUT` outputs, as constant data.
 ///
 /// Weights are -7 to 7, for tinyODIN also -8. In ODIN all weights from an input or a neuron have one sign.
@@ -106,14 +140,14 @@ pub enum Inputs<const IN: usize, const N: usize> {
 /// **Memory:** a byte a weight. [`NetworkBytes`](super::NetworkBytes) take half of that.
 ///
 /// ```
-/// use spikewire::chip::{Describe, Inputs, Network, TinyOdinInput, TinyOdinNeuron};
+/// use spikewire::chip::{Describe, Inputs, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, neurons_from};
 ///
 /// // Each of four inputs drives a neuron of its own and holds down the others.
-/// static NETWORK: Network<TinyOdinInput, 4, 4, 4> = Network {
+/// static NETWORK: TinyOdinNetwork<4, 4, 4> = TinyOdinNetwork {
 ///     neurons: [TinyOdinNeuron { threshold: 20, leak: 1, ..TinyOdinNeuron::REST }; 4],
 ///     inputs: Inputs::Rows([[7, -1, -1, -1], [-1, 7, -1, -1], [-1, -1, 7, -1], [-1, -1, -1, 7]]),
 ///     recurrent: &[],
-///     outputs: [0, 1, 2, 3],
+///     outputs: neurons_from(0),
 /// };
 /// assert_eq!(NETWORK.input(2), Some(TinyOdinInput::Spike { pre: 2 }));
 /// ```
