@@ -149,8 +149,8 @@ fn odin_is_gated_behind_a_sweep_and_an_output() {
         let mut chip = Odin::new(board.spi(), board.port(), OdinInput::MAX_CLOCKS);
         let mut gated = chip.reset(&mut board.clone()).unwrap();
         board.pins().chip.neurons.fill(1 | 255 << 9);
-        let fires = OdinNeuron { threshold: 1, potential: 1, ..OdinNeuron::REST };
-        gated.set_neuron(10, &fires).unwrap();
+        let near = OdinNeuron { threshold: 1, potential: 1, ..OdinNeuron::REST };
+        gated.set_neuron(10, &near).unwrap();
         let mut running = gated.run(&OdinRegisters::PLAIN).unwrap();
         running.send(OdinInput::Spike { pre: 7 }, drop).unwrap();
         board.run(clocks);
@@ -228,6 +228,56 @@ fn no_clock_lost_or_doubled_before_or_in_the_start_is_overlooked() {
         }
     }
     assert!(noticed > 2 * clocks - 100, "{noticed} of {}", 2 * clocks);
+}
+
+#[test]
+fn no_clock_lost_or_doubled_in_odins_start_is_overlooked() {
+    let expected = OdinRegisters {
+        is_open_loop: false,
+        inhibitory: std::array::from_fn(|n| 0xF00D ^ n as u16),
+        burst_clocks: 0xABCDE,
+        output_source: OutputSource::Neurons,
+        monitored: Some((0x12, 0x34)),
+        updates_unmapped: true,
+        propagates_unmapped: false,
+        learns_from_synapse: true,
+    };
+    let start = |fault| {
+        let board = Board::<silicon::Odin>::new(4, 1);
+        board.pins().clock_faults.extend(fault);
+        let mut chip = Odin::new(board.spi(), board.port(), OdinInput::MAX_CLOCKS);
+        let result =
+            chip.reset(&mut board.clone()).and_then(|gated| gated.run(&expected).map(drop));
+        board.run(10);
+        (board, result)
+    };
+    let (board, result) = start(None);
+    result.unwrap();
+    let clocks = board.pins().spi_clocks;
+    let right = {
+        let pins = board.pins();
+        let registers = pins.chip.registers.0;
+        let words: Vec<_> = expected.inhibitory.iter().map(|&word| u32::from(word)).collect();
+        assert_eq!((registers[1], &registers[2..18]), (0, &words[..]));
+        assert_eq!(registers[18..], [0xABCDE, 0, 1, 0x12, 0x34, 1, 0, 1]);
+        assert!(!pins.chip.is_gated());
+        registers
+    };
+    // Every clock of the last frames, and others.
+    let mut noticed = 0;
+    let at = (0..clocks - 100).step_by(41).chain(clocks - 100..clocks);
+    for at in at.clone() {
+        for fault in [ClockFault::Lost, ClockFault::Doubled] {
+            let (board, result) = start(Some((at, fault)));
+            if result.is_ok() {
+                assert_eq!(board.pins().chip.registers.0, right, "{fault:?} at {at}");
+                assert!(!board.pins().chip.is_gated(), "{fault:?} at {at}");
+            } else {
+                noticed += 1;
+            }
+        }
+    }
+    assert!(noticed > 2 * at.count() - 100, "{noticed}");
 }
 
 #[test]

@@ -23,7 +23,7 @@ static NETWORK: TinyOdinNetwork<64, 64, 64> = TinyOdinNetwork {
     neurons: [TinyOdinNeuron { threshold: 7, leak: 3, ..TinyOdinNeuron::REST }; 64],
     inputs: Inputs::one_to_one(7),
     recurrent: &[],
-    outputs: neurons_from(0),
+    outputs: neurons_from::<0, 64>(),
 };
 
 fn tiny(

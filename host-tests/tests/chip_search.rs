@@ -1,5 +1,6 @@
 //! A random search: calls of tinyODIN's driver in any order, outputs answered late, SPI clocks lost or
-//! doubled. Whenever a call is `Ok`, the chip's memories and registers are as the caller was told.
+//! doubled, up to three in a schedule. Whenever a call is `Ok`, the chip's memories and registers are as the
+//! caller was told.
 //!
 //! `cargo test` tries some; `cargo test --release -p host-tests --test chip_search -- --ignored` 100 000.
 
@@ -19,6 +20,9 @@ type TinyBoard = Board<silicon::TinyOdin>;
 type Tiny = TinyOdin<silicon::Spi<silicon::TinyOdin>, silicon::Port<silicon::TinyOdin>>;
 type Error = ChipError<embedded_hal::spi::ErrorKind, u64>;
 
+/// SPI clocks within which a lost and a doubled one may cancel each other before the driver looks: eight
+/// frames. The registers cannot be read back, so that such a pair cannot be seen.
+const CANCELLING: u64 = 320;
 /// The potential's bits.
 const STATE: u128 = 0xFFF;
 
@@ -26,7 +30,7 @@ struct Random(Pcg32);
 
 impl Random {
     fn below(&mut self, end: u32) -> u32 {
-        (u64::from(self.0.next_u32()) * u64::from(end) >> 32) as u32
+        (u64::from(self.0.next_u32()) * u64::from(end)).wrapping_shr(32) as u32
     }
 
     /// Below 2^`bits`, small ones as often as large ones.
@@ -149,14 +153,14 @@ impl Told {
         *word = *word & !(0xF << place) | u32::from(weight as u8 & 0xF) << place;
     }
 
-    fn set_neuron(&mut self, neuron: u8, value: &TinyOdinNeuron) {
-        let bytes: Result<_, Error> = TinyOdinInput::neuron_bytes(value);
+    fn set_neuron(&mut self, neuron: u8, value: TinyOdinNeuron) {
+        let bytes: Result<_, Error> = TinyOdinInput::neuron_bytes(&value);
         self.neurons[usize::from(neuron)] = u128::from_le_bytes(bytes.unwrap());
     }
 
     fn set_network(&mut self, network: &TinyOdinNetwork<3, 5, 2>) {
         for n in 0..5 {
-            self.set_neuron(n, &network.neurons[usize::from(n)]);
+            self.set_neuron(n, network.neurons[usize::from(n)]);
         }
         self.neurons[5..].iter_mut().for_each(|neuron| *neuron |= 1 << 31);
         for row in 0..network.rows() {
@@ -189,10 +193,14 @@ fn schedule(seed: u64, most_faults: u32, tally: &mut Tally) {
         let mut at: Vec<u64> =
             (0..random.below(most_faults + 1)).map(|_| random.of_any_size(16).into()).collect();
         at.sort_unstable();
-        at.dedup();
-        let fault =
-            |at| (at, if random.below(2) == 0 { ClockFault::Lost } else { ClockFault::Doubled });
-        pins.clock_faults = at.into_iter().map(fault).collect();
+        for at in at {
+            let kind = if random.below(2) == 0 { ClockFault::Lost } else { ClockFault::Doubled };
+            let cancels = |&(before, of): &(u64, _)| of != kind && at - before < CANCELLING;
+            let is_there = |&(before, _): &(u64, _)| at == before;
+            if !pins.clock_faults.iter().any(|fault| cancels(fault) || is_there(fault)) {
+                pins.clock_faults.push_back((at, kind));
+            }
+        }
         pins.output_delays = (0..20).map(|_| random.below(2) * random.below(10_001)).collect();
     }
     let mut chip = TinyOdin::new(board.spi(), board.port(), 20 + random.of_any_size(11))
@@ -254,7 +262,7 @@ fn gated(
         0 | 1 => {
             let (neuron, value) = (random.byte(), random.neuron());
             gated.set_neuron(neuron, &value)?;
-            told.set_neuron(neuron, &value);
+            told.set_neuron(neuron, value);
         }
         2 => {
             let (pre, post, weight) = (random.byte(), random.byte(), random.weight());
@@ -330,7 +338,8 @@ fn running(
             if gated.is_ok() {
                 // For the comparison the registers still count.
                 told.out = out;
-                return finish(told);
+                finish(told);
+                return Ok(());
             }
             gated
         }
@@ -366,14 +375,13 @@ fn running(
 }
 
 /// The chip is gated: what it holds is compared once more by the caller, as it is told from now on.
-fn finish(told: &mut Told) -> Result<(), Error> {
+fn finish(told: &mut Told) {
     if !told.is_open_loop() {
         told.fired.clear();
         told.out.clear();
     }
     told.is_stale = !told.is_open_loop();
     told.registers = None;
-    Ok(())
 }
 
 fn search(seeds: std::ops::Range<u64>, most_faults: u32) -> Tally {
@@ -387,7 +395,7 @@ fn search(seeds: std::ops::Range<u64>, most_faults: u32) -> Tally {
 
 #[test]
 fn no_call_is_ok_with_a_difference() {
-    let tally = search(0..250, 2);
+    let tally = search(0..250, 3);
     assert!(tally.errors > 50 && tally.gates > 50, "{tally:?}");
 }
 
@@ -401,5 +409,5 @@ fn without_faults_nothing_fails() {
 #[test]
 #[ignore = "minutes"]
 fn no_call_is_ok_with_a_difference_in_100_000_schedules() {
-    search(1_000..101_000, 2);
+    search(1_000..101_000, 3);
 }

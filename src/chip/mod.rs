@@ -27,7 +27,7 @@
 //!     neurons: [TinyOdinNeuron { threshold: 7, leak: 3, ..TinyOdinNeuron::REST }; 64],
 //!     inputs: Inputs::one_to_one(7),
 //!     recurrent: &[],
-//!     outputs: neurons_from(0),
+//!     outputs: neurons_from::<0, 64>(),
 //! };
 //!
 //! fn fly<D: SpiDevice, P: AerPort>(

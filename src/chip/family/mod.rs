@@ -46,9 +46,10 @@ pub use running::Running;
 /// - **States:** [`reset`](Self::reset) gives a [`Gated`] chip, whose memories can be accessed;
 ///   [`Gated::run`] a [`Running`] one, which takes events; [`Running::gate`] a gated one. Each allows what
 ///   is safe in it, and [`gated`](Self::gated) and [`running`](Self::running) give it again later.
-/// - **Resynchronisation:** one clock lost or doubled puts chip and bus out of step. After an error of
-///   the bus, or a byte that does not read back, all is refused until the next reset, and what the memories
-///   hold is not known: load them anew.
+/// - **Resynchronisation:** one clock lost or doubled puts chip and bus out of step, and every call on a
+///   gated chip notices. Not seen are a lost and a doubled clock within the same eight frames, as the
+///   registers cannot be read back. After an error of the bus, or a byte that does not read back, all is
+///   refused until the next reset, and what the memories hold is not known: load them anew.
 /// - **Waits** look at the pins a given number of times, then give up.
 /// - **Words** that the chip has not acknowledged by then stay under way: every call that sends finishes
 ///   them first, [`Running::poll`] goes on with them, a reset drops them.

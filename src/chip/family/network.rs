@@ -116,17 +116,16 @@ impl<const IN: usize, const N: usize> Inputs<IN, N> {
     }
 }
 
-/// The neurons from `first` on, for [`Network::outputs`]. In a constant, more than 256 fail the build.
+/// The neurons from `FIRST` on, for [`Network::outputs`].
 #[must_use]
-pub const fn neurons_from<const OUT: usize>(first: u8) -> [u8; OUT] {
+pub const fn neurons_from<const FIRST: u8, const OUT: usize>() -> [u8; OUT] {
+    const { assert!(FIRST as usize + OUT <= 256, "a chip has 256 neurons") };
     let mut neurons = [0; OUT];
     let mut n = 0;
     while n < OUT {
-        let neuron = first as usize + n;
-        assert!(neuron < 256, "a chip has 256 neurons");
         #[allow(clippy::indexing_slicing)] // n is below
         {
-            neurons[n] = neuron as u8;
+            neurons[n] = FIRST + n as u8;
         }
         n += 1;
     }
@@ -147,7 +146,7 @@ pub const fn neurons_from<const OUT: usize>(first: u8) -> [u8; OUT] {
 ///     neurons: [TinyOdinNeuron { threshold: 20, leak: 1, ..TinyOdinNeuron::REST }; 4],
 ///     inputs: Inputs::Rows([[7, -1, -1, -1], [-1, 7, -1, -1], [-1, -1, 7, -1], [-1, -1, -1, 7]]),
 ///     recurrent: &[],
-///     outputs: neurons_from(0),
+///     outputs: neurons_from::<0, 4>(),
 /// };
 /// assert_eq!(NETWORK.input(2), Some(TinyOdinInput::Spike { pre: 2 }));
 /// ```

@@ -9,7 +9,7 @@ use crate::{Event, Polarity};
 /// use spikewire::{Readout, chip::{Describe, Inputs, Network, Spikes, TinyOdinInput, TinyOdinNeuron}};
 /// use spikewire::population::{Centres, Position};
 ///
-/// static CENTRES: Centres<f32, 5> = Centres::<f32, _>::linear(-1.0, 1.0);
+/// static CENTRES: Centres<f32, 5> = Centres::<f32, _>::checked([-2.0, -0.5, 0.0, 0.5, 2.0]);
 /// static NETWORK: Network<TinyOdinInput, 1, 8, 5> = Network {
 ///     neurons: [TinyOdinNeuron { threshold: 4, ..TinyOdinNeuron::REST }; 8],
 ///     inputs: Inputs::Virtual([(0, 5)]),
@@ -23,7 +23,7 @@ use crate::{Event, Polarity};
 /// // As `chip.poll(NETWORK.answers(…))?` does with what the chip fires; neuron 1 is no output.
 /// [1, 6].map(NETWORK.answers(tick, |event| spikes.push(event)));
 /// let [value] = readout.decode(tick, spikes.as_slice());
-/// assert_eq!(value, CENTRES.centres()[3]);
+/// assert_eq!(value, 0.5);
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Spikes<const N: usize> {
