@@ -118,8 +118,7 @@ fn a_network_that_drives_itself_is_gated_once_its_loop_is_open() {
     let mut running = gated.run(&closed).unwrap();
     running.send(TinyOdinInput::Spike { pre: 0 }, drop).unwrap();
     assert_eq!(running.quiesce(drop), Err(ChipError::Busy));
-    running.open_loop().unwrap();
-    let mut gated = running.gate(drop).unwrap();
+    let mut gated = running.open_loop().unwrap().gate(drop).unwrap();
     assert_eq!(gated.neuron(3).unwrap().threshold, 1);
 }
 

@@ -322,4 +322,42 @@ proptest! {
             state = next;
         }
     }
+
+    #[test]
+    fn odins_neuron_stays_within_8_bits_leaks_to_0_and_fires_at_its_threshold(
+        threshold in 1..256_i32,
+        leak in 0..128_i32,
+        is_leaking in any::<bool>(),
+        start in 0..256_i32,
+        events in prop::collection::vec(prop::option::of((1..8_i32, any::<bool>())), 1..20),
+    ) {
+        let board = gated::<Odin>(4, &[(1, 1), (19, 0), (20, 0), (24, 0)]);
+        board.pins().chip.neurons.fill(1 | 255 << 9);
+        board.pins().chip.neurons[3] = 1
+            | (leak as u128) << 1
+            | u128::from(is_leaking) << 8
+            | (threshold as u128) << 9
+            | (start as u128) << 70;
+        frame(&board, 0, 0);
+        let mut state = start;
+        for event in events {
+            let (word, next) = match event {
+                None => (0x03FF, state - if is_leaking { leak } else { 0 }),
+                Some((w, false)) => (0x0301 | (w as u32) << 5, state + w),
+                Some((w, true)) => (0x0311 | (w as u32) << 5, state - w),
+            };
+            send(&board, word).unwrap();
+            for _ in 0..100 {
+                let request = board.pins().chip.output().request;
+                board.pins().chip.set_output_acknowledge(request);
+                board.run(1);
+            }
+            let next = next.clamp(0, 255);
+            let fires = next >= threshold;
+            state = if fires { 0 } else { next };
+            prop_assert_eq!((board.pins().chip.neurons[3] >> 70) as i32, state);
+            let fired = std::mem::take(&mut board.pins().chip.fired);
+            prop_assert_eq!(fired, if fires { vec![3] } else { vec![] });
+        }
+    }
 }

@@ -23,7 +23,6 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
         mut to_input: impl FnMut(Event) -> I,
         mut on_output: impl FnMut(u8),
     ) -> Outcome<u32, D, P> {
-        self.expect_running()?;
         self.chip.aer.finish(&mut on_output)?;
         let mut sent = 0;
         while let Some(event) = self.chip.held.take().or_else(|| self.next_of(&mut events)) {

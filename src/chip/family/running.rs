@@ -3,7 +3,7 @@
 use embedded_hal::spi::SpiDevice;
 
 use super::aer::Carries;
-use super::{AerPort, ChipError, Counters, Gated, Input, OdinChip, Outcome, State};
+use super::{AerPort, ChipError, Counters, Gated, Input, OdinChip, Outcome};
 
 /// Clocks from an output's answer until the chip goes on, with some to spare.
 const HANDSHAKE_CLOCKS: u32 = 32;
@@ -11,7 +11,8 @@ const HANDSHAKE_CLOCKS: u32 = 32;
 /// enough for a thousand and more.
 const OUTPUT_CLOCKS: u32 = 1 << 15;
 
-/// A chip that takes events, and whose memories cannot be accessed.
+/// A chip that takes events, and whose memories cannot be accessed. Whatever a call returns, the chip runs
+/// on, unless the call took this away.
 #[derive(Debug)]
 pub struct Running<'a, I: Input, D, P> {
     pub(super) chip: &'a mut OdinChip<I, D, P>,
@@ -30,7 +31,6 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
     /// [`Phase::Idle`](super::Phase::Idle) the input was not sent; after any other
     /// [`Handshake`](ChipError::Handshake) it is under way, and not to be sent again.
     pub fn send(&mut self, input: I, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
-        self.expect_running()?;
         let word = input.word()?;
         let aer = &mut self.chip.aer;
         aer.begin(word, Carries::Word, &mut on_output)?;
@@ -58,7 +58,6 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
     /// [`open_loop`](Self::open_loop). A word under way is not taken, or the port failed. The chip runs on
     /// after each.
     pub fn quiesce(&mut self, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
-        self.expect_running()?;
         let chip = &mut *self.chip;
         chip.aer.finish(&mut on_output)?;
         let (sweeps, clocks) = match &chip.registers {
@@ -93,20 +92,14 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
     ///
     /// # Errors
     /// The bus failed: then reset the chip.
-    pub fn open_loop(&mut self) -> Outcome<(), D, P> {
+    pub fn open_loop(self) -> Outcome<Self, D, P> {
         let result = self.chip.wire.configure(I::OPEN_LOOP, 1);
-        self.chip.heed(result)
+        self.chip.heed(result)?;
+        Ok(self)
     }
 
     /// What was lost, skipped and repeated.
     pub const fn counters(&self) -> Counters {
         self.chip.counters()
-    }
-
-    pub(super) fn expect_running(&self) -> Outcome<(), D, P> {
-        match self.chip.state {
-            State::Running => Ok(()),
-            State::NotReset | State::Gated => Err(ChipError::NotReset),
-        }
     }
 }

@@ -47,7 +47,6 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
         now: u32,
         on_output: &mut impl FnMut(u8),
     ) -> Outcome<(), D, P> {
-        self.expect_running()?;
         let chip = &mut *self.chip;
         let Some(Time { step, last }) = &mut chip.time else { return Ok(()) };
         let last = last.get_or_insert(now);
