@@ -98,6 +98,23 @@ fn the_bytes_on_the_bus_are_golden() {
 }
 
 #[test]
+fn a_start_takes_as_many_frames_as_it_says() {
+    let board = TinyBoard::new(4, 1);
+    let mut chip = TinyOdin::new(board.spi(), board.port(), 1_600);
+    let gated = chip.reset(&mut board.clone()).unwrap();
+    let before = board.pins().spi_clocks;
+    gated.run(&OPEN).unwrap();
+    assert_eq!(board.pins().spi_clocks - before, 23 * 40);
+
+    let board = Board::<silicon::Odin>::new(4, 1);
+    let mut chip = Odin::new(board.spi(), board.port(), 1_600);
+    let gated = chip.reset(&mut board.clone()).unwrap();
+    let before = board.pins().spi_clocks;
+    gated.run(&OdinRegisters::PLAIN).unwrap();
+    assert_eq!(board.pins().spi_clocks - before, 167 * 40);
+}
+
+#[test]
 fn what_is_out_of_order_or_range_is_refused_without_a_byte() {
     let board = TinyBoard::new(4, 1);
     let mut chip = TinyOdin::new(board.spi(), board.port(), 1_600);

@@ -4,7 +4,8 @@ use std::num::NonZeroU32;
 
 use host_tests::flight;
 use host_tests::silicon::board::ClockFault;
-use host_tests::silicon::{self, Board};
+use host_tests::silicon::chip::{Drive, Registers};
+use host_tests::silicon::{self, Board, Kind};
 use proptest::prelude::*;
 use spikewire::chip::{
     ChipError, Describe, FormatError, Input, Inputs, NetworkBytes, Odin, OdinInput, OdinNetwork,
@@ -325,6 +326,105 @@ proptest! {
             let mut chip = tiny(&board);
             let _ = chip.reset(&mut board.clone()).unwrap().load(&network, |_| ());
         }
+    }
+}
+
+/// ODIN's inputs, one after the other, on its neurons.
+#[derive(Clone, Debug)]
+struct Twin {
+    neurons: Vec<u128>,
+    synapses: Vec<u32>,
+    registers: Registers,
+    fired: Vec<u8>,
+}
+
+impl Twin {
+    fn act(&mut self, neuron: u8, pre: u8, is_leak: bool, virtual_bits: u8) {
+        let word = self.synapses[usize::from(pre) << 5 | usize::from(neuron) >> 3];
+        let synapse = (word >> (4 * (neuron & 7)) & 0xF) as u8;
+        let drive = Drive { is_event: true, is_leak, virtual_bits, synapse, pre };
+        let place = &mut self.neurons[usize::from(neuron)];
+        let old = *place;
+        let (next, fires) = silicon::Odin::update(old, drive, &self.registers);
+        *place = next;
+        if fires && !silicon::Odin::is_disabled(old) {
+            self.fired.push(neuron);
+        }
+    }
+
+    fn take(&mut self, input: OdinInput) {
+        match input {
+            OdinInput::Synapse { pre, post } => self.act(post, pre, false, 0),
+            OdinInput::Spike { pre } => (0..=255).for_each(|post| self.act(post, pre, false, 0)),
+            OdinInput::Virtual { neuron, weight, is_inhibitory } => {
+                self.act(neuron, 0, false, weight << 2 | u8::from(is_inhibitory) << 1);
+            }
+            OdinInput::VirtualLeak { neuron } => self.act(neuron, 0, false, 1),
+            OdinInput::Leak { neuron } => self.act(neuron, 0, true, 0),
+            OdinInput::LeakAll => (0..=255).for_each(|neuron| self.act(neuron, 0, true, 0)),
+            OdinInput::Bistability { .. } | OdinInput::BistabilityAll => {}
+        }
+    }
+}
+
+fn odin_input() -> impl Strategy<Value = OdinInput> {
+    let neuron = 0..8_u8;
+    prop_oneof![
+        (0..3_u8, neuron.clone()).prop_map(|(pre, post)| OdinInput::Synapse { pre, post }),
+        (0..3_u8).prop_map(|pre| OdinInput::Spike { pre }),
+        (neuron.clone(), 1..8_u8, any::<bool>()).prop_map(|(neuron, weight, is_inhibitory)| {
+            OdinInput::Virtual { neuron, weight, is_inhibitory }
+        }),
+        neuron.clone().prop_map(|neuron| OdinInput::VirtualLeak { neuron }),
+        neuron.prop_map(|neuron| OdinInput::Leak { neuron }),
+        Just(OdinInput::LeakAll),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn odin_ends_every_flight_as_its_words_say(
+        thresholds in prop::collection::vec((1..=20_u8, 0..4_u8, any::<bool>()), 8),
+        rows in prop::collection::vec((any::<bool>(), prop::collection::vec(0..8_i8, 8)), 3),
+        inputs in prop::collection::vec(odin_input(), 1..30),
+        delay in 0..2_000_u32,
+        ratio in 4..40_u32,
+    ) {
+        let network = OdinNetwork::<3, 8, 8> {
+            neurons: std::array::from_fn(|n| {
+                let (threshold, leak, is_disabled) = thresholds[n];
+                OdinNeuron { threshold, leak, is_disabled, ..OdinNeuron::REST }
+            }),
+            inputs: Inputs::Rows(std::array::from_fn(|row| {
+                let (is_inhibitory, weights) = &rows[row];
+                let sign = if *is_inhibitory { -1 } else { 1 };
+                std::array::from_fn(|n| sign * weights[n])
+            })),
+            recurrent: &[],
+            outputs: neurons_from::<0, 8>(),
+        };
+        let board = Board::<silicon::Odin>::new(ratio, 1);
+        let mut chip = Odin::new(board.spi(), board.port(), OdinInput::MAX_CLOCKS);
+        let mut gated = chip.reset(&mut board.clone()).unwrap();
+        gated.load(&network, |_| ()).unwrap();
+        let mut running = gated.run(&network.registers()).unwrap();
+        board.pins().output_delays = [delay, 0, delay / 7].into();
+        let mut twin = {
+            let pins = board.pins();
+            let (neurons, synapses) = (pins.chip.neurons.clone(), pins.chip.synapses.clone());
+            Twin { neurons, synapses, registers: pins.chip.registers, fired: vec![] }
+        };
+        let mut out = vec![];
+        for &input in &inputs {
+            running.send(input, |neuron| out.push(neuron)).unwrap();
+            // A leak overtakes nothing in open loop: at most one word waits, and is worked off first.
+            twin.take(input);
+        }
+        running.gate(|neuron| out.push(neuron)).unwrap();
+        prop_assert_eq!(&out, &twin.fired);
+        prop_assert_eq!(&board.pins().chip.neurons, &twin.neurons);
+        prop_assert_eq!(&board.pins().chip.synapses, &twin.synapses);
     }
 }
 
