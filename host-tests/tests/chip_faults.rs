@@ -280,6 +280,48 @@ fn no_clock_lost_or_doubled_in_odins_start_is_overlooked() {
 }
 
 #[test]
+fn odin_programmed_run_and_gated_with_a_fault_is_an_error_or_right() {
+    let neuron = OdinNeuron { threshold: 9, leak: 2, potential: 3, ..OdinNeuron::REST };
+    let flight = |fault| {
+        let board = Board::<silicon::Odin>::new(4, 1);
+        board.pins().clock_faults.extend(fault);
+        let mut chip = Odin::new(board.spi(), board.port(), OdinInput::MAX_CLOCKS);
+        let fly = |chip: &mut Odin<_, _>| {
+            let mut gated = chip.reset(&mut board.clone())?;
+            gated.set_neuron(7, &neuron)?;
+            for (pre, weight) in [(1, 0), (2, 5)] {
+                gated.set_synapse(pre, 7, OdinSynapse { weight, is_mapped: true })?;
+            }
+            let mut running = gated.run(&OdinRegisters::PLAIN)?;
+            for pre in [1, 2, 2] {
+                running.send(OdinInput::Spike { pre }, drop)?;
+            }
+            let mut gated = running.gate(drop)?;
+            let potential = gated.neuron(7)?.potential;
+            Ok::<_, ChipError<_, _>>((potential, gated.synapse(2, 7)?))
+        };
+        let result = fly(&mut chip);
+        let pins = board.pins();
+        (result, (pins.chip.neurons[7], pins.chip.synapses.clone()), pins.spi_clocks)
+    };
+    let (read, right, clocks) = flight(None);
+    // 3 and 5 lie below 9, another 5 above.
+    assert_eq!(read, Ok((0, OdinSynapse { weight: 5, is_mapped: true })));
+    let mut noticed = 0;
+    for at in (0..clocks).step_by(61) {
+        for fault in [ClockFault::Lost, ClockFault::Doubled] {
+            let (result, memories, _) = flight(Some((at, fault)));
+            if result.is_ok() {
+                assert_eq!((&result, &memories), (&read, &right), "{fault:?} at {at} of {clocks}");
+            } else {
+                noticed += 1;
+            }
+        }
+    }
+    assert!(noticed > clocks / 61, "{noticed}");
+}
+
+#[test]
 fn a_start_that_cannot_be_probed_is_noticed_at_the_first_word() {
     let board = TinyBoard::new(8, 1);
     let mut chip = tiny(&board);
