@@ -11,8 +11,9 @@ use embedded_hal::{
 use spikewire::{
     Bank, Bins, Event, EventSource, Polarity, Readout,
     chip::{
-        AerPort, Akd1500, ConvolutionEvent, DenseEvent, Input, InputBank, Odin, OdinChip,
-        OdinInput, Registers, TinyOdin, TinyOdinInput, Xylo, XyloMap,
+        AerPort, Akd1500, ConvolutionEvent, DenseEvent, Describe, Input, InputBank, NetworkBytes,
+        Odin, OdinChip, OdinInput, OdinRegisters, OdinSynapse, Registers, Spikes, TinyOdin,
+        TinyOdinInput, Xylo, XyloMap,
     },
     format::{Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, eieio},
     link::{Coding, FrameView, Framer, MAX_FRAME, Raw, Reader, Receiver, Transmitter},
@@ -35,8 +36,10 @@ pub fn link() {
     framed(const { StepForward::<i16>::checked(1) });
     formats();
     sinks();
-    family::<TinyOdinInput>(TinyOdin::new(Bus, Bus, black_box(3)));
-    family::<OdinInput>(Odin::new(Bus, Bus, black_box(3)));
+    let registers = TinyOdinInput::registers(black_box(3), true, [0; 16]);
+    family(TinyOdin::new(Bus, Bus, black_box(3)), &registers, 1);
+    let synapse = OdinSynapse { weight: black_box(1), is_mapped: true };
+    family(Odin::new(Bus, Bus, black_box(3)), &OdinRegisters::PLAIN, synapse);
     memory();
     counts();
     readouts();
@@ -127,22 +130,43 @@ fn sinks() {
     hide((sink.flush().is_ok(), sink.waiting()));
 }
 
-fn family<I: Input>(chip: OdinChip<I, Bus, Bus>) {
+fn family<I: Input>(chip: OdinChip<I, Bus, Bus>, registers: &I::Registers, synapse: I::Synapse) {
     let mut chip = black_box(chip).with_time_step(black_box(NonZeroU32::MIN));
     let (a, b, c) = black_box((1, 2, 3));
     let mut out = |neuron| hide(neuron);
-    hide([
-        chip.reset(&mut Bus).is_ok(),
-        chip.gate().is_ok(),
-        chip.configure(black_box(3), black_box(32)).is_ok(),
-        chip.program_neuron(a, b, c).is_ok(),
-        chip.program_synapse(a, b, c).is_ok(),
-        chip.run().is_ok(),
-        chip.send(black_box(I::LEAK_ALL), &mut out).is_ok(),
-        chip.feed(&EVENTS, |_| black_box(I::LEAK_ALL), &mut out).is_ok(),
-        chip.advance(black_box(5), &mut out).is_ok(),
-        chip.poll(&mut out).is_ok(),
-    ]);
+    if let Ok(mut gated) = chip.reset(&mut Bus) {
+        hide([
+            gated.set_neuron(a, &black_box(I::DISABLED)).is_ok(),
+            gated.neuron(a).is_ok(),
+            gated.set_synapse(a, b, black_box(synapse)).is_ok(),
+            gated.synapse(a, b).is_ok(),
+            gated.set_neuron_byte(a, b, c).is_ok(),
+            gated.neuron_byte(a, b).is_ok(),
+        ]);
+        if let Ok(network) = NetworkBytes::<I>::new(black_box(&[0; 64])) {
+            hide(gated.load(&network, |progress| hide(progress.done)).is_ok());
+            hide(gated.verify(&network, |progress| hide(progress.done)).is_ok());
+            let mut copy = [0; 64];
+            hide(NetworkBytes::<I>::write(&network, &mut copy).is_ok());
+            let mut spikes = Spikes::<4>::new();
+            network.answers(5, |event| spikes.push(event))(a);
+            hide((network.input(3).is_some(), spikes.as_slice().len()));
+            hide(gated.run(&network.registers()).is_ok());
+        }
+    }
+    if let Ok(gated) = chip.gated() {
+        hide(gated.run(registers).is_ok());
+    }
+    if let Ok(mut running) = chip.running() {
+        hide([
+            running.send(black_box(I::LEAK_ALL), &mut out).is_ok(),
+            running.feed(&EVENTS, |_| black_box(I::LEAK_ALL), &mut out).is_ok(),
+            running.advance(black_box(5), &mut out).is_ok(),
+            running.poll(&mut out).is_ok(),
+            running.open_loop().and_then(|running| running.gate(&mut out)).is_ok(),
+        ]);
+    }
+    hide(chip.counters().resets);
     let virtual_events = (
         TinyOdinInput::Virtual { neuron: a, weight: black_box(1) }.word::<(), ()>(),
         OdinInput::Virtual { neuron: a, weight: b, is_inhibitory: true }.word::<(), ()>(),
