@@ -2,10 +2,11 @@
 
 mod bus;
 mod common;
+mod interleaving_world;
 
 mod bank;
-mod ben;
-mod ben_toolbox;
+mod bsa;
+mod bsa_toolbox;
 mod calibration;
 mod chip_akd1500;
 mod chip_odin;
@@ -16,31 +17,32 @@ mod formats_bytes;
 mod formats_peers;
 mod gaussian;
 mod hough;
+mod interleaving;
 mod link_bytes;
 mod link_drift;
 mod link_frames;
 mod link_loss;
-mod link_place;
 mod link_readout;
+mod link_receiver;
 mod link_time;
 mod moving_window;
+mod population_sizes;
 mod position;
 mod probabilistic;
 mod queue;
+mod rooms;
 mod samples;
 mod serde;
 mod sink_bus;
 mod slots;
+mod statics;
 mod step_forward;
 mod taps;
 mod temporal_contrast;
 mod threshold_hough;
 mod transcriptions;
 
-/// The pseudo-code as it is counted, and what it is counted on.
-#[allow(clippy::pedantic, dead_code, unreachable_pub)]
-#[path = "../../examples/bench-target/src/plain.rs"]
-mod plain;
+/// The signals that codecs are counted on.
 #[allow(clippy::pedantic, dead_code, unreachable_pub)]
 #[path = "../../examples/bench-target/src/signal.rs"]
 mod signal;

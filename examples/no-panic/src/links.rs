@@ -17,8 +17,9 @@ use spikewire::{
     Bank, Bins, Consumer, EventQueue, FromEvents, FromItems, Item, Keyframe, Overflow, Put,
     Readout, Sample, SampleKind, Source, SpscQueue, Tick,
     chip::{
-        AerPort, Akd1500, ConvolutionEvent, DenseEvent, Input, InputBank, Odin, OdinChip,
-        OdinInput, Registers, TinyOdin, TinyOdinInput, Xylo, XyloMap,
+        AerPort, Akd1500, ConvolutionEvent, DenseEvent, Describe, Input, InputBank, NetworkBytes,
+        Odin, OdinChip, OdinInput, OdinRegisters, OdinSynapse, Registers, Running, Spikes,
+        TinyOdin, TinyOdinInput, Xylo, XyloMap,
     },
     format::{Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, eieio},
     link::{Coding, FrameView, Framer, MAX_FRAME, Reader, Receiver, Transmitter},
@@ -31,13 +32,15 @@ use crate::exercise::{EVENTS, event, hide, tick};
 pub fn link() {
     time();
     hide(queue().is_none());
-    lock_free();
+    hide(lock_free().is_none());
     hide(framed(const { &StepForward::<f32>::new(1.0) }).is_none());
     hide(framed(const { &StepForward::<i16>::new(1) }).is_none());
     hide(formats().is_none());
     hide(sinks().is_none());
-    family::<TinyOdinInput>(TinyOdin::new(Bus, Bus, black_box(3)));
-    family::<OdinInput>(Odin::new(Bus, Bus, black_box(3)));
+    let registers = TinyOdinInput::registers(black_box(3), true, [0; 16]);
+    family(TinyOdin::new(Bus, Bus, black_box(3)), &registers, 1);
+    let synapse = OdinSynapse { weight: black_box(1), is_mapped: true };
+    family(Odin::new(Bus, Bus, black_box(3)), &OdinRegisters::PLAIN, synapse);
     memory();
     counts();
 }
@@ -87,15 +90,16 @@ fn poll<F: Future>(future: Pin<&mut F>) -> Poll<F::Output> {
     future.poll(&mut Context::from_waker(Waker::noop()))
 }
 
-fn lock_free() {
-    let mut queue = black_box(SpscQueue::<4>::new());
-    let (mut producer, mut consumer) = queue.split();
+fn lock_free() -> Option<()> {
+    let queue = black_box(SpscQueue::<4>::new());
+    let (mut producer, mut consumer) = queue.split()?;
     for item in items() {
         producer.push(item);
         producer.put(item);
     }
     hide((producer.lost(), consumer.len(), consumer.is_empty(), consumer.lost()));
     drain(&mut consumer);
+    Some(())
 }
 
 fn framed<S: Sample>(scheme: &'static StepForward<S>) -> Option<()> {
@@ -183,24 +187,43 @@ fn sinks() -> Option<()> {
     Some(())
 }
 
-fn family<I: Input>(chip: OdinChip<I, Bus, Bus>) {
+fn family<I: Input>(chip: OdinChip<I, Bus, Bus>, registers: &I::Registers, synapse: I::Synapse) {
     let mut chip = black_box(chip).with_time_step(black_box(NonZeroU32::MIN));
     let (a, b, c) = black_box((1, 2, 3));
     let mut out = |neuron: u8| hide(neuron);
-    hide([
-        chip.reset(&mut Bus).is_ok(),
-        chip.gate().is_ok(),
-        chip.configure(black_box(3), black_box(32)).is_ok(),
-        chip.program_neuron(a, b, c).is_ok(),
-        chip.program_synapse(a, b, c).is_ok(),
-        chip.run().is_ok(),
-        chip.send(black_box(I::LEAK_ALL), &mut out).is_ok(),
-        feed(&mut chip),
-        chip.advance(tick(), &mut out).is_ok(),
-        chip.poll(&mut out).is_ok(),
-    ]);
-    hide((chip.resets(), chip.skipped_steps(), chip.late_events(), chip.read_neuron(a, b).is_ok()));
-    hide((chip.read_synapse(a, b).is_ok(), chip.release()));
+    if let Ok(mut gated) = chip.reset(&mut Bus) {
+        hide([
+            gated.set_neuron(a, &black_box(I::DISABLED)).is_ok(),
+            gated.neuron(a).is_ok(),
+            gated.set_synapse(a, b, black_box(synapse)).is_ok(),
+            gated.synapse(a, b).is_ok(),
+            gated.set_neuron_byte(a, b, c).is_ok(),
+            gated.neuron_byte(a, b).is_ok(),
+        ]);
+        if let Ok(network) = NetworkBytes::<I>::new(black_box(&[0; 64])) {
+            hide(gated.load(&network, |progress| hide(progress.done)).is_ok());
+            hide(gated.verify(&network, |progress| hide(progress.done)).is_ok());
+            let mut copy = [0; 64];
+            hide(NetworkBytes::<I>::write(&network, &mut copy).is_ok());
+            let mut spikes = Spikes::<4>::new();
+            network.answers(tick(), |event| spikes.push(event))(a);
+            hide((network.input(3).is_some(), spikes.as_slice().len()));
+            hide(gated.run(&network.registers()).is_ok());
+        }
+    }
+    if let Ok(gated) = chip.gated() {
+        hide(gated.run(registers).is_ok());
+    }
+    if let Ok(mut running) = chip.running() {
+        hide([
+            running.send(black_box(I::LEAK_ALL), &mut out).is_ok(),
+            feed(&mut running),
+            running.advance(tick(), &mut out).is_ok(),
+            running.poll(&mut out).is_ok(),
+            running.open_loop().and_then(|running| running.gate(&mut out)).is_ok(),
+        ]);
+    }
+    hide(chip.counters().resets);
     let virtual_events = (
         TinyOdinInput::Virtual { neuron: a, weight: black_box(1) }.word::<(), ()>(),
         OdinInput::Virtual { neuron: a, weight: b, is_inhibitory: true }.word::<(), ()>(),
@@ -208,7 +231,7 @@ fn family<I: Input>(chip: OdinChip<I, Bus, Bus>) {
     hide(virtual_events);
 }
 
-fn feed<I: Input>(chip: &mut OdinChip<I, Bus, Bus>) -> bool {
+fn feed<I: Input>(chip: &mut Running<'_, I, Bus, Bus>) -> bool {
     let Some(mut events) = EVENTS.consumer() else { return false };
     chip.feed(events.waiting(), |_| black_box(I::LEAK_ALL), hide).is_ok()
 }

@@ -42,7 +42,7 @@ mod app {
     use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
     use spikewire::{
         Bank,
-        chip::{Input as _, TinyOdin, TinyOdinInput},
+        chip::{Describe as _, Input as _, TinyOdin, TinyOdinInput},
     };
     use stm32f4xx_hal::{
         gpio::{Edge, Input, Output, PA3, PA4, PB12, Speed},
@@ -57,7 +57,8 @@ mod app {
     use crate::{
         EVENTS, FAILED_READS,
         imu::{self, Imu},
-        network, now,
+        network::{self, NETWORK},
+        now,
         port::Port,
     };
 
@@ -171,27 +172,28 @@ mod app {
         let mut last_report = now();
         let mut events = EVENTS.consumer().expect("taken once");
 
-        while let Err(error) = network::load(chip, delay) {
+        while let Err(error) = network::start(chip, delay) {
             defmt::error!("tinyODIN is not set up: {}", defmt::Debug2Format(&error));
             delay.delay_ms(500);
         }
         loop {
-            let mut on_output = |neuron: u8| {
-                if let Some(count) = fired.get_mut(usize::from(neuron)) {
-                    *count += 1;
-                }
-            };
-            let fed = chip
-                .feed(events.waiting(), network::input, &mut on_output)
-                .and_then(|count| chip.advance(now(), &mut on_output).map(|()| count))
-                .and_then(|count| chip.poll(&mut on_output).map(|()| count));
+            let fed = chip.running().and_then(|mut chip| {
+                let mut on_output = NETWORK.answers(now(), |output| {
+                    if let Some(count) = fired.get_mut(usize::from(output.address)) {
+                        *count += 1;
+                    }
+                });
+                let count = chip.feed(events.waiting(), network::input, &mut on_output)?;
+                chip.advance(now(), &mut on_output)?;
+                chip.poll(&mut on_output).map(|()| count)
+            });
             match fed {
                 Ok(count) => sent = sent.wrapping_add(count),
                 Err(error) => {
                     failures = failures.wrapping_add(1);
                     defmt::warn!("tinyODIN: {}; starting it again", defmt::Debug2Format(&error));
                     // The event that it did not take is held and comes first.
-                    if network::load(chip, delay).is_err() {
+                    if network::start(chip, delay).is_err() {
                         delay.delay_ms(10);
                     }
                 }
@@ -200,15 +202,13 @@ mod app {
             if now().since(last_report) >= REPORT {
                 last_report = last_report.shifted(REPORT);
                 defmt::info!(
-                    "{} events sent, {} lost, peak {}; {} reads and {} handshakes failed, {} resets, {} steps skipped, {} events late; fired {}",
+                    "{} events sent, {} lost, peak {}; {} reads and {} handshakes failed; {}; fired {}",
                     sent,
                     EVENTS.lost(),
                     EVENTS.peak(),
                     FAILED_READS.load(Relaxed),
                     failures,
-                    chip.resets(),
-                    chip.skipped_steps(),
-                    chip.late_events(),
+                    chip.counters(),
                     fired,
                 );
             }

@@ -32,7 +32,7 @@ pub(crate) use {all_lengths, few_lengths, length, lengths};
 
 /// The first taps of a list, of which at least one is not 0.
 pub(crate) fn first_taps<S: Wire, const F: usize>(list: &[S]) -> Taps<S, F> {
-    Taps::new(std::array::from_fn(|k| list[k])).unwrap()
+    Taps::try_new(std::array::from_fn(|k| list[k])).unwrap()
 }
 
 /// 24 taps whose sum fits the type, the first of them not 0.

@@ -12,13 +12,13 @@ use crate::{ConfigError, Sample, SampleKind};
 ///
 /// The neuron of a value is the one whose centre is nearest, exactly, in every sample type: a value
 /// halfway between two belongs to the lower, a value outside to the neuron at that end. Even centres are
-/// compared as they are before they are rounded to the sample type, others as rounded.
+/// compared unrounded, others as rounded to the sample type.
 ///
-/// - **Memory:** the centres, as many edges, `4 M` bytes for a table of even cells, and 8 bytes.
+/// - **Memory:** the centres, as many edges, `2 M` bytes for a table of even cells, and 8 bytes.
 /// - **Work:** one multiplication finds a value's cell, the table a neuron for the cell, and one
 ///   comparison with an edge whether it is that or the next. Where two edges share a cell, as with
-///   Gaussian-spaced centres from about 140 on or the user's own, and for `f32` without a float unit, it
-///   is a binary search instead.
+///   Gaussian-spaced centres from about 140 on or the user's own, beyond 256 neurons, and for `f32` without a
+///   float unit, it is a binary search instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(
@@ -91,7 +91,8 @@ const fn even_edge<S: Sample>(min: f64, max: f64, i: usize, m: usize) -> S {
     while is_at_most(edge.next_up() as f64 * parts, sum, error) {
         edge = edge.next_up();
     }
-    from_f64(edge as f64)
+    // An edge of -0, which total order places below 0, becomes 0.
+    from_f64(edge as f64 + 0.0)
 }
 
 /// Whether `value <= sum + error`, where the error is that of a rounded sum.
@@ -215,14 +216,15 @@ impl<S: Sample, const M: usize> Centres<S, M> {
     /// Whether [`by_cell`](Self::by_cell) tells the neuron of every value.
     #[inline]
     pub(super) fn has_cells(&self) -> bool {
-        S::HAS_CELLS && self.cells != Cells::ONE
+        S::HAS_CELLS && !self.cells.is_one()
     }
 
     /// The number of a finite value's neuron, by cell; 1 for what is not a number.
     #[inline]
     pub(super) fn by_cell(&self, value: S) -> usize {
-        let cell = value.cell(self.cells).min(2 * M - 1);
-        let lowest = self.starts.as_flattened().get(cell).copied().map_or(1, usize::from);
+        let cell = value.cell(self.cells);
+        // What lies above all cells belongs to the last neuron.
+        let lowest = self.starts.as_flattened().get(cell).copied().map_or(M, usize::from);
         let is_beyond = self.edges().get(lowest - 1).is_some_and(|&edge| value > edge);
         if is_beyond { lowest + 1 } else { lowest }
     }

@@ -77,11 +77,13 @@ fn word<W: Copy>(
 /// The handshake as well, with a chip that answers at once.
 fn tiny_odin_fed(out: &mut impl Write) -> fmt::Result {
     let word = Cell::new(0);
-    let port = || Answers { word: &word, is_requested: false };
+    let port = || Answers { word: &word, is_requested: false, written: 0 };
     let mut chip = TinyOdin::new(port(), port(), 4);
-    let mut agrees = chip.reset(&mut port()).and_then(|()| chip.run()).is_ok();
+    let registers = TinyOdinInput::registers(255, true, [0; 16]);
+    let mut agrees = chip.reset(&mut port()).and_then(|gated| gated.run(&registers)).is_ok();
     let mut feed = |event: Event, _: &mut [u8]| {
-        chip.feed(FromEvents(core::iter::once(event)), tiny_odin, |_| ())
+        let mut running = chip.running()?;
+        running.feed(FromEvents(core::iter::once(event)), tiny_odin, |_| ())
     };
     let mut cost = Cost::default();
     flight::events(|event| {
@@ -99,6 +101,8 @@ fn tiny_odin_fed(out: &mut impl Write) -> fmt::Result {
 struct Answers<'a> {
     word: &'a Cell<u32>,
     is_requested: bool,
+    /// The byte that was written last, and is read.
+    written: u8,
 }
 
 impl ErrorType for Answers<'_> {
@@ -106,7 +110,14 @@ impl ErrorType for Answers<'_> {
 }
 
 impl SpiDevice for Answers<'_> {
-    fn transaction(&mut self, _: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
+    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
+        for operation in operations {
+            match operation {
+                Operation::Write([.., last]) => self.written = *last,
+                Operation::TransferInPlace([.., last]) => *last = self.written,
+                _ => {}
+            }
+        }
         Ok(())
     }
 }

@@ -24,8 +24,8 @@ static EVENTS: EventQueue<256> = EventQueue::new(Overflow::DropOldest);
 pub fn queues(out: &mut impl Write) -> fmt::Result {
     let mut consumer = EVENTS.consumer().ok_or(fmt::Error)?;
     queue(out, "queue", |event| EVENTS.push(event).is_ok(), || consumer.take())?;
-    let mut lock_free = SpscQueue::<64>::new();
-    let (mut producer, mut consumer) = lock_free.split();
+    let lock_free = SpscQueue::<64>::new();
+    let (mut producer, mut consumer) = lock_free.split().ok_or(fmt::Error)?;
     let push = |event| {
         producer.push(event);
         true
