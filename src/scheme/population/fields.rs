@@ -144,7 +144,8 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
     ) -> Option<impl ExactSizeIterator<Item = D> + 'f> {
         let &Self { min, max, .. } = self;
         let centres = self.centres.get(first..).filter(|_| first < M)?;
-        let distance = move |(i, &centre)| D::between(value, centre, first + i, M, min, max);
+        let distance =
+            move |(i, &centre)| D::between(value, centre, first.wrapping_add(i), M, min, max);
         Some(centres.iter().enumerate().map(distance))
     }
 
@@ -169,12 +170,12 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         first: usize,
         levels: impl ExactSizeIterator<Item = u32>,
     ) -> Option<S> {
-        let centres = self.centres.get(first..first + levels.len())?;
+        let centres = self.centres.get(first..first.wrapping_add(levels.len()))?;
         let mut weighted = S::Weighted::default();
-        let mut total = 0;
+        let mut total = 0_u32;
         for (i, (level, &centre)) in levels.zip(centres).enumerate() {
-            weighted = S::weigh(weighted, centre, first + i, level);
-            total += level;
+            weighted = S::weigh(weighted, centre, first.wrapping_add(i), level);
+            total = total.wrapping_add(level);
         }
         self.mean(weighted, total)
     }
@@ -186,7 +187,7 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         // fire, which are the most, instead of adding their centres and dropping the sum.
         let centres = black_box(&self.centres);
         let mut weighted = S::Weighted::default();
-        let mut total = 0;
+        let mut total = 0_u32;
         neurons.for_each(|neuron| {
             if let Some(&centre) = centres.get(neuron) {
                 weighted = S::weigh(weighted, centre, neuron, 1);
