@@ -46,26 +46,48 @@
 //! | `rand` | probabilistic spiking, from any `rand_core` generator |
 //! | `defmt` | `defmt::Format` on public data |
 //! | `serde` | `Serialize` on public data, and `Deserialize` where nothing has to be checked |
-//! | `queue` | [`sink`]: a bounded queue of events from an interrupt to main |
+//! | `queue` | bounded queues from interrupts to main |
 //! | `link` | `link`: framed events over any byte transport |
-//! | `embedded-hal` | [`sink`]: SPI; `chip`: neuromorphic chips |
-//! | `async` | [`sink`]: asynchronous SPI |
-//! | `embedded-io` | [`sink`]: UART and USB serial |
+//! | `embedded-hal` | [`out`]: SPI; `chip`: neuromorphic chips |
+//! | `async` | [`out`]: asynchronous SPI; waiting on a queue |
+//! | `embedded-io` | [`out`]: UART and USB serial |
 #![no_std]
 #![forbid(unsafe_code)]
 
 #[cfg(test)]
 extern crate std;
 
+#[cfg(feature = "embedded-hal")]
+pub mod chip;
 mod error;
+mod event;
 mod num;
+pub mod out;
 mod scheme;
 #[cfg(feature = "serde")]
 mod serial;
+mod wire;
 
 pub use error::ConfigError;
+pub use event::{
+    AtMost, Bank, Bins, Event, FromEvents, FromItems, Item, Keyframe, Put, Readout, Schemes,
+    Source, StepOver, Taken, Tick,
+};
+#[cfg(feature = "queue")]
+pub use event::{
+    Consumer, EventQueue, Overflow, Queue, QueueView, Refused, SpscConsumer, SpscProducer,
+    SpscQueue,
+};
 pub use num::{Sample, SampleKind};
 pub use scheme::{
     Calibration, Code, Decoder, Differences, Encoder, Firing, Output, Polarity, Recovery, Scheme,
     Spike, Start, population, rate, temporal,
 };
+pub use wire::format;
+#[cfg(feature = "link")]
+pub use wire::link;
+
+/// The README's code, for doctests alone.
+#[cfg(all(doctest, feature = "fixed", feature = "queue", feature = "link"))]
+#[doc = include_str!("../README.md")]
+pub struct Readme;

@@ -20,7 +20,7 @@ use embedded_hal_mock::eh1::spi::{Mock, Transaction};
 use proptest::prelude::*;
 use spikewire::chip::{AerPort, ChipError, Input, Odin, OdinInput, Phase, TinyOdin, TinyOdinInput};
 use spikewire::population::{Centres, Position};
-use spikewire::{Bank, Decoder, Encoder, Event, Polarity, Readout, Scheme};
+use spikewire::{Bank, Decoder, Encoder, Event, FromEvents, Polarity, Readout, Scheme, Tick};
 
 type Word = Result<u32, ChipError<(), ()>>;
 
@@ -501,6 +501,7 @@ fn running_with(model: &Rc<RefCell<Chip>>, clocks: u32, polls: u32) -> TinyOdin<
 }
 
 fn event(tick: u32, address: u16) -> Event {
+    let tick = Tick::from(tick);
     Event { tick, address, polarity: Polarity::Up }
 }
 
@@ -548,7 +549,7 @@ proptest! {
         let model = Chip::new(firing);
         let mut chip = running(&model, clocks);
         let mut out = Vec::new();
-        let events = addresses.iter().map(|&address| event(0, address.into()));
+        let events = FromEvents(addresses.iter().map(|&address| event(0, address.into())));
         let sent = chip.feed(events, spike, |neuron| out.push(neuron));
         prop_assert_eq!(sent, Ok(addresses.len() as u32));
         for _ in 0..4_000 {
@@ -610,7 +611,7 @@ fn an_error_at_every_call_of_the_port_loses_and_repeats_nothing() {
         let model = Chip::new(100);
         let mut chip = running(&model, 5);
         let mut out = Vec::new();
-        let mut events = addresses.iter().map(|&address| event(0, address));
+        let mut events = FromEvents(addresses.iter().map(|&address| event(0, address)));
         let (spi, mut port) = chip.release();
         port.fails_at = Some(port.calls + index + 6); // after reset
         chip = TinyOdin::new(spi, port, 1_000);
@@ -664,7 +665,7 @@ fn an_event_under_way_at_a_reset_is_held_again() {
     let model = Chip::new(0);
     let mut chip = running(&model, 4);
     model.borrow_mut().gate = true; // takes nothing
-    let mut events = [1, 2, 3].map(|address| event(0, address)).into_iter();
+    let mut events = FromEvents([1, 2, 3].map(|address| event(0, address)).into_iter());
     let unanswered = Err(ChipError::Handshake(Phase::Acknowledge));
     assert_eq!(chip.feed(&mut events, spike, drop), unanswered);
     assert_eq!(chip.feed(&mut events, spike, drop), unanswered, "and takes no other");
@@ -707,11 +708,11 @@ fn leak_events_are_the_time_step() {
     let mut chip = running(&model, 4).with_time_step(NonZeroU32::new(1_000).unwrap());
     let start = u32::MAX - 1_500;
     let events = [0, 900, 1_000, 3_999].map(|since| event(start.wrapping_add(since), 9));
-    assert_eq!(chip.feed(events.into_iter(), spike, drop), Ok(4));
+    assert_eq!(chip.feed(FromEvents(events.into_iter()), spike, drop), Ok(4));
     assert_eq!(model.borrow().taken, [9, 9, 0x1FF, 9, 0x1FF, 0x1FF, 9]);
-    chip.advance(start.wrapping_add(4_000), drop).unwrap();
+    chip.advance(Tick::from(start) + 4_000, drop).unwrap();
     assert_eq!(model.borrow().taken.len(), 8);
-    chip.advance(start.wrapping_add(1_004_000), drop).unwrap();
+    chip.advance(Tick::from(start) + 1_004_000, drop).unwrap();
     assert_eq!((model.borrow().taken.len(), chip.skipped_steps()), (8 + 255, 745));
 }
 
@@ -720,7 +721,7 @@ fn events_of_a_step_that_is_over_are_sent_in_the_present_one_and_counted() {
     let model = Chip::new(0);
     let mut chip = running(&model, 4).with_time_step(NonZeroU32::new(1_000).unwrap());
     let events = [0, 2_500, 2_000, 1_999, 3_000, 0].map(|tick| event(tick, 9));
-    assert_eq!(chip.feed(events.into_iter(), spike, drop), Ok(6));
+    assert_eq!(chip.feed(FromEvents(events.into_iter()), spike, drop), Ok(6));
     assert_eq!(model.borrow().taken, [9, 0x1FF, 0x1FF, 9, 9, 9, 0x1FF, 9, 9]);
     assert_eq!(chip.late_events(), 2);
 }
@@ -740,14 +741,14 @@ fn output_spikes_become_a_thrust_command() {
     for step in 0..200_u32 {
         let error = (step as f32 * 0.1).sin();
         let mut inputs = Vec::new();
-        bank.encode(step, [error], |event| inputs.push(event));
+        bank.encode(step.into(), [error], |event| inputs.push(event));
         let mut outputs = Vec::new();
         let mut on_output = |neuron: u8| outputs.push(event(step, neuron.into()));
-        chip.feed(inputs.into_iter(), spike, &mut on_output).unwrap();
+        chip.feed(FromEvents(inputs.into_iter()), spike, &mut on_output).unwrap();
         for _ in 0..50 {
             chip.poll(&mut on_output).unwrap();
         }
-        let [thrust] = readout.decode(step, &outputs);
+        let [thrust] = readout.decode(step.into(), &outputs);
         assert_eq!(thrust, direct.decode(ERROR.encoder().encode(error)));
         assert!((thrust - error).abs() <= 0.5 * 2.0 / 18.0 + 1e-6, "{error} came back as {thrust}");
     }

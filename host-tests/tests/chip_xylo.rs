@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use proptest::prelude::*;
 use spikewire::chip::{ChipError, InputBank, Registers, Xylo, XyloMap, pack_counts};
-use spikewire::{Bins, Event, Polarity};
+use spikewire::{Bins, Event, Polarity, Tick};
 
 /// Done after some reads of the status; the outputs 0 and 2 fired.
 #[derive(Debug, Default)]
@@ -55,9 +55,9 @@ proptest! {
 
 #[test]
 fn a_time_step_from_events_to_outputs() {
-    let mut bins = Bins::<16>::new(0, NonZeroU32::new(1_000).unwrap()).with_limit(15);
+    let mut bins = Bins::<16>::new(Tick::from(0), NonZeroU32::new(1_000).unwrap()).with_limit(15);
     for tick in 0..20 {
-        bins.add(Event { tick, address: 9, polarity: Polarity::Up }).unwrap();
+        bins.add(Event { tick: Tick::from(tick), address: 9, polarity: Polarity::Up }).unwrap();
     }
     let mut xylo = Xylo::new(Chip { busy: 3, ..Chip::default() }, XyloMap::AUDIO_3, 10);
     xylo.set_input(InputBank::First, bins.take()).unwrap();

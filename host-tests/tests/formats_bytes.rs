@@ -6,11 +6,12 @@ use proptest::prelude::*;
 use spikewire::format::{
     Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, FormatError, eieio,
 };
-use spikewire::link::{Coding, Snapshot, Transmitter};
-use spikewire::sink::{Batch, Formatted};
-use spikewire::{Event, Mark, Polarity};
+use spikewire::link::{Coding, Transmitter};
+use spikewire::out::{Batch, Formatted};
+use spikewire::{Event, FromEvents, FromItems, Item, Keyframe, Polarity, Tick};
 
 fn event(tick: u32, address: u16, is_up: bool) -> Event {
+    let tick = Tick::from(tick);
     Event { tick, address, polarity: if is_up { Polarity::Up } else { Polarity::Down } }
 }
 
@@ -31,7 +32,7 @@ fn events(max_gap: u32, max_address: u16) -> impl Strategy<Value = Vec<Event>> {
 /// All bytes of the events, in buffers of this size.
 fn encode(format: impl EventFormat, events: &[Event], buffer: usize) -> Vec<u8> {
     let mut batch = Formatted::new(format);
-    let mut source = events.iter().copied();
+    let mut source = FromEvents(events.iter().copied());
     let mut bytes = Vec::new();
     loop {
         let mut buffer = vec![0; buffer];
@@ -40,7 +41,7 @@ fn encode(format: impl EventFormat, events: &[Event], buffer: usize) -> Vec<u8> 
             length => bytes.extend(&buffer[..length]),
         }
     }
-    assert_eq!((batch.format().retimed(), batch.unspeakable()), (0, 0));
+    assert_eq!((batch.format().retimed(), batch.unencodable()), (0, 0));
     bytes
 }
 
@@ -88,8 +89,8 @@ fn edvs_addresses_have_14_bits() {
     assert_eq!(result, Err(FormatError::Address { address: 1 << 14, max: 0x3FFF }));
 
     let mut batch = Formatted::new(Edvs::new(EdvsTime::None).encoder());
-    let length = batch.fill(&mut [wide, event(0, 1, true)].into_iter(), &mut [0; 8]);
-    assert_eq!((length, batch.unspeakable()), (2, 1));
+    let length = batch.fill(&mut FromEvents([wide, event(0, 1, true)].into_iter()), &mut [0; 8]);
+    assert_eq!((length, batch.unencodable()), (2, 1));
 }
 
 #[test]
@@ -187,6 +188,15 @@ fn evt2_files_begin_with_lines() {
     assert_eq!(decode(Evt2::file_decoder(), &file, 7), events);
     let bare = encode(Evt2::encoder(), &events, 64);
     assert_eq!(decode(Evt2::file_decoder(), &bare, 7), events);
+    // The first byte is that of a line's: time 0x25 << 6.
+    let events = [event(0x25 << 6, 7, true), event(0x2025 << 6, 0x25, false)];
+    for event in events {
+        let bare = encode(Evt2::encoder(), &[event], 64);
+        assert_eq!(bare[0], b'%');
+        assert_eq!(decode(Evt2::file_decoder(), &bare, 7), [event]);
+        let headed = [b"% evt 2.0\n%\n% x\n", bare.as_slice()].concat();
+        assert_eq!(decode(Evt2::file_decoder(), &headed, 7), [event]);
+    }
     let mut decoder = Evt2::decoder();
     let early = decoder.decode(&bare[4..8]).count();
     assert_eq!((early, decoder.skipped()), (0, 4), "no event before the first time");
@@ -246,20 +256,20 @@ fn a_log_may_begin_long_after_boot() {
     assert_eq!(from_boot.encode(late, &mut [0; 8]), Ok(5));
     assert_eq!(from_boot.retimed(), 1, "it looks earlier than boot");
 
-    let mut from_start = EventStream::encoder_from(BOOT_TO_LOG);
+    let mut from_start = EventStream::encoder_from(BOOT_TO_LOG.into());
     let mut file = [EventStream::HEADER.as_slice(), &[0; 6]].concat();
     assert_eq!(from_start.encode(late, &mut file[16..]), Ok(6));
     assert_eq!(from_start.retimed(), 0);
-    assert_eq!(decode(EventStream::decoder_from(BOOT_TO_LOG), &file, 5), [late]);
-    assert_eq!(decode(EventStream::decoder(), &file, 5), [Event { tick: 300, ..late }]);
+    assert_eq!(decode(EventStream::decoder_from(BOOT_TO_LOG.into()), &file, 5), [late]);
+    assert_eq!(decode(EventStream::decoder(), &file, 5), [Event { tick: Tick::from(300), ..late }]);
 
     for time in [EdvsTime::Delta, EdvsTime::Bits16, EdvsTime::Bits24] {
         let camera = Edvs::new(time);
-        let mut encoder = camera.encoder_from(BOOT_TO_LOG);
+        let mut encoder = camera.encoder_from(BOOT_TO_LOG.into());
         let mut bytes = [0; 6];
         let length = encoder.encode(late, &mut bytes).unwrap();
         let mut decoder = camera.decoder();
-        decoder.set_tick(BOOT_TO_LOG);
+        decoder.set_tick(BOOT_TO_LOG.into());
         assert!(decoder.decode(&bytes[..length]).eq([late]));
         assert_eq!(encoder.retimed(), 0);
     }
@@ -276,11 +286,11 @@ fn edvs_does_not_see_a_lost_byte_where_all_have_bit_7() {
     }
 }
 
-/// Sends all events in the shortest batches.
-fn goes_on<B: Batch>(mut batch: B, events: &[Event]) {
-    let mut source = events.iter().copied();
+/// Sends all items in the shortest batches.
+fn goes_on<B: Batch>(mut batch: B, items: &[Item]) {
+    let mut source = FromItems(items.iter().copied());
     let mut bytes = vec![0; B::SHORTEST];
-    while source.len() > 0 {
+    while source.0.len() > 0 {
         assert!(batch.fill(&mut source, &mut bytes) > 0);
     }
 }
@@ -291,16 +301,19 @@ proptest! {
         near in events(100_000, u16::MAX),
         far in events(u32::MAX, 0x3FFF),
         (period, address_bits, jitter_bits) in any::<(NonZeroU16, u8, u8)>(),
-        keyframe in any::<[Option<f32>; 20]>(),
+        keyframes in prop::collection::vec(any::<(f32, prop::sample::Index)>(), 0..20),
     ) {
+        let [near, mut far] = [near, far].map(|events| events.into_iter().map(Item::Event).collect::<Vec<_>>());
         for time in [EdvsTime::None, EdvsTime::Delta, EdvsTime::Bits16, EdvsTime::Bits24, EdvsTime::Bits32] {
             goes_on(Formatted::new(Edvs::new(time).encoder()), &far);
         }
         goes_on(Formatted::new(EventStream::encoder()), &near);
         goes_on(Formatted::new(Evt2::encoder()), &far);
-        let mut link = Transmitter::new(Coding { period, address_bits, jitter_bits });
-        link.keyframe(Snapshot { tick: 0, values: keyframe, mark: Mark::default() });
-        goes_on(link, &far);
+        for (address, (value, at)) in (0..).zip(keyframes) {
+            let at = at.index(far.len() + 1);
+            far.insert(at, Item::Keyframe(Keyframe::new(Tick::default(), address, value)));
+        }
+        goes_on(Transmitter::new(Coding { period, address_bits, jitter_bits }, 0), &far);
     }
 
     #[test]
@@ -342,8 +355,8 @@ proptest! {
         let format = Edvs::new(EdvsTime::None);
         let bytes = encode(format.encoder(), &events, 2);
         let mut decoder = format.decoder();
-        decoder.set_tick(now);
-        let expected = events.into_iter().map(|event| Event { tick: now, ..event });
+        decoder.set_tick(now.into());
+        let expected = events.into_iter().map(|event| Event { tick: now.into(), ..event });
         prop_assert_eq!(decoder.decode(&bytes).collect::<Vec<_>>(), expected.collect::<Vec<_>>());
     }
 

@@ -19,7 +19,7 @@ fn events() -> Vec<Event> {
     let mut bank = Bank::<_, 6>::new(StepForward::<f32>::checked(0.1));
     let mut events = Vec::new();
     for sample in flight::hexarotor() {
-        bank.encode(sample.time_us, sample.channels(), |event| events.push(event));
+        bank.encode(sample.time_us.into(), sample.channels(), |event| events.push(event));
     }
     let tick = events.last().unwrap().tick;
     for address in [0, 255, 256, 2047, 2048, 32_767, u16::MAX] {
@@ -33,7 +33,7 @@ fn events() -> Vec<Event> {
 fn lines(events: &[Event]) -> String {
     let line = |event: &Event| {
         let up = u8::from(event.polarity == Polarity::Up);
-        format!("{} {} {up}\n", event.tick, event.address)
+        format!("{} {} {up}\n", event.tick.micros(), event.address)
     };
     events.iter().map(line).collect()
 }

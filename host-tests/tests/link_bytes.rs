@@ -4,7 +4,7 @@ use host_tests::flight;
 use spikewire::format::{Edvs, EdvsTime, EventFormat, EventStream, Evt2};
 use spikewire::link::{Coding, MAX_FRAME, Transmitter};
 use spikewire::temporal::StepForward;
-use spikewire::{Bank, Event, Scheme};
+use spikewire::{Bank, Event, FromEvents, Scheme};
 
 /// Gyroscope in rad/s, accelerometer in m/s².
 fn spikes(gyro: f32, accel: f32) -> Vec<Event> {
@@ -12,17 +12,17 @@ fn spikes(gyro: f32, accel: f32) -> Vec<Event> {
     let mut bank = Bank::from_encoders([gyro, gyro, gyro, accel, accel, accel]);
     let mut events = Vec::new();
     for sample in flight::hexarotor() {
-        bank.encode(sample.time_us, sample.channels(), |event| events.push(event));
+        bank.encode(sample.time_us.into(), sample.channels(), |event| events.push(event));
     }
     events
 }
 
 /// The bytes of all frames, where one is closed when the next event lies this far behind its first.
 fn link(events: &[Event], coding: Coding, delay: u32) -> usize {
-    let mut transmitter = Transmitter::<f32, 6>::new(coding);
+    let mut transmitter = Transmitter::new(coding, 0);
     let mut bytes = 0;
-    for batch in events.chunk_by(|a, b| a.tick / delay == b.tick / delay) {
-        let mut source = batch.iter().copied();
+    for batch in events.chunk_by(|a, b| a.tick.micros() / delay == b.tick.micros() / delay) {
+        let mut source = FromEvents(batch.iter().copied());
         let mut buffer = [0; MAX_FRAME];
         while let Some(frame) = transmitter.next_frame(&mut source, &mut buffer).unwrap() {
             bytes += frame.len();
@@ -78,7 +78,7 @@ fn at_a_kilohertz_too() {
                 let part = (next - from.time_us) as f32 / (to.time_us - from.time_us) as f32;
                 let (a, b) = (from.channels(), to.channels());
                 let samples = core::array::from_fn(|c| a[c] + part * (b[c] - a[c]));
-                bank.encode(next, samples, |event| events.push(event));
+                bank.encode(next.into(), samples, |event| events.push(event));
                 next += 1_000;
             }
         }

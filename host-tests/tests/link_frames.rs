@@ -4,9 +4,9 @@ use core::num::NonZeroU16;
 
 use proptest::prelude::*;
 use spikewire::link::{
-    Coding, FrameView, Framer, Gap, Keyframe, LinkError, MAX_FRAME, MIN_FRAME, Reader,
+    Coding, FrameView, Framer, Gap, LinkError, MAX_FRAME, MIN_FRAME, Reader,
 };
-use spikewire::{Event, Polarity};
+use spikewire::{Event, Keyframe, Polarity, Raw, SampleKind, Tick};
 
 /// The checksum of the specification, bit by bit.
 fn crc32(bytes: &[u8]) -> u32 {
@@ -16,7 +16,14 @@ fn crc32(bytes: &[u8]) -> u32 {
 }
 
 fn event(tick: u32, address: u16, is_up: bool) -> Event {
+    let tick = Tick::from(tick);
     Event { tick, address, polarity: if is_up { Polarity::Up } else { Polarity::Down } }
+}
+
+const SESSION: u16 = 0x1234;
+
+fn keyframe<S: Raw>(tick: u32, address: u16, value: S) -> Keyframe {
+    Keyframe::new(tick.into(), address, value)
 }
 
 fn any_event() -> impl Strategy<Value = Event> {
@@ -35,7 +42,7 @@ fn any_coding() -> impl Strategy<Value = Coding> {
 
 /// Frames of at most `room` bytes with these events, and how many events each has.
 fn frames(coding: Coding, events: &[Event], room: usize) -> Vec<(Vec<u8>, usize)> {
-    let mut sender = Framer::new(coding);
+    let mut sender = Framer::new(coding, SESSION);
     let mut frames = Vec::new();
     let mut rest = events;
     while let Some(first) = rest.first() {
@@ -53,35 +60,38 @@ fn frames(coding: Coding, events: &[Event], room: usize) -> Vec<(Vec<u8>, usize)
 fn the_bytes_are_those_of_the_specification() {
     let coding = Coding { address_bits: 1, ..Coding::for_channels(6, 1_000) };
     assert_eq!(coding.jitter_bits, 0);
-    let mut framer = Framer::new(coding);
+    let mut framer = Framer::new(coding, SESSION);
     let mut buffer = [0xEE; 64];
-    let mut frame = framer.start(0x0102_0304, &mut buffer).unwrap();
-    frame.keyframe(2, -2_i16).unwrap();
+    let mut frame = framer.start(0x0102_0304.into(), &mut buffer).unwrap();
+    frame.keyframe(keyframe(0x0102_0304, 2, -2_i16)).unwrap();
     frame.event(event(0x0102_0304, 0, true)).unwrap(); // 0 10 1
     frame.event(event(0x0102_0304, 4, false)).unwrap(); // 0 0101 0: code(3, 1) = 010 1
     frame.event(event(0x0102_0304 + 1_001, 1, true)).unwrap(); // 1 1 011 11 1: jitter 1 = code(2)
     let bytes = frame.finish();
 
     // 1 step: code(0) = 1; jitter 1: zigzag 2, code(2, 0) = 011; address 1: code(1, 1) = 1 1.
-    let mut expected = vec![0xA5, 0x16, 0, 0, 4, 3, 2, 1, 0xE8, 3, 0x01, 8, 1, 2, 0, 0xFE, 0xFF];
+    let mut expected = vec![0xA5, 0x22, 0x34, 0x12, 0, 0, 4, 3, 2, 1, 0xE8, 3, 0x01, 9];
+    expected.extend([1, 1, 2, 0, 0xFE, 0xFF]); // one, of i16: address, bits
     expected.extend([0b0101_0010, 0b1011_0111, 0b1100_0000]);
     expected.extend(crc32(&expected).to_le_bytes());
     assert_eq!(bytes, expected);
 
     let (view, _) = FrameView::new(bytes).unwrap();
-    assert!(view.is_restart() && !view.is_wide() && !view.is_after_loss());
-    assert!(view.keyframes().eq([Keyframe { address: 2, raw: 0xFFFE }]));
+    assert_eq!((view.session(), view.sequence(), view.is_after_loss()), (SESSION, 0, false));
+    let kind = SampleKind::Fixed16 { fraction: 0 };
+    let tick = Tick::from(0x0102_0304);
+    assert!(view.keyframes().eq([Keyframe { tick, address: 2, kind, bits: 0xFFFE }]));
     assert_eq!(view.events().count(), 3);
 }
 
 #[test]
 fn every_error_says_what_is_wrong() {
-    let mut framer = Framer::new(Coding::for_channels(1, 1));
-    assert_eq!(framer.start(0, &mut [0; MIN_FRAME - 1]).err(), Some(LinkError::Full));
+    let mut framer = Framer::new(Coding::for_channels(1, 1), SESSION);
+    assert_eq!(framer.start(0.into(), &mut [0; MIN_FRAME - 1]).err(), Some(LinkError::Full));
     let mut buffer = [0; MIN_FRAME];
-    let mut frame = framer.start(0, &mut buffer).unwrap();
+    let mut frame = framer.start(0.into(), &mut buffer).unwrap();
     assert_eq!(frame.event(event(0, 0, true)), Err(LinkError::Full));
-    assert_eq!(frame.keyframe(0, 0_i16), Err(LinkError::Full));
+    assert_eq!(frame.keyframe(keyframe(0, 0, 0_i16)), Err(LinkError::Full));
     let bytes = frame.finish().to_vec();
     assert_eq!(FrameView::new(&bytes).unwrap().1, MIN_FRAME);
 
@@ -95,16 +105,19 @@ fn every_error_says_what_is_wrong() {
     assert_eq!(error(&|bytes| bytes.truncate(7)), truncated(7));
     assert_eq!(error(&|bytes| bytes.truncate(MIN_FRAME - 1)), truncated(MIN_FRAME - 1));
     assert_eq!(error(&|bytes| bytes[0] = 0x5A), LinkError::NotAFrame { found: 0x5A });
-    assert_eq!(error(&|bytes| bytes[1] = 0x21), LinkError::Version { found: 2 });
-    assert_eq!(error(&|bytes| bytes[8] = 0), LinkError::Header);
-    assert!(matches!(error(&|bytes| bytes[4] = 1), LinkError::Checksum { .. }));
+    assert_eq!(error(&|bytes| bytes[1] = 0x11), LinkError::Version { found: 1 });
+    assert_eq!(error(&|bytes| bytes[10] = 0), LinkError::Header);
+    assert!(matches!(error(&|bytes| bytes[6] = 1), LinkError::Checksum { .. }));
 
     let mut buffer = [0; 64];
-    let mut frame = framer.start(0, &mut buffer).unwrap();
-    frame.keyframe(0, 0.5_f32).unwrap();
-    assert_eq!(frame.keyframe(1, 3_i16), Err(LinkError::KeyframeOrder));
+    let mut frame = framer.start(0.into(), &mut buffer).unwrap();
+    assert_eq!(frame.keyframe(keyframe(1, 0, 0.5_f32)), Err(LinkError::KeyframeOrder), "another tick");
+    frame.keyframe(keyframe(0, 0, 0.5_f32)).unwrap();
+    assert_eq!(frame.keyframe(keyframe(0, 1, 3_i16)), Err(LinkError::KeyframeOrder));
+    let fixed = Keyframe { kind: SampleKind::Fixed32 { fraction: 16 }, ..keyframe(0, 1, 0.5_f32) };
+    assert_eq!(frame.keyframe(fixed), Err(LinkError::KeyframeOrder), "f32 is no Q16.16");
     frame.event(event(0, 0, true)).unwrap();
-    assert_eq!(frame.keyframe(1, 0.5_f32), Err(LinkError::KeyframeOrder));
+    assert_eq!(frame.keyframe(keyframe(0, 1, 0.5_f32)), Err(LinkError::KeyframeOrder));
     assert_eq!(frame.event(event(1 << 31, 0, true)), Err(LinkError::Full));
     assert_eq!(FrameView::new(frame.finish()).unwrap().0.events().count(), 1);
 }
@@ -131,14 +144,14 @@ proptest! {
 
     #[test]
     fn keyframes_come_back_bit_for_bit(values in prop::collection::vec((any::<u16>(), any::<f32>()), 0..42)) {
-        let mut framer = Framer::new(Coding::for_channels(1, 1));
+        let mut framer = Framer::new(Coding::for_channels(1, 1), SESSION);
         let mut buffer = [0; MAX_FRAME];
-        let mut frame = framer.start(7, &mut buffer).unwrap();
+        let mut frame = framer.start(7.into(), &mut buffer).unwrap();
         for &(address, value) in &values {
-            frame.keyframe(address, value).unwrap();
+            frame.keyframe(keyframe(7, address, value)).unwrap();
         }
         let (view, _) = FrameView::new(frame.finish()).unwrap();
-        let expected = values.iter().map(|&(address, v)| Keyframe { address, raw: v.to_bits() });
+        let expected = values.iter().map(|&(address, value)| keyframe(7, address, value));
         prop_assert!(view.keyframes().eq(expected));
     }
 
@@ -223,9 +236,9 @@ proptest! {
     fn a_checked_frame_of_random_bytes_never_panics(
         flags in 0_u8..16,
         body in prop::collection::vec(any::<u8>(), 0..=255),
-        header in prop::collection::vec(any::<u8>(), 9),
+        header in prop::collection::vec(any::<u8>(), 11),
     ) {
-        let mut bytes = vec![0xA5, 0x10 | flags];
+        let mut bytes = vec![0xA5, 0x20 | flags];
         bytes.extend(&header);
         bytes.push(body.len() as u8);
         bytes.extend(&body);
@@ -253,7 +266,7 @@ fn a_start_in_the_middle_and_a_restart_are_no_gap() {
 
     let mut again = &stream[..]; // the sender was reset
     let first = reader.next_frame(&mut again).unwrap();
-    assert!(first.gap.is_none() && first.frame.is_restart());
+    assert!(first.gap.is_none() && first.is_start);
     assert_eq!(reader.lost_frames(), 0);
 }
 
@@ -273,11 +286,11 @@ fn a_frame_sent_twice_counts_once() {
 
 #[test]
 fn the_sequence_wraps() {
-    let mut framer = Framer::new(Coding::for_channels(1, 1));
+    let mut framer = Framer::new(Coding::for_channels(1, 1), SESSION);
     let mut reader = Reader::<MIN_FRAME>::new();
     for number in 0..=70_000_u32 {
         let mut buffer = [0; MIN_FRAME];
-        let mut bytes = framer.start(0, &mut buffer).unwrap().finish();
+        let mut bytes = framer.start(0.into(), &mut buffer).unwrap().finish();
         let is_lost = (65_530..65_540).contains(&number);
         if !is_lost {
             let received = reader.next_frame(&mut bytes).unwrap();

@@ -5,7 +5,7 @@ use spikewire::population::{Centres, Neuron, Position, ReceptiveFields, Slots, V
 use spikewire::rate::{Hough, Taps};
 use spikewire::temporal::StepForward;
 use spikewire::{
-    Assemble, Bank, Decoder, Encoder, Event, Firing, Output, Polarity, Readout, Scheme, Spike,
+    Assemble, Bank, Decoder, Encoder, Event, Firing, Output, Polarity, Readout, Scheme, Spike, Tick,
 };
 
 static CENTRES: Centres<f32, 9> = Centres::<f32, _>::linear(-1.0, 1.0);
@@ -26,7 +26,7 @@ where
     let mut encoders = [(); 3].map(|()| scheme.encoder());
     let mut decoders = [(); 3].map(|()| scheme.decoder());
     for (index, &sample) in samples.iter().enumerate() {
-        let tick = start.wrapping_add(index as u32 * 1_000);
+        let tick = Tick::from(start) + index as u32 * 1_000;
         let mut events = Vec::new();
         bank.encode(tick, sample, |event| events.push(event));
         events.reverse(); // in any order
@@ -39,6 +39,14 @@ where
             assert_eq!(readout.decode(tick, &events), [x, y, z]);
         }
     }
+}
+
+/// All 256 slots are legal: the last one too.
+#[test]
+fn the_last_of_256_slots_comes_back() {
+    let fields = ReceptiveFields::<f32, 5, 256>::new(-1.0, 1.0, 1.5).unwrap();
+    let samples: Vec<_> = (-1_000..1_000).map(|i| [i as f32 / 900.0; 3]).collect();
+    agrees(Slots::new(&fields), &samples, 0, 3);
 }
 
 proptest! {
@@ -78,10 +86,10 @@ proptest! {
     ) {
         let events: Vec<Event> = events
             .into_iter()
-            .map(|(tick, address)| Event { tick, address, polarity: Polarity::Up })
+            .map(|(tick, address)| Event { tick: tick.into(), address, polarity: Polarity::Up })
             .collect();
         let mut readout = Readout::<_, 3>::new(Slots::new(&FIELDS)).with_slot_ticks(slot_ticks);
-        prop_assert!(readout.decode(tick, &events).iter().all(|value| value.is_finite()));
+        prop_assert!(readout.decode(tick.into(), &events).iter().all(|value| value.is_finite()));
     }
 }
 

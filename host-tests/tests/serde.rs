@@ -22,7 +22,7 @@ fn assert_json(data: impl Serialize, expected: &serde_json::Value) {
 #[test]
 fn spikes_and_events() {
     assert_json([Spike::Down, Spike::None, Spike::Up], &json!(["Down", "None", "Up"]));
-    let event = Event { tick: 5, address: 2, polarity: Polarity::Down };
+    let event = Event { tick: 5.into(), address: 2, polarity: Polarity::Down };
     assert_json(event, &json!({ "tick": 5, "address": 2, "polarity": "Down" }));
     let firing = Firing { neuron: 1, slot: 3, polarity: Polarity::Up };
     assert_json(firing, &json!({ "neuron": 1, "slot": 3, "polarity": "Up" }));

@@ -17,15 +17,13 @@ use embedded_hal_mock::eh1::spi::{Mock, Transaction};
 use embedded_io::WriteReady;
 use spikewire::format::{Edvs, EdvsEncoder, EdvsTime};
 use spikewire::link::{Coding, MAX_FRAME, Reader, Transmitter};
-use spikewire::sink::{
-    AsyncSpiSink, EventQueue, Formatted, Overflow, SerialSink, SinkError, SpiSink,
-};
-use spikewire::{Event, Polarity};
+use spikewire::out::{AsyncSpiSink, Formatted, SerialSink, SinkError, SpiSink};
+use spikewire::{Event, EventQueue, FromEvents, Overflow, Polarity, Tick};
 
 const FORMAT: Edvs = Edvs::new(EdvsTime::None);
 
 fn events(count: u16) -> Vec<Event> {
-    (0..count).map(|address| Event { tick: 0, address, polarity: Polarity::Up }).collect()
+    (0..count).map(|address| Event { tick: Tick::from(0), address, polarity: Polarity::Up }).collect()
 }
 
 fn batch() -> Formatted<EdvsEncoder> {
@@ -48,9 +46,9 @@ fn write(bytes: Vec<u8>) -> [Transaction<u8>; 3] {
 fn a_batch_is_one_transaction() {
     let expected = [write(bytes(0..4)), write(bytes(4..8)), write(bytes(8..10))].concat();
     let mut sink = SpiSink::<_, _, 9>::new(Mock::new(&expected), batch());
-    let mut source = events(10).into_iter();
+    let mut source = FromEvents(events(10).into_iter());
     assert_eq!(sink.send(&mut source), Ok(8));
-    assert_eq!(source.len(), 5, "one event is held, the others are left where they are");
+    assert_eq!(source.0.len(), 5, "one event is held, the others are left where they are");
     assert_eq!(sink.send(&mut source), Ok(8));
     assert_eq!(sink.send(&mut source), Ok(4));
     assert_eq!(sink.send(&mut source), Ok(0));
@@ -63,7 +61,7 @@ fn an_error_at_every_transaction_keeps_the_events() {
         let expected = [write(bytes(0..4)), write(bytes(4..8)), write(bytes(8..10))].concat();
         let device = Failing { device: Mock::new(&expected), left: index };
         let mut sink = SpiSink::<_, _, 8>::new(device, batch());
-        let mut source = events(10).into_iter();
+        let mut source = FromEvents(events(10).into_iter());
         for _ in 0..index {
             assert_eq!(sink.send(&mut source), Ok(8));
         }
@@ -79,7 +77,7 @@ fn a_receiver_that_is_not_ready_gets_nothing() {
     let mut ready = Pin::new(&[Level::get(State::Low), Level::get(State::High)]);
     let spi = Mock::new(&write(bytes(0..3)));
     let mut sink = SpiSink::<_, _, 8, _>::with_ready(spi, batch(), ready.clone());
-    let mut source = events(3).into_iter();
+    let mut source = FromEvents(events(3).into_iter());
     assert_eq!(sink.send(&mut source), Err(SinkError::Busy));
     assert_eq!(sink.send(&mut source), Ok(6));
     assert_eq!(sink.send(&mut source), Ok(0), "nothing to send: the pin is not looked at");
@@ -116,7 +114,7 @@ impl InputPin for Broken {
 #[test]
 fn a_pin_that_cannot_be_read_is_an_error() {
     let mut sink = SpiSink::<_, _, 8, _>::with_ready(Mock::new(&[]), batch(), Broken);
-    assert_eq!(sink.send(events(1).into_iter()), Err(SinkError::Pin));
+    assert_eq!(sink.send(FromEvents(events(1).into_iter())), Err(SinkError::Pin));
     assert_eq!(sink.waiting(), 2);
     sink.release().0.done();
 }
@@ -132,7 +130,7 @@ fn now<F: Future>(future: F) -> F::Output {
 fn the_asynchronous_sink_does_the_same() {
     let expected = [write(bytes(0..4)), write(bytes(4..6))].concat();
     let mut sink = AsyncSpiSink::<_, _, 8>::new(Mock::new(&expected), batch());
-    let mut source = events(6).into_iter();
+    let mut source = FromEvents(events(6).into_iter());
     assert_eq!(now(sink.send(&mut source)), Ok(8));
     assert_eq!(now(sink.send(&mut source)), Ok(4));
     assert_eq!(now(sink.send(&mut source)), Ok(0));
@@ -146,10 +144,11 @@ fn a_queue_goes_out_as_frames() {
         queue.push(event).unwrap();
     }
     let mut port = [0; 64];
-    let transmitter = Transmitter::<i16, 32>::new(Coding::for_channels(32, 1_000));
+    let transmitter = Transmitter::new(Coding::for_channels(32, 1_000), 0);
     let mut sink = SerialSink::<_, _, MAX_FRAME>::new(&mut port[..], transmitter);
-    let sent = sink.send(&queue).unwrap();
-    assert_eq!(sink.send(&queue), Ok(0));
+    let mut consumer = queue.consumer().unwrap();
+    let sent = sink.send(&mut consumer).unwrap();
+    assert_eq!(sink.send(&mut consumer), Ok(0));
     let mut reader = Reader::<MAX_FRAME>::new();
     let received = reader.next_frame(&mut &port[..sent]).unwrap().frame.events().count();
     assert_eq!(received, 20);
@@ -191,7 +190,7 @@ fn a_serial_port_gets_every_byte_once_whatever_happens() {
             let mut calls = VecDeque::from([3, 1, 4, 1, 5]);
             calls.insert(index.min(5), failure);
             let mut sink = SerialSink::<_, _, 8>::new(Port { calls, taken: vec![] }, batch());
-            let mut source = events(10).into_iter();
+            let mut source = FromEvents(events(10).into_iter());
             let mut failures = 0;
             loop {
                 match sink.send(&mut source) {
@@ -254,7 +253,7 @@ impl WriteReady for Packets<'_> {
 fn what_a_port_keeps_arrives_by_flushing() {
     let is_read = Cell::new(true);
     let mut sink = SerialSink::<_, _, 64>::new(Packets::new(&is_read), batch());
-    assert_eq!(sink.send(events(9).into_iter()), Ok(18));
+    assert_eq!(sink.send(FromEvents(events(9).into_iter())), Ok(18));
     assert_eq!(sink.flush(), Ok(()));
     assert_eq!(sink.release().arrived, bytes(0..9));
 }
@@ -263,7 +262,7 @@ fn what_a_port_keeps_arrives_by_flushing() {
 fn flushing_sends_what_waits_in_the_sink_too() {
     let calls = VecDeque::from([3, 0, 1]);
     let mut sink = SerialSink::<_, _, 8>::new(Port { calls, taken: vec![] }, batch());
-    assert!(sink.send(events(4).into_iter()).is_err());
+    assert!(sink.send(FromEvents(events(4).into_iter())).is_err());
     assert_eq!((sink.waiting(), sink.flush()), (5, Ok(())));
     assert_eq!(sink.release().taken, bytes(0..4));
 }
@@ -272,7 +271,7 @@ fn flushing_sends_what_waits_in_the_sink_too() {
 fn a_port_that_nobody_reads_is_never_waited_for() {
     let is_read = Cell::new(false);
     let mut sink = SerialSink::<_, _, 48>::new(Packets::new(&is_read), batch());
-    let mut source = events(48).into_iter();
+    let mut source = FromEvents(events(48).into_iter());
     assert_eq!(sink.try_send(&mut source), Ok(48));
     assert_eq!(sink.try_send(&mut source), Err(SinkError::Busy));
     assert_eq!(sink.waiting(), 32);

@@ -1,6 +1,6 @@
 //! Address events over parallel wires, by the 4-phase handshake.
 
-use crate::Event;
+use crate::event::Event;
 
 /// The wires of a chip's two address-event buses and its reset, all active high.
 ///

@@ -8,7 +8,7 @@ use embedded_hal::spi::SpiDevice;
 use super::aer::Aer;
 use super::error::at_most;
 use super::{AerPort, ChipError};
-use crate::{Event, EventSource, tick};
+use crate::event::{Event, Source, Tick};
 
 /// What goes into a chip of the family: its words on the input bus.
 pub trait Input: Copy {
@@ -68,7 +68,7 @@ enum State {
 struct Time {
     step: NonZeroU32,
     /// When the last one was due.
-    last: Option<u32>,
+    last: Option<Tick>,
 }
 
 /// The most leak events at once.
@@ -264,8 +264,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     }
 
     /// Sends the events of a source, each as the input that `to_input` makes of it, and the time steps
-    /// between them. Returns how many events were sent. From a queue take `EVENTS.drain()`, which ends
-    /// even if events come faster than the chip takes them.
+    /// between them. Returns how many events were sent. From a queue take `consumer.waiting()`, which
+    /// ends even if events come faster than the chip takes them.
     ///
     /// Events must come in the order of time. One from a time step that is over is sent in the present
     /// one, and counted as [late](Self::late_events).
@@ -275,7 +275,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// is lost or sent twice. Only one whose input is not valid is dropped.
     pub fn feed(
         &mut self,
-        mut events: impl EventSource,
+        mut events: impl Source,
         mut to_input: impl FnMut(Event) -> I,
         mut on_output: impl FnMut(u8),
     ) -> Result<u32, ChipError<D::Error, P::Error>> {
@@ -303,7 +303,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// As [`send`](Self::send). Time steps that were not sent are due the next time.
     pub fn advance(
         &mut self,
-        now: u32,
+        now: Tick,
         mut on_output: impl FnMut(u8),
     ) -> Result<(), ChipError<D::Error, P::Error>> {
         self.advance_with(now, &mut on_output)
@@ -341,10 +341,10 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         (self.device, self.aer.port)
     }
 
-    fn next_of(&mut self, events: &mut impl EventSource) -> Option<Event> {
-        let event = events.next_event()?;
+    fn next_of(&mut self, events: &mut impl Source) -> Option<Event> {
+        let event = events.take_event()?;
         if let Some(Time { last: Some(last), .. }) = self.time {
-            let is_late = tick::is_before(event.tick, last);
+            let is_late = event.tick.is_before(last);
             self.late_events = self.late_events.saturating_add(is_late.into());
         }
         Some(event)
@@ -370,20 +370,20 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
 
     fn advance_with(
         &mut self,
-        now: u32,
+        now: Tick,
         on_output: &mut impl FnMut(u8),
     ) -> Result<(), ChipError<D::Error, P::Error>> {
         let Some(Time { step, last }) = self.time else { return Ok(()) };
         let mut last = last.unwrap_or(now);
-        let due = tick::difference(now, last).max(0) as u32 / step;
+        let due = now.since(last).max(0) as u32 / step;
         let skipped = due.saturating_sub(MAX_LEAKS);
-        last = last.wrapping_add(skipped.wrapping_mul(step.get()));
+        last += skipped.wrapping_mul(step.get());
         self.skipped_steps = self.skipped_steps.saturating_add(skipped);
         self.time = Some(Time { step, last: Some(last) });
         for _ in skipped..due {
             let result = self.put(I::LEAK_ALL, on_output);
             if self.aer.is_begun {
-                last = last.wrapping_add(step.get());
+                last += step.get();
                 self.time = Some(Time { step, last: Some(last) });
             }
             result?;

@@ -1,0 +1,26 @@
+//! Address events: which neuron fired, when, and in which direction.
+
+use super::Tick;
+use crate::Polarity;
+
+/// An address event: which neuron fired, when, and in which direction.
+///
+/// Eight bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Event {
+    /// When.
+    pub tick: Tick,
+    /// The neuron. A [`Bank`](crate::Bank) numbers its channels' neurons one after the other.
+    pub address: u16,
+    /// The direction.
+    pub polarity: Polarity,
+}
+
+#[cfg(feature = "link")]
+impl Event {
+    /// What fills a buffer.
+    pub(crate) const ZERO: Self =
+        Self { tick: Tick::from_micros(0), address: 0, polarity: Polarity::Down };
+}

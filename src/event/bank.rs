@@ -1,0 +1,222 @@
+//! Channels side by side: samples in, addressed and time-stamped events out.
+
+use core::fmt;
+
+use super::schemes::{CodeOf, EncoderStateOf, SampleOf};
+use super::{Event, Item, Keyframe, Put, Schemes, Tick};
+use crate::{Code, ConfigError, Firing, Output, Scheme, Start, error};
+
+/// `N` encoders of one kind, such as the six channels of an inertial sensor: one scheme, or references to
+/// one each, and `N` states.
+///
+/// Channel `c`, neuron `n` has the address `c * NEURONS + n`, where
+/// [`NEURONS`](Code::NEURONS) counts the neurons of a channel. Events come out at the tick of the
+/// sample that made them known, by rising address; a rate code's sample lies
+/// [`LATENCY`](Scheme::LATENCY) samples before. Where sub-timesteps have ticks of their own, events
+/// come out in the order of time: what chips, formats and [`Bins`](crate::Bins) want.
+///
+/// ```
+/// use spikewire::{Bank, Event, Polarity, Tick, temporal::StepForward};
+///
+/// static GYRO: StepForward<f32> = StepForward::new(0.1);
+/// let mut bank = Bank::<_, 3>::new(&GYRO); // may be a static itself
+///
+/// let [first, second] = [1_000, 2_000].map(Tick::from_micros);
+/// let mut events = Vec::new();
+/// bank.encode(first, [0.0, 0.0, 0.0], |event| events.push(event));
+/// bank.encode(second, [0.3, 0.0, -0.2], |event| events.push(event));
+/// assert_eq!(events, [
+///     Event { tick: second, address: 0, polarity: Polarity::Up },
+///     Event { tick: second, address: 2, polarity: Polarity::Down },
+/// ]);
+/// ```
+pub struct Bank<T: Schemes<N>, const N: usize> {
+    schemes: T,
+    states: [EncoderStateOf<T, N>; N],
+    first_address: u16,
+    slot_ticks: u32,
+}
+
+impl<'a, P: Start, const N: usize> Bank<&'a P, N> {
+    /// A bank whose channels share one scheme.
+    pub const fn new(scheme: &'a P) -> Self {
+        Self::with_states(scheme, [P::START; N])
+    }
+}
+
+impl<'a, P: Start, const N: usize> Bank<[&'a P; N], N> {
+    /// A bank with a scheme for each channel, such as one for rates and another for accelerations.
+    pub const fn per_channel(schemes: [&'a P; N]) -> Self {
+        Self::with_states(schemes, [P::START; N])
+    }
+}
+
+impl<T: Schemes<N>, const N: usize> Bank<T, N> {
+    /// How many addresses it takes.
+    const ADDRESSES: usize = N * CodeOf::<T, N>::NEURONS;
+
+    /// A bank whose encoders go on from these states, as for a code that draws from a generator.
+    pub const fn with_states(schemes: T, states: [EncoderStateOf<T, N>; N]) -> Self {
+        const {
+            assert!(N >= 1, "a bank has at least one channel");
+            assert!(Self::ADDRESSES <= 1 << 16, "addresses have 16 bits");
+        }
+        Self { schemes, states, first_address: 0, slot_ticks: 0 }
+    }
+
+    /// This bank with addresses from this one on instead of 0, so that banks share a queue.
+    ///
+    /// # Panics
+    /// If the last address is above 65 535; at compile time where it initialises a constant.
+    #[must_use]
+    pub const fn with_first_address(mut self, first_address: u16) -> Self {
+        error::unwrap(error::first_address(first_address, Self::ADDRESSES));
+        self.first_address = first_address;
+        self
+    }
+
+    /// This bank with addresses from this one on instead of 0.
+    ///
+    /// # Errors
+    /// The last address is above 65 535.
+    pub fn try_with_first_address(self, first_address: u16) -> Result<Self, ConfigError> {
+        error::first_address(first_address, Self::ADDRESSES)?;
+        Ok(Self { first_address, ..self })
+    }
+
+    /// This bank with sub-timesteps of so many microseconds instead of 0.
+    #[must_use]
+    pub const fn with_slot_ticks(mut self, slot_ticks: u32) -> Self {
+        self.slot_ticks = slot_ticks;
+        self
+    }
+
+    /// Takes one sample of every channel and hands each event to `emit`.
+    #[inline]
+    pub fn encode(
+        &mut self,
+        tick: Tick,
+        samples: [SampleOf<T, N>; N],
+        mut emit: impl FnMut(Event),
+    ) {
+        if CodeOf::<T, N>::SLOTS > 1 && self.slot_ticks > 0 {
+            return self.encode_by_slot(tick, samples, emit);
+        }
+        let mut first = self.first_address;
+        for ((state, scheme), sample) in
+            self.states.iter_mut().zip(self.schemes.each()).zip(samples)
+        {
+            if let Some(code) = scheme.encode(state, sample).code() {
+                for firing in code.firings() {
+                    emit(event(tick, first, firing));
+                }
+            }
+            first = first.wrapping_add(CodeOf::<T, N>::NEURONS as u16);
+        }
+    }
+
+    /// Encodes where every sub-timestep has a tick of its own.
+    fn encode_by_slot(
+        &mut self,
+        tick: Tick,
+        samples: [SampleOf<T, N>; N],
+        mut emit: impl FnMut(Event),
+    ) {
+        let mut codes = [None; N];
+        let states = self.states.iter_mut().zip(self.schemes.each());
+        for ((code, (state, scheme)), sample) in codes.iter_mut().zip(states).zip(samples) {
+            *code = scheme.encode(state, sample).code();
+        }
+        let mut tick = tick;
+        for slot in 0..CodeOf::<T, N>::SLOTS {
+            let mut first = self.first_address;
+            for code in &codes {
+                let firings = code.iter().flat_map(Code::firings);
+                for firing in firings.filter(|firing| usize::from(firing.slot) == slot) {
+                    emit(event(tick, first, firing));
+                }
+                first = first.wrapping_add(CodeOf::<T, N>::NEURONS as u16);
+            }
+            tick += self.slot_ticks;
+        }
+    }
+
+    /// Takes one sample of every channel, in the interrupt in which they come, and puts the events into a
+    /// queue. Never blocks; what does not fit is counted by the queue as lost, under any policy.
+    #[inline]
+    pub fn encode_into(&mut self, tick: Tick, samples: [SampleOf<T, N>; N], mut queue: impl Put) {
+        self.encode(tick, samples, |event| queue.put(Item::Event(event)));
+    }
+
+    /// Puts a keyframe of every channel that has one into a queue, behind the events of the samples so far:
+    /// call it where the bank encodes. `tick` is that of the last sample.
+    pub fn keyframe_into(&self, tick: Tick, mut queue: impl Put) {
+        let mut address = self.first_address;
+        for (state, scheme) in self.states.iter().zip(self.schemes.each()) {
+            if let Some(value) = scheme.keyframe(state) {
+                queue.put(Item::Keyframe(Keyframe::new(tick, address, value)));
+            }
+            address = address.wrapping_add(CodeOf::<T, N>::NEURONS as u16);
+        }
+    }
+
+    /// Resets every encoder and puts a [break](Item::Break) into a queue, so that the far end of a link
+    /// knows.
+    pub fn reset_into(&mut self, tick: Tick, mut queue: impl Put)
+    where
+        T::Scheme: Start,
+    {
+        self.reset();
+        queue.put(Item::Break(tick));
+    }
+
+    /// Resets every encoder. The far end of a link does not see this; it does with
+    /// [`reset_into`](Self::reset_into).
+    pub fn reset(&mut self)
+    where
+        T::Scheme: Start,
+    {
+        self.states = [<T::Scheme as Start>::START; N];
+    }
+
+    /// The value that a channel's decoder should hold now; `None` before the first sample, for codes
+    /// without keyframes, and for a channel that there is not.
+    pub fn keyframe(&self, channel: usize) -> Option<SampleOf<T, N>> {
+        let (state, scheme) = self.states.iter().zip(self.schemes.each()).nth(channel)?;
+        scheme.keyframe(state)
+    }
+
+    /// How many samples were not finite, over all channels.
+    pub fn rejected(&self) -> u32 {
+        let each = self.states.iter().map(T::Scheme::rejected);
+        each.fold(0, u32::saturating_add)
+    }
+}
+
+impl<T: Schemes<N> + Clone, const N: usize> Clone for Bank<T, N>
+where
+    EncoderStateOf<T, N>: Clone,
+{
+    fn clone(&self) -> Self {
+        let Self { schemes, states, first_address, slot_ticks } = self;
+        let (schemes, states) = (schemes.clone(), states.clone());
+        Self { schemes, states, first_address: *first_address, slot_ticks: *slot_ticks }
+    }
+}
+
+impl<T: Schemes<N>, const N: usize> fmt::Debug for Bank<T, N>
+where
+    EncoderStateOf<T, N>: fmt::Debug,
+{
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut bank = f.debug_struct("Bank");
+        bank.field("states", &self.states).field("first_address", &self.first_address);
+        bank.finish_non_exhaustive()
+    }
+}
+
+#[inline]
+fn event(tick: Tick, first_address: u16, firing: Firing) -> Event {
+    let Firing { neuron, polarity, .. } = firing;
+    Event { tick, address: first_address.wrapping_add(neuron), polarity }
+}

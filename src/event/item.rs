@@ -1,0 +1,63 @@
+//! Items: what goes in one order from the interrupt to the wire.
+
+use super::{Event, Keyframe, Tick};
+
+/// One item of the stream: an event, a keyframe, or a break.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Item {
+    /// A neuron fired.
+    Event(Event),
+    /// What the decoder of an address should hold here.
+    Keyframe(Keyframe),
+    /// The encoders changed without events, as by a reset: no decoder is exact until its next keyframe.
+    Break(Tick),
+}
+
+impl Item {
+    /// The tick of the item.
+    pub const fn tick(&self) -> Tick {
+        match *self {
+            Self::Event(Event { tick, .. })
+            | Self::Keyframe(Keyframe { tick, .. })
+            | Self::Break(tick) => tick,
+        }
+    }
+}
+
+impl From<Event> for Item {
+    fn from(event: Event) -> Self {
+        Self::Event(event)
+    }
+}
+
+impl From<Keyframe> for Item {
+    fn from(keyframe: Keyframe) -> Self {
+        Self::Keyframe(keyframe)
+    }
+}
+
+/// An item taken from a source, with the number of items that were lost before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Taken {
+    /// How many items were lost between the one taken before and this one; `u32::MAX` stands for that
+    /// many or more.
+    pub lost: u32,
+    /// The item.
+    pub item: Item,
+}
+
+impl Taken {
+    /// An item with nothing lost before it.
+    pub const fn whole(item: Item) -> Self {
+        Self { lost: 0, item }
+    }
+
+    /// Whether decoders are not exact here, because of a loss or a break.
+    pub const fn is_after_break(&self) -> bool {
+        self.lost > 0 || matches!(self.item, Item::Break(_))
+    }
+}

@@ -1,0 +1,33 @@
+//! Spike events on their way: ticks, items, queues, banks (samples to events) and readouts (events to
+//! values).
+
+mod address;
+mod bank;
+mod bins;
+mod item;
+mod keyframe;
+mod put;
+#[cfg(feature = "queue")]
+mod queue;
+mod readout;
+mod schemes;
+mod source;
+mod tick;
+
+pub use address::Event;
+pub use bank::Bank;
+pub use bins::{Bins, StepOver};
+pub use item::{Item, Taken};
+pub use keyframe::Keyframe;
+pub use put::Put;
+#[cfg(feature = "queue")]
+pub use queue::{
+    Consumer, EventQueue, Overflow, Queue, QueueView, Refused, SpscConsumer, SpscProducer,
+    SpscQueue,
+};
+pub(crate) use readout::Addresses;
+pub use readout::Readout;
+pub use schemes::Schemes;
+pub(crate) use schemes::{CodeOf, DecoderStateOf, SampleOf};
+pub use source::{AtMost, FromEvents, FromItems, Source};
+pub use tick::Tick;

@@ -1,0 +1,356 @@
+//! The queue for any number of interrupts: a ring of items under critical sections.
+
+use core::cell::Cell;
+use core::fmt;
+use core::ops::Deref;
+#[cfg(feature = "async")]
+use core::task::Waker;
+
+use critical_section::{CriticalSection, Mutex};
+
+use super::slot::Slot;
+use super::{Consumer, Overflow, Refused};
+use crate::event::{Item, Put, Taken, Tick};
+
+/// A queue of `N` items, shared between interrupts and main: events, keyframes and breaks in one order.
+///
+/// - **Any number of interrupts** [push](QueueView::push), nested ones too; one
+///   [consumer](QueueView::consumer) takes.
+/// - **Never blocks.** Each call holds off interrupts for the copy of one item.
+/// - **Memory:** `12 N + 36` bytes on a 32-bit part, 8 more with the feature `async`.
+/// - **Losses:** each item taken says how many were lost before it. Where the newest items were lost and
+///   none follows, a [break](Item::Break) says so. See also [`lost`](QueueView::lost) and
+///   [`refused`](QueueView::refused).
+///
+/// It dereferences to a [`QueueView`], which has the methods and no capacity in its type.
+///
+/// ```
+/// use spikewire::{Event, EventQueue, Overflow, Polarity, Source, Tick};
+///
+/// static EVENTS: EventQueue<2> = EventQueue::new(Overflow::DropOldest);
+///
+/// // In the interrupt:
+/// for micros in [1, 2, 3] {
+///     let tick = Tick::from_micros(micros);
+///     EVENTS.push(Event { tick, address: 0, polarity: Polarity::Up })?;
+/// }
+/// // In main:
+/// let mut events = EVENTS.consumer().expect("the only consumer");
+/// let first = events.take().expect("two are left");
+/// assert_eq!((first.lost, first.item.tick().micros()), (1, 2));
+/// # Ok::<(), spikewire::Refused>(())
+/// ```
+///
+/// A queue without room does not compile:
+///
+/// ```compile_fail
+/// # use spikewire::{EventQueue, Overflow};
+/// static EVENTS: EventQueue<0> = EventQueue::new(Overflow::DropOldest);
+/// ```
+pub struct EventQueue<const N: usize>(Queue<[Place; N]>);
+
+/// A queue of any capacity, behind a reference. [`EventQueue`] dereferences to it.
+pub type QueueView = Queue<[Place]>;
+
+/// The one text of [`EventQueue`] and [`QueueView`].
+pub struct Queue<C: ?Sized> {
+    overflow: Overflow,
+    state: Mutex<State>,
+    /// Of the consumer that waits.
+    #[cfg(feature = "async")]
+    waker: Mutex<Cell<Option<Waker>>>,
+    places: C,
+}
+
+/// Room for an item.
+pub struct Place(Mutex<Cell<Slot>>);
+
+struct State {
+    /// The place of the oldest item.
+    head: Cell<usize>,
+    len: Cell<usize>,
+    /// The most items up to the last one taken.
+    peak: Cell<usize>,
+    /// How many were lost after the newest item, and the tick of the last of them.
+    behind: Cell<u32>,
+    behind_tick: Cell<Tick>,
+    /// How many losses more than its slot can say lie before a slot that says 255.
+    excess: Cell<u32>,
+    lost: Cell<u32>,
+    refused: Cell<u32>,
+    has_consumer: Cell<bool>,
+}
+
+impl<const N: usize> EventQueue<N> {
+    /// An empty queue, for a `static`.
+    pub const fn new(overflow: Overflow) -> Self {
+        const { assert!(N >= 1, "a queue has room for at least one item") };
+        let state = State {
+            head: Cell::new(0),
+            len: Cell::new(0),
+            peak: Cell::new(0),
+            behind: Cell::new(0),
+            behind_tick: Cell::new(Tick::from_micros(0)),
+            excess: Cell::new(0),
+            lost: Cell::new(0),
+            refused: Cell::new(0),
+            has_consumer: Cell::new(false),
+        };
+        Self(Queue {
+            overflow,
+            state: Mutex::new(state),
+            #[cfg(feature = "async")]
+            waker: Mutex::new(Cell::new(None)),
+            places: [const { Place(Mutex::new(Cell::new(Slot::EMPTY))) }; N],
+        })
+    }
+}
+
+impl<const N: usize> Deref for EventQueue<N> {
+    type Target = QueueView;
+
+    #[inline]
+    fn deref(&self) -> &QueueView {
+        &self.0
+    }
+}
+
+impl<const N: usize> fmt::Debug for EventQueue<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Debug::fmt(&**self, f)
+    }
+}
+
+impl fmt::Debug for QueueView {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("EventQueue")
+            .field("overflow", &self.overflow)
+            .field("capacity", &self.capacity())
+            .field("len", &self.len())
+            .field("lost", &self.lost())
+            .finish_non_exhaustive()
+    }
+}
+
+/// Who bears the loss of an item that a queue refuses.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Giver {
+    /// One who takes it back.
+    TakesBack,
+    /// One who does not: it is lost.
+    Leaves,
+}
+
+impl QueueView {
+    /// Puts an item, such as an event, at the end.
+    ///
+    /// # Errors
+    /// The queue is full and its policy is [`Overflow::Refuse`]; never under another policy.
+    #[inline]
+    pub fn push(&self, item: impl Into<Item>) -> Result<(), Refused> {
+        let item = item.into();
+        if self.add(item.into(), Giver::TakesBack) { Ok(()) } else { Err(Refused(item)) }
+    }
+
+    /// The consumer, of which there is one at a time; `None` while there is one already. It may be
+    /// dropped and asked for again.
+    pub fn consumer(&self) -> Option<Consumer<'_>> {
+        let had_one = self.with(|state| state.has_consumer.replace(true));
+        (!had_one).then(|| Consumer::new(self))
+    }
+
+    /// How many items it has room for.
+    pub const fn capacity(&self) -> usize {
+        self.places.len()
+    }
+
+    /// How many items it holds.
+    pub fn len(&self) -> usize {
+        self.with(|state| state.len.get())
+    }
+
+    /// Whether it holds none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// How many items found no room and were dropped since the start; stays at `u32::MAX` once there.
+    /// What is lost before each item is said by [`Taken::lost`], whatever this counter is.
+    pub fn lost(&self) -> u32 {
+        self.with(|state| state.lost.get())
+    }
+
+    /// How often an item went back to the caller; stays at `u32::MAX` once there.
+    pub fn refused(&self) -> u32 {
+        self.with(|state| state.refused.get())
+    }
+
+    /// The most items it ever held, to choose the capacity by.
+    pub fn peak(&self) -> usize {
+        self.with(|state| state.peak.get().max(state.len.get()))
+    }
+
+    #[inline]
+    fn with<R>(&self, act: impl FnOnce(&State) -> R) -> R {
+        critical_section::with(|section| act(self.state.borrow(section)))
+    }
+
+    /// Adds an item, and says whether it was taken.
+    #[inline]
+    fn add(&self, slot: Slot, giver: Giver) -> bool {
+        let (is_taken, _wake) = critical_section::with(|section| {
+            let state = self.state.borrow(section);
+            let is_taken = if state.len.get() < self.places.len() && state.behind.get() == 0 {
+                self.append(section, slot);
+                true
+            } else {
+                self.add_past_loss(section, slot, giver)
+            };
+            #[cfg(feature = "async")]
+            let waker = self.waker.borrow(section).take();
+            #[cfg(not(feature = "async"))]
+            let waker = ();
+            (is_taken, waker)
+        });
+        // Outside of the critical section: it runs code of the executor's.
+        #[cfg(feature = "async")]
+        if let Some(waker) = _wake {
+            waker.wake();
+        }
+        is_taken
+    }
+
+    /// Appends an item, for which there is room.
+    #[inline]
+    fn append(&self, section: CriticalSection<'_>, slot: Slot) {
+        let state = self.state.borrow(section);
+        let (head, len, capacity) = (state.head.get(), state.len.get(), self.places.len());
+        let end = head.wrapping_add(len);
+        let at = if end >= capacity { end.wrapping_sub(capacity) } else { end };
+        if let Some(Place(place)) = self.places.get(at) {
+            place.borrow(section).set(slot);
+            state.len.set(len.wrapping_add(1));
+        }
+    }
+
+    /// Adds an item where the queue is full, or where items were lost before it.
+    #[cold]
+    #[inline(never)]
+    fn add_past_loss(&self, section: CriticalSection<'_>, slot: Slot, giver: Giver) -> bool {
+        let state = self.state.borrow(section);
+        if state.len.get() < self.places.len() {
+            self.append(section, with_loss(state, slot, state.behind.take()));
+            return true;
+        }
+        match (self.overflow, giver) {
+            (Overflow::DropOldest, _) => {
+                count(&state.lost);
+                let dropped = self.remove(section).map_or(0, |dropped| dropped.lost);
+                self.append(section, slot);
+                // What was lost before the dropped one was lost before the one that is the oldest now.
+                if let Some(Place(oldest)) = self.places.get(state.head.get()) {
+                    let oldest = oldest.borrow(section);
+                    oldest.set(with_loss(state, oldest.get(), u32::from(dropped) + 1));
+                }
+                true
+            }
+            (Overflow::Refuse, Giver::TakesBack) => {
+                count(&state.refused);
+                false
+            }
+            (policy, _) => {
+                if policy == Overflow::Refuse {
+                    count(&state.refused);
+                }
+                count(&state.lost);
+                count(&state.behind);
+                state.behind_tick.set(slot.tick());
+                true
+            }
+        }
+    }
+
+    /// Takes the oldest item.
+    #[inline]
+    pub(super) fn remove_taken(&self) -> Option<Taken> {
+        let (slot, lost) = critical_section::with(|section| {
+            let Some(slot) = self.remove(section) else { return self.take_loss(section) };
+            let mut lost = u32::from(slot.lost);
+            if slot.lost == u8::MAX {
+                lost = lost.saturating_add(self.state.borrow(section).excess.take());
+            }
+            Some((slot, lost))
+        })?;
+        Some(Taken { lost, item: slot.item() })
+    }
+
+    #[inline]
+    fn remove(&self, section: CriticalSection<'_>) -> Option<Slot> {
+        let state = self.state.borrow(section);
+        let (head, len) = (state.head.get(), state.len.get());
+        let left = len.checked_sub(1)?;
+        let Place(place) = self.places.get(head)?;
+        let next = head.wrapping_add(1);
+        state.head.set(if next == self.places.len() { 0 } else { next });
+        state.len.set(left);
+        if len > state.peak.get() {
+            state.peak.set(len);
+        }
+        Some(place.borrow(section).get())
+    }
+
+    /// The losses that no item follows, as a break.
+    #[cold]
+    #[inline(never)]
+    fn take_loss(&self, section: CriticalSection<'_>) -> Option<(Slot, u32)> {
+        let state = self.state.borrow(section);
+        let behind = state.behind.take();
+        (behind > 0).then(|| (Slot::lost_at(state.behind_tick.get()), behind))
+    }
+
+    /// Lets the next consumer be had.
+    pub(super) fn release_consumer(&self) {
+        self.with(|state| state.has_consumer.set(false));
+    }
+
+    /// Whether there is something to take; otherwise keeps the waker.
+    #[cfg(feature = "async")]
+    pub(super) fn is_ready_or_keeps(&self, waker: &Waker) -> bool {
+        let waker = waker.clone();
+        let (is_ready, _before) = critical_section::with(|section| {
+            let state = self.state.borrow(section);
+            let is_ready = state.len.get() > 0 || state.behind.get() > 0;
+            let kept = (!is_ready).then_some(waker);
+            (is_ready, self.waker.borrow(section).replace(kept))
+        });
+        is_ready
+    }
+}
+
+/// A slot before which so many more items were lost.
+fn with_loss(state: &State, slot: Slot, lost: u32) -> Slot {
+    let sum = u32::from(slot.lost).saturating_add(lost);
+    let said = sum.min(u8::MAX.into());
+    state.excess.set(state.excess.get().saturating_add(sum - said));
+    slot.with_lost(said as u8)
+}
+
+fn count(counter: &Cell<u32>) {
+    counter.set(counter.get().saturating_add(1));
+}
+
+/// An item that is refused is lost, and counted as both.
+impl Put for &QueueView {
+    #[inline]
+    fn put(&mut self, item: Item) {
+        self.add(item.into(), Giver::Leaves);
+    }
+}
+
+/// An item that is refused is lost, and counted as both.
+impl<const N: usize> Put for &EventQueue<N> {
+    #[inline]
+    fn put(&mut self, item: Item) {
+        self.add(item.into(), Giver::Leaves);
+    }
+}

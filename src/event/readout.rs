@@ -1,0 +1,148 @@
+//! Events back to values, channel by channel: the inverse of a bank.
+
+use core::fmt;
+
+use super::schemes::{CodeOf, DecoderStateOf, SampleOf};
+use super::{Event, Schemes, Tick};
+use crate::{Code, ConfigError, Firing, Scheme, error};
+
+/// `N` decoders of one kind side by side: the events of a time step in, a value of every channel out.
+///
+/// Addresses are those of a [`Bank`](crate::Bank): channel `c`, neuron `n` has the address
+/// `c * NEURONS + n` from the first on. So are sub-timesteps. A chip's output neurons are addresses already.
+///
+/// - **Codes:** all; [`Code::assemble`] says what becomes of neurons that no encoder fires together.
+/// - **Work:** one pass over the events for each channel.
+/// - **Time:** events outside the time step belong to another: give this one only its own.
+///
+/// ```
+/// use spikewire::{Event, Polarity, Readout, Tick, population::Position};
+///
+/// static THRUST: Position<f32, 5> = Position::new([-2.0, -0.5, 0.0, 0.5, 2.0]);
+/// let mut readout = Readout::<_, 1>::new(&THRUST);
+///
+/// // What a chip sent back in this time step: neuron 3 won.
+/// let tick = Tick::from_micros(1_000);
+/// let events = [3, 4, 3].map(|address| Event { tick, address, polarity: Polarity::Up });
+/// assert_eq!(readout.decode(tick, &events), [0.5]);
+/// ```
+pub struct Readout<T: Schemes<N>, const N: usize> {
+    schemes: T,
+    states: [DecoderStateOf<T, N>; N],
+    addresses: Addresses,
+}
+
+/// Which addresses and ticks the firings of a channel have.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Addresses {
+    pub(crate) first: u16,
+    /// 0 if all of a sample's events have its tick.
+    pub(crate) slot_ticks: u32,
+}
+
+impl Addresses {
+    /// The code of a channel, from the events of a sample at this tick.
+    pub(crate) fn code<C: Code>(self, channel: usize, tick: Tick, events: &[Event]) -> C {
+        let first = self.first.wrapping_add((channel * C::NEURONS) as u16);
+        C::assemble(events.iter().filter_map(|event| {
+            let since = event.tick.since(tick).max(0) as u32;
+            let slot = since.checked_div(self.slot_ticks).unwrap_or(0);
+            Some(Firing {
+                neuron: event.address.checked_sub(first)?,
+                slot: slot.min(u16::MAX.into()) as u16,
+                polarity: event.polarity,
+            })
+        }))
+    }
+}
+
+impl<'a, P: Scheme, const N: usize> Readout<&'a P, N> {
+    /// A readout whose channels share one scheme.
+    pub fn new(scheme: &'a P) -> Self {
+        Self::with_schemes(scheme)
+    }
+}
+
+impl<'a, P: Scheme, const N: usize> Readout<[&'a P; N], N> {
+    /// A readout with a scheme for each channel.
+    pub fn per_channel(schemes: [&'a P; N]) -> Self {
+        Self::with_schemes(schemes)
+    }
+}
+
+impl<T: Schemes<N>, const N: usize> Readout<T, N> {
+    const ADDRESSES: usize = N * CodeOf::<T, N>::NEURONS;
+
+    fn with_schemes(schemes: T) -> Self {
+        const {
+            assert!(N >= 1, "a readout has at least one channel");
+            assert!(Self::ADDRESSES <= 1 << 16, "addresses have 16 bits");
+        }
+        let states = schemes.map_each(Scheme::decoder_state);
+        Self { schemes, states, addresses: Addresses { first: 0, slot_ticks: 0 } }
+    }
+
+    /// This readout with addresses from this one on instead of 0; events of lower ones are left out.
+    ///
+    /// # Panics
+    /// If the last address is above 65 535.
+    #[must_use]
+    pub const fn with_first_address(mut self, first_address: u16) -> Self {
+        error::unwrap(error::first_address(first_address, Self::ADDRESSES));
+        self.addresses.first = first_address;
+        self
+    }
+
+    /// This readout with addresses from this one on instead of 0.
+    ///
+    /// # Errors
+    /// The last address is above 65 535.
+    pub fn try_with_first_address(self, first_address: u16) -> Result<Self, ConfigError> {
+        error::first_address(first_address, Self::ADDRESSES)?;
+        Ok(Self { addresses: Addresses { first: first_address, ..self.addresses }, ..self })
+    }
+
+    /// This readout with sub-timesteps of so many microseconds instead of 0.
+    #[must_use]
+    pub const fn with_slot_ticks(mut self, slot_ticks: u32) -> Self {
+        self.addresses.slot_ticks = slot_ticks;
+        self
+    }
+
+    /// Takes the events of one time step, which begins at `tick`, and gives every channel's value.
+    pub fn decode(&mut self, tick: Tick, events: &[Event]) -> [SampleOf<T, N>; N] {
+        let mut values = [SampleOf::<T, N>::default(); N];
+        let channels = self.states.iter_mut().zip(self.schemes.each()).enumerate();
+        for (value, (channel, (state, scheme))) in values.iter_mut().zip(channels) {
+            *value = scheme.decode(state, self.addresses.code(channel, tick, events));
+        }
+        values
+    }
+
+    /// Lets a channel's decoder go on from a known value, such as the first sample.
+    pub fn resync(&mut self, channel: usize, value: SampleOf<T, N>) {
+        let mut channels = self.states.iter_mut().zip(self.schemes.each());
+        if let Some((state, scheme)) = channels.nth(channel) {
+            scheme.resync(state, value);
+        }
+    }
+
+    /// Back to the initial state.
+    pub fn reset(&mut self) {
+        self.states = self.schemes.map_each(Scheme::decoder_state);
+    }
+}
+
+impl<T: Schemes<N> + Clone, const N: usize> Clone for Readout<T, N> {
+    fn clone(&self) -> Self {
+        Self { schemes: self.schemes.clone(), states: self.states, addresses: self.addresses }
+    }
+}
+
+impl<T: Schemes<N>, const N: usize> fmt::Debug for Readout<T, N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut readout = f.debug_struct("Readout");
+        readout.field("states", &self.states).field("addresses", &self.addresses);
+        readout.finish_non_exhaustive()
+    }
+}

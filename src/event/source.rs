@@ -1,0 +1,74 @@
+//! Where links, sinks and chips take their items from.
+
+use super::{Event, Item, Taken};
+
+/// A source of items in their order: the consumer of a queue, or an adapter over an iterator.
+pub trait Source {
+    /// Takes the next item, and says how many were lost before it; `None` if there is no item now.
+    fn take(&mut self) -> Option<Taken>;
+
+    /// Takes items up to and with the next event, for those who have no use for keyframes.
+    fn take_event(&mut self) -> Option<Event> {
+        loop {
+            if let Item::Event(event) = self.take()?.item {
+                return Some(event);
+            }
+        }
+    }
+
+    /// A source that ends after so many items, so that work on a queue that fills up meanwhile ends.
+    fn at_most(self, items: usize) -> AtMost<Self>
+    where
+        Self: Sized,
+    {
+        AtMost { source: self, left: items }
+    }
+}
+
+impl<S: Source + ?Sized> Source for &mut S {
+    fn take(&mut self) -> Option<Taken> {
+        (**self).take()
+    }
+}
+
+/// The first items of a source; see [`Source::at_most`].
+#[derive(Clone, Copy, Debug)]
+pub struct AtMost<S> {
+    source: S,
+    left: usize,
+}
+
+impl<S: Source> Source for AtMost<S> {
+    fn take(&mut self) -> Option<Taken> {
+        self.left = self.left.checked_sub(1)?;
+        self.source.take()
+    }
+}
+
+/// A source of an iterator's events, none lost.
+///
+/// ```
+/// use spikewire::{Event, FromEvents, Polarity, Source, Tick};
+///
+/// let event = Event { tick: Tick::from_micros(5), address: 0, polarity: Polarity::Up };
+/// let mut source = FromEvents([event; 2].into_iter());
+/// assert_eq!(source.take_event(), Some(event));
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct FromEvents<I>(pub I);
+
+impl<I: Iterator<Item = Event>> Source for FromEvents<I> {
+    fn take(&mut self) -> Option<Taken> {
+        self.0.next().map(|event| Taken::whole(Item::Event(event)))
+    }
+}
+
+/// A source of an iterator's items, none lost.
+#[derive(Clone, Copy, Debug)]
+pub struct FromItems<I>(pub I);
+
+impl<I: Iterator<Item = Item>> Source for FromItems<I> {
+    fn take(&mut self) -> Option<Taken> {
+        self.0.next().map(Taken::whole)
+    }
+}

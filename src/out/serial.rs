@@ -1,0 +1,129 @@
+//! Items over a UART or USB serial port.
+
+use embedded_io::{Write, WriteReady};
+
+use super::{Batch, SinkError};
+use crate::event::Source;
+
+/// Sends items over an `embedded-io` writer.
+///
+/// - **Batches:** up to `N` bytes, at least [`Batch::SHORTEST`]. A port may take fewer at a time; the
+///   rest is kept.
+/// - **Errors** come back with what was not taken kept: the next [`send`](Self::send) goes on there, so
+///   that no byte is sent twice or left out.
+/// - **Waiting:** [`send`](Self::send) and [`flush`](Self::flush) wait as long as the port's own calls
+///   do, for ever on a USB port that nobody reads and that no driver drains.
+///   [`try_send`](Self::try_send) never waits.
+/// - **Buffers:** a port may keep up to a packet of what it took; [`flush`](Self::flush) sends it on.
+/// - **Memory:** `N` bytes, and those of its parts.
+///
+/// ```
+/// use spikewire::{Event, FromEvents, Polarity, Tick};
+/// use spikewire::{format::{Edvs, EdvsTime}, out::{Formatted, SerialSink}};
+///
+/// let mut port = [0; 4];
+/// let format = Edvs::new(EdvsTime::None).encoder();
+/// let mut sink = SerialSink::<_, _, 64>::new(&mut port[..], Formatted::new(format));
+///
+/// let event = Event { tick: Tick::from_micros(0), address: 5, polarity: Polarity::Up };
+/// assert_eq!(sink.send(FromEvents([event, event].into_iter())), Ok(4));
+/// assert_eq!(port, [0x80, 0x85, 0x80, 0x85]);
+/// ```
+///
+/// Batches too short for an event do not compile:
+///
+/// ```compile_fail
+/// # use spikewire::{format::{Edvs, EdvsTime}, out::{Formatted, SerialSink}};
+/// # let mut port = [0; 4];
+/// let format = Edvs::new(EdvsTime::None).encoder();
+/// let sink = SerialSink::<_, _, 5>::new(&mut port[..], Formatted::new(format));
+/// ```
+#[derive(Debug)]
+pub struct SerialSink<W, B, const N: usize> {
+    port: W,
+    batch: B,
+    bytes: [u8; N],
+    /// What of the bytes waits to be sent.
+    start: usize,
+    end: usize,
+}
+
+impl<W: Write, B: Batch, const N: usize> SerialSink<W, B, N> {
+    /// A sink on this port.
+    pub const fn new(port: W, batch: B) -> Self {
+        const { assert!(N >= B::SHORTEST, "a batch is too short: see Batch::SHORTEST") };
+        Self { port, batch, bytes: [0; N], start: 0, end: 0 }
+    }
+
+    /// Sends a batch, and says how many bytes the port took; 0 if there was nothing to send.
+    ///
+    /// # Errors
+    /// The port failed, or takes no more bytes.
+    pub fn send(&mut self, mut events: impl Source) -> Result<usize, SinkError<W::Error>> {
+        self.refill(&mut events);
+        self.write(|_| Ok(true))
+    }
+
+    /// Sends what waits here, and has the port send what it keeps. Call it when [`send`](Self::send)
+    /// has returned 0: nothing of a burst is left behind then.
+    ///
+    /// # Errors
+    /// The port failed, or takes no more bytes.
+    pub fn flush(&mut self) -> Result<(), SinkError<W::Error>> {
+        self.write(|_| Ok(true))?;
+        self.port.flush().map_err(SinkError::Bus)
+    }
+
+    /// Takes the next batch, unless some of the last one waits.
+    fn refill(&mut self, events: &mut impl Source) {
+        if self.start == self.end {
+            (self.start, self.end) = (0, self.batch.fill(events, &mut self.bytes));
+        }
+    }
+
+    /// Writes what waits while the port is ready, and says how many bytes it took.
+    fn write(
+        &mut self,
+        is_ready: impl Fn(&mut W) -> Result<bool, W::Error>,
+    ) -> Result<usize, SinkError<W::Error>> {
+        let before = self.start;
+        while let Some(rest) = self.bytes.get(self.start..self.end).filter(|rest| !rest.is_empty())
+        {
+            if !is_ready(&mut self.port).map_err(SinkError::Bus)? {
+                return Err(SinkError::Busy);
+            }
+            match self.port.write(rest).map_err(SinkError::Bus)? {
+                0 => return Err(SinkError::Closed),
+                taken => self.start += taken.min(rest.len()),
+            }
+        }
+        Ok(self.start - before)
+    }
+
+    /// What makes the bytes: for keyframes and counters.
+    pub const fn batch(&mut self) -> &mut B {
+        &mut self.batch
+    }
+
+    /// How many bytes wait for the next [`send`](Self::send).
+    pub const fn waiting(&self) -> usize {
+        self.end - self.start
+    }
+
+    /// The port, for other uses.
+    pub fn release(self) -> W {
+        self.port
+    }
+}
+
+impl<W: Write + WriteReady, B: Batch, const N: usize> SerialSink<W, B, N> {
+    /// Sends a batch without waiting: asks the port before each write.
+    ///
+    /// # Errors
+    /// [`SinkError::Busy`]: the port has no room, and the rest waits for the next call. As well those
+    /// of [`send`](Self::send).
+    pub fn try_send(&mut self, mut events: impl Source) -> Result<usize, SinkError<W::Error>> {
+        self.refill(&mut events);
+        self.write(W::write_ready)
+    }
+}

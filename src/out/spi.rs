@@ -1,0 +1,147 @@
+//! Items over SPI, blocking and asynchronous from one source.
+
+use core::convert::Infallible;
+
+use embedded_hal::digital::{ErrorType, InputPin};
+
+use super::{Batch, SinkError};
+use crate::event::Source;
+
+/// A ready pin for receivers that have none.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct AlwaysReady;
+
+impl ErrorType for AlwaysReady {
+    type Error = Infallible;
+}
+
+impl InputPin for AlwaysReady {
+    fn is_high(&mut self) -> Result<bool, Infallible> {
+        Ok(true)
+    }
+
+    fn is_low(&mut self) -> Result<bool, Infallible> {
+        Ok(false)
+    }
+}
+
+/// The text of a sink, once; `$asynchronous` and `$wait` are empty for the blocking one.
+macro_rules! spi_sink {
+    ($(#[$documentation:meta])* $name:ident, $device:path, [$($asynchronous:tt)?], [$($wait:tt)*]) => {
+        $(#[$documentation])*
+        ///
+        /// - **Batches:** up to `N` bytes, in one transaction; `N` is at least [`Batch::SHORTEST`].
+        /// - **Ready pin:** high when the receiver takes bytes; a busy pin is one inverted. It is
+        ///   looked at once a batch, never waited for.
+        /// - **Errors** come back with the batch kept: the next [`send`](Self::send) begins with the
+        ///   same bytes. A bus that failed halfway may have delivered some of them, which a link's
+        ///   checksum and sequence tell.
+        /// - **Memory:** `N` bytes, and those of its parts.
+        #[derive(Debug)]
+        pub struct $name<D, B, const N: usize, R = AlwaysReady> {
+            device: D,
+            batch: B,
+            ready: R,
+            bytes: [u8; N],
+            /// How many bytes of a batch wait to be sent.
+            waiting: usize,
+        }
+
+        impl<D, B: Batch, const N: usize> $name<D, B, N> {
+            /// A receiver that is always ready.
+            pub const fn new(device: D, batch: B) -> Self {
+                const { assert!(N >= B::SHORTEST, "a batch is too short: see Batch::SHORTEST") };
+                Self { device, batch, ready: AlwaysReady, bytes: [0; N], waiting: 0 }
+            }
+        }
+
+        impl<D: $device, B: Batch, const N: usize, R: InputPin> $name<D, B, N, R> {
+            /// A receiver with a ready pin.
+            pub const fn with_ready(device: D, batch: B, ready: R) -> Self {
+                const { assert!(N >= B::SHORTEST, "a batch is too short: see Batch::SHORTEST") };
+                Self { device, batch, ready, bytes: [0; N], waiting: 0 }
+            }
+
+            /// Sends a batch, and says how many bytes it had; 0 if there was nothing to send.
+            ///
+            /// # Errors
+            /// The receiver is not ready, its pin cannot be read, or the bus failed.
+            pub $($asynchronous)? fn send(
+                &mut self,
+                mut events: impl Source,
+            ) -> Result<usize, SinkError<D::Error>> {
+                if self.waiting == 0 {
+                    self.waiting = self.batch.fill(&mut events, &mut self.bytes);
+                }
+                let Some(bytes) = self.bytes.get(..self.waiting).filter(|bytes| !bytes.is_empty())
+                else {
+                    return Ok(0);
+                };
+                match self.ready.is_high() {
+                    Ok(true) => {}
+                    Ok(false) => return Err(SinkError::Busy),
+                    Err(_) => return Err(SinkError::Pin),
+                }
+                self.device.write(bytes)$($wait)*.map_err(SinkError::Bus)?;
+                Ok(core::mem::take(&mut self.waiting))
+            }
+
+            /// What makes the bytes: for keyframes and counters.
+            pub const fn batch(&mut self) -> &mut B {
+                &mut self.batch
+            }
+
+            /// How many bytes wait for the next [`send`](Self::send).
+            pub const fn waiting(&self) -> usize {
+                self.waiting
+            }
+
+            /// The device and the pin, for other uses.
+            pub fn release(self) -> (D, R) {
+                (self.device, self.ready)
+            }
+        }
+    };
+}
+
+spi_sink! {
+    /// Sends items over an `embedded-hal` SPI device.
+    ///
+    /// ```
+    /// use embedded_hal_mock::eh1::spi::{Mock, Transaction};
+    /// use spikewire::{Event, FromEvents, Polarity, Tick};
+    /// use spikewire::{format::Evt2, out::{Formatted, SpiSink}};
+    ///
+    /// let spi = Mock::new(&[
+    ///     Transaction::transaction_start(),
+    ///     Transaction::write_vec(vec![0, 0, 0, 0x80, 0, 0x28, 0, 0x10]),
+    ///     Transaction::transaction_end(),
+    /// ]);
+    /// let mut sink = SpiSink::<_, _, 64>::new(spi, Formatted::new(Evt2::encoder()));
+    ///
+    /// let event = Event { tick: Tick::from_micros(0), address: 5, polarity: Polarity::Up };
+    /// assert_eq!(sink.send(FromEvents([event].into_iter())), Ok(8));
+    /// # sink.release().0.done();
+    /// ```
+    ///
+    /// Batches too short for a word do not compile:
+    ///
+    /// ```compile_fail
+    /// # use embedded_hal_mock::eh1::spi::Mock;
+    /// # use spikewire::{format::Evt2, out::{Formatted, SpiSink}};
+    /// let spi = Mock::<u8>::new(&[]);
+    /// let sink = SpiSink::<_, _, 3>::new(spi, Formatted::new(Evt2::encoder()));
+    /// ```
+    SpiSink, embedded_hal::spi::SpiDevice, [], []
+}
+
+#[cfg(feature = "async")]
+spi_sink! {
+    /// Sends items over an `embedded-hal-async` SPI device; see [`SpiSink`].
+    ///
+    /// A `send` that is dropped keeps its batch, and the next one begins with the same bytes. Until
+    /// then a device such as the `ExclusiveDevice` of `embedded-hal-bus` leaves chip select low: the
+    /// receiver sees a torn batch, then the whole one, in one selection. A link's reader
+    /// resynchronises.
+    AsyncSpiSink, embedded_hal_async::spi::SpiDevice, [async], [.await]
+}

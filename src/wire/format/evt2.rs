@@ -1,0 +1,216 @@
+//! EVT2: the words of Prophesee's cameras and tools.
+
+use super::{EventDecoder, EventFormat, FormatError};
+use crate::Polarity;
+use crate::event::{Event, Tick};
+use crate::wire::bytes::Cursor;
+
+/// Prophesee EVT 2.0: words of 32 bits, little endian.
+///
+/// - **Word of an event:** type\[31:28\] 0 (down) or 1 (up), t\[27:22\] the low 6 bits of the time,
+///   x\[21:11\], y\[10:0\]. **Of time:** type 8, then the time's upper 28 bits.
+/// - **Address:** `y << 11 | x`; events of rows from 32 on, which have more than 16 bits, are skipped.
+/// - **Time:** 34 bits of µs, from the first event's tick on; ticks may wrap.
+/// - **Length:** 4 bytes an event, and 4 whenever 64 µs have passed.
+/// - **Resynchronisation:** none but the time words; the stream must be read from a word's start.
+///
+/// Source: Prophesee, EVT 2.0 format.
+///
+/// ```
+/// use spikewire::{Event, Polarity, Tick, format::{EventDecoder, EventFormat, Evt2}};
+///
+/// let event = Event { tick: Tick::from_micros(0x41), address: 5, polarity: Polarity::Up };
+/// let mut bytes = [0; 8];
+/// assert_eq!(Evt2::encoder().encode(event, &mut bytes), Ok(8));
+/// assert_eq!(bytes, [0x01, 0, 0, 0x80, 0x00, 0x28, 0x40, 0x10]);
+/// assert!(Evt2::decoder().decode(&bytes).eq([event]));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Evt2;
+
+const TIME_BITS: u32 = 34;
+const LOW_BITS: u32 = 6;
+const X_BITS: u32 = 11;
+const X_MASK: u32 = (1 << X_BITS) - 1;
+/// Bits of y that no address of 16 bits has.
+const FAR_ROWS: u32 = X_MASK & !0x1F;
+const DOWN: u32 = 0;
+const UP: u32 = 1;
+const TIME_HIGH: u32 = 8;
+
+impl Evt2 {
+    /// The first lines of a file: 2048 by 32 pixels hold every address.
+    pub const HEADER: &[u8] =
+        b"% evt 2.0\n% format EVT2;height=32;width=2048\n% geometry 2048x32\n% end\n";
+
+    /// Writes words; for a file write the [header](Self::HEADER) before the first.
+    pub const fn encoder() -> Evt2Encoder {
+        Evt2Encoder { time: None, high: None, retimed: 0 }
+    }
+
+    /// Reads words, from a word's start on.
+    pub const fn decoder() -> Evt2Decoder {
+        Evt2Decoder { state: State::Word { word: 0, bytes: 0 }, high: None, skipped: 0 }
+    }
+
+    /// Reads a file: skips its header, the lines that begin with `%` up to `% end`, if it has any. A first
+    /// word whose first byte is a `%` is known by its type, which no text has for its fourth byte.
+    pub const fn file_decoder() -> Evt2Decoder {
+        Evt2Decoder { state: State::LineStart, high: None, skipped: 0 }
+    }
+}
+
+/// The encoder of [`Evt2`].
+#[derive(Clone, Copy, Debug)]
+pub struct Evt2Encoder {
+    /// The last event's, of 34 bits.
+    time: Option<u64>,
+    high: Option<u32>,
+    retimed: u32,
+}
+
+impl EventFormat for Evt2Encoder {
+    const LONGEST: usize = 4;
+
+    fn encode(&mut self, event: Event, bytes: &mut [u8]) -> Result<usize, FormatError> {
+        let last = self.time.unwrap_or(event.tick.micros().into());
+        let delta = event.tick.since(Tick::from_micros(last));
+        let time = last.wrapping_add(delta.max(0) as u64) & ((1 << TIME_BITS) - 1);
+        let high = (time >> LOW_BITS) as u32;
+
+        let mut out = Cursor::new(bytes);
+        let address = u32::from(event.address);
+        let kind = if event.polarity == Polarity::Up { UP } else { DOWN };
+        let word = kind << 28
+            | (time as u32 & ((1 << LOW_BITS) - 1)) << 22
+            | (address & X_MASK) << X_BITS
+            | address >> X_BITS;
+        if self.high != Some(high) {
+            out.put(&(TIME_HIGH << 28 | high).to_le_bytes())
+                .ok_or(FormatError::Full { written: 0 })?;
+        }
+        self.high = Some(high);
+        self.retimed = self.retimed.saturating_add((delta < 0).into());
+        self.time = Some(time);
+        out.put(&word.to_le_bytes()).ok_or(FormatError::Full { written: out.written() })?;
+        Ok(out.written())
+    }
+
+    fn retimed(&self) -> u32 {
+        self.retimed
+    }
+}
+
+/// The decoder of [`Evt2`].
+///
+/// Triggers and other words are skipped, and so are events before the first time word and in rows
+/// from 32 on.
+#[derive(Clone, Copy, Debug)]
+pub struct Evt2Decoder {
+    state: State,
+    high: Option<u32>,
+    skipped: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum State {
+    LineStart,
+    /// The first bytes after which a `%` may begin a line or a word.
+    Percent {
+        bytes: [u8; 4],
+        count: u8,
+    },
+    /// Within a line of the header, whose first bytes are `% end` as far as it goes.
+    Line {
+        end: u8,
+    },
+    Word {
+        word: u32,
+        bytes: u8,
+    },
+}
+
+impl Evt2Decoder {
+    fn word(&mut self, word: u32) -> Option<Event> {
+        let polarity = match word >> 28 {
+            TIME_HIGH => {
+                self.high = Some(word & 0x0FFF_FFFF);
+                return None;
+            }
+            DOWN => Polarity::Down,
+            UP => Polarity::Up,
+            _ => {
+                self.skipped = self.skipped.saturating_add(4);
+                return None;
+            }
+        };
+        let Some(high) = self.high.filter(|_| word & FAR_ROWS == 0) else {
+            self.skipped = self.skipped.saturating_add(4);
+            return None;
+        };
+        let low = word >> 22 & ((1 << LOW_BITS) - 1);
+        let (x, y) = (word >> X_BITS & X_MASK, word & X_MASK);
+        let tick = Tick::from_micros((high << LOW_BITS | low).into());
+        Some(Event { tick, address: (y << X_BITS | x) as u16, polarity })
+    }
+}
+
+/// After a byte of a line, which may be the end of the header.
+fn within_line(end: u8, byte: u8) -> State {
+    const END: &[u8; 6] = b"% end\n";
+    let is_end = END.get(usize::from(end)) == Some(&byte);
+    match (byte, is_end) {
+        (b'\n', true) => State::Word { word: 0, bytes: 0 },
+        (b'\n', false) => State::LineStart,
+        (_, true) => State::Line { end: end + 1 },
+        (_, false) => State::Line { end: u8::MAX },
+    }
+}
+
+fn is_text(byte: u8) -> bool {
+    matches!(byte, b' '..=b'~' | b'\t' | b'\r' | b'\n')
+}
+
+impl EventDecoder for Evt2Decoder {
+    fn push(&mut self, byte: u8) -> Option<Event> {
+        self.state = match self.state {
+            State::LineStart if byte == b'%' => State::Percent { bytes: [byte, 0, 0, 0], count: 1 },
+            State::LineStart => State::Word { word: byte.into(), bytes: 1 },
+            State::Percent { bytes: [first, second, third, _], count: 3 } => {
+                if !is_text(byte) {
+                    self.state = State::Word { word: 0, bytes: 0 };
+                    return self.word(u32::from_le_bytes([first, second, third, byte]));
+                }
+                self.state = State::Line { end: 1 };
+                // Fewer than four bytes make no word, and so no event.
+                for byte in [second, third, byte] {
+                    self.push(byte);
+                }
+                return None;
+            }
+            State::Percent { mut bytes, count } => {
+                if let Some(place) = bytes.get_mut(usize::from(count)) {
+                    *place = byte;
+                }
+                State::Percent { bytes, count: count + 1 }
+            }
+            State::Line { end } => within_line(end, byte),
+            State::Word { word, bytes: 3 } => {
+                self.state = State::Word { word: 0, bytes: 0 };
+                return self.word(word | u32::from(byte) << 24);
+            }
+            State::Word { word, bytes } => {
+                State::Word { word: word | u32::from(byte) << (8 * bytes), bytes: bytes + 1 }
+            }
+        };
+        None
+    }
+
+    fn skipped(&self) -> u32 {
+        self.skipped
+    }
+
+    fn is_partial(&self) -> bool {
+        !matches!(self.state, State::LineStart | State::Word { bytes: 0, .. })
+    }
+}

@@ -1,0 +1,246 @@
+//! A string of bits, high bit first, and its exponential Golomb codes.
+
+use crate::wire::bytes::Cursor;
+
+/// What bits can be put into.
+pub(super) trait PutBits {
+    /// Appends a value of `count` bits, up to 32.
+    fn put(&mut self, value: u32, count: u32);
+
+    /// Appends `code(value, k)`, for values below 2³²-1 and `k` up to 15.
+    fn put_code(&mut self, value: u32, k: u32);
+}
+
+/// `value` as `code(value, k)`: a number, how many bits that has, and the low `k` bits.
+#[inline]
+fn code(value: u32, k: u32) -> (u32, u32, u32) {
+    let number = (value >> k) + 1;
+    (number, 32 - number.leading_zeros(), value & ((1 << k) - 1))
+}
+
+/// A string of fewer than 32 bits. One that became longer knows only that it did.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Word {
+    bits: u32,
+    count: u32,
+}
+
+impl PutBits for Word {
+    #[inline]
+    fn put(&mut self, value: u32, count: u32) {
+        self.bits = self.bits.wrapping_shl(count) | value;
+        self.count += count;
+    }
+
+    #[inline]
+    fn put_code(&mut self, value: u32, k: u32) {
+        let (number, bits, low) = code(value, k);
+        self.put(number << k | low, 2 * bits - 1 + k);
+    }
+}
+
+/// Appends bits to a buffer, 32 at a time.
+#[derive(Debug)]
+pub(super) struct BitWriter<'a> {
+    bytes: Cursor<'a>,
+    /// The low `pending` bits are not in the buffer yet, fewer than 32; those above are.
+    bits: u32,
+    pending: u32,
+    /// Whether bits found no room.
+    is_full: bool,
+}
+
+/// A place to go back to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mark {
+    written: usize,
+    bits: u32,
+    pending: u32,
+}
+
+impl<'a> BitWriter<'a> {
+    /// Goes on after what is written.
+    pub(super) fn new(bytes: Cursor<'a>) -> Self {
+        Self { bytes, bits: 0, pending: 0, is_full: false }
+    }
+
+    pub(super) fn mark(&self) -> Mark {
+        Mark { written: self.bytes.written(), bits: self.bits, pending: self.pending }
+    }
+
+    pub(super) fn back_to(&mut self, mark: Mark) {
+        self.bytes.truncate(mark.written);
+        (self.bits, self.pending, self.is_full) = (mark.bits, mark.pending, false);
+    }
+
+    /// Appends a word, if it is one and fits.
+    #[inline]
+    pub(super) fn put_word(&mut self, word: Word) -> Option<()> {
+        (word.count < 32 && self.fits(word.count)).then(|| self.put(word.bits, word.count))
+    }
+
+    /// Whether there is room for so many bits more.
+    #[inline]
+    fn fits(&self, count: u32) -> bool {
+        self.pending + count <= 8 * self.bytes.room() as u32
+    }
+
+    /// Appends bits that complete 32.
+    #[inline(never)]
+    fn put_across(&mut self, value: u32, count: u32) {
+        let free = 32 - self.pending;
+        let rest = count - free;
+        let bits = self.bits.unbounded_shl(free) | value >> rest;
+        self.is_full |= self.bytes.put(&bits.to_be_bytes()).is_none();
+        self.bits = value;
+        self.pending = rest;
+    }
+
+    /// Appends whole bytes, before any bits; those that do not fit are left out.
+    pub(super) fn put_bytes(&mut self, bytes: &[u8]) {
+        let _ = self.bytes.put(bytes);
+    }
+
+    /// How many whole bytes there is room for.
+    pub(super) fn room(&self) -> usize {
+        self.bytes.room()
+    }
+
+    /// Whether there was room for all bits, and is for those that are not in the buffer yet.
+    pub(super) fn is_within_limit(&self) -> bool {
+        !self.is_full && self.fits(0)
+    }
+
+    /// Writes what is not in the buffer yet, with the last byte filled up with 0.
+    pub(super) fn finish(mut self) -> Cursor<'a> {
+        let bytes = self.bits.unbounded_shl(32 - self.pending).to_be_bytes();
+        let count = self.pending.div_ceil(8) as usize;
+        let _ = self.bytes.put(bytes.get(..count).unwrap_or_default());
+        self.bytes
+    }
+}
+
+impl PutBits for BitWriter<'_> {
+    #[inline]
+    fn put(&mut self, value: u32, count: u32) {
+        if self.pending + count < 32 {
+            self.bits = self.bits << count | value;
+            self.pending += count;
+        } else {
+            self.put_across(value, count);
+        }
+    }
+
+    fn put_code(&mut self, value: u32, k: u32) {
+        let (number, bits, low) = code(value, k);
+        self.put(0, bits - 1);
+        self.put(number, bits);
+        self.put(low, k);
+    }
+}
+
+/// What bits can be taken from.
+pub(super) trait TakeBits {
+    /// The next `count` bits, 1 to 32.
+    fn take(&mut self, count: u32) -> Option<u32>;
+
+    /// The value of the next `code(value, k)`, for `k` up to 15.
+    fn take_code(&mut self, k: u32) -> Option<u32>;
+}
+
+/// The bits that come next, from the highest on. Who takes more than there are gets anything.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Glance {
+    bits: u32,
+    taken: u32,
+}
+
+impl TakeBits for Glance {
+    #[inline]
+    fn take(&mut self, count: u32) -> Option<u32> {
+        let value = self.bits.wrapping_shr(32_u32.wrapping_sub(count));
+        self.bits = self.bits.wrapping_shl(count);
+        self.taken += count;
+        Some(value)
+    }
+
+    #[inline]
+    fn take_code(&mut self, k: u32) -> Option<u32> {
+        let number = self.take(2 * self.bits.leading_zeros() + 1 + k)?;
+        Some(number.wrapping_sub(1 << k))
+    }
+}
+
+/// Takes bits from a buffer.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BitReader<'a> {
+    bytes: &'a [u8],
+    /// How many bits are taken.
+    taken: usize,
+}
+
+impl<'a> BitReader<'a> {
+    pub(super) fn new(bytes: &'a [u8]) -> Self {
+        Self { bytes, taken: 0 }
+    }
+
+    /// The next 25 bits or more, and 0 after the last.
+    #[inline]
+    pub(super) fn glance(&self) -> Glance {
+        let rest = self.bytes.get(self.taken / 8..).unwrap_or_default();
+        let bytes = rest.first_chunk().copied().unwrap_or_else(|| end(rest));
+        Glance { bits: u32::from_be_bytes(bytes) << (self.taken % 8), taken: 0 }
+    }
+
+    /// Takes what was taken at a glance, if there was as much.
+    #[inline]
+    pub(super) fn pass(&mut self, glance: Glance) -> Option<()> {
+        let taken = glance.taken as usize;
+        if glance.taken > 25 || taken > self.left() {
+            return None;
+        }
+        self.taken += taken;
+        Some(())
+    }
+
+    #[inline]
+    fn left(&self) -> usize {
+        8 * self.bytes.len() - self.taken
+    }
+
+    /// Whether all that is left are fewer than 8 bits of 0.
+    pub(super) fn is_padding(self) -> bool {
+        self.left() < 8 && self.glance().bits == 0
+    }
+}
+
+/// The last bytes, fewer than 4, and 0.
+#[cold]
+#[inline(never)]
+fn end(bytes: &[u8]) -> [u8; 4] {
+    core::array::from_fn(|i| bytes.get(i).copied().unwrap_or_default())
+}
+
+impl TakeBits for BitReader<'_> {
+    fn take(&mut self, count: u32) -> Option<u32> {
+        let mut value = 0;
+        for _ in 0..count {
+            let mut glance = self.glance();
+            value = value << 1 | glance.take(1)?;
+            self.pass(glance)?;
+        }
+        Some(value)
+    }
+
+    fn take_code(&mut self, k: u32) -> Option<u32> {
+        let mut zeros = 0;
+        while self.take(1)? == 0 {
+            zeros += 1;
+            if zeros == 32 {
+                return None;
+            }
+        }
+        let number = 1_u32 << zeros | self.take(zeros)?;
+        Some((number - 1).unbounded_shl(k) | self.take(k)?)
+    }
+}

@@ -1,0 +1,94 @@
+//! The bits of an event: what is new since the one before. The module's page specifies them.
+
+use core::num::NonZeroU32;
+
+use super::Coding;
+use super::bits::{PutBits, TakeBits};
+use crate::Polarity;
+use crate::event::{Event, Tick};
+
+/// The longest time between two events of a frame, in µs: 17.9 minutes.
+const MAX_SINCE: u32 = 1 << 30;
+
+/// What the next event is counted from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    coding: Coding,
+    tick: Tick,
+    /// The lowest address of an event at the same tick; 65 536 after the highest.
+    next_address: u32,
+}
+
+impl Place {
+    /// The beginning of a frame. The coding is within its limits.
+    pub(super) fn new(coding: Coding, tick: Tick) -> Self {
+        Self { coding, tick, next_address: 0 }
+    }
+
+    /// Puts the bits of an event; `None` if it lies too far away.
+    #[inline]
+    pub(super) fn put(&self, event: Event, bits: &mut impl PutBits) -> Option<()> {
+        let Coding { period, address_bits, jitter_bits } = self.coding;
+        let address = u32::from(event.address);
+        let since = event.tick.since(self.tick);
+        match address.checked_sub(self.next_address) {
+            Some(distance) if since == 0 => {
+                bits.put(0, 1);
+                bits.put_code(distance, address_bits.into());
+            }
+            _ => {
+                if since.unsigned_abs() > MAX_SINCE {
+                    return None;
+                }
+                let (steps, jitter) = nearest_step(since, period.into());
+                bits.put(1, 1);
+                bits.put_code(zigzag(steps.wrapping_sub(1)), 0);
+                bits.put_code(zigzag(jitter), jitter_bits.into());
+                bits.put_code(address, address_bits.into());
+            }
+        }
+        bits.put((event.polarity == Polarity::Up).into(), 1);
+        Some(())
+    }
+
+    /// Takes the bits of an event; `None` if they are of none.
+    #[inline]
+    pub(super) fn take(&self, bits: &mut impl TakeBits) -> Option<Event> {
+        let Coding { period, address_bits, jitter_bits } = self.coding;
+        let (mut tick, mut next_address) = (self.tick, self.next_address);
+        if bits.take(1)? == 1 {
+            let steps = unzigzag(bits.take_code(0)?).wrapping_add(1);
+            let jitter = unzigzag(bits.take_code(jitter_bits.into())?);
+            let since = steps.wrapping_mul(period.get().into()).wrapping_add(jitter);
+            tick = tick.shifted(since);
+            next_address = 0;
+        }
+        let address = next_address.checked_add(bits.take_code(address_bits.into())?)?;
+        let polarity = if bits.take(1)? == 1 { Polarity::Up } else { Polarity::Down };
+        Some(Event { tick, address: address.try_into().ok()?, polarity })
+    }
+
+    /// Goes on behind an event.
+    #[inline]
+    pub(super) fn pass(&mut self, event: Event) {
+        self.tick = event.tick;
+        self.next_address = u32::from(event.address) + 1;
+    }
+}
+
+/// `since` as steps of the period, and what is left: at most half a period.
+fn nearest_step(since: i32, period: NonZeroU32) -> (i32, i32) {
+    let magnitude = (since.unsigned_abs() + period.get() / 2) / period;
+    let steps = if since < 0 { -(magnitude as i32) } else { magnitude as i32 };
+    (steps, since.wrapping_sub(steps.wrapping_mul(period.get() as i32)))
+}
+
+/// 0, -1, 1, -2 … to 0, 1, 2, 3 …
+fn zigzag(value: i32) -> u32 {
+    (value << 1 ^ value >> 31) as u32
+}
+
+/// The inverse of [`zigzag`].
+fn unzigzag(code: u32) -> i32 {
+    (code >> 1) as i32 ^ -((code & 1) as i32)
+}

@@ -1,0 +1,210 @@
+//! The layout of a frame, and a checked view of one.
+
+use core::num::NonZeroU16;
+
+use crc::{CRC_32_ISO_HDLC, Crc, Table};
+
+use super::bits::BitReader;
+use super::delta::Place;
+use super::{Coding, LinkError};
+use crate::SampleKind;
+use crate::event::{Event, Keyframe, Tick};
+
+/// The bytes of a frame without keyframes and events.
+pub const MIN_FRAME: usize = HEADER + CHECKSUM;
+/// The bytes of the longest frame.
+pub const MAX_FRAME: usize = MIN_FRAME + MAX_LENGTH;
+
+pub(super) const HEADER: usize = 14;
+pub(super) const CHECKSUM: usize = 4;
+pub(super) const MAX_LENGTH: usize = u8::MAX as usize;
+pub(super) const MAGIC: u8 = 0xA5;
+pub(super) const VERSION: u8 = 2;
+/// Where the version and flags are, and the length.
+pub(super) const FLAGS_AT: usize = 1;
+pub(super) const LENGTH_AT: usize = 13;
+
+pub(super) mod flag {
+    pub(in crate::wire::link) const LOST: u8 = 1;
+    pub(in crate::wire::link) const KEYFRAMES: u8 = 2;
+}
+
+static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
+
+pub(super) fn checksum(bytes: &[u8]) -> u32 {
+    CRC.checksum(bytes)
+}
+
+/// A frame, read in place: nothing is copied.
+///
+/// Checked once, by [`new`](Self::new); reading cannot fail then.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameView<'a> {
+    flags: u8,
+    session: u16,
+    sequence: u16,
+    tick: Tick,
+    coding: Coding,
+    kind: SampleKind,
+    keyframes: &'a [u8],
+    events: &'a [u8],
+}
+
+impl<'a> FrameView<'a> {
+    /// The frame that these bytes begin with, and how long it is.
+    ///
+    /// # Errors
+    /// Every error but [`Full`](LinkError::Full) and [`KeyframeOrder`](LinkError::KeyframeOrder),
+    /// in the order of the bytes that tell it.
+    pub fn new(bytes: &'a [u8]) -> Result<(Self, usize), LinkError> {
+        let length = Self::length(bytes)?;
+        let truncated = LinkError::Truncated { needed: length, found: bytes.len() };
+        let (body, rest) = bytes.split_at_checked(length - CHECKSUM).ok_or(truncated)?;
+        let found = u32::from_le_bytes(*rest.first_chunk().ok_or(truncated)?);
+        let computed = checksum(body);
+        if found != computed {
+            return Err(LinkError::Checksum { found, computed });
+        }
+        Ok((Self::read(body).ok_or(LinkError::Header)?, length))
+    }
+
+    /// A frame without its checksum, which was checked.
+    pub(super) fn read(body: &'a [u8]) -> Option<Self> {
+        let (header, payload) = body.split_first_chunk::<HEADER>()?;
+        let &[_, flags, n0, n1, s0, s1, t0, t1, t2, t3, p0, p1, coding, _] = header;
+        let (kind, keyframes, events) = split_keyframes(flags, payload)?;
+        Some(Self {
+            flags,
+            session: u16::from_le_bytes([n0, n1]),
+            sequence: u16::from_le_bytes([s0, s1]),
+            tick: u32::from_le_bytes([t0, t1, t2, t3]).into(),
+            coding: Coding::from_byte(NonZeroU16::new(u16::from_le_bytes([p0, p1]))?, coding),
+            kind,
+            keyframes,
+            events,
+        })
+    }
+
+    /// How long the frame is that these bytes begin with, as soon as they tell.
+    ///
+    /// # Errors
+    /// They do not tell yet, or begin no frame.
+    pub fn length(bytes: &[u8]) -> Result<usize, LinkError> {
+        let truncated = LinkError::Truncated { needed: MIN_FRAME, found: bytes.len() };
+        match *bytes {
+            [] => return Err(truncated),
+            [magic, ..] if magic != MAGIC => return Err(LinkError::NotAFrame { found: magic }),
+            [_, version, ..] if version >> 4 != VERSION => {
+                return Err(LinkError::Version { found: version >> 4 });
+            }
+            [_, _, _, _, _, _, _, _, _, _, 0, 0, ..] => return Err(LinkError::Header),
+            _ => {}
+        }
+        let length = bytes.get(LENGTH_AT).ok_or(truncated)?;
+        Ok(MIN_FRAME + usize::from(*length))
+    }
+
+    /// The number of the sender's session: another after each of its starts.
+    pub fn session(&self) -> u16 {
+        self.session
+    }
+
+    /// The frame's number in its session, from 0 on; wraps after 65 535.
+    pub fn sequence(&self) -> u16 {
+        self.sequence
+    }
+
+    /// The tick of the keyframes, at or before that of the first event unless events are out of
+    /// order.
+    pub fn tick(&self) -> Tick {
+        self.tick
+    }
+
+    /// Whether the sender lost items before this frame, or its encoders changed without events.
+    pub fn is_after_loss(&self) -> bool {
+        self.flags & flag::LOST != 0
+    }
+
+    /// The period of the sender's samples, in µs.
+    pub fn period(&self) -> NonZeroU16 {
+        self.coding.period
+    }
+
+    /// What decoders should hold before the events of this frame.
+    pub fn keyframes(&self) -> impl Iterator<Item = Keyframe> + use<'a> {
+        let Self { tick, kind, keyframes, .. } = *self;
+        keyframes.chunks_exact(keyframe_size(kind)).filter_map(move |entry| {
+            let (&address, bits) = entry.split_first_chunk()?;
+            let address = u16::from_le_bytes(address);
+            let bits = match *bits {
+                [b0, b1] => u16::from_le_bytes([b0, b1]).into(),
+                [b0, b1, b2, b3] => u32::from_le_bytes([b0, b1, b2, b3]),
+                _ => return None,
+            };
+            Some(Keyframe { tick, address, kind, bits })
+        })
+    }
+
+    /// The events, in the order they were written.
+    pub fn events(&self) -> Events<'a> {
+        Events { bits: BitReader::new(self.events), place: Place::new(self.coding, self.tick) }
+    }
+}
+
+/// The bytes of a keyframe: its address and its sample.
+pub(super) const fn keyframe_size(kind: SampleKind) -> usize {
+    2 + kind.size()
+}
+
+/// The keyframes with their sample type, and the events.
+fn split_keyframes(flags: u8, payload: &[u8]) -> Option<(SampleKind, &[u8], &[u8])> {
+    if flags & flag::KEYFRAMES == 0 {
+        return Some((SampleKind::F32, &[], payload));
+    }
+    let (&[count, kind], rest) = payload.split_first_chunk()?;
+    let kind = SampleKind::from_byte(kind)?;
+    let (keyframes, events) = rest.split_at_checked(usize::from(count) * keyframe_size(kind))?;
+    Some((kind, keyframes, events))
+}
+
+/// The events of a frame; see [`FrameView::events`].
+#[derive(Clone, Debug)]
+pub struct Events<'a> {
+    bits: BitReader<'a>,
+    place: Place,
+}
+
+impl Events<'_> {
+    /// After the last event: whether all bits were read. Not so if a sender writes what no event
+    /// can be.
+    pub fn is_complete(&self) -> bool {
+        self.bits.is_padding()
+    }
+
+    /// An event that a glance does not show: longer, or none.
+    #[cold]
+    #[inline(never)]
+    fn take_long(&mut self) -> Option<Event> {
+        if self.is_complete() {
+            return None;
+        }
+        let mut bits = self.bits;
+        let event = self.place.take(&mut bits)?;
+        self.bits = bits;
+        Some(event)
+    }
+}
+
+impl Iterator for Events<'_> {
+    type Item = Event;
+
+    fn next(&mut self) -> Option<Event> {
+        let mut glance = self.bits.glance();
+        let event = match self.place.take(&mut glance) {
+            Some(event) if self.bits.pass(glance).is_some() => event,
+            _ => self.take_long()?,
+        };
+        self.place.pass(event);
+        Some(event)
+    }
+}

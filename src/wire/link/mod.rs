@@ -1,0 +1,98 @@
+//! Framed events over any transport of bytes that keeps their order: UART, SPI to an FPGA, USB, TCP.
+//!
+//! # Specification, version 2
+//!
+//! A link is a run of frames. All numbers are little endian.
+//!
+//! | byte | field | |
+//! |---|---|---|
+//! | 0 | magic | `A5` |
+//! | 1 | version and flags | version 2 in the high nibble; flags 1 *lost*, 2 *keyframes*; others are 0 |
+//! | 2-3 | session | another after each start of the sender |
+//! | 4-5 | sequence | of the frame: 0 first, +1 each, wraps |
+//! | 6-9 | first tick | µs, of the keyframes, and what the first event's time is counted from |
+//! | 10-11 | period | µs from sample to sample, 1 to 65 535 |
+//! | 12 | coding | address bits in the low nibble, jitter bits in the high one |
+//! | 13 | length | bytes of keyframes and events, 0 to 255 |
+//! | | keyframes | with the flag *keyframes*: their count, their sample type, then each its address (2 bytes) and bits (2 or 4) |
+//! | | events | a string of bits, below |
+//! | | checksum | CRC-32/ISO-HDLC, the one of zlib, of all bytes before it |
+//!
+//! *lost*: before this frame the sender lost items, or its encoders changed without events. **Sample
+//! types:** 0 is `f32`; 1 to 17 fixed point of 16 bits with 0 to 16 of fraction; 18 to 50 fixed point of
+//! 32 bits with 0 to 32 of fraction.
+//!
+//! **Events** follow each other without a gap, each byte filled from its high bit; the last is filled
+//! up with 0. `code(v, k)` is the exponential Golomb code: with `n = (v >> k) + 1`, as many 0 as `n`
+//! has bits after its first 1, then `n`, then the low `k` bits of `v`. An event is
+//!
+//! - `0` if it has the tick of the event before and a higher address (the first event: the first
+//!   tick and any address), then `code(address - previous address - 1, address bits)`;
+//! - `1` otherwise, then its time since the event before as `steps * period + jitter`, both signed,
+//!   the jitter at most half a period: `code(zigzag(steps - 1), 0)`, `code(zigzag(jitter), jitter
+//!   bits)`, `code(address, address bits)`, where zigzag maps 0, -1, 1, -2 to 0, 1, 2, 3;
+//! - then `1` for up or `0` for down.
+//!
+//! A rest of fewer than 8 bits, all 0, is no event. One of six channels thus takes 3 to 7 bits an
+//! event; the first event one period after the one before takes 2 more, other times more still.
+//!
+//! **Keyframes** say what the decoder of each address should hold after all events of earlier frames and
+//! before those of this one. They make a step decoder exact again after a loss.
+//!
+//! **Order:** a reader delivers frames by rising sequence. It leaves out those that come again or late.
+//!
+//! **Resynchronisation:** at any byte that is not a magic, at a header that makes no sense, and at a
+//! checksum that does not match, the reader goes on with the next byte. A frame in whose place others
+//! are found is lost and shows in the sequence.
+//!
+//! # Parts
+//!
+//! Sending: a [`Transmitter`] takes items from a queue and turns them into frames, in their order. Below it, a [`Framer`] counts frames and a [`FrameWriter`] writes one. Receiving: a
+//! [`Reader`] finds frames in bytes cut anywhere, a [`FrameView`] reads one in place, and a
+//! [`Receiver`] applies them to decoders and says which are exact.
+//!
+//! ```
+//! use spikewire::{Bank, EventQueue, Overflow, Tick, link::*, temporal::StepForward};
+//!
+//! static GYRO: StepForward<f32> = StepForward::new(0.1);
+//! let mut bank = Bank::<_, 3>::new(&GYRO);
+//! static EVENTS: EventQueue<64> = EventQueue::new(Overflow::DropOldest);
+//! let mut transmitter = Transmitter::new(Coding::for_channels(3, 1_000), 1);
+//! let mut reader = Reader::<MAX_FRAME>::new();
+//! let mut receiver = Receiver::<_, 3>::new(&GYRO);
+//!
+//! // In the interrupt:
+//! for (micros, rate) in [(1_000, 0.0), (2_000, 0.3), (3_000, 0.35)] {
+//!     bank.encode_into(Tick::from_micros(micros), [rate, 0.0, -rate], &EVENTS);
+//! }
+//! bank.keyframe_into(Tick::from_micros(3_000), &EVENTS); // once a second, after a sample
+//!
+//! // In main:
+//! let mut events = EVENTS.consumer().expect("the only consumer");
+//! let mut buffer = [0; MAX_FRAME];
+//! while let Some(bytes) = transmitter.next_frame(&mut events, &mut buffer)? {
+//!     let mut input = bytes; // what arrives at the other end
+//!     while let Some(received) = reader.next_frame(&mut input) {
+//!         receiver.apply(&received, |_, _, _| ());
+//!     }
+//! }
+//! assert_eq!(receiver.exact(0), Some(0.2));
+//! assert_eq!(receiver.exact(2), Some(-0.2));
+//! # Ok::<(), LinkError>(())
+//! ```
+
+mod bits;
+mod delta;
+mod error;
+mod frame;
+mod reader;
+mod receiver;
+mod transmitter;
+mod writer;
+
+pub use error::LinkError;
+pub use frame::{Events, FrameView, MAX_FRAME, MIN_FRAME};
+pub use reader::{Gap, Reader, Received};
+pub use receiver::Receiver;
+pub use transmitter::Transmitter;
+pub use writer::{Coding, FrameWriter, Framer};

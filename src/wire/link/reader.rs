@@ -1,0 +1,251 @@
+//! Finds frames in bytes that arrive cut anywhere, damaged, or from the middle of a stream.
+
+use super::frame::{CHECKSUM, MAGIC};
+use super::{FrameView, LinkError, MIN_FRAME};
+
+/// Frames that never arrived whole, by their numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Gap {
+    /// How many, 1 to 65 279: sequences wrap, so that losses count modulo 65 536.
+    pub lost_frames: u16,
+}
+
+/// A frame that arrived, and what is missing before it.
+#[derive(Clone, Copy, Debug)]
+pub struct Received<'a> {
+    /// Frames lost since the one before.
+    pub gap: Option<Gap>,
+    /// Whether it is the first frame that the reader sees of the sender's session.
+    pub is_start: bool,
+    /// The frame.
+    pub frame: FrameView<'a>,
+}
+
+impl Received<'_> {
+    /// Whether something is missing between the frame before and this one, or the sender or the reader
+    /// began anew. Only the decoders that this frame has keyframes of are exact then.
+    pub fn is_after_break(&self) -> bool {
+        self.is_start || self.gap.is_some() || self.frame.is_after_loss()
+    }
+}
+
+/// Finds frames of up to `N` bytes; [`MAX_FRAME`](super::MAX_FRAME) takes all.
+///
+/// - **Order:** a frame that was delivered already, or that comes up to 256 frames late, is left out: also
+///   of one of the three sessions before, until the present one has delivered 256 frames.
+/// - **Memory:** `N + 68` bytes. **Work:** a checksum a frame; after damage up to one for each byte
+///   that looks like a frame's first.
+/// - **Delay:** none, but a frame whose length was damaged may hold up to 255 more bytes back.
+///
+/// Counters: [`lost_frames`](Self::lost_frames), [`bad_checksums`](Self::bad_checksums),
+/// [`repeated`](Self::repeated), [`late`](Self::late), [`skipped`](Self::skipped).
+#[derive(Clone, Debug)]
+pub struct Reader<const N: usize> {
+    buffer: [u8; N],
+    /// What of the buffer is in use; the frame handed out last comes first.
+    start: usize,
+    end: usize,
+    handed_out: usize,
+    /// The sender's last sessions, the present one first.
+    sessions: [Option<Session>; 4],
+    frames: u32,
+    lost_frames: u32,
+    bad_checksums: u32,
+    repeated: u32,
+    late: u32,
+    skipped: u32,
+}
+
+/// How many frames back a frame counts as late, rather than as one after a long gap.
+const LATE: u16 = 256;
+
+#[derive(Clone, Copy, Debug)]
+struct Session {
+    number: u16,
+    /// The sequence of the frame that comes next.
+    next: u16,
+    /// How many frames of it were delivered, up to 256.
+    delivered: u16,
+}
+
+/// What a frame is to the reader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Standing {
+    /// The first of its session.
+    First,
+    /// The next one, but for so many.
+    After(u16),
+    /// The one delivered last.
+    Repeated,
+    /// An earlier one.
+    Late,
+}
+
+impl<const N: usize> Default for Reader<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const N: usize> Reader<N> {
+    /// A reader that has seen nothing.
+    pub const fn new() -> Self {
+        const { assert!(N >= MIN_FRAME, "a reader has room for at least an empty frame") };
+        Self {
+            buffer: [0; N],
+            start: 0,
+            end: 0,
+            handed_out: 0,
+            sessions: [None; 4],
+            frames: 0,
+            lost_frames: 0,
+            bad_checksums: 0,
+            repeated: 0,
+            late: 0,
+            skipped: 0,
+        }
+    }
+
+    /// The next frame. Takes bytes from the front of `input`, all of them before it returns `None`.
+    pub fn next_frame(&mut self, input: &mut &[u8]) -> Option<Received<'_>> {
+        self.start += core::mem::take(&mut self.handed_out);
+        let (length, standing) = self.find(input)?;
+        self.handed_out = length;
+        let end = self.start + length - CHECKSUM;
+        let frame = FrameView::read(self.buffer.get(self.start..end)?)?;
+        self.frames = self.frames.saturating_add(1);
+
+        let number = frame.session();
+        let next = frame.sequence().wrapping_add(1);
+        let [present, earlier @ ..] = &mut self.sessions;
+        let is_start = standing == Standing::First;
+        if is_start {
+            let [second, third, _] = *earlier;
+            *earlier = [*present, second, third];
+            *present = None;
+        }
+        let delivered = present.map_or(0, |session| session.delivered).saturating_add(1).min(LATE);
+        if delivered == LATE {
+            *earlier = [None; 3];
+        }
+        *present = Some(Session { number, next, delivered });
+
+        let lost_frames = if let Standing::After(lost) = standing { lost } else { 0 };
+        self.lost_frames = self.lost_frames.saturating_add(lost_frames.into());
+        let gap = (lost_frames > 0).then_some(Gap { lost_frames });
+        Some(Received { gap, is_start, frame })
+    }
+
+    /// How many frames arrived whole.
+    pub const fn frames(&self) -> u32 {
+        self.frames
+    }
+
+    /// How many frames are missing in the sequence, over all gaps.
+    pub const fn lost_frames(&self) -> u32 {
+        self.lost_frames
+    }
+
+    /// How often bytes that looked like a frame had a wrong checksum. One damaged frame may count
+    /// more than once, or not at all.
+    pub const fn bad_checksums(&self) -> u32 {
+        self.bad_checksums
+    }
+
+    /// How many frames had the number of the one before, as when a bus sends again what it could not
+    /// confirm; they are left out.
+    pub const fn repeated(&self) -> u32 {
+        self.repeated
+    }
+
+    /// How many frames came after later ones; they are left out, and were counted as lost.
+    pub const fn late(&self) -> u32 {
+        self.late
+    }
+
+    /// How many bytes belonged to no frame.
+    pub const fn skipped(&self) -> u32 {
+        self.skipped
+    }
+
+    /// The length of the next frame to deliver, which is at `start` then.
+    fn find(&mut self, input: &mut &[u8]) -> Option<(usize, Standing)> {
+        loop {
+            let bytes = self.buffer.get(self.start..self.end).unwrap_or_default();
+            let frame = FrameView::new(bytes);
+            match frame {
+                Ok((frame, length)) => {
+                    let counter = match self.standing(&frame) {
+                        Standing::Repeated => &mut self.repeated,
+                        Standing::Late => &mut self.late,
+                        standing => return Some((length, standing)),
+                    };
+                    *counter = counter.saturating_add(1);
+                    self.start += length;
+                }
+                Err(LinkError::Truncated { needed, .. }) if needed <= N => {
+                    if input.is_empty() {
+                        return None;
+                    }
+                    self.take_in(input);
+                }
+                Err(error) => {
+                    if matches!(error, LinkError::Checksum { .. }) {
+                        self.bad_checksums = self.bad_checksums.saturating_add(1);
+                    }
+                    let next = bytes.iter().skip(1).position(|&byte| byte == MAGIC);
+                    let skipped = next.map_or(bytes.len(), |next| next + 1);
+                    self.start += skipped;
+                    self.skipped = self.skipped.saturating_add(skipped as u32);
+                }
+            }
+        }
+    }
+
+    fn standing(&self, frame: &FrameView<'_>) -> Standing {
+        let [present, earlier @ ..] = &self.sessions;
+        let ahead = |session: &Session| {
+            let ahead = frame.sequence().wrapping_sub(session.next);
+            (session.number == frame.session()).then_some(ahead)
+        };
+        match present.as_ref().and_then(ahead) {
+            Some(u16::MAX) => Standing::Repeated,
+            Some(ahead) if ahead > u16::MAX - LATE => Standing::Late,
+            Some(ahead) => Standing::After(ahead),
+            None => {
+                // What was on its way when the sender started anew.
+                let is_late = |ahead: u16| ahead.wrapping_add(LATE) < 2 * LATE;
+                let mut earlier = earlier.iter().flatten();
+                if earlier.any(|session| ahead(session).is_some_and(is_late)) {
+                    Standing::Late
+                } else {
+                    Standing::First
+                }
+            }
+        }
+    }
+
+    /// Moves what is in use to the front and appends as much of `input` as there is room for.
+    fn take_in(&mut self, input: &mut &[u8]) {
+        let used = self.end - self.start;
+        if self.start > 0 {
+            for to in 0..used {
+                let byte = self.buffer.get(self.start + to).copied().unwrap_or_default();
+                if let Some(slot) = self.buffer.get_mut(to) {
+                    *slot = byte;
+                }
+            }
+            (self.start, self.end) = (0, used);
+        }
+        let free = self.buffer.get_mut(used..).unwrap_or_default();
+        let count = free.len().min(input.len());
+        let (taken, rest) = input.split_at_checked(count).unwrap_or_default();
+        for (slot, &byte) in free.iter_mut().zip(taken) {
+            *slot = byte;
+        }
+        self.end = used + count;
+        *input = rest;
+    }
+}

@@ -1,0 +1,332 @@
+//! Frames to values, with the knowledge of which are exact.
+
+use core::fmt;
+use core::num::NonZeroU16;
+
+use super::Received;
+use crate::event::{Addresses, CodeOf, DecoderStateOf, Event, Keyframe, SampleOf, Schemes, Tick};
+use crate::{Code, ConfigError, Firing, Recovery, Scheme, error};
+
+/// The decoders of `N` channels at the end of a link, for any code.
+///
+/// A value is *exact* if it is, bit for bit, that of a decoder beside the encoder which loses nothing and is
+/// resynchronised by the keyframes that arrive. How near that is to the signal is the scheme's affair. After a
+/// loss no channel is exact; each becomes so again as its [`RECOVERY`](Scheme::RECOVERY) says. Meanwhile
+/// events go on being decoded, which gives an [`estimate`](Self::estimate).
+///
+/// - **Step codes** ([`Recovery::Keyframe`]) are exact from their next keyframe on. A value holds from its
+///   event on until the next event.
+/// - **Population codes** ([`Recovery::Spike`]) are exact from the next whole sample on in which the channel
+///   fires. A sample is over when an event of a later one arrives, or by [`advance`](Self::advance).
+/// - **Rate codes** ([`Recovery::Samples`]) are exact after so many whole samples. Their samples lie on the
+///   time grid of the link's [period](super::Coding::period): the sender takes a sample every period, with a
+///   jitter below half of it. Samples without events count too; where there are more of them than the code
+///   recovers in, the rest is passed over, as nothing changes any more.
+///
+/// - **Memory:** per channel the decoder's state and 2 samples; 8 bytes for each of the `EVENTS` that one
+///   sample may have over all channels, which step codes have no use for: give them 0.
+/// - **Latency:** none for step codes, for others until the sample is over.
+///
+/// ```
+/// use spikewire::{link::Receiver, temporal::StepForward};
+///
+/// static GYRO: StepForward<f32> = StepForward::new(0.1);
+/// let receiver = Receiver::<_, 6>::new(&GYRO); // the sender's scheme
+/// assert_eq!(receiver.exact(0), None); // until its first keyframe
+/// ```
+pub struct Receiver<T: Schemes<N>, const N: usize, const EVENTS: usize = 32> {
+    schemes: T,
+    channels: [Channel<DecoderStateOf<T, N>, SampleOf<T, N>>; N],
+    addresses: Addresses,
+    sample: Sampled<EVENTS>,
+    outside: u32,
+    misfits: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Channel<D, S> {
+    state: D,
+    value: S,
+    is_exact: bool,
+    /// How many whole samples were decoded since the last break, as far as it matters.
+    whole: usize,
+}
+
+/// The sample that is being received, of codes that take all events of a sample at once.
+#[derive(Clone, Copy, Debug)]
+struct Sampled<const EVENTS: usize> {
+    /// When it was taken; before the first sample `None`, or where the time grid lies.
+    tick: Option<Tick>,
+    /// Whether an event has come.
+    has_begun: bool,
+    events: [Event; EVENTS],
+    count: usize,
+    /// Whether nothing of it was lost.
+    is_whole: bool,
+    /// Whether nothing of the next sample was lost.
+    is_next_whole: bool,
+    period: u32,
+}
+
+impl<'a, P: Scheme, const N: usize, const EVENTS: usize> Receiver<&'a P, N, EVENTS> {
+    /// A receiver whose channels share one scheme; that of the sender.
+    pub fn new(scheme: &'a P) -> Self {
+        Self::with_schemes(scheme)
+    }
+}
+
+impl<'a, P: Scheme, const N: usize, const EVENTS: usize> Receiver<[&'a P; N], N, EVENTS> {
+    /// A receiver with a scheme for each channel; those of the sender.
+    pub fn per_channel(schemes: [&'a P; N]) -> Self {
+        Self::with_schemes(schemes)
+    }
+}
+
+impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> {
+    const NEURONS: usize = CodeOf::<T, N>::NEURONS;
+    const ADDRESSES: usize = N * Self::NEURONS;
+
+    fn with_schemes(schemes: T) -> Self {
+        const {
+            assert!(N >= 1, "a receiver has at least one channel");
+            assert!(Self::ADDRESSES <= 1 << 16, "addresses have 16 bits");
+        }
+        let channels = schemes.map_each(|scheme| {
+            let state = scheme.decoder_state();
+            let value = scheme.held(&state).unwrap_or_default();
+            Channel { state, value, is_exact: false, whole: 0 }
+        });
+        let addresses = Addresses { first: 0, slot_ticks: 0 };
+        Self { schemes, channels, addresses, sample: Sampled::NONE, outside: 0, misfits: 0 }
+    }
+
+    /// This receiver with addresses from this one on instead of 0; others are counted as
+    /// [outside](Self::outside).
+    ///
+    /// # Panics
+    /// If the last address is above 65 535.
+    #[must_use]
+    pub const fn with_first_address(mut self, first_address: u16) -> Self {
+        error::unwrap(error::first_address(first_address, Self::ADDRESSES));
+        self.addresses.first = first_address;
+        self
+    }
+
+    /// This receiver with addresses from this one on instead of 0.
+    ///
+    /// # Errors
+    /// The last address is above 65 535.
+    pub fn try_with_first_address(self, first_address: u16) -> Result<Self, ConfigError> {
+        error::first_address(first_address, Self::ADDRESSES)?;
+        Ok(Self { addresses: Addresses { first: first_address, ..self.addresses }, ..self })
+    }
+
+    /// This receiver for sub-timesteps of so many microseconds, where one of the sender's samples is taken at
+    /// the tick `start` and the others lie whole periods from it.
+    #[must_use]
+    pub const fn with_slot_ticks(mut self, slot_ticks: u32, start: Tick) -> Self {
+        self.addresses.slot_ticks = slot_ticks;
+        self.sample.tick = Some(start);
+        self
+    }
+
+    /// Applies a frame, and hands the channel, tick and new value of each keyframe, event or sample to
+    /// `on_value`, in order.
+    pub fn apply(
+        &mut self,
+        received: &Received<'_>,
+        mut on_value: impl FnMut(u16, Tick, SampleOf<T, N>),
+    ) {
+        let frame = &received.frame;
+        if received.is_after_break() {
+            self.mark_stale();
+        }
+        self.sample.period = NonZeroU16::get(frame.period()).into();
+        for keyframe in frame.keyframes() {
+            self.keyframe(keyframe, &mut on_value);
+        }
+        let mut events = frame.events();
+        for event in &mut events {
+            self.event(event, &mut on_value);
+        }
+        if !events.is_complete() {
+            self.misfits = self.misfits.saturating_add(1);
+            self.mark_stale();
+        }
+    }
+
+    /// Takes note that all events before this tick have arrived: samples that are over by then are decoded
+    /// and handed to `on_value`. Without it a sample is decoded when an event of a later one arrives. Step
+    /// codes have no use for it.
+    pub fn advance(&mut self, now: Tick, mut on_value: impl FnMut(u16, Tick, SampleOf<T, N>)) {
+        if T::Scheme::RECOVERY != Recovery::Keyframe {
+            self.finish_samples(now, &mut on_value);
+        }
+    }
+
+    /// Marks every channel as not exact, for a loss that the link did not see.
+    pub fn mark_stale(&mut self) {
+        for channel in &mut self.channels {
+            channel.is_exact = false;
+            channel.whole = 0;
+        }
+        self.sample.is_whole = false;
+        self.sample.is_next_whole = false;
+    }
+
+    /// The value of a channel, if it is exact: of a step code that of the last event, of others that of the
+    /// last sample that is over.
+    pub fn exact(&self, channel: u16) -> Option<SampleOf<T, N>> {
+        let channel = self.channels.get(usize::from(channel))?;
+        channel.is_exact.then_some(channel.value)
+    }
+
+    /// The value of a channel, exact or not; 0 for one that there is not.
+    pub fn estimate(&self, channel: u16) -> SampleOf<T, N> {
+        let channel = self.channels.get(usize::from(channel));
+        channel.map(|channel| channel.value).unwrap_or_default()
+    }
+
+    /// How many events and keyframes had an address of no channel.
+    pub const fn outside(&self) -> u32 {
+        self.outside
+    }
+
+    /// How many keyframes had another sample type or came for a code without keyframes, how many frames had
+    /// events that cannot be, and how many events found no room in their sample.
+    pub const fn misfits(&self) -> u32 {
+        self.misfits
+    }
+
+    fn keyframe(
+        &mut self,
+        keyframe: Keyframe,
+        on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
+    ) {
+        let channel =
+            usize::from(keyframe.address.wrapping_sub(self.addresses.first)) / Self::NEURONS;
+        let mut channels = self.channels.iter_mut().zip(self.schemes.each());
+        let Some((known, scheme)) = channels.nth(channel) else {
+            self.outside = self.outside.saturating_add(1);
+            return;
+        };
+        match keyframe.value() {
+            Some(value) if T::Scheme::RECOVERY == Recovery::Keyframe => {
+                scheme.resync(&mut known.state, value);
+                known.value = value;
+                known.is_exact = true;
+                on_value(channel as u16, keyframe.tick, value);
+            }
+            _ => self.misfits = self.misfits.saturating_add(1),
+        }
+    }
+
+    #[inline]
+    fn event(&mut self, event: Event, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
+        let address = usize::from(event.address.wrapping_sub(self.addresses.first));
+        if address >= Self::ADDRESSES {
+            self.outside = self.outside.saturating_add(1);
+        } else if T::Scheme::RECOVERY == Recovery::Keyframe {
+            let channel = address / Self::NEURONS;
+            let mut channels = self.channels.iter_mut().zip(self.schemes.each());
+            if let Some((known, scheme)) = channels.nth(channel) {
+                let neuron = (address % Self::NEURONS) as u16;
+                let firing = Firing { neuron, slot: 0, polarity: event.polarity };
+                let code = Code::assemble(core::iter::once(firing));
+                known.value = scheme.decode(&mut known.state, code);
+                on_value(channel as u16, event.tick, known.value);
+            }
+        } else {
+            self.sample_at(event.tick, on_value);
+            if let Some(place) = self.sample.events.get_mut(self.sample.count) {
+                *place = event;
+                self.sample.count += 1;
+            } else {
+                self.misfits = self.misfits.saturating_add(1);
+                self.sample.is_whole = false;
+            }
+        }
+    }
+
+    /// Goes on to the sample of an event at this tick.
+    fn sample_at(&mut self, tick: Tick, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
+        self.finish_samples(tick, on_value);
+        // What was lost before an event belongs to its sample at the latest.
+        self.sample.is_next_whole = true;
+        self.sample.has_begun = true;
+        if self.addresses.slot_ticks == 0 {
+            // Near the grid: what lies between is jitter, or a period that is not quite that of the link.
+            self.sample.tick = Some(tick);
+        }
+    }
+
+    /// Decodes the sample that is over at this tick, and those without events between it and the present one.
+    fn finish_samples(&mut self, now: Tick, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
+        let Some(tick) = self.sample.tick else { return };
+        let Sampled { period, is_next_whole, .. } = self.sample;
+        let since = now.since(tick).max(0) as u32;
+        // With sub-timesteps an event lies in the period after its sample, otherwise near its sample.
+        let has_slots = self.addresses.slot_ticks > 0;
+        let samples = if has_slots { since } else { since + period / 2 } / period;
+        if samples == 0 {
+            return;
+        }
+        self.sample.tick = Some(tick + samples.wrapping_mul(period));
+        if self.sample.has_begun {
+            self.decode(tick, on_value);
+            self.sample.is_whole = is_next_whole;
+            self.sample.count = 0;
+            if let Recovery::Samples(recovery) = T::Scheme::RECOVERY {
+                for sample in (1..samples).take(recovery) {
+                    self.decode(tick + sample.wrapping_mul(period), on_value);
+                }
+            }
+        }
+    }
+
+    /// Decodes the sample that is over in every channel.
+    fn decode(&mut self, tick: Tick, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
+        let events = self.sample.events.get(..self.sample.count).unwrap_or_default();
+        let channels = self.channels.iter_mut().zip(self.schemes.each());
+        for (channel, (known, scheme)) in channels.enumerate() {
+            let code: CodeOf<T, N> = self.addresses.code(channel, tick, events);
+            known.value = scheme.decode(&mut known.state, code);
+            if self.sample.is_whole {
+                known.whole = known.whole.saturating_add(1);
+                known.is_exact |= match T::Scheme::RECOVERY {
+                    Recovery::Samples(needed) => known.whole >= needed,
+                    Recovery::Spike => code.firings().next().is_some(),
+                    Recovery::Keyframe => false,
+                };
+            }
+            on_value(channel as u16, tick, known.value);
+        }
+    }
+}
+
+impl<const EVENTS: usize> Sampled<EVENTS> {
+    const NONE: Self = Self {
+        tick: None,
+        has_begun: false,
+        events: [Event::ZERO; EVENTS],
+        count: 0,
+        is_whole: false,
+        is_next_whole: false,
+        period: 1,
+    };
+}
+
+impl<T: Schemes<N> + Clone, const N: usize, const EVENTS: usize> Clone for Receiver<T, N, EVENTS> {
+    fn clone(&self) -> Self {
+        let Self { channels, addresses, sample, outside, misfits, .. } = *self;
+        Self { schemes: self.schemes.clone(), channels, addresses, sample, outside, misfits }
+    }
+}
+
+impl<T: Schemes<N>, const N: usize, const EVENTS: usize> fmt::Debug for Receiver<T, N, EVENTS> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut receiver = f.debug_struct("Receiver");
+        receiver.field("channels", &self.channels).field("addresses", &self.addresses);
+        receiver.finish_non_exhaustive()
+    }
+}

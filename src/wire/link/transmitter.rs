@@ -1,0 +1,103 @@
+//! Items to frames, in their order.
+
+use super::{Coding, FrameWriter, Framer, LinkError};
+use crate::event::{Item, Source, Taken};
+use crate::wire::Batch;
+
+/// Takes items from a source and turns them into frames, in their order.
+///
+/// - **Keyframes** lead a frame: one that follows an event starts the next.
+/// - **Losses and breaks** start a frame too, with the flag *lost*: no decoder is exact then until its next
+///   keyframe.
+/// - **Memory:** 40 bytes.
+///
+/// ```
+/// use spikewire::{Event, FromEvents, Polarity, Tick, link::{Coding, FrameView, MAX_FRAME, Transmitter}};
+///
+/// let boots = 7; // as counted in flash, or a number from a generator
+/// let mut link = Transmitter::new(Coding::for_channels(6, 1_000), boots);
+///
+/// let event = Event { tick: Tick::from_micros(5_000), address: 3, polarity: Polarity::Up };
+/// let mut source = FromEvents([event].into_iter());
+/// let mut buffer = [0; MAX_FRAME];
+/// while let Some(bytes) = link.next_frame(&mut source, &mut buffer)? {
+///     let (frame, _) = FrameView::new(bytes)?;
+///     assert!(frame.events().eq([event]));
+/// }
+/// # Ok::<(), spikewire::link::LinkError>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Transmitter {
+    framer: Framer,
+    /// Taken, and in no frame yet.
+    held: Option<Taken>,
+}
+
+impl Transmitter {
+    /// A sender that has sent nothing.
+    ///
+    /// `session` must differ from that of the start before, so that a reader sees the restart even if it
+    /// misses frames: a counter kept in flash or in a backup register, or a number from a generator of
+    /// random numbers.
+    pub const fn new(coding: Coding, session: u16) -> Self {
+        Self { framer: Framer::new(coding, session), held: None }
+    }
+
+    /// Writes the next frame, with as many items as fit and are there; `None` if there is nothing to
+    /// send. Call it until then.
+    ///
+    /// # Errors
+    /// [`LinkError::Full`]: the buffer has no room for a single item. Nothing is lost; 64 bytes are always
+    /// enough.
+    pub fn next_frame<'a>(
+        &mut self,
+        mut items: impl Source,
+        buffer: &'a mut [u8],
+    ) -> Result<Option<&'a [u8]>, LinkError> {
+        self.write_frame(&mut items, buffer)
+    }
+
+    fn write_frame<'a>(
+        &mut self,
+        items: &mut impl Source,
+        buffer: &'a mut [u8],
+    ) -> Result<Option<&'a [u8]>, LinkError> {
+        let Some(first) = self.held.take().or_else(|| items.take()) else { return Ok(None) };
+        self.held = Some(first);
+        if first.is_after_break() {
+            self.framer.mark_loss();
+        }
+        let mut frame = self.framer.start(first.item.tick(), buffer)?;
+        append(&mut frame, first.item)?;
+        loop {
+            self.held = items.take();
+            match self.held {
+                Some(next) if !next.is_after_break() && append(&mut frame, next.item).is_ok() => {}
+                _ => break,
+            }
+        }
+        Ok(Some(frame.finish()))
+    }
+}
+
+/// A break needs no bytes: the frame's flag says it.
+#[inline]
+fn append(frame: &mut FrameWriter<'_, '_>, item: Item) -> Result<(), LinkError> {
+    match item {
+        Item::Event(event) => frame.event(event),
+        Item::Keyframe(keyframe) => frame.keyframe(keyframe),
+        Item::Break(_) => Ok(()),
+    }
+}
+
+/// One frame a batch, for a sink. A buffer too short for any frame sends nothing.
+impl Batch for Transmitter {
+    const SHORTEST: usize = 64;
+
+    fn fill(&mut self, items: &mut impl Source, bytes: &mut [u8]) -> usize {
+        match self.write_frame(items, bytes) {
+            Ok(Some(frame)) => frame.len(),
+            _ => 0,
+        }
+    }
+}

@@ -1,0 +1,243 @@
+//! Writing frames into the caller's buffer.
+
+use core::num::NonZeroU16;
+
+use super::LinkError;
+use super::bits::{BitWriter, Word};
+use super::delta::Place;
+use super::frame::{
+    CHECKSUM, FLAGS_AT, HEADER, LENGTH_AT, MAGIC, MAX_LENGTH, VERSION, checksum, flag,
+    keyframe_size,
+};
+use crate::SampleKind;
+use crate::event::{Event, Keyframe, Tick};
+use crate::wire::bytes::Cursor;
+
+/// How a sender spends the bits of an event. Any choice carries any event; a good one is shorter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Coding {
+    /// The time from sample to sample, in µs.
+    pub period: NonZeroU16,
+    /// About the logarithm of the distance between neighbouring addresses that fire; 0 to 15, above
+    /// which it counts as 15.
+    pub address_bits: u8,
+    /// About the logarithm of the jitter of ticks, in µs, and one for its sign; 0 to 15, as above.
+    pub jitter_bits: u8,
+}
+
+impl Coding {
+    /// For channels of a neuron each, sampled every `period` µs (0 counts as 1) by a timer.
+    pub const fn for_channels(channels: u16, period: u16) -> Self {
+        let period = match NonZeroU16::new(period) {
+            Some(period) => period,
+            None => NonZeroU16::MIN,
+        };
+        // When few fire at a time; more cost a bit or two each.
+        let address_bits = (u16::BITS - (channels / 8).leading_zeros()) as u8;
+        Self { period, address_bits, jitter_bits: 0 }
+    }
+
+    /// This coding for ticks that jitter by this many bits of µs.
+    #[must_use]
+    pub const fn with_jitter_bits(self, jitter_bits: u8) -> Self {
+        Self { jitter_bits, ..self }
+    }
+
+    const fn within_limits(self) -> Self {
+        const fn nibble(bits: u8) -> u8 {
+            if bits > 15 { 15 } else { bits }
+        }
+        Self {
+            address_bits: nibble(self.address_bits),
+            jitter_bits: nibble(self.jitter_bits),
+            ..self
+        }
+    }
+
+    pub(super) const fn byte(self) -> u8 {
+        self.jitter_bits << 4 | self.address_bits
+    }
+
+    pub(super) const fn from_byte(period: NonZeroU16, byte: u8) -> Self {
+        Self { period, address_bits: byte & 0xF, jitter_bits: byte >> 4 }
+    }
+}
+
+/// Counts a sender's frames.
+///
+/// ```
+/// use spikewire::{Event, Polarity, Tick, link::{Coding, FrameView, Framer}};
+///
+/// let mut framer = Framer::new(Coding::for_channels(6, 1_000), 1);
+/// let tick = Tick::from_micros(2_000);
+/// let mut buffer = [0; 64];
+/// let mut frame = framer.start(tick, &mut buffer)?;
+/// let event = Event { tick, address: 5, polarity: Polarity::Down };
+/// frame.event(event)?;
+/// let bytes = frame.finish();
+///
+/// let (view, length) = FrameView::new(bytes)?;
+/// assert_eq!(length, bytes.len());
+/// assert!(view.events().eq([event]));
+/// # Ok::<(), spikewire::link::LinkError>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Framer {
+    coding: Coding,
+    session: u16,
+    sequence: u16,
+    flags: u8,
+}
+
+impl Framer {
+    /// A sender whose first frame is number 0 of this session; see [`Transmitter::new`](super::Transmitter).
+    pub const fn new(coding: Coding, session: u16) -> Self {
+        Self { coding: coding.within_limits(), session, sequence: 0, flags: 0 }
+    }
+
+    /// Marks the next frame as one before which items were lost, or encoders changed without events.
+    pub fn mark_loss(&mut self) {
+        self.flags |= flag::LOST;
+    }
+
+    /// Starts a frame at this tick, best that of its first event. Unless it is
+    /// [finished](FrameWriter::finish), nothing has happened.
+    ///
+    /// # Errors
+    /// [`LinkError::Full`]: the buffer is shorter than [`MIN_FRAME`](super::MIN_FRAME).
+    pub fn start<'f, 'a>(
+        &'f mut self,
+        tick: Tick,
+        buffer: &'a mut [u8],
+    ) -> Result<FrameWriter<'f, 'a>, LinkError> {
+        let limit = buffer.len().checked_sub(CHECKSUM).ok_or(LinkError::Full)?;
+        let [n0, n1] = self.session.to_le_bytes();
+        let [s0, s1] = self.sequence.to_le_bytes();
+        let [t0, t1, t2, t3] = tick.micros().to_le_bytes();
+        let coding = self.coding;
+        let [p0, p1] = coding.period.get().to_le_bytes();
+        let header = [MAGIC, 0, n0, n1, s0, s1, t0, t1, t2, t3, p0, p1, coding.byte(), 0];
+
+        let mut bytes = Cursor::new(buffer);
+        bytes.set_limit(limit.min(HEADER + MAX_LENGTH));
+        bytes.put(&header).ok_or(LinkError::Full)?;
+        let flags = self.flags;
+        let bits = BitWriter::new(bytes);
+        Ok(FrameWriter {
+            framer: self,
+            bits,
+            flags,
+            tick,
+            kind: None,
+            keyframes: 0,
+            events: 0,
+            place: Place::new(coding, tick),
+        })
+    }
+}
+
+/// The bytes before the first keyframe: how many, and their sample type.
+const RUN_HEADER: usize = 2;
+
+/// A frame that is being written: keyframes, then events.
+#[derive(Debug)]
+pub struct FrameWriter<'f, 'a> {
+    framer: &'f mut Framer,
+    bits: BitWriter<'a>,
+    flags: u8,
+    tick: Tick,
+    /// Of the keyframes, from the first on.
+    kind: Option<SampleKind>,
+    keyframes: u8,
+    events: u32,
+    place: Place,
+}
+
+impl<'a> FrameWriter<'_, 'a> {
+    /// Appends a keyframe, at the frame's tick.
+    ///
+    /// # Errors
+    /// The frame is full, has another tick, or has events or a keyframe of another sample type already; it
+    /// is as it was.
+    pub fn keyframe(&mut self, keyframe: Keyframe) -> Result<(), LinkError> {
+        let Keyframe { tick, address, kind, bits } = keyframe;
+        if self.events > 0 || tick != self.tick || self.kind.is_some_and(|first| first != kind) {
+            return Err(LinkError::KeyframeOrder);
+        }
+        let run = if self.kind.is_none() { RUN_HEADER } else { 0 };
+        if self.keyframes == u8::MAX || run + keyframe_size(kind) > self.bits.room() {
+            return Err(LinkError::Full);
+        }
+        if self.kind.is_none() {
+            self.kind = Some(kind);
+            self.flags |= flag::KEYFRAMES;
+            self.bits.put_bytes(&[0, kind.to_byte()]);
+        }
+        let [a0, a1] = address.to_le_bytes();
+        let [b0, b1, b2, b3] = bits.to_le_bytes();
+        let bytes = [a0, a1, b0, b1, b2, b3];
+        self.bits.put_bytes(bytes.get(..keyframe_size(kind)).unwrap_or_default());
+        self.keyframes += 1;
+        Ok(())
+    }
+
+    /// Appends an event.
+    ///
+    /// # Errors
+    /// [`LinkError::Full`]: it does not fit, or lies more than 2³⁰ µs from the one before; the frame is
+    /// as it was.
+    pub fn event(&mut self, event: Event) -> Result<(), LinkError> {
+        let mut word = Word::default();
+        self.place.put(event, &mut word).ok_or(LinkError::Full)?;
+        if self.bits.put_word(word).is_none() {
+            self.put_long(event)?;
+        }
+        self.place.pass(event);
+        self.events = self.events.saturating_add(1);
+        Ok(())
+    }
+
+    /// An event that is no word, or does not fit.
+    #[cold]
+    #[inline(never)]
+    fn put_long(&mut self, event: Event) -> Result<(), LinkError> {
+        let mark = self.bits.mark();
+        self.place.put(event, &mut self.bits).ok_or(LinkError::Full)?;
+        if !self.bits.is_within_limit() {
+            self.bits.back_to(mark);
+            return Err(LinkError::Full);
+        }
+        Ok(())
+    }
+
+    /// How many events it has.
+    pub fn events(&self) -> u32 {
+        self.events
+    }
+
+    /// Whether it has neither keyframes nor events.
+    pub fn is_empty(&self) -> bool {
+        self.events == 0 && self.keyframes == 0
+    }
+
+    /// Closes the frame and returns its bytes, ready to send. From here on it counts: one that is not
+    /// sent is a loss that the reader will see.
+    pub fn finish(self) -> &'a [u8] {
+        let mut bytes = self.bits.finish();
+        let length = bytes.written().saturating_sub(HEADER) as u8;
+        bytes.replace(FLAGS_AT, VERSION << 4 | self.flags);
+        bytes.replace(LENGTH_AT, length);
+        if self.keyframes > 0 {
+            bytes.replace(HEADER, self.keyframes);
+        }
+        bytes.set_limit(usize::MAX);
+        let checksum = checksum(bytes.as_slice());
+        // There is room: the limit kept it free.
+        let _ = bytes.put(&checksum.to_le_bytes());
+        self.framer.sequence = self.framer.sequence.wrapping_add(1);
+        self.framer.flags = 0;
+        bytes.into_slice()
+    }
+}
