@@ -54,6 +54,8 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "alloc")]
+extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
@@ -79,6 +81,8 @@ pub use event::{
     SpscQueue,
 };
 pub use num::{Sample, SampleKind};
+#[cfg(feature = "alloc")]
+pub use scheme::dynamic;
 pub use scheme::{
     Calibration, Code, Decoder, Differences, Encoder, Firing, Output, Polarity, Recovery, Scheme,
     Spike, Start, population, rate, temporal,

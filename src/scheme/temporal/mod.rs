@@ -8,6 +8,8 @@
 //! starts is known, so the code of that sample is not decoded.
 
 mod contrast;
+#[cfg(feature = "alloc")]
+pub(super) mod dynamic;
 mod moving_window;
 mod step_forward;
 mod steps;
