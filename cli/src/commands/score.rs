@@ -154,11 +154,11 @@ fn print_table(figures: &[Figures]) -> io::Result<()> {
     let mut output = stdout().lock();
     writeln!(
         output,
-        "| scheme    |  spikes | efficiency % |       RMSE |  SNR dB | spikes/s | parameters"
+        "| scheme    |  spikes | efficiency % |       RMSE |  SNR dB | spikes/s | parameters |"
     )?;
     writeln!(
         output,
-        "|-----------|--------:|-------------:|-----------:|--------:|---------:|-----------"
+        "|-----------|--------:|-------------:|-----------:|--------:|---------:|------------|"
     )?;
     for figures in figures {
         let Figures { scheme, spikes, efficiency, rmse, snr, spikes_per_second, brief, .. } =
@@ -166,7 +166,7 @@ fn print_table(figures: &[Figures]) -> io::Result<()> {
         let rate = spikes_per_second.map_or("-".to_owned(), |rate| format!("{rate:.1}"));
         writeln!(
             output,
-            "| {scheme:9} | {spikes:7} | {efficiency:12.2} | {rmse:10.5} | {snr:7.2} | {rate:>8} | {brief}"
+            "| {scheme:9} | {spikes:7} | {efficiency:12.2} | {rmse:10.5} | {snr:7.2} | {rate:>8} | {brief} |"
         )?;
     }
     Ok(())
