@@ -1,10 +1,13 @@
 //! Spikes from recordings and back, and the benchmark of the paper.
 
+mod bank;
 mod bench;
+mod brief;
 mod codec;
 mod commands;
 mod events;
 mod filter;
+mod fit;
 mod input;
 mod live;
 mod options;
@@ -15,12 +18,12 @@ mod resolve;
 #[cfg(any(test, feature = "capture"))]
 mod rtt;
 mod sample_type;
-mod saturated;
 mod scheme;
 mod settings;
 mod spikes;
 mod steep;
 mod stop;
+mod timeline;
 mod trial;
 mod values;
 

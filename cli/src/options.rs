@@ -8,32 +8,36 @@ use std::str::FromStr;
 /// Parameters, by the names of the paper's Table III, and what calibration takes from the signal.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct SchemeOptions {
-    /// tbr: the threshold is the differences' mean and this many of their standard deviations
+    /// tbr: the threshold is the differences' mean and this many of their standard deviations, such as `0.5`
     #[arg(long, allow_negative_numbers = true, help_heading = "Parameters")]
     pub factor: Option<f64>,
-    /// tbr: mean and deviation of the differences' magnitudes
+    /// tbr, with --factor: mean and deviation of the differences' magnitudes
     #[arg(long, help_heading = "Parameters")]
     pub magnitudes: bool,
-    /// tbr, sf, mw, t-hsa, bsa
+    /// tbr, sf, mw: how far a sample must move, in the signal's unit, such as `0.1`. t-hsa: the error allowed,
+    /// in the signal's unit summed over the filter. bsa: the gain demanded, likewise, or with
+    /// `--criterion mul` or `--form toolbox` a ratio, such as `0.955`
     #[arg(long, allow_negative_numbers = true, help_heading = "Parameters")]
     pub threshold: Option<f64>,
-    /// tbr: step of the decoder, as a number or as `2x` the threshold; `1x` unless given
+    /// tbr: what the decoder adds for a spike, in the signal's unit, `0.2`, or in thresholds, `2x`; `1x`
+    /// unless given
     #[arg(long, help_heading = "Parameters")]
     pub step: Option<Step>,
-    /// mw: the mean is taken over one sample more
+    /// mw: samples of the running mean, less one, as the paper counts: `5` takes 6
     #[arg(long, help_heading = "Parameters")]
     pub window: Option<usize>,
     /// hsa, t-hsa, bsa: `triang:15`, `hann:24`, `gauss:15`, `gauss:15:2.5` (with alpha), or a FILE of taps;
     /// `,peak=2` or `,sum=1` after a shape scales it
     #[arg(long, help_heading = "Parameters")]
     pub filter: Option<String>,
-    /// position, grf, grf-slots, grf-prob
+    /// position, grf, grf-slots, grf-prob: how many neurons share the range, such as `20`
     #[arg(long, help_heading = "Parameters")]
     pub neurons: Option<usize>,
-    /// grf-slots: sub-timesteps a sample
+    /// grf-slots: sub-timesteps a sample, such as `10`
     #[arg(long, help_heading = "Parameters")]
     pub slots: Option<usize>,
-    /// grf-slots, grf-prob: the smaller, the wider the fields; 1.5 unless given
+    /// grf-slots, grf-prob: distance of the centres in widths of a field, so the smaller, the wider; 1.5
+    /// unless given
     #[arg(long, help_heading = "Parameters")]
     pub beta: Option<f64>,
     /// grf-slots: neurons below this level of `--slots` are silent; 1 unless given
@@ -51,16 +55,16 @@ pub(crate) struct SchemeOptions {
     /// grf-prob: where the generator starts; 0 unless given
     #[arg(long, help_heading = "Parameters")]
     pub seed: Option<u64>,
-    /// hsa, t-hsa, bsa: the signal's minimum
+    /// hsa, t-hsa, bsa: the signal's minimum, in its unit; samples below it cannot be coded
     #[arg(long, allow_negative_numbers = true, help_heading = "Instead of calibration")]
     pub shift: Option<f64>,
-    /// position, grf, grf-slots, grf-prob: the signal's minimum
+    /// position, grf, grf-slots, grf-prob: the signal's minimum, in its unit
     #[arg(long, allow_negative_numbers = true, help_heading = "Instead of calibration")]
     pub min: Option<f64>,
-    /// position, grf, grf-slots, grf-prob: the signal's maximum
+    /// position, grf, grf-slots, grf-prob: the signal's maximum, in its unit
     #[arg(long, allow_negative_numbers = true, help_heading = "Instead of calibration")]
     pub max: Option<f64>,
-    /// tbr, sf, mw: the value before the first sample
+    /// tbr, sf, mw: the value before the first sample, in the signal's unit; the first sample unless given
     #[arg(long, allow_negative_numbers = true, help_heading = "Instead of calibration")]
     pub start: Option<f64>,
     /// Settings of the paper's benchmark, scaled to the signal's range, for what is not given

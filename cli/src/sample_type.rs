@@ -56,6 +56,16 @@ impl SampleType {
         }
     }
 
+    /// From one value to the next; 0 in floating point.
+    pub(crate) fn step(self) -> f64 {
+        match self {
+            Self::F32 => 0.0,
+            Self::Fixed16 { fraction } | Self::Fixed32 { fraction } => {
+                2_f64.powi(-i32::from(fraction))
+            }
+        }
+    }
+
     /// The smallest and the largest value that it holds.
     pub(crate) fn range(self) -> (f64, f64) {
         let (bits, fraction) = match self {

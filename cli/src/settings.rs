@@ -158,48 +158,49 @@ impl Settings {
     /// The same in a unit of which `one` makes a 1.
     pub(crate) fn scaled(&self, one: f64) -> Self {
         let mut scaled = self.clone();
-        match &mut scaled {
+        scaled.visit(|_, value| *value *= one);
+        scaled
+    }
+
+    /// Visits all numbers in the signal's unit, by the names that they have in files.
+    pub(crate) fn visit(&mut self, mut visit: impl FnMut(&'static str, &mut f64)) {
+        match self {
             Self::Contrast(contrast) => {
-                contrast.threshold *= one;
-                contrast.step *= one;
-                contrast.start *= one;
+                visit("threshold", &mut contrast.threshold);
+                visit("step", &mut contrast.step);
+                visit("start", &mut contrast.start);
             }
             Self::StepForward(step_forward) => {
-                step_forward.threshold *= one;
-                step_forward.start *= one;
+                visit("threshold", &mut step_forward.threshold);
+                visit("start", &mut step_forward.start);
             }
             Self::MovingWindow(moving_window) => {
-                moving_window.threshold *= one;
-                moving_window.start *= one;
-                for value in &mut moving_window.first {
-                    *value *= one;
-                }
+                visit("threshold", &mut moving_window.threshold);
+                visit("start", &mut moving_window.start);
+                moving_window.first.iter_mut().for_each(|value| visit("first", value));
             }
             Self::Rate(rate) => {
-                for tap in &mut rate.taps {
-                    *tap *= one;
-                }
-                rate.shift *= one;
+                rate.taps.iter_mut().for_each(|tap| visit("taps", tap));
+                visit("shift", &mut rate.shift);
                 if let RateRule::ThresholdHough { threshold }
                 | RateRule::BenSubtractive { threshold } = &mut rate.rule
                 {
-                    *threshold *= one;
+                    visit("threshold", threshold);
                 }
             }
             Self::Position(Centres::Listed(list)) => {
-                for centre in list.iter_mut() {
-                    *centre *= one;
+                for centre in list {
+                    visit("centres", centre);
                 }
             }
             Self::Position(Centres::Linear(range) | Centres::GaussianSpaced(range))
             | Self::Gaussian(range)
             | Self::Slots(Slots { fields: Fields { range, .. }, .. })
             | Self::Probabilistic(Probabilistic { fields: Fields { range, .. }, .. }) => {
-                range.min *= one;
-                range.max *= one;
+                visit("min", &mut range.min);
+                visit("max", &mut range.max);
             }
         }
-        scaled
     }
 
     /// What the encoder starts from; see [`crate::codec::Encode::prime`].

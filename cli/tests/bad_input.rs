@@ -81,7 +81,7 @@ fn parameters() {
     refused(
         "encode --scheme sf --threshold 0.001 --sample q8.8 -",
         &signal,
-        &["threshold 0 must be above 0"],
+        &["threshold 0.001 is 0 in q8.8, whose step is 0.00390625"],
     );
     refused(
         "encode --scheme sf --threshold 1 --factor 2 -",

@@ -254,13 +254,18 @@ fn events_become_any_format() {
 fn options_that_contradict_are_refused() {
     for (options, words) in [
         ("--threshold 1", ["need --scheme", ""]),
-        ("--scheme hsa --filter triang:3 --shift 0", ["hsa", "tbr, sf and mw"]),
+        ("--scheme hsa", ["invalid value 'hsa'", "tbr, sf, mw"]),
+        ("--scheme sf --filter triang:3", ["--filter", "unexpected argument"]),
         ("--scheme sf", ["sf needs --threshold", ""]),
         ("--scheme sf --threshold 0", ["threshold 0", "above 0"]),
         ("--scheme sf --thresholds 1,0", ["threshold 0", "above 0"]),
         ("--scheme sf --threshold 1 --thresholds 1,2", ["--threshold", "cannot be used"]),
         ("--scheme sf --threshold 1 --window 3", ["sf takes no --window", "it takes"]),
-        ("--scheme tbr --factor 1", ["no signal to calibrate", "--threshold"]),
+        ("--scheme tbr --factor 1", ["--factor", "unexpected argument"]),
+        (
+            "--scheme sf --threshold 0.001 --sample q8.8",
+            ["threshold 0.001 is 0 in q8.8", "0.00390625"],
+        ),
         ("--scheme sf --threshold 1 --from es", ["--from link", "keyframes"]),
         ("--scheme sf --threshold 1 --to es", ["--to csv", "values"]),
         ("--from what", ["no format `what`", "edvs:e0"]),

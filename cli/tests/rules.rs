@@ -207,7 +207,7 @@ fn values_that_are_not_finite_emit_nothing_and_leave_the_state() {
     );
     for scheme in ["sf --threshold 0.5", "tbr --threshold 0.5", "hsa --filter triang:3 --shift 0"] {
         let ran = good(&format!("encode --scheme {scheme} --skip-non-finite -"), with);
-        assert!(ran.told.contains("3 samples were not finite"), "{}", ran.told);
+        assert!(ran.told.contains("3 samples were not finite or missing"), "{}", ran.told);
         assert!(
             ran.output.contains("# rejected=1,1\n") && ran.output.contains("# rejected=3,2\n"),
             "{}",

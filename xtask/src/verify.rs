@@ -39,10 +39,16 @@ const fn step(name: &'static str, what: &'static str, run: fn() -> Result<()>) -
 
 /// Runs the named steps, or all, in the list's order.
 pub fn verify(names: &[String]) -> Result<()> {
+    let steps = || {
+        let lines = STEPS.iter().map(|step| format!("{:10} {}\n", step.name, step.what));
+        lines.collect::<String>()
+    };
     if names == ["--list"] {
-        for step in STEPS {
-            println!("{:10} {}", step.name, step.what);
-        }
+        print!("{}", steps());
+        return Ok(());
+    }
+    if names.iter().any(|name| matches!(name.as_str(), "-h" | "--help" | "help")) {
+        print!("{}", help(&steps()));
         return Ok(());
     }
     if let Some(name) =
@@ -70,6 +76,22 @@ pub fn verify(names: &[String]) -> Result<()> {
     summary(&results)
 }
 
+fn help(steps: &str) -> String {
+    format!(
+        "\
+cargo verify [STEP]...
+
+Runs every check, or the named ones in the order below, each with its time, and a summary at the end.
+A failure does not hide the next one; the exit status is 1 if one failed.
+
+  cargo verify                 all of them
+  cargo verify clippy test     two of them
+  cargo verify --list          their names
+
+{steps}"
+    )
+}
+
 fn summary(results: &[(&Step, bool, f64)]) -> Result<()> {
     println!("\n=== summary");
     for (step, good, seconds) in results {
@@ -79,4 +101,18 @@ fn summary(results: &[(&Step, bool, f64)]) -> Result<()> {
     let failed: Vec<&str> =
         results.iter().filter(|(_, good, _)| !good).map(|(step, ..)| step.name).collect();
     if failed.is_empty() { Ok(()) } else { bail!("failed: {}", failed.join(", ")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{STEPS, verify};
+
+    #[test]
+    fn help_is_no_step_and_names_them_all() {
+        assert!(verify(&["--help".to_owned()]).is_ok());
+        assert!(verify(&["what".to_owned()]).is_err());
+        let text = super::help("clippy");
+        assert!(text.contains("cargo verify [STEP]...") && text.ends_with("clippy"));
+        assert!(STEPS.iter().all(|step| !step.what.is_empty()));
+    }
 }

@@ -1,18 +1,19 @@
 //! `spikewire listen`: what a board sends, as events or values, while it comes.
 
 use crate::events::{Format, LinkReader, Stream, StreamOptions, Values, values_writer};
+use crate::fit::rounded;
 use crate::live::Live;
-use crate::options::SchemeOptions;
+use crate::options::{SchemeOptions, Step};
 use crate::output::Output;
 use crate::port::{Bytes, Port};
-use crate::resolve::{Known, missing, resolve};
+use crate::resolve::{Known, resolve};
 use crate::sample_type::SampleType;
 use crate::scheme::SchemeName;
 use crate::settings::Settings;
 use crate::stop::Stop;
 use crate::values;
 use anyhow::{Context, Result, bail};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -23,14 +24,19 @@ use std::path::PathBuf;
 /// value just before a keyframe equals it; for tbr and mw, whose decoders drift, it is the sample itself,
 /// from which they go on.
 #[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  spikewire listen --baud 921600 /dev/ttyUSB0 -o events.csv
+  spikewire listen --baud 921600 /dev/ttyUSB0 --scheme sf --thresholds 0.1,0.1,0.1,0.5,0.5,0.5
+  spikewire listen captured.bytes --to es -o flight.es")]
 pub(crate) struct Listen {
     /// Serial port, or file of captured bytes; `-` is standard input
     #[arg(default_value = "-")]
     input: PathBuf,
-    /// The input is a serial port of this speed, 8 data bits, no parity, 1 stop bit
+    /// The input is a serial port of this speed in bits a second, 8 data bits, no parity, 1 stop bit
     #[arg(long)]
     baud: Option<u32>,
-    /// Stop after this time; Ctrl-C stops as well
+    /// Stop after so many seconds; Ctrl-C stops as well
     #[arg(long, requires = "baud")]
     seconds: Option<f64>,
     /// Format of the bytes
@@ -44,13 +50,34 @@ pub(crate) struct Listen {
     output: Option<PathBuf>,
     #[command(flatten)]
     stream: StreamOptions,
-    /// Decode a link's frames: tbr, sf or mw
+    /// Decode a link's frames by this scheme, the sender's
     #[arg(long)]
-    scheme: Option<SchemeName>,
+    scheme: Option<StepScheme>,
     /// Sample type of the sender: f32, i16, i32, or fixed point such as q16.16 or q8.8
     #[arg(long, default_value_t)]
     sample: SampleType,
-    /// In the place of --threshold, one for each channel from address 0 on: `0.1,0.1,0.5`
+    #[command(flatten)]
+    parameters: StepOptions,
+}
+
+/// The schemes whose decoders add up steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum StepScheme {
+    /// Temporal contrast.
+    Tbr,
+    /// Step forward.
+    Sf,
+    /// Moving window.
+    Mw,
+}
+
+/// The parameters that decoding a step code takes.
+#[derive(Args, Clone, Debug, Default)]
+struct StepOptions {
+    /// The sender's threshold, in the signal's unit, the same for all channels: `0.1`
+    #[arg(long, allow_negative_numbers = true, help_heading = "Parameters")]
+    threshold: Option<f64>,
+    /// In its place, one for each channel from address 0 on: `0.1,0.1,0.5`
     #[arg(
         long,
         value_delimiter = ',',
@@ -59,8 +86,43 @@ pub(crate) struct Listen {
         help_heading = "Parameters"
     )]
     thresholds: Vec<f64>,
-    #[command(flatten)]
-    parameters: SchemeOptions,
+    /// tbr: what a spike adds, in the signal's unit, `0.2`, or in thresholds, `2x`; `1x` unless given
+    #[arg(long, help_heading = "Parameters")]
+    step: Option<Step>,
+    /// mw: the sender's window, for the record; its decoder needs none
+    #[arg(long, help_heading = "Parameters")]
+    window: Option<usize>,
+    /// The value before the first event, in the signal's unit; 0 unless given, and until a keyframe comes
+    #[arg(long, allow_negative_numbers = true, help_heading = "Parameters")]
+    start: Option<f64>,
+}
+
+impl StepOptions {
+    fn is_empty(&self) -> bool {
+        let Self { threshold, thresholds, step, window, start } = self;
+        threshold.is_none()
+            && thresholds.is_empty()
+            && step.is_none()
+            && window.is_none()
+            && start.is_none()
+    }
+
+    fn with(&self, scheme: SchemeName, threshold: Option<f64>) -> SchemeOptions {
+        let &Self { step, window, start, .. } = self;
+        // Any window will do, as it is the encoder's alone.
+        let window = window.or_else(|| (scheme == SchemeName::Mw).then_some(0));
+        SchemeOptions { threshold, step, window, start, ..SchemeOptions::default() }
+    }
+}
+
+impl StepScheme {
+    fn name(self) -> SchemeName {
+        match self {
+            Self::Tbr => SchemeName::Tbr,
+            Self::Sf => SchemeName::Sf,
+            Self::Mw => SchemeName::Mw,
+        }
+    }
 }
 
 /// Runs the command.
@@ -71,7 +133,7 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
     let values = options.values()?;
     let mut port = Port::open(&options.input, options.baud)?;
     let stop = Stop::new(options.seconds)?;
-    let mut output = Output::open(options.output.as_deref())?;
+    let mut output = Output::open(options.output.as_deref(), &options.input)?;
     let (reader, writer) = match values {
         Some(values) => {
             let reader: Box<dyn crate::events::EventReader> =
@@ -118,8 +180,8 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
 impl Listen {
     /// What decodes the frames, if that is wanted.
     fn values(&self) -> Result<Option<Box<dyn Values>>> {
-        let Some(scheme) = self.scheme else {
-            if !self.parameters.is_empty() || self.parameters.paper || !self.thresholds.is_empty() {
+        let Some(scheme) = self.scheme.map(StepScheme::name) else {
+            if !self.parameters.is_empty() {
                 bail!("a scheme's parameters need --scheme");
             }
             return Ok(None);
@@ -130,25 +192,29 @@ impl Listen {
         if self.to != Format::Csv {
             bail!("--scheme gives values, which only --to csv holds");
         }
-        let settings = if self.thresholds.is_empty() {
-            vec![settings(scheme, &self.parameters)?]
-        } else {
-            let each = self.thresholds.iter().map(|&threshold| {
-                let options =
-                    SchemeOptions { threshold: Some(threshold), ..self.parameters.clone() };
-                settings(scheme, &options)
-            });
-            each.collect::<Result<_>>()?
+        let StepOptions { threshold, thresholds, .. } = &self.parameters;
+        let thresholds: Vec<Option<f64>> = match thresholds[..] {
+            [] => vec![*threshold],
+            ref many => many.iter().copied().map(Some).collect(),
         };
-        values::receiver(self.sample, &settings).map(Some).with_context(|| scheme.name())
+        let mut all = Vec::new();
+        for threshold in thresholds {
+            let settings = settings(scheme, &self.parameters.with(scheme, threshold))?;
+            let (settings, rounding) = rounded(self.sample, &settings)?;
+            if let Some(rounding) = rounding {
+                eprintln!("{rounding}");
+            }
+            all.push(settings);
+        }
+        values::receiver(self.sample, &all).map(Some).with_context(|| scheme.name())
     }
 }
 
 /// The settings of a channel, from its options alone.
 fn settings(scheme: SchemeName, options: &SchemeOptions) -> Result<Settings> {
     options.check(scheme)?;
-    if let Some(what) = missing(scheme, options) {
-        bail!("{}: there is no signal to calibrate over; give {what}", scheme.name());
+    if options.threshold.is_none() {
+        bail!("{} needs --threshold", scheme.name());
     }
     resolve(scheme, options, Known { calibrated: None, first: &[0.0], can_calibrate: false })
 }

@@ -13,7 +13,14 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 /// Draw signal and reconstruction over spikes, as the paper's first figure.
+///
+/// A long recording is thinned to what the picture can show. The decoded curve stands at the samples it belongs
+/// to; what a rate code's look-ahead delays it by is told in the panel.
 #[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  spikewire plot --scheme sf --threshold 0.1 --column gyro_x --unit rad/s flight.csv -o sf.png
+  spikewire plot --all --column gyro_x --range 2350..2700 flight.csv -o flight.svg")]
 pub(crate) struct Plot {
     /// The scheme
     #[arg(long, required_unless_present = "all")]
@@ -31,6 +38,9 @@ pub(crate) struct Plot {
     /// Samples to show, such as `1000..1400`; all of them are encoded
     #[arg(long)]
     range: Option<String>,
+    /// The signal's unit, such as `rad/s`; told by the column's name, `gyro_x (rad/s)`, unless given
+    #[arg(long)]
+    unit: Option<String>,
     /// Picture, `.svg` or `.png`
     #[arg(short, long)]
     output: PathBuf,
@@ -55,8 +65,14 @@ pub(crate) fn run(options: &Plot) -> Result<()> {
         .filter(is_drawn)
         .map(|scheme| Trial::new(scheme, &parameters, *sample, &recording))
         .collect::<Result<Vec<_>>>()?;
-    eprint!("{}", recording.notes(*sample));
-    draw(output, &Picture { recording: &recording, trials: &trials, shown })
+    eprint!("{}", recording.notes());
+    for trial in &trials {
+        for note in &trial.notes {
+            eprintln!("{}: {note}", trial.scheme.name());
+        }
+    }
+    let unit = options.unit.as_deref().or_else(|| known_unit(&recording.name));
+    draw(output, &input.input, &Picture { recording: &recording, trials: &trials, unit, shown })
 }
 
 fn shown(range: Option<&str>, samples: usize) -> Result<Range<usize>> {
@@ -69,4 +85,10 @@ fn shown(range: Option<&str>, samples: usize) -> Result<Range<usize>> {
         (Ok(start), Ok(end)) if start + 1 < end && end <= samples => Ok(start..end),
         _ => bail!("--range {text}: two samples at least, within 0..{samples}"),
     }
+}
+
+/// The unit that a field's name in PX4 logs tells.
+fn known_unit(name: &str) -> Option<&'static str> {
+    let units = [("gyro_rad", "rad/s"), ("_m_s2", "m/s²"), ("_rad_s", "rad/s"), ("_m_s", "m/s")];
+    units.into_iter().find(|(part, _)| name.contains(part)).map(|(_, unit)| unit)
 }

@@ -173,6 +173,17 @@ impl Stream {
         Ok(())
     }
 
+    /// What so many bytes are for what was written, in words.
+    pub(crate) fn written(&self, bytes: u64) -> String {
+        match self.count() {
+            0 => format!("{bytes} bytes written"),
+            count => {
+                let what = if self.values > 0 { "a value" } else { "an event" };
+                format!("{bytes} bytes written, {:.2} {what}", bytes as f64 / count as f64)
+            }
+        }
+    }
+
     /// What there was besides events.
     pub(crate) fn tally(&self) -> Tally {
         self.reader.tally()

@@ -13,7 +13,8 @@ pub(super) fn draw<B: DrawingBackend>(
     trials: &[Trial],
     letter: char,
 ) -> Drawn<B> {
-    title(area, Some(letter), "Spiking efficiency, % of samples without a spike")?;
+    let details = ["of the whole recording".to_owned()];
+    title(area, Some(letter), "Spiking efficiency, % of samples without a spike", &details)?;
     let mut ranked: Vec<(SchemeName, f64)> =
         trials.iter().map(|trial| (trial.scheme, trial.efficiency())).collect();
     ranked.sort_by(|a, b| a.1.total_cmp(&b.1));

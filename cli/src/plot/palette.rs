@@ -6,6 +6,7 @@ use plotters::style::RGBColor;
 pub(super) const SIGNAL: RGBColor = RGBColor(0x1f, 0x5f, 0xa8);
 pub(super) const DECODED: RGBColor = RGBColor(0xe8, 0x7d, 0x1e);
 pub(super) const INK: RGBColor = RGBColor(0x30, 0x34, 0x3b);
+pub(super) const QUIET: RGBColor = RGBColor(0x66, 0x6c, 0x76);
 pub(super) const GRID: RGBColor = RGBColor(0xe3, 0xe6, 0xea);
 pub(super) const UP: RGBColor = RGBColor(0x2b, 0x2f, 0x36);
 pub(super) const DOWN: RGBColor = RGBColor(0xc2, 0x3b, 0x4e);

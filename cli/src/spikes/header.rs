@@ -17,31 +17,54 @@ pub(crate) struct Header {
     pub scheme: SchemeName,
     /// The sample type.
     pub sample: SampleType,
-    /// All parameters that decoding needs.
-    pub settings: Settings,
+    /// All parameters that decoding needs, for each channel.
+    pub channels: Vec<Settings>,
     /// Samples a second, if known.
     pub rate: Option<f64>,
-    /// Where the signal came from, and what was calibrated; only for the reader's eyes.
+    /// Where the signal came from, and what was calibrated; decoding needs none of it.
     pub notes: Vec<(&'static str, String)>,
 }
 
 /// The version of the format.
 const VERSION: &str = "1";
 
+/// As many addresses as there are.
+const MOST_CHANNELS: usize = 1 << 16;
+
 /// Keys that decoding does not need.
 const NOTES: [&str; 6] = ["column", "topic", "field", "factor", "filter", "latency"];
 
 impl Header {
-    /// The keys and values, in order.
-    pub(crate) fn lines(&self) -> Vec<(&'static str, String)> {
+    /// The keys and values before the parameters.
+    fn common(&self) -> Vec<(&'static str, String)> {
         let mut lines = vec![
             ("spikewire", VERSION.to_owned()),
             ("scheme", self.scheme.name()),
             ("sample", self.sample.to_string()),
         ];
-        lines.extend(parameters(&self.settings));
-        lines.extend(self.rate.map(|rate| ("rate", rate.to_string())));
-        lines.extend(self.notes.iter().cloned());
+        if self.channels.len() > 1 {
+            lines.push(("channels", self.channels.len().to_string()));
+        }
+        lines
+    }
+
+    /// The keys and values, in order. What channels do not share has theirs behind an `@`: `start@1`.
+    pub(crate) fn lines(&self) -> Vec<(String, String)> {
+        let all: Vec<_> = self.channels.iter().map(parameters).collect();
+        let shared =
+            |place: usize| all.windows(2).all(|pair| pair[0].get(place) == pair[1].get(place));
+        let own = |(lines, channel): (&Vec<(&'static str, String)>, usize)| {
+            let own = lines.iter().enumerate().filter(|(place, _)| !shared(*place));
+            own.map(|(_, (key, value))| (format!("{key}@{channel}"), value.clone()))
+                .collect::<Vec<_>>()
+        };
+        let whole = |(key, value): &(&'static str, String)| ((*key).to_owned(), value.clone());
+        let first = all.first().into_iter().flatten().enumerate();
+        let mut lines: Vec<(String, String)> = self.common().iter().map(whole).collect();
+        lines.extend(first.filter(|(place, _)| shared(*place)).map(|(_, line)| whole(line)));
+        lines.extend(all.iter().zip(0..).flat_map(own));
+        lines.extend(self.rate.map(|rate| ("rate".to_owned(), rate.to_string())));
+        lines.extend(self.notes.iter().map(whole));
         lines
     }
 
@@ -59,18 +82,50 @@ impl Header {
         let scheme = SchemeName::from_str(&name, false)
             .map_err(|_| anyhow!("the header names no scheme that there is: `{name}`"))?;
         let sample = keys.take("sample")?.parse()?;
-        let settings = settings(scheme, &mut keys)?;
+        let count: usize = keys.optional("channels")?.unwrap_or(1);
+        if !(1..=MOST_CHANNELS).contains(&count) {
+            bail!("the header says channels={count}; there are 1 to {MOST_CHANNELS}");
+        }
+        let (of_one, shared): (Vec<_>, Vec<_>) =
+            keys.left.into_iter().partition(|(key, _)| key.contains('@'));
+        if let Some((key, value)) = of_one.iter().find(|(key, _)| {
+            let channel = key.split_once('@').and_then(|(_, channel)| channel.parse().ok());
+            channel.is_none_or(|channel: usize| channel >= count)
+        }) {
+            bail!("the header says {key}={value}, where there are {count} channels from 0 on");
+        }
+        let mut channels = Vec::new();
+        let mut left = shared.clone();
+        for channel in 0..count {
+            let suffix = format!("@{channel}");
+            let own = of_one.iter().filter_map(|(key, value)| {
+                Some((key.strip_suffix(&suffix)?.to_owned(), value.clone()))
+            });
+            let own: Vec<(String, String)> = own.collect();
+            let mut keys = Keys::new([shared.clone(), own.clone()].concat())?;
+            channels.push(settings(scheme, &mut keys)?);
+            if let Some((key, value)) = keys.left.iter().find(|line| own.contains(line)) {
+                bail!("the header says {key}={value}, which {name} does not take");
+            }
+            left = keys.left;
+        }
+        let mut keys = Keys { left };
         let rate = keys.optional("rate")?;
-        keys.left.retain(|(key, _)| !NOTES.contains(&key.as_str()));
+        let mut notes = Vec::new();
+        keys.left.retain(|(key, value)| {
+            let note = NOTES.iter().find(|note| *note == key);
+            notes.extend(note.map(|note| (*note, value.clone())));
+            note.is_none()
+        });
         if let Some((key, value)) = keys.left.first() {
             bail!("the header says {key}={value}, which {name} does not take");
         }
-        Ok(Self { scheme, sample, settings, rate, notes: Vec::new() })
+        Ok(Self { scheme, sample, channels, rate, notes })
     }
 }
 
 /// What the settings are called in the header.
-fn parameters(settings: &Settings) -> Vec<(&'static str, String)> {
+pub(crate) fn parameters(settings: &Settings) -> Vec<(&'static str, String)> {
     let range = |range: &Evenly| {
         vec![
             ("neurons", range.neurons.to_string()),
