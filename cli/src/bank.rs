@@ -1,9 +1,8 @@
 //! Several channels of a recording, each with a codec of its own.
 
-use crate::codec::{Codec, Event};
-use crate::sample_type::SampleType;
-use crate::settings::Settings;
+use crate::scheme::Scheme;
 use anyhow::{Result, bail};
+use catalogue::run::{Codec, Event, SampleType, Settings};
 
 /// Codecs of one scheme. The neurons of the second channel are numbered on from those of the first.
 pub(crate) struct Bank {
@@ -17,15 +16,23 @@ impl Bank {
     /// A codec for each channel, as they start on a recording.
     ///
     /// # Errors
-    /// A parameter that makes no sense, a shape that is not compiled in, or too many neurons in all.
-    pub(crate) fn new(sample: SampleType, channels: &[Settings]) -> Result<Self> {
-        let neurons = channels.first().map_or(1, Settings::neurons);
+    /// A parameter that makes no sense, or too many neurons in all.
+    pub(crate) fn new(scheme: Scheme, sample: SampleType, channels: &[Settings]) -> Result<Self> {
+        let neurons = match channels.first() {
+            Some(settings) => scheme.shape(settings)?.neurons,
+            None => 1,
+        };
         if channels.len() * neurons > usize::from(u16::MAX) + 1 {
             bail!("{} channels of {neurons} neurons are too many addresses", channels.len());
         }
-        let codecs = channels.iter().map(|settings| Codec::new(sample, settings));
+        let codecs = channels.iter().map(|settings| scheme.codec(sample, settings));
         let codecs = codecs.collect::<Result<_>>()?;
         Ok(Self { codecs, neurons: neurons as u16, own: Vec::new() })
+    }
+
+    /// How many neurons each channel has.
+    pub(crate) fn neurons(&self) -> usize {
+        self.neurons.into()
     }
 
     /// How many samples after its own the code of a sample comes out.

@@ -1,13 +1,13 @@
 //! Whether a sample type and the parameters suit a recording.
 
 use crate::brief::short;
-use crate::sample_type::{SampleType, for_sample_type};
-use crate::settings::{Rate, Settings};
-use spikewire::Sample;
+use crate::scheme::Scheme;
+use catalogue::run::{Ran, SampleType, Settings};
 use std::fmt::Write;
 
 /// The range of a channel's samples, and how many of them a type cannot hold or a code not reach.
 pub(crate) struct Fit {
+    scheme: Scheme,
     sample: SampleType,
     min: f64,
     max: f64,
@@ -19,15 +19,13 @@ pub(crate) struct Fit {
 
 impl Fit {
     /// For a channel that has no samples yet.
-    pub(crate) fn new(sample: SampleType, settings: &Settings) -> Self {
-        let reach = match settings {
-            Settings::Rate(Rate { taps, shift, .. }) => {
-                Some(shift + taps.iter().filter(|tap| **tap > 0.0).sum::<f64>())
-            }
-            _ => None,
-        };
+    pub(crate) fn new(scheme: Scheme, sample: SampleType, settings: &Settings) -> Self {
+        // A rate code adds up its filters on its shift.
+        let reach = settings.number("shift").zip(settings.numbers("taps")).map(|(shift, taps)| {
+            shift + taps.iter().filter(|tap| **tap > 0.0).sum::<f64>()
+        });
         let (min, max) = (f64::INFINITY, f64::NEG_INFINITY);
-        Self { sample, min, max, samples: 0, saturated: 0, reach, beyond: 0 }
+        Self { scheme, sample, min, max, samples: 0, saturated: 0, reach, beyond: 0 }
     }
 
     /// Takes the next samples, all finite.
@@ -77,7 +75,7 @@ impl Fit {
                 short(range / step)
             )?;
         }
-        if let (0, Some(threshold)) = (spikes, threshold(settings))
+        if let (0, Some(threshold)) = (spikes, threshold(self.scheme, settings))
             && threshold >= range
         {
             writeln!(notes, "no spike: the threshold, {}, is above {said}", short(threshold))?;
@@ -97,58 +95,33 @@ impl Fit {
 }
 
 /// The threshold of a code that spikes on changes.
-fn threshold(settings: &Settings) -> Option<f64> {
-    match settings {
-        Settings::Contrast(contrast) => Some(contrast.threshold),
-        Settings::StepForward(step_forward) => Some(step_forward.threshold),
-        Settings::MovingWindow(moving_window) => Some(moving_window.threshold),
-        _ => None,
-    }
+fn threshold(scheme: Scheme, settings: &Settings) -> Option<f64> {
+    settings.number("threshold").filter(|_| scheme.info().has_first_value)
 }
 
 /// The settings that a type runs with, and what of them was rounded, in words.
 ///
 /// # Errors
-/// A threshold or step that becomes 0, in words.
+/// A parameter that becomes 0 or makes no sense, in words.
 pub(crate) fn rounded(
+    scheme: Scheme,
     sample: SampleType,
     settings: &Settings,
 ) -> anyhow::Result<(Settings, Option<String>)> {
-    if sample == SampleType::F32 {
-        return Ok((settings.clone(), None));
-    }
-    let one = sample.one();
-    let nearest = |value: f64| {
-        for_sample_type!(sample, S => <S as Sample>::from_f64(value * one).to_f64()) / one
-    };
-    let (mut rounded, mut told, mut vanished) = (settings.clone(), Vec::new(), None);
-    let (mut listed, mut count, mut most) = ("", 0, 0.0_f64);
-    rounded.visit(|name, value| {
-        let (asked, ran) = (*value, nearest(*value));
-        *value = ran;
-        if asked == ran {
-            return;
-        }
-        match name {
+    let (rounded, all) = scheme.rounded(sample, settings)?;
+    let mut told = Vec::new();
+    for Ran { name, asked, ran } in all {
+        match (&asked[..], &ran[..]) {
             // Samples are rounded like that, too.
-            "start" | "first" => {}
-            "taps" | "centres" => {
-                (listed, count) = (name, count + 1);
-                most = most.max((asked - ran).abs());
+            _ if ["start", "first"].contains(&name) => {}
+            ([asked], [ran]) => told.push(format!("{name} {} ran as {ran}", short(*asked))),
+            _ => {
+                let off = asked.iter().zip(&ran).map(|(asked, ran)| (asked - ran).abs());
+                let count = off.clone().filter(|off| *off > 0.0).count();
+                let most = short(off.fold(0.0, f64::max));
+                told.push(format!("{count} {name} were rounded by at most {most}"));
             }
-            "threshold" | "step" if ran == 0.0 && asked > 0.0 => vanished = Some((name, asked)),
-            _ => told.push(format!("{name} {} ran as {ran}", short(asked))),
         }
-    });
-    if let Some((name, asked)) = vanished {
-        anyhow::bail!(
-            "{name} {asked} is 0 in {sample}, whose step is {}; a type with more bits after the point, or \
-             f32, would hold it",
-            sample.step()
-        );
-    }
-    if count > 0 {
-        told.push(format!("{count} {listed} were rounded by at most {}", short(most)));
     }
     Ok((rounded, (!told.is_empty()).then(|| format!("in {sample}, {}", told.join(", ")))))
 }

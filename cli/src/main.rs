@@ -3,10 +3,8 @@
 mod bank;
 mod bench;
 mod brief;
-mod codec;
 mod commands;
 mod events;
-mod filter;
 mod fit;
 mod input;
 mod live;
@@ -14,12 +12,9 @@ mod options;
 mod output;
 mod plot;
 mod port;
-mod resolve;
 #[cfg(any(test, feature = "capture"))]
 mod rtt;
-mod sample_type;
 mod scheme;
-mod settings;
 mod spikes;
 mod steep;
 mod stop;

@@ -1,13 +1,17 @@
-//! Whether step forward keeps up with a recording.
+//! Whether a code that climbs by a step a sample at most keeps up with a recording.
 
 use crate::brief::short;
-use crate::settings::{Settings, StepForward};
+use crate::scheme::Scheme;
 use crate::trial::Recording;
+use catalogue::run::Settings;
 use serde::Serialize;
 
-/// How steep a recording is, beside what step forward follows.
+/// How steep a recording is, beside what the code follows.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Steep {
+    /// The scheme.
+    #[serde(skip)]
+    scheme: &'static str,
     /// Whether no step from sample to sample is larger than the threshold.
     follows: bool,
     /// How many are.
@@ -23,13 +27,14 @@ pub(crate) struct Steep {
 }
 
 impl Steep {
-    /// Of step forward only.
-    pub(crate) fn new(recording: &Recording, settings: &Settings) -> Option<Self> {
-        let Settings::StepForward(StepForward { threshold, .. }) = settings else { return None };
+    /// Of codes that climb by a step a sample at most.
+    pub(crate) fn new(scheme: Scheme, recording: &Recording, settings: &Settings) -> Option<Self> {
+        let threshold = settings.number(scheme.info().climbs_by?)?;
         let steps = recording.values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-        let above = steps.clone().filter(|step| step > threshold).count();
+        let above = steps.clone().filter(|step| *step > threshold).count();
         let (rate, per) = recording.rate.map_or((1.0, "sample"), |rate| (rate, "second"));
         Some(Self {
+            scheme: scheme.name(),
             follows: above == 0,
             steps_above_threshold: above,
             part: above as f64 / recording.values.len() as f64,
@@ -42,21 +47,21 @@ impl Steep {
     /// In plain words.
     pub(crate) fn words(&self) -> String {
         const FEW: f64 = 0.1;
-        let Self { steps_above_threshold: above, part, per, .. } = self;
+        let Self { scheme, steps_above_threshold: above, part, per, .. } = self;
         let (fastest, steepest) = (short(self.fastest), short(self.steepest));
         if self.follows {
             return format!(
-                "sf follows this signal: it climbs up to {fastest} a {per}, the signal {steepest}"
+                "{scheme} follows this signal: it climbs up to {fastest} a {per}, the signal {steepest}"
             );
         }
         let percent = short((part * 1e4).round() / 1e2);
         let verdict = if *part > FEW {
-            "sf cannot follow this signal"
+            "cannot follow this signal"
         } else {
-            "sf follows this signal but for short stretches"
+            "follows this signal but for short stretches"
         };
         format!(
-            "{verdict}: it climbs up to {fastest} a {per}, the signal {steepest}; {above} steps, {percent} % of \
+            "{scheme} {verdict}: it climbs up to {fastest} a {per}, the signal {steepest}; {above} steps, {percent} % of \
              the samples, are larger than the threshold"
         )
     }

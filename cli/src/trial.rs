@@ -1,15 +1,12 @@
 //! A recording there and back, for looking at and for scoring.
 
 use crate::brief::short;
-use crate::codec::{Calibrated, Codec, Event};
 use crate::fit::{Fit, rounded};
 use crate::input::{Chunk, Clock, InputOptions};
 use crate::options::SchemeOptions;
-use crate::resolve::{Known, resolve};
-use crate::sample_type::SampleType;
-use crate::scheme::SchemeName;
-use crate::settings::Settings;
+use crate::scheme::Scheme;
 use anyhow::{Result, anyhow, bail};
+use catalogue::run::{Calibrated, Event, Known, SampleType, Settings, Shape};
 
 /// A recording in memory.
 pub(crate) struct Recording {
@@ -87,9 +84,11 @@ impl Recording {
 /// What a scheme made of a recording.
 pub(crate) struct Trial {
     /// The scheme.
-    pub scheme: SchemeName,
+    pub scheme: Scheme,
     /// Its parameters, as they ran.
     pub settings: Settings,
+    /// How many neurons and sub-timesteps it has.
+    pub shape: Shape,
     /// How many samples after its own the code of a sample comes out.
     pub latency: usize,
     /// What a user should know of how the parameters suit the recording.
@@ -106,7 +105,7 @@ impl Trial {
     /// # Errors
     /// The parameters make no sense.
     pub(crate) fn new(
-        scheme: SchemeName,
+        scheme: Scheme,
         options: &SchemeOptions,
         sample: SampleType,
         recording: &Recording,
@@ -115,22 +114,23 @@ impl Trial {
         calibrated.observe(&recording.values);
         let known =
             Known { calibrated: Some(&calibrated), first: &recording.values, can_calibrate: true };
-        let settings = resolve(scheme, options, known)?;
-        let (settings, rounding) = rounded(sample, &settings)?;
-        let mut codec = Codec::new(sample, &settings)?;
+        let settings = scheme.resolve(options, &known)?;
+        let (settings, rounding) = rounded(scheme, sample, &settings)?;
+        let mut codec = scheme.codec(sample, &settings)?;
         let (mut events, mut decoded) = (Vec::new(), Vec::new());
         codec.encode(&recording.values, &mut events);
         codec.finish(&mut events);
         codec.decode(recording.values.len(), &events, &mut decoded).map_err(|event| {
             anyhow!("{}: sample {} does not decode", scheme.name(), event.sample)
         })?;
-        let mut fit = Fit::new(sample, &settings);
+        let mut fit = Fit::new(scheme, sample, &settings);
         fit.observe(&recording.values);
         let mut notes: Vec<String> = rounding.into_iter().collect();
         let suits = fit.notes(&settings, events.len() as u64);
         notes.extend(suits.lines().map(str::to_owned));
         notes.extend(low(&recording.values, &decoded));
-        Ok(Self { scheme, settings, latency: codec.latency(), notes, events, decoded })
+        let shape = scheme.shape(&settings)?;
+        Ok(Self { scheme, settings, shape, latency: codec.latency(), notes, events, decoded })
     }
 
     /// `(1 - spikes / samples) * 100`.

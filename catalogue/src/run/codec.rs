@@ -65,6 +65,8 @@ pub(super) struct Start<'a> {
     pub(super) settings: &'a Settings,
     /// What a 1 of the recording is in the unit of the sample type.
     pub(super) one: f64,
+    /// The first sample, or the value before it, of schemes whose decoders add up steps.
+    pub(super) first: Option<f64>,
 }
 
 impl<S: Sample> Visit<S> for Start<'_> {
@@ -75,13 +77,13 @@ impl<S: Sample> Visit<S> for Start<'_> {
         scheme: P,
         mut encoder: P::EncoderState,
     ) -> Result<Codec> {
-        let Self { settings, one } = self;
+        let Self { settings, one, first } = self;
         let sample = |value: f64| S::from_f64(value * one);
-        let first: Vec<S> = settings.first.iter().copied().map(sample).collect();
-        scheme.prime(&mut encoder, &first);
+        let window: Vec<S> = settings.first.iter().copied().map(sample).collect();
+        scheme.prime(&mut encoder, &window);
         let mut decoder = scheme.decoder_state();
-        if let Some(start) = settings.first_key().and_then(|name| settings.number(name)) {
-            scheme.resync(&mut decoder, sample(start));
+        if let Some(first) = first {
+            scheme.resync(&mut decoder, sample(first));
         }
         let starts_at_first = settings.starts_at_first();
         let silent = P::Code::assemble(std::iter::empty());

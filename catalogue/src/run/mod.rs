@@ -186,7 +186,13 @@ impl<T: Build + Sync> RunTime for T {
 
     fn codec(&self, sample: SampleType, settings: &Settings) -> Result<Codec> {
         let given = Given::new(settings, sample.one());
-        let visitor = codec::Start { settings, one: sample.one() };
+        let mut visitor = codec::Start { settings, one: sample.one(), first: None };
+        if T::INFO.has_first_value {
+            let Some(name) = settings.first_key() else {
+                bail!("the header lacks `# first=` or `# start=`; is it a file of spikes?")
+            };
+            visitor.first = Some(given.number(name)?);
+        }
         for_sample_type!(sample, S => T::build::<S, _>(&given, visitor))
     }
 }

@@ -1,13 +1,12 @@
 //! `spikewire decode`: spikes back to values, in constant memory.
 
 use crate::bank::Bank;
-use crate::codec::Event;
 use crate::input::text;
 use crate::output::Output;
-use crate::sample_type::SampleType;
 use crate::spikes::{Header, Item, Reader};
 use crate::timeline::Timeline;
 use anyhow::{Context, Result, anyhow};
+use catalogue::run::{Event, SampleType};
 use clap::Args;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
@@ -53,7 +52,7 @@ fn decode(input: impl BufRead, file: &str, open: impl FnOnce() -> Result<Output>
     /// How many events are taken together.
     const BATCH: usize = 4096;
     let (mut reader, header) = Reader::open(input, file)?;
-    let bank = Bank::new(header.sample, &header.channels).with_context(|| file.to_owned())?;
+    let bank = Bank::new(header.scheme, header.sample, &header.channels).with_context(|| file.to_owned())?;
     let mut decoding = Decoding::new(bank, &header, reader.is_timed(), open()?)?;
     let mut events: Vec<Event> = Vec::new();
     loop {

@@ -1,17 +1,14 @@
 //! `spikewire encode`: a recording to spikes, in constant memory.
 
 use crate::bank::Bank;
-use crate::codec::Calibrated;
 use crate::fit::{Fit, rounded};
 use crate::input::{Chunk, Clock, InputOptions, Source};
 use crate::options::SchemeOptions;
 use crate::output::Output;
-use crate::resolve::{Known, missing, resolve};
-use crate::sample_type::SampleType;
-use crate::scheme::SchemeName;
-use crate::settings::Settings;
-use crate::spikes::{Header, Summary, Writer};
+use crate::scheme::Scheme;
+use crate::spikes::{Header, Summary, Writer, unrecorded};
 use anyhow::{Result, bail};
+use catalogue::run::{Calibrated, Event, Known, SampleType, Settings};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -29,7 +26,7 @@ Examples:
 pub(crate) struct Encode {
     /// The scheme
     #[arg(long)]
-    scheme: SchemeName,
+    scheme: Scheme,
     /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8
     #[arg(long, default_value_t)]
     sample: SampleType,
@@ -48,8 +45,8 @@ pub(crate) struct Encode {
 /// The recording, the parameters or the output are not good.
 pub(crate) fn run(options: &Encode) -> Result<()> {
     let Encode { scheme, sample, input, parameters, output } = options;
-    parameters.check(*scheme)?;
-    let calibrated = match missing(*scheme, parameters) {
+    parameters.check(scheme.info())?;
+    let calibrated = match scheme.needs_signal(parameters) {
         None => None,
         Some(what) if input.is_stdin() => bail!(
             "{} calibrates over the whole signal, which standard input gives only once; give {what}",
@@ -59,7 +56,7 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
     };
 
     let mut source = input.open()?;
-    let mut chunk = first(source.as_mut())?;
+    let mut chunk = first(source.as_mut(), scheme.looks_back(parameters))?;
     let mut clock = Clock::new(&chunk.times, input.rate, input.gap);
     let rows = chunk.finite_rows();
     let (count, firsts) = (rows.len(), chunk.kept(&rows));
@@ -70,21 +67,23 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
     for (channel, first) in firsts.iter().enumerate() {
         let calibrated = calibrated.as_ref().and_then(|all| all.get(channel));
         let known = Known { calibrated, first, can_calibrate: !input.is_stdin() };
-        asked.push(resolve(*scheme, parameters, known)?);
+        asked.push(scheme.resolve(parameters, &known)?);
     }
     let mut told = Vec::new();
     let mut channels: Vec<Settings> = Vec::new();
     for settings in &asked {
-        let (settings, rounding) = rounded(*sample, settings)?;
+        let (settings, rounding) = rounded(*scheme, *sample, settings)?;
         told.extend(rounding.filter(|rounding| !told.contains(rounding)));
         channels.push(settings);
     }
-    let mut bank = Bank::new(*sample, &channels)?;
+    let mut bank = Bank::new(*scheme, *sample, &channels)?;
 
     let mut notes = source.origin().to_vec();
-    notes.extend(parameters.factor.map(|factor| ("factor", factor.to_string())));
-    notes.extend(parameters.filter.clone().map(|filter| ("filter", filter)));
-    let mut fits: Vec<Fit> = channels.iter().map(|own| Fit::new(*sample, own)).collect();
+    let made_from = unrecorded(*scheme).into_iter().filter_map(|name| {
+        parameters.get(name).filter(|text| !text.is_empty()).map(|text| (name, text.to_owned()))
+    });
+    notes.extend(made_from);
+    let mut fits: Vec<Fit> = channels.iter().map(|own| Fit::new(*scheme, *sample, own)).collect();
     let rate = clock.rate();
     let header = Header { scheme: *scheme, sample: *sample, channels, rate, notes };
     let is_timed = !chunk.times.is_empty();
@@ -93,8 +92,8 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
 
     let mut events = Vec::new();
     let mut spikes = vec![0; header.channels.len()];
-    let neurons = header.channels.first().map_or(1, Settings::neurons);
-    let mut count = |events: &[crate::codec::Event]| {
+    let neurons = bank.neurons();
+    let mut count = |events: &[Event]| {
         for event in events {
             spikes[usize::from(event.neuron) / neurons] += 1;
         }
@@ -132,12 +131,11 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
     Ok(())
 }
 
-/// The first samples: enough finite ones for any window, or all there are.
-fn first(source: &mut dyn Source) -> Result<Chunk> {
-    const ENOUGH: usize = 256;
+/// The first samples: at least so many finite ones, or all there are.
+fn first(source: &mut dyn Source, enough: usize) -> Result<Chunk> {
     let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
     let mut finite = 0;
-    while finite < ENOUGH {
+    while finite < enough {
         source.next(&mut chunk)?;
         if chunk.is_empty() {
             break;

@@ -4,10 +4,10 @@ use super::score::chosen;
 use crate::input::InputOptions;
 use crate::options::SchemeOptions;
 use crate::plot::{Picture, draw};
-use crate::sample_type::SampleType;
-use crate::scheme::SchemeName;
+use crate::scheme::Scheme;
 use crate::trial::{Recording, Trial};
 use anyhow::{Context, Result, bail};
+use catalogue::run::SampleType;
 use clap::Args;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -24,7 +24,7 @@ Examples:
 pub(crate) struct Plot {
     /// The scheme
     #[arg(long, required_unless_present = "all")]
-    scheme: Option<SchemeName>,
+    scheme: Option<Scheme>,
     /// Panels A-G for the paper's schemes with its settings, and H with their efficiency
     #[arg(long, conflicts_with = "scheme")]
     all: bool,
@@ -56,10 +56,7 @@ pub(crate) fn run(options: &Plot) -> Result<()> {
     let recording = Recording::read(input)?;
     let shown = shown(range.as_deref(), recording.values.len())?;
     // Of the population codes the paper draws GRF.
-    let is_drawn = |scheme: &SchemeName| {
-        !options.all
-            || !matches!(scheme, SchemeName::Position | SchemeName::GrfSlots | SchemeName::GrfProb)
-    };
+    let is_drawn = |scheme: &Scheme| !options.all || scheme.info().is_drawn;
     let trials = schemes
         .into_iter()
         .filter(is_drawn)

@@ -3,12 +3,11 @@
 use crate::brief::brief;
 use crate::input::InputOptions;
 use crate::options::SchemeOptions;
-use crate::sample_type::SampleType;
-use crate::scheme::SchemeName;
-use crate::spikes::parameters;
+use crate::scheme::Scheme;
 use crate::steep::Steep;
 use crate::trial::{Recording, Trial};
 use anyhow::{Result, bail};
+use catalogue::run::{Options, SampleType};
 use clap::Args;
 use serde::Serialize;
 use serde_json::Value;
@@ -27,7 +26,7 @@ Examples:
 pub(crate) struct Score {
     /// The scheme; all unless given
     #[arg(long)]
-    scheme: Option<SchemeName>,
+    scheme: Option<Scheme>,
     /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8
     #[arg(long, default_value_t)]
     sample: SampleType,
@@ -98,9 +97,9 @@ pub(crate) fn run(options: &Score) -> Result<()> {
 /// # Errors
 /// Parameters without a scheme to take them.
 pub(crate) fn chosen(
-    scheme: Option<SchemeName>,
+    scheme: Option<Scheme>,
     parameters: &SchemeOptions,
-) -> Result<(Vec<SchemeName>, SchemeOptions)> {
+) -> Result<(Vec<Scheme>, SchemeOptions)> {
     match scheme {
         Some(scheme) => Ok((vec![scheme], parameters.clone())),
         None if !parameters.is_empty() => {
@@ -108,7 +107,7 @@ pub(crate) fn chosen(
                 "all schemes run with the paper's settings; --scheme says which takes the parameters given"
             )
         }
-        None => Ok((SchemeName::ALL.to_vec(), SchemeOptions { paper: true, ..parameters.clone() })),
+        None => Ok((Scheme::all().collect(), SchemeOptions(Options { paper: true, ..parameters.0.clone() }))),
     }
 }
 
@@ -120,9 +119,9 @@ fn figures(recording: &Recording, trial: &Trial) -> Figures {
     };
     let noise = mean_square(&mut recording.values.iter().zip(&trial.decoded).map(|(x, y)| x - y));
     let variance = mean_square(&mut recording.values.iter().map(|x| x - mean));
-    let parameters = parameters(&trial.settings);
+    let parameters = trial.settings.entries();
     Figures {
-        scheme: trial.scheme.name(),
+        scheme: trial.scheme.name().to_owned(),
         samples,
         spikes: trial.events.len(),
         efficiency: trial.efficiency(),
@@ -132,15 +131,15 @@ fn figures(recording: &Recording, trial: &Trial) -> Figures {
             .seconds()
             .filter(|seconds| *seconds > 0.0)
             .map(|seconds| trial.events.len() as f64 / seconds),
-        brief: brief(&parameters),
-        parameters: parameters.into_iter().map(|(key, value)| (key, value_of(value))).collect(),
-        slope: Steep::new(recording, &trial.settings),
+        brief: brief(parameters),
+        parameters: parameters.iter().map(|(key, value)| (*key, value_of(value))).collect(),
+        slope: Steep::new(trial.scheme, recording, &trial.settings),
         notes: trial.notes.clone(),
     }
 }
 
 /// A number, a list of numbers, or a word.
-fn value_of(text: String) -> Value {
+fn value_of(text: &str) -> Value {
     let numbers: Option<Vec<Value>> =
         text.split(',').map(|number| serde_json::from_str(number).ok()).collect();
     match numbers.as_deref() {

@@ -5,9 +5,9 @@ use super::thin::{column, thin};
 use super::title::{Drawn, TITLE, legend, title};
 use super::{FONT, Picture};
 use crate::brief::brief;
-use crate::codec::Event;
-use crate::spikes::parameters;
+
 use crate::trial::Trial;
+use catalogue::run::Event;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use spikewire::Polarity;
@@ -27,8 +27,8 @@ pub(super) fn draw<B: DrawingBackend>(
         trial.events.iter().filter(|event| picture.shown.contains(&(event.sample as usize)));
     let count = spikes_shown.clone().count();
     let shown = picture.shown.len();
-    let text = format!("{}   {count} spikes on {shown} samples", trial.scheme.title());
-    let mut details = vec![brief(&parameters(&trial.settings))];
+    let text = format!("{}   {count} spikes on {shown} samples", trial.scheme.info().title);
+    let mut details = vec![brief(trial.settings.entries())];
     if trial.latency > 0 {
         details.push(format!("decoded shown without its latency of {} samples", trial.latency));
     }
@@ -80,8 +80,8 @@ fn spikes<'a, B: DrawingBackend>(
     events: impl Iterator<Item = &'a Event>,
 ) -> Drawn<B> {
     let at = times(picture);
-    let neurons = trial.settings.neurons();
-    let rows = match (trial.scheme.is_signed(), neurons) {
+    let neurons = trial.shape.neurons;
+    let rows = match (trial.scheme.info().is_signed, neurons) {
         (true, _) => -1.25..1.25,
         (false, 1) => 0.0..1.25,
         (false, _) => -0.8..neurons as f64 - 0.2,
@@ -114,7 +114,7 @@ fn spikes<'a, B: DrawingBackend>(
         })
         .label_style((FONT, 13).into_font().color(&INK))
         .draw()?;
-    let slots = trial.settings.slots() as f64;
+    let slots = trial.shape.slots as f64;
     let step = if slots > 1.0 { (at(1) - at(0)).max(0.0) / slots } else { 0.0 };
     let columns = chart.plotting_area().dim_in_pixel().0;
     let mut drawn = HashSet::new();

@@ -9,6 +9,6 @@ mod header;
 mod reader;
 mod writer;
 
-pub(crate) use header::{Header, parameters};
+pub(crate) use header::{Header, unrecorded};
 pub(crate) use reader::{Item, Reader};
 pub(crate) use writer::{Summary, Writer};

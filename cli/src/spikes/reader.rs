@@ -1,8 +1,7 @@
 //! Reads a file of spikes line by line.
 
 use super::Header;
-use crate::codec::Event;
-use crate::settings::Settings;
+use catalogue::run::Event;
 use anyhow::{Context, Result, anyhow, bail};
 use spikewire::Polarity;
 use std::io::{BufRead, Read};
@@ -110,14 +109,15 @@ impl<R: BufRead> Reader<R> {
             break;
         }
         let header = Header::parse(lines).with_context(|| file.to_owned())?;
-        let sum = |of: fn(&Settings) -> usize| header.channels.iter().map(of).sum::<usize>() as u64;
-        reader.slots = header.channels.first().map_or(1, Settings::slots) as u64;
-        reader.neurons = sum(Settings::neurons);
-        reader.period = header.rate.map_or(0, |rate| (1e6 / rate).round() as u64);
-        reader.is_signed = header.scheme.is_signed();
-        if reader.slots == 0 {
-            bail!("{file}: the header says slots=0");
+        let mut neurons = 0;
+        for settings in &header.channels {
+            let shape = header.scheme.shape(settings).with_context(|| file.to_owned())?;
+            reader.slots = shape.slots as u64;
+            neurons += shape.neurons as u64;
         }
+        reader.neurons = neurons;
+        reader.period = header.rate.map_or(0, |rate| (1e6 / rate).round() as u64);
+        reader.is_signed = header.scheme.info().is_signed;
         Ok((reader, header))
     }
 

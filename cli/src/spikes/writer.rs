@@ -1,9 +1,8 @@
 //! Writes a file of spikes while the samples come in.
 
 use super::Header;
-use crate::codec::Event;
+use catalogue::run::Event;
 use crate::input::{Chunk, Kind, Step};
-use crate::settings::Settings;
 use anyhow::Result;
 use spikewire::Polarity;
 use std::collections::VecDeque;
@@ -50,13 +49,17 @@ impl<W: Write> Writer<W> {
     /// # Errors
     /// It cannot be written.
     pub(crate) fn new(mut output: W, header: &Header, is_timed: bool) -> Result<Self> {
+        let slots = match header.channels.first() {
+            Some(settings) => header.scheme.shape(settings)?.slots,
+            None => 1,
+        };
         for (key, value) in header.lines() {
             writeln!(output, "# {key}={value}")?;
         }
         writeln!(output, "index,address,polarity{}", if is_timed { ",time_us" } else { "" })?;
         Ok(Self {
             output,
-            slots: header.channels.first().map_or(1, Settings::slots) as u64,
+            slots: slots as u64,
             period: header.rate.map_or(0, |rate| (1e6 / rate).round() as u64),
             is_timed,
             pending: VecDeque::new(),
