@@ -1,56 +1,54 @@
-//! A bank: `N` encoders side by side, their codes as events with time, address and polarity.
+//! A bank: `N` encoders side by side, their codes as items with time, address and polarity.
 
-mod common;
-
-use common::{cases, flight_channels, float};
-use host_tests::compare::encode;
+use host_tests::flight;
 use proptest::collection::vec;
 use proptest::prelude::*;
-use spikewire::link::Snapshot;
-use spikewire::population::{Centres, Position, ReceptiveFields, Slots};
+use spikewire::population::{Position, Slots};
 use spikewire::rate::{Hough, Taps};
-use spikewire::sink::{EventQueue, Overflow};
 use spikewire::temporal::StepForward;
-use spikewire::{Bank, Code, ConfigError, Encoder, Event, Mark, Output, Polarity, Scheme};
+use spikewire::{
+    Bank, Code, ConfigError, Event, EventQueue, Item, Keyframe, Output, Overflow, Polarity,
+    Schemes, Source, SpscQueue, Start, Tick,
+};
+
+static GYRO: StepForward<f32> = StepForward::new(1.0);
+static COUNTS: StepForward<i16> = StepForward::new(1);
 
 /// One recording a channel, sample by sample through a bank.
-fn events<E: Encoder<Sample = f32>, const N: usize>(
-    bank: &mut Bank<E, N>,
+fn events<T, P, const N: usize>(
+    bank: &mut Bank<T, N>,
     channels: &[Vec<f32>; N],
     ticks: &[u32],
-) -> Vec<Event> {
+) -> Vec<Event>
+where
+    T: Schemes<N, Scheme = P>,
+    P: Start<Sample = f32>,
+{
     let mut events = Vec::new();
     for (i, &tick) in ticks.iter().enumerate() {
         let samples = std::array::from_fn(|channel| channels[channel][i]);
-        bank.encode(tick, samples, |event| events.push(event));
+        bank.encode(tick.into(), samples, |event| events.push(event));
     }
     events
 }
 
-/// The same from each channel's own run.
-fn expected<P, const N: usize>(
-    scheme: P,
+/// What each channel's own encoder gives.
+fn expected<P: Start<Sample = f32>, const N: usize>(
+    scheme: &P,
     channels: &[Vec<f32>; N],
     ticks: &[u32],
     slot_ticks: u32,
-) -> Vec<Event>
-where
-    P: Scheme<Sample = f32>,
-    P::Encoder: Clone,
-    <P::Encoder as Encoder>::Output: std::fmt::Debug + PartialEq,
-    <<P::Encoder as Encoder>::Output as Output>::Code: std::fmt::Debug + PartialEq,
-{
-    let runs = channels.each_ref().map(|channel| encode(scheme, channel).outputs);
-    let neurons = <<P::Encoder as Encoder>::Output as Output>::Code::NEURONS;
+) -> Vec<Event> {
+    let mut encoders = [(); N].map(|()| scheme.encoder());
     let mut events = Vec::new();
     for (i, &tick) in ticks.iter().enumerate() {
         let mut firings = Vec::new();
-        for (channel, outputs) in runs.iter().enumerate() {
-            let Some(code) = outputs[i].code() else { continue };
+        for (channel, encoder) in encoders.iter_mut().enumerate() {
+            let Some(code) = encoder.encode(channels[channel][i]).code() else { continue };
             firings.extend(code.firings().map(|firing| {
                 let event = Event {
-                    tick: tick.wrapping_add(slot_ticks.wrapping_mul(firing.slot.into())),
-                    address: (channel * neurons) as u16 + firing.neuron,
+                    tick: Tick::from(tick) + slot_ticks.wrapping_mul(firing.slot.into()),
+                    address: (channel * P::Code::NEURONS) as u16 + firing.neuron,
                     polarity: firing.polarity,
                 };
                 (if slot_ticks > 0 { firing.slot } else { 0 }, event)
@@ -62,11 +60,14 @@ where
     events
 }
 
+fn event(tick: u32, address: u16, polarity: Polarity) -> Event {
+    Event { tick: tick.into(), address, polarity }
+}
+
 #[test]
 fn addresses_times_and_polarities_by_hand() {
-    let mut bank = Bank::<_, 3>::new(StepForward::new(1.0_f32).unwrap());
+    let mut bank = Bank::<_, 3>::new(&GYRO);
     let channels = [vec![0.0, 2.0, f32::NAN], vec![0.0, 0.0, -2.0], vec![5.0, 3.0, 9.0]];
-    let event = |tick, address, polarity| Event { tick, address, polarity };
     assert_eq!(
         events(&mut bank, &channels, &[10, 20, u32::MAX]),
         [
@@ -77,111 +78,162 @@ fn addresses_times_and_polarities_by_hand() {
         ]
     );
     assert_eq!(bank.rejected(), 1);
-    let values = [Some(1.0), Some(-1.0), Some(5.0)];
-    let mark = Mark { lost: 7, place: Some(2) };
-    assert_eq!(bank.snapshot(30, mark), Snapshot { tick: 30, mark, values });
+    assert_eq!(
+        [0, 1, 2, 3].map(|channel| bank.keyframe(channel)),
+        [Some(1.0), Some(-1.0), Some(5.0), None]
+    );
     bank.reset();
-    assert_eq!((bank.rejected(), bank.channels()[0].keyframe()), (0, None));
+    assert_eq!((bank.rejected(), bank.keyframe(0)), (0, None));
+}
+
+#[test]
+fn keyframes_and_resets_stand_between_the_events() {
+    let queue = EventQueue::<16>::new(Overflow::Refuse);
+    let mut bank = Bank::<_, 2>::new(&COUNTS).with_first_address(7);
+    let [first, second, third] = [1, 2, 3].map(Tick::from);
+    bank.keyframe_into(first, &queue); // nothing yet
+    bank.encode_into(first, [0, 50], &queue);
+    bank.encode_into(second, [5, 50], &queue);
+    bank.keyframe_into(second, &queue);
+    bank.reset_into(third, &queue);
+    bank.keyframe_into(third, &queue); // nothing again
+    bank.encode_into(third, [9, 9], &queue);
+    bank.encode_into(third, [9, 0], &queue);
+    let mut consumer = queue.consumer().unwrap();
+    let items: Vec<Item> = std::iter::from_fn(|| consumer.take()).map(|taken| taken.item).collect();
+    assert_eq!(
+        items,
+        [
+            Item::Event(event(2, 7, Polarity::Up)),
+            Item::Keyframe(Keyframe::new(second, 7, 1_i16)),
+            Item::Keyframe(Keyframe::new(second, 8, 50_i16)),
+            Item::Break(third),
+            Item::Event(event(3, 8, Polarity::Down)),
+        ]
+    );
+}
+
+#[test]
+fn banks_and_queues_can_be_static() {
+    use std::sync::Mutex;
+    static BANK: Mutex<Bank<&StepForward<i16>, 6>> =
+        Mutex::new(Bank::new(&COUNTS).with_first_address(12));
+    static EVENTS: EventQueue<8> = EventQueue::new(Overflow::DropOldest);
+    let mut bank = BANK.lock().unwrap();
+    bank.encode_into(Tick::from(1), [0; 6], &EVENTS);
+    bank.encode_into(Tick::from(2), [0, 0, 0, 0, 0, 9], &EVENTS);
+    assert_eq!(EVENTS.consumer().unwrap().take_event(), Some(event(2, 17, Polarity::Up)));
 }
 
 #[test]
 fn slots_are_times() {
     // Centres -0.25, 0.25, 0.75, 1.25; at 0.1 the slots are 42, 10, 85, none.
-    let fields = ReceptiveFields::<f32, 4, 100>::new(0.0, 1.0, 1.5).unwrap();
-    let mut bank = Bank::<_, 2>::new(Slots::new(&fields)).with_slot_ticks(5);
+    let scheme = Slots::<f32, 4, 100>::new(0.0..=1.0, 1.5);
+    let mut bank = Bank::<_, 2>::new(&scheme).with_slot_ticks(5);
     let channels = [vec![99.0], vec![0.1]];
     let events = events(&mut bank, &channels, &[u32::MAX]);
-    let told: Vec<_> = events.iter().map(|event| (event.tick, event.address)).collect();
+    let told: Vec<_> = events.iter().map(|event| (event.tick.micros(), event.address)).collect();
     assert_eq!(told, [(49, 5), (209, 4), (424, 6)]);
 }
 
 #[test]
 fn channels_may_have_parameters_of_their_own() {
-    let mut bank = Bank::from_schemes([1.0_f32, 2.0].map(|t| StepForward::new(t).unwrap()));
+    let schemes = [1.0_f32, 2.0].map(StepForward::new);
+    let mut bank = Bank::per_channel(schemes.each_ref());
     let channels = [vec![0.0, 1.5], vec![0.0, 1.5]];
     let told = events(&mut bank, &channels, &[1, 2]);
-    assert_eq!(told, [Event { tick: 2, address: 0, polarity: Polarity::Up }]);
+    assert_eq!(told, [event(2, 0, Polarity::Up)]);
 }
 
 #[test]
 fn banks_share_the_addresses() {
-    let bank = Bank::<_, 3>::new(StepForward::<i16>::checked(1));
-    let mut behind = bank.with_first_address(0xFFFD).unwrap();
+    let bank = Bank::<_, 3>::new(&COUNTS);
+    let mut behind = bank.clone().with_first_address(0xFFFD);
     let mut addresses = Vec::new();
     for sample in [0, 5] {
-        behind.encode(0, [sample; 3], |event| addresses.push(event.address));
+        behind.encode(Tick::default(), [sample; 3], |event| addresses.push(event.address));
     }
     assert_eq!(addresses, [0xFFFD, 0xFFFE, 0xFFFF]);
     let (parameter, min, max) = ("first address", 0.0, 65_533.0);
     let error = ConfigError::OutOfRange { parameter, value: 65_534.0, min, max };
-    assert_eq!(bank.with_first_address(0xFFFE).err(), Some(error));
+    assert_eq!(bank.try_with_first_address(0xFFFE).err(), Some(error));
 }
 
 #[test]
 fn a_queue_counts_what_a_bank_has_no_room_for() {
+    let samples = [[0; 3], [5; 3]];
     for (overflow, expected, refused) in [
         (Overflow::DropOldest, [1, 2], 0),
         (Overflow::DropNewest, [0, 1], 0),
         (Overflow::Refuse, [0, 1], 1),
     ] {
         let queue = EventQueue::<2>::new(overflow);
-        let mut bank = Bank::<_, 3>::new(StepForward::<i16>::checked(1));
-        bank.encode_into(1, [0; 3], &queue);
-        bank.encode_into(2, [5; 3], &queue);
+        let mut bank = Bank::<_, 3>::new(&COUNTS);
+        samples.map(|sample| bank.encode_into(Tick::default(), sample, &queue));
         assert_eq!((queue.lost(), queue.refused()), (1, refused), "{overflow:?}");
-        assert!(queue.drain().into_iter().map(|event| event.address).eq(expected), "{overflow:?}");
+        let mut consumer = queue.consumer().unwrap();
+        let events = std::iter::from_fn(|| consumer.take_event());
+        assert!(events.map(|event| event.address).eq(expected), "{overflow:?}");
     }
+    let queue = SpscQueue::<3>::new();
+    let (mut producer, mut consumer) = queue.split().unwrap();
+    let mut bank = Bank::<_, 3>::new(&COUNTS);
+    samples.map(|sample| bank.encode_into(Tick::default(), sample, &mut producer));
+    assert_eq!(producer.lost(), 1);
+    assert!(std::iter::from_fn(|| consumer.take_event()).map(|event| event.address).eq([0, 1]));
 }
 
 /// As many neurons as there are addresses.
 #[test]
 fn all_addresses() {
-    let centres = Centres::<f32, 1024>::new_linear(0.0, 1.0).unwrap();
-    let mut bank = Bank::<_, 64>::new(Position::new(&centres));
+    let scheme = Position::<f32, 1024>::linear(0.0..=1.0);
+    let mut bank = Bank::<_, 64>::new(&scheme);
     let mut addresses = Vec::new();
-    bank.encode(0, [9.0; 64], |event| addresses.push(event.address));
+    bank.encode(Tick::default(), [9.0; 64], |event| addresses.push(event.address));
     assert!(addresses.iter().copied().eq((0..64).map(|channel| 1024 * channel + 1023)));
 }
 
 #[test]
 fn flights() {
-    let taps = Taps::<f32, 9>::triangular(0.1);
-    let fields = ReceptiveFields::<f32, 15, 10>::new(-4.0, 4.0, 1.5).unwrap();
-    let centres = Centres::<f32, 20>::new_linear(-9.0, 9.0).unwrap();
-    for flight in flight_channels().chunks(6) {
-        let channels: [_; 6] = flight.to_vec().try_into().unwrap();
+    let step = StepForward::new(0.1);
+    let hough = Hough::new(Taps::<f32, 9>::triangular(0.1)).with_shift(-0.5);
+    let position = Position::<f32, 20>::linear(-9.0..=9.0);
+    let slots = Slots::<f32, 15, 10>::new(-4.0..=4.0, 1.5);
+    for flight in [flight::hexarotor(), flight::vtol_at_rest()] {
+        let channels: [_; 6] = std::array::from_fn(|channel| flight::channel(&flight, channel));
         let ticks: Vec<_> = (0..channels[0].len() as u32).map(|i| i * 5_000).collect();
-        let scheme = StepForward::new(0.1).unwrap();
-        let told = events(&mut Bank::new(scheme), &channels, &ticks);
-        assert_eq!(told, expected(scheme, &channels, &ticks, 0));
-        let scheme = Hough::new(&taps).with_shift(-0.5).unwrap();
-        let told = events(&mut Bank::new(scheme), &channels, &ticks);
-        assert_eq!(told, expected(scheme, &channels, &ticks, 0));
-        let scheme = Position::new(&centres);
-        let told = events(&mut Bank::new(scheme), &channels, &ticks);
-        assert_eq!(told, expected(scheme, &channels, &ticks, 0));
-        let scheme = Slots::new(&fields);
-        let told = events(&mut Bank::new(scheme).with_slot_ticks(500), &channels, &ticks);
-        assert_eq!(told, expected(scheme, &channels, &ticks, 500));
+        let told = events(&mut Bank::new(&step), &channels, &ticks);
+        assert_eq!(told, expected(&step, &channels, &ticks, 0));
+        let told = events(&mut Bank::new(&hough), &channels, &ticks);
+        assert_eq!(told, expected(&hough, &channels, &ticks, 0));
+        let told = events(&mut Bank::new(&position), &channels, &ticks);
+        assert_eq!(told, expected(&position, &channels, &ticks, 0));
+        let told = events(&mut Bank::new(&slots).with_slot_ticks(500), &channels, &ticks);
+        assert_eq!(told, expected(&slots, &channels, &ticks, 500));
     }
 }
 
-#[test]
-fn drawn_recordings() {
-    let recordings = (1..40_usize).prop_flat_map(|length| {
-        (vec(vec(float(), length), 3), vec(any::<u32>(), length), any::<u32>())
-    });
-    proptest!(cases(128), |((channels, ticks, slot_ticks) in recordings)| {
+/// Any finite float, and those that are not.
+fn float() -> impl Strategy<Value = f32> {
+    prop_oneof![-4.0_f32..4.0, any::<u32>().prop_map(f32::from_bits), Just(f32::NAN)]
+}
+
+proptest! {
+    #[test]
+    fn drawn_recordings(
+        (channels, ticks, slot_ticks) in (1..40_usize).prop_flat_map(|length| {
+            (vec(vec(float(), length), 3), vec(any::<u32>(), length), any::<u32>())
+        }),
+    ) {
         let channels: [_; 3] = channels.try_into().unwrap();
-        let scheme = StepForward::new(0.5).unwrap();
-        let mut bank = Bank::new(scheme);
+        let scheme = StepForward::new(0.5);
+        let mut bank = Bank::new(&scheme);
         let told = events(&mut bank, &channels, &ticks);
-        prop_assert_eq!(told, expected(scheme, &channels, &ticks, 0));
+        prop_assert_eq!(told, expected(&scheme, &channels, &ticks, 0));
         let faults = channels.iter().flatten().filter(|x| !x.is_finite()).count();
         prop_assert_eq!(bank.rejected() as usize, faults);
-        let fields = ReceptiveFields::<f32, 4, 100>::new(-1.0, 1.0, 1.5).unwrap();
-        let scheme = Slots::new(&fields);
-        let told = events(&mut Bank::new(scheme).with_slot_ticks(slot_ticks), &channels, &ticks);
-        prop_assert_eq!(told, expected(scheme, &channels, &ticks, slot_ticks));
-    });
+        let scheme = Slots::<f32, 4, 100>::new(-1.0..=1.0, 1.5);
+        let told = events(&mut Bank::new(&scheme).with_slot_ticks(slot_ticks), &channels, &ticks);
+        prop_assert_eq!(told, expected(&scheme, &channels, &ticks, slot_ticks));
+    }
 }

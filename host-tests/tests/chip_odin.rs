@@ -19,8 +19,8 @@ use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::spi::{Mock, Transaction};
 use proptest::prelude::*;
 use spikewire::chip::{AerPort, ChipError, Input, Odin, OdinInput, Phase, TinyOdin, TinyOdinInput};
-use spikewire::population::{Centres, Position};
-use spikewire::{Bank, Decoder, Encoder, Event, FromEvents, Polarity, Readout, Scheme, Tick};
+use spikewire::population::Position;
+use spikewire::{Bank, Event, FromEvents, Polarity, Readout, Scheme, Tick};
 
 type Word = Result<u32, ChipError<(), ()>>;
 
@@ -687,7 +687,7 @@ proptest! {
         let step = NonZeroU32::new(1_000).unwrap();
         let mut chip = running_with(&model, clocks, polls).with_time_step(step);
         let mut out = Vec::new();
-        let mut events = (0..).zip(&addresses).map(|(n, &a)| event(n * 1_000, a.into()));
+        let mut events = FromEvents((0..).zip(&addresses).map(|(n, &a)| event(n * 1_000, a.into())));
         let is_fed = (0..10_000).any(|_| {
             chip.feed(&mut events, spike, |neuron| out.push(neuron)).is_ok()
         });
@@ -730,13 +730,12 @@ fn events_of_a_step_that_is_over_are_sent_in_the_present_one_and_counted() {
 /// output spikes out, a thrust command back.
 #[test]
 fn output_spikes_become_a_thrust_command() {
-    static CENTRES: Centres<f32, 20> = Centres::<f32, _>::linear(-1.0, 1.0);
-    const ERROR: Position<f32, 20> = Position::new(&CENTRES);
+    static ERROR: Position<f32, 20> = Position::linear(-1.0..=1.0);
 
     let model = Chip::new(255);
     let mut chip = running(&model, 4);
-    let mut bank = Bank::<_, 1>::new(ERROR);
-    let mut readout = Readout::<_, 1>::new(ERROR);
+    let mut bank = Bank::<_, 1>::new(&ERROR);
+    let mut readout = Readout::<_, 1>::new(&ERROR);
     let mut direct = ERROR.decoder();
     for step in 0..200_u32 {
         let error = (step as f32 * 0.1).sin();

@@ -16,7 +16,8 @@ const WHY: &str = "run by `cargo verify peers`";
 
 /// The flight log's spikes, and the ends of the address range.
 fn events() -> Vec<Event> {
-    let mut bank = Bank::<_, 6>::new(StepForward::<f32>::checked(0.1));
+    let scheme = StepForward::new(0.1);
+    let mut bank = Bank::<_, 6>::new(&scheme);
     let mut events = Vec::new();
     for sample in flight::hexarotor() {
         bank.encode(sample.time_us.into(), sample.channels(), |event| events.push(event));

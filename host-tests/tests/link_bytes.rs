@@ -4,12 +4,12 @@ use host_tests::flight;
 use spikewire::format::{Edvs, EdvsTime, EventFormat, EventStream, Evt2};
 use spikewire::link::{Coding, MAX_FRAME, Transmitter};
 use spikewire::temporal::StepForward;
-use spikewire::{Bank, Event, FromEvents, Scheme};
+use spikewire::{Bank, Event, FromEvents};
 
 /// Gyroscope in rad/s, accelerometer in m/s².
 fn spikes(gyro: f32, accel: f32) -> Vec<Event> {
-    let [gyro, accel] = [gyro, accel].map(|step| StepForward::<f32>::checked(step).encoder());
-    let mut bank = Bank::from_encoders([gyro, gyro, gyro, accel, accel, accel]);
+    let [gyro, accel] = &[gyro, accel].map(StepForward::<f32>::new);
+    let mut bank = Bank::per_channel([gyro, gyro, gyro, accel, accel, accel]);
     let mut events = Vec::new();
     for sample in flight::hexarotor() {
         bank.encode(sample.time_us.into(), sample.channels(), |event| events.push(event));
@@ -66,10 +66,9 @@ fn the_link_takes_about_a_byte_a_spike() {
 #[test]
 fn at_a_kilohertz_too() {
     let log = flight::hexarotor();
-    let step = StepForward::<f32>::checked;
     for (gyro, accel) in [(0.02, 0.1), (0.05, 0.25)] {
-        let [gyro, accel] = [gyro, accel].map(|threshold| step(threshold).encoder());
-        let mut bank = Bank::from_encoders([gyro, gyro, gyro, accel, accel, accel]);
+        let [gyro, accel] = &[gyro, accel].map(StepForward::<f32>::new);
+        let mut bank = Bank::per_channel([gyro, gyro, gyro, accel, accel, accel]);
         let mut events = Vec::new();
         let mut next = 0;
         for pair in log.windows(2) {

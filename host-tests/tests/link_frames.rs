@@ -3,10 +3,8 @@
 use core::num::NonZeroU16;
 
 use proptest::prelude::*;
-use spikewire::link::{
-    Coding, FrameView, Framer, Gap, LinkError, MAX_FRAME, MIN_FRAME, Reader,
-};
-use spikewire::{Event, Keyframe, Polarity, Raw, SampleKind, Tick};
+use spikewire::link::{Coding, FrameView, Framer, Gap, LinkError, MAX_FRAME, MIN_FRAME, Reader};
+use spikewire::{Event, Keyframe, Polarity, Sample, SampleKind, Tick};
 
 /// The checksum of the specification, bit by bit.
 fn crc32(bytes: &[u8]) -> u32 {
@@ -22,7 +20,7 @@ fn event(tick: u32, address: u16, is_up: bool) -> Event {
 
 const SESSION: u16 = 0x1234;
 
-fn keyframe<S: Raw>(tick: u32, address: u16, value: S) -> Keyframe {
+fn keyframe<S: Sample>(tick: u32, address: u16, value: S) -> Keyframe {
     Keyframe::new(tick.into(), address, value)
 }
 
@@ -111,7 +109,11 @@ fn every_error_says_what_is_wrong() {
 
     let mut buffer = [0; 64];
     let mut frame = framer.start(0.into(), &mut buffer).unwrap();
-    assert_eq!(frame.keyframe(keyframe(1, 0, 0.5_f32)), Err(LinkError::KeyframeOrder), "another tick");
+    assert_eq!(
+        frame.keyframe(keyframe(1, 0, 0.5_f32)),
+        Err(LinkError::KeyframeOrder),
+        "another tick"
+    );
     frame.keyframe(keyframe(0, 0, 0.5_f32)).unwrap();
     assert_eq!(frame.keyframe(keyframe(0, 1, 3_i16)), Err(LinkError::KeyframeOrder));
     let fixed = Keyframe { kind: SampleKind::Fixed32 { fraction: 16 }, ..keyframe(0, 1, 0.5_f32) };
@@ -251,37 +253,88 @@ proptest! {
     }
 }
 
-#[test]
-fn a_start_in_the_middle_and_a_restart_are_no_gap() {
-    let events: Vec<Event> =
-        (0..400).map(|n| event(n * 1_000, (n % 6) as u16, n % 2 == 0)).collect();
-    let frames = frames(Coding::for_channels(6, 1_000), &events, 40);
-    let stream: Vec<u8> = frames.iter().flat_map(|(bytes, _)| bytes.clone()).collect();
-    let mut reader = Reader::<MAX_FRAME>::new();
-    let mut input = &stream[55..];
-    let first = reader.next_frame(&mut input).unwrap();
-    assert_eq!((first.gap, first.frame.sequence()), (None, 2));
-    while reader.next_frame(&mut input).is_some() {}
-    assert_eq!(reader.frames() as usize, frames.len() - 2);
+/// The frames of a session with an event each.
+fn session(session: u16, count: u32) -> Vec<Vec<u8>> {
+    let mut framer = Framer::new(Coding::for_channels(6, 1_000), session);
+    let frame = |number: u32| {
+        let mut buffer = [0; 64];
+        let mut frame = framer.start((number * 1_000).into(), &mut buffer).unwrap();
+        frame.event(event(number * 1_000, session, true)).unwrap();
+        frame.finish().to_vec()
+    };
+    (0..count).map(frame).collect()
+}
 
-    let mut again = &stream[..]; // the sender was reset
-    let first = reader.next_frame(&mut again).unwrap();
-    assert!(first.gap.is_none() && first.is_start);
-    assert_eq!(reader.lost_frames(), 0);
+/// What a reader makes of frames: session, sequence, frames lost before it, and whether it is a start.
+fn read<'a>(
+    frames: impl IntoIterator<Item = &'a Vec<u8>>,
+) -> (Vec<(u16, u16, u16, bool)>, Reader<MAX_FRAME>) {
+    let mut reader = Reader::<MAX_FRAME>::new();
+    let stream: Vec<u8> = frames.into_iter().flatten().copied().collect();
+    let mut input = &stream[..];
+    let mut read = Vec::new();
+    while let Some(received) = reader.next_frame(&mut input) {
+        let lost = received.gap.map_or(0, |gap| gap.lost_frames);
+        let (frame, is_start) = (received.frame, received.is_start);
+        assert_eq!(received.is_after_break(), is_start || lost > 0);
+        read.push((frame.session(), frame.sequence(), lost, is_start));
+    }
+    (read, reader)
 }
 
 #[test]
-fn a_frame_sent_twice_counts_once() {
-    let events: Vec<Event> = (0..100).map(|n| event(n * 1_000, 0, true)).collect();
-    let frames = frames(Coding::for_channels(6, 1_000), &events, 40);
-    let stream: Vec<u8> = frames[1..].iter().flat_map(|(bytes, _)| bytes.repeat(2)).collect();
+fn a_start_in_the_middle_and_a_new_session_are_starts() {
+    let (first, second) = (session(1, 5), session(2, 3));
+    let stream: Vec<u8> = first.concat();
     let mut reader = Reader::<MAX_FRAME>::new();
-    let mut input = &stream[..];
-    while let Some(received) = reader.next_frame(&mut input) {
-        assert_eq!(received.gap, None);
-    }
-    assert_eq!(reader.frames() as usize, frames.len() - 1);
-    assert_eq!((reader.repeated(), reader.lost_frames()), (reader.frames(), 0));
+    let mut input = &stream[35..];
+    let received = reader.next_frame(&mut input).unwrap();
+    assert_eq!((received.gap, received.is_start, received.frame.sequence()), (None, true, 2));
+
+    let (read, reader) = read(first.iter().chain(&second[1..]));
+    assert_eq!(read[4..], [(1, 4, 0, false), (2, 1, 0, true), (2, 2, 0, false)]);
+    assert_eq!(reader.lost_frames(), 0);
+}
+
+/// As many first frames are lost as the session before had sent.
+#[test]
+fn a_reboot_shows_whatever_is_lost() {
+    let (first, second) = (session(1, 3), session(2, 6));
+    let (read, _) = read(first.iter().chain(&second[3..]));
+    assert_eq!(read[3..], [(2, 3, 0, true), (2, 4, 0, false), (2, 5, 0, false)]);
+}
+
+#[test]
+fn frames_sent_twice_or_late_are_delivered_once() {
+    let frames = session(1, 600);
+    let order = [0, 0, 1, 3, 2, 2, 3, 4, 4, 1, 300, 200, 45, 44];
+    let (read, reader) = read(order.map(|number| &frames[number]));
+    let expected = [(0, 0), (1, 0), (3, 1), (4, 0), (300, 295), (44, 65_279)];
+    let told: Vec<_> = read.iter().map(|&(_, sequence, lost, _)| (sequence, lost)).collect();
+    assert_eq!(told, expected, "one of more than 256 back counts as a long gap");
+    assert_eq!((reader.repeated(), reader.late()), (2 + 1, 4 + 1));
+}
+
+#[test]
+fn what_was_on_its_way_before_a_reboot_is_late() {
+    let sessions: Vec<_> = (1..6).map(|number| session(number, 300)).collect();
+    let frame = |session: usize, number: usize| &sessions[session][number];
+    let (told, reader) = read([
+        frame(0, 0),
+        frame(1, 0),
+        frame(0, 1),
+        frame(2, 0),
+        frame(1, 1),
+        frame(0, 2),
+        frame(2, 1),
+    ]);
+    assert_eq!(told, [(1, 0, 0, true), (2, 0, 0, true), (3, 0, 0, true), (3, 1, 0, false)]);
+    assert_eq!(reader.late(), 3);
+    // A number that comes again much later is a session of its own.
+    let (told, reader) =
+        read(sessions[0][..1].iter().chain(&sessions[1][..256]).chain(&sessions[0][1..3]));
+    assert_eq!(told[256..], [(2, 255, 0, false), (1, 1, 0, true), (1, 2, 0, false)]);
+    assert_eq!(reader.late(), 0);
 }
 
 #[test]

@@ -1,26 +1,23 @@
 //! Events back to values: a readout gives what decoders beside the encoders give, and takes anything.
 
 use proptest::prelude::*;
-use spikewire::population::{Centres, Neuron, Position, ReceptiveFields, Slots, Volley};
+use rand_pcg::Pcg32;
+use spikewire::population::{FiredNeurons, Neuron, Position, Probabilistic, SlotSpikes, Slots};
 use spikewire::rate::{Hough, Taps};
 use spikewire::temporal::StepForward;
-use spikewire::{
-    Assemble, Bank, Decoder, Encoder, Event, Firing, Output, Polarity, Readout, Scheme, Spike, Tick,
-};
+use spikewire::{Bank, Code, Event, Firing, Output, Polarity, Readout, Spike, Start, Tick};
 
-static CENTRES: Centres<f32, 9> = Centres::<f32, _>::linear(-1.0, 1.0);
-static FIELDS: ReceptiveFields<f32, 8, 50> = ReceptiveFields::<f32, _, _>::checked(-1.0, 1.0, 1.5);
-static TAPS: Taps<f32, 5> = Taps::<f32, _>::triangular(1.0);
+static STEP: StepForward<f32> = StepForward::new(0.2);
+static POSITION: Position<f32, 9> = Position::linear(-1.0..=1.0);
+static SLOTS: Slots<f32, 8, 50> = Slots::new(-1.0..=1.0, 1.5);
+static HOUGH: Hough<f32, 5> = Hough::new(Taps::triangular(1.0)).with_shift(-1.2);
 
 fn samples() -> impl Strategy<Value = Vec<[f32; 3]>> {
     prop::collection::vec(prop::array::uniform3(-1.2_f32..1.2), 1..60)
 }
 
 /// Through events and back, against the codes themselves.
-fn agrees<P: Scheme<Sample = f32>>(scheme: P, samples: &[[f32; 3]], start: u32, slot_ticks: u32)
-where
-    <P::Decoder as Decoder>::Code: Assemble,
-{
+fn agrees<P: Start<Sample = f32>>(scheme: &P, samples: &[[f32; 3]], start: u32, slot_ticks: u32) {
     let mut bank = Bank::<_, 3>::new(scheme).with_slot_ticks(slot_ticks);
     let mut readout = Readout::<_, 3>::new(scheme).with_slot_ticks(slot_ticks);
     let mut encoders = [(); 3].map(|()| scheme.encoder());
@@ -44,18 +41,39 @@ where
 /// All 256 slots are legal: the last one too.
 #[test]
 fn the_last_of_256_slots_comes_back() {
-    let fields = ReceptiveFields::<f32, 5, 256>::new(-1.0, 1.0, 1.5).unwrap();
+    let scheme = Slots::<f32, 5, 256>::new(-1.0..=1.0, 1.5);
     let samples: Vec<_> = (-1_000..1_000).map(|i| [i as f32 / 900.0; 3]).collect();
-    agrees(Slots::new(&fields), &samples, 0, 3);
+    agrees(&scheme, &samples, 0, 3);
+}
+
+/// A probabilistic code needs a generator for its encoder, and nothing for its decoder.
+#[test]
+fn neurons_that_fire_by_chance_come_back() {
+    type Chance = Probabilistic<f32, Pcg32, 8, 64>;
+    static SCHEME: Chance = Chance::new(-1.0..=1.0, 1.5);
+    let generators = [1, 2].map(|seed| Pcg32::new(seed, 0));
+    let states = generators.clone().map(Chance::state);
+    let mut bank = Bank::<_, 2>::with_states(&SCHEME, states);
+    let mut readout = Readout::<_, 2>::new(&SCHEME);
+    let mut encoders = generators.map(|generator| SCHEME.encoder(generator));
+    let mut decoders = [(); 2].map(|()| spikewire::Scheme::decoder(&SCHEME));
+    for step in 0..500_u32 {
+        let samples = [(step as f32 * 0.1).sin(), (step as f32 * 0.07).cos()];
+        let mut events = Vec::new();
+        bank.encode(step.into(), samples, |event| events.push(event));
+        let codes: [FiredNeurons<8>; 2] = [0, 1].map(|at: usize| encoders[at].encode(samples[at]));
+        let expected = [0, 1].map(|at: usize| decoders[at].decode(codes[at]));
+        assert_eq!(readout.decode(step.into(), &events), expected);
+    }
 }
 
 proptest! {
     #[test]
     fn every_code_comes_back(samples in samples(), start: u32) {
-        agrees(StepForward::<f32>::checked(0.2), &samples, start, 0);
-        agrees(Position::new(&CENTRES), &samples, start, 0);
-        agrees(Slots::new(&FIELDS), &samples, start, 20);
-        agrees(Hough::new(&TAPS).with_shift(-1.2).unwrap(), &samples, start, 0);
+        agrees(&STEP, &samples, start, 0);
+        agrees(&POSITION, &samples, start, 0);
+        agrees(&SLOTS, &samples, start, 20);
+        agrees(&HOUGH, &samples, start, 0);
     }
 
     #[test]
@@ -71,7 +89,7 @@ proptest! {
         Spike::assemble(firings.clone());
         let winner = Option::<Neuron<9>>::assemble(firings.clone());
         prop_assert_eq!(winner.is_some(), firings.clone().any(|firing| firing.neuron < 9));
-        let volley = Volley::<8, 50>::assemble(firings.clone());
+        let volley = SlotSpikes::<8, 50>::assemble(firings.clone());
         let heard = firings.filter(|firing| firing.neuron < 8 && firing.slot < 50);
         prop_assert_eq!(volley.is_empty(), heard.clone().next().is_none());
         let earliest = heard.map(|firing| firing.slot).min();
@@ -88,7 +106,7 @@ proptest! {
             .into_iter()
             .map(|(tick, address)| Event { tick: tick.into(), address, polarity: Polarity::Up })
             .collect();
-        let mut readout = Readout::<_, 3>::new(Slots::new(&FIELDS)).with_slot_ticks(slot_ticks);
+        let mut readout = Readout::<_, 3>::new(&SLOTS).with_slot_ticks(slot_ticks);
         prop_assert!(readout.decode(tick.into(), &events).iter().all(|value| value.is_finite()));
     }
 }
@@ -104,7 +122,7 @@ fn a_crowd_of_neurons_gives_one_answer() {
     assert_eq!(winner(&[at(9, 0)]), None);
 
     let volley = |firings: &[Firing]| {
-        Volley::<8, 50>::assemble(firings.iter().copied()).iter().collect::<Vec<_>>()
+        SlotSpikes::<8, 50>::assemble(firings.iter().copied()).iter().collect::<Vec<_>>()
     };
     let firings = [at(1, 9), at(3, 7), at(4, 2), at(4, 1), at(5, 30), at(7, 3)];
     assert_eq!(volley(&firings), [(3, 7), (4, 1), (5, 30)]);

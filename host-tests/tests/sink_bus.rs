@@ -23,7 +23,9 @@ use spikewire::{Event, EventQueue, FromEvents, Overflow, Polarity, Tick};
 const FORMAT: Edvs = Edvs::new(EdvsTime::None);
 
 fn events(count: u16) -> Vec<Event> {
-    (0..count).map(|address| Event { tick: Tick::from(0), address, polarity: Polarity::Up }).collect()
+    (0..count)
+        .map(|address| Event { tick: Tick::from(0), address, polarity: Polarity::Up })
+        .collect()
 }
 
 fn batch() -> Formatted<EdvsEncoder> {

@@ -25,9 +25,11 @@ pub use queue::{
     Consumer, EventQueue, Overflow, Queue, QueueView, Refused, SpscConsumer, SpscProducer,
     SpscQueue,
 };
+#[cfg(feature = "link")]
 pub(crate) use readout::Addresses;
 pub use readout::Readout;
 pub use schemes::Schemes;
+#[cfg(feature = "link")]
 pub(crate) use schemes::{CodeOf, DecoderStateOf, SampleOf};
 pub use source::{AtMost, FromEvents, FromItems, Source};
 pub use tick::Tick;

@@ -46,7 +46,7 @@ impl<'a> Consumer<'a> {
 impl Source for Consumer<'_> {
     #[inline]
     fn take(&mut self) -> Option<Taken> {
-        self.queue.remove_taken()
+        self.queue.take()
     }
 }
 

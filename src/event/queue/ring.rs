@@ -17,7 +17,7 @@ use crate::event::{Item, Put, Taken, Tick};
 /// - **Any number of interrupts** [push](QueueView::push), nested ones too; one
 ///   [consumer](QueueView::consumer) takes.
 /// - **Never blocks.** Each call holds off interrupts for the copy of one item.
-/// - **Memory:** `12 N + 36` bytes on a 32-bit part, 8 more with the feature `async`.
+/// - **Memory:** `12 N + 44` bytes on a 32-bit part, 8 more with the feature `async`.
 /// - **Losses:** each item taken says how many were lost before it. Where the newest items were lost and
 ///   none follows, a [break](Item::Break) says so. See also [`lost`](QueueView::lost) and
 ///   [`refused`](QueueView::refused).
@@ -68,6 +68,9 @@ pub struct Place(Mutex<Cell<Slot>>);
 struct State {
     /// The place of the oldest item.
     head: Cell<usize>,
+    /// The place of the next item.
+    tail: Cell<usize>,
+    /// How many items there are; with [`CLOSED`] while items are lost after the newest.
     len: Cell<usize>,
     /// The most items up to the last one taken.
     peak: Cell<usize>,
@@ -81,12 +84,23 @@ struct State {
     has_consumer: Cell<bool>,
 }
 
+/// Makes a length too long for any item to be added on the usual path.
+const CLOSED: usize = 1 << (usize::BITS - 1);
+
+impl State {
+    #[inline]
+    fn len(&self) -> usize {
+        self.len.get() & !CLOSED
+    }
+}
+
 impl<const N: usize> EventQueue<N> {
     /// An empty queue, for a `static`.
     pub const fn new(overflow: Overflow) -> Self {
         const { assert!(N >= 1, "a queue has room for at least one item") };
         let state = State {
             head: Cell::new(0),
+            tail: Cell::new(0),
             len: Cell::new(0),
             peak: Cell::new(0),
             behind: Cell::new(0),
@@ -166,7 +180,7 @@ impl QueueView {
 
     /// How many items it holds.
     pub fn len(&self) -> usize {
-        self.with(|state| state.len.get())
+        self.with(State::len)
     }
 
     /// Whether it holds none.
@@ -187,7 +201,7 @@ impl QueueView {
 
     /// The most items it ever held, to choose the capacity by.
     pub fn peak(&self) -> usize {
-        self.with(|state| state.peak.get().max(state.len.get()))
+        self.with(|state| state.peak.get().max(state.len()))
     }
 
     #[inline]
@@ -198,13 +212,14 @@ impl QueueView {
     /// Adds an item, and says whether it was taken.
     #[inline]
     fn add(&self, slot: Slot, giver: Giver) -> bool {
-        let (is_taken, _wake) = critical_section::with(|section| {
-            let state = self.state.borrow(section);
-            let is_taken = if state.len.get() < self.places.len() && state.behind.get() == 0 {
+        #[cfg_attr(not(feature = "async"), expect(unused_variables))]
+        let (is_taken, waker) = critical_section::with(|section| {
+            let is_taken = if self.state.borrow(section).len.get() < self.places.len() {
                 self.append(section, slot);
                 true
             } else {
-                self.add_past_loss(section, slot, giver)
+                let (tick, bits, rest) = slot.words();
+                self.add_past_loss(section, tick, bits, rest, giver)
             };
             #[cfg(feature = "async")]
             let waker = self.waker.borrow(section).take();
@@ -214,7 +229,7 @@ impl QueueView {
         });
         // Outside of the critical section: it runs code of the executor's.
         #[cfg(feature = "async")]
-        if let Some(waker) = _wake {
+        if let Some(waker) = waker {
             waker.wake();
         }
         is_taken
@@ -224,28 +239,43 @@ impl QueueView {
     #[inline]
     fn append(&self, section: CriticalSection<'_>, slot: Slot) {
         let state = self.state.borrow(section);
-        let (head, len, capacity) = (state.head.get(), state.len.get(), self.places.len());
-        let end = head.wrapping_add(len);
-        let at = if end >= capacity { end.wrapping_sub(capacity) } else { end };
-        if let Some(Place(place)) = self.places.get(at) {
+        let tail = state.tail.get();
+        if let Some(Place(place)) = self.places.get(tail) {
             place.borrow(section).set(slot);
-            state.len.set(len.wrapping_add(1));
+            state.tail.set(self.after(tail));
+            state.len.set(state.len.get().wrapping_add(1));
         }
+    }
+
+    /// The place after this one.
+    #[inline]
+    fn after(&self, place: usize) -> usize {
+        let next = place.wrapping_add(1);
+        if next == self.places.len() { 0 } else { next }
     }
 
     /// Adds an item where the queue is full, or where items were lost before it.
     #[cold]
     #[inline(never)]
-    fn add_past_loss(&self, section: CriticalSection<'_>, slot: Slot, giver: Giver) -> bool {
+    fn add_past_loss(
+        &self,
+        section: CriticalSection<'_>,
+        tick: Tick,
+        bits: u32,
+        rest: u32,
+        giver: Giver,
+    ) -> bool {
+        let slot = Slot::from_words((tick, bits, rest));
         let state = self.state.borrow(section);
-        if state.len.get() < self.places.len() {
+        if state.len() < self.places.len() {
+            state.len.set(state.len());
             self.append(section, with_loss(state, slot, state.behind.take()));
             return true;
         }
         match (self.overflow, giver) {
             (Overflow::DropOldest, _) => {
                 count(&state.lost);
-                let dropped = self.remove(section).map_or(0, |dropped| dropped.lost);
+                let dropped = self.remove(section).map_or(0, Slot::lost);
                 self.append(section, slot);
                 // What was lost before the dropped one was lost before the one that is the oldest now.
                 if let Some(Place(oldest)) = self.places.get(state.head.get()) {
@@ -265,6 +295,7 @@ impl QueueView {
                 count(&state.lost);
                 count(&state.behind);
                 state.behind_tick.set(slot.tick());
+                state.len.set(state.len.get() | CLOSED);
                 true
             }
         }
@@ -272,40 +303,49 @@ impl QueueView {
 
     /// Takes the oldest item.
     #[inline]
-    pub(super) fn remove_taken(&self) -> Option<Taken> {
-        let (slot, lost) = critical_section::with(|section| {
-            let Some(slot) = self.remove(section) else { return self.take_loss(section) };
-            let mut lost = u32::from(slot.lost);
-            if slot.lost == u8::MAX {
-                lost = lost.saturating_add(self.state.borrow(section).excess.take());
+    pub(super) fn take(&self) -> Option<Taken> {
+        let slot = critical_section::with(|section| self.remove(section));
+        if let Some(event) = slot.and_then(Slot::plain_event) {
+            return Some(Taken::whole(Item::Event(event)));
+        }
+        let (tick, bits, rest) = slot.unwrap_or(Slot::EMPTY).words();
+        self.take_apart(slot.is_some(), tick, bits, rest)
+    }
+
+    /// What a slot says that is no plain event. Where there was no slot, one that came meanwhile, or the losses
+    /// that no item follows, as a break.
+    #[cold]
+    #[inline(never)]
+    fn take_apart(&self, has_slot: bool, tick: Tick, bits: u32, rest: u32) -> Option<Taken> {
+        let slot = has_slot.then_some(Slot::from_words((tick, bits, rest)));
+        critical_section::with(|section| {
+            let state = self.state.borrow(section);
+            if let Some(slot) = slot.or_else(|| self.remove(section)) {
+                let excess = if slot.lost() == u8::MAX { state.excess.take() } else { 0 };
+                let lost = u32::from(slot.lost()).saturating_add(excess);
+                return Some(Taken { lost, item: slot.item() });
             }
-            Some((slot, lost))
-        })?;
-        Some(Taken { lost, item: slot.item() })
+            let lost = state.behind.take();
+            state.len.set(0);
+            (lost > 0).then(|| Taken { lost, item: Item::Break(state.behind_tick.get()) })
+        })
     }
 
     #[inline]
     fn remove(&self, section: CriticalSection<'_>) -> Option<Slot> {
         let state = self.state.borrow(section);
-        let (head, len) = (state.head.get(), state.len.get());
-        let left = len.checked_sub(1)?;
+        let len = state.len();
+        if len == 0 {
+            return None;
+        }
+        let head = state.head.get();
         let Place(place) = self.places.get(head)?;
-        let next = head.wrapping_add(1);
-        state.head.set(if next == self.places.len() { 0 } else { next });
-        state.len.set(left);
+        state.head.set(self.after(head));
+        state.len.set(state.len.get().wrapping_sub(1));
         if len > state.peak.get() {
             state.peak.set(len);
         }
         Some(place.borrow(section).get())
-    }
-
-    /// The losses that no item follows, as a break.
-    #[cold]
-    #[inline(never)]
-    fn take_loss(&self, section: CriticalSection<'_>) -> Option<(Slot, u32)> {
-        let state = self.state.borrow(section);
-        let behind = state.behind.take();
-        (behind > 0).then(|| (Slot::lost_at(state.behind_tick.get()), behind))
     }
 
     /// Lets the next consumer be had.
@@ -319,7 +359,7 @@ impl QueueView {
         let waker = waker.clone();
         let (is_ready, _before) = critical_section::with(|section| {
             let state = self.state.borrow(section);
-            let is_ready = state.len.get() > 0 || state.behind.get() > 0;
+            let is_ready = state.len.get() > 0;
             let kept = (!is_ready).then_some(waker);
             (is_ready, self.waker.borrow(section).replace(kept))
         });
@@ -329,7 +369,7 @@ impl QueueView {
 
 /// A slot before which so many more items were lost.
 fn with_loss(state: &State, slot: Slot, lost: u32) -> Slot {
-    let sum = u32::from(slot.lost).saturating_add(lost);
+    let sum = u32::from(slot.lost()).saturating_add(lost);
     let said = sum.min(u8::MAX.into());
     state.excess.set(state.excess.get().saturating_add(sum - said));
     slot.with_lost(said as u8)

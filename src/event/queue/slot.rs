@@ -3,52 +3,82 @@
 use crate::event::{Event, Item, Keyframe, Tick};
 use crate::{Polarity, SampleKind};
 
-/// An item, and how many items were lost before it.
+/// An item, and how many items were lost before it, in three words, as few stores write them.
+///
+/// The last word is `lost << 24 | what << 22 | detail << 16 | address`: how many were lost before it, 255
+/// for as many or more; whether it is an event, a keyframe or a break; and of an event the polarity, of a
+/// keyframe the sample's type.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slot {
     tick: Tick,
     /// Of a keyframe.
     bits: u32,
-    address: u16,
-    /// What it is, in the high 2 bits; of an event the polarity, of a keyframe the sample's kind.
-    flags: u8,
-    /// How many were lost before it; 255 for as many or more.
-    pub(super) lost: u8,
+    rest: u32,
 }
 
-const WHAT: u8 = 0xC0;
-const EVENT: u8 = 0x00;
-const KEYFRAME: u8 = 0x40;
-const BREAK: u8 = 0x80;
-const UP: u8 = 1;
+const LOST_AT: u32 = 24;
+const WHAT_AT: u32 = 22;
+const DETAIL_AT: u32 = 16;
+const EVENT: u32 = 0;
+const KEYFRAME: u32 = 1;
+const BREAK: u32 = 2;
 
 impl Slot {
     pub(super) const EMPTY: Self = Self::lost_at(Tick::from_micros(0));
 
     /// A break.
     pub(super) const fn lost_at(tick: Tick) -> Self {
-        Self { tick, bits: 0, address: 0, flags: BREAK, lost: 0 }
+        Self { tick, bits: 0, rest: BREAK << WHAT_AT }
     }
 
     pub(super) const fn with_lost(self, lost: u8) -> Self {
-        Self { lost, ..self }
+        let rest = self.rest & !(0xFF << LOST_AT) | (lost as u32) << LOST_AT;
+        Self { rest, ..self }
+    }
+
+    /// How many were lost before it; 255 for as many or more.
+    #[inline]
+    pub(super) const fn lost(self) -> u8 {
+        (self.rest >> LOST_AT) as u8
+    }
+
+    /// Its words: in registers where a function is not inlined.
+    #[inline]
+    pub(super) const fn words(self) -> (Tick, u32, u32) {
+        (self.tick, self.bits, self.rest)
+    }
+
+    /// The slot of these words.
+    #[inline]
+    pub(super) const fn from_words((tick, bits, rest): (Tick, u32, u32)) -> Self {
+        Self { tick, bits, rest }
     }
 
     pub(super) const fn tick(self) -> Tick {
         self.tick
     }
 
+    /// The event, if it is one before which nothing was lost: nearly all are.
     #[inline]
+    pub(super) fn plain_event(self) -> Option<Event> {
+        let Self { tick, rest, .. } = self;
+        let polarity = if rest >> DETAIL_AT == 0 { Polarity::Down } else { Polarity::Up };
+        (rest >> WHAT_AT == EVENT).then_some(Event { tick, address: rest as u16, polarity })
+    }
+
     pub(super) fn item(self) -> Item {
-        let Self { tick, bits, address, flags, .. } = self;
-        if flags & WHAT == EVENT {
-            let polarity = if flags == EVENT { Polarity::Down } else { Polarity::Up };
-            return Item::Event(Event { tick, address, polarity });
-        }
-        match SampleKind::from_byte(flags & !WHAT) {
-            Some(kind) if flags & WHAT == KEYFRAME => {
-                Item::Keyframe(Keyframe { tick, address, kind, bits })
+        let Self { tick, bits, rest } = self;
+        let address = rest as u16;
+        let detail = (rest >> DETAIL_AT) as u8 & 0x3F;
+        match rest >> WHAT_AT & 3 {
+            EVENT => {
+                let polarity = if detail == 0 { Polarity::Down } else { Polarity::Up };
+                Item::Event(Event { tick, address, polarity })
             }
+            KEYFRAME => match SampleKind::from_byte(detail) {
+                Some(kind) => Item::Keyframe(Keyframe { tick, address, kind, bits }),
+                None => Item::Break(tick),
+            },
             _ => Item::Break(tick),
         }
     }
@@ -59,11 +89,12 @@ impl From<Item> for Slot {
     fn from(item: Item) -> Self {
         match item {
             Item::Event(Event { tick, address, polarity }) => {
-                let flags = if polarity == Polarity::Up { EVENT | UP } else { EVENT };
-                Self { tick, bits: 0, address, flags, lost: 0 }
+                let up = u32::from(polarity == Polarity::Up);
+                Self { tick, bits: 0, rest: up << DETAIL_AT | u32::from(address) }
             }
             Item::Keyframe(Keyframe { tick, address, kind, bits }) => {
-                Self { tick, bits, address, flags: KEYFRAME | kind.to_byte(), lost: 0 }
+                let detail = u32::from(kind.to_byte()) << DETAIL_AT;
+                Self { tick, bits, rest: KEYFRAME << WHAT_AT | detail | u32::from(address) }
             }
             Item::Break(tick) => Self::lost_at(tick),
         }

@@ -1,28 +1,27 @@
 //! The queue without critical sections, for one interrupt that drops the newest.
 
-use core::fmt;
-use core::sync::atomic::{AtomicU32, Ordering};
-
-use heapless::spsc;
+use core::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
 use super::slot::Slot;
 use crate::event::{Item, Put, Source, Taken, Tick};
 
-/// A queue of `N - 1` items from one interrupt to main, without locks, over `heapless::spsc`.
+/// A queue of `N - 1` items from one interrupt to main, without locks.
 ///
-/// Interrupts are never held off, and what finds no room is lost: [`EventQueue`](super::EventQueue) has
-/// other policies and any number of interrupts.
+/// Interrupts are never held off, and what finds no room is lost. [`EventQueue`](super::EventQueue) has
+/// other policies, any number of interrupts, and a waker. The algorithm is that of `heapless::spsc`, whose ends
+/// divide by the capacity and so can panic as far as a linker knows.
 ///
-/// - **Ends:** [`split`](Self::split) makes a [`SpscProducer`] for the interrupt and a [`SpscConsumer`]
+/// - **Ends:** [`split`](Self::split) makes an [`SpscProducer`] for the interrupt and an [`SpscConsumer`]
 ///   for main.
-/// - **Memory:** `16 N + 16` bytes on a 32-bit part.
-/// - **Losses** are said as by [`EventQueue`](super::EventQueue).
+/// - **Memory:** `16 N + 20` bytes on a 32-bit part.
+/// - **Losses** are said as by [`EventQueue`](super::EventQueue), modulo 2³² between two items taken.
 ///
 /// ```
 /// use spikewire::{Event, Polarity, Source, SpscQueue, Tick};
 ///
-/// let mut queue = SpscQueue::<3>::new();
-/// let (mut interrupt, mut main) = queue.split();
+/// static EVENTS: SpscQueue<3> = SpscQueue::new();
+///
+/// let (mut interrupt, mut main) = EVENTS.split().expect("the first call");
 /// for micros in [1, 2, 3] {
 ///     let tick = Tick::from_micros(micros);
 ///     interrupt.push(Event { tick, address: 0, polarity: Polarity::Up });
@@ -31,46 +30,65 @@ use crate::event::{Item, Put, Source, Taken, Tick};
 /// assert_eq!(main.take().map(|taken| taken.item.tick().micros()), Some(2));
 /// assert_eq!(main.take().map(|taken| taken.lost), Some(1)); // a break: one was lost
 /// ```
-pub struct SpscQueue<const N: usize> {
-    items: spsc::Queue<Entry, N>,
-    loss: Loss,
-    /// Of the producer: whether the last push was lost, for counts that wrapped all the way round.
-    is_after_loss: bool,
-    /// Of the consumer: the count of losses that were said.
-    known: u32,
+#[derive(Debug)]
+pub struct SpscQueue<const N: usize>(Ring<[Entry; N]>);
+
+/// The queue behind its ends. Each counter and place is written by one end alone; loads and stores suffice, as a
+/// Cortex-M0 has no others.
+#[derive(Debug)]
+struct Ring<C: ?Sized> {
+    /// Of the consumer: the place of the oldest item.
+    head: AtomicUsize,
+    /// Of the producer: the place of the next item. The place before the head stays empty.
+    tail: AtomicUsize,
+    /// Of the producer: how many items were lost; wraps.
+    lost: AtomicU32,
+    /// Of the producer: the tick of the one lost last.
+    lost_tick: AtomicU32,
+    /// 1 once the ends are given away.
+    is_split: AtomicU32,
+    entries: C,
 }
 
 /// An item, and the count of losses when it was pushed.
-#[derive(Clone, Copy)]
+#[derive(Debug)]
 struct Entry {
-    slot: Slot,
-    lost: u32,
+    tick: AtomicU32,
+    bits: AtomicU32,
+    rest: AtomicU32,
+    lost: AtomicU32,
 }
 
-/// What was lost, written by the producer alone. Loads and stores suffice: a Cortex-M0 has no others.
-struct Loss {
-    /// Wraps.
-    count: AtomicU32,
-    /// The tick of the last one.
-    tick: AtomicU32,
+impl Entry {
+    const fn empty() -> Self {
+        let [tick, bits, rest, lost] = [const { AtomicU32::new(0) }; 4];
+        Self { tick, bits, rest, lost }
+    }
 }
 
 impl<const N: usize> SpscQueue<N> {
-    /// An empty queue.
+    /// An empty queue, for a `static`.
     pub const fn new() -> Self {
         const { assert!(N >= 2, "a queue has room for at least one item") };
-        let loss = Loss { count: AtomicU32::new(0), tick: AtomicU32::new(0) };
-        Self { items: spsc::Queue::new(), loss, is_after_loss: false, known: 0 }
+        Self(Ring {
+            head: AtomicUsize::new(0),
+            tail: AtomicUsize::new(0),
+            lost: AtomicU32::new(0),
+            lost_tick: AtomicU32::new(0),
+            is_split: AtomicU32::new(0),
+            entries: [const { Entry::empty() }; N],
+        })
     }
 
-    /// The two ends. What the queue holds stays in it.
-    pub fn split(&mut self) -> (SpscProducer<'_>, SpscConsumer<'_>) {
-        let Self { items, loss, is_after_loss, known } = self;
-        let (producer, consumer) = items.split();
-        (
-            SpscProducer { items: producer, loss, is_after_loss },
-            SpscConsumer { items: consumer, loss, known },
-        )
+    /// The two ends, the first time; `None` from then on.
+    pub fn split(&self) -> Option<(SpscProducer<'_>, SpscConsumer<'_>)> {
+        let ring = &self.0;
+        let was_split = critical_section::with(|_| {
+            let was_split = ring.is_split.load(Ordering::Relaxed);
+            ring.is_split.store(1, Ordering::Relaxed);
+            was_split
+        });
+        (was_split == 0).then_some((SpscProducer { ring }, SpscConsumer { ring, known: 0 }))
     }
 }
 
@@ -80,36 +98,47 @@ impl<const N: usize> Default for SpscQueue<N> {
     }
 }
 
-impl<const N: usize> fmt::Debug for SpscQueue<N> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("SpscQueue").field("len", &self.items.len()).finish_non_exhaustive()
+impl Ring<[Entry]> {
+    #[inline]
+    fn after(&self, place: usize) -> usize {
+        let next = place.wrapping_add(1);
+        if next == self.entries.len() { 0 } else { next }
     }
 }
 
-/// The interrupt's end of a [`SpscQueue`].
+/// The interrupt's end of an [`SpscQueue`].
+#[derive(Debug)]
 pub struct SpscProducer<'a> {
-    items: spsc::Producer<'a, Entry>,
-    loss: &'a Loss,
-    is_after_loss: &'a mut bool,
+    ring: &'a Ring<[Entry]>,
 }
 
 impl SpscProducer<'_> {
     /// Puts an item, such as an event, at the end, or counts it as lost.
     #[inline]
     pub fn push(&mut self, item: impl Into<Item>) {
-        let lost = self.loss.count.load(Ordering::Relaxed);
-        let slot = Slot::from(item.into()).with_lost((*self.is_after_loss).into());
-        *self.is_after_loss = false;
-        if let Err(entry) = self.items.enqueue(Entry { slot, lost }) {
-            *self.is_after_loss = true;
-            self.loss.tick.store(entry.slot.tick().micros(), Ordering::Relaxed);
-            self.loss.count.store(lost.wrapping_add(1), Ordering::Release);
+        let ring = self.ring;
+        let (tick, bits, rest) = Slot::from(item.into()).words();
+        let lost = ring.lost.load(Ordering::Relaxed);
+        let tail = ring.tail.load(Ordering::Relaxed);
+        let next = ring.after(tail);
+        match ring.entries.get(tail) {
+            Some(entry) if next != ring.head.load(Ordering::Acquire) => {
+                entry.tick.store(tick.micros(), Ordering::Relaxed);
+                entry.bits.store(bits, Ordering::Relaxed);
+                entry.rest.store(rest, Ordering::Relaxed);
+                entry.lost.store(lost, Ordering::Relaxed);
+                ring.tail.store(next, Ordering::Release);
+            }
+            _ => {
+                ring.lost_tick.store(tick.micros(), Ordering::Relaxed);
+                ring.lost.store(lost.wrapping_add(1), Ordering::Release);
+            }
         }
     }
 
     /// How many items were lost since the queue was made; wraps.
     pub fn lost(&self) -> u32 {
-        self.loss.count.load(Ordering::Relaxed)
+        self.ring.lost.load(Ordering::Relaxed)
     }
 }
 
@@ -127,23 +156,19 @@ impl Put for &mut SpscProducer<'_> {
     }
 }
 
-impl fmt::Debug for SpscProducer<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("SpscProducer").field("lost", &self.lost()).finish_non_exhaustive()
-    }
-}
-
-/// Main's end of a [`SpscQueue`].
+/// Main's end of an [`SpscQueue`].
+#[derive(Debug)]
 pub struct SpscConsumer<'a> {
-    items: spsc::Consumer<'a, Entry>,
-    loss: &'a Loss,
-    known: &'a mut u32,
+    ring: &'a Ring<[Entry]>,
+    /// The count of losses that were said.
+    known: u32,
 }
 
 impl SpscConsumer<'_> {
     /// How many items wait.
     pub fn len(&self) -> usize {
-        self.items.len()
+        let [head, tail] = [&self.ring.head, &self.ring.tail].map(|at| at.load(Ordering::Relaxed));
+        if tail >= head { tail - head } else { tail + self.ring.entries.len() - head }
     }
 
     /// Whether none waits.
@@ -153,31 +178,37 @@ impl SpscConsumer<'_> {
 
     /// How many items were lost since the queue was made; wraps.
     pub fn lost(&self) -> u32 {
-        self.loss.count.load(Ordering::Relaxed)
+        self.ring.lost.load(Ordering::Relaxed)
+    }
+
+    /// The losses that no item follows, as a break.
+    #[cold]
+    #[inline(never)]
+    fn take_loss(&mut self, count: u32) -> Option<Taken> {
+        let lost = count.wrapping_sub(core::mem::replace(&mut self.known, count));
+        let tick = self.ring.lost_tick.load(Ordering::Relaxed);
+        (lost > 0).then(|| Taken { lost, item: Item::Break(Tick::from(tick)) })
     }
 }
 
 impl Source for SpscConsumer<'_> {
     #[inline]
     fn take(&mut self) -> Option<Taken> {
+        let ring = self.ring;
         // Before the look into the queue: so all items before these losses are taken, if it is empty.
-        let count = self.loss.count.load(Ordering::Acquire);
-        let (slot, now) = match self.items.dequeue() {
-            Some(Entry { slot, lost }) => (slot, lost),
-            None if count == *self.known => return None,
-            None => {
-                let tick = self.loss.tick.load(Ordering::Relaxed);
-                (Slot::lost_at(Tick::from_micros(tick.into())), count)
-            }
+        let count = ring.lost.load(Ordering::Acquire);
+        let head = ring.head.load(Ordering::Relaxed);
+        let entry = ring.entries.get(head);
+        let Some(entry) = entry.filter(|_| head != ring.tail.load(Ordering::Acquire)) else {
+            return self.take_loss(count);
         };
-        let lost = now.wrapping_sub(*self.known).max(slot.lost.into());
-        *self.known = now;
-        Some(Taken { lost, item: slot.item() })
-    }
-}
-
-impl fmt::Debug for SpscConsumer<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("SpscConsumer").field("len", &self.len()).finish_non_exhaustive()
+        let tick = Tick::from(entry.tick.load(Ordering::Relaxed));
+        let words = (tick, entry.bits.load(Ordering::Relaxed), entry.rest.load(Ordering::Relaxed));
+        let count = entry.lost.load(Ordering::Relaxed);
+        ring.head.store(ring.after(head), Ordering::Release);
+        let lost = count.wrapping_sub(core::mem::replace(&mut self.known, count));
+        let slot = Slot::from_words(words);
+        let item = slot.plain_event().map_or_else(|| slot.item(), Item::Event);
+        Some(Taken { lost, item })
     }
 }

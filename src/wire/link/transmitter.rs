@@ -9,7 +9,7 @@ use crate::wire::Batch;
 /// - **Keyframes** lead a frame: one that follows an event starts the next.
 /// - **Losses and breaks** start a frame too, with the flag *lost*: no decoder is exact then until its next
 ///   keyframe.
-/// - **Memory:** 40 bytes.
+/// - **Memory:** 28 bytes on a 32-bit part.
 ///
 /// ```
 /// use spikewire::{Event, FromEvents, Polarity, Tick, link::{Coding, FrameView, MAX_FRAME, Transmitter}};
