@@ -19,6 +19,12 @@ impl Cells {
     /// All values lie in the first.
     pub(crate) const ONE: Self = Self { origin: 0, scale: 0 };
 
+    /// Whether all values lie in the first.
+    #[inline]
+    pub(crate) const fn is_one(self) -> bool {
+        self.scale == 0
+    }
+
     pub(crate) const fn of_floats(origin: f64, width: f64) -> Self {
         let scale = (1.0 / width) as f32;
         if scale > 0.0 && scale < f32::INFINITY {

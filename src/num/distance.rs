@@ -13,7 +13,7 @@ pub(crate) trait Spaced: Sized {
     /// A distance of values near the range.
     type Short: Distance<Self>;
     /// Centres times levels, summed.
-    type Weighted: Default;
+    type Weighted: Copy + Default;
 
     /// Whether every distance of this value fits [`Short`](Self::Short); `near` is from [`near`].
     fn is_near(&self, near: [Self; 2]) -> bool;

@@ -26,4 +26,4 @@ pub(crate) use residual::{Rated, Ratio, Residual};
 pub use sample::Sample;
 pub(crate) use shortfall::Shortfall;
 pub(crate) use tally::Tally;
-pub(crate) use window_sum::{Difference, Windowed, margin};
+pub(crate) use window_sum::{Difference, Windowed, fast_margin, margin};

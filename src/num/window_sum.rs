@@ -22,9 +22,6 @@ pub(crate) trait Windowed: SummedIn<Self::Sum> + SummedIn<Self::Fast> {
 
     fn exact(sum: Self::Fast) -> Self::Sum;
 
-    fn fast_margin(margin: <Self::Sum as Difference>::Margin)
-    -> <Self::Fast as Difference>::Margin;
-
     /// Whether these samples, and those whose slots they take, are small enough for the fast sum.
     fn are_small<const M: usize>(count: usize, samples: &[Self; M], slots: &[Self; M]) -> bool;
 
@@ -68,6 +65,24 @@ pub(crate) const fn margin<S: Sample>(
     match S::KIND {
         SampleKind::F32 => word(magnitude(units(threshold) as f32 * count as f32) as u64),
         _ => word((units(threshold) as i64 * count as i64) as u64),
+    }
+}
+
+/// The [`margin`] of fast sums, where it is finite: a difference within it is finite, too.
+pub(crate) const fn fast_margin<S: Sample>(
+    threshold: S,
+    count: usize,
+) -> <S::Fast as Difference>::Margin {
+    match S::KIND {
+        SampleKind::F32 => {
+            let margin = units(threshold) as f32 * count as f32;
+            word(magnitude(if margin < f32::MAX { margin } else { f32::MAX }) as u64)
+        }
+        _ => {
+            let margin = units(threshold) as i64 * count as i64;
+            let widest = i32::MAX as i64;
+            word(if margin < widest { margin } else { widest } as u64)
+        }
     }
 }
 
@@ -122,11 +137,6 @@ impl Windowed for f32 {
     #[inline]
     fn exact(sum: f32) -> f32 {
         sum
-    }
-
-    #[inline]
-    fn fast_margin(margin: u32) -> u32 {
-        margin
     }
 
     #[inline]
@@ -229,11 +239,6 @@ macro_rules! integer_window {
             #[inline]
             fn exact(sum: i32) -> $sum {
                 <$sum>::from(sum)
-            }
-
-            #[inline]
-            fn fast_margin(margin: $sum) -> i32 {
-                margin.min(i32::MAX.into()) as i32
             }
 
             #[inline]

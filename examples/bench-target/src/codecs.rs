@@ -115,12 +115,17 @@ impl<S: Measured> Buffers<S> {
             let (samples, spikes) = (black_box(chunk), black_box(&mut self.spikes[..CHUNK * M]));
             encoding += instructions(|| encode(samples, spikes));
             for (i, (&sample, spikes)) in samples.iter().zip(spikes.chunks(M)).enumerate() {
-                expect(codec, i, encode_sample(scheme, &mut encoder, sample).code() == Some(code(spikes)))?;
+                expect(
+                    codec,
+                    i,
+                    encode_sample(scheme, &mut encoder, sample).code() == Some(code(spikes)),
+                )?;
             }
             decoding += instructions(|| decode(spikes, before, samples));
             before = samples[CHUNK - 1];
             for (i, (&value, spikes)) in samples.iter().zip(spikes.chunks(M)).enumerate() {
-                let error = decode_sample(scheme, &mut decoder, code(spikes)).to_f64() - value.to_f64();
+                let error =
+                    decode_sample(scheme, &mut decoder, code(spikes)).to_f64() - value.to_f64();
                 expect(codec, i, error.abs() <= S::MEAN)?;
             }
         }
@@ -188,112 +193,200 @@ fn expect(codec: &'static str, sample: usize, agrees: bool) -> Result<(), Failur
     if agrees { Ok(()) } else { Err(Failure::Differ(codec, sample)) }
 }
 
+/// What is measured on one signal, and where it goes.
+struct Bench<'a, S, W> {
+    out: &'a mut W,
+    sample: &'a str,
+    source: Signal,
+    buffers: &'a mut Buffers<S>,
+    calibration: Calibration<S>,
+    min: S,
+    max: S,
+}
+
+impl<'a, S: Measured, W: Write> Bench<'a, S, W> {
+    fn new(out: &'a mut W, sample: &'a str, source: Signal, buffers: &'a mut Buffers<S>) -> Self {
+        let mut calibration = Calibration::<S>::new();
+        source.load(&mut buffers.signal);
+        buffers.signal.iter().for_each(|&sample| calibration.observe(sample));
+        let min = calibration.min().unwrap_or_default();
+        let max = calibration.max().unwrap_or_default();
+        Self { out, sample, source, buffers, calibration, min, max }
+    }
+
+    fn range(&self) -> f64 {
+        self.max.to_f64() - self.min.to_f64()
+    }
+
+    /// The paper's parameters are for its own signal, of range 5.8; others are scaled to theirs.
+    fn part(&self, value: f64) -> S {
+        S::from_f64(value / 5.8 * self.range())
+    }
+
+    fn subject<P>(&self, codec: &'a str, scheme: &P, plain: (u32, u32)) -> Subject<'a> {
+        let flash = size_of_val(scheme);
+        Subject { signal: self.source.name(), codec, sample: self.sample, flash, plain }
+    }
+
+    /// Measures a scheme on the signal, which is in its buffer.
+    fn measure<P: Start<Sample = S>>(
+        &mut self,
+        codec: &'a str,
+        scheme: &P,
+        plain: (u32, u32),
+    ) -> Result<(), Failure> {
+        let subject = self.subject(codec, scheme, plain);
+        Ok(subject.measure(self.out, scheme, &self.buffers.signal)?)
+    }
+
+    /// Measures a scheme whose spikes are those of its transcription, which are in their buffer.
+    fn measure_signs<P: Start<Sample = S, Code = Spike>>(
+        &mut self,
+        codec: &'static str,
+        scheme: &P,
+        plain: (u32, u32),
+    ) -> Result<(), Failure> {
+        self.buffers.agree_signs(codec, self.source, scheme)?;
+        self.measure(codec, scheme, plain)
+    }
+}
+
 fn all<S: Measured>(
     out: &mut impl Write,
     sample: &str,
     source: Signal,
     buffers: &mut Buffers<S>,
 ) -> Result<(), Failure> {
-    let mut calibration = Calibration::<S>::new();
-    source.load(&mut buffers.signal);
-    buffers.signal.iter().for_each(|&sample| calibration.observe(sample));
-    let (min, max) = (calibration.min().unwrap_or_default(), calibration.max().unwrap_or_default());
-    // The paper's parameters are for its own signal, of range 5.8; others are scaled to theirs.
-    let range = max.to_f64() - min.to_f64();
-    let part = |value: f64| S::from_f64(value / 5.8 * range);
+    let mut bench = Bench::new(out, sample, source, buffers);
+    let bench = &mut bench;
+    contrast(bench)?;
+    step_forward(bench)?;
+    moving_window::<S, 6>("mw-5", bench)?;
+    moving_window::<S, 64>("mw-63", bench)?;
+    hough(bench)?;
+    threshold_hough(bench)?;
+    // The filter's sum is what a spike at every sample decodes to.
+    let range = bench.range();
+    bsa("bsa-24", S::from_f64(range), S::from_f64(0.955 * range), bench)?;
+    // As the paper's signal meets a filter of unit sum: it spikes nearly always.
+    bsa("bsa-24-busy", bench.part(1.0), bench.part(0.955), bench)?;
+    bsa_toolbox(bench)?;
+    position(bench)?;
+    gaussian(bench)?;
+    slots(bench)?;
+    probabilistic(bench)
+}
 
-    let subject =
-        |codec, flash, plain| Subject { signal: source.name(), codec, sample, flash, plain };
+// Functions of their own, or their schemes would all be on the stack together.
 
-    let contrast = TemporalContrast::from_magnitudes(&calibration, 0.5)?;
-    let (threshold, step) = (contrast.threshold(), contrast.step());
-    let plain = buffers.plain(
+#[inline(never)]
+fn contrast<S: Measured>(bench: &mut Bench<S, impl Write>) -> Result<(), Failure> {
+    let scheme = TemporalContrast::from_magnitudes(&bench.calibration, 0.5)?;
+    let (threshold, step) = (scheme.threshold(), scheme.step());
+    let plain = bench.buffers.plain(
         |signal, spikes| plain::temporal_contrast(signal, threshold, spikes),
         |spikes, values| plain::step_decode(spikes, step, values),
     );
-    buffers.agree_signs("tbr", source, &contrast)?;
-    subject("tbr", size_of_val(&contrast), plain).measure(out, &contrast, &buffers.signal)?;
+    bench.measure_signs("tbr", &scheme, plain)
+}
 
-    let threshold = part(0.5);
-    let plain = buffers.plain(
+#[inline(never)]
+fn step_forward<S: Measured>(bench: &mut Bench<S, impl Write>) -> Result<(), Failure> {
+    let threshold = bench.part(0.5);
+    let plain = bench.buffers.plain(
         |signal, spikes| plain::step_forward(signal, threshold, spikes),
         |spikes, values| plain::step_decode(spikes, threshold, values),
     );
-    let scheme = StepForward::try_new(threshold)?;
-    buffers.agree_signs("sf", source, &scheme)?;
-    subject("sf", size_of_val(&scheme), plain).measure(out, &scheme, &buffers.signal)?;
+    bench.measure_signs("sf", &StepForward::try_new(threshold)?, plain)
+}
 
-    moving_window::<S, 6>(out, subject("mw-5", 0, (0, 0)), part(0.25), source, buffers)?;
-    moving_window::<S, 64>(out, subject("mw-63", 0, (0, 0)), part(0.25), source, buffers)?;
+#[inline(never)]
+fn moving_window<S: Measured, const N: usize>(
+    codec: &'static str,
+    bench: &mut Bench<S, impl Write>,
+) -> Result<(), Failure> {
+    let threshold = bench.part(0.25);
+    let plain = bench.buffers.plain(
+        |signal, spikes| plain::moving_window(signal, N, threshold, spikes),
+        |spikes, values| plain::step_decode(spikes, threshold, values),
+    );
+    bench.measure_signs(codec, &MovingWindow::<S, N>::try_new(threshold)?, plain)
+}
 
-    let taps = Taps::<S, 15>::try_shaped(Shape::Triangular, Scale::Peak(part(1.0)))?;
-    let plain = buffers.plain_rate(min, taps.as_array(), |signal, spikes| {
+#[inline(never)]
+fn hough<S: Measured>(bench: &mut Bench<S, impl Write>) -> Result<(), Failure> {
+    let taps = Taps::<S, 15>::try_shaped(Shape::Triangular, Scale::Peak(bench.part(1.0)))?;
+    let plain = bench.buffers.plain_rate(bench.min, taps.as_array(), |signal, spikes| {
         plain::hough(signal, taps.as_array(), spikes)
     });
-    let scheme = Hough::new(taps).try_with_shift(min)?;
-    buffers.agree_signs("hsa-15", source, &scheme)?;
-    subject("hsa-15", size_of_val(&scheme), plain).measure(out, &scheme, &buffers.signal)?;
+    let scheme = Hough::new(taps).try_with_shift(bench.min)?;
+    bench.measure_signs("hsa-15", &scheme, plain)
+}
 
-    let threshold = part(0.85);
-    let plain = buffers.plain_rate(min, taps.as_array(), |signal, spikes| {
+#[inline(never)]
+fn threshold_hough<S: Measured>(bench: &mut Bench<S, impl Write>) -> Result<(), Failure> {
+    let taps = Taps::<S, 15>::try_shaped(Shape::Triangular, Scale::Peak(bench.part(1.0)))?;
+    let threshold = bench.part(0.85);
+    let plain = bench.buffers.plain_rate(bench.min, taps.as_array(), |signal, spikes| {
         plain::threshold_hough(signal, taps.as_array(), threshold, spikes);
     });
-    let scheme = ThresholdHough::try_new(taps, threshold)?.try_with_shift(min)?;
-    buffers.agree_signs("t-hsa-15", source, &scheme)?;
-    subject("t-hsa-15", size_of_val(&scheme), plain).measure(out, &scheme, &buffers.signal)?;
+    let scheme = ThresholdHough::try_new(taps, threshold)?.try_with_shift(bench.min)?;
+    bench.measure_signs("t-hsa-15", &scheme, plain)
+}
 
-    // The filter's sum is what a spike at every sample decodes to.
-    let taps = Taps::<S, 24>::try_shaped(Shape::Hann, Scale::Sum(S::from_f64(range)))?;
-    let threshold = S::from_f64(0.955 * range);
-    let plain = buffers.plain_rate(min, taps.as_array(), |signal, spikes| {
+/// A filter of this sum.
+#[inline(never)]
+fn bsa<S: Measured>(
+    codec: &'static str,
+    sum: S,
+    threshold: S,
+    bench: &mut Bench<S, impl Write>,
+) -> Result<(), Failure> {
+    let taps = Taps::<S, 24>::try_shaped(Shape::Hann, Scale::Sum(sum))?;
+    let plain = bench.buffers.plain_rate(bench.min, taps.as_array(), |signal, spikes| {
         plain::ben(signal, taps.as_array(), threshold, spikes);
     });
-    let scheme = Bsa::try_subtractive(taps, threshold)?.try_with_shift(min)?;
-    buffers.agree_signs("bsa-24", source, &scheme)?;
-    subject("bsa-24", size_of_val(&scheme), plain).measure(out, &scheme, &buffers.signal)?;
-    // As the paper's signal meets a filter of unit sum: it spikes nearly always.
-    let taps = Taps::<S, 24>::try_shaped(Shape::Hann, Scale::Sum(part(1.0)))?;
-    let threshold = part(0.955);
-    let plain = buffers.plain_rate(min, taps.as_array(), |signal, spikes| {
-        plain::ben(signal, taps.as_array(), threshold, spikes);
-    });
-    let scheme = Bsa::try_subtractive(taps, threshold)?.try_with_shift(min)?;
-    buffers.agree_signs("bsa-24-busy", source, &scheme)?;
-    subject("bsa-24-busy", size_of_val(&scheme), plain).measure(out, &scheme, &buffers.signal)?;
+    let scheme = Bsa::try_subtractive(taps, threshold)?.try_with_shift(bench.min)?;
+    bench.measure_signs(codec, &scheme, plain)
+}
 
-    let taps = Taps::<S, 9>::try_shaped(Shape::Triangular, Scale::Peak(part(1.0)))?;
-    let plain = buffers.plain_rate(min, taps.as_array(), |signal, spikes| {
+#[inline(never)]
+fn bsa_toolbox<S: Measured>(bench: &mut Bench<S, impl Write>) -> Result<(), Failure> {
+    let taps = Taps::<S, 9>::try_shaped(Shape::Triangular, Scale::Peak(bench.part(1.0)))?;
+    let plain = bench.buffers.plain_rate(bench.min, taps.as_array(), |signal, spikes| {
         plain::ben_toolbox(signal, taps.as_array(), 1.15, spikes);
     });
+    let with_threshold =
+        |threshold| BsaToolbox::try_new(taps, threshold)?.try_with_shift(bench.min);
+    let scheme = with_threshold(1.15)?;
     // The transcription has the ratio in 128ths.
-    let scheme = BsaToolbox::try_new(taps, 147.0 / 128.0)?.try_with_shift(min)?;
-    buffers.agree_signs("bsa-toolbox-9", source, &scheme)?;
-    subject("bsa-toolbox-9", size_of_val(&scheme), plain).measure(
-        out,
-        &BsaToolbox::try_new(taps, 1.15)?.try_with_shift(min)?,
-        &buffers.signal,
-    )?;
+    let rounded = with_threshold(147.0 / 128.0)?;
+    bench.buffers.agree_signs("bsa-toolbox-9", bench.source, &rounded)?;
+    bench.measure("bsa-toolbox-9", &scheme, plain)
+}
 
-    let scheme = Position::<S, 20>::try_gaussian_spaced(min..=max)?;
-    let plain = buffers.plain(
+#[inline(never)]
+fn position<S: Measured>(bench: &mut Bench<S, impl Write>) -> Result<(), Failure> {
+    let scheme = Position::<S, 20>::try_gaussian_spaced(bench.min..=bench.max)?;
+    let plain = bench.buffers.plain(
         |signal, neurons| plain::position(signal, scheme.centres(), neurons),
         |neurons, values| plain::position_decode(neurons, scheme.centres(), values),
     );
-    buffers.agree_neurons("position-20", source, &scheme)?;
-    subject("position-20", size_of_val(&scheme), plain).measure(out, &scheme, &buffers.signal)?;
+    bench.buffers.agree_neurons("position-20", bench.source, &scheme)?;
+    bench.measure("position-20", &scheme, plain)
+}
 
-    let scheme = Gaussian::<S, 20>::try_linear(min..=max)?;
-    let (sigma, means) = ((range / 18.0) as f32, means::<20>(min.to_f64(), range));
-    let (signal, neurons) = buffers.slices();
+#[inline(never)]
+fn gaussian<S: Measured>(bench: &mut Bench<S, impl Write>) -> Result<(), Failure> {
+    let scheme = Gaussian::<S, 20>::try_linear(bench.min..=bench.max)?;
+    let range = bench.range();
+    let (sigma, means) = ((range / 18.0) as f32, means::<20>(bench.min.to_f64(), range));
+    let (signal, neurons) = bench.buffers.slices();
     let encoding = instructions(|| plain::gaussian(signal, &means, sigma, neurons));
     settle(signal, neurons, &means, sigma, &scheme);
     let decoding = instructions(|| plain::position_decode(neurons, scheme.centres(), signal));
-    buffers.agree_neurons("grf-20", source, &scheme)?;
-    let plain = (encoding, decoding);
-    subject("grf-20", size_of_val(&scheme), plain).measure(out, &scheme, &buffers.signal)?;
-
-    slots(out, subject("grf-slots-15x10", 0, (0, 0)), (min, max), source, buffers)?;
-    probabilistic(out, subject("grf-random-15x16", 0, (0, 0)), (min, max), source, buffers)
+    bench.buffers.agree_neurons("grf-20", bench.source, &scheme)?;
+    bench.measure("grf-20", &scheme, (encoding, decoding))
 }
 
 /// The means of receptive fields, which are not rounded to whole numbers.
@@ -324,16 +417,9 @@ fn settle<S: Measured>(
     }
 }
 
-// Functions of their own, or their tables would all be on the stack together.
-
 #[inline(never)]
-fn slots<S: Measured>(
-    out: &mut impl Write,
-    subject: Subject<'_>,
-    (min, max): (S, S),
-    source: Signal,
-    buffers: &mut Buffers<S>,
-) -> Result<(), Failure> {
+fn slots<S: Measured>(bench: &mut Bench<S, impl Write>) -> Result<(), Failure> {
+    let (min, max) = (bench.min, bench.max);
     let scheme = Slots::<S, 15, 10>::try_new(min..=max, 1.5)?;
     let range = max.to_f64() - min.to_f64();
     let (sigma, means) = ((range / (1.5 * 13.0)) as f32, means::<15>(min.to_f64(), range));
@@ -348,27 +434,21 @@ fn slots<S: Measured>(
         let first = if length == 0 { 0 } else { first };
         SlotSpikes::new(first as u16, &fired[..length]).unwrap_or(SlotSpikes::EMPTY)
     };
-    let plain = buffers.plain_neurons::<_, 15>(
+    let plain = bench.buffers.plain_neurons::<_, 15>(
         "grf-slots-15x10",
         (&scheme, Slots::<S, 15, 10>::START, scheme.centres()[7]),
         spikes_of,
         |signal, slots| plain::slots(signal, &means, sigma, 10, slots),
         |slots, before, values| plain::slots_decode(slots, scheme.centres(), 10, before, values),
     )?;
-    source.load(&mut buffers.signal);
-    let subject = Subject { flash: size_of_val(&scheme), plain, ..subject };
-    Ok(subject.measure(out, &scheme, &buffers.signal)?)
+    bench.source.load(&mut bench.buffers.signal);
+    bench.measure("grf-slots-15x10", &scheme, plain)
 }
 
 /// Not a scheme, as its encoder takes a generator, whose work is counted with it.
 #[inline(never)]
-fn probabilistic<S: Measured>(
-    out: &mut impl Write,
-    subject: Subject<'_>,
-    (min, max): (S, S),
-    source: Signal,
-    buffers: &mut Buffers<S>,
-) -> Result<(), Failure> {
+fn probabilistic<S: Measured>(bench: &mut Bench<S, impl Write>) -> Result<(), Failure> {
+    let (min, max) = (bench.min, bench.max);
     let scheme = Probabilistic::<S, Pcg32, 15, 16>::try_new(min..=max, 1.5)?;
     let range = max.to_f64() - min.to_f64();
     let (sigma, means) = ((range / (1.5 * 13.0)) as f32, means::<15>(min.to_f64(), range));
@@ -379,7 +459,7 @@ fn probabilistic<S: Measured>(
         let neurons = (0..).zip(fired).filter(|&(_, &fired)| fired == 1).map(|(i, _)| i);
         FiredNeurons::new(neurons).unwrap_or(FiredNeurons::EMPTY)
     };
-    let plain = buffers.plain_neurons::<_, 15>(
+    let plain = bench.buffers.plain_neurons::<_, 15>(
         "grf-random-15x16",
         (&scheme, start(), scheme.centres()[7]),
         fired_of,
@@ -390,28 +470,7 @@ fn probabilistic<S: Measured>(
             plain::probabilistic_decode(fired, scheme.centres(), before, values)
         },
     )?;
-    source.load(&mut buffers.signal);
-    let subject = Subject { flash: size_of_val(&scheme), plain, ..subject };
-    Ok(subject.measure_codec(
-        out,
-        &scheme,
-        &start,
-        &buffers.signal,
-    )?)
-}
-
-fn moving_window<S: Measured, const N: usize>(
-    out: &mut impl Write,
-    subject: Subject<'_>,
-    threshold: S,
-    source: Signal,
-    buffers: &mut Buffers<S>,
-) -> Result<(), Failure> {
-    let plain = buffers.plain(
-        |signal, spikes| plain::moving_window(signal, N, threshold, spikes),
-        |spikes, values| plain::step_decode(spikes, threshold, values),
-    );
-    let scheme = MovingWindow::<S, N>::try_new(threshold)?;
-    buffers.agree_signs("mw", source, &scheme)?;
-    Ok(Subject { plain, flash: size_of_val(&scheme), ..subject }.measure(out, &scheme, &buffers.signal)?)
+    bench.source.load(&mut bench.buffers.signal);
+    let subject = bench.subject("grf-random-15x16", &scheme, plain);
+    Ok(subject.measure_codec(bench.out, &scheme, &start, &bench.buffers.signal)?)
 }

@@ -273,14 +273,15 @@ impl<S: Sample, const M: usize> Centres<S, M> {
     /// Whether [`by_cell`](Self::by_cell) tells the neuron of every value.
     #[inline]
     pub(super) fn has_cells(&self) -> bool {
-        S::HAS_CELLS && self.cells != Cells::ONE
+        S::HAS_CELLS && !self.cells.is_one()
     }
 
     /// The number of a finite value's neuron, by cell; 1 for what is not a number.
     #[inline]
     pub(super) fn by_cell(&self, value: S) -> usize {
-        let cell = value.cell(self.cells).min(2 * M - 1);
-        let lowest = self.starts.as_flattened().get(cell).copied().map_or(1, usize::from);
+        let cell = value.cell(self.cells);
+        // What lies above all cells belongs to the last neuron.
+        let lowest = self.starts.as_flattened().get(cell).copied().map_or(M, usize::from);
         let is_beyond = self.edges().get(lowest - 1).is_some_and(|&edge| value > edge);
         if is_beyond { lowest + 1 } else { lowest }
     }

@@ -1,8 +1,10 @@
 //! Gaussian receptive fields of equal width, as distances instead of exponentials.
 
+use core::hint::black_box;
 use core::ops::RangeInclusive;
 
 use super::centres::{Centres, even_centre};
+use super::FiredNeurons;
 use super::search::count_preceding;
 use crate::error::positive;
 use crate::num::curve::{ln, sqrt};
@@ -173,22 +175,42 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         })
     }
 
-    /// The mean of the centres from `first` on that have levels, weighted by these, or `None` without any.
+    /// The mean of the centres from `first` on, weighted by their levels, or `None` without any.
     #[inline]
-    pub(super) fn mean(
+    pub(super) fn weighted_mean(
         &self,
         first: usize,
-        levels: impl ExactSizeIterator<Item = Option<u32>>,
+        levels: impl ExactSizeIterator<Item = u32>,
     ) -> Option<S> {
         let centres = self.centres.get(first..first + levels.len())?;
         let mut weighted = S::Weighted::default();
         let mut total = 0;
         for (i, (level, &centre)) in levels.zip(centres).enumerate() {
-            if let Some(level) = level {
-                weighted = S::weigh(weighted, centre, first + i, level);
-                total += level;
-            }
+            weighted = S::weigh(weighted, centre, first + i, level);
+            total += level;
         }
-        (total > 0).then(|| S::mean(weighted, total, M, self.min, self.max))
+        self.mean(weighted, total)
+    }
+
+    /// The mean of the centres of the neurons that fired, or `None` without any.
+    #[inline]
+    pub(super) fn mean_of(&self, neurons: &FiredNeurons<M>) -> Option<S> {
+        // Where the compiler cannot tell that a centre may be read in vain, it passes by the neurons that did not
+        // fire, which are the most, instead of adding their centres and dropping the sum.
+        let centres = black_box(&self.centres);
+        let mut weighted = S::Weighted::default();
+        let mut total = 0;
+        neurons.for_each(|neuron| {
+            if let Some(&centre) = centres.get(neuron) {
+                weighted = S::weigh(weighted, centre, neuron, 1);
+                total += 1;
+            }
+        });
+        self.mean(weighted, total)
+    }
+
+    #[inline]
+    fn mean(&self, weighted: S::Weighted, levels: u32) -> Option<S> {
+        (levels > 0).then(|| S::mean(weighted, levels, M, self.min, self.max))
     }
 }

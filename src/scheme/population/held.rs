@@ -19,7 +19,9 @@ impl<S: Copy> Held<S> {
     /// The new value, or the one before where there is none.
     #[inline]
     pub(super) fn or_hold(&mut self, value: Option<S>) -> S {
-        self.value = value.unwrap_or(self.value);
+        if let Some(value) = value {
+            self.value = value;
+        }
         self.value
     }
 }

@@ -214,8 +214,7 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Scheme for Probabilistic
     }
 
     fn decode(&self, state: &mut Held<S>, neurons: FiredNeurons<M>) -> S {
-        let levels = neurons.fired.iter().map(|&fired| fired.then_some(1));
-        state.or_hold(self.fields.mean(0, levels))
+        state.or_hold(self.fields.mean_of(&neurons))
     }
 
     fn held(&self, state: &Held<S>) -> Option<S> {

@@ -219,8 +219,8 @@ impl<S: Sample, const M: usize, const N: usize> Scheme for Slots<S, M, N> {
     }
 
     fn decode(&self, state: &mut Held<S>, spikes: SlotSpikes<M, N>) -> S {
-        let levels = spikes.slots().iter().map(|&slot| Some(N as u32 - u32::from(slot)));
-        state.or_hold(self.fields.mean(spikes.first(), levels))
+        let levels = spikes.slots().iter().map(|&slot| N as u32 - u32::from(slot));
+        state.or_hold(self.fields.weighted_mean(spikes.first(), levels))
     }
 
     fn held(&self, state: &Held<S>) -> Option<S> {

@@ -1,6 +1,7 @@
 //! How the rate codes encode: each has its own rule for when the filter fits.
 
 use core::cell::Cell;
+use core::hint::black_box;
 
 use super::cursor::Cursor;
 use super::filtered::Filtered;
@@ -36,10 +37,11 @@ pub(super) trait Rule<S: Sample, const F: usize> {
 ///
 /// `4 F + 8` bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)] // residuals not at the beginning, or loops over them take two more instructions a turn
 pub struct RateState<S: Sample, const F: usize> {
-    residuals: [S::Residual; F],
     cursor: Cursor<F>,
     tally: Tally,
+    residuals: [S::Residual; F],
 }
 
 impl<S: Sample, const F: usize> RateState<S, F> {
@@ -151,15 +153,28 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         let mut line = [self.residuals; 4];
         let line = line.as_flattened_mut();
         let oldest = self.cursor.next();
-        let windows = cells(line.get_mut(oldest + 1..).unwrap_or_default()).windows(F);
-        let mut length = samples.len().min(spikes.len()).min(windows.len());
+        let (newest, windows) = {
+            let line = cells(line);
+            let after = line.get(oldest + 1..).unwrap_or_default();
+            (line.get(oldest + F..).unwrap_or_default(), after.windows(F))
+        };
+        let mut length = samples.len().min(spikes.len()).min(newest.len());
+        if S::Residual::IS_EXACT {
+            // In a loop of its own, as the limits of a residual take registers that the next one needs.
+            for (residual, &sample) in newest.iter().zip(samples).take(length) {
+                residual.set(sample.residual(shift, magnitude));
+                black_box(()); // or the compiler would write out four turns
+            }
+        }
         let all = spikes.iter_mut().zip(samples).zip(windows);
         for (at, ((spike, &sample), window)) in all.enumerate() {
             if !sample.is_finite() {
                 length = at;
                 break;
             }
-            if let Some(newest) = window.last() {
+            if !S::Residual::IS_EXACT
+                && let Some(newest) = window.last()
+            {
                 newest.set(sample.residual(shift, magnitude));
             }
             let fits = rule.fits(magnitude, pairs(window, &taps), true);

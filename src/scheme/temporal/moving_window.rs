@@ -6,7 +6,7 @@ use core::slice::{from_mut, from_ref};
 use super::StepState;
 use super::steps::decode_steps;
 use crate::error::{positive, unwrap};
-use crate::num::{Difference, Tally, Windowed, margin, to_f64};
+use crate::num::{Difference, Tally, Windowed, fast_margin, margin, to_f64};
 use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 
 /// Moving window: the baseline is the mean of the `N` samples before.
@@ -53,6 +53,9 @@ pub struct MovingWindow<S: Sample, const N: usize> {
     /// `N` times the threshold, to compare differences with.
     #[cfg_attr(feature = "serde", serde(skip))]
     margin: <S::Sum as Difference>::Margin,
+    /// The same for fast sums.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    fast_margin: <S::Fast as Difference>::Margin,
 }
 
 #[cfg(feature = "defmt")]
@@ -81,7 +84,11 @@ impl<S: Sample, const N: usize> MovingWindow<S, N> {
     pub const fn try_new(threshold: S) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
         match positive("threshold", to_f64(threshold)) {
-            Ok(()) => Ok(Self { threshold, margin: margin(threshold, N) }),
+            Ok(()) => Ok(Self {
+                threshold,
+                margin: margin(threshold, N),
+                fast_margin: fast_margin(threshold, N),
+            }),
             Err(error) => Err(error),
         }
     }
@@ -125,13 +132,13 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
     #[inline]
     fn encode_groups<const M: usize>(
         &mut self,
-        margin: <S::Sum as Difference>::Margin,
+        margin: <S::Fast as Difference>::Margin,
         groups: &[[S; M]],
         spikes: &mut [[Spike; M]],
     ) -> usize {
         let Some(mut partial) = S::fast(self.partial) else { return 0 };
         let is_full = self.next < FILLING;
-        let margin = if is_full { S::fast_margin(margin) } else { S::Fast::WIDEST };
+        let margin = if is_full { margin } else { S::Fast::WIDEST };
         let next = (self.next & !FILLING) as usize;
         let slots = self.ring.get_mut(next..).unwrap_or_default().as_chunks_mut::<M>().0;
         let mut taken = 0;
@@ -161,28 +168,15 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
         taken
     }
 
-    /// Takes any sample. Nothing is emitted if it is not finite, nor before the window is full, nor for
-    /// a difference that is not a number.
-    #[cold]
+    /// [`encode_groups`](Self::encode_groups) of a long block, with the registers to itself.
     #[inline(never)]
-    fn encode_carefully(
+    fn encode_long(
         &mut self,
-        margin: <S::Sum as Difference>::Margin,
-        sample: S,
-    ) -> Option<Spike> {
-        let is_full = self.next < FILLING;
-        let next = (self.next & !FILLING) as usize;
-        let Some(slot) = self.ring.get_mut(next).filter(|_| sample.is_finite()) else {
-            self.tally.reject();
-            return None;
-        };
-        let difference = sample.excess(N, *slot, &mut self.partial);
-        *slot = sample;
-        self.next += 1;
-        if next + 1 == N {
-            self.close_block();
-        }
-        (is_full && !difference.is_nan()).then(|| Spike::from_side(difference.beyond(margin)))
+        margin: <S::Fast as Difference>::Margin,
+        groups: &[[S; GROUP]],
+        spikes: &mut [[Spike; GROUP]],
+    ) -> usize {
+        self.encode_groups(margin, groups, spikes)
     }
 
     #[inline]
@@ -207,6 +201,37 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
 fn close_long_block<S: Windowed>(ring: &mut [S], partial: &mut S::Sum) {
     let length = black_box(ring.len());
     S::close_block(ring.get_mut(..length).unwrap_or_default(), partial);
+}
+
+impl<S: Sample, const N: usize> MovingWindow<S, N> {
+    /// Takes any sample. Nothing is emitted if it is not finite, nor before the window is full, nor for
+    /// a difference that is not a number.
+    ///
+    /// Its arguments and its result are those of [`encode`](Scheme::encode), in that order: they stay in
+    /// their registers, and the usual path needs no stack.
+    #[cold]
+    #[inline(never)]
+    fn encode_carefully(&self, state: &mut MovingWindowState<S, N>, sample: S) -> Spike {
+        let is_full = state.next < FILLING;
+        let next = (state.next & !FILLING) as usize;
+        let Some(slot) = state.ring.get_mut(next).filter(|_| sample.is_finite()) else {
+            state.tally.reject();
+            return Spike::None;
+        };
+        let difference = sample.excess(N, *slot, &mut state.partial);
+        *slot = sample;
+        state.next += 1;
+        if next + 1 == N {
+            state.close_block();
+        }
+        if is_full && !difference.is_nan() {
+            // An address that the compiler must not look through: it would pass the margin in its place, and
+            // load it early on the usual path, which has no register for it.
+            Spike::from_side(difference.beyond(black_box(self).margin))
+        } else {
+            Spike::None
+        }
+    }
 }
 
 impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
@@ -236,10 +261,10 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
                 if next + 1 == N {
                     state.close_block();
                 }
-                return Spike::from_side(difference.beyond(S::fast_margin(self.margin)));
+                return Spike::from_side(difference.beyond(self.fast_margin));
             }
         }
-        state.encode_carefully(self.margin, sample).unwrap_or_default()
+        self.encode_carefully(state, sample)
     }
 
     #[inline]
@@ -254,12 +279,12 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
         while !samples.is_empty() {
             let taken = if N > SHORT {
                 let (groups, spikes) = (samples.as_chunks().0, spikes.as_chunks_mut().0);
-                GROUP * state.encode_groups::<GROUP>(self.margin, groups, spikes)
+                GROUP * state.encode_long(self.fast_margin, groups, spikes)
             } else if state.next == 0
                 && let Some(block) = samples.first_chunk()
                 && let Some(spikes) = spikes.first_chunk_mut()
             {
-                N * state.encode_groups::<N>(self.margin, from_ref(block), from_mut(spikes))
+                N * state.encode_groups::<N>(self.fast_margin, from_ref(block), from_mut(spikes))
             } else {
                 0
             };
@@ -269,7 +294,7 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
             } else if let (Some(&sample), Some(spike)) =
                 (samples.split_off_first(), spikes.split_off_first_mut())
             {
-                *spike = state.encode_carefully(self.margin, sample).unwrap_or_default();
+                *spike = self.encode_carefully(state, sample);
             }
         }
         length
@@ -281,7 +306,7 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
         if window.iter().all(S::is_finite) {
             state.clear_window();
             for &sample in window {
-                state.encode_carefully(self.margin, sample);
+                self.encode_carefully(state, sample);
             }
         } else {
             state.tally.reject();
