@@ -45,6 +45,8 @@ pub struct Parameter {
     pub found: Option<Found>,
     /// Whether a file of spikes holds it, so that the file decodes by itself.
     pub is_recorded: bool,
+    /// Whether decoding does without it.
+    pub is_of_encoder: bool,
     /// What one may give.
     pub example: &'static str,
 }
@@ -113,6 +115,7 @@ impl Parameter {
             default: None,
             found: None,
             is_recorded: true,
+            is_of_encoder: false,
             example: "",
         }
     }
@@ -145,6 +148,12 @@ impl Parameter {
     #[must_use]
     pub const fn unrecorded(self) -> Self {
         Self { is_recorded: false, ..self }
+    }
+
+    /// That decoding does without.
+    #[must_use]
+    pub const fn of_encoder(self) -> Self {
+        Self { is_of_encoder: true, ..self }
     }
 
     /// What a file of spikes calls it.

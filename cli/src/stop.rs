@@ -1,5 +1,6 @@
 //! Ctrl-C ends what has no end of its own, with all that it has so far kept.
 
+use spikewire::Tick;
 use anyhow::{Context, Result};
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -45,7 +46,7 @@ impl Stop {
     }
 
     /// The time since the start, in µs as ticks have it.
-    pub(crate) fn tick(&self) -> u32 {
-        self.start.elapsed().as_micros() as u32
+    pub(crate) fn tick(&self) -> Tick {
+        Tick::from_micros(self.start.elapsed().as_micros() as u64)
     }
 }

@@ -20,7 +20,7 @@ pub use sample_type::{Fixed32, SampleType};
 pub use settings::{Settings, is_list, number};
 
 use anyhow::{Result, bail};
-use spikewire::{Sample, Scheme};
+use spikewire::{Sample, Scheme, Spike};
 
 use crate::{Entry, Info, for_sample_type};
 
@@ -47,6 +47,21 @@ pub trait Visit<S: Sample> {
         scheme: P,
         start: P::EncoderState,
     ) -> Result<Self::Output>;
+
+    /// Takes a scheme whose decoder adds up steps.
+    ///
+    /// # Errors
+    /// The visitor's own.
+    fn visit_steps<P: Scheme<Sample = S, Code = Spike> + 'static>(
+        self,
+        scheme: P,
+        start: P::EncoderState,
+    ) -> Result<Self::Output>
+    where
+        Self: Sized,
+    {
+        self.visit(scheme, start)
+    }
 }
 
 /// How a scheme comes about at run time.
@@ -208,7 +223,3 @@ impl<S: Sample> Visit<S> for Nothing {
     }
 }
 
-/// The scheme of this name.
-pub fn named(name: &str) -> Option<&'static dyn RunTime> {
-    crate::ALL.iter().copied().find(|scheme| scheme.info().name == name)
-}

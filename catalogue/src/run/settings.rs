@@ -50,6 +50,11 @@ impl Settings {
         self.set(FIRST, value.to_string());
     }
 
+    /// The decoder's first value: the first sample's, or the one before it.
+    pub fn first_value(&self) -> Option<f64> {
+        self.number(self.first_key()?)
+    }
+
     /// The entry with the decoder's first value: the first sample's, or the one before it.
     pub(super) fn first_key(&self) -> Option<&'static str> {
         let names = self.entries.iter().map(|(name, _)| *name);

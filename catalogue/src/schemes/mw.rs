@@ -38,6 +38,7 @@ impl Entry for Scheme {
                 "samples of the running mean less one, as the paper counts: `5` takes 6; 0 to 16383",
             )
             .with_example("5")
+            .of_encoder()
             .with_paper(Paper::Text("5")),
             Parameter::START,
         ],
@@ -65,7 +66,7 @@ impl Build for Scheme {
         let samples = given.count("window", 0..=dynamic::WIDEST - 1)? + 1;
         let scheme = dynamic::MovingWindow::try_new(given.signal("threshold")?, samples)?;
         let start = scheme.state();
-        visitor.visit(scheme, start)
+        visitor.visit_steps(scheme, start)
     }
 }
 

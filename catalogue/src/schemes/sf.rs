@@ -52,7 +52,7 @@ impl Entry for Scheme {
 #[cfg(feature = "run")]
 impl Build for Scheme {
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        visitor.visit(StepForward::try_new(given.signal("threshold")?)?, StepForward::START)
+        visitor.visit_steps(StepForward::try_new(given.signal("threshold")?)?, StepForward::START)
     }
 }
 

@@ -125,7 +125,7 @@ impl Build for Scheme {
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
         let scheme = TemporalContrast::try_new(given.signal("threshold")?)?;
         let scheme = scheme.try_with_step(given.signal("step")?)?;
-        visitor.visit(scheme, TemporalContrast::START)
+        visitor.visit_steps(scheme, TemporalContrast::START)
     }
 }
 

@@ -1,28 +1,29 @@
 //! `spikewire listen`: what a board sends, as events or values, while it comes.
 
-use crate::events::{Format, LinkReader, Stream, StreamOptions, Values, values_writer};
+use crate::events::{
+    EventReader, Format, LinkReader, Stream, StreamOptions, Values, values_writer,
+};
 use crate::fit::rounded;
 use crate::live::Live;
-use crate::options::{SchemeOptions, Step};
+use crate::options::{augment, given};
 use crate::output::Output;
 use crate::port::{Bytes, Port};
-use crate::resolve::{Known, resolve};
-use crate::sample_type::SampleType;
-use crate::scheme::SchemeName;
-use crate::settings::Settings;
+use crate::scheme::Scheme;
 use crate::stop::Stop;
-use crate::values;
-use anyhow::{Context, Result, bail};
-use clap::{Args, ValueEnum};
+use crate::values::with_receiver;
+use anyhow::{Result, bail};
+use catalogue::run::{Known, Options, SampleType, Settings};
+use catalogue::{Info, Parameter};
+use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
 use std::io::Write;
 use std::path::PathBuf;
 
 /// Listen to what a board sends: events, or with `--scheme` the values they mean.
 ///
 /// Formats are called as in `convert`. Values come from a link, by the receiver that runs on boards:
-/// bit for bit those of the sender's own decoder from a keyframe on until something is lost. For sf the
-/// value just before a keyframe equals it; for tbr and mw, whose decoders drift, it is the sample itself,
-/// from which they go on.
+/// bit for bit those of the sender's own decoder from a keyframe on until something is lost. Where the
+/// encoder follows its decoder the value just before a keyframe equals it; decoders that drift go on from
+/// the keyframe, which is the sample itself.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -51,8 +52,8 @@ pub(crate) struct Listen {
     #[command(flatten)]
     stream: StreamOptions,
     /// Decode a link's frames by this scheme, the sender's
-    #[arg(long)]
-    scheme: Option<StepScheme>,
+    #[arg(long, value_parser = Scheme::parser(Scheme::all().filter(|scheme| adds_up_steps(scheme.info()))))]
+    scheme: Option<Scheme>,
     /// Sample type of the sender: f32, i16, i32, or fixed point such as q16.16 or q8.8
     #[arg(long, default_value_t)]
     sample: SampleType,
@@ -60,68 +61,52 @@ pub(crate) struct Listen {
     parameters: StepOptions,
 }
 
-/// The schemes whose decoders add up steps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum StepScheme {
-    /// Temporal contrast.
-    Tbr,
-    /// Step forward.
-    Sf,
-    /// Moving window.
-    Mw,
+fn adds_up_steps(info: &Info) -> bool {
+    info.has_first_value
+}
+
+fn is_recorded(parameter: &Parameter) -> bool {
+    parameter.is_recorded
 }
 
 /// The parameters that decoding a step code takes.
-#[derive(Args, Clone, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct StepOptions {
-    /// The sender's threshold, in the signal's unit, the same for all channels: `0.1`
-    #[arg(long, allow_negative_numbers = true, help_heading = "Parameters")]
-    threshold: Option<f64>,
-    /// In its place, one for each channel from address 0 on: `0.1,0.1,0.5`
-    #[arg(
-        long,
-        value_delimiter = ',',
-        allow_negative_numbers = true,
-        conflicts_with = "threshold",
-        help_heading = "Parameters"
-    )]
+    options: Options,
+    /// In the place of `--threshold`, one for each channel from address 0 on.
     thresholds: Vec<f64>,
-    /// tbr: what a spike adds, in the signal's unit, `0.2`, or in thresholds, `2x`; `1x` unless given
-    #[arg(long, help_heading = "Parameters")]
-    step: Option<Step>,
-    /// mw: the sender's window, for the record; its decoder needs none
-    #[arg(long, help_heading = "Parameters")]
-    window: Option<usize>,
-    /// The value before the first event, in the signal's unit; 0 unless given, and until a keyframe comes
-    #[arg(long, allow_negative_numbers = true, help_heading = "Parameters")]
-    start: Option<f64>,
 }
 
-impl StepOptions {
-    fn is_empty(&self) -> bool {
-        let Self { threshold, thresholds, step, window, start } = self;
-        threshold.is_none()
-            && thresholds.is_empty()
-            && step.is_none()
-            && window.is_none()
-            && start.is_none()
+impl Args for StepOptions {
+    fn augment_args(command: Command) -> Command {
+        augment(command, adds_up_steps, is_recorded).arg(
+            Arg::new("thresholds")
+                .long("thresholds")
+                .value_delimiter(',')
+                .value_parser(value_parser!(f64))
+                .allow_negative_numbers(true)
+                .num_args(1..)
+                .conflicts_with("threshold")
+                .help_heading("Parameters")
+                .help("In the place of --threshold, one for each channel from address 0 on: `0.1,0.1,0.5`"),
+        )
     }
 
-    fn with(&self, scheme: SchemeName, threshold: Option<f64>) -> SchemeOptions {
-        let &Self { step, window, start, .. } = self;
-        // Any window will do, as it is the encoder's alone.
-        let window = window.or_else(|| (scheme == SchemeName::Mw).then_some(0));
-        SchemeOptions { threshold, step, window, start, ..SchemeOptions::default() }
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
     }
 }
 
-impl StepScheme {
-    fn name(self) -> SchemeName {
-        match self {
-            Self::Tbr => SchemeName::Tbr,
-            Self::Sf => SchemeName::Sf,
-            Self::Mw => SchemeName::Mw,
-        }
+impl FromArgMatches for StepOptions {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        let thresholds = matches.get_many("thresholds").into_iter().flatten().copied();
+        let options = given(matches, adds_up_steps, is_recorded);
+        Ok(Self { options, thresholds: thresholds.collect() })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
     }
 }
 
@@ -130,16 +115,22 @@ impl StepScheme {
 /// # Errors
 /// The options, the port or the output are not good.
 pub(crate) fn run(options: &Listen) -> Result<()> {
-    let values = options.values()?;
+    let Some(scheme) = options.scheme else {
+        if !options.parameters.options.is_empty() || !options.parameters.thresholds.is_empty() {
+            bail!("a scheme's parameters need --scheme");
+        }
+        return listen(options, None);
+    };
+    let settings = options.settings(scheme)?;
+    with_receiver(scheme, options.sample, &settings, |values| listen(options, Some(values)))
+}
+
+fn listen(options: &Listen, values: Option<Box<dyn Values + '_>>) -> Result<()> {
     let mut port = Port::open(&options.input, options.baud)?;
     let stop = Stop::new(options.seconds)?;
     let mut output = Output::open(options.output.as_deref(), &options.input)?;
-    let (reader, writer) = match values {
-        Some(values) => {
-            let reader: Box<dyn crate::events::EventReader> =
-                Box::new(LinkReader::new(Some(values)));
-            (reader, values_writer(options.sample))
-        }
+    let (reader, writer): (Box<dyn EventReader + '_>, _) = match values {
+        Some(values) => (Box::new(LinkReader::new(Some(values))), values_writer(options.sample)),
         None => (options.from.reader(port.name()), options.to.writer(options.stream.drop)),
     };
     let mut stream = Stream::new(reader, writer, options.stream.from_zero);
@@ -178,43 +169,47 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
 }
 
 impl Listen {
-    /// What decodes the frames, if that is wanted.
-    fn values(&self) -> Result<Option<Box<dyn Values>>> {
-        let Some(scheme) = self.scheme.map(StepScheme::name) else {
-            if !self.parameters.is_empty() {
-                bail!("a scheme's parameters need --scheme");
-            }
-            return Ok(None);
-        };
+    /// The settings of one channel for all, or of each.
+    fn settings(&self, scheme: Scheme) -> Result<Vec<Settings>> {
         if !matches!(self.from, Format::Link(_)) {
             bail!("--scheme needs --from link, whose keyframes say where the sender stands");
         }
         if self.to != Format::Csv {
             bail!("--scheme gives values, which only --to csv holds");
         }
-        let StepOptions { threshold, thresholds, .. } = &self.parameters;
-        let thresholds: Vec<Option<f64>> = match thresholds[..] {
-            [] => vec![*threshold],
-            ref many => many.iter().copied().map(Some).collect(),
+        let StepOptions { options, thresholds } = &self.parameters;
+        let each: Vec<Options> = match thresholds[..] {
+            [] => vec![options.clone()],
+            ref many => many
+                .iter()
+                .map(|threshold| {
+                    let mut options = options.clone();
+                    options.set("threshold", &threshold.to_string());
+                    options
+                })
+                .collect(),
         };
         let mut all = Vec::new();
-        for threshold in thresholds {
-            let settings = settings(scheme, &self.parameters.with(scheme, threshold))?;
-            let (settings, rounding) = rounded(self.sample, &settings)?;
+        for mut options in each {
+            // Any value will do of what is the encoder's alone.
+            for parameter in scheme.info().parameters.iter().filter(|own| own.is_of_encoder) {
+                if options.get(parameter.name).is_none() {
+                    options.set(parameter.name, parameter.example);
+                }
+            }
+            let settings = settings(scheme, &options)?;
+            let (settings, rounding) = rounded(scheme, self.sample, &settings)?;
             if let Some(rounding) = rounding {
                 eprintln!("{rounding}");
             }
             all.push(settings);
         }
-        values::receiver(self.sample, &all).map(Some).with_context(|| scheme.name())
+        Ok(all)
     }
 }
 
 /// The settings of a channel, from its options alone.
-fn settings(scheme: SchemeName, options: &SchemeOptions) -> Result<Settings> {
-    options.check(scheme)?;
-    if options.threshold.is_none() {
-        bail!("{} needs --threshold", scheme.name());
-    }
-    resolve(scheme, options, Known { calibrated: None, first: &[0.0], can_calibrate: false })
+fn settings(scheme: Scheme, options: &Options) -> Result<Settings> {
+    let known = Known { calibrated: None, first: &[0.0], can_calibrate: false };
+    scheme.resolve(options, &known)
 }

@@ -7,7 +7,7 @@ use crate::scheme::Scheme;
 use crate::steep::Steep;
 use crate::trial::{Recording, Trial};
 use anyhow::{Result, bail};
-use catalogue::run::{Options, SampleType};
+use catalogue::run::SampleType;
 use clap::Args;
 use serde::Serialize;
 use serde_json::Value;
@@ -107,7 +107,11 @@ pub(crate) fn chosen(
                 "all schemes run with the paper's settings; --scheme says which takes the parameters given"
             )
         }
-        None => Ok((Scheme::all().collect(), SchemeOptions(Options { paper: true, ..parameters.0.clone() }))),
+        None => {
+            let mut options = parameters.0.clone();
+            options.paper = true;
+            Ok((Scheme::all().collect(), SchemeOptions(options)))
+        }
     }
 }
 
