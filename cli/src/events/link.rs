@@ -14,7 +14,7 @@ pub(crate) trait Values {
     /// How many events and keyframes had an address without a decoder.
     fn outside(&self) -> u64;
 
-    /// How many keyframes had the width of another sample type.
+    /// How many keyframes were of another sample type.
     fn misfits(&self) -> u64;
 
     /// How keyframes compare with the values before them.
@@ -39,10 +39,11 @@ impl<'a> LinkReader<'a> {
 
 impl EventReader for LinkReader<'_> {
     fn read(&mut self, mut bytes: &[u8], items: &mut Vec<Item>) -> Result<()> {
-        while let Some(received) = self.reader.next_frame(&mut bytes) {
-            take(&received, &mut self.tally, self.values.as_deref_mut(), items);
+        loop {
+            let is_first = self.reader.frames() == 0;
+            let Some(received) = self.reader.next_frame(&mut bytes) else { return Ok(()) };
+            take(&received, is_first, &mut self.tally, self.values.as_deref_mut(), items);
         }
-        Ok(())
     }
 
     /// A frame whose length was damaged holds those after it back, until as many bytes follow as the
@@ -74,6 +75,7 @@ impl EventReader for LinkReader<'_> {
 /// Adds what a frame brings, in the order in which it holds.
 fn take(
     received: &Received<'_>,
+    is_first: bool,
     tally: &mut LinkTally,
     values: Option<&mut (dyn Values + '_)>,
     items: &mut Vec<Item>,
@@ -87,7 +89,8 @@ fn take(
         tally.after_loss += 1;
         items.push(Item::LostEvents);
     }
-    if *is_start {
+    // What is heard from the middle on did not begin there.
+    if *is_start && (!is_first || frame.sequence() == 0) {
         tally.restarts += 1;
         items.push(Item::Restart);
     }
