@@ -21,9 +21,10 @@ impl Fit {
     /// For a channel that has no samples yet.
     pub(crate) fn new(scheme: Scheme, sample: SampleType, settings: &Settings) -> Self {
         // A rate code adds up its filters on its shift.
-        let reach = settings.number("shift").zip(settings.numbers("taps")).map(|(shift, taps)| {
-            shift + taps.iter().filter(|tap| **tap > 0.0).sum::<f64>()
-        });
+        let reach = settings
+            .number("shift")
+            .zip(settings.numbers("taps"))
+            .map(|(shift, taps)| shift + taps.iter().filter(|tap| **tap > 0.0).sum::<f64>());
         let (min, max) = (f64::INFINITY, f64::NEG_INFINITY);
         Self { scheme, sample, min, max, samples: 0, saturated: 0, reach, beyond: 0 }
     }
@@ -109,7 +110,7 @@ pub(crate) fn rounded(
     settings: &Settings,
 ) -> anyhow::Result<(Settings, Option<String>)> {
     let (rounded, all) = scheme.rounded(sample, settings)?;
-    let mut told = Vec::new();
+    let (mut told, mut lists) = (Vec::new(), Vec::new());
     for Ran { name, asked, ran } in all {
         match (&asked[..], &ran[..]) {
             // Samples are rounded like that, too.
@@ -119,9 +120,10 @@ pub(crate) fn rounded(
                 let off = asked.iter().zip(&ran).map(|(asked, ran)| (asked - ran).abs());
                 let count = off.clone().filter(|off| *off > 0.0).count();
                 let most = short(off.fold(0.0, f64::max));
-                told.push(format!("{count} {name} were rounded by at most {most}"));
+                lists.push(format!("{count} {name} were rounded by at most {most}"));
             }
         }
     }
+    told.extend(lists);
     Ok((rounded, (!told.is_empty()).then(|| format!("in {sample}, {}", told.join(", ")))))
 }

@@ -121,7 +121,8 @@ fn help(owners: &[(&'static Info, &'static Parameter)]) -> String {
             None => meanings.push((vec![info.name], meaning)),
         }
     }
-    let all = meanings.into_iter().map(|(names, meaning)| format!("{}: {meaning}", names.join(", ")));
+    let all =
+        meanings.into_iter().map(|(names, meaning)| format!("{}: {meaning}", names.join(", ")));
     all.collect::<Vec<_>>().join(". ")
 }
 

@@ -29,9 +29,8 @@ impl Scheme {
     pub(crate) fn parser(
         schemes: impl Iterator<Item = Self>,
     ) -> MapValueParser<PossibleValuesParser, fn(String) -> Self> {
-        let values = schemes.map(|scheme| {
-            PossibleValue::new(scheme.name()).help(scheme.info().words)
-        });
+        let values =
+            schemes.map(|scheme| PossibleValue::new(scheme.name()).help(scheme.info().words));
         let parser: PossibleValuesParser = values.collect::<Vec<_>>().into();
         clap::builder::TypedValueParser::map(parser, |name| {
             // The parser lets no other name pass.

@@ -1,7 +1,7 @@
 //! Ctrl-C ends what has no end of its own, with all that it has so far kept.
 
-use spikewire::Tick;
 use anyhow::{Context, Result};
+use spikewire::Tick;
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};

@@ -79,16 +79,16 @@ fn what_the_header_says_of_channels_must_be_whole() {
     let signal = "a,b\n0,5\n1,6\n";
     let spikes = good("encode --scheme sf --threshold 0.5 --columns a,b -", signal).output;
     assert!(
-        spikes.contains("# channels=2\n# threshold=0.5\n# start@0=0\n# start@1=5\n"),
+        spikes.contains("# channels=2\n# threshold=0.5\n# first@0=0\n# first@1=5\n"),
         "{spikes}"
     );
     for (from, to, words) in [
-        ("# start@1=5\n", "", "lacks `# start=`"),
-        ("# start@1=5", "# start@2=5", "start@2=5, where there are 2 channels"),
-        ("# start@1=5", "# start@1=5\n# start=5", "contradicts itself: start=5, then start=0"),
+        ("# first@1=5\n", "", "lacks `# first=`"),
+        ("# first@1=5", "# first@2=5", "first@2=5, where there are 2 channels"),
+        ("# first@1=5", "# first@1=5\n# first=5", "contradicts itself: first=5, then first=0"),
         ("channels=2", "channels=0", "channels=0"),
         ("channels=2", "channels=99999999", "channels=99999999"),
-        ("# start@1=5", "# start@1=5\n# window@1=5", "window=5, which sf does not take"),
+        ("# first@1=5", "# first@1=5\n# window@1=5", "window=5, which sf does not take"),
         ("1,1,1", "1,2,1", "address 2"),
     ] {
         assert!(spikes.contains(from));

@@ -3,9 +3,9 @@
 mod common;
 
 use common::{good_bytes, refused, spikewire_bytes};
+use fixed::types::I8F8;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
-use fixed::types::I8F8;
 use spikewire::link::{Coding, Framer, MAX_FRAME, Transmitter};
 use spikewire::temporal::{MovingWindow, StepForward, TemporalContrast};
 use spikewire::{Bank, FromItems, Item, Put, Sample, Spike, Start, Tick};
@@ -57,8 +57,9 @@ fn board<P: Start<Code = Spike>>(schemes: [P; CHANNELS]) -> Board<P::Sample> {
                     board.values.push((event.tick.micros(), event.address, value));
                 }
                 // What the board's decoders start from.
-                Item::Keyframe(keyframe) => decoders[usize::from(keyframe.address)]
-                    .resync(keyframe.value().unwrap()),
+                Item::Keyframe(keyframe) => {
+                    decoders[usize::from(keyframe.address)].resync(keyframe.value().unwrap())
+                }
                 Item::Break(_) => unreachable!(),
             }
         }
@@ -265,7 +266,7 @@ fn events_become_any_format() {
 fn options_that_contradict_are_refused() {
     for (options, words) in [
         ("--threshold 1", ["need --scheme", ""]),
-        ("--scheme hsa", ["invalid value 'hsa'", "tbr, sf, mw"]),
+        ("--scheme hsa", ["invalid value 'hsa'", "tbr, mw, sf"]),
         ("--scheme sf --filter triang:3", ["--filter", "unexpected argument"]),
         ("--scheme sf", ["sf needs --threshold", ""]),
         ("--scheme sf --threshold 0", ["threshold 0", "above 0"]),

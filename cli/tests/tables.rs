@@ -120,7 +120,7 @@ fn missing_values_are_skipped_if_that_is_wanted() {
     let late = [vec![f64::NAN; 20_000], vec![0.0, 1.0]].concat();
     let ran = good(&format!("{SF} --skip-non-finite -"), &table(&late)).output;
     assert_eq!(train(&ran)[20_001], 1);
-    assert!(ran.contains("# start=0\n"), "{}", &ran[..200]);
+    assert!(ran.contains("# first=0\n"), "{}", &ran[..200]);
 }
 
 #[test]

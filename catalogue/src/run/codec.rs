@@ -56,8 +56,12 @@ trait Erased {
     fn latency(&self) -> usize;
     fn encode(&mut self, samples: &[f64], events: &mut Vec<Event>);
     fn finish(&mut self, events: &mut Vec<Event>);
-    fn decode(&mut self, count: usize, events: &[Event], values: &mut Vec<f64>)
-    -> Result<(), Event>;
+    fn decode(
+        &mut self,
+        count: usize,
+        events: &[Event],
+        values: &mut Vec<f64>,
+    ) -> Result<(), Event>;
 }
 
 /// Starts a codec on a recording.
@@ -87,8 +91,16 @@ impl<S: Sample> Visit<S> for Start<'_> {
         }
         let starts_at_first = settings.starts_at_first();
         let silent = P::Code::assemble(std::iter::empty());
-        let running =
-            Running { scheme, encoder, decoder, silent, starts_at_first, one, coded: 0, decoded: 0 };
+        let running = Running {
+            scheme,
+            encoder,
+            decoder,
+            silent,
+            starts_at_first,
+            one,
+            coded: 0,
+            decoded: 0,
+        };
         Ok(Codec(Box::new(running)))
     }
 }

@@ -91,7 +91,8 @@ pub trait Build: Entry {
     fn shape(given: &Given) -> Result<Shape> {
         let has = |name: &str| Self::INFO.parameters.iter().any(|own| own.name == name);
         let neurons = if has("neurons") { given.neurons()? } else { 1 };
-        let slots = if has("slots") { given.count("slots", 2..=spikewire::dynamic::LEVELS)? } else { 1 };
+        let slots =
+            if has("slots") { given.count("slots", 2..=spikewire::dynamic::LEVELS)? } else { 1 };
         Ok(Shape { neurons, slots })
     }
 
@@ -180,7 +181,8 @@ impl<T: Build + Sync> RunTime for T {
             for_sample_type!(sample, S => given.signal::<S>(name).map(drop))?;
             told = given.told();
         }
-        let vanished = |ran: &&Ran| matches!((&ran.asked[..], &ran.ran[..]), ([asked], [0.0]) if *asked > 0.0);
+        let vanished =
+            |ran: &&Ran| matches!((&ran.asked[..], &ran.ran[..]), ([asked], [0.0]) if *asked > 0.0);
         if let (Err(_), Some(ran)) = (&built, told.iter().find(vanished)) {
             bail!(
                 "{} {} is 0 in {sample}, whose step is {}; a type with more bits after the point, or f32, would \
@@ -222,4 +224,3 @@ impl<S: Sample> Visit<S> for Nothing {
         Ok(())
     }
 }
-

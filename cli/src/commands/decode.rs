@@ -52,7 +52,8 @@ fn decode(input: impl BufRead, file: &str, open: impl FnOnce() -> Result<Output>
     /// How many events are taken together.
     const BATCH: usize = 4096;
     let (mut reader, header) = Reader::open(input, file)?;
-    let bank = Bank::new(header.scheme, header.sample, &header.channels).with_context(|| file.to_owned())?;
+    let bank = Bank::new(header.scheme, header.sample, &header.channels)
+        .with_context(|| file.to_owned())?;
     let mut decoding = Decoding::new(bank, &header, reader.is_timed(), open()?)?;
     let mut events: Vec<Event> = Vec::new();
     loop {

@@ -3,8 +3,8 @@
 use super::omitted::Omitted;
 use super::{EventReader, EventWriter, Item, Tally};
 use anyhow::{Result, bail};
-use spikewire::{Event, Tick};
 use spikewire::format::{EventDecoder, EventFormat, FormatError};
+use spikewire::{Event, Tick};
 use std::io::Write;
 
 /// Reads a format.

@@ -116,6 +116,8 @@ pub(super) struct Writer {
     tick: Tick,
     /// Another after each restart.
     session: u16,
+    /// Whether the session has no frame yet.
+    is_fresh: bool,
     events: Vec<Event>,
     /// Whether a loss or restart waits for a frame to say it.
     owes_mark: bool,
@@ -133,6 +135,7 @@ impl Writer {
             keyframes: Vec::new(),
             tick: Tick::from_micros(0),
             session: 0,
+            is_fresh: true,
             events: Vec::new(),
             owes_mark: false,
         }
@@ -142,6 +145,7 @@ impl Writer {
     fn all_frames(&mut self, output: &mut dyn Write) -> Result<()> {
         self.frames(true, output)?;
         if std::mem::take(&mut self.owes_mark) {
+            self.is_fresh = false;
             output.write_all(self.framer.start(self.tick, &mut [0; MAX_FRAME])?.finish())?;
         }
         Ok(())
@@ -149,7 +153,7 @@ impl Writer {
 
     /// Writes frames; the last only if nothing may be added to it.
     fn frames(&mut self, with_last: bool, output: &mut dyn Write) -> Result<()> {
-        let Self { framer, keyframes, events, owes_mark, .. } = self;
+        let Self { framer, keyframes, events, owes_mark, is_fresh, .. } = self;
         let mut buffer = [0; MAX_FRAME];
         loop {
             let start = match (keyframes.first(), events.first()) {
@@ -169,7 +173,7 @@ impl Writer {
                 return Ok(());
             }
             output.write_all(frame.finish())?;
-            *owes_mark = false;
+            (*owes_mark, *is_fresh) = (false, false);
             keyframes.drain(..keys);
             events.drain(..fired);
         }
@@ -191,9 +195,10 @@ impl EventWriter for Writer {
                 }
             }
             Item::Keyframe(keyframe) => {
-                let is_other = self.keyframes.last().is_some_and(|last| {
-                    (last.tick, last.kind) != (keyframe.tick, keyframe.kind)
-                });
+                let is_other = self
+                    .keyframes
+                    .last()
+                    .is_some_and(|last| (last.tick, last.kind) != (keyframe.tick, keyframe.kind));
                 if is_other || !self.events.is_empty() {
                     self.frames(true, output)?;
                 }
@@ -207,8 +212,10 @@ impl EventWriter for Writer {
             }
             Item::Restart => {
                 self.all_frames(output)?;
-                self.session = self.session.wrapping_add(1);
-                self.framer = Framer::new(self.coding, self.session);
+                if !std::mem::replace(&mut self.is_fresh, true) {
+                    self.session = self.session.wrapping_add(1);
+                    self.framer = Framer::new(self.coding, self.session);
+                }
                 self.owes_mark = true;
             }
             Item::Value { .. } => {}

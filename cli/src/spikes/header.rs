@@ -24,7 +24,8 @@ pub(crate) struct Header {
 /// The parameters from which others are made, which decoding needs.
 pub(crate) fn unrecorded(scheme: Scheme) -> Vec<&'static str> {
     let parameters = scheme.info().parameters.iter();
-    let is_note = |parameter: &&Parameter| !parameter.is_recorded || parameter.key() != parameter.name;
+    let is_note =
+        |parameter: &&Parameter| !parameter.is_recorded || parameter.key() != parameter.name;
     parameters.filter(is_note).map(|parameter| parameter.name).collect()
 }
 

@@ -1,8 +1,8 @@
 //! Reads a file of spikes line by line.
 
 use super::Header;
-use catalogue::run::Event;
 use anyhow::{Context, Result, anyhow, bail};
+use catalogue::run::Event;
 use spikewire::Polarity;
 use std::io::{BufRead, Read};
 

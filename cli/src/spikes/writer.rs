@@ -1,9 +1,9 @@
 //! Writes a file of spikes while the samples come in.
 
 use super::Header;
-use catalogue::run::Event;
 use crate::input::{Chunk, Kind, Step};
 use anyhow::Result;
+use catalogue::run::Event;
 use spikewire::Polarity;
 use std::collections::VecDeque;
 use std::io::Write;

@@ -3,8 +3,8 @@
 use core::hint::black_box;
 use core::ops::RangeInclusive;
 
-use super::centres::{Centres, even_centre};
 use super::FiredNeurons;
+use super::centres::{Centres, even_centre};
 use super::search::count_preceding;
 use crate::error::positive;
 use crate::num::curve::{ln, sqrt};

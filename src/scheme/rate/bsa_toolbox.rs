@@ -129,7 +129,10 @@ pub(super) fn without_filter<R: Residual>(residuals: &[R]) -> R::Sum {
 
 /// The sum of `|r - h|` over the window.
 #[inline]
-pub(super) fn with_filter<S: Sample>(residuals: &[S::Residual], taps: &[S]) -> <S::Residual as Nearer>::Sum {
+pub(super) fn with_filter<S: Sample>(
+    residuals: &[S::Residual],
+    taps: &[S],
+) -> <S::Residual as Nearer>::Sum {
     let pairs = residuals.iter().zip(taps);
     pairs.fold(S::Residual::EMPTY, |sum, (residual, tap)| residual.add_distance(tap.widen(), sum))
 }

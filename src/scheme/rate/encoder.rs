@@ -66,11 +66,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
 
     /// Encodes a sample with the residuals where they are.
     #[inline(always)]
-    pub(super) fn encode(
-        &mut self,
-        rule: &impl Rule<S, F>,
-        sample: S,
-    ) -> Option<Spike> {
+    pub(super) fn encode(&mut self, rule: &impl Rule<S, F>, sample: S) -> Option<Spike> {
         let slot = self.take(rule.filtered(), sample)?;
         let filtered = rule.filtered();
         let taps = filtered.taps.starting_at(slot + 1);
@@ -88,11 +84,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
     /// [`encode`](Self::encode), called: the criteria of BSA in fixed point make one loop each, and the
     /// compiler would put each into a loop over samples of its own.
     #[inline(never)]
-    fn encode_called(
-        &mut self,
-        rule: &impl Rule<S, F>,
-        sample: S,
-    ) -> Option<Spike> {
+    fn encode_called(&mut self, rule: &impl Rule<S, F>, sample: S) -> Option<Spike> {
         self.encode(rule, sample)
     }
 
@@ -193,10 +185,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
     /// The spike of the oldest residual, in order and with what is there of the window.
     #[cold]
     #[inline(never)]
-    fn encode_apart(
-        &mut self,
-        rule: &impl Rule<S, F>,
-    ) -> Option<Spike> {
+    fn encode_apart(&mut self, rule: &impl Rule<S, F>) -> Option<Spike> {
         let filtered = rule.filtered();
         let length = F.saturating_sub(self.cursor.missing());
         let (late, early) = cells(&mut self.residuals).split_at_checked(self.cursor.oldest())?;
@@ -215,10 +204,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         Some(Spike::Up)
     }
 
-    pub(super) fn finish_next(
-        &mut self,
-        rule: &impl Rule<S, F>,
-    ) -> Option<Spike> {
+    pub(super) fn finish_next(&mut self, rule: &impl Rule<S, F>) -> Option<Spike> {
         if self.cursor.missing() + 1 >= F {
             return None;
         }
