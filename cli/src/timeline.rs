@@ -33,10 +33,10 @@ impl Timeline {
         match (self.before, self.ahead.front()) {
             (Some((first, start)), Some(&(last, end))) => {
                 let part = steps(first, sample) / steps(first, last);
-                start + (part * (end as f64 - start as f64)).round() as i64
+                start.saturating_add((part * (end as f64 - start as f64)).round() as i64)
             }
             (Some((known, time)), None) | (None, Some(&(known, time))) => {
-                time + (steps(known, sample) * self.step).round() as i64
+                time.saturating_add((steps(known, sample) * self.step).round() as i64)
             }
             (None, None) => (sample as f64 * self.step).round() as i64,
         }

@@ -75,7 +75,7 @@ impl Recording {
     /// How long it is in seconds, if that is known.
     pub(crate) fn seconds(&self) -> Option<f64> {
         match (self.times.first(), self.times.last()) {
-            (Some(first), Some(last)) => Some((last - first) as f64 * 1e-6),
+            (Some(first), Some(last)) => Some(last.saturating_sub(*first) as f64 * 1e-6),
             _ => Some(self.values.len() as f64 / self.rate?),
         }
     }

@@ -80,6 +80,7 @@ fn other_files_are_named() {
         (b"\x89MCAP0\r\n\x01\x00\x00", "MCAP"),
         (b"SQLite format 3\0\x10\0", "database"),
         (b"\x00\x01\x02\x03\x04\x05", "binary, no table"),
+        (b"\x1f\x8b\x08\x00", "cannot be unpacked"),
     ] {
         let (_directory, path) = file("log.bin", start);
         refused(&format!("{SF} {path}"), "", &[words, "log.bin"]);

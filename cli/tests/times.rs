@@ -144,3 +144,18 @@ fn a_file_of_spikes_without_times_decodes_without() {
     let (_directory, log) = file("x.csv", "time_us,x\n0,0\n5000,1\n");
     refused(&format!("{SF} --time-unit h {log}"), "", &["invalid value 'h'", "ms, us, ns"]);
 }
+
+#[test]
+fn times_at_the_ends_of_their_range_do_no_harm() {
+    let signal = "time_us,x\n-1e30,0\n0,1\n1e30,2\n";
+    let spikes = good(&format!("{SF} -"), signal).output;
+    let decoded = good("decode", &spikes).output;
+    assert!(decoded.contains("\n1,0.5,0\n"), "{decoded}");
+    let later = spikes.replace("# time=0,-9223372036854775808", "# time=0,9223372036854775807");
+    assert_ne!(later, spikes);
+    good("decode", &later);
+    let (directory, path) = file("x.csv", signal);
+    good(&format!("score {path}"), "");
+    let picture = directory.path().join("x.svg");
+    good(&format!("plot --scheme sf --threshold 1 {path} -o {}", picture.display()), "");
+}

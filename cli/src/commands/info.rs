@@ -41,7 +41,7 @@ pub(crate) fn run(options: &Info) -> Result<()> {
         let seconds = times
             .last()
             .zip(times.first())
-            .map_or(0.0, |(last, first)| (last - first) as f64 * 1e-6);
+            .map_or(0.0, |(last, first)| last.saturating_sub(*first) as f64 * 1e-6);
         match clock.rate() {
             Some(rate) => writeln!(
                 output,

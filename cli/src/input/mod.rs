@@ -126,8 +126,13 @@ impl Chunk {
 
     /// By row, whether all its values are finite.
     pub(crate) fn finite_rows(&self) -> Vec<bool> {
-        let row = |row| self.columns.iter().all(|column| f64::is_finite(column[row]));
-        (0..self.len()).map(row).collect()
+        let mut rows = vec![true; self.len()];
+        for column in &self.columns {
+            for (row, value) in rows.iter_mut().zip(column) {
+                *row &= value.is_finite();
+            }
+        }
+        rows
     }
 
     /// The values of the rows marked, by channel.

@@ -1,6 +1,6 @@
 //! Tables as they come: compressed, or in another encoding than UTF-8.
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
 use encoding_rs_io::DecodeReaderBytesBuilder;
 use flate2::read::MultiGzDecoder;
@@ -29,9 +29,10 @@ const OTHERS: [(&[u8], &str); 11] = [
 /// # Errors
 /// It is no text.
 pub(crate) fn text(input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
-    let (head, input) = peek(input)?;
+    let (head, input) = peek(input).with_context(|| name.to_owned())?;
     if head.starts_with(&GZIP) {
-        let (head, input) = peek(MultiGzDecoder::new(input))?;
+        let unpacked = peek(MultiGzDecoder::new(input));
+        let (head, input) = unpacked.with_context(|| format!("{name}: cannot be unpacked"))?;
         return decode(&head, input, name);
     }
     decode(&head, input, name)

@@ -147,7 +147,7 @@ fn y_label(picture: &Picture) -> String {
 fn times<'a>(picture: &'a Picture) -> impl Fn(usize) -> f64 + 'a {
     let recording = picture.recording;
     move |sample| match (recording.times.get(sample), recording.times.first(), recording.rate) {
-        (Some(time), Some(first), _) => (time - first) as f64 * 1e-6,
+        (Some(time), Some(first), _) => time.saturating_sub(*first) as f64 * 1e-6,
         (_, _, Some(rate)) => sample as f64 / rate,
         _ => sample as f64,
     }

@@ -105,7 +105,9 @@ impl<W: Write> Writer<W> {
             self.summary.samples += 1;
             self.last_time = time;
         }
-        chunk.columns = chunk.kept(&rows);
+        if rows.contains(&false) {
+            chunk.columns = chunk.kept(&rows);
+        }
     }
 
     fn note(&mut self, sample: u64, note: String) {
