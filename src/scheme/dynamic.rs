@@ -2,8 +2,8 @@
 //!
 //! For programs that are no firmware, such as tools on a computer: their taps, centres and states are on the
 //! heap. They give the bits of the schemes in [`rate`](crate::rate), [`temporal`](crate::temporal) and
-//! [`population`](crate::population) with the same parameters, and are slower. Codes have the capacity of the
-//! largest population: [`Neuron<1024>`](crate::population::Neuron) for any number of neurons.
+//! [`population`](crate::population) with the same parameters, and are slower. Codes of a population have a
+//! capacity: [`Neuron<1024>`](crate::population::Neuron) for any number of neurons up to 1024.
 //!
 //! ```
 //! use spikewire::{Scheme, Spike, dynamic::{Hough, Taps}};

@@ -24,6 +24,9 @@ use spikewire::{Sample, Scheme, Spike};
 
 use crate::{Entry, Info, for_sample_type};
 
+/// Populations up to this size have codes of this capacity, larger ones of the largest.
+pub const FEW: usize = 64;
+
 /// How many neurons a code has, and how many sub-timesteps a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {

@@ -7,7 +7,7 @@ use anyhow::Result;
 #[cfg(feature = "run")]
 use spikewire::{Sample, dynamic};
 #[cfg(feature = "run")]
-use crate::run::{Build, Given, Visit};
+use crate::run::{Build, FEW, Given, Visit};
 use spikewire::population::{Gaussian};
 use spikewire::Start;
 
@@ -49,10 +49,20 @@ impl Entry for Scheme {
 #[cfg(feature = "run")]
 impl Build for Scheme {
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let scheme = dynamic::Position::try_linear(given.neurons()?, &given.range()?)?;
-        let start = scheme.state();
-        visitor.visit(scheme, start)
+        if Self::shape(given)?.neurons <= FEW {
+            built::<S, V, FEW>(given, visitor)
+        } else {
+            built::<S, V, { dynamic::NEURONS }>(given, visitor)
+        }
     }
+}
+
+/// With codes of this capacity.
+#[cfg(feature = "run")]
+fn built<S: Sample, V: Visit<S>, const M: usize>(given: &Given, visitor: V) -> Result<V::Output> {
+    let scheme = dynamic::Position::<S, M>::try_linear(given.neurons()?, &given.range()?)?;
+    let start = scheme.state();
+    visitor.visit(scheme, start)
 }
 
 /// The paper's algorithm 2 with its exponentials, in `f32` for every sample type: the winner.

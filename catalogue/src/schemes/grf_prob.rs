@@ -11,7 +11,7 @@ use rand_chacha::rand_core::SeedableRng;
 #[cfg(feature = "run")]
 use spikewire::{Sample, dynamic};
 #[cfg(feature = "run")]
-use crate::run::{Build, Given, Visit};
+use crate::run::{Build, FEW, Given, Visit};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 use spikewire::population::{FiredNeurons, Probabilistic};
@@ -71,11 +71,21 @@ impl Entry for Scheme {
 #[cfg(feature = "run")]
 impl Build for Scheme {
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let (neurons, beta) = (given.neurons()?, given.number("beta")? as f32);
-        let generator = ChaCha8Rng::seed_from_u64(given.count("seed", 0..=usize::MAX)? as u64);
-        let scheme = dynamic::Probabilistic::try_new(neurons, &given.range()?, beta)?;
-        visitor.visit(scheme, dynamic::Probabilistic::<S, _>::state(generator))
+        if Self::shape(given)?.neurons <= FEW {
+            built::<S, V, FEW>(given, visitor)
+        } else {
+            built::<S, V, { dynamic::NEURONS }>(given, visitor)
+        }
     }
+}
+
+/// With codes of this capacity.
+#[cfg(feature = "run")]
+fn built<S: Sample, V: Visit<S>, const M: usize>(given: &Given, visitor: V) -> Result<V::Output> {
+    let (neurons, beta) = (given.neurons()?, given.number("beta")? as f32);
+    let generator = ChaCha8Rng::seed_from_u64(given.count("seed", 0..=usize::MAX)? as u64);
+    let scheme = dynamic::Probabilistic::<S, _, M>::try_new(neurons, &given.range()?, beta)?;
+    visitor.visit(scheme, dynamic::Probabilistic::<S, _, M>::state(generator))
 }
 
 /// The generator of what is counted, whose work is counted with it.

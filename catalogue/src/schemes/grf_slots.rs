@@ -7,7 +7,7 @@ use anyhow::Result;
 #[cfg(feature = "run")]
 use spikewire::{Sample, dynamic};
 #[cfg(feature = "run")]
-use crate::run::{Build, Given, Visit};
+use crate::run::{Build, FEW, Given, Visit};
 use spikewire::population::{SlotSpikes, Slots};
 use spikewire::Start;
 
@@ -71,13 +71,23 @@ impl Entry for Scheme {
 #[cfg(feature = "run")]
 impl Build for Scheme {
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let (neurons, beta) = (given.neurons()?, given.number("beta")? as f32);
-        let slots = given.count("slots", 2..=dynamic::LEVELS)?;
-        let scheme = dynamic::Slots::try_new(neurons, slots, &given.range()?, beta)?;
-        let scheme = scheme.try_with_floor(given.count("floor", 1..=slots)? as u16)?;
-        let start = scheme.state();
-        visitor.visit(scheme, start)
+        if Self::shape(given)?.neurons <= FEW {
+            built::<S, V, FEW>(given, visitor)
+        } else {
+            built::<S, V, { dynamic::NEURONS }>(given, visitor)
+        }
     }
+}
+
+/// With codes of this capacity.
+#[cfg(feature = "run")]
+fn built<S: Sample, V: Visit<S>, const M: usize>(given: &Given, visitor: V) -> Result<V::Output> {
+    let (neurons, beta) = (given.neurons()?, given.number("beta")? as f32);
+    let slots = given.count("slots", 2..=dynamic::LEVELS)?;
+    let scheme = dynamic::Slots::<S, M>::try_new(neurons, slots, &given.range()?, beta)?;
+    let scheme = scheme.try_with_floor(given.count("floor", 1..=slots)? as u16)?;
+    let start = scheme.state();
+    visitor.visit(scheme, start)
 }
 
 /// The code that the transcription writes: the slot of each neuron, or -1.

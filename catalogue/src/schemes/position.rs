@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 #[cfg(feature = "run")]
 use spikewire::{Sample, dynamic};
 #[cfg(feature = "run")]
-use crate::run::{Asked, Build, Given, Options, Settings, Shape, Visit, is_list, missing};
+use crate::run::{Asked, Build, FEW, Given, Options, Settings, Shape, Visit, is_list, missing};
 use spikewire::population::{Neuron, Position};
 use spikewire::Start;
 
@@ -101,14 +101,24 @@ impl Build for Scheme {
     }
 
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let scheme = match given.word("centres")? {
-            "linear" => dynamic::Position::try_linear(given.neurons()?, &given.range()?)?,
-            "gaussian" => dynamic::Position::try_gaussian_spaced(given.neurons()?, &given.range()?)?,
-            _ => dynamic::Position::try_new(&given.signals("centres")?)?,
-        };
-        let start = scheme.state();
-        visitor.visit(scheme, start)
+        if Self::shape(given)?.neurons <= FEW {
+            built::<S, V, FEW>(given, visitor)
+        } else {
+            built::<S, V, { dynamic::NEURONS }>(given, visitor)
+        }
     }
+}
+
+/// With codes of this capacity.
+#[cfg(feature = "run")]
+fn built<S: Sample, V: Visit<S>, const M: usize>(given: &Given, visitor: V) -> Result<V::Output> {
+    let scheme = match given.word("centres")? {
+        "linear" => dynamic::Position::<S, M>::try_linear(given.neurons()?, &given.range()?)?,
+        "gaussian" => dynamic::Position::<S, M>::try_gaussian_spaced(given.neurons()?, &given.range()?)?,
+        _ => dynamic::Position::<S, M>::try_new(&given.signals("centres")?)?,
+    };
+    let start = scheme.state();
+    visitor.visit(scheme, start)
 }
 
 #[inline(never)]

@@ -20,25 +20,25 @@ pub const NEURONS: usize = 1024;
 /// The most levels of a response, and slots of a sample.
 pub const LEVELS: usize = 256;
 
-fn check_neurons(neurons: usize) -> Result<(), ConfigError> {
-    within("neurons", neurons as f64, 3.0, NEURONS as f32)
+fn check_neurons(neurons: usize, most: usize) -> Result<(), ConfigError> {
+    within("neurons", neurons as f64, 3.0, most.min(NEURONS) as f32)
 }
 
-/// [`population::Position`](crate::population::Position) with any number of neurons.
+/// [`population::Position`](crate::population::Position) with any number of neurons, up to `M`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Position<S: Sample> {
+pub struct Position<S: Sample, const M: usize = NEURONS> {
     centres: Vec<S>,
     /// Of all neurons but the last, the largest value that still belongs to it.
     edges: Vec<S>,
 }
 
-impl<S: Sample> Position<S> {
+impl<S: Sample, const M: usize> Position<S, M> {
     /// The user's own centres, strictly rising.
     ///
     /// # Errors
-    /// There are not 3 to 1024; a centre is not finite, or does not exceed the one before.
+    /// There are not 3 to `M`; a centre is not finite, or does not exceed the one before.
     pub fn try_new(centres: &[S]) -> Result<Self, ConfigError> {
-        check_neurons(centres.len())?;
+        check_neurons(centres.len(), M)?;
         let mut edges = centres.to_vec();
         halfway_edges(centres, &mut edges)?;
         Ok(Self::of(centres.to_vec(), edges))
@@ -47,10 +47,10 @@ impl<S: Sample> Position<S> {
     /// Even centres over a range, half a spacing beyond it at either end.
     ///
     /// # Errors
-    /// There are not 3 to 1024 neurons; the ends are not finite, or do not rise, or the sample type is too
+    /// There are not 3 to `M` neurons; the ends are not finite, or do not rise, or the sample type is too
     /// coarse to tell the centres apart.
     pub fn try_linear(neurons: usize, range: &RangeInclusive<S>) -> Result<Self, ConfigError> {
-        check_neurons(neurons)?;
+        check_neurons(neurons, M)?;
         let (mut centres, mut edges) = (vec![S::ZERO; neurons], vec![S::ZERO; neurons]);
         even(range, &mut centres, &mut edges)?;
         Ok(Self::of(centres, edges))
@@ -64,7 +64,7 @@ impl<S: Sample> Position<S> {
         neurons: usize,
         range: &RangeInclusive<S>,
     ) -> Result<Self, ConfigError> {
-        check_neurons(neurons)?;
+        check_neurons(neurons, M)?;
         let mut centres = vec![S::ZERO; neurons];
         gaussian_spaced(range, &mut centres)?;
         Self::try_new(&centres)
@@ -91,17 +91,17 @@ impl<S: Sample> Position<S> {
     }
 }
 
-impl<S: Sample> Scheme for Position<S> {
+impl<S: Sample, const M: usize> Scheme for Position<S, M> {
     type Sample = S;
-    type Code = Option<Neuron<NEURONS>>;
-    type Output = Option<Neuron<NEURONS>>;
+    type Code = Option<Neuron<M>>;
+    type Output = Option<Neuron<M>>;
     type EncoderState = PositionState;
     type DecoderState = Held<S>;
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Spike;
 
-    fn encode(&self, state: &mut PositionState, sample: S) -> Option<Neuron<NEURONS>> {
+    fn encode(&self, state: &mut PositionState, sample: S) -> Option<Neuron<M>> {
         if !sample.is_finite() {
             state.tally.reject();
             return None;
@@ -119,7 +119,7 @@ impl<S: Sample> Scheme for Position<S> {
     }
 
     /// The centre of the neuron; where none fired, the value before.
-    fn decode(&self, state: &mut Held<S>, neuron: Option<Neuron<NEURONS>>) -> S {
+    fn decode(&self, state: &mut Held<S>, neuron: Option<Neuron<M>>) -> S {
         let centre = neuron.and_then(|neuron| self.centres.get(usize::from(neuron.index())));
         state.or_hold(centre.copied())
     }
@@ -150,7 +150,7 @@ struct Fields<S: Sample> {
 }
 
 impl<S: Sample> Fields<S> {
-    fn try_new(
+    fn try_new<const M: usize>(
         neurons: usize,
         levels: usize,
         range: &RangeInclusive<S>,
@@ -158,7 +158,7 @@ impl<S: Sample> Fields<S> {
     ) -> Result<Self, ConfigError> {
         positive("beta", beta as f64)?;
         within("slots", levels as f64, 2.0, LEVELS as f32)?;
-        let Position { centres, .. } = Position::try_linear(neurons, range)?;
+        let Position { centres, .. } = Position::<S, M>::try_linear(neurons, range)?;
         let mut reaches = vec![reach::<S>(0.0, neurons); levels];
         let (cells, _) = tables::<S>(neurons, range, beta, &mut reaches);
         Ok(Self { centres, min: *range.start(), max: *range.end(), cells, reaches })
@@ -203,19 +203,19 @@ impl<S: Sample> Fields<S> {
     }
 }
 
-/// [`population::Slots`](crate::population::Slots) with any number of neurons and slots.
+/// [`population::Slots`](crate::population::Slots) with any number of neurons, up to `M`, and of slots.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Slots<S: Sample> {
+pub struct Slots<S: Sample, const M: usize = NEURONS> {
     fields: Fields<S>,
     floor: u16,
 }
 
-impl<S: Sample> Slots<S> {
+impl<S: Sample, const M: usize> Slots<S, M> {
     /// Fields of so many neurons over a range, in which every level from 1 fires; the smaller `beta`, the
     /// wider they are.
     ///
     /// # Errors
-    /// There are not 3 to 1024 neurons or not 2 to 256 slots; the ends are not finite, or do not rise, or the
+    /// There are not 3 to `M` neurons or not 2 to 256 slots; the ends are not finite, or do not rise, or the
     /// sample type is too coarse to tell the centres apart; `beta` is not above 0.
     pub fn try_new(
         neurons: usize,
@@ -223,7 +223,7 @@ impl<S: Sample> Slots<S> {
         range: &RangeInclusive<S>,
         beta: f32,
     ) -> Result<Self, ConfigError> {
-        Ok(Self { fields: Fields::try_new(neurons, slots, range, beta)?, floor: 1 })
+        Ok(Self { fields: Fields::try_new::<M>(neurons, slots, range, beta)?, floor: 1 })
     }
 
     /// With silence below this level.
@@ -251,7 +251,7 @@ impl<S: Sample> Slots<S> {
     }
 
     /// Fires the neurons from `first` on that have a finite sample within reach, and says whether any has.
-    fn fire_from(&self, sample: S, first: usize, spikes: &mut SlotSpikes<NEURONS, LEVELS>) -> bool {
+    fn fire_from(&self, sample: S, first: usize, spikes: &mut SlotSpikes<M, LEVELS>) -> bool {
         let Some(reach) = self.fields.reach(self.floor.into()) else { return false };
         let near = self.fields.distances(sample, first).take_while(|&distance| distance <= reach);
         let mut length = 0;
@@ -267,17 +267,17 @@ impl<S: Sample> Slots<S> {
     }
 }
 
-impl<S: Sample> Scheme for Slots<S> {
+impl<S: Sample, const M: usize> Scheme for Slots<S, M> {
     type Sample = S;
-    type Code = SlotSpikes<NEURONS, LEVELS>;
-    type Output = SlotSpikes<NEURONS, LEVELS>;
+    type Code = SlotSpikes<M, LEVELS>;
+    type Output = SlotSpikes<M, LEVELS>;
     type EncoderState = SlotsState;
     type DecoderState = Held<S>;
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Spike;
 
-    fn encode(&self, state: &mut SlotsState, sample: S) -> SlotSpikes<NEURONS, LEVELS> {
+    fn encode(&self, state: &mut SlotsState, sample: S) -> SlotSpikes<M, LEVELS> {
         let mut spikes = SlotSpikes::EMPTY;
         if !sample.is_finite() {
             state.tally.reject();
@@ -299,7 +299,7 @@ impl<S: Sample> Scheme for Slots<S> {
         middle(&self.fields.centres)
     }
 
-    fn decode(&self, state: &mut Held<S>, spikes: SlotSpikes<NEURONS, LEVELS>) -> S {
+    fn decode(&self, state: &mut Held<S>, spikes: SlotSpikes<M, LEVELS>) -> S {
         let levels = self.fields.reaches.len() as u32;
         let levels = spikes.slots().iter().map(|&slot| levels.checked_sub(slot.into()));
         state.or_hold(self.fields.mean(spikes.first(), levels))
@@ -328,14 +328,15 @@ mod random {
     use crate::population::{FiredNeurons, Held, ProbabilisticState};
     use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
 
-    /// [`population::Probabilistic`](crate::population::Probabilistic) with any number of neurons.
+    /// [`population::Probabilistic`](crate::population::Probabilistic) with any number of neurons, up to
+    /// `M`.
     #[derive(Debug)]
-    pub struct Probabilistic<S: Sample, G> {
+    pub struct Probabilistic<S: Sample, G, const M: usize = NEURONS> {
         fields: Fields<S>,
         generator: PhantomData<fn() -> G>,
     }
 
-    impl<S: Sample, G: Rng> Probabilistic<S, G> {
+    impl<S: Sample, G: Rng, const M: usize> Probabilistic<S, G, M> {
         /// How many probabilities there are.
         const LEVELS: usize = super::LEVELS;
 
@@ -343,14 +344,14 @@ mod random {
         /// smaller `beta`, the wider they are.
         ///
         /// # Errors
-        /// There are not 3 to 1024 neurons; the ends are not finite, or do not rise, or the sample type is
+        /// There are not 3 to `M` neurons; the ends are not finite, or do not rise, or the sample type is
         /// too coarse to tell the centres apart; `beta` is not above 0.
         pub fn try_new(
             neurons: usize,
             range: &RangeInclusive<S>,
             beta: f32,
         ) -> Result<Self, ConfigError> {
-            let fields = Fields::try_new(neurons, Self::LEVELS, range, beta)?;
+            let fields = Fields::try_new::<M>(neurons, Self::LEVELS, range, beta)?;
             Ok(Self { fields, generator: PhantomData })
         }
 
@@ -370,17 +371,17 @@ mod random {
         }
     }
 
-    impl<S: Sample, G: Rng> Scheme for Probabilistic<S, G> {
+    impl<S: Sample, G: Rng, const M: usize> Scheme for Probabilistic<S, G, M> {
         type Sample = S;
-        type Code = FiredNeurons<NEURONS>;
-        type Output = FiredNeurons<NEURONS>;
+        type Code = FiredNeurons<M>;
+        type Output = FiredNeurons<M>;
         type EncoderState = ProbabilisticState<G>;
         type DecoderState = Held<S>;
 
         const LATENCY: usize = 0;
         const RECOVERY: Recovery = Recovery::Spike;
 
-        fn encode(&self, state: &mut ProbabilisticState<G>, sample: S) -> FiredNeurons<NEURONS> {
+        fn encode(&self, state: &mut ProbabilisticState<G>, sample: S) -> FiredNeurons<M> {
             let mut neurons = FiredNeurons::EMPTY;
             if !sample.is_finite() {
                 state.tally.reject();
@@ -412,7 +413,7 @@ mod random {
             middle(&self.fields.centres)
         }
 
-        fn decode(&self, state: &mut Held<S>, neurons: FiredNeurons<NEURONS>) -> S {
+        fn decode(&self, state: &mut Held<S>, neurons: FiredNeurons<M>) -> S {
             let levels = neurons.fired.iter().map(|&fired| fired.then_some(1));
             state.or_hold(self.fields.mean(0, levels))
         }
