@@ -43,6 +43,7 @@
 //! | feature | adds |
 //! |---|---|
 //! | `fixed` | `FixedI16` and `FixedI32` with any fraction as [`Sample`]s |
+//! | `alloc` | `dynamic`: any filter length, window and number of neurons at run time, on the heap; not for firmware |
 //! | `rand` | probabilistic spiking, from any `rand_core` generator |
 //! | `defmt` | `defmt::Format` on public data |
 //! | `serde` | `Serialize` on public data, and `Deserialize` where nothing has to be checked |
