@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::encoder::{Rule, cells, pairs, subtract};
+use super::encoder::{Rule, cells, decide_in_order, pairs, subtract};
 use super::filter::magnitude;
 use super::{Criterion, bsa, bsa_toolbox, hough, threshold_hough};
 use crate::error::{offset, ratio, within};
@@ -217,23 +217,10 @@ impl<S: Sample, R: Rule<S, 1>> Rate<S, R> {
 
     /// The spike of the oldest residual, first tap first and with what is there of the window.
     fn decide_in_order(&self, state: &mut RateState<S>) -> Option<Spike> {
-        let all = self.taps.as_slice();
-        let length = all.len().saturating_sub(state.place.missing);
-        let oldest = state.place.oldest(all.len());
-        let (late, early) = cells(&mut state.residuals).split_at_checked(oldest)?;
-        let (taps, absent) = all.split_at_checked(length)?;
-        let (first, rest) = taps.split_at_checked(early.len().min(length))?;
-        let magnitude = absent.iter().fold(self.taps.magnitude, |magnitude, tap| {
-            let tap = tap.widen();
-            if tap < S::Residual::ZERO { magnitude.plus(tap) } else { magnitude.minus(tap) }
-        });
-        let residuals = pairs(early, first).chain(pairs(late, rest));
-        if !self.rule.fits(magnitude, residuals, length == all.len()) {
-            return Some(Spike::None);
-        }
-        subtract(early, first);
-        subtract(late, rest);
-        Some(Spike::Up)
+        let Taps { magnitude, .. } = self.taps;
+        let (oldest, missing) = (state.place.oldest(self.taps.length()), state.place.missing);
+        let residuals = cells(&mut state.residuals);
+        decide_in_order(&self.rule, self.taps.as_slice(), magnitude, residuals, oldest, missing)
     }
 }
 
