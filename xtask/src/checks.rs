@@ -67,10 +67,12 @@ pub fn targets() -> Result<()> {
     Ok(())
 }
 
-/// The program has no panic handler: one path to a panic that the compiler cannot rule out, and it does not link.
+/// The program has no panic handler: one path to a panic that the compiler cannot rule out, and it does not link. It
+/// links with overflow checks too: no arithmetic can overflow unnoticed in a release build, or panic in a debug build.
 pub fn no_panic() -> Result<()> {
     for board in BOARDS.iter().filter(|board| ["M0", "M4F"].contains(&board.core)) {
         image::build("no-panic", board)?;
+        image::link_checked("no-panic", board)?;
     }
     Ok(())
 }

@@ -20,6 +20,15 @@ pub fn build_all(package: &str, programs: &[&str], board: &Board) -> Result<Path
     build_with(shell::lint(&mut building(package, board)?), package, programs, board)
 }
 
+/// Links the program for the board with a panic for every integer that overflows, in a directory of its own.
+pub fn link_checked(program: &str, board: &Board) -> Result<()> {
+    let mut cargo = building(program, board)?;
+    cargo
+        .env("CARGO_PROFILE_RELEASE_OVERFLOW_CHECKS", "true")
+        .env("CARGO_TARGET_DIR", paths::thumb_target().join("checked"));
+    shell::run(&mut cargo).with_context(|| format!("{program} for {}, checked", board.machine))
+}
+
 /// All boards and checks share one directory and one profile, so that each crate is compiled once for a core. What
 /// differs between two boards is in the compiler's flags, which cargo tells apart. The images have a place for each
 /// board, as two of them share a target.

@@ -17,7 +17,7 @@ use core::sync::atomic::AtomicU32;
 use defmt_rtt as _;
 use panic_probe as _;
 use rtic_time::Monotonic;
-use spikewire::sink::{EventQueue, Overflow};
+use spikewire::{EventQueue, Overflow, Tick};
 use stm32f4xx_hal::{pac, timer::MonoTimerUs};
 
 /// What the interrupt has for idle. A chip that falls behind is better fed with what is new.
@@ -29,11 +29,11 @@ static FAILED_READS: AtomicU32 = AtomicU32::new(0);
 /// Microseconds since the start.
 type Clock = MonoTimerUs<pac::TIM5>;
 
-fn now() -> u32 {
-    spikewire::tick::from_micros(Clock::now().duration_since_epoch().to_micros())
+fn now() -> Tick {
+    Tick::from_micros(Clock::now().duration_since_epoch().to_micros())
 }
 
-defmt::timestamp!("{=u32:us}", now());
+defmt::timestamp!("{=u32:us}", now().micros());
 
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
@@ -43,7 +43,6 @@ mod app {
     use spikewire::{
         Bank,
         chip::{Describe as _, Input as _, TinyOdin, TinyOdinInput},
-        temporal::StepForwardEncoder,
     };
     use stm32f4xx_hal::{
         gpio::{Edge, Input, Output, PA3, PA4, PB12, Speed},
@@ -78,7 +77,7 @@ mod app {
     /// The time step of the chip's neurons, in µs: so often they leak.
     const TIME_STEP: NonZeroU32 = NonZeroU32::new(1_000).unwrap();
     /// How often the counters are logged, in µs.
-    const REPORT: u32 = 1_000_000;
+    const REPORT: i32 = 1_000_000;
 
     #[shared]
     struct Shared {}
@@ -87,7 +86,7 @@ mod app {
     struct Local {
         data_ready: PA3<Input>,
         imu: Imu<ImuDevice>,
-        bank: Bank<StepForwardEncoder<f32>, { imu::SCHEMES.len() }>,
+        bank: Bank<imu::Schemes, { imu::SCHEMES.len() }>,
         chip: TinyOdin<ChipDevice, Port>,
         delay: SysDelay,
     }
@@ -150,7 +149,7 @@ mod app {
         data_ready.trigger_on_edge(&mut cx.device.EXTI, Edge::Rising);
         data_ready.enable_interrupt(&mut cx.device.EXTI);
 
-        let bank = Bank::from_schemes(imu::SCHEMES);
+        let bank = Bank::per_channel(imu::SCHEMES);
         (Shared {}, Local { data_ready, imu, bank, chip, delay })
     }
 
@@ -171,6 +170,7 @@ mod app {
         let (chip, delay) = (cx.local.chip, cx.local.delay);
         let (mut sent, mut fired, mut failures) = (0_u32, [0_u32; network::NEURONS], 0_u32);
         let mut last_report = now();
+        let mut events = EVENTS.consumer().expect("taken once");
 
         while let Err(error) = network::start(chip, delay) {
             defmt::error!("tinyODIN is not set up: {}", defmt::Debug2Format(&error));
@@ -183,7 +183,7 @@ mod app {
                         *count += 1;
                     }
                 });
-                let count = chip.feed(EVENTS.drain(), network::input, &mut on_output)?;
+                let count = chip.feed(events.waiting(), network::input, &mut on_output)?;
                 chip.advance(now(), &mut on_output)?;
                 chip.poll(&mut on_output).map(|()| count)
             });
@@ -199,8 +199,8 @@ mod app {
                 }
             }
 
-            if now().wrapping_sub(last_report) >= REPORT {
-                last_report = last_report.wrapping_add(REPORT);
+            if now().since(last_report) >= REPORT {
+                last_report = last_report.shifted(REPORT);
                 defmt::info!(
                     "{} events sent, {} lost, peak {}; {} reads and {} handshakes failed; {}; fired {}",
                     sent,

@@ -136,8 +136,9 @@ fn each_event(events: &[Event]) -> String {
 }
 
 /// The subjects as a reader of the tables knows them.
-const NAMES: [(&str, &str); 18] = [
+const NAMES: [(&str, &str); 19] = [
     ("queue", "queue: push, pop"),
+    ("queue-lock-free", "queue, lock-free: push, pop"),
     ("raw", "raw: tick, address, sign"),
     ("link-full", "link, full frames"),
     ("link-100ms", "link, a frame every 100 ms"),

@@ -13,7 +13,7 @@ use embedded_hal::{
     spi::{ErrorType, Operation, SpiDevice},
 };
 use spikewire::{
-    Bins, Event, Polarity,
+    Bins, Event, FromEvents, Polarity, Tick,
     chip::{
         AerPort, ChipError, ConvolutionEvent, DenseEvent, Input, OdinInput, TinyOdin,
         TinyOdinInput, pack_counts,
@@ -83,7 +83,7 @@ fn tiny_odin_fed(out: &mut impl Write) -> fmt::Result {
     let mut agrees = chip.reset(&mut port()).and_then(|gated| gated.run(&registers)).is_ok();
     let mut feed = |event: Event, _: &mut [u8]| {
         let mut running = chip.running()?;
-        running.feed(&mut core::iter::once(event), tiny_odin, |_| ())
+        running.feed(FromEvents(core::iter::once(event)), tiny_odin, |_| ())
     };
     let mut cost = Cost::default();
     flight::events(|event| {
@@ -209,7 +209,7 @@ fn akida(
 /// Counts of 10 ms, packed for two registers.
 fn xylo(out: &mut impl Write) -> fmt::Result {
     const STEP: NonZeroU32 = NonZeroU32::new(10_000).unwrap();
-    let mut bins = Bins::<16>::new(0, STEP).with_limit(15);
+    let mut bins = Bins::<16>::new(Tick::from_micros(0), STEP).with_limit(15);
     let mut count = |event: Event, _: &mut [u8]| {
         let address = event.address << 1 | u16::from(is_up(event));
         let (mut steps, mut counts) = (0, None);
