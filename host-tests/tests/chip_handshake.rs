@@ -367,6 +367,20 @@ fn what_a_reset_drops_is_counted() {
 }
 
 #[test]
+fn what_a_chip_says_before_its_first_reset_is_no_output() {
+    let board = TinyBoard::new(4, 1);
+    board.pins().chip.registers.0[3] = 15;
+    board.pins().chip.set_request(true); // the pins float: a spike, at which all neurons fire
+    board.run(10);
+    board.pins().chip.set_request(false);
+    board.run(100);
+    assert!(board.pins().chip.output().request);
+    let mut chip = TinyOdin::new(board.spi(), board.port(), 1_600);
+    chip.reset(&mut board.clone()).unwrap();
+    assert_eq!(chip.counters().lost_outputs, 0);
+}
+
+#[test]
 fn the_same_handshake_carries_odins_words() {
     let board = Board::<silicon::Odin>::new(4, 3);
     let mut chip = Odin::new(board.spi(), board.port(), 1_000);

@@ -205,6 +205,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         if let Some(count) = count {
             *count = count.saturating_add(1);
         }
+        // Before its first reset a chip may say anything.
+        let is_output_lost = is_output_lost && counters.resets > 0;
         counters.lost_outputs = counters.lost_outputs.saturating_add(is_output_lost.into());
     }
 }
