@@ -3,6 +3,7 @@
 
 use std::num::NonZeroU32;
 
+use embedded_hal::spi::SpiDevice;
 use host_tests::silicon::board::{CallFault, ClockFault};
 use host_tests::silicon::{self, Board};
 use proptest::prelude::*;
@@ -103,6 +104,28 @@ proptest! {
                 prop_assert!(!is_open_loop && !twin.is_idle());
             }
         }
+    }
+}
+
+/// As with too few looks to a clock.
+#[test]
+fn parameters_stay_whole_even_where_the_gate_shuts_on_a_chip_that_works() {
+    for clocks in 0..200 {
+        let board = TinyBoard::new(2, 1);
+        let mut chip = tiny(&board);
+        let gated = chip.reset(&mut board.clone()).unwrap();
+        board.pins().chip.neurons.fill(neuron(0x7FF, 0x55, 5));
+        board.pins().chip.synapses.fill(0x1111_1111);
+        let mut running = gated.run(&OPEN).unwrap();
+        running.send(TinyOdinInput::Spike { pre: 1 }, drop).unwrap();
+        board.run(clocks);
+        board.spi().write(&[0, 0, 0, 0, 1]).unwrap();
+        board.run(1_000);
+        let pins = board.pins();
+        assert!(pins.chip.is_gated());
+        let whole = |&is: &u128| is >> 12 == neuron(0x7FF, 0x55, 0) >> 12;
+        assert!(pins.chip.neurons.iter().all(whole), "{clocks}");
+        assert!(pins.chip.neurons.iter().any(|neuron| neuron & 0xFFF == 5), "{clocks}");
     }
 }
 

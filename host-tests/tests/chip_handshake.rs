@@ -102,14 +102,14 @@ fn a_start_takes_as_many_frames_as_it_says() {
     let gated = chip.reset(&mut board.clone()).unwrap();
     let before = board.pins().spi_clocks;
     gated.run(&OPEN).unwrap();
-    assert_eq!(board.pins().spi_clocks - before, 23 * 40);
+    assert_eq!(board.pins().spi_clocks - before, 24 * 40);
 
     let board = Board::<silicon::Odin>::new(4, 1);
     let mut chip = Odin::new(board.spi(), board.port(), 1_600);
     let gated = chip.reset(&mut board.clone()).unwrap();
     let before = board.pins().spi_clocks;
     gated.run(&OdinRegisters::PLAIN).unwrap();
-    assert_eq!(board.pins().spi_clocks - before, 167 * 40);
+    assert_eq!(board.pins().spi_clocks - before, 168 * 40);
 }
 
 #[test]
@@ -362,6 +362,20 @@ fn what_a_reset_drops_is_counted() {
     chip.reset(&mut delay).unwrap();
     let counters = chip.counters();
     assert_eq!((counters.dropped_words, counters.skipped_steps, counters.lost_outputs), (1, 1, 1));
+}
+
+#[test]
+fn what_a_chip_says_before_its_first_reset_is_no_output() {
+    let board = TinyBoard::new(4, 1);
+    board.pins().chip.registers.0[3] = 15;
+    board.pins().chip.set_request(true); // the pins float: a spike, at which all neurons fire
+    board.run(10);
+    board.pins().chip.set_request(false);
+    board.run(100);
+    assert!(board.pins().chip.output().request);
+    let mut chip = TinyOdin::new(board.spi(), board.port(), 1_600);
+    chip.reset(&mut board.clone()).unwrap();
+    assert_eq!(chip.counters().lost_outputs, 0);
 }
 
 #[test]
