@@ -58,6 +58,8 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "alloc")]
+extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
@@ -83,6 +85,8 @@ pub use event::{
     SpscQueue,
 };
 pub use num::{Sample, SampleKind};
+#[cfg(feature = "alloc")]
+pub use scheme::dynamic;
 pub use scheme::{
     Calibration, Code, Decoder, Differences, Encoder, Firing, Output, Polarity, Recovery, Scheme,
     Spike, Start, population, rate, temporal,

@@ -2,6 +2,12 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
+#[cfg(feature = "run")]
+use anyhow::Result;
+#[cfg(feature = "run")]
+use spikewire::{Sample, dynamic};
+#[cfg(feature = "run")]
+use crate::run::{Build, Given, Visit};
 use spikewire::population::{Gaussian};
 use spikewire::Start;
 
@@ -20,6 +26,9 @@ impl Entry for Scheme {
         good_for: "a value over an even range",
         is_signed: false,
         has_first_value: false,
+        climbs_by: None,
+        is_drawn: true,
+        colour: [0x9a, 0xa1, 0xab],
         parameters: &[Parameter::neurons("20"), Parameter::MIN, Parameter::MAX],
     };
 
@@ -34,6 +43,15 @@ impl Entry for Scheme {
         visitor.winner("grf-20", &scheme, &means, sigma, |signal, neurons| {
             transcribed(signal, &means, sigma, neurons);
         })
+    }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        let scheme = dynamic::Position::try_linear(given.neurons()?, &given.range()?)?;
+        let start = scheme.state();
+        visitor.visit(scheme, start)
     }
 }
 

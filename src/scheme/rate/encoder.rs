@@ -215,7 +215,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
 
 /// Residuals, each with the tap beside it.
 #[inline(always)]
-fn pairs<S: Sample>(
+pub(super) fn pairs<S: Sample>(
     residuals: &[Cell<S::Residual>],
     taps: &[S],
 ) -> impl Iterator<Item = (S::Residual, S::Residual)> {

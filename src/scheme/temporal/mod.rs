@@ -24,6 +24,8 @@
 //! ```
 
 mod contrast;
+#[cfg(feature = "alloc")]
+pub(super) mod dynamic;
 mod moving_window;
 mod step_forward;
 mod steps;
