@@ -32,7 +32,7 @@ use crate::exercise::{EVENTS, event, hide, tick};
 pub fn link() {
     time();
     hide(queue().is_none());
-    lock_free();
+    hide(lock_free().is_none());
     hide(framed(const { &StepForward::<f32>::new(1.0) }).is_none());
     hide(framed(const { &StepForward::<i16>::new(1) }).is_none());
     hide(formats().is_none());
@@ -90,15 +90,16 @@ fn poll<F: Future>(future: Pin<&mut F>) -> Poll<F::Output> {
     future.poll(&mut Context::from_waker(Waker::noop()))
 }
 
-fn lock_free() {
+fn lock_free() -> Option<()> {
     let queue = black_box(SpscQueue::<4>::new());
-    let Some((mut producer, mut consumer)) = queue.split() else { return };
+    let (mut producer, mut consumer) = queue.split()?;
     for item in items() {
         producer.push(item);
         producer.put(item);
     }
     hide((producer.lost(), consumer.len(), consumer.is_empty(), consumer.lost()));
     drain(&mut consumer);
+    Some(())
 }
 
 fn framed<S: Sample>(scheme: &'static StepForward<S>) -> Option<()> {
@@ -189,7 +190,7 @@ fn sinks() -> Option<()> {
 fn family<I: Input>(chip: OdinChip<I, Bus, Bus>, registers: &I::Registers, synapse: I::Synapse) {
     let mut chip = black_box(chip).with_time_step(black_box(NonZeroU32::MIN));
     let (a, b, c) = black_box((1, 2, 3));
-    let mut out = |neuron| hide(neuron);
+    let mut out = |neuron: u8| hide(neuron);
     if let Ok(mut gated) = chip.reset(&mut Bus) {
         hide([
             gated.set_neuron(a, &black_box(I::DISABLED)).is_ok(),
