@@ -4,18 +4,22 @@
 //! time, in fixed capacity: no heap, no panic, no unsafe code. The same bits on every machine.
 //!
 //! ```
-//! use spikewire::{Decoder, Encoder, Scheme, temporal::StepForward};
+//! use spikewire::{Scheme, temporal::StepForward};
 //!
-//! const ROLL: StepForward<f32> = StepForward::<f32>::checked(0.35); // a bad constant fails the build
+//! const ROLL: StepForward<f32> = StepForward::new(0.35); // a bad constant fails the build
 //!
 //! let mut encoder = ROLL.encoder(); // the first sample becomes the baseline
-//! let mut decoder = ROLL.decoder();
+//! let mut decoder = ROLL.decoder(); // starts at 0, unless told otherwise
 //! for rate in [0.0, 0.4, 0.9, 0.8, 0.2] {
 //!     let spike = encoder.encode(rate); // Up, Down or None
 //!     let estimate = decoder.decode(spike);
 //!     assert!((estimate - rate).abs() <= 0.55);
 //! }
 //! ```
+//!
+//! A [`Scheme`] holds parameters, in a `const` or a `static`. An [`Encoder`] and a [`Decoder`] are a
+//! reference to it and a small state; a [`Bank`] is one scheme and a state for each channel. What leaves
+//! the interrupt is one stream of [items](Item) in their order, through a queue to a link, a sink or a chip.
 //!
 //! # Schemes
 //!
@@ -24,10 +28,10 @@
 //! | [`temporal`] | [`TemporalContrast`](temporal::TemporalContrast) (TBR) | changes, as an event camera sees them |
 //! | | [`StepForward`](temporal::StepForward) (SF) | following a signal closely with few spikes |
 //! | | [`MovingWindow`](temporal::MovingWindow) (MW) | changes against a short past |
-//! | [`rate`] | [`Hough`](rate::Hough) (HSA) | few spikes, never above the signal |
-//! | | [`ThresholdHough`](rate::ThresholdHough) (T-HSA) | the same, nearer to the signal |
-//! | | [`Ben`](rate::Ben) (BSA) | the best reconstruction of a rate code |
-//! | | [`BenToolbox`](rate::BenToolbox) | BSA as in the paper's tables |
+//! | [`rate`] | [`Hough`](rate::Hough) (HSA) | a reconstruction that never exceeds the signal |
+//! | | [`ThresholdHough`](rate::ThresholdHough) (T-HSA) | a closer reconstruction than HSA |
+//! | | [`Bsa`](rate::Bsa) (BSA) | smooth signals, with a filter of unit sum |
+//! | | [`BsaToolbox`](rate::BsaToolbox) | BSA as in the paper's tables |
 //! | [`population`] | [`Position`](population::Position) | a value, dense where it matters |
 //! | | [`Gaussian`](population::Gaussian) (GRF) | a value over an even range |
 //! | | [`Slots`](population::Slots) | a value finer than the neurons, by spike time |
@@ -47,7 +51,7 @@
 //! | `rand` | probabilistic spiking, from any `rand_core` generator |
 //! | `defmt` | `defmt::Format` on public data |
 //! | `serde` | `Serialize` on public data, and `Deserialize` where nothing has to be checked |
-//! | `queue` | bounded queues from interrupts to main |
+//! | `queue` | bounded queues from interrupts to main; `EventQueue` needs a `critical-section` implementation in the program |
 //! | `link` | `link`: framed events over any byte transport |
 //! | `embedded-hal` | [`out`]: SPI; `chip`: neuromorphic chips |
 //! | `async` | [`out`]: asynchronous SPI; waiting on a queue |

@@ -1,6 +1,7 @@
-//! What serde does not derive: arrays of any length, written as sequences.
+//! What serde does not derive: arrays of any length, and structs without those that they are made of.
 
-use serde::{Serialize, Serializer, ser::SerializeSeq};
+use serde::ser::{SerializeSeq, SerializeStruct};
+use serde::{Serialize, Serializer};
 
 /// For `#[serde(serialize_with = …)]`.
 pub(crate) fn array<T: Serialize, S: Serializer, const N: usize>(
@@ -21,4 +22,19 @@ where
         sequence.serialize_element(&item)?;
     }
     sequence.end()
+}
+
+/// A struct of these fields.
+pub(crate) fn fields<A: Serialize, B: Serialize, C: Serialize, S: Serializer>(
+    name: &'static str,
+    (first, a): (&'static str, &A),
+    (second, b): (&'static str, &B),
+    (third, c): (&'static str, &C),
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let mut fields = serializer.serialize_struct(name, 3)?;
+    fields.serialize_field(first, a)?;
+    fields.serialize_field(second, b)?;
+    fields.serialize_field(third, c)?;
+    fields.end()
 }

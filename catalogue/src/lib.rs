@@ -22,6 +22,12 @@ pub use entry::{Count, Entry, Flight};
 pub use info::{Found, Info, Kind, Paper, Parameter, Unit};
 pub use signal::Scaled;
 
+/// Calls a function that is not inlined: a small board has room for one scheme at a time on its stack.
+#[inline(never)]
+fn apart<R>(call: impl FnOnce() -> R) -> R {
+    call()
+}
+
 /// Declares the modules of the schemes, and what runs over all of them.
 macro_rules! schemes {
     ($($module:ident),* $(,)?) => {
@@ -41,7 +47,7 @@ macro_rules! schemes {
             channel: &Channel<V::Sample>,
             visitor: &mut V,
         ) -> Result<(), V::Error> {
-            $(<schemes::$module::Scheme as Entry>::fly(channel, visitor)?;)*
+            $(apart(|| <schemes::$module::Scheme as Entry>::fly(channel, visitor))?;)*
             Ok(())
         }
 
@@ -50,7 +56,7 @@ macro_rules! schemes {
         /// # Errors
         /// Those of the visitor, and parameters that the signal makes bad.
         pub fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-            $(<schemes::$module::Scheme as Entry>::count(signal, visitor)?;)*
+            $(apart(|| <schemes::$module::Scheme as Entry>::count(signal, visitor))?;)*
             Ok(())
         }
 

@@ -7,20 +7,18 @@ use criterion::{Criterion, Throughput};
 use fixed::types::{I8F8, I16F16};
 use host_tests::flight;
 use rand_pcg::Pcg32;
-use spikewire::population::{Centres, Gaussian, Position, Probabilistic, ReceptiveFields, Slots};
-use spikewire::rate::{Ben, BenToolbox, Hough, Scale, Shape, Taps, ThresholdHough};
+use spikewire::population::{Gaussian, Position, Probabilistic, Slots};
+use spikewire::rate::{Bsa, BsaToolbox, Hough, Scale, Shape, Taps, ThresholdHough};
 use spikewire::temporal::{MovingWindow, StepForward, TemporalContrast};
-use spikewire::{Calibration, Decoder, Encoder, Output, Sample, Scheme};
+use spikewire::{Calibration, Encoder, Output, Sample, Scheme};
 
-fn measure<E, D>(
+fn measure<P: Scheme<EncoderState: Clone>>(
     criterion: &mut Criterion,
     name: &str,
-    (mut encoder, mut decoder): (E, D),
-    signal: &[E::Sample],
-) where
-    E: Encoder,
-    D: Decoder<Sample = E::Sample, Code = <E::Output as Output>::Code>,
-{
+    fresh: &Encoder<'_, P>,
+    signal: &[P::Sample],
+) {
+    let (mut encoder, mut decoder) = (fresh.clone(), fresh.scheme().decoder());
     let mut group = criterion.benchmark_group(name);
     group.throughput(Throughput::Elements(signal.len() as u64));
     group.bench_function("encode sample", |bencher| {
@@ -30,7 +28,7 @@ fn measure<E, D>(
             }
         });
     });
-    encoder.reset();
+    let mut encoder = fresh.clone();
     let mut outputs: Vec<_> = signal.iter().map(|&sample| encoder.encode(sample)).collect();
     let codes: Vec<_> = outputs.iter().filter_map(|output| output.code()).collect();
     group.bench_function("encode slice", |bencher| {
@@ -49,11 +47,6 @@ fn measure<E, D>(
     });
 }
 
-/// Encoder and decoder of a scheme.
-fn codec<P: Scheme>(scheme: P) -> (P::Encoder, P::Decoder) {
-    (scheme.encoder(), scheme.decoder())
-}
-
 /// Every scheme in one sample type, with the shapes of `cargo bench-target`.
 fn schemes<S: Sample>(criterion: &mut Criterion, sample: &str, units: f64) {
     let signal = flight::channel(&flight::hexarotor(), 0);
@@ -67,35 +60,34 @@ fn schemes<S: Sample>(criterion: &mut Criterion, sample: &str, units: f64) {
     let name = |codec: &str| format!("{codec} {sample}");
 
     let contrast = TemporalContrast::from_magnitudes(&calibration, 0.5).unwrap();
-    measure(criterion, &name("tbr"), codec(contrast), &signal);
-    measure(criterion, &name("sf"), codec(StepForward::new(part(0.1)).unwrap()), &signal);
-    let window = MovingWindow::<S, 6>::new(part(0.05)).unwrap();
-    measure(criterion, &name("mw-5"), codec(window), &signal);
-    let window = MovingWindow::<S, 64>::new(part(0.05)).unwrap();
-    measure(criterion, &name("mw-63"), codec(window), &signal);
+    measure(criterion, &name("tbr"), &contrast.encoder(), &signal);
+    measure(criterion, &name("sf"), &StepForward::new(part(0.1)).encoder(), &signal);
+    let window = MovingWindow::<S, 6>::new(part(0.05));
+    measure(criterion, &name("mw-5"), &window.encoder(), &signal);
+    let window = MovingWindow::<S, 64>::new(part(0.05));
+    measure(criterion, &name("mw-63"), &window.encoder(), &signal);
 
-    let taps = Taps::<S, 15>::shaped(Shape::Triangular, Scale::Peak(part(0.17))).unwrap();
-    let hough = Hough::new(&taps).with_shift(min).unwrap();
-    measure(criterion, &name("hsa-15"), codec(hough), &signal);
-    let hough = ThresholdHough::new(&taps, part(0.15)).unwrap().with_shift(min).unwrap();
-    measure(criterion, &name("t-hsa-15"), codec(hough), &signal);
-    let taps = Taps::<S, 24>::shaped(Shape::Hann, Scale::Sum(part(1.0))).unwrap();
-    let ben = Ben::subtractive(&taps, part(0.955)).unwrap().with_shift(min).unwrap();
-    measure(criterion, &name("bsa-24"), codec(ben), &signal);
-    let taps = Taps::<S, 9>::shaped(Shape::Triangular, Scale::Peak(part(0.17))).unwrap();
-    let ben = BenToolbox::new(&taps, 1.15).unwrap().with_shift(min).unwrap();
-    measure(criterion, &name("bsa-toolbox-9"), codec(ben), &signal);
+    let taps = Taps::<S, 15>::shaped(Shape::Triangular, Scale::Peak(part(0.17)));
+    let hough = Hough::new(taps).with_shift(min);
+    measure(criterion, &name("hsa-15"), &hough.encoder(), &signal);
+    let hough = ThresholdHough::new(taps, part(0.15)).with_shift(min);
+    measure(criterion, &name("t-hsa-15"), &hough.encoder(), &signal);
+    let taps = Taps::<S, 24>::shaped(Shape::Hann, Scale::Sum(part(1.0)));
+    let bsa = Bsa::subtractive(taps, part(0.955)).with_shift(min);
+    measure(criterion, &name("bsa-24"), &bsa.encoder(), &signal);
+    let taps = Taps::<S, 9>::shaped(Shape::Triangular, Scale::Peak(part(0.17)));
+    let bsa = BsaToolbox::new(taps, 1.15).with_shift(min);
+    measure(criterion, &name("bsa-toolbox-9"), &bsa.encoder(), &signal);
 
-    let centres = Centres::<S, 20>::new_gaussian_spaced(min, max).unwrap();
-    measure(criterion, &name("position-20"), codec(Position::new(&centres)), &signal);
-    let centres = Centres::<S, 20>::new_linear(min, max).unwrap();
-    measure(criterion, &name("grf-20"), codec(Gaussian::new(&centres)), &signal);
-    let fields = ReceptiveFields::<S, 15, 10>::new(min, max, 1.5).unwrap();
-    measure(criterion, &name("grf-slots-15x10"), codec(Slots::new(&fields)), &signal);
-    let fields = ReceptiveFields::<S, 15, 16>::new(min, max, 1.5).unwrap();
-    let random = Probabilistic::new(&fields);
-    let pair = (random.encoder(Pcg32::new(2, 2)), random.decoder());
-    measure(criterion, &name("grf-random-15x16"), pair, &signal);
+    let position = Position::<S, 20>::gaussian_spaced(min..=max);
+    measure(criterion, &name("position-20"), &position.encoder(), &signal);
+    let gaussian = Gaussian::<S, 20>::linear(min..=max);
+    measure(criterion, &name("grf-20"), &gaussian.encoder(), &signal);
+    let slots = Slots::<S, 15, 10>::new(min..=max, 1.5);
+    measure(criterion, &name("grf-slots-15x10"), &slots.encoder(), &signal);
+    let random = Probabilistic::<S, Pcg32, 15, 16>::new(min..=max, 1.5);
+    let encoder = random.encoder(Pcg32::new(2, 2));
+    measure(criterion, &name("grf-random-15x16"), &encoder, &signal);
 }
 
 fn main() {

@@ -14,7 +14,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// The bytes of one sample in the compact files.
+    /// The bytes of one sample in the compact form.
     pub const SIZE: usize = 28;
 
     /// Gyroscope x, y, z, then accelerometer x, y, z.
@@ -25,7 +25,7 @@ impl Sample {
         channels
     }
 
-    /// Reads a sample as the compact files hold it: time and six channels, little endian.
+    /// Reads a sample as the compact form holds it: time and six channels, little endian.
     pub fn from_bytes(bytes: &[u8; Self::SIZE]) -> Self {
         let word = |index: usize| {
             let at = 4 * index;
@@ -51,12 +51,12 @@ impl Sample {
 
 /// A PX4 hexarotor in flight, about 197 Hz, with two gaps.
 pub fn hexarotor() -> Vec<Sample> {
-    read(include_bytes!("../../data/hexarotor.f32le"))
+    read(flight_data::HEXAROTOR)
 }
 
 /// A VTOL aircraft at rest, 200 Hz.
 pub fn vtol_at_rest() -> Vec<Sample> {
-    read(include_bytes!("../../data/vtol_at_rest.f32le"))
+    read(flight_data::VTOL_AT_REST)
 }
 
 /// One channel of a recording, in the order of [`Sample::channels`].
@@ -70,7 +70,7 @@ pub fn channel(samples: &[Sample], index: usize) -> Vec<f32> {
 fn read(bytes: &[u8]) -> Vec<Sample> {
     bytes
         .chunks(Sample::SIZE)
-        .map(|chunk| Sample::from_bytes(chunk.try_into().expect("the file holds whole samples")))
+        .map(|chunk| Sample::from_bytes(chunk.try_into().expect("a flight is whole samples")))
         .collect()
 }
 

@@ -2,12 +2,11 @@
 
 use defmt::Format;
 use fixed::types::{I8F8, I16F16};
+use rand_pcg::Pcg32;
 use spikewire::{
-    Calibration, ConfigError, Differences, Event, Firing, Polarity, Sample, Spike,
-    population::{
-        Centres, Gaussian, Neuron, Pattern, Position, Probabilistic, ReceptiveFields, Slots, Volley,
-    },
-    rate::{Ben, BenToolbox, Criterion, Hough, Scale, Shape, Taps, ThresholdHough},
+    Calibration, ConfigError, Differences, Firing, Polarity, Recovery, Sample, SampleKind, Spike,
+    population::{FiredNeurons, Gaussian, Neuron, Position, Probabilistic, SlotSpikes, Slots},
+    rate::{Bsa, BsaToolbox, Criterion, Hough, Scale, Shape, Taps, ThresholdHough},
     temporal::{MovingWindow, StepForward, TemporalContrast},
 };
 
@@ -23,22 +22,20 @@ const fn is_format_in<S: Sample + Format>() {
     is_format::<Criterion<S>>();
     is_format::<Hough<S, 4>>();
     is_format::<ThresholdHough<S, 4>>();
-    is_format::<Ben<S, 4>>();
-    is_format::<BenToolbox<S, 4>>();
+    is_format::<Bsa<S, 4>>();
+    is_format::<BsaToolbox<S, 4>>();
 
-    is_format::<Centres<S, 4>>();
-    is_format::<ReceptiveFields<S, 4, 8>>();
     is_format::<Position<S, 4>>();
     is_format::<Gaussian<S, 4>>();
     is_format::<Slots<S, 4, 8>>();
-    is_format::<Probabilistic<S, 4, 8>>();
+    is_format::<Probabilistic<S, Pcg32, 4, 8>>();
 
     is_format::<Calibration<S>>();
 }
 
 const _: () = {
-    is_format::<(Spike, Polarity, Event, Firing)>();
-    is_format::<(Neuron<4>, Volley<4, 8>, Pattern<4>)>();
+    is_format::<(Spike, Polarity, Firing, Recovery, SampleKind)>();
+    is_format::<(Neuron<4>, SlotSpikes<4, 8>, FiredNeurons<4>)>();
     is_format::<(Shape, Differences, ConfigError)>();
     is_format_in::<f32>();
     is_format_in::<i16>();

@@ -1,32 +1,30 @@
 //! GRF with one spike: the neuron with the largest response fires, which is the one with the nearest
 //! of `M` even centres.
 
-mod common;
-
-use common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, check_position, encode};
 use host_tests::reference::{even_centres, nearest_even, receptive_field_width};
 use proptest::prelude::*;
-use spikewire::population::{Centres, Gaussian};
+use spikewire::population::Gaussian;
 
 /// Encoder and decoder against the reference.
 fn check<S: Wire, const M: usize>(min: S, max: S, x: &[S]) {
-    let Ok(centres) = Centres::<S, M>::new_linear(min, max) else {
+    let Ok(scheme) = Gaussian::<S, M>::try_linear(min..=max) else {
         return; // too coarse for the type
     };
     let (min, max) = (min.real(), max.real());
     let values = even_centres(min.into(), max.into(), M);
     let values: Vec<_> = values.into_iter().map(|value| S::nearest(value).real()).collect();
-    check_position(Gaussian::new(&centres), x, &values, |x| nearest_even(x, min, max, M));
+    check_position(&scheme, x, &values, |x| nearest_even(x, min, max, M));
 }
 
 #[test]
 fn cases_by_hand() {
     // Centres -0.25, 0.25, 0.75, 1.25.
-    let centres = Centres::<f32, 4>::new_linear(0.0, 1.0).unwrap();
+    let scheme = Gaussian::<f32, 4>::try_linear(0.0..=1.0).unwrap();
     let x = [-1e30, -0.1, 0.0, 0.1, 0.5, 0.500_001, 1.0, 1.000_001, 1e30, f32::NAN];
-    let neurons: Vec<_> = encode(Gaussian::new(&centres), &x)
+    let neurons: Vec<_> = encode(&scheme, &x)
         .outputs
         .iter()
         .map(|neuron| neuron.map_or(-1, |neuron| neuron.index().into()))
@@ -39,11 +37,11 @@ fn cases_by_hand() {
 fn the_winner_takes_all() {
     const M: usize = 20;
     let (min, max) = (-9.0_f32, 9.1_f32);
-    let centres = Centres::<f32, M>::new_linear(min, max).unwrap();
+    let scheme = Gaussian::<f32, M>::try_linear(min..=max).unwrap();
     let mu = even_centres(min.into(), max.into(), M);
     let sigma = receptive_field_width(min.into(), max.into(), M, 1.5);
     let x: Vec<_> = (-1000..=1000).map(|i| i as f32 * 0.01).collect();
-    for (x, neuron) in x.iter().zip(encode(Gaussian::new(&centres), &x).outputs) {
+    for (x, neuron) in x.iter().zip(encode(&scheme, &x).outputs) {
         let response = |mu: f64| (-(f64::from(*x) - mu).powi(2) / (2.0 * sigma.powi(2))).exp();
         let winner = response(mu[usize::from(neuron.unwrap().index())]);
         assert!(mu.iter().all(|&mu| response(mu) <= winner), "{x}");

@@ -7,9 +7,7 @@
 //!
 //! Four faults of an earlier design can be put back; the search finds each of them.
 
-mod interleaving_world;
-
-use interleaving_world::{Case, Chooser, Fault, World};
+use crate::interleaving_world::{Case, Chooser, Fault, World};
 use spikewire::{EventQueue, Overflow};
 
 const POLICIES: [Overflow; 3] = [Overflow::DropOldest, Overflow::DropNewest, Overflow::Refuse];

@@ -1,25 +1,24 @@
 //! MW, moving window: a spike when the sample leaves the band around the mean of the `N` before.
 
-mod common;
-
-use common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{
-    Wire, assert_step_spikes, check_step_decoder, encode, finite, reals, run, signs_of,
+    Wire, assert_same_values, assert_step_spikes, check_step_decoder, decode, encode, finite,
+    reals, run, saturated, signs_of,
 };
-use host_tests::reference::moving_window;
+use host_tests::reference::{moving_window, step_decode_from_first};
 use proptest::prelude::*;
 use spikewire::temporal::MovingWindow;
-use spikewire::{Encoder, Scheme, Spike};
+use spikewire::{Scheme, Spike};
 
 /// Encoder and decoder against the reference, unprimed and primed with a window drawn from `fill`.
 fn check<S: Wire, const N: usize>(x: &[S], threshold: S, fill: &[S]) {
-    let scheme = MovingWindow::<S, N>::new(threshold).unwrap();
+    let scheme = MovingWindow::<S, N>::try_new(threshold).unwrap();
     let recording = finite(x);
     let expected = moving_window(&recording.accepted, N, threshold.real(), None);
-    let unprimed = encode(scheme, x);
+    let unprimed = encode(&scheme, x);
     assert_step_spikes(&unprimed, &recording, &expected);
-    check_step_decoder(&scheme.decoder(), &signs_of(&unprimed.outputs), threshold, threshold);
+    check_step_decoder(&scheme, &signs_of(&unprimed.outputs), threshold, threshold);
 
     let window: [S; N] =
         std::array::from_fn(|i| fill.get(i % fill.len().max(1)).copied().unwrap_or_default());
@@ -62,8 +61,8 @@ fn cases_by_hand() {
         ("infinity is skipped", &[0.0, 0.0, f32::INFINITY, 1.0], 1.0, &[0, 0, 0, 0]),
     ];
     for (name, x, threshold, expected) in table {
-        let scheme = MovingWindow::<f32, 2>::new(threshold).unwrap();
-        assert_eq!(signs_of(&encode(scheme, x).outputs), expected, "{name}");
+        let scheme = MovingWindow::<f32, 2>::try_new(threshold).unwrap();
+        assert_eq!(signs_of(&encode(&scheme, x).outputs), expected, "{name}");
     }
 }
 
@@ -71,16 +70,86 @@ fn cases_by_hand() {
 #[test]
 fn primed_with_the_first_window() {
     let x = [0.0_f32, 3.0, 0.0, 1.0, 2.5];
-    let mut encoder = MovingWindow::<f32, 3>::new(1.0).unwrap().encoder();
+    let scheme = MovingWindow::<f32, 3>::try_new(1.0).unwrap();
+    let mut encoder = scheme.encoder();
     encoder.prime(&[0.0, 3.0, 0.0]);
     // Means: 1, then those of the samples before: 3 + 0 + 0, 0 + 0 + 3, 0 + 3 + 0, 3 + 0 + 1.
     assert_eq!(signs_of(&run(&encoder, &x).outputs), [0, 1, 0, 0, 1]);
 }
 
+/// The value of the first sample is known: its spike, which only a window primed with the first samples can
+/// make, changes nothing. `5, 0, 0, …` decodes from 5 on, not from 6.
+#[test]
+fn the_first_spike_changes_nothing() {
+    let x = [5.0_f32, 0.0, 0.0, 0.0, 0.0];
+    let scheme = MovingWindow::<f32, 2>::new(1.0);
+    let mut encoder = scheme.encoder();
+    encoder.prime(&x[..2]);
+    let spikes = run(&encoder, &x).outputs;
+    // Means: 2.5 for the first window, then 2.5 of 5 and 0, then 0.
+    assert_eq!(signs_of(&spikes), [1, -1, -1, 0, 0]);
+    assert_eq!(decoded_from_first(&scheme, &spikes, x[0]), [5.0, 4.0, 3.0, 3.0, 3.0]);
+}
+
+/// The values of a whole recording: the first sample itself, and what a decoder makes of it and the later
+/// spikes.
+fn decoded_from_first<S: Wire, const N: usize>(
+    scheme: &MovingWindow<S, N>,
+    spikes: &[Spike],
+    first: S,
+) -> Vec<S> {
+    let mut decoder = scheme.decoder();
+    decoder.resync(first);
+    [vec![first], decode(&decoder, &spikes[1..])].concat()
+}
+
+/// In every type, against the reference: a recording primed with its own first window.
+#[test]
+fn whole_recordings_from_their_first_sample() {
+    fn check<S: Wire, const N: usize>(x: &[S], threshold: S) -> bool {
+        let scheme = MovingWindow::<S, N>::try_new(threshold).unwrap();
+        let mut encoder = scheme.encoder();
+        encoder.prime(x);
+        encoder.prime(&x[..N]);
+        let spikes = run(&encoder, x).outputs;
+        let signs = moving_window(&reals(x), N, threshold.real(), Some(&reals(&x[..N])));
+        assert_eq!(signs_of(&spikes), signs);
+        let expected = step_decode_from_first(&signs, threshold.real(), x[0].real());
+        let ours = decoded_from_first(&scheme, &spikes, x[0]);
+        assert_same_values(&ours, &saturated::<S>(&expected));
+        signs[0] != 0
+    }
+    let mut count = 0;
+    for channel in flight_channels() {
+        let x = &channel[..300];
+        count += usize::from(check::<_, 6>(x, 0.01));
+        let fixed: Vec<_> = x.iter().map(|&x| I16F16::from_num(x)).collect();
+        count += usize::from(check::<_, 6>(&fixed, I16F16::from_num(0.01)));
+        let fixed: Vec<_> = x.iter().map(|&x| I8F8::from_num(x)).collect();
+        count += usize::from(check::<_, 2>(&fixed, I8F8::DELTA));
+    }
+    assert!(count > 3, "{count} recordings spiked at their first sample");
+}
+
+/// The last `N` of a longer past fill the window; a shorter one is ignored, as is what comes before them.
+#[test]
+fn pasts_of_any_length() {
+    let scheme = MovingWindow::<f32, 2>::new(1.0);
+    let mut encoder = scheme.encoder();
+    for past in [&[][..], &[9.0], &[f32::NAN]] {
+        encoder.prime(past);
+        assert_eq!((encoder.rejected(), encoder.keyframe()), (0, None), "{past:?}");
+    }
+    encoder.prime(&[f32::NAN, 9.0, 1.0, 2.0]);
+    assert_eq!((encoder.rejected(), encoder.keyframe()), (0, Some(2.0)));
+    assert_eq!(encoder.encode(2.5), Spike::None);
+    assert_eq!(encoder.encode(3.5), Spike::Up);
+}
+
 #[test]
 fn integers_do_not_wrap() {
     fn ends<S: Wire + Ord, const N: usize>(min: S, max: S) {
-        let scheme = MovingWindow::<S, N>::new(max).unwrap();
+        let scheme = MovingWindow::<S, N>::try_new(max).unwrap();
         for (first, then, expected) in
             [(min, max, Spike::Up), (max, min, Spike::Down), (max, max, Spike::None)]
         {
@@ -111,7 +180,8 @@ fn the_width_of_a_sum_does_not_show() {
 
 #[test]
 fn a_rejected_priming_window_is_counted_and_ignored() {
-    let mut encoder = MovingWindow::<f32, 2>::new(1.0).unwrap().encoder();
+    let scheme = MovingWindow::<f32, 2>::try_new(1.0).unwrap();
+    let mut encoder = scheme.encoder();
     encoder.prime(&[1.0, f32::NAN]);
     assert_eq!((encoder.rejected(), encoder.keyframe()), (1, None));
     encoder.prime(&[1.0, 2.0]);
@@ -123,7 +193,8 @@ fn a_rejected_priming_window_is_counted_and_ignored() {
 
 #[test]
 fn the_keyframe_is_the_last_sample_of_a_full_window() {
-    let mut encoder = MovingWindow::<f32, 3>::new(1.0).unwrap().encoder();
+    let scheme = MovingWindow::<f32, 3>::try_new(1.0).unwrap();
+    let mut encoder = scheme.encoder();
     for (i, x) in [3.0, -1.5, f32::NAN, 2.0, 7.0, 1.0, 5.0, 4.0].into_iter().enumerate() {
         encoder.encode(x);
         assert_eq!(encoder.keyframe(), (i >= 3).then_some(x), "{i}");
@@ -157,7 +228,8 @@ fn hostile() {
 /// The sum must not remember samples that have left the window.
 #[test]
 fn does_not_drift() {
-    let mut encoder = MovingWindow::<f32, 6>::new(1e-3).unwrap().encoder();
+    let scheme = MovingWindow::<f32, 6>::try_new(1e-3).unwrap();
+    let mut encoder = scheme.encoder();
     for i in 0..100_000 {
         encoder.encode(if i % 3 == 0 { 1e7 } else { -0.1 });
     }
@@ -192,7 +264,7 @@ fn drawn_recordings() {
 fn all_pairs_of_8_bits() {
     for (from, to) in [(-128, 127), (i16::MIN, i16::MIN + 255), (i16::MAX - 255, i16::MAX)] {
         for threshold in [1, 100, i16::MAX] {
-            let scheme = MovingWindow::<I8F8, 2>::new(I8F8::from_bits(threshold)).unwrap();
+            let scheme = MovingWindow::<I8F8, 2>::try_new(I8F8::from_bits(threshold)).unwrap();
             let mut encoder = scheme.encoder();
             let pairs = (from..to).map(|a| (a, a)).chain((from..to).map(|a| (a, a + 1)));
             for window in pairs.map(|(a, b)| [a, b].map(I8F8::from_bits)) {

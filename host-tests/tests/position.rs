@@ -1,39 +1,38 @@
 //! Position coding: the neuron with the nearest centre fires; halfway the lower one, outside the one
 //! at that end.
 
-mod common;
+use crate::common;
 
-use common::{Drawn, cases, flight_channels, float, hostile_recordings};
+use crate::common::{Drawn, cases, flight_channels, float, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, check_position, encode, reals};
 use host_tests::reference::{even_centres, gaussian_centres, nearest, nearest_even};
 use proptest::prelude::*;
-use spikewire::Decoder;
-use spikewire::population::{Centres, Neuron, Position};
-use spikewire::{Encoder, Scheme};
+use spikewire::Scheme;
+use spikewire::population::{Neuron, Position};
 
 /// The user's centres against the reference.
 fn check<S: Wire, const M: usize>(values: [S; M], x: &[S]) {
-    let centres = Centres::new(values).unwrap();
+    let scheme = Position::try_new(values).unwrap();
     let values = reals(&values);
-    check_position(Position::new(&centres), x, &values, |x| nearest(x, &values));
+    check_position(&scheme, x, &values, |x| nearest(x, &values));
 }
 
 /// Linear centres against the reference.
 fn check_linear<S: Wire, const M: usize>(min: S, max: S, x: &[S]) {
-    let centres = Centres::<S, M>::new_linear(min, max).unwrap();
+    let scheme = Position::<S, M>::try_linear(min..=max).unwrap();
     let (min, max) = (min.real(), max.real());
     let values = even_centres(min.into(), max.into(), M);
     let values: Vec<_> = values.into_iter().map(|value| S::nearest(value).real()).collect();
-    check_position(Position::new(&centres), x, &values, |x| nearest_even(x, min, max, M));
+    check_position(&scheme, x, &values, |x| nearest_even(x, min, max, M));
 }
 
 /// Gaussian-spaced centres against the reference.
 fn check_gaussian_spaced<S: Wire, const M: usize>(min: S, max: S, x: &[S]) {
-    let centres = Centres::<S, M>::new_gaussian_spaced(min, max).unwrap();
+    let scheme = Position::<S, M>::try_gaussian_spaced(min..=max).unwrap();
     let values = gaussian_centres(min.to_f64(), max.to_f64(), M);
     let values: Vec<_> = values.into_iter().map(|value| S::nearest(value).real()).collect();
-    check_position(Position::new(&centres), x, &values, |x| nearest(x, &values));
+    check_position(&scheme, x, &values, |x| nearest(x, &values));
 }
 
 /// Each value, and its neighbours to either side.
@@ -53,7 +52,7 @@ fn halves(values: &[f64]) -> Vec<f64> {
 
 #[test]
 fn cases_by_hand() {
-    let centres = Centres::new([-2.0_f32, 0.0, 0.5, 4.0]).unwrap();
+    let scheme = Position::try_new([-2.0_f32, 0.0, 0.5, 4.0]).unwrap();
     let table = [
         ("on a centre", 0.5, Some(2)),
         ("near one", 0.4, Some(2)),
@@ -68,15 +67,15 @@ fn cases_by_hand() {
         ("infinity", f32::INFINITY, None),
     ];
     for (name, x, neuron) in table {
-        let output = Position::new(&centres).encoder().encode(x);
+        let output = scheme.encoder().encode(x);
         assert_eq!(output.map(Neuron::index), neuron, "{name}");
     }
 }
 
 #[test]
 fn the_decoder_starts_in_the_middle_and_holds() {
-    let centres = Centres::new([-2.0_f32, 0.0, 0.5, 4.0]).unwrap();
-    let mut decoder = Position::new(&centres).decoder();
+    let scheme = Position::try_new([-2.0_f32, 0.0, 0.5, 4.0]).unwrap();
+    let mut decoder = scheme.decoder();
     let neuron = |index| Some(Neuron::new(index).unwrap());
     let values = [None, neuron(3), None, neuron(0), None].map(|code| decoder.decode(code));
     assert_eq!(values, [0.5, 4.0, 4.0, -2.0, -2.0]);
@@ -85,14 +84,14 @@ fn the_decoder_starts_in_the_middle_and_holds() {
 
 #[test]
 fn linear_centres() {
-    let centres = Centres::<i16, 5>::new_linear(-300, 300).unwrap();
-    assert_eq!(*centres.as_array(), [-400, -200, 0, 200, 400]);
+    let scheme = Position::<i16, 5>::try_linear(-300..=300).unwrap();
+    assert_eq!(*scheme.centres(), [-400, -200, 0, 200, 400]);
     // Halfway between rounded centres is not halfway between centres: -2.5, 0, 2.5.
-    let centres = Centres::<i16, 3>::new_linear(-1, 1).unwrap();
-    assert_eq!(*centres.as_array(), [-2, 0, 2]);
-    let centres = Centres::<i16, 4>::new_linear(0, 5).unwrap();
-    assert_eq!(*centres.as_array(), [-1, 1, 4, 6]); // -1.25, 1.25, 3.75, 6.25
-    let neurons = encode(Position::new(&centres), &[-9, 0, 1, 2, 3, 4, 5, 6, 9]).outputs;
+    let scheme = Position::<i16, 3>::try_linear(-1..=1).unwrap();
+    assert_eq!(*scheme.centres(), [-2, 0, 2]);
+    let scheme = Position::<i16, 4>::try_linear(0..=5).unwrap();
+    assert_eq!(*scheme.centres(), [-1, 1, 4, 6]); // -1.25, 1.25, 3.75, 6.25
+    let neurons = encode(&scheme, &[-9, 0, 1, 2, 3, 4, 5, 6, 9]).outputs;
     let neurons: Vec<_> = neurons.into_iter().map(|neuron| neuron.unwrap().index()).collect();
     assert_eq!(neurons, [0, 0, 1, 1, 2, 2, 2, 3, 3]);
 }
@@ -100,18 +99,16 @@ fn linear_centres() {
 /// What is built at compile time is what is built in flight.
 #[test]
 fn constants() {
-    static LINEAR: Centres<f32, 20> = Centres::<f32, _>::linear(-9.0, 9.1);
-    static SPACED: Centres<f32, 21> = Centres::<f32, _>::gaussian_spaced(-0.3, 0.7);
-    static OWN: Centres<I8F8, 3> =
-        Centres::<I8F8, _>::checked([I8F8::NEG_ONE, I8F8::DELTA, I8F8::MAX]);
-    static COUNTS: Centres<i16, 20> = Centres::<i16, _>::linear(-30_000, 20_001);
-    static WORDS: Centres<I16F16, 9> =
-        Centres::<I16F16, _>::gaussian_spaced(I16F16::ZERO, I16F16::MAX);
-    assert_eq!(LINEAR, Centres::new_linear(-9.0, 9.1).unwrap());
-    assert_eq!(SPACED, Centres::new_gaussian_spaced(-0.3, 0.7).unwrap());
-    assert_eq!(OWN, Centres::new([I8F8::NEG_ONE, I8F8::DELTA, I8F8::MAX]).unwrap());
-    assert_eq!(COUNTS, Centres::new_linear(-30_000, 20_001).unwrap());
-    assert_eq!(WORDS, Centres::new_gaussian_spaced(I16F16::ZERO, I16F16::MAX).unwrap());
+    static LINEAR: Position<f32, 20> = Position::linear(-9.0..=9.1);
+    static SPACED: Position<f32, 21> = Position::gaussian_spaced(-0.3..=0.7);
+    static OWN: Position<I8F8, 3> = Position::new([I8F8::NEG_ONE, I8F8::DELTA, I8F8::MAX]);
+    static COUNTS: Position<i16, 20> = Position::linear(-30_000..=20_001);
+    static WORDS: Position<I16F16, 9> = Position::gaussian_spaced(I16F16::ZERO..=I16F16::MAX);
+    assert_eq!(LINEAR, Position::try_linear(-9.0..=9.1).unwrap());
+    assert_eq!(SPACED, Position::try_gaussian_spaced(-0.3..=0.7).unwrap());
+    assert_eq!(OWN, Position::try_new([I8F8::NEG_ONE, I8F8::DELTA, I8F8::MAX]).unwrap());
+    assert_eq!(COUNTS, Position::try_linear(-30_000..=20_001).unwrap());
+    assert_eq!(WORDS, Position::try_gaussian_spaced(I16F16::ZERO..=I16F16::MAX).unwrap());
 }
 
 #[test]
@@ -176,9 +173,9 @@ fn edges_at_zero() {
 #[test]
 fn edges_of_centres_of_any_size() {
     for (tiny, neurons) in [(-1e-30_f32, [1, 2, 2]), (1e-30, [1, 1, 2])] {
-        let centres = Centres::new([-9.0, tiny, 1.0]).unwrap();
+        let scheme = Position::try_new([-9.0, tiny, 1.0]).unwrap();
         let x = [0.5_f32.next_down(), 0.5, 0.5_f32.next_up()];
-        let outputs = encode(Position::new(&centres), &x).outputs;
+        let outputs = encode(&scheme, &x).outputs;
         let ours: Vec<_> = outputs.into_iter().map(|neuron| neuron.unwrap().index()).collect();
         assert_eq!(ours, neurons, "{tiny}");
     }
@@ -198,7 +195,7 @@ fn around_edges<S: Wire>(min: S, max: S, m: usize) -> Vec<S> {
 /// The same in integers, with ranges from the finest to the widest.
 fn drawn_edges<S: Wire + Drawn>() {
     fn check<S: Wire, const M: usize>(min: S, max: S) {
-        if Centres::<S, M>::new_linear(min, max).is_ok() {
+        if Position::<S, M>::try_linear(min..=max).is_ok() {
             let x: Vec<_> = around_edges(min, max, M).into_iter().step_by(1 + M / 64).collect();
             check_linear::<S, M>(min, max, &x);
         }
@@ -234,10 +231,10 @@ fn spacings_of_a_few_last_places() {
             Some(*x)
         }));
         let max = x[x.len() - 1];
-        if Centres::<f32, 20>::new_linear(min, max).is_ok() {
+        if Position::<f32, 20>::try_linear(min..=max).is_ok() {
             check_linear::<f32, 20>(min, max, &x);
         }
-        if Centres::<f32, 65>::new_linear(min, max).is_ok() {
+        if Position::<f32, 65>::try_linear(min..=max).is_ok() {
             check_linear::<f32, 65>(min, max, &x);
         }
     });
@@ -248,7 +245,7 @@ fn spacings_of_a_few_last_places() {
 fn ranges_of_every_size() {
     proptest!(cases(256), |(a in common::finite_float(), b in common::finite_float())| {
         let (min, max) = if a < b { (a, b) } else { (b, a) };
-        if Centres::<f32, 20>::new_linear(min, max).is_ok() {
+        if Position::<f32, 20>::try_linear(min..=max).is_ok() {
             let edges = halves(&even_centres(min.into(), max.into(), 20));
             let mut x = around(edges);
             x.extend(common::HOSTILE);

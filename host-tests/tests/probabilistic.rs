@@ -1,20 +1,18 @@
 //! GRF with probabilistic spiking: a neuron of level `k` of `N` fires if the top bits of a draw, a
 //! number below `N`, are below `k`. One draw a neuron of level 1 or more, by rising index.
 
-mod common;
-
 use std::convert::Infallible;
 
-use common::fields::Fields;
-use common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::fields::Fields;
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{assert_same_values, decode, finite, run};
 use host_tests::reference::probabilistic_from_levels;
 use proptest::prelude::*;
 use rand_core::{Rng, SeedableRng, TryRng};
 use rand_pcg::Pcg32;
-use spikewire::population::{Pattern, Probabilistic, ReceptiveFields};
-use spikewire::{Decoder, Encoder};
+use spikewire::Scheme;
+use spikewire::population::{FiredNeurons, Probabilistic};
 
 /// A generator that says what it is told, over and over.
 #[derive(Clone)]
@@ -54,24 +52,23 @@ fn check<S: Fields, G: Rng + Clone, const M: usize, const N: usize>(
     x: &[S],
 ) {
     let (min, max, beta) = fields;
-    let Ok(fields) = ReceptiveFields::<S, M, N>::new(min, max, beta) else {
+    let Ok(scheme) = Probabilistic::<S, G, M, N>::try_new(min..=max, beta) else {
         return; // too coarse for the type
     };
-    let scheme = Probabilistic::new(&fields);
     let run = run(&scheme.encoder(generator.clone()), x);
     assert!(run.tail.is_empty());
     assert_eq!(run.rejected as usize, finite(x).rejected.len());
 
     let mut generator = generator.clone();
-    let mut value = fields.centres()[M / 2];
+    let mut value = scheme.centres()[M / 2];
     let mut values = Vec::new();
-    for (&x, pattern) in x.iter().zip(&run.outputs) {
+    for (&x, neurons) in x.iter().zip(&run.outputs) {
         let mut fired = vec![false; M];
         if x.real().into().is_finite() {
             let levels = x.levels(min, max, M, beta, N as u16);
             fired = probabilistic_from_levels(&levels, N as u16, || generator.next_u32());
         }
-        let ours: Vec<_> = (0..M as u16).map(|i| pattern.iter().any(|j| i == j)).collect();
+        let ours: Vec<_> = (0..M as u16).map(|i| neurons.iter().any(|j| i == j)).collect();
         assert_eq!(ours, fired, "{x:?} in {min:?}..{max:?}");
         let levels: Vec<_> = fired.into_iter().map(u16::from).collect();
         value = S::weighted_mean(&levels, min, max, 2).unwrap_or(value);
@@ -80,7 +77,8 @@ fn check<S: Fields, G: Rng + Clone, const M: usize, const N: usize>(
     let mut decoder = scheme.decoder();
     assert_same_values(&decode(&decoder, &run.outputs), &values);
     decoder.resync(max);
-    assert_eq!(decoder.decode(Pattern::EMPTY), max);
+    assert_eq!(decoder.held(), Some(max));
+    assert_eq!(decoder.decode(FiredNeurons::EMPTY), max);
     decoder.reset();
     assert_same_values(&decode(&decoder, &run.outputs), &values);
 }
@@ -95,7 +93,7 @@ fn check_all<S: Fields>(min: S, max: S, beta: f32, seed: u64, x: &[S]) {
 #[test]
 fn cases_by_hand() {
     // Centres -0.5, 0.5, 1.5, 2.5, 3.5; the levels of 1.5 are 1, 16 * 0.325, 16: 0, 5, 16, 5, 0.
-    let fields = ReceptiveFields::<f32, 5, 16>::new(0.0, 3.0, 1.5).unwrap();
+    let scheme = Probabilistic::<f32, _, 5, 16>::try_new(0.0..=3.0, 1.5).unwrap();
     let word = |top: u32| top << 28 | 0x0fff_ffff;
     let table: [(_, _, &[u32], &[u16], _); 5] = [
         ("below the level", 1.5, &[word(4), word(15), word(4)], &[1, 2, 3], 3),
@@ -106,35 +104,35 @@ fn cases_by_hand() {
     ];
     for (name, x, draws, expected, drawn) in table {
         let mut script = Script::new(draws);
-        let pattern = Probabilistic::new(&fields).encoder(&mut script).encode(x);
-        assert!(pattern.iter().eq(expected.iter().copied()), "{name}: {pattern:?}");
+        let neurons = scheme.encoder(&mut script).encode(x);
+        assert!(neurons.iter().eq(expected.iter().copied()), "{name}: {neurons:?}");
         assert_eq!(script.drawn, drawn, "{name}");
     }
 }
 
 #[test]
 fn the_decoder_gives_the_mean_of_the_centres() {
-    let fields = ReceptiveFields::<i16, 5, 16>::new(0, 300, 1.5).unwrap();
+    let scheme = Probabilistic::<i16, _, 5, 16>::try_new(0..=300, 1.5).unwrap();
     // Centres -50, 50, 150, 250, 350.
     let mut script = Script::new(&[0]);
-    let pattern = Probabilistic::new(&fields).encoder(&mut script).encode(100);
-    assert!(pattern.iter().eq([0, 1, 2, 3]));
-    let mut decoder = Probabilistic::new(&fields).decoder();
-    assert_eq!(decoder.decode(Pattern::EMPTY), 150);
-    assert_eq!(decoder.decode(pattern), 100);
-    assert_eq!(decoder.decode(Pattern::EMPTY), 100);
+    let neurons = scheme.encoder(&mut script).encode(100);
+    assert!(neurons.iter().eq([0, 1, 2, 3]));
+    let mut decoder = scheme.decoder();
+    assert_eq!(decoder.decode(FiredNeurons::EMPTY), 150);
+    assert_eq!(decoder.decode(neurons), 100);
+    assert_eq!(decoder.decode(FiredNeurons::EMPTY), 100);
 }
 
-/// `reset` forgets the count; the generator goes on.
+/// `restart` forgets the count; the generator goes on.
 #[test]
-fn reset() {
-    let fields = ReceptiveFields::<f32, 5, 16>::new(0.0, 3.0, 1.5).unwrap();
+fn restart() {
+    let scheme = Probabilistic::<f32, _, 5, 16>::try_new(0.0..=3.0, 1.5).unwrap();
     let mut script = Script::new(&[0]);
-    let mut encoder = Probabilistic::new(&fields).encoder(&mut script);
+    let mut encoder = scheme.encoder(&mut script);
     encoder.encode(1.5);
     encoder.encode(f32::INFINITY);
     assert_eq!((encoder.rejected(), encoder.keyframe()), (1, None));
-    encoder.reset();
+    encoder.restart();
     assert_eq!(encoder.rejected(), 0);
     encoder.encode(1.5);
     assert_eq!(script.drawn, 6);

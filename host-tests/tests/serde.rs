@@ -1,18 +1,18 @@
 //! What serde writes for public data: the parameters as a person would, no tables, no references.
 
 use fixed::types::I8F8;
+use rand_pcg::Pcg32;
 use serde::Serialize;
 use serde_json::json;
 use spikewire::{
-    Calibration, ConfigError, Encoder, Event, Firing, Polarity, Scheme, Spike,
-    population::{Centres, Neuron, Pattern, Position, Probabilistic, ReceptiveFields, Slots},
-    rate::{Ben, BenToolbox, Criterion, Hough, Scale, Shape, Taps, ThresholdHough},
+    Calibration, ConfigError, Event, Firing, Polarity, SampleKind, Scheme, Spike,
+    population::{FiredNeurons, Neuron, Position, Probabilistic, Slots},
+    rate::{Bsa, BsaToolbox, Criterion, Hough, Scale, Shape, Taps, ThresholdHough},
     temporal::{MovingWindow, StepForward, TemporalContrast},
 };
 
-static TAPS: Taps<f32, 3> = Taps::<f32, _>::triangular(1.0);
-static CENTRES: Centres<f32, 3> = Centres::<f32, _>::checked([-1.5, 0.0, 2.0]);
-static FIELDS: ReceptiveFields<f32, 4, 128> = ReceptiveFields::<f32, _, _>::checked(0.0, 1.0, 1.5);
+const TAPS: Taps<f32, 3> = Taps::triangular(1.0);
+static SLOTS: Slots<f32, 4, 128> = Slots::new(0.0..=1.0, 1.5);
 
 #[track_caller]
 fn assert_json(data: impl Serialize, expected: &serde_json::Value) {
@@ -20,30 +20,32 @@ fn assert_json(data: impl Serialize, expected: &serde_json::Value) {
 }
 
 #[test]
-fn spikes_and_events() {
+fn spikes_and_firings() {
     assert_json([Spike::Down, Spike::None, Spike::Up], &json!(["Down", "None", "Up"]));
     let event = Event { tick: 5.into(), address: 2, polarity: Polarity::Down };
     assert_json(event, &json!({ "tick": 5, "address": 2, "polarity": "Down" }));
     let firing = Firing { neuron: 1, slot: 3, polarity: Polarity::Up };
     assert_json(firing, &json!({ "neuron": 1, "slot": 3, "polarity": "Up" }));
+    assert_json(SampleKind::F32, &json!("F32"));
+    assert_json(SampleKind::Fixed32 { fraction: 16 }, &json!({ "Fixed32": { "fraction": 16 } }));
 }
 
 #[test]
 fn population_codes() {
     assert_json(Neuron::<4>::new(2), &json!(2));
-    let volley = Slots::new(&FIELDS).encoder().encode(0.5);
-    let pairs: Vec<(u16, u16)> = volley.iter().collect();
+    let spikes = SLOTS.encoder().encode(0.5);
+    let pairs: Vec<(u16, u16)> = spikes.iter().collect();
     assert_eq!(pairs.len(), 4);
-    assert_json(volley, &json!(pairs));
-    assert_json(Pattern::<4>::EMPTY, &json!([]));
+    assert_json(spikes, &json!(pairs));
+    assert_json(FiredNeurons::<4>::EMPTY, &json!([]));
 }
 
 #[test]
 fn temporal_schemes() {
-    let scheme = TemporalContrast::<i16>::checked_with_step(3, 6);
+    let scheme = TemporalContrast::new(3_i16).with_step(6);
     assert_json(scheme, &json!({ "threshold": 3, "step": 6 }));
-    assert_json(StepForward::<f32>::checked(0.25), &json!({ "threshold": 0.25 }));
-    let scheme = MovingWindow::<I8F8, 4>::new(I8F8::from_bits(64)).unwrap();
+    assert_json(StepForward::new(0.25_f32), &json!({ "threshold": 0.25 }));
+    let scheme = MovingWindow::<I8F8, 4>::new(I8F8::from_bits(64));
     assert_json(scheme, &json!({ "threshold": { "bits": 64 } }));
 }
 
@@ -51,27 +53,32 @@ fn temporal_schemes() {
 fn rate_schemes_with_their_filter() {
     let taps = [0.5, 1.0, 0.5];
     assert_json(TAPS, &json!(taps));
-    assert_json(Hough::new(&TAPS), &json!({ "taps": taps, "shift": 0.0 }));
-    let scheme = ThresholdHough::new(&TAPS, 0.25).unwrap();
+    assert_json(Hough::new(TAPS), &json!({ "taps": taps, "shift": 0.0 }));
+    let scheme = ThresholdHough::new(TAPS, 0.25);
     assert_json(scheme, &json!({ "taps": taps, "threshold": 0.25, "shift": 0.0 }));
-    let scheme = Ben::subtractive(&TAPS, 0.5).unwrap().with_shift(-1.0).unwrap();
+    let scheme = Bsa::subtractive(TAPS, 0.5).with_shift(-1.0);
     assert_json(
         scheme,
         &json!({ "taps": taps, "criterion": { "Subtractive": 0.5 }, "shift": -1.0 }),
     );
-    let scheme = BenToolbox::new(&TAPS, 1.5).unwrap();
+    let scheme = Bsa::multiplicative(TAPS, 0.5);
+    assert_json(
+        scheme,
+        &json!({ "taps": taps, "criterion": { "Multiplicative": 0.5 }, "shift": 0.0 }),
+    );
+    let scheme = BsaToolbox::new(TAPS, 1.5);
     assert_json(scheme, &json!({ "taps": taps, "threshold": 1.5, "shift": 0.0 }));
 }
 
 #[test]
 fn population_schemes_with_their_neurons() {
-    assert_json(CENTRES, &json!([-1.5, 0.0, 2.0]));
-    assert_json(Position::new(&CENTRES), &json!({ "centres": [-1.5, 0.0, 2.0] }));
+    let scheme = Position::new([-1.5_f32, 0.0, 2.0]);
+    assert_json(scheme, &json!({ "centres": [-1.5, 0.0, 2.0] }));
     let fields =
         json!({ "centres": [-0.25, 0.25, 0.75, 1.25], "min": 0.0, "max": 1.0, "beta": 1.5 });
-    assert_json(FIELDS, &fields);
-    assert_json(Slots::new(&FIELDS), &json!({ "fields": fields, "floor": 1 }));
-    assert_json(Probabilistic::new(&FIELDS), &json!({ "fields": fields }));
+    assert_json(SLOTS, &json!({ "fields": fields, "floor": 1 }));
+    let scheme = Probabilistic::<f32, Pcg32, 4, 128>::new(0.0..=1.0, 1.5);
+    assert_json(scheme, &json!({ "fields": fields }));
 }
 
 #[test]

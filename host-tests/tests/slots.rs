@@ -1,24 +1,22 @@
 //! GRF with sub-timesteps: a response of level `k` of `N` fires in slot `N - k`.
 
-mod common;
-
-use common::fields::Fields;
-use common::{Drawn, cases, flight_channels, float, hostile_recordings};
+use crate::common::fields::Fields;
+use crate::common::{Drawn, cases, flight_channels, float, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{assert_same_values, decode, encode, finite, reals};
 use host_tests::reference::slots_of_levels;
 use proptest::prelude::*;
-use spikewire::population::{Centres, ReceptiveFields, Slots, Volley};
-use spikewire::{Decoder, Encoder, Scheme};
+use spikewire::Scheme;
+use spikewire::population::{Position, SlotSpikes, Slots};
 
-/// A volley, neuron by neuron.
-fn listed<const M: usize, const N: usize>(volley: Volley<M, N>) -> Vec<Option<u16>> {
+/// Spikes, neuron by neuron.
+fn listed<const M: usize, const N: usize>(spikes: SlotSpikes<M, N>) -> Vec<Option<u16>> {
     let mut slots = vec![None; M];
-    for (neuron, slot) in volley.iter() {
+    for (neuron, slot) in spikes.iter() {
         slots[usize::from(neuron)] = Some(slot);
     }
-    assert_eq!(volley.len(), slots.iter().flatten().count());
-    assert_eq!(volley.is_empty(), slots.iter().all(Option::is_none));
+    assert_eq!(spikes.len(), slots.iter().flatten().count());
+    assert_eq!(spikes.is_empty(), slots.iter().all(Option::is_none));
     slots
 }
 
@@ -30,23 +28,23 @@ fn check<S: Fields, const M: usize, const N: usize>(
     floor: u16,
     x: &[S],
 ) {
-    let Ok(fields) = ReceptiveFields::<S, M, N>::new(min, max, beta) else {
-        assert!(Centres::<S, M>::new_linear(min, max).is_err());
+    let Ok(scheme) = Slots::<S, M, N>::try_new(min..=max, beta) else {
+        assert!(Position::<S, M>::try_linear(min..=max).is_err());
         return;
     };
-    let scheme = Slots::new(&fields).with_floor(floor).unwrap();
-    let run = encode(scheme, x);
+    let scheme = scheme.try_with_floor(floor).unwrap();
+    let run = encode(&scheme, x);
     let recording = finite(x);
     assert!(run.tail.is_empty());
     assert_eq!(run.rejected as usize, recording.rejected.len());
 
     let n = N as u16;
-    let mut value = fields.centres()[M / 2];
+    let mut value = scheme.centres()[M / 2];
     let mut values = Vec::new();
-    for (&x, &volley) in x.iter().zip(&run.outputs) {
+    for (&x, &spikes) in x.iter().zip(&run.outputs) {
         let mut levels =
             if x.real().into().is_finite() { x.levels(min, max, M, beta, n) } else { vec![0; M] };
-        assert_eq!(listed(volley), slots_of_levels(&levels, n, floor), "{x:?} in {min:?}..{max:?}");
+        assert_eq!(listed(spikes), slots_of_levels(&levels, n, floor), "{x:?} in {min:?}..{max:?}");
         for level in &mut levels {
             *level = if *level < floor { 0 } else { *level };
         }
@@ -56,7 +54,8 @@ fn check<S: Fields, const M: usize, const N: usize>(
     let mut decoder = scheme.decoder();
     assert_same_values(&decode(&decoder, &run.outputs), &values);
     decoder.resync(max);
-    assert_eq!(decoder.decode(Volley::EMPTY), max);
+    assert_eq!(decoder.held(), Some(max));
+    assert_eq!(decoder.decode(SlotSpikes::EMPTY), max);
     decoder.reset();
     assert_same_values(&decode(&decoder, &run.outputs), &values);
 }
@@ -71,28 +70,27 @@ fn check_all<S: Fields>(min: S, max: S, beta: f32, x: &[S]) {
 
 #[test]
 fn the_printed_check_values() {
-    let fields = ReceptiveFields::<f32, 4, 100>::new(0.0, 1.0, 1.5).unwrap();
+    let scheme = Slots::<f32, 4, 100>::try_new(0.0..=1.0, 1.5).unwrap();
     let table = [
         (0.1, [Some(42), Some(10), Some(85), None]),
         (0.5, [Some(92), Some(25), Some(25), Some(92)]),
         (0.9, [None, Some(85), Some(10), Some(42)]),
     ];
     for (x, slots) in table {
-        assert_eq!(listed(Slots::new(&fields).encoder().encode(x)), slots);
+        assert_eq!(listed(scheme.encoder().encode(x)), slots);
     }
-    let fields = ReceptiveFields::<I16F16, 4, 100>::new(I16F16::ZERO, I16F16::ONE, 1.5).unwrap();
+    let scheme = Slots::<I16F16, 4, 100>::try_new(I16F16::ZERO..=I16F16::ONE, 1.5).unwrap();
     for (x, slots) in table {
         let x = I16F16::from_num(x);
-        assert_eq!(listed(Slots::new(&fields).encoder().encode(x)), slots);
+        assert_eq!(listed(scheme.encoder().encode(x)), slots);
     }
 }
 
 #[test]
 fn cases_by_hand() {
     // Centres -0.25, 0.25, 0.75, 1.25.
-    let fields = ReceptiveFields::<f32, 4, 100>::new(0.0, 1.0, 1.5).unwrap();
-    let all = Slots::new(&fields);
-    let some = all.with_floor(75).unwrap();
+    let all = Slots::<f32, 4, 100>::try_new(0.0..=1.0, 1.5).unwrap();
+    let some = all.try_with_floor(75).unwrap();
     let table = [
         ("on a centre: at once", all, 0.25, vec![(0, 68), (1, 0), (2, 68), (3, 99)]),
         ("below the floor: silent", some, 0.5, vec![(1, 25), (2, 25)]),
@@ -107,15 +105,13 @@ fn cases_by_hand() {
 /// What is built at compile time is what is built in flight.
 #[test]
 fn constants() {
-    static FLOATS: ReceptiveFields<f32, 15, 10> =
-        ReceptiveFields::<f32, _, _>::checked(-0.3, 0.7, 1.5);
-    static COUNTS: ReceptiveFields<i16, 15, 256> =
-        ReceptiveFields::<i16, _, _>::checked(-30_000, 7, 0.9);
-    static WORDS: ReceptiveFields<I16F16, 4, 100> =
-        ReceptiveFields::<I16F16, _, _>::checked(I16F16::MIN, I16F16::DELTA, 3.0);
-    assert_eq!(FLOATS, ReceptiveFields::new(-0.3, 0.7, 1.5).unwrap());
-    assert_eq!(COUNTS, ReceptiveFields::new(-30_000, 7, 0.9).unwrap());
-    assert_eq!(WORDS, ReceptiveFields::new(I16F16::MIN, I16F16::DELTA, 3.0).unwrap());
+    static FLOATS: Slots<f32, 15, 10> = Slots::new(-0.3..=0.7, 1.5).with_floor(3);
+    static COUNTS: Slots<i16, 15, 256> = Slots::new(-30_000..=7, 0.9);
+    static WORDS: Slots<I16F16, 4, 100> = Slots::new(I16F16::MIN..=I16F16::DELTA, 3.0);
+    let floats = Slots::try_new(-0.3..=0.7, 1.5).unwrap();
+    assert_eq!(FLOATS, floats.try_with_floor(3).unwrap());
+    assert_eq!(COUNTS, Slots::try_new(-30_000..=7, 0.9).unwrap());
+    assert_eq!(WORDS, Slots::try_new(I16F16::MIN..=I16F16::DELTA, 3.0).unwrap());
     assert_eq!(reals(FLOATS.centres()), *FLOATS.centres());
 }
 

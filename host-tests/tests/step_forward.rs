@@ -1,9 +1,7 @@
 //! SF, step forward: a spike when the sample leaves `base ± threshold`, and the base follows by one
 //! threshold.
 
-mod common;
-
-use common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{
     Wire, assert_step_spikes, check_step_decoder, encode, finite, run, saturated, signs_of,
@@ -11,11 +9,11 @@ use host_tests::compare::{
 use host_tests::reference::{step_decode_within, step_forward};
 use proptest::prelude::*;
 use spikewire::temporal::StepForward;
-use spikewire::{ConfigError, Decoder, Encoder, Scheme, Spike};
+use spikewire::{ConfigError, Scheme, Spike};
 
 /// Encoder and decoder against the reference, unprimed and primed.
 fn check<S: Wire>(x: &[S], threshold: S, primed: S) {
-    let scheme = StepForward::new(threshold);
+    let scheme = StepForward::try_new(threshold);
     if threshold.to_f64() > 1e31 {
         assert!(matches!(scheme, Err(ConfigError::OutOfRange { parameter: "threshold", .. })));
         return;
@@ -23,12 +21,12 @@ fn check<S: Wire>(x: &[S], threshold: S, primed: S) {
     let scheme = scheme.unwrap();
     let recording = finite(x);
     let expected = step_forward(&recording.accepted, threshold.real(), None);
-    let unprimed = encode(scheme, x);
+    let unprimed = encode(&scheme, x);
     assert_step_spikes(&unprimed, &recording, &expected);
-    check_step_decoder(&scheme.decoder(), &signs_of(&unprimed.outputs), threshold, primed);
+    check_step_decoder(&scheme, &signs_of(&unprimed.outputs), threshold, primed);
 
     let mut encoder = scheme.encoder();
-    encoder.prime(primed);
+    encoder.prime(&[primed]);
     let expected = step_forward(&recording.accepted, threshold.real(), Some(primed.real()));
     assert_step_spikes(&run(&encoder, x), &recording, &expected);
 }
@@ -48,8 +46,8 @@ fn cases_by_hand() {
         ("a bad first is no base", &[f32::NAN, 9.0, 9.5], 1.0, &[0, 0, 0]),
     ];
     for (name, x, threshold, expected) in table {
-        let scheme = StepForward::new(threshold).unwrap();
-        assert_eq!(signs_of(&encode(scheme, x).outputs), expected, "{name}");
+        let scheme = StepForward::try_new(threshold).unwrap();
+        assert_eq!(signs_of(&encode(&scheme, x).outputs), expected, "{name}");
         check(x, threshold, 0.25);
     }
 }
@@ -65,20 +63,35 @@ fn integers_do_not_wrap() {
         (min + 2, 1, vec![min, min], vec![-1, 0], min + 1),
     ];
     for (base, threshold, x, expected, left) in table {
-        let mut encoder = StepForward::new(threshold).unwrap().encoder();
-        encoder.prime(base);
+        let scheme = StepForward::try_new(threshold).unwrap();
+        let mut encoder = scheme.encoder();
+        encoder.prime(&[base]);
         let spikes: Vec<_> = x.iter().map(|&x| encoder.encode(x).sign()).collect();
         assert_eq!((spikes, encoder.keyframe()), (expected, Some(left)), "{base} {threshold}");
     }
 }
 
+/// Of a longer past only the last value counts; an empty one changes nothing.
+#[test]
+fn pasts_of_any_length() {
+    let scheme = StepForward::new(1.0_f32);
+    let mut encoder = scheme.encoder();
+    encoder.prime(&[]);
+    assert_eq!((encoder.rejected(), encoder.keyframe()), (0, None));
+    encoder.prime(&[f32::NAN, 9.0, 2.0]);
+    assert_eq!((encoder.rejected(), encoder.keyframe()), (0, Some(2.0)));
+    encoder.prime(&[]);
+    assert_eq!(encoder.encode(3.5), Spike::Up);
+}
+
 #[test]
 fn a_rejected_priming_value_is_counted_and_ignored() {
-    let mut encoder = StepForward::new(1.0_f32).unwrap().encoder();
-    encoder.prime(f32::NAN);
+    let scheme = StepForward::try_new(1.0_f32).unwrap();
+    let mut encoder = scheme.encoder();
+    encoder.prime(&[f32::NAN]);
     assert_eq!((encoder.rejected(), encoder.keyframe()), (1, None));
-    encoder.prime(5.0);
-    encoder.prime(f32::NEG_INFINITY);
+    encoder.prime(&[5.0]);
+    encoder.prime(&[f32::NEG_INFINITY]);
     assert_eq!((encoder.rejected(), encoder.keyframe()), (2, Some(5.0)));
     assert_eq!(encoder.encode(7.0), Spike::Up);
 }
@@ -87,7 +100,7 @@ fn a_rejected_priming_value_is_counted_and_ignored() {
 #[test]
 fn a_keyframe_makes_up_for_lost_spikes() {
     for channel in flight_channels() {
-        let scheme = StepForward::new(0.11_f32).unwrap();
+        let scheme = StepForward::try_new(0.11_f32).unwrap();
         let (mut encoder, mut whole, mut lossy) =
             (scheme.encoder(), scheme.decoder(), scheme.decoder());
         assert_eq!(encoder.keyframe(), None);
@@ -104,7 +117,7 @@ fn a_keyframe_makes_up_for_lost_spikes() {
                 lossy.decode(spike);
             }
             if i % 100 == 99 {
-                assert_eq!(lossy.value().to_bits(), value.to_bits());
+                assert_eq!(lossy.held().map(f32::to_bits), Some(value.to_bits()));
             }
         }
     }
@@ -167,7 +180,7 @@ fn drawn_recordings() {
 fn follows_a_slow_signal() {
     let walks = proptest::collection::vec(-50..=50_i16, 1..200);
     proptest!(cases(256), |(moves in walks, threshold in 50..=99_i16)| {
-        let scheme = StepForward::new(threshold).unwrap();
+        let scheme = StepForward::try_new(threshold).unwrap();
         let (mut encoder, mut decoder) = (scheme.encoder(), scheme.decoder());
         let mut x = 0;
         for step in moves {
@@ -184,13 +197,13 @@ fn follows_a_slow_signal() {
 fn all_pairs_of_8_bits() {
     for (from, to) in [(-128, 127), (i16::MIN, i16::MIN + 255), (i16::MAX - 255, i16::MAX)] {
         for threshold in [1, 2, 100, 255, i16::MAX] {
-            let scheme = StepForward::new(I8F8::from_bits(threshold)).unwrap();
+            let scheme = StepForward::try_new(I8F8::from_bits(threshold)).unwrap();
             let step = scheme.threshold().real();
             let [lowest, highest] = I8F8::ends();
             for base in (from..=to).map(I8F8::from_bits) {
                 let mut encoder = scheme.encoder();
                 for x in (from..=to).map(I8F8::from_bits) {
-                    encoder.prime(base);
+                    encoder.prime(&[base]);
                     let expected = step_forward(&[x.real()], step, Some(base.real()));
                     let left = step_decode_within(&expected, step, base.real(), lowest, highest);
                     assert_eq!([encoder.encode(x).sign()], *expected, "{x} at {base}");

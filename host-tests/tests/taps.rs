@@ -1,8 +1,6 @@
 //! The filters of the rate codes: shapes, scales, and where their sums end.
 
-mod common;
-
-use common::cases;
+use crate::common::cases;
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, check_rate, check_rate_decoder, reals};
 use host_tests::reference::{
@@ -11,7 +9,7 @@ use host_tests::reference::{
 };
 use proptest::prelude::*;
 use spikewire::Scheme;
-use spikewire::rate::{Ben, BenToolbox, Hough, Scale, Shape, Taps, ThresholdHough};
+use spikewire::rate::{Bsa, BsaToolbox, Hough, Scale, Shape, Taps, ThresholdHough};
 
 /// The reference's shape of `F` taps.
 fn shape<const F: usize>(shape: Shape) -> Vec<f64> {
@@ -48,7 +46,7 @@ fn check<S: Wire, const F: usize>(scale: S) {
             assert!(to_peak.iter().zip(by_largest).all(|(a, b)| (a - b).abs() <= 1e-13 * b.abs()));
         }
         for (scale, expected) in [(Scale::Sum(scale), to_sum), (Scale::Peak(scale), to_peak)] {
-            let Ok(taps) = Taps::<S, F>::shaped(name, scale) else {
+            let Ok(taps) = Taps::<S, F>::try_shaped(name, scale) else {
                 // All rounded to 0, or too much for the type.
                 let sum: f64 = expected.iter().map(|&tap| S::nearest(tap).to_f64()).sum();
                 assert!(sum == 0.0 || sum >= S::ends()[1].into(), "{name:?} {scale:?}");
@@ -78,9 +76,10 @@ fn shapes_by_hand() {
     assert_eq!(*triangle.as_array(), [0.5, 1.0, 1.5, 1.0, 0.5]);
     let triangle = Taps::<f32, 4>::triangular(1.0);
     assert_eq!(*triangle.as_array(), [0.25, 0.75, 0.75, 0.25]);
-    let hann = Taps::<i16, 3>::shaped(Shape::Hann, Scale::Sum(2000)).unwrap();
+    let hann = Taps::<i16, 3>::try_shaped(Shape::Hann, Scale::Sum(2000)).unwrap();
     assert_eq!(*hann.as_array(), [500, 1000, 500]);
-    let bell = Taps::<f32, 3>::shaped(Shape::Gaussian { alpha: 2.0 }, Scale::Peak(1.0)).unwrap();
+    let bell =
+        Taps::<f32, 3>::try_shaped(Shape::Gaussian { alpha: 2.0 }, Scale::Peak(1.0)).unwrap();
     assert_eq!(*bell.as_array(), [(-2.0_f64).exp() as f32, 1.0, (-2.0_f64).exp() as f32]);
 }
 
@@ -104,7 +103,7 @@ fn drawn_shapes() {
     });
     proptest!(cases(64), |(alpha in 0.1_f64..9.0)| {
         let expected = scaled_to_sum(&gaussian(15, alpha), 1.0);
-        let taps = Taps::<f32, 15>::shaped(Shape::Gaussian { alpha }, Scale::Sum(1.0)).unwrap();
+        let taps = Taps::<f32, 15>::try_shaped(Shape::Gaussian { alpha }, Scale::Sum(1.0)).unwrap();
         for (&ours, expected) in taps.as_array().iter().zip(expected) {
             assert_rounded(ours, expected);
         }
@@ -115,43 +114,42 @@ fn drawn_shapes() {
 #[test]
 fn constants() {
     const BELL: Shape = Shape::Gaussian { alpha: 1.7 };
-    static FLOATS: Taps<f32, 15> = Taps::<f32, _>::checked_shape(BELL, Scale::Sum(0.9));
-    static WORDS: Taps<I16F16, 24> =
-        Taps::<I16F16, _>::checked_shape(Shape::Hann, Scale::Peak(I16F16::ONE));
-    static COUNTS: Taps<i16, 9> = Taps::<i16, _>::triangular(1000);
-    static OWN: Taps<f32, 3> = Taps::<f32, _>::checked([0.1, -0.2, 1e-40]);
-    assert_eq!(FLOATS, Taps::shaped(BELL, Scale::Sum(0.9)).unwrap());
-    assert_eq!(WORDS, Taps::shaped(Shape::Hann, Scale::Peak(I16F16::ONE)).unwrap());
-    assert_eq!(COUNTS, Taps::shaped(Shape::Triangular, Scale::Peak(1000)).unwrap());
-    assert_eq!(OWN, Taps::new([0.1, -0.2, 1e-40]).unwrap());
+    static FLOATS: Taps<f32, 15> = Taps::shaped(BELL, Scale::Sum(0.9));
+    static WORDS: Taps<I16F16, 24> = Taps::shaped(Shape::Hann, Scale::Peak(I16F16::ONE));
+    static COUNTS: Taps<i16, 9> = Taps::triangular(1000);
+    static OWN: Taps<f32, 3> = Taps::new([0.1, -0.2, 1e-40]);
+    assert_eq!(FLOATS, Taps::try_shaped(BELL, Scale::Sum(0.9)).unwrap());
+    assert_eq!(WORDS, Taps::try_shaped(Shape::Hann, Scale::Peak(I16F16::ONE)).unwrap());
+    assert_eq!(COUNTS, Taps::try_shaped(Shape::Triangular, Scale::Peak(1000)).unwrap());
+    assert_eq!(OWN, Taps::try_new([0.1, -0.2, 1e-40]).unwrap());
 }
 
 /// Every rate scheme with samples, shifts and taps at the ends of their type.
 fn check_ends<S: Wire, const F: usize>(taps: [S; F], x: &[S], shift: S, threshold: S) {
-    let taps = Taps::new(taps).unwrap();
+    let taps = Taps::try_new(taps).unwrap();
     let h = reals(taps.as_array());
     let t = threshold.real();
-    let scheme = Hough::new(&taps).with_shift(shift).unwrap();
-    check_rate(scheme, x, &taps, shift, |r, shift, finish| hough(r, &h, shift, finish));
-    let scheme = ThresholdHough::new(&taps, threshold).unwrap().with_shift(shift).unwrap();
-    check_rate(scheme, x, &taps, shift, |r, shift, finish| {
+    let scheme = Hough::new(taps).try_with_shift(shift).unwrap();
+    check_rate(&scheme, x, &taps, shift, |r, shift, finish| hough(r, &h, shift, finish));
+    let scheme = ThresholdHough::try_new(taps, threshold).unwrap().try_with_shift(shift).unwrap();
+    check_rate(&scheme, x, &taps, shift, |r, shift, finish| {
         threshold_hough(r, &h, shift, t, finish)
     });
-    let scheme = Ben::subtractive(&taps, threshold).unwrap().with_shift(shift).unwrap();
-    check_rate(scheme, x, &taps, shift, |r, shift, finish| {
+    let scheme = Bsa::try_subtractive(taps, threshold).unwrap().try_with_shift(shift).unwrap();
+    check_rate(&scheme, x, &taps, shift, |r, shift, finish| {
         ben_subtractive(r, &h, shift, t, finish)
     });
-    let scheme = Ben::multiplicative(&taps, 1.5).unwrap().with_shift(shift).unwrap();
-    check_rate(scheme, x, &taps, shift, |r, shift, finish| {
+    let scheme = Bsa::try_multiplicative(taps, 1.5).unwrap().try_with_shift(shift).unwrap();
+    check_rate(&scheme, x, &taps, shift, |r, shift, finish| {
         ben_multiplicative(r, &h, shift, S::ratio(1.5), finish)
     });
-    let scheme = BenToolbox::new(&taps, 3.9).unwrap().with_shift(shift).unwrap();
-    check_rate(scheme, x, &taps, shift, |r, shift, finish| {
+    let scheme = BsaToolbox::try_new(taps, 3.9).unwrap().try_with_shift(shift).unwrap();
+    check_rate(&scheme, x, &taps, shift, |r, shift, finish| {
         ben_toolbox(r, &h, shift, S::ratio(3.9), finish)
     });
     // The decoder, with a spike at every sample: the sum of all taps above the shift.
-    let decoder = Hough::new(&taps).with_shift(shift).unwrap().decoder();
-    check_rate_decoder(&decoder, &[1; 40], &h, shift);
+    let scheme = Hough::new(taps).try_with_shift(shift).unwrap();
+    check_rate_decoder(&scheme.decoder(), &[1; 40], &h, shift);
 }
 
 #[test]
@@ -188,10 +186,10 @@ fn thirty_two_bits_saturate_where_the_taps_leave_no_room() {
 #[test]
 fn the_limit_of_a_residual() {
     let half = I32F0::from_bits(1 << 30);
-    let taps = Taps::new([half]).unwrap();
-    let spikes = host_tests::compare::encode(Hough::new(&taps), &[half, I32F0::MAX]).codes();
+    let taps = Taps::try_new([half]).unwrap();
+    let spikes = host_tests::compare::encode(&Hough::new(taps), &[half, I32F0::MAX]).codes();
     assert!(spikes.iter().all(|spike| !spike.is_fired()));
-    let taps = Taps::new([half - I32F0::DELTA]).unwrap();
-    let spikes = host_tests::compare::encode(Hough::new(&taps), &[half, I32F0::MAX]).codes();
+    let taps = Taps::try_new([half - I32F0::DELTA]).unwrap();
+    let spikes = host_tests::compare::encode(&Hough::new(taps), &[half, I32F0::MAX]).codes();
     assert!(spikes.iter().all(|spike| spike.is_fired()));
 }

@@ -1,8 +1,6 @@
 //! TBR, temporal contrast: `d = x[i] - x[i-1]`; up if `d > threshold`, down if `d < -threshold`.
 
-mod common;
-
-use common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{
     Wire, assert_step_spikes, check_step_decoder, encode, finite, run, signs_of,
@@ -10,19 +8,19 @@ use host_tests::compare::{
 use host_tests::reference::temporal_contrast;
 use proptest::prelude::*;
 use spikewire::temporal::TemporalContrast;
-use spikewire::{Encoder, Scheme, Spike};
+use spikewire::{Scheme, Spike};
 
 /// Encoder and decoder against the reference, unprimed and primed.
 fn check<S: Wire>(x: &[S], threshold: S, step: S, primed: S) {
-    let scheme = TemporalContrast::with_step(threshold, step).unwrap();
+    let scheme = TemporalContrast::try_new(threshold).unwrap().try_with_step(step).unwrap();
     let recording = finite(x);
     let expected = temporal_contrast(&recording.accepted, threshold.real(), None);
-    let unprimed = encode(scheme, x);
+    let unprimed = encode(&scheme, x);
     assert_step_spikes(&unprimed, &recording, &expected);
-    check_step_decoder(&scheme.decoder(), &signs_of(&unprimed.outputs), step, primed);
+    check_step_decoder(&scheme, &signs_of(&unprimed.outputs), step, primed);
 
     let mut encoder = scheme.encoder();
-    encoder.prime(primed);
+    encoder.prime(&[primed]);
     let expected = temporal_contrast(&recording.accepted, threshold.real(), Some(primed.real()));
     assert_step_spikes(&run(&encoder, x), &recording, &expected);
 }
@@ -41,8 +39,8 @@ fn cases_by_hand() {
         ("the difference may overflow", &[f32::MIN, f32::MAX, f32::MIN], f32::MAX, &[0, 1, -1]),
     ];
     for (name, x, threshold, expected) in table {
-        let scheme = TemporalContrast::new(threshold).unwrap();
-        assert_eq!(signs_of(&encode(scheme, x).outputs), expected, "{name}");
+        let scheme = TemporalContrast::try_new(threshold).unwrap();
+        assert_eq!(signs_of(&encode(&scheme, x).outputs), expected, "{name}");
         check(x, threshold, threshold, 0.5);
     }
 }
@@ -59,25 +57,40 @@ fn integers_do_not_wrap() {
         ([-1, min], max, [0, 0]),
     ];
     for (x, threshold, expected) in table {
-        let scheme = TemporalContrast::new(threshold).unwrap();
-        assert_eq!(signs_of(&encode(scheme, &x).outputs), expected, "{x:?}");
+        let scheme = TemporalContrast::try_new(threshold).unwrap();
+        assert_eq!(signs_of(&encode(&scheme, &x).outputs), expected, "{x:?}");
     }
+}
+
+/// Of a longer past only the last value counts; an empty one changes nothing.
+#[test]
+fn pasts_of_any_length() {
+    let scheme = TemporalContrast::new(1.0_f32);
+    let mut encoder = scheme.encoder();
+    encoder.prime(&[]);
+    assert_eq!((encoder.rejected(), encoder.keyframe()), (0, None));
+    encoder.prime(&[f32::NAN, 9.0, 2.0]);
+    assert_eq!((encoder.rejected(), encoder.keyframe()), (0, Some(2.0)));
+    encoder.prime(&[]);
+    assert_eq!(encoder.encode(3.5), Spike::Up);
 }
 
 #[test]
 fn a_rejected_priming_value_is_counted_and_ignored() {
-    let mut encoder = TemporalContrast::new(1.0_f32).unwrap().encoder();
-    encoder.prime(f32::NAN);
+    let scheme = TemporalContrast::try_new(1.0_f32).unwrap();
+    let mut encoder = scheme.encoder();
+    encoder.prime(&[f32::NAN]);
     assert_eq!((encoder.rejected(), encoder.keyframe()), (1, None));
     assert_eq!(encoder.encode(5.0), Spike::None);
-    encoder.prime(f32::INFINITY);
+    encoder.prime(&[f32::INFINITY]);
     assert_eq!((encoder.rejected(), encoder.keyframe()), (2, Some(5.0)));
     assert_eq!(encoder.encode(7.0), Spike::Up);
 }
 
 #[test]
 fn the_keyframe_is_the_last_sample() {
-    let mut encoder = TemporalContrast::new(1.0_f32).unwrap().encoder();
+    let scheme = TemporalContrast::try_new(1.0_f32).unwrap();
+    let mut encoder = scheme.encoder();
     assert_eq!(encoder.keyframe(), None);
     for x in [3.0, -1.5, f32::NAN, 2.0] {
         encoder.encode(x);
@@ -134,11 +147,11 @@ fn drawn_recordings() {
 fn all_pairs_of_8_bits() {
     for (from, to) in [(-128, 127), (i16::MIN, i16::MIN + 255), (i16::MAX - 255, i16::MAX)] {
         for threshold in [1, 2, 100, 255, i16::MAX] {
-            let scheme = TemporalContrast::new(I8F8::from_bits(threshold)).unwrap();
+            let scheme = TemporalContrast::try_new(I8F8::from_bits(threshold)).unwrap();
             for previous in (from..=to).map(I8F8::from_bits) {
                 let mut encoder = scheme.encoder();
                 for x in (from..=to).map(I8F8::from_bits) {
-                    encoder.prime(previous);
+                    encoder.prime(&[previous]);
                     let expected = temporal_contrast(
                         &[x.real()],
                         scheme.threshold().real(),

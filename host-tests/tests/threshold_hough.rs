@@ -1,22 +1,22 @@
 //! T-HSA, the threshold Hough spike algorithm: `error = sum over j of max(0, h[j] - r[i+j])`; a spike
 //! if `error <= threshold`; then `r[i+j] -= h[j]`.
 
-mod common;
-
-use common::rate::{all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle};
-use common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::rate::{
+    all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle,
+};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, check_rate, encode, reals, signs_of};
 use host_tests::reference::threshold_hough;
 use proptest::prelude::*;
 use spikewire::rate::{Hough, Taps, ThresholdHough};
-use spikewire::{Encoder, Scheme, Spike};
+use spikewire::{Scheme, Spike};
 
 /// Encoder and decoder against the reference.
 fn check<S: Wire, const F: usize>(taps: &Taps<S, F>, x: &[S], threshold: S, shift: S) {
-    let scheme = ThresholdHough::new(taps, threshold).unwrap().with_shift(shift).unwrap();
+    let scheme = ThresholdHough::try_new(*taps, threshold).unwrap().try_with_shift(shift).unwrap();
     let h = reals(taps.as_array());
-    check_rate(scheme, x, taps, shift, |r, shift, finish| {
+    check_rate(&scheme, x, taps, shift, |r, shift, finish| {
         threshold_hough(r, &h, shift, threshold.real(), finish)
     });
 }
@@ -35,10 +35,10 @@ fn cases_by_hand() {
         ("a single sample", &[0.1], 0.25, &[1]),
         ("not a number is skipped", &[0.25, 1.0, f32::NAN, 0.5, -9.0], 0.0, &[1, 0, 0, 0]),
     ];
-    let taps = Taps::new([0.25_f32, 1.0, 0.5]).unwrap();
+    let taps = Taps::try_new([0.25_f32, 1.0, 0.5]).unwrap();
     for (name, x, threshold, expected) in table {
-        let scheme = ThresholdHough::new(&taps, threshold).unwrap();
-        assert_eq!(signs_of(&encode(scheme, x).codes()), expected, "{name}");
+        let scheme = ThresholdHough::try_new(taps, threshold).unwrap();
+        assert_eq!(signs_of(&encode(&scheme, x).codes()), expected, "{name}");
     }
 }
 
@@ -101,7 +101,7 @@ fn at_the_limit() {
         let window = &x[window.index(x.len() - 7)..][..8];
         let lacks = taps.iter().zip(window).map(|(tap, x)| (x - tap).abs() - (x - tap));
         let limit = lacks.fold(0.0, |sum: f32, lack| sum + lack) / 2.0;
-        let taps = Taps::new(taps).unwrap();
+        let taps = Taps::try_new(taps).unwrap();
         for threshold in [limit.next_down().max(0.0), limit, limit.next_up()] {
             check(&taps, &x, threshold, 0.0);
         }
@@ -112,9 +112,9 @@ fn at_the_limit() {
 #[test]
 fn without_tolerance_it_is_the_hough_spiker() {
     proptest!(cases(128), |((x, taps) in recordings::<f32>())| {
-        let taps = common::rate::first_taps::<f32, 8>(&taps);
-        let outputs = encode(ThresholdHough::new(&taps, 0.0).unwrap(), &x).outputs;
-        prop_assert_eq!(outputs, encode(Hough::new(&taps), &x).outputs);
+        let taps = crate::common::rate::first_taps::<f32, 8>(&taps);
+        let outputs = encode(&ThresholdHough::try_new(taps, 0.0).unwrap(), &x).outputs;
+        prop_assert_eq!(outputs, encode(&Hough::new(taps), &x).outputs);
     });
 }
 
@@ -122,12 +122,13 @@ fn without_tolerance_it_is_the_hough_spiker() {
 #[test]
 fn without_tolerance_at_the_ends() {
     for tap in [1e30, -1e30] {
-        let taps = Taps::new([tap; 8]).unwrap();
+        let taps = Taps::try_new([tap; 8]).unwrap();
         for x in hostile_recordings() {
             for shift in [0.0, 1e31, -1e31] {
-                let nearly = ThresholdHough::new(&taps, 0.0).unwrap().with_shift(shift).unwrap();
-                let whole = Hough::new(&taps).with_shift(shift).unwrap();
-                assert_eq!(encode(nearly, &x).outputs, encode(whole, &x).outputs, "{x:?}");
+                let nearly =
+                    ThresholdHough::try_new(taps, 0.0).unwrap().try_with_shift(shift).unwrap();
+                let whole = Hough::new(taps).try_with_shift(shift).unwrap();
+                assert_eq!(encode(&nearly, &x).outputs, encode(&whole, &x).outputs, "{x:?}");
             }
         }
     }
@@ -137,10 +138,11 @@ fn without_tolerance_at_the_ends() {
 #[test]
 fn all_pairs_of_8_bits() {
     fn check<const F: usize>(taps: [i16; F], threshold: i16) {
-        let taps = Taps::new(taps.map(I8F8::from_bits)).unwrap();
+        let taps = Taps::try_new(taps.map(I8F8::from_bits)).unwrap();
         let threshold = I8F8::from_bits(threshold);
         let h = reals(taps.as_array());
-        let mut encoder = ThresholdHough::new(&taps, threshold).unwrap().encoder();
+        let scheme = ThresholdHough::try_new(taps, threshold).unwrap();
+        let mut encoder = scheme.encoder();
         for pair in pairs_of_8_bits() {
             let pair = pair.map(I8F8::from_bits);
             encoder.reset();

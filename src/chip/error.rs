@@ -4,7 +4,7 @@ use core::convert::Infallible;
 use core::fmt;
 
 use super::Phase;
-use super::aer::AerError;
+use super::family::AerError;
 
 /// Why a chip did not do what it was asked: `B` is the error of its bus, `P` that of its port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +26,16 @@ pub enum ChipError<B, P = Infallible> {
     NotGated,
     /// The chip's activity is gated: it takes no events.
     Gated,
+    /// The chip did not answer after its gate was opened: reset it.
+    NotStarted,
+    /// The chip's outputs do not end, so that it cannot be gated: see
+    /// [`open_loop`](super::Running::open_loop).
+    Busy,
+    /// Weights from one input or neuron have both signs, which this chip does not have.
+    MixedSigns {
+        /// The neuron that they come from, or the input's row.
+        pre: u8,
+    },
     /// There is no such value.
     OutOfRange {
         /// What was out of range.
@@ -39,8 +49,8 @@ pub enum ChipError<B, P = Infallible> {
     },
     /// A virtual event of weight 0, which would act as a full spike.
     ZeroWeight,
-    /// What was read back is not what was written: write it again, after a reset where the chip has
-    /// one.
+    /// What was read back is not what was written: write it again. Where the chip has a reset, what its
+    /// memories hold is not known: reset it, and write all of it again.
     ReadBack {
         /// Where.
         address: u32,
@@ -61,6 +71,9 @@ impl<B: fmt::Debug, P: fmt::Debug> fmt::Display for ChipError<B, P> {
             Self::NotReset => write!(f, "the chip must be reset first"),
             Self::NotGated => write!(f, "the chip's activity must be gated first"),
             Self::Gated => write!(f, "the chip's activity is gated"),
+            Self::NotStarted => write!(f, "the chip did not answer after its gate was opened"),
+            Self::Busy => write!(f, "the chip's outputs do not end"),
+            Self::MixedSigns { pre } => write!(f, "weights from {pre} have both signs"),
             Self::OutOfRange { what, value, min, max } => {
                 write!(f, "{what} {value} must lie in {min}..={max}")
             }
@@ -89,9 +102,19 @@ pub(super) fn at_most<B, P>(
     value: u32,
     max: u32,
 ) -> Result<(), ChipError<B, P>> {
-    if value <= max {
+    in_range(what, value.into(), 0, max.into())
+}
+
+/// `value` within `min..=max`.
+pub(super) fn in_range<B, P>(
+    what: &'static str,
+    value: i64,
+    min: i64,
+    max: i64,
+) -> Result<(), ChipError<B, P>> {
+    if (min..=max).contains(&value) {
         Ok(())
     } else {
-        Err(ChipError::OutOfRange { what, value: value.into(), min: 0, max: max.into() })
+        Err(ChipError::OutOfRange { what, value, min, max })
     }
 }

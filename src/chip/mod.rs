@@ -2,28 +2,83 @@
 //!
 //! | chip | spikes in | spikes out | how it was checked |
 //! |---|---|---|---|
-//! | [`TinyOdin`], [`Odin`] | parallel bus, 4-phase handshake | the same | bytes and words of the RTL in simulation; a model of the handshake |
+//! | [`TinyOdin`], [`Odin`] | parallel bus, 4-phase handshake | the same | bytes and words of the RTL in simulation; models of the chips, clock by clock |
 //! | [`Akd1500`] | a window onto memory, over SPI | the same | bytes of the vendor's library |
 //! | [`Xylo`] | counts in registers | a status register | the registers in the vendor's sources |
 //!
 //! None of this has been seen on hardware. None of the buses has a checksum: what can be read back
 //! should be, and every chip here can verify what it writes.
 //!
+//! # A network on tinyODIN
+//!
+//! Described as constant data, loaded and verified, fed with events and read out:
+//!
+//! ```
+//! use embedded_hal::{delay::DelayNs, spi::SpiDevice};
+//! use spikewire::chip::{
+//!     AerPort, ChipError, Describe, Inputs, Spikes, TinyOdin, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron,
+//!     neurons_from,
+//! };
+//! use spikewire::{Bank, Readout, Tick, population::Position};
+//!
+//! static RATES: Position<f32, 64> = Position::linear(-8.0..=8.0);
+//! static NETWORK: TinyOdinNetwork<64, 64, 64> = TinyOdinNetwork {
+//!     neurons: [TinyOdinNeuron { threshold: 7, leak: 3, ..TinyOdinNeuron::REST }; 64],
+//!     inputs: Inputs::one_to_one(7),
+//!     recurrent: &[],
+//!     outputs: neurons_from::<0, 64>(),
+//! };
+//!
+//! fn fly<D: SpiDevice, P: AerPort>(
+//!     chip: &mut TinyOdin<D, P>,
+//!     delay: &mut impl DelayNs,
+//!     rates: impl Iterator<Item = (Tick, f32)>, // rad/s
+//!     mut command: impl FnMut(f32),
+//! ) -> Result<(), ChipError<D::Error, P::Error>> {
+//!     let mut gated = chip.reset(delay)?;
+//!     gated.load(&NETWORK, |_| ())?;
+//!     let mut chip = gated.run(&NETWORK.registers())?;
+//!     let mut bank = Bank::<_, 1>::new(&RATES);
+//!     let mut readout = Readout::<_, 1>::new(&RATES);
+//!     for (now, rate) in rates {
+//!         let mut events = Spikes::<64>::new();
+//!         bank.encode(now, [rate], |event| events.push(event));
+//!         let mut spikes = Spikes::<64>::new();
+//!         let mut answers = NETWORK.answers(now, |event| spikes.push(event));
+//!         for event in events.as_slice() {
+//!             if let Some(input) = NETWORK.input(event.address) {
+//!                 chip.send(input, &mut answers)?;
+//!             }
+//!         }
+//!         chip.quiesce(&mut answers)?;
+//!         drop(answers);
+//!         let [value] = readout.decode(now, spikes.as_slice());
+//!         command(value);
+//!     }
+//!     Ok(())
+//! }
+//! ```
+//!
 //! No wait is unbounded: each looks at the pins or registers as often as it is told, then returns an
 //! error.
 
-mod aer;
 mod akd1500;
 mod error;
+mod family;
 mod odin;
-mod odin_family;
+mod output_source;
 mod tinyodin;
 mod xylo;
 
-pub use aer::{AerPort, Phase};
 pub use akd1500::{Akd1500, ConvolutionEvent, DenseEvent};
 pub use error::ChipError;
-pub use odin::{Odin, OdinInput};
-pub use odin_family::{Input, OdinChip};
-pub use tinyodin::{TinyOdin, TinyOdinInput};
+pub use family::{
+    AerPort, Counters, Describe, FormatError, Gated, Input, Inputs, Network, NetworkBytes,
+    OdinChip, Phase, Progress, Running, Spikes, neurons_from,
+};
+pub use odin::{
+    Odin, OdinInput, OdinLearning, OdinNetwork, OdinNeuron, OdinRegisters, OdinSynapse,
+};
+pub use output_source::OutputSource;
+pub use tinyodin::{TinyOdin, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, TinyOdinRegisters};
 pub use xylo::{InputBank, Registers, Xylo, XyloMap, pack_counts};

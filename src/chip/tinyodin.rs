@@ -1,11 +1,9 @@
 //! tinyODIN: 256 neurons, 64k synapses of 4 bits.
 
-use super::{ChipError, Input, OdinChip};
+use super::error::in_range;
+use super::{ChipError, Input, Network, OdinChip, OutputSource};
 
 /// tinyODIN; see [`OdinChip`].
-///
-/// Registers: 0 gate activity (see [`OdinChip::gate`]), 1 open loop, 2 source of the output bus, 3 the
-/// highest neuron in use. A neuron's 32 bits: 0-11 potential, 12-23 threshold, 24-30 leak, 31 disable.
 ///
 /// Source: RTL and documentation, ChFrenkel/tinyODIN.
 ///
@@ -19,6 +17,46 @@ use super::{ChipError, Input, OdinChip};
 /// assert_eq!(word, Err(ChipError::ZeroWeight));
 /// ```
 pub type TinyOdin<D, P> = OdinChip<TinyOdinInput, D, P>;
+
+/// A network for tinyODIN, as constant data.
+pub type TinyOdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
+    Network<TinyOdinInput, IN, N, OUT>;
+
+/// A neuron's 32 bits: 0-11 potential, 12-23 threshold, 24-30 leak, 31 disable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct TinyOdinNeuron {
+    /// Where it fires and returns to 0, 1 to 2047. Memory that was never written may hold 0: such a
+    /// neuron fires at every event.
+    pub threshold: u16,
+    /// By how much a time step brings the potential nearer to 0, 0 to 127.
+    pub leak: u8,
+    /// -2048 to 2047, where it stops.
+    pub potential: i16,
+    /// Whether it never fires. Its potential goes on.
+    pub is_disabled: bool,
+}
+
+impl TinyOdinNeuron {
+    /// At 0, without a leak, with the highest threshold.
+    pub const REST: Self = Self { threshold: 2047, leak: 0, potential: 0, is_disabled: false };
+    /// Of those that are not in use.
+    pub const DISABLED: Self = Self { is_disabled: true, ..Self::REST };
+}
+
+/// tinyODIN's configuration registers. They cannot be read back and have no value after reset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct TinyOdinRegisters {
+    /// Register 1: the neurons' spikes go out, but not to other neurons.
+    pub is_open_loop: bool,
+    /// Register 2: what goes to the output bus.
+    pub output_source: OutputSource,
+    /// Register 3: the highest neuron in use. A spike takes 2 clocks for each up to it.
+    pub last_neuron: u8,
+}
 
 /// What goes into tinyODIN: 10 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -48,10 +86,23 @@ pub enum TinyOdinInput {
 
 impl Input for TinyOdinInput {
     const LEAK_ALL: Self = Self::LeakAll;
+    const PROBE: Self = Self::Leak { neuron: Self::PROBED };
+    const PROBED: u8 = 254;
     const NEURON_BYTES: u8 = 4;
+    const PARAMETERS: [u8; 16] = [0, 0xF0, 0xFF, 0xFF, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
     /// `LeakAll` takes 2 clocks for each neuron up to the highest in use, and waits for up to two spikes
     /// that take as many.
     const MAX_CLOCKS: u32 = 1_600;
+    const QUEUE: u32 = 128;
+    const OPEN_LOOP: u16 = 1;
+    const KIND: u8 = 1;
+    const DISABLED: TinyOdinNeuron = TinyOdinNeuron::DISABLED;
+    const SIGNS_BY_ROW: bool = false;
+
+    type Neuron = TinyOdinNeuron;
+    type Registers = TinyOdinRegisters;
+    /// A signed weight, -8 to 7.
+    type Synapse = i8;
 
     fn word<B, P>(self) -> Result<u32, ChipError<B, P>> {
         let out_of_range = |what, value: i16, min, max| {
@@ -73,5 +124,81 @@ impl Input for TinyOdinInput {
             Self::Leak { neuron } => Ok(1 << 8 | u32::from(neuron)),
             Self::LeakAll => Ok(0x1FF),
         }
+    }
+
+    fn spike(pre: u8) -> Self {
+        Self::Spike { pre }
+    }
+
+    fn virtual_event(neuron: u8, weight: i8) -> Self {
+        Self::Virtual { neuron, weight }
+    }
+
+    fn neuron_bytes<B, P>(neuron: &TinyOdinNeuron) -> Result<[u8; 16], ChipError<B, P>> {
+        let &TinyOdinNeuron { threshold, leak, potential, is_disabled } = neuron;
+        in_range("threshold", threshold.into(), 1, 2047)?;
+        in_range("leak", leak.into(), 0, 127)?;
+        in_range("potential", potential.into(), -2048, 2047)?;
+        let bits = u32::from(is_disabled) << 31
+            | u32::from(leak) << 24
+            | u32::from(threshold) << 12
+            | potential as u32 & 0xFFF;
+        let mut bytes = [0; 16];
+        bytes.iter_mut().zip(bits.to_le_bytes()).for_each(|(byte, bits)| *byte = bits);
+        Ok(bytes)
+    }
+
+    fn neuron([a, b, c, d, ..]: [u8; 16]) -> TinyOdinNeuron {
+        let bits = u32::from_le_bytes([a, b, c, d]);
+        TinyOdinNeuron {
+            threshold: (bits >> 12 & 0xFFF) as u16,
+            leak: (bits >> 24 & 0x7F) as u8,
+            potential: (bits << 4) as i16 >> 4,
+            is_disabled: bits >> 31 == 1,
+        }
+    }
+
+    fn is_unmoved(neuron: &TinyOdinNeuron) -> bool {
+        let &TinyOdinNeuron { threshold, leak, potential, is_disabled } = neuron;
+        let fires = u16::try_from(potential).is_ok_and(|potential| potential >= threshold);
+        is_disabled || leak == 0 && !fires
+    }
+
+    fn weight_bits<B, P>(weight: i8) -> Result<u8, ChipError<B, P>> {
+        in_range("weight", weight.into(), -8, 7)?;
+        Ok(weight as u8 & 0xF)
+    }
+
+    fn synapse_bits<B, P>(synapse: i8) -> Result<u8, ChipError<B, P>> {
+        Self::weight_bits(synapse)
+    }
+
+    fn synapse(bits: u8) -> i8 {
+        (bits << 4) as i8 >> 4
+    }
+
+    fn registers(last_neuron: u8, is_open_loop: bool, _: [u16; 16]) -> TinyOdinRegisters {
+        TinyOdinRegisters { is_open_loop, output_source: OutputSource::Neurons, last_neuron }
+    }
+
+    fn each_register<E>(
+        registers: &TinyOdinRegisters,
+        mut write: impl FnMut(u16, u32) -> Result<(), E>,
+    ) -> Result<(), E> {
+        write(2, registers.output_source.bit())?;
+        write(3, registers.last_neuron.into())?;
+        write(Self::OPEN_LOOP, registers.is_open_loop.into())
+    }
+
+    fn check_registers<B, P>(_: &TinyOdinRegisters) -> Result<(), ChipError<B, P>> {
+        Ok(())
+    }
+
+    fn is_open_loop(registers: &TinyOdinRegisters) -> bool {
+        registers.is_open_loop
+    }
+
+    fn sweep_clocks(registers: &TinyOdinRegisters) -> u32 {
+        2 * u32::from(registers.last_neuron) + 6
     }
 }

@@ -1,8 +1,9 @@
-//! The words of an error in a constant, where formatting is not to be had.
+//! The message of a bad constant, put together without `core::fmt`, which does not run at compile time.
 
 use super::ConfigError;
 
-/// The value, or a panic that names the parameter and what is allowed: in a constant it fails the build.
+/// Returns the value, or panics with a message that names the parameter and its range. In a constant the panic
+/// fails the build.
 ///
 /// # Panics
 /// On an error.
@@ -17,32 +18,10 @@ pub(crate) const fn unwrap<T: Copy>(result: Result<T, ConfigError>) -> T {
 #[cold]
 #[track_caller]
 const fn fail(error: ConfigError) -> ! {
-    let message = Message::EMPTY;
-    let message = match error {
-        ConfigError::NotPositive { parameter, .. } => {
-            message.text(parameter).text(" must be above 0 and finite")
-        }
-        ConfigError::Negative { parameter, .. } => {
-            message.text(parameter).text(" must be 0 or more and finite")
-        }
-        ConfigError::NotFinite { parameter, .. } => message.text(parameter).text(" must be finite"),
-        ConfigError::OutOfRange { parameter, min, max, .. } => {
-            message.text(parameter).text(" must lie in ").number(min).text("..=").number(max)
-        }
-        ConfigError::NotRising { parameter, index, .. } => {
-            message.text(parameter).text(" must rise strictly; see number ").integer(index as u64)
-        }
-        ConfigError::AllZero { parameter } => {
-            message.text(parameter).text(" are all 0; at least one must not be")
-        }
-        ConfigError::TooFewSamples { needed, .. } => {
-            message.text("a calibration needs samples, at least ").integer(needed as u64)
-        }
-    };
-    panic!("{}", message.as_str())
+    panic!("{}", Message::of(error).as_str())
 }
 
-/// Text of up to 96 bytes; what is longer is cut.
+/// A text of up to 96 bytes. Longer texts are cut.
 struct Message {
     bytes: [u8; 96],
     length: usize,
@@ -52,6 +31,35 @@ struct Message {
 #[allow(clippy::indexing_slicing)]
 impl Message {
     const EMPTY: Self = Self { bytes: [0; 96], length: 0 };
+
+    /// Names the parameter and its range.
+    const fn of(error: ConfigError) -> Self {
+        let message = Self::EMPTY;
+        match error {
+            ConfigError::NotPositive { parameter, .. } => {
+                message.text(parameter).text(" must be above 0 and finite")
+            }
+            ConfigError::Negative { parameter, .. } => {
+                message.text(parameter).text(" must be 0 or more and finite")
+            }
+            ConfigError::NotFinite { parameter, .. } => {
+                message.text(parameter).text(" must be finite")
+            }
+            ConfigError::OutOfRange { parameter, min, max, .. } => {
+                message.text(parameter).text(" must lie in ").number(min).text("..=").number(max)
+            }
+            ConfigError::NotRising { parameter, index, .. } => message
+                .text(parameter)
+                .text(" must rise strictly; see number ")
+                .integer(index as u64),
+            ConfigError::AllZero { parameter } => {
+                message.text(parameter).text(" are all 0; at least one must not be")
+            }
+            ConfigError::TooFewSamples { needed, .. } => {
+                message.text("a calibration needs samples, at least ").integer(needed as u64)
+            }
+        }
+    }
 
     const fn byte(mut self, byte: u8) -> Self {
         if self.length < self.bytes.len() {
@@ -82,7 +90,8 @@ impl Message {
         self
     }
 
-    /// Up to four digits, with a power of ten where the number is large or small.
+    /// Up to six digits, which tell the end of a range from the next whole number, with a power of ten where the
+    /// number is large or small.
     const fn number(mut self, value: f32) -> Self {
         if value < 0.0 {
             return self.byte(b'-').number(-value);
@@ -92,17 +101,17 @@ impl Message {
         }
         let mut mantissa = value as f64;
         let mut exponent = 0;
-        while mantissa >= 9.9995 {
+        while mantissa >= 9.999_995 {
             mantissa /= 10.0;
             exponent += 1;
         }
-        while mantissa < 0.999_95 {
+        while mantissa < 0.999_999_5 {
             mantissa *= 10.0;
             exponent -= 1;
         }
-        let mut digits = (mantissa * 1e3 + 0.5) as u64;
-        let mut places = 3;
-        while places > 0 && digits % 10 == 0 {
+        let mut digits = (mantissa * 1e5 + 0.5) as u64;
+        let mut places = 5;
+        while places > 0 && digits.is_multiple_of(10) {
             digits /= 10;
             places -= 1;
         }
@@ -135,7 +144,67 @@ impl Message {
 
 #[cfg(test)]
 mod tests {
-    use super::Message;
+    use super::{ConfigError, Message, unwrap};
+
+    #[test]
+    fn every_message_names_the_parameter_and_its_range() {
+        let (parameter, value) = ("threshold", -0.5);
+        let table = [
+            (ConfigError::NotPositive { parameter, value }, "threshold must be above 0 and finite"),
+            (ConfigError::Negative { parameter, value }, "threshold must be 0 or more and finite"),
+            (ConfigError::NotFinite { parameter, value }, "threshold must be finite"),
+            (
+                ConfigError::OutOfRange { parameter, value, min: 1e-45, max: 1e31 },
+                "threshold must lie in 1.4013e-45..=1e31",
+            ),
+            (
+                ConfigError::OutOfRange { parameter: "floor", value, min: 1.0, max: 10.0 },
+                "floor must lie in 1..=10",
+            ),
+            (
+                ConfigError::NotRising { parameter: "centres", index: 12, value, previous: 0.0 },
+                "centres must rise strictly; see number 12",
+            ),
+            (
+                ConfigError::AllZero { parameter: "filter taps" },
+                "filter taps are all 0; at least one must not be",
+            ),
+            (
+                ConfigError::TooFewSamples { seen: 2, needed: 3 },
+                "a calibration needs samples, at least 3",
+            ),
+            (
+                ConfigError::OutOfRange {
+                    parameter: "sum of the filter taps' magnitudes",
+                    value,
+                    min: 0.0,
+                    max: f32::MAX,
+                },
+                "sum of the filter taps' magnitudes must lie in 0..=3.40282e38",
+            ),
+        ];
+        for (error, text) in table {
+            assert_eq!(Message::of(error).as_str(), text);
+        }
+    }
+
+    #[test]
+    fn what_is_too_long_is_cut() {
+        let parameter = "0123456789_0123456789_0123456789_0123456789_0123456789_0123456789_0123456789_0123456789_0123456789";
+        let message = Message::of(ConfigError::NotFinite { parameter, value: 0.0 });
+        assert_eq!(message.as_str(), &parameter[..96]);
+    }
+
+    #[test]
+    #[should_panic(expected = "step must be above 0 and finite")]
+    fn a_refusal_panics_with_its_message() {
+        unwrap(crate::error::positive("step", -1.0));
+    }
+
+    #[test]
+    fn a_value_passes() {
+        assert_eq!(unwrap(Ok(5)), 5);
+    }
 
     #[test]
     fn numbers() {
@@ -146,8 +215,8 @@ mod tests {
             (1e31, "1e31"),
             (-1e31, "-1e31"),
             (0.5, "5e-1"),
-            (1.0 / 16_384.0, "6.104e-5"),
-            (4.0 - 1.0 / 16_384.0, "4"),
+            (1.0 / 16_384.0, "6.10352e-5"),
+            (4.0 - 1.0 / 16_384.0, "3.99994"),
             (2.25, "2.25"),
         ] {
             assert_eq!(Message::EMPTY.number(value).as_str(), text);

@@ -8,8 +8,8 @@ pub(crate) trait Arithmetic: Sized {
 
     fn is_finite(&self) -> bool;
 
-    /// Takes up a sample, so that whether all of a slice were finite can be asked once at its end: a
-    /// sum in `f32`, which no later sample makes finite again; nothing in fixed point.
+    /// Adds a sample to a sum that only says whether all samples of a slice were finite: one check at the end
+    /// replaces one a sample. A sum in `f32` that is not finite stays so; fixed point is always finite.
     fn taint(self, sample: Self) -> Self;
 
     /// `self + step`.

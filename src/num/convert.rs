@@ -1,7 +1,7 @@
-//! Samples to doubles and back, also in constants.
+//! Converts samples to doubles and back, at run time and at compile time.
 //!
-//! Trait methods cannot be called in constants. These functions are generic all the same: they look at the
-//! sample's bytes, which is safe for plain old data, and at its [`SampleKind`].
+//! Constants cannot call trait methods. These functions read the bytes of the sample, which is plain old data,
+//! and its [`SampleKind`] instead.
 
 use bytemuck::{Pod, must_cast_slice};
 
@@ -37,8 +37,9 @@ pub(crate) const fn units<S: Sample>(value: S) -> f64 {
 pub(crate) const fn from_f64<S: Sample>(value: f64) -> S {
     match S::KIND {
         SampleKind::F32 => word((value as f32).to_bits() as u64),
-        SampleKind::Fixed16 { fraction } => integer(round(value * power_of_two(fraction))),
-        SampleKind::Fixed32 { fraction } => integer(round(value * power_of_two(fraction))),
+        SampleKind::Fixed16 { fraction } | SampleKind::Fixed32 { fraction } => {
+            integer(round(value * power_of_two(fraction)))
+        }
     }
 }
 
@@ -50,14 +51,15 @@ pub(crate) const fn floor_from_f64<S: Sample>(value: f64) -> S {
             let floor = if nearest as f64 > value { nearest.next_down() } else { nearest };
             word(floor.to_bits() as u64)
         }
-        SampleKind::Fixed16 { fraction } => integer(floor(value * power_of_two(fraction))),
-        SampleKind::Fixed32 { fraction } => integer(floor(value * power_of_two(fraction))),
+        SampleKind::Fixed16 { fraction } | SampleKind::Fixed32 { fraction } => {
+            integer(floor(value * power_of_two(fraction)))
+        }
     }
 }
 
 /// The number of 2, 4 or 8 bytes with these low bits.
 pub(crate) const fn word<T: Pod>(bits: u64) -> T {
-    // Wherever the machine keeps the low half of a word, it is there.
+    // Repeated, so that the first bytes hold the number on machines of either byte order.
     let filled = match size_of::<T>() {
         2 => {
             let half = bits & 0xffff;

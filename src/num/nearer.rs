@@ -1,5 +1,8 @@
 //! Arithmetic of BSA: whether taps bring residuals nearer to zero.
 
+// A decision and the subtraction after it share what they load only where both are inlined.
+#![allow(clippy::inline_always)]
+
 use super::Ratio;
 
 /// Compares `e1 = sum |residual - tap|` with `e2 = sum |residual|` over pairs.

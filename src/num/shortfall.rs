@@ -1,5 +1,8 @@
 //! Arithmetic of T-HSA: by how much residuals fall short of their taps.
 
+// A decision and the subtraction after it share what they load only where both are inlined.
+#![allow(clippy::inline_always)]
+
 /// Sums up `max(0, tap - residual)` over pairs.
 pub(crate) trait Shortfall: Sized {
     /// Whether the sum over residuals, each with its tap, is at most the threshold.

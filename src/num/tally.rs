@@ -7,7 +7,7 @@ use super::Sample;
 pub(crate) struct Tally(u32);
 
 impl Tally {
-    /// Nothing seen, nothing rejected.
+    /// No sample seen and none rejected.
     pub(crate) const NONE: Self = Self(0);
 
     const PRIMED: u32 = 1;
@@ -28,11 +28,11 @@ impl Tally {
         self.0 = self.0.checked_add(Self::ONE).unwrap_or(self.0);
     }
 
-    /// The last of these values, from which an encoder is primed. A value that is not finite counts as
-    /// rejected, and there is none then.
+    /// Returns the last of these values, from which an encoder is primed. A value that is not finite is counted
+    /// as rejected, and `None` returned.
     pub(crate) fn last_of<S: Sample>(&mut self, past: &[S]) -> Option<S> {
         let last = past.last().copied()?;
-        if past.iter().all(S::is_finite) {
+        if last.is_finite() {
             self.prime();
             Some(last)
         } else {

@@ -146,7 +146,7 @@ impl Windowed for f32 {
 
     #[inline]
     fn close_block(ring: &mut [f32], partial: &mut f32) {
-        // -0 is the only value that leaves every other as it is.
+        // Adding -0 changes no value; adding 0 would turn -0 into 0.
         let mut to_the_end = -0.0;
         for slot in ring.iter_mut().rev() {
             to_the_end += *slot;

@@ -1,4 +1,4 @@
-//! What a scheme needs to know about a signal before it flies.
+//! Minimum, maximum and differences of a signal, from which the parameters of a scheme follow.
 
 use crate::error::finite;
 use crate::{ConfigError, Sample};
@@ -6,8 +6,12 @@ use crate::{ConfigError, Sample};
 /// Watches a signal one sample at a time and gives the quantities that the paper takes from a whole
 /// recording.
 ///
-/// Sums are taken in double precision, in software where the core has no such unit: run it before
-/// arming. A sample that is not finite is counted and ignored. Memory: 48 bytes in `f32`.
+/// - **Work:** sums are taken in double precision, in software where the core has no such unit: run it
+///   before arming.
+/// - **Range:** it takes up 2³²-1 finite samples, 49 days at 1 kHz. Later ones are counted and change nothing, so
+///   that every quantity is that of the samples [seen](Self::seen).
+/// - **Rejected samples:** a sample that is not finite is counted and changes nothing.
+/// - **Memory:** 48 bytes in `f32`.
 ///
 /// ```
 /// use spikewire::{Calibration, temporal::TemporalContrast};
@@ -34,6 +38,7 @@ pub struct Calibration<S> {
     min: S,
     max: S,
     seen: u32,
+    ignored: u32,
     rejected: u32,
     sum: f64,
     sum_of_magnitudes: f64,
@@ -77,13 +82,14 @@ impl<S: Sample> Default for Calibration<S> {
 }
 
 impl<S: Sample> Calibration<S> {
-    /// A calibration that has seen nothing.
+    /// A calibration before its first sample.
     pub fn new() -> Self {
         Self {
             previous: S::ZERO,
             min: S::ZERO,
             max: S::ZERO,
             seen: 0,
+            ignored: 0,
             rejected: 0,
             sum: 0.0,
             sum_of_magnitudes: 0.0,
@@ -97,6 +103,10 @@ impl<S: Sample> Calibration<S> {
             self.rejected = self.rejected.saturating_add(1);
             return;
         }
+        let Some(seen) = self.seen.checked_add(1) else {
+            self.ignored = self.ignored.saturating_add(1);
+            return;
+        };
         if self.seen == 0 {
             self.min = sample;
             self.max = sample;
@@ -113,7 +123,7 @@ impl<S: Sample> Calibration<S> {
             self.max = sample;
         }
         self.previous = sample;
-        self.seen = self.seen.saturating_add(1);
+        self.seen = seen;
     }
 
     /// The smallest sample: the `shift` of the rate codes. `None` before the first.
@@ -126,12 +136,17 @@ impl<S: Sample> Calibration<S> {
         (self.seen > 0).then_some(self.max)
     }
 
-    /// How many finite samples it has seen.
+    /// How many finite samples it has taken up, to 2³²-1.
     pub fn seen(&self) -> u32 {
         self.seen
     }
 
-    /// How many samples were not finite.
+    /// How many finite samples came after those, up to 2³²-1. They changed nothing.
+    pub fn ignored(&self) -> u32 {
+        self.ignored
+    }
+
+    /// How many samples were not finite, up to 2³²-1.
     pub fn rejected(&self) -> u32 {
         self.rejected
     }
@@ -158,5 +173,51 @@ impl<S: Sample> Calibration<S> {
             return Err(ConfigError::TooFewSamples { seen: self.seen, needed: NEEDED });
         }
         Ok(self.seen - 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Calibration, Differences};
+
+    /// A calibration of a signal that rises and falls by 10, as it is after this many samples.
+    fn after(seen: u32) -> Calibration<f32> {
+        let differences = f64::from(seen - 1);
+        Calibration {
+            previous: 0.0,
+            min: 0.0,
+            max: 10.0,
+            seen,
+            ignored: 0,
+            rejected: 0,
+            sum: 0.0,
+            sum_of_magnitudes: 10.0 * differences,
+            sum_of_squares: 100.0 * differences,
+        }
+    }
+
+    #[test]
+    fn the_means_stay_where_the_count_ends() {
+        let mut calibration = after(u32::MAX - 2);
+        for (sample, seen, ignored) in [
+            (10.0, u32::MAX - 1, 0),
+            (0.0, u32::MAX, 0),
+            (10.0, u32::MAX, 1),
+            (f32::NAN, u32::MAX, 1),
+            (1e9, u32::MAX, 2),
+            (-1e9, u32::MAX, 3),
+        ] {
+            calibration.observe(sample);
+            assert_eq!((calibration.seen(), calibration.ignored()), (seen, ignored), "{sample}");
+            let expected = Differences { mean: 10.0, deviation: 0.0 };
+            assert_eq!(calibration.magnitudes(), Ok(expected), "{sample}");
+            let is_level = calibration.differences().is_ok_and(|level| level.mean.abs() < 1e-8);
+            assert!(is_level, "{sample}");
+            assert_eq!((calibration.min(), calibration.max()), (Some(0.0), Some(10.0)));
+        }
+        assert_eq!(calibration.rejected(), 1);
+        calibration.ignored = u32::MAX;
+        calibration.observe(0.0);
+        assert_eq!(calibration.ignored(), u32::MAX);
     }
 }

@@ -7,12 +7,12 @@ use crate::Sample;
 
 /// A coding scheme: checked parameters, plain data, in a `const` or a `static`.
 ///
-/// It owns its taps, centres and thresholds. What changes with a sample is a state without parameters, so
-/// that any number of channels share one scheme. [`Encoder`] and [`Decoder`] are a reference to the scheme
+/// A scheme owns its taps, centres and thresholds. What changes from sample to sample is a state apart, so that
+/// any number of channels share one scheme. [`Encoder`] and [`Decoder`] are a reference to the scheme
 /// and a state; made by one scheme, they cannot disagree on a parameter.
 ///
-/// Encoding cannot fail and never panics. A sample that is not finite emits nothing, leaves the state as it
-/// was and is counted.
+/// Encoding cannot fail and never panics. A sample that is not finite emits no spike and is counted; the state
+/// stays otherwise as it was.
 pub trait Scheme: Sized {
     /// The numbers it works on.
     type Sample: Sample;
@@ -52,7 +52,8 @@ pub trait Scheme: Sized {
     }
 
     /// Lets an encoder start from the samples before the first, oldest first, as far as it looks back.
-    /// A past with a value that is not finite is counted as one rejected sample and ignored.
+    /// If one of the samples it looks back on is not finite, the past counts as one rejected sample and is
+    /// ignored.
     fn prime(&self, _state: &mut Self::EncoderState, _past: &[Self::Sample]) {}
 
     /// The value that a decoder should hold now, for a keyframe on a link that may lose spikes.
@@ -65,7 +66,7 @@ pub trait Scheme: Sized {
     /// How many samples were not finite, up to 2³¹-1.
     fn rejected(state: &Self::EncoderState) -> u32;
 
-    /// The state of a decoder that has decoded nothing.
+    /// The state of a decoder before its first code.
     fn decoder_state(&self) -> Self::DecoderState;
 
     /// Takes the code of one sample and gives its value.
@@ -114,9 +115,10 @@ pub trait Scheme: Sized {
     }
 }
 
-/// A scheme whose encoder needs nothing but its parameters: all but those that draw from a generator.
+/// A scheme whose encoder starts from its parameters alone. Only `Probabilistic`, which draws from a generator,
+/// is not one.
 pub trait Start: Scheme<EncoderState: Copy> {
-    /// The state of an encoder that has seen nothing.
+    /// The state of an encoder before its first sample.
     const START: Self::EncoderState;
 }
 
@@ -135,7 +137,7 @@ pub enum Recovery {
 /// Turns samples into spikes, one sample at a time: a reference to a scheme, and a state.
 pub struct Encoder<'a, P: Scheme> {
     scheme: &'a P,
-    state: P::EncoderState,
+    pub(super) state: P::EncoderState,
 }
 
 impl<P: Scheme<EncoderState: Clone>> Clone for Encoder<'_, P> {
@@ -204,7 +206,8 @@ impl<'a, P: Scheme> Encoder<'a, P> {
 
     /// Starts from the samples before the first, oldest first: for temporal contrast and step forward the
     /// last of them, for a moving window its whole window. Without, the encoder starts from the first
-    /// sample. A past with a value that is not finite is counted as one rejected sample and ignored.
+    /// sample. If one of the samples it looks back on is not finite, the past counts as one rejected sample
+    /// and is ignored.
     pub fn prime(&mut self, past: &[P::Sample]) {
         self.scheme.prime(&mut self.state, past);
     }
@@ -251,9 +254,19 @@ impl<P: Scheme> Debug for Decoder<'_, P> {
 }
 
 impl<'a, P: Scheme> Decoder<'a, P> {
+    /// A decoder that goes on from this state.
+    pub const fn with_state(scheme: &'a P, state: P::DecoderState) -> Self {
+        Self { scheme, state }
+    }
+
     /// The scheme.
     pub const fn scheme(&self) -> &'a P {
         self.scheme
+    }
+
+    /// The state.
+    pub const fn state(&self) -> &P::DecoderState {
+        &self.state
     }
 
     /// Takes the code of one sample and gives its value.

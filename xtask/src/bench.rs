@@ -3,53 +3,36 @@
 mod baseline;
 mod code;
 mod events;
+mod figures;
+mod measured;
 mod table;
 
 use crate::{
     boards::{BOARDS, Board},
-    firmware, paths, qemu, setup, shell,
+    image, needs, qemu,
+    usage::usage,
 };
 use anyhow::{Context, Result, bail};
 use code::Code;
 use events::Event;
+use figures::{CORES, Row, mean};
+use measured::Measured;
 use serde::{Deserialize, Serialize};
-use std::{
-    path::{Path, PathBuf},
-    thread,
-};
+use std::{path::Path, thread};
 
 const USAGE: &str = "\
-cargo bench-target [events] [CORE]... [--json | --markdown | --write FILE | --baseline]
+cargo bench-target [events] [CORE]... [--json | --markdown | --write | --baseline]
 
   events        not the codecs: only what an event costs in queue, links, formats and chips' words
   CORE          M0, M3, M4F, M7 or M33; all, if none is named
   --json        every figure, as an array of objects; those of an event have the kind `event`
-  --markdown    the README's tables
-  --write FILE  puts those tables into FILE, between their markers
+  --markdown    the tables of docs/costs.md
+  --write       puts those tables into docs/costs.md, and the short one into README.md
   --baseline    makes these counts the ones that `cargo verify` compares with";
 
 /// The programs that count codecs, and the one that counts events.
 const SAMPLES: [&str; 4] = ["f32", "q16_16", "q8_8", "i16"];
 const EVENTS: &str = "events";
-
-/// What one form of one direction of a codec costs; instructions are those of a sample.
-#[derive(Serialize)]
-pub struct Row {
-    codec: String,
-    direction: String,
-    sample: String,
-    core: &'static str,
-    form: String,
-    signal: String,
-    instructions_mean: f64,
-    instructions_max: u32,
-    /// Of the plain transcription; null where there is none.
-    plain_mean: Option<f64>,
-    code_bytes: u32,
-    state_bytes: u32,
-    flash_bytes: u32,
-    stack_bytes: u32,
-}
 
 /// A line that the firmware prints.
 #[derive(Deserialize)]
@@ -70,14 +53,6 @@ struct Printed {
     stack: u32,
 }
 
-/// The figures, and the compiler that they are of.
-#[derive(Default)]
-struct Measured {
-    rows: Vec<Row>,
-    events: Vec<Event>,
-    rustc: String,
-}
-
 pub fn bench(args: &[String]) -> Result<()> {
     let options: Vec<&str> = args.iter().map(String::as_str).collect();
     let named = options.iter().take_while(|arg| !arg.starts_with('-')).count();
@@ -86,18 +61,18 @@ pub fn bench(args: &[String]) -> Result<()> {
         [EVENTS, cores @ ..] => (&[EVENTS], cores),
         cores => (&[], cores),
     };
-    let tables = || measure(programs, &table::CORES);
+    needs::ensure_met()?;
+    let tables = || measure(programs, &CORES);
     match *output {
         [] => {
-            setup::setup()?;
             let Measured { rows, events, .. } = measure(programs, cores)?;
             print!("{}{}", table::text(&rows), events::text(&events));
         }
         ["--json"] => println!("{}", json(&measure(programs, cores)?)?),
         ["--markdown"] => print!("{}", table::markdown(&tables()?)?),
-        ["--write", file] => table::write(&tables()?, Path::new(file))?,
+        ["--write"] => table::write(&tables()?)?,
         ["--baseline"] => baseline::write(&measure(&[], &baseline::CORES)?)?,
-        _ => bail!("{USAGE}"),
+        _ => return Err(usage(USAGE.into())),
     }
     Ok(())
 }
@@ -130,10 +105,9 @@ fn measure(programs: &[&str], cores: &[&str]) -> Result<Measured> {
     thread::scope(|scope| {
         let mut runs = Vec::new();
         for board in boards {
-            eprintln!("Building and running on {} ({}).", board.core, board.machine);
-            let built = build(board)?;
+            let images = image::build_all("bench-target", &programs, board)?;
             for &program in &programs {
-                let image = built.with_file_name(program);
+                let image = images.join(program);
                 runs.push(scope.spawn(move || {
                     let printed = qemu::run_counting(board, &image)?;
                     read(board, program, &image, &printed)
@@ -163,19 +137,6 @@ fn boards(cores: &[&str]) -> Result<Vec<&'static Board>> {
     cores.iter().map(named).collect()
 }
 
-/// Builds the programs, which lie beside what is returned.
-fn build(board: &Board) -> Result<PathBuf> {
-    let directory = paths::thumb_target().join("bench").join(board.machine);
-    let (mut cargo, built) = firmware::building("bench-target", board, &directory)?;
-    // Names that tell Rust's functions from the runtime's; and no debug information, which takes time.
-    cargo
-        .env("RUSTFLAGS", format!("-C target-cpu={} -C symbol-mangling-version=v0", board.cpu))
-        .env("CARGO_PROFILE_RELEASE_DEBUG", "0")
-        .env("TICKS_PER_GIGAINSTRUCTION", board.ticks_per_gigainstruction().to_string());
-    shell::output(&mut cargo).with_context(|| format!("for {}", board.machine))?;
-    Ok(built)
-}
-
 fn read(board: &Board, program: &str, image: &Path, printed: &str) -> Result<Measured> {
     let rustc = code::compiler(image)?;
     if program == EVENTS {
@@ -203,9 +164,4 @@ fn read(board: &Board, program: &str, image: &Path, printed: &str) -> Result<Mea
     };
     let rows = printed.lines().map(row).collect::<Result<Vec<_>>>()?;
     Ok(Measured { rows, rustc, events: Vec::new() })
-}
-
-/// To a thousandth, or some would have 16 digits.
-fn mean(total: u32, count: u32) -> f64 {
-    (f64::from(total) / f64::from(count) * 1000.0).round() / 1000.0
 }

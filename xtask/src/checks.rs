@@ -1,11 +1,13 @@
 //! The steps of `cargo verify`, one function each; `verify.rs` lists them.
 
 use crate::{
-    paths, setup,
-    shell::{cargo, output, run, spikewire},
-    toolchain::{TARGETS, cargo_for},
+    boards::BOARDS,
+    host::{features, spikewire, tests},
+    image, paths, setup,
+    shell::{cargo, output, run},
+    toolchain::{TARGETS, cargo_for_each},
 };
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use std::fs;
 
 pub fn setup() -> Result<()> {
@@ -17,17 +19,13 @@ pub fn fmt() -> Result<()> {
     run(&mut cargo("fmt --all --check --manifest-path examples/Cargo.toml"))
 }
 
+/// The tests need all that is linted here, compiled. Firmware is linted where it is built: `lints` has it all at once.
 pub fn clippy() -> Result<()> {
-    run(&mut cargo("clippy --workspace --all-targets --all-features -- -D warnings"))?;
-    let firmware = "clippy --workspace --manifest-path examples/Cargo.toml";
-    run(cargo(firmware).args(["--", "-D", "warnings"]))?;
-    // One core stands for all: the firmware's source has no conditions on the core.
-    run(cargo_for("thumbv7em-none-eabihf", firmware)?.args(["--", "-D", "warnings"]))
+    run(&mut tests("--no-run")?)
 }
 
 pub fn test() -> Result<()> {
-    run(&mut cargo("test --workspace"))?;
-    run(&mut cargo("test --package spikewire --all-features")) // the crate's own tests and doctests, every feature on
+    run(&mut tests("")?)
 }
 
 pub fn peers() -> Result<()> {
@@ -36,7 +34,7 @@ pub fn peers() -> Result<()> {
 
 /// The README is the documentation of an item named `Readme`, which exists for doctests only.
 pub fn readme() -> Result<()> {
-    let said = output(&mut cargo("test --package spikewire --doc --all-features -- Readme"))?;
+    let said = output(&mut tests("--doc -- Readme")?)?;
     print!("{said}");
     ensure!(
         said.contains(" - Readme (line "),
@@ -50,33 +48,37 @@ pub fn doc() -> Result<()> {
         .env("RUSTDOCFLAGS", "-D warnings"))
 }
 
-pub fn features() -> Result<()> {
+pub fn each_feature() -> Result<()> {
     run(&mut cargo("check --package spikewire --no-default-features"))?;
-    for feature in feature_names()? {
+    for feature in features()? {
         run(cargo("check --package spikewire --no-default-features --features").arg(feature))?;
     }
     Ok(())
 }
 
+/// The firmware is compiled to the end elsewhere; here it is about every feature on every core.
 pub fn targets() -> Result<()> {
-    for target in TARGETS {
-        run(&mut cargo_for(target, "build --package spikewire --no-default-features")?)?;
-        run(&mut cargo_for(target, "build --package spikewire --all-features")?)?;
+    for features in ["--no-default-features", "--all-features"] {
+        let check = format!("check --package spikewire {features}");
+        for mut cargo in cargo_for_each(&TARGETS, &check)? {
+            run(&mut cargo)?;
+        }
     }
     Ok(())
 }
 
-/// The program has no panic handler: one path to a panic that the compiler cannot rule out, and it does not link.
+/// The program has no panic handler: one path to a panic that the compiler cannot rule out, and it does not link. It
+/// links with overflow checks too: no arithmetic can overflow unnoticed in a release build, or panic in a debug build.
 pub fn no_panic() -> Result<()> {
-    for target in ["thumbv6m-none-eabi", "thumbv7em-none-eabihf"] {
-        let build = "build --release --manifest-path examples/Cargo.toml --package no-panic";
-        run(&mut cargo_for(target, build)?)?;
+    for board in BOARDS.iter().filter(|board| ["M0", "M4F"].contains(&board.core)) {
+        image::build("no-panic", board)?;
+        image::link_checked("no-panic", board)?;
     }
     Ok(())
 }
 
 pub fn demo() -> Result<()> {
-    crate::demo::demo(&[])
+    crate::demo::fly(image::build)
 }
 
 pub fn firmware() -> Result<()> {
@@ -85,7 +87,7 @@ pub fn firmware() -> Result<()> {
 
 /// The laptop program on the recorded flight, and the paper's tables in full.
 pub fn laptop() -> Result<()> {
-    let spikewire = |args: &str| output(&mut spikewire(args));
+    let spikewire = |args: &str| output(&mut spikewire(args)?);
     let flight = "--column gyro_x data/hexarotor.csv";
     let target = paths::root().join("target");
     fs::create_dir_all(&target)?;
@@ -118,18 +120,4 @@ pub fn laptop() -> Result<()> {
 
 pub fn bench() -> Result<()> {
     crate::bench::verify()
-}
-
-/// The names in Cargo.toml's `[features]`, so that a new feature is checked without a word here.
-fn feature_names() -> Result<Vec<String>> {
-    let manifest = fs::read_to_string(paths::root().join("Cargo.toml"))?;
-    let (_, rest) = manifest.split_once("[features]\n").context("Cargo.toml has no [features]")?;
-    let names = rest
-        .lines()
-        .take_while(|line| !line.starts_with('['))
-        .filter(|line| !line.starts_with('#'))
-        .filter_map(|line| line.split_once(" = "))
-        .map(|(name, _)| name.to_owned())
-        .collect();
-    Ok(names)
 }

@@ -1,29 +1,38 @@
 //! `cargo demo`: real flight data through encoder, emulated flight controller and decoder.
 
 use crate::{
-    boards::BOARDS,
+    boards::{BOARDS, Board},
     firmware,
     flown::{self, Flown},
+    image,
     names::full_name,
     paths, picture, qemu, setup,
     signal::Signal,
+    usage::usage,
 };
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, bail};
+use std::path::PathBuf;
 
 /// The firmware program.
 const PROGRAM: &str = "demo";
 
 pub fn demo(args: &[String]) -> Result<()> {
-    ensure!(args.is_empty(), "`cargo demo` takes no arguments");
+    if !args.is_empty() {
+        return Err(usage("`cargo demo` takes no arguments".into()));
+    }
     println!("=== What this needs");
     setup::setup()?;
+    fly(image::build_unlinted)
+}
 
+/// With an image of the program that `build` makes for a board.
+pub fn fly(build: fn(&str, &Board) -> Result<PathBuf>) -> Result<()> {
     println!("\n=== The flight, in the firmware of an emulated flight controller");
     let board = BOARDS.iter().find(|board| board.core == "M4F").context("no Cortex-M4F")?;
-    let image = firmware::build(PROGRAM, board)?;
+    let image = build(PROGRAM, board)?;
     let flown = flown::parse(&qemu::run(board, &image)?)?;
     let here = flown::parse(&firmware::on_host(PROGRAM)?)?;
-    let signal = Signal::read()?;
+    let signal = Signal::read();
 
     print_table(&signal, &flown, &here);
 

@@ -1,21 +1,19 @@
 //! `cargo xtask firmware`: every example program on every emulated board, compared with the host.
 
 use crate::{
+    bits,
     boards::{BOARDS, Board},
-    markdown, paths, qemu, shell, size, toolchain,
+    host, image, needs, paths, qemu, shell, size,
 };
-use anyhow::{Context, Result, bail, ensure};
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    process::Command,
-    thread,
-};
+use anyhow::{Result, bail, ensure};
+use std::{fs, path::PathBuf, thread};
 
 /// Runs the named programs, or all, and fails if a board prints another line than the host.
 pub fn firmware(names: &[String]) -> Result<()> {
-    if names == ["--markdown"] {
-        return print_markdown("flight-log");
+    needs::ensure_met()?;
+    if names == ["--write"] {
+        let (host, outcomes) = run(bits::PROGRAM)?;
+        return bits::write(&table(&host, &outcomes));
     }
     let all = programs()?;
     let chosen = if names.is_empty() { &all } else { names };
@@ -73,7 +71,8 @@ impl Outcome {
 fn run(program: &str) -> Result<(String, Vec<Outcome>)> {
     let host = on_host(program)?;
     ensure!(!host.is_empty(), "{program} prints nothing on the host");
-    let images = BOARDS.iter().map(|board| build(program, board)).collect::<Result<Vec<_>>>()?;
+    let images =
+        BOARDS.iter().map(|board| image::build(program, board)).collect::<Result<Vec<_>>>()?;
 
     let outcomes = thread::scope(|scope| {
         let runs: Vec<_> = BOARDS
@@ -105,6 +104,9 @@ fn compare(program: &str) -> Result<bool> {
         println!("{:4} {}", board.core, size::of(image, board)?);
     }
     let agree = outcomes.iter().all(|outcome| outcome.agrees(&host));
+    if program == bits::PROGRAM {
+        bits::ensure_written(&table(&host, &outcomes))?;
+    }
     if agree {
         let (lines, boards) = (host.lines().count(), outcomes.len());
         println!("Every bit agrees: {lines} lines, host and {boards} boards.");
@@ -112,49 +114,17 @@ fn compare(program: &str) -> Result<bool> {
     Ok(agree)
 }
 
-fn print_markdown(program: &str) -> Result<()> {
-    let (host, outcomes) = run(program)?;
-    let marks = |line: &str| {
+/// Spike counts and what agrees, for the page of bits.
+fn table(host: &str, outcomes: &[Outcome]) -> String {
+    bits::table(host, |line| {
         let marks: Vec<_> = outcomes.iter().map(|outcome| outcome.mark(line)).collect();
         marks.join(" ")
-    };
-    let cores: Vec<_> = outcomes.iter().map(|outcome| outcome.board.core).collect();
-    println!(
-        "\nSpikes on the host, then {}: `=` where every spike and decoded bit is the host's.\n",
-        cores.join(" ")
-    );
-    print!("{}", markdown::table(&host, marks));
-    Ok(())
+    })
 }
 
 /// What the program prints on the host.
 pub fn on_host(program: &str) -> Result<String> {
-    let mut cargo = shell::cargo("run --quiet --release --manifest-path examples/Cargo.toml");
-    cargo.args(["--package", program]);
-    shell::output(&mut cargo)
-}
-
-/// Builds the program for the board and returns the image.
-pub fn build(program: &str, board: &Board) -> Result<PathBuf> {
-    // A directory for each board: two of them share a target, not a memory map.
-    let directory = paths::thumb_target().join(board.machine);
-    let (mut cargo, image) = building(program, board, &directory)?;
-    shell::run(&mut cargo).with_context(|| format!("{program} for {}", board.machine))?;
-    Ok(image)
-}
-
-/// What builds the program for the board in this directory, and the image that comes of it.
-pub fn building(program: &str, board: &Board, directory: &Path) -> Result<(Command, PathBuf)> {
-    let mut cargo = toolchain::cargo_for(
-        board.target,
-        "build --quiet --release --manifest-path examples/Cargo.toml",
-    )?;
-    cargo
-        .args(["--package", program])
-        .env("CARGO_TARGET_DIR", directory)
-        .env("BOARD", board.machine)
-        .env("RUSTFLAGS", format!("-C target-cpu={}", board.cpu));
-    Ok((cargo, directory.join(board.target).join("release").join(program)))
+    shell::output(&mut shell::command(host::example(program)?))
 }
 
 /// One row for each of the host's lines, one column for each board.

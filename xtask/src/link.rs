@@ -1,6 +1,6 @@
 //! `cargo verify link`: a flight over a serial line, from a board's interrupt to values on the host.
 
-use crate::{boards::BOARDS, firmware, paths, qemu, shell};
+use crate::{boards::BOARDS, host, image, paths, qemu, shell};
 use anyhow::{Context, Result, bail, ensure};
 use std::{fs, fs::File};
 
@@ -12,7 +12,7 @@ const LISTEN: &str = "listen --scheme sf --thresholds 0.1,0.1,0.1,0.5,0.5,0.5";
 pub fn link() -> Result<()> {
     let board = BOARDS.iter().find(|board| board.machine == "netduinoplus2");
     let board = board.context("no board with the UART that the program knows")?;
-    let image = firmware::build("link-uart", board)?;
+    let image = image::build("link-uart", board)?;
     let captured = paths::target().join("link-uart.bytes");
     let sent = qemu::run_capturing(board, &image, &captured)?;
     print!("board:\n{sent}");
@@ -22,8 +22,8 @@ pub fn link() -> Result<()> {
         "the board lost events or bytes"
     );
 
-    let heard = shell::output(shell::spikewire(LISTEN).arg(&captured))?;
-    let piped = shell::output(shell::spikewire(LISTEN).stdin(File::open(&captured)?))?;
+    let heard = shell::output(host::spikewire(LISTEN)?.arg(&captured))?;
+    let piped = shell::output(host::spikewire(LISTEN)?.stdin(File::open(&captured)?))?;
     ensure!(heard == piped, "a file and standard input give different values");
     let decoded = digest(&heard)?;
     println!("host:\n{decoded}");

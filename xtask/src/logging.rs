@@ -1,6 +1,6 @@
 //! `cargo verify logging`: what emulated boards log by defmt, decoded on the host.
 
-use crate::{boards::BOARDS, firmware, paths, qemu, shell};
+use crate::{boards::BOARDS, host, image, paths, qemu, shell};
 use anyhow::{Context, Result, ensure};
 use std::fs::{self, File};
 
@@ -13,12 +13,12 @@ pub fn logging() -> Result<()> {
     let expected = paths::examples().join("logging/expected.txt");
     let expected = fs::read_to_string(&expected).with_context(|| expected.display().to_string())?;
     for board in BOARDS.iter().filter(|board| CORES.contains(&board.core)) {
-        let image = firmware::build(PROGRAM, board)?;
+        let image = image::build(PROGRAM, board)?;
         let said = paths::target().join(format!("logging-{}.defmt", board.machine));
         fs::write(&said, qemu::run_bytes(board, &image)?)?;
 
-        let mut decoder = shell::cargo("run --quiet --release --manifest-path examples/Cargo.toml");
-        decoder.args(["--package", PROGRAM, "--"]).arg(&image).stdin(File::open(&said)?);
+        let mut decoder = shell::command(host::example(PROGRAM)?);
+        decoder.arg(&image).stdin(File::open(&said)?);
         let log = shell::output(&mut decoder)?;
         ensure!(log == expected, "{} logs\n{log}and should log\n{expected}", board.core);
         println!("{}: {} lines, as they should be", board.core, log.lines().count());

@@ -1,55 +1,71 @@
 //! Set-up and checks. `cargo xtask` lists the commands.
 
 mod bench;
+mod bits;
 mod boards;
 mod checks;
+mod core_library;
+mod cpu;
 mod demo;
 mod distribution;
 mod firmware;
 mod flown;
+mod host;
+mod image;
 mod link;
 mod logging;
+mod long;
 mod markdown;
+#[cfg(test)]
+mod modules;
 mod names;
+mod needs;
+mod package;
 mod packages;
 mod parts;
 mod paths;
 mod peers;
 mod picture;
+mod progress;
 mod qemu;
+mod recipe;
 mod setup;
 mod shell;
 mod signal;
 mod size;
 mod storm;
 mod toolchain;
+mod usage;
 mod verify;
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use std::{env, process::ExitCode};
+use usage::{Usage, usage};
 
 const USAGE: &str = "\
 cargo xtask <command>
 
   setup                 compiler targets, QEMU and binutils for Cortex-M; does only what is missing
   firmware [PROGRAM]... runs the example programs on every emulated board and compares with the host
-  firmware --markdown   the same for flight-log alone, as a table for the README
+  firmware --write      puts the spike counts of flight-log, and which bits agree, into docs/bits.md
   demo                  real flight data through encoder, emulated flight controller and decoder
   bench-target          what every codec costs on every emulated board, in instructions and bytes
-  verify [STEP]...      every check, or the named ones; `cargo verify --list` names them
+  verify [STEP]...      every check, or the named ones; `cargo verify --help` lists them
 
-`cargo demo`, `cargo bench-target` and `cargo verify` are short for the last three.";
+`cargo demo`, `cargo bench-target` and `cargo verify` are short for the last three. Only `setup` acts as root or
+removes directories; `demo` and `verify` begin with it. It says what it does.";
 
 fn main() -> ExitCode {
     let mut args = env::args().skip(1);
     let command = args.next().unwrap_or_default();
     let rest: Vec<String> = args.collect();
 
+    progress::watch();
     match run(&command, &rest) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error:#}");
-            ExitCode::FAILURE
+            if error.is::<Usage>() { ExitCode::from(2) } else { ExitCode::FAILURE }
         }
     }
 }
@@ -65,6 +81,6 @@ fn run(command: &str, args: &[String]) -> Result<()> {
             println!("{USAGE}");
             Ok(())
         }
-        other => bail!("no command `{other}`\n\n{USAGE}"),
+        other => Err(usage(format!("no command `{other}`\n\n{USAGE}"))),
     }
 }

@@ -1,39 +1,14 @@
-//! The table of bits that agree, as it stands in the README.
+//! Tables in pages, between two comments.
 
-use crate::names::full_name;
+use anyhow::{Context, Result};
 
-/// One row for each scheme, one column for each sample type. A cell is the host's spike count, then a mark for
-/// each board. The lines are those of `flight-log`: `sf f32 spikes=2074 …`.
-pub fn table(host: &str, marks: impl Fn(&str) -> String) -> String {
-    let schemes = distinct(host, 0);
-    let samples = distinct(host, 1);
-    let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-
-    let heads = ["scheme"].iter().chain(&samples).map(ToString::to_string);
-    let rule = vec!["---".to_owned(); 1 + samples.len()];
-    let body = schemes.iter().map(|scheme| {
-        let cells = samples.iter().map(|sample| {
-            let start = format!("{scheme} {sample} spikes=");
-            let cell = host.lines().find_map(|line| {
-                let spikes = line.strip_prefix(&start)?.split(' ').next()?;
-                Some(format!("{spikes} {}", marks(line)))
-            });
-            cell.unwrap_or_default()
-        });
-        row([full_name(scheme).to_owned()].into_iter().chain(cells).collect())
-    });
-    [row(heads.collect()), row(rule)].into_iter().chain(body).collect()
-}
-
-/// The words at one place of the lines, each once.
-fn distinct(lines: &str, place: usize) -> Vec<&str> {
-    let mut words = Vec::new();
-    for word in lines.lines().filter_map(|line| line.split(' ').nth(place)) {
-        if !words.contains(&word) {
-            words.push(word);
-        }
-    }
-    words
+/// The page with the table in the place of what stood between its markers.
+pub fn between(page: &str, marker: &str, table: &str) -> Result<String> {
+    let (start, end) = (format!("<!-- {marker} -->\n"), format!("<!-- /{marker} -->"));
+    let missing = || format!("no `{}` … `{end}`", start.trim_end());
+    let (before, rest) = page.split_once(&start).with_context(missing)?;
+    let (_, after) = rest.split_once(&end).with_context(missing)?;
+    Ok(format!("{before}{start}{table}{end}{after}"))
 }
 
 #[cfg(test)]
@@ -41,15 +16,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn schemes_in_rows_and_samples_in_columns() {
-        let host =
-            "sf f32 spikes=7 x\nhsa f32 spikes=8 x\nsf i16 spikes=9 x\nhsa i16 spikes=10 x\n";
-        let marks = |line: &str| if line.contains("=8") { "= DIFF" } else { "= =" }.to_owned();
-        let expected = "\
-            | scheme | f32 | i16 |\n\
-            | --- | --- | --- |\n\
-            | step forward (SF) | 7 = = | 9 = = |\n\
-            | Hough spiker (HSA) | 8 = DIFF | 10 = = |\n";
-        assert_eq!(table(host, marks), expected);
+    fn only_what_is_between_the_markers_changes() {
+        let page = "a\n<!-- x -->\nold\n<!-- /x -->\nb\n<!-- x y -->\n<!-- /x y -->\n";
+        let new = "a\n<!-- x -->\nnew\n<!-- /x -->\nb\n<!-- x y -->\n<!-- /x y -->\n";
+        assert_eq!(between(page, "x", "new\n").unwrap(), new);
+        assert!(between("a", "x", "new\n").is_err());
     }
 }

@@ -4,30 +4,22 @@ use crate::shell;
 use anyhow::{Context, Result, bail};
 use std::process::Command;
 
-/// Installs the package that brings the program, unless the program is there.
-pub fn tool(package: &str, program: &str, why: &str) -> Result<()> {
-    if shell::has(program) {
-        return Ok(());
-    }
-    install(&[package], why)
+/// Those of the packages that are not installed.
+pub fn missing<'a>(packages: &[&'a str]) -> Vec<&'a str> {
+    let is_there = |package: &str| shell::succeeds(shell::command("dpkg").args(["-s", package]));
+    packages.iter().copied().filter(|package| !is_there(package)).collect()
 }
 
-/// Installs the packages that are missing.
-pub fn install(packages: &[&str], why: &str) -> Result<()> {
-    let missing: Vec<&str> = packages
-        .iter()
-        .copied()
-        .filter(|package| !shell::succeeds(shell::command("dpkg").args(["-s", package])))
-        .collect();
+/// Installs the packages that are missing, as root.
+pub fn install(packages: &[&str]) -> Result<()> {
+    let missing = missing(packages);
     if missing.is_empty() {
         return Ok(());
     }
-
     let list = missing.join(" ");
     if !shell::has("apt-get") {
-        bail!("please install what your system calls: {list} ({why})");
+        bail!("please install what your system calls: {list}");
     }
-    println!("Installing from the distribution: {list} ({why}).");
     let by_hand = || format!("please install by hand: apt-get install {list}");
     apt_get("update").with_context(by_hand)?;
     apt_get(&format!("install --yes --no-install-recommends {list}")).with_context(by_hand)
@@ -38,6 +30,7 @@ fn apt_get(args: &str) -> Result<()> {
     let mut apt_get = as_root("env")?;
     apt_get.args(["DEBIAN_FRONTEND=noninteractive", "apt-get", "-qq"]);
     apt_get.args(args.split_whitespace());
+    println!("$ apt-get {args}");
     shell::output(&mut apt_get).map(drop)
 }
 

@@ -1,8 +1,9 @@
 //! Other people's programs, to read what we write and write what we read.
 
 use crate::{
+    host::tests,
     paths,
-    shell::{cargo, command, run},
+    shell::{command, run},
 };
 use anyhow::Result;
 
@@ -16,6 +17,5 @@ pub fn peers() -> Result<()> {
     let install =
         ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"];
     run(command(&python).args(install).arg("host-tests/peers/requirements.txt"))?;
-    let tests = "test --package host-tests --test formats_peers -- --ignored";
-    run(cargo(tests).env("PEERS_PYTHON", &python))
+    run(tests("--test all formats_peers -- --ignored")?.env("PEERS_PYTHON", &python))
 }

@@ -1,6 +1,6 @@
 //! Runs a firmware image on an emulated board.
 
-use crate::{boards::Board, shell};
+use crate::{boards::Board, progress, shell};
 use anyhow::{Context, Result, bail, ensure};
 use std::{
     io::Read,
@@ -18,22 +18,22 @@ const LONG_PATIENCE: Duration = Duration::from_mins(10);
 
 /// Runs the image to its end and returns what it printed. It is an error if it ends badly, or not in time.
 pub fn run(board: &Board, image: &Path) -> Result<String> {
-    run_for(PATIENCE, emulator(board), image)
+    run_for(PATIENCE, board, emulator(board), image)
 }
 
 /// The same of a program that prints something else than text.
 pub fn run_bytes(board: &Board, image: &Path) -> Result<Vec<u8>> {
-    run_to_end(PATIENCE, emulator(board), image)
+    run_to_end(PATIENCE, board, emulator(board), image)
 }
 
 /// The same with a clock that goes by instructions, so that every run is the same.
 pub fn run_repeatably(board: &Board, image: &Path) -> Result<String> {
-    run_for(PATIENCE, counting(board), image)
+    run_for(PATIENCE, board, counting(board), image)
 }
 
 /// The same for a program that counts instructions, and takes its time.
 pub fn run_counting(board: &Board, image: &Path) -> Result<String> {
-    run_for(LONG_PATIENCE, counting(board), image)
+    run_for(LONG_PATIENCE, board, counting(board), image)
 }
 
 /// The same, and what went out of the board's first serial port is kept in the file.
@@ -42,7 +42,7 @@ pub fn run_capturing(board: &Board, image: &Path, serial: &Path) -> Result<Strin
     // Or the monitor takes the console that the serial port leaves.
     emulator.args(["-monitor", "none"]);
     emulator.arg("-serial").arg(format!("file:{}", serial.display()));
-    run_for(PATIENCE, emulator, image)
+    run_for(PATIENCE, board, emulator, image)
 }
 
 fn emulator(board: &Board) -> Command {
@@ -57,11 +57,16 @@ fn counting(board: &Board) -> Command {
     emulator
 }
 
-fn run_for(patience: Duration, emulator: Command, image: &Path) -> Result<String> {
-    Ok(text(&run_to_end(patience, emulator, image)?))
+fn run_for(patience: Duration, board: &Board, emulator: Command, image: &Path) -> Result<String> {
+    Ok(text(&run_to_end(patience, board, emulator, image)?))
 }
 
-fn run_to_end(patience: Duration, mut emulator: Command, image: &Path) -> Result<Vec<u8>> {
+fn run_to_end(
+    patience: Duration,
+    board: &Board,
+    mut emulator: Command,
+    image: &Path,
+) -> Result<Vec<u8>> {
     emulator
         .args(["-semihosting-config", "enable=on,target=native"])
         .arg("-kernel")
@@ -69,6 +74,8 @@ fn run_to_end(patience: Duration, mut emulator: Command, image: &Path) -> Result
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped());
+    let program = image.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let _running = progress::running(format!("{program} on {}", board.core));
     let mut child = emulator
         .spawn()
         .context("qemu-system-arm does not start; `cargo xtask setup` installs it")?;

@@ -1,43 +1,110 @@
-//! `cargo xtask setup`: what a bare machine lacks. It says what it installs and why, and skips what is there.
+//! `cargo xtask setup`: puts there what a machine lacks. It says first what it will do, and leaves what is there.
+//!
+//! Nothing else in this program acts as root or removes directories. `cargo demo` and `cargo verify` begin with it.
 
-use crate::{distribution, packages, shell, toolchain};
+use crate::{
+    core_library, distribution,
+    needs::{Missing, missing},
+    packages, shell,
+};
 use anyhow::Result;
 use std::env;
 
 pub fn setup() -> Result<()> {
-    compiler()?;
-    packages::tool("qemu-system-arm", "qemu-system-arm", "emulates the boards")?;
-    packages::tool(
-        "binutils-arm-none-eabi",
-        "arm-none-eabi-nm",
-        "reads the firmware's size and symbols",
-    )?;
-    println!("Set up: Cortex-M compiler, QEMU, binutils.");
+    let missing = missing()?;
+    if missing.is_empty() {
+        println!("All is there: Cortex-M compiler, QEMU, binutils.");
+        return Ok(());
+    }
+    println!("Missing:\n  {}", missing.lines().join("\n  "));
+    println!("To do:\n  {}", plan(&missing).join("\n  "));
+
+    packages::install(&wanted(&missing))?;
+    if !missing.targets.is_empty() {
+        compiler(&missing.targets)?;
+    }
+    println!("Done: Cortex-M compiler, QEMU, binutils.");
     Ok(())
 }
 
-/// A compiler with a core library for every Cortex-M target.
-fn compiler() -> Result<()> {
-    let mut missing = Vec::new();
-    for target in toolchain::TARGETS {
-        if !toolchain::has_core(target)? {
-            missing.push(target);
+/// With `RUSTUP_AUTO_INSTALL=0` a machine says that rustup must fetch nothing.
+fn rustup_may_fetch() -> bool {
+    shell::has("rustup") && env::var("RUSTUP_AUTO_INSTALL").as_deref() != Ok("0")
+}
+
+/// The packages that bring it, installed or not.
+fn wanted(missing: &Missing) -> Vec<&'static str> {
+    let mut wanted: Vec<_> = missing.tools.iter().map(|tool| tool.package).collect();
+    if !missing.targets.is_empty() && !rustup_may_fetch() {
+        wanted.extend(distribution::PACKAGES);
+    }
+    wanted
+}
+
+/// What will be done, a line each.
+fn plan(missing: &Missing) -> Vec<String> {
+    let mut plan = Vec::new();
+    let packages = packages::missing(&wanted(missing));
+    if !packages.is_empty() {
+        plan.push(format!("as root: apt-get install {}", packages.join(" ")));
+    }
+    if missing.targets.is_empty() {
+        return plan;
+    }
+    if rustup_may_fetch() {
+        plan.push(format!("rustup target add {}", missing.targets.join(" ")));
+        return plan;
+    }
+    if !distribution::is_linked() {
+        plan.push("rustup toolchain link thumb /usr".into());
+    }
+    for target in &missing.targets {
+        let place = distribution::libraries(target);
+        plan.push(format!("build the core library; as root: replace {}", place.display()));
+    }
+    plan.push("remove target/thumb, which another core library made".into());
+    plan
+}
+
+/// A compiler with a core library for these targets.
+fn compiler(targets: &[&str]) -> Result<()> {
+    if rustup_may_fetch() {
+        let mut rustup = shell::command("rustup");
+        rustup.args(["target", "add"]).args(targets);
+        return shell::run(&mut rustup);
+    }
+    if !distribution::is_linked() {
+        shell::run(shell::command("rustup").args(["toolchain", "link", "thumb", "/usr"]))?;
+    }
+    for target in targets {
+        // Linking the toolchain may have been all.
+        if !distribution::has_core(target)? {
+            core_library::install(target)?;
         }
     }
-    if missing.is_empty() {
-        return Ok(());
-    }
+    Ok(())
+}
 
-    // With RUSTUP_AUTO_INSTALL=0 a machine says that rustup must fetch nothing.
-    let rustup_may_fetch = env::var("RUSTUP_AUTO_INSTALL").as_deref() != Ok("0");
-    if shell::has("rustup") && rustup_may_fetch {
-        println!(
-            "Adding the core library for {missing:?} with rustup: the crate and its firmware run there."
-        );
-        let mut rustup = shell::command("rustup");
-        rustup.args(["target", "add"]).args(missing);
-        shell::run(&mut rustup)
-    } else {
-        distribution::prepare(&missing)
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    /// Root and removal stay in the files that this one calls.
+    #[test]
+    fn nothing_else_acts_as_root_or_removes_directories() {
+        let allowed = ["setup.rs", "packages.rs", "core_library.rs"];
+        let own_directory = "fs::remove_dir_all(Path::new(&self.0))"; // the recipe's, for the time of the check
+        let source = concat!(env!("CARGO_MANIFEST_DIR"), "/src");
+        for entry in fs::read_dir(source).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_str().unwrap();
+            if allowed.contains(&name) || path.is_dir() {
+                continue;
+            }
+            let text = fs::read_to_string(&path).unwrap().replace(own_directory, "");
+            for word in ["as_root", "remove_dir_all", "packages::", "core_library::", "sudo"] {
+                assert!(!text.contains(word), "{name} has `{word}`");
+            }
+        }
     }
 }

@@ -1,9 +1,5 @@
 //! The signal of the demo.
 
-use crate::paths;
-use anyhow::Result;
-use std::fs;
-
 /// The yaw rate of the recorded flight, as the firmware encodes it.
 pub struct Signal {
     /// Seconds since the first sample.
@@ -13,16 +9,15 @@ pub struct Signal {
 }
 
 impl Signal {
-    /// From the same bytes as the firmware; `data/README.md` tells the layout.
-    pub fn read() -> Result<Self> {
-        let bytes = fs::read(paths::root().join("data/hexarotor.f32le"))?;
-        let (records, _) = bytes.as_chunks::<28>();
+    /// From the same bytes as the firmware.
+    pub fn read() -> Self {
+        let (records, _) = flight_data::HEXAROTOR.as_chunks::<28>();
         let word = |record: &[u8; 28], index: usize| record.as_chunks::<4>().0[index];
         let time = |record| f64::from(u32::from_le_bytes(word(record, 0))) / 1e6;
-        Ok(Self {
+        Self {
             times: records.iter().map(time).collect(),
             rates: records.iter().map(|record| f32::from_le_bytes(word(record, 3))).collect(),
-        })
+        }
     }
 
     pub fn duration(&self) -> f64 {

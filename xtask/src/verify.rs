@@ -1,8 +1,18 @@
 //! `cargo verify`: every check, in order, each with its time. A failure does not hide the next one.
 
-use crate::{checks, link, logging, parts, storm};
+use crate::{checks, cpu, link, logging, long, needs, package, parts, recipe, storm, usage::usage};
 use anyhow::{Result, bail};
 use std::time::Instant;
+
+const USAGE: &str = "\
+cargo verify [STEP]...     every check, or the named ones
+cargo verify --list        the checks' names
+cargo verify --long        the checks that need more time, by hand before a release
+cargo verify --help        this
+
+A check that fails does not hide the next one. Exit status 0: all passed; 1: one failed; 2: no such check.
+The summary gives each check's time on the clock, and its processor time over all cores.
+Without names, `setup` comes first and installs what is missing: it says what, and what it does as root.";
 
 /// A check that `cargo verify <name>` runs alone.
 struct Step {
@@ -13,16 +23,18 @@ struct Step {
 
 /// To add a check: write a function in `checks.rs`, and a line here.
 const STEPS: &[Step] = &[
-    step("setup", "compiler targets, QEMU, binutils", checks::setup),
+    step(SETUP, "compiler targets, QEMU, binutils", checks::setup),
     step("fmt", "rustfmt", checks::fmt),
-    step("clippy", "clippy, host and firmware", checks::clippy),
+    step("clippy", "clippy on the host's code, which builds the tests", checks::clippy),
     step("test", "host tests and doctests", checks::test),
     step("peers", "event formats against other programs", checks::peers),
     step("readme", "the README's code runs", checks::readme),
     step("doc", "documentation without warnings", checks::doc),
-    step("features", "every feature alone, on the host", checks::features),
+    step("package", "what is published has all that its pages show", package::package),
+    step("features", "every feature alone, on the host", checks::each_feature),
     step("targets", "the crate for every Cortex-M", checks::targets),
     step("no-panic", "every codec links without a panic handler", checks::no_panic),
+    step("recipe", "the guide's firmware, outside this workspace, in QEMU", recipe::recipe),
     step("parts", "the examples for real parts", parts::parts),
     step("demo", "the demo's table and picture", checks::demo),
     step("firmware", "emulated boards against the host", checks::firmware),
@@ -33,86 +45,122 @@ const STEPS: &[Step] = &[
     step("bench", "instruction counts against the baseline", checks::bench),
 ];
 
+/// Those that take too long for every change.
+const LONG: &[Step] = &[
+    step("recordings", "the flights come out of the published logs again", long::recordings),
+    step("sweeps", "all tests, optimised, with twenty times as many cases", long::sweeps),
+    step("lints", "clippy on all at once: every feature, firmware on host and core", long::lints),
+    step("capture", "the laptop program with a debug probe's driver", long::capture),
+    step("cores", "instruction counts on all five cores", long::cores),
+];
+
+const SETUP: &str = "setup";
+
 const fn step(name: &'static str, what: &'static str, run: fn() -> Result<()>) -> Step {
     Step { name, what, run }
 }
 
-/// Runs the named steps, or all, in the list's order.
-pub fn verify(names: &[String]) -> Result<()> {
-    let steps = || {
-        let lines = STEPS.iter().map(|step| format!("{:10} {}\n", step.name, step.what));
-        lines.collect::<String>()
-    };
-    if names == ["--list"] {
-        print!("{}", steps());
-        return Ok(());
-    }
-    if names.iter().any(|name| matches!(name.as_str(), "-h" | "--help" | "help")) {
-        print!("{}", help(&steps()));
-        return Ok(());
-    }
-    if let Some(name) =
-        names.iter().find(|name| STEPS.iter().all(|step| step.name != name.as_str()))
-    {
-        bail!("no step `{name}`; `cargo verify --list` names them");
-    }
+/// What became of a step.
+struct Outcome {
+    step: &'static Step,
+    good: bool,
+    /// On the clock.
+    seconds: f64,
+    /// Of the processor, over all cores.
+    processor: f64,
+}
 
-    let mut results = Vec::new();
-    for step in STEPS {
-        if !names.is_empty() && !names.iter().any(|name| name == step.name) {
-            continue;
+/// Runs the named steps, or all but the long ones, in the list's order.
+pub fn verify(args: &[String]) -> Result<()> {
+    let args: Vec<&str> = args.iter().map(String::as_str).collect();
+    let chosen: Vec<&Step> = match args[..] {
+        ["--help" | "-h"] => {
+            println!("{USAGE}\n");
+            list();
+            return Ok(());
         }
+        ["--list"] => {
+            list();
+            return Ok(());
+        }
+        [] => STEPS.iter().collect(),
+        ["--long"] => LONG.iter().collect(),
+        _ => named(&args)?,
+    };
+    if !chosen.iter().any(|step| step.name == SETUP) {
+        needs::ensure_met()?;
+    }
+    let outcomes = run(&chosen);
+    summary(&outcomes)
+}
+
+fn list() {
+    let lines = |steps: &[Step]| {
+        for step in steps {
+            println!("  {:10} {}", step.name, step.what);
+        }
+    };
+    lines(STEPS);
+    println!("with --long:");
+    lines(LONG);
+}
+
+fn named(names: &[&str]) -> Result<Vec<&'static Step>> {
+    let all = || STEPS.iter().chain(LONG);
+    if let Some(name) = names.iter().find(|name| all().all(|step| step.name != **name)) {
+        return Err(usage(format!("no check `{name}`; `cargo verify --help` lists them")));
+    }
+    Ok(all().filter(|step| names.contains(&step.name)).collect())
+}
+
+fn run(steps: &[&'static Step]) -> Vec<Outcome> {
+    let mut outcomes = Vec::new();
+    for &step in steps {
         println!("\n=== {}: {}", step.name, step.what);
-        let start = Instant::now();
+        let (start, before) = (Instant::now(), cpu::seconds());
         let result = (step.run)();
         if let Err(error) = &result {
             println!("FAILED: {error:#}");
         }
-        results.push((step, result.is_ok(), start.elapsed().as_secs_f64()));
-        if step.name == "setup" && result.is_err() {
+        outcomes.push(Outcome {
+            step,
+            good: result.is_ok(),
+            seconds: start.elapsed().as_secs_f64(),
+            processor: cpu::seconds() - before,
+        });
+        if step.name == SETUP && result.is_err() {
             break; // nothing below can work
         }
     }
-    summary(&results)
+    outcomes
 }
 
-fn help(steps: &str) -> String {
-    format!(
-        "\
-cargo verify [STEP]...
-
-Runs every check, or the named ones in the order below, each with its time, and a summary at the end.
-A failure does not hide the next one; the exit status is 1 if one failed.
-
-  cargo verify                 all of them
-  cargo verify clippy test     two of them
-  cargo verify --list          their names
-
-{steps}"
-    )
-}
-
-fn summary(results: &[(&Step, bool, f64)]) -> Result<()> {
-    println!("\n=== summary");
-    for (step, good, seconds) in results {
+fn summary(outcomes: &[Outcome]) -> Result<()> {
+    println!("\n=== summary: time, processor time");
+    for Outcome { step, good, seconds, processor } in outcomes {
         let verdict = if *good { "ok" } else { "FAILED" };
-        println!("{verdict:6} {seconds:6.1} s  {:10} {}", step.name, step.what);
+        println!("{verdict:6} {seconds:6.1} s {processor:6.1} s  {:10} {}", step.name, step.what);
     }
+    let total = |of: fn(&Outcome) -> f64| outcomes.iter().map(of).sum::<f64>();
+    let (seconds, processor) = (total(|one| one.seconds), total(|one| one.processor));
+    println!("{:6} {seconds:6.1} s {processor:6.1} s", "all");
     let failed: Vec<&str> =
-        results.iter().filter(|(_, good, _)| !good).map(|(step, ..)| step.name).collect();
+        outcomes.iter().filter(|one| !one.good).map(|one| one.step.name).collect();
     if failed.is_empty() { Ok(()) } else { bail!("failed: {}", failed.join(", ")) }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{STEPS, verify};
+    use super::*;
 
     #[test]
-    fn help_is_no_step_and_names_them_all() {
-        assert!(verify(&["--help".to_owned()]).is_ok());
-        assert!(verify(&["what".to_owned()]).is_err());
-        let text = super::help("clippy");
-        assert!(text.contains("cargo verify [STEP]...") && text.ends_with("clippy"));
-        assert!(STEPS.iter().all(|step| !step.what.is_empty()));
+    fn every_check_has_a_name_of_its_own() {
+        let names: Vec<&str> = STEPS.iter().chain(LONG).map(|step| step.name).collect();
+        for (index, name) in names.iter().enumerate() {
+            assert!(!names[..index].contains(name), "two checks are called {name}");
+            assert!(name.len() <= 10, "{name} does not fit its column");
+        }
+        assert!(named(&["fmt", "sweeps"]).is_ok_and(|steps| steps.len() == 2));
+        assert!(named(&["fmt", "none"]).is_err());
     }
 }

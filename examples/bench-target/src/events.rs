@@ -16,7 +16,7 @@ use core::fmt::{self, Write};
 use fixed::{FixedI32, types::extra::U16};
 
 pub fn measure(out: &mut impl Write) -> fmt::Result {
-    path::queue(out)?;
+    path::queues(out)?;
     framed::measure(out)?;
     formats::measure(out)?;
     chips::measure(out)?;

@@ -9,7 +9,7 @@ use fixed::{
 use rand_pcg::{Pcg32, rand_core::Rng};
 use spikewire::Sample;
 
-use crate::plain::Plain;
+use catalogue::plain::Plain;
 
 /// Samples of either signal.
 pub const LENGTH: usize = 2000;
@@ -18,11 +18,10 @@ pub const LENGTH: usize = 2000;
 const RECORD: usize = 28;
 
 /// The recording's beginning.
-static FLIGHT: [u8; LENGTH * RECORD] =
-    match include_bytes!("../../../data/hexarotor.f32le").first_chunk() {
-        Some(beginning) => *beginning,
-        None => panic!("the recording is too short"),
-    };
+static FLIGHT: [u8; LENGTH * RECORD] = match flight_data::HEXAROTOR.first_chunk() {
+    Some(beginning) => *beginning,
+    None => panic!("the recording is too short"),
+};
 
 #[derive(Clone, Copy)]
 pub enum Signal {

@@ -12,19 +12,15 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 use core::fmt::{self, Write};
-use flight_log::{Channel, Log, flights};
+use flight_log::{Log, Logs};
 use spikewire::{Code, Polarity, Sample};
 
 /// The gyroscope's z axis.
 const YAW: usize = 2;
 
 fn run(out: &mut impl Write) -> fmt::Result {
-    let channel = Channel::<f32>::new(YAW);
     let mut printer = Printer { out, result: Ok(()) };
-    for (name, flight) in flights() {
-        printer.print(format_args!("{name}"));
-        flight(&channel, &mut printer).map_err(|_| fmt::Error)?;
-    }
+    flight_log::fly::<f32>(YAW, &mut printer).map_err(|_| fmt::Error)?;
     printer.result
 }
 
@@ -40,11 +36,16 @@ impl<W: Write> Printer<'_, W> {
     }
 }
 
-impl<W: Write> Log for Printer<'_, W> {
-    fn latency(&mut self, samples: usize) {
-        self.print(format_args!(" {samples}\n"));
-    }
+impl<W: Write> Logs for Printer<'_, W> {
+    type Log = Self;
 
+    fn log(&mut self, name: &'static str, latency: usize) -> &mut Self {
+        self.print(format_args!("{name} {latency}\n"));
+        self
+    }
+}
+
+impl<W: Write> Log for Printer<'_, W> {
     fn code(&mut self, code: &impl Code) {
         for firing in code.firings() {
             let sign = if firing.polarity == Polarity::Up { '+' } else { '-' };

@@ -12,7 +12,7 @@ pub const CHANNELS: usize = 6;
 /// One record: time in microseconds as u32, then the channels as f32, all little endian.
 const RECORD: usize = 4 + 4 * CHANNELS;
 
-static RECORDS: &[u8] = include_bytes!("../../../data/hexarotor.f32le");
+static RECORDS: &[u8] = flight_data::HEXAROTOR;
 
 /// A sample type, and what one of its units is on either sensor.
 pub trait Recorded: Sample {

@@ -19,28 +19,43 @@ use fixed::{
     types::extra::{U8, U16},
 };
 use flight::{CHANNELS, Recorded};
+use heapless::Vec;
 use line::Line;
-pub use schemes::{Channel, Flight, Log, flights};
+pub use schemes::{Log, Logs, fly};
 
 /// Encodes and decodes all channels by every scheme, in every sample type.
 pub fn run(out: &mut impl fmt::Write) -> fmt::Result {
-    fly::<f32>(out, "f32")?;
-    fly::<FixedI16<U8>>(out, "q8.8")?;
-    fly::<FixedI32<U16>>(out, "q16.16")?;
-    fly::<i16>(out, "i16")
+    report::<f32>(out, "f32")?;
+    report::<FixedI16<U8>>(out, "q8.8")?;
+    report::<FixedI32<U16>>(out, "q16.16")?;
+    report::<i16>(out, "i16")
 }
 
 /// Flies every scheme in one sample type, and prints a line for each.
-fn fly<S: Recorded>(out: &mut impl fmt::Write, sample: &str) -> fmt::Result {
-    for (name, flight) in flights::<S, Line>() {
-        let mut line = Line::default();
-        for index in 0..CHANNELS {
-            if let Err(error) = flight(&Channel::new(index), &mut line) {
-                writeln!(out, "{name} {sample} channel {index}: {error}")?;
-                return Err(fmt::Error);
-            }
+fn report<S: Recorded>(out: &mut impl fmt::Write, sample: &str) -> fmt::Result {
+    let mut lines = Lines::default();
+    for index in 0..CHANNELS {
+        if let Err(error) = fly::<S>(index, &mut lines) {
+            writeln!(out, "{sample} channel {index}: {error}")?;
+            return Err(fmt::Error);
         }
-        line.write(out, name, sample)?;
     }
-    Ok(())
+    lines.0.iter().try_for_each(|(name, line)| line.write(out, name, sample))
+}
+
+/// A line for each scheme, over all channels.
+#[derive(Default)]
+struct Lines(Vec<(&'static str, Line), 64>);
+
+impl Logs for Lines {
+    type Log = Line;
+
+    fn log(&mut self, name: &'static str, _: usize) -> &mut Line {
+        let known = self.0.iter().position(|(line, _)| *line == name);
+        let place = known.unwrap_or_else(|| {
+            assert!(self.0.push((name, Line::default())).is_ok(), "too many schemes for the lines");
+            self.0.len() - 1
+        });
+        &mut self.0[place].1
+    }
 }

@@ -27,8 +27,6 @@ impl Default for Line {
 }
 
 impl Log for Line {
-    fn latency(&mut self, _: usize) {}
-
     fn code(&mut self, code: &impl Code) {
         self.samples += 1;
         for firing in code.firings() {

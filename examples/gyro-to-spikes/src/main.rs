@@ -3,38 +3,41 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 use core::fmt::{self, Write};
-use spikewire::{Bank, Decoder, Scheme, temporal::StepForward};
+use spikewire::{Bank, Scheme, Tick, temporal::StepForward};
 
 /// A spike for every 0.1 rad/s. A jolt of more than that in one sample is caught up with in the next ones.
-const GYRO: StepForward<f32> = StepForward::<f32>::checked(0.1);
+static GYRO: StepForward<f32> = StepForward::new(0.1);
 
 fn run(out: &mut impl Write) -> fmt::Result {
-    let mut bank = Bank::<_, 3>::new(GYRO); // on the flight controller
+    let mut bank = Bank::<_, 3>::new(&GYRO); // on the flight controller
     let mut decoders = [GYRO.decoder(); 3]; // wherever the spikes go
+    let mut decoded = [0.0; 3];
     let (mut events, mut largest_error) = (0, 0.0);
 
-    for (time_us, rates) in gyro() {
-        bank.encode(time_us, rates, |event| {
-            decoders[usize::from(event.address)].decode(event.polarity.into());
+    for (tick, rates) in gyro() {
+        bank.encode(tick, rates, |event| {
+            let channel = usize::from(event.address);
+            decoded[channel] = decoders[channel].decode(event.polarity.into());
             events += 1;
             if events <= 5 {
                 let _ = writeln!(out, "{event:?}");
             }
         });
-        for (rate, decoder) in rates.iter().zip(&decoders) {
-            largest_error = f32::max(largest_error, (rate - decoder.value()).abs());
+        for (rate, decoded) in rates.iter().zip(decoded) {
+            largest_error = f32::max(largest_error, (rate - decoded).abs());
         }
     }
     writeln!(out, "{events} events; the decoded rates are off by at most {largest_error} rad/s")
 }
 
-/// The gyroscope of a hexarotor that takes off and flies: time in µs, rates in rad/s.
-fn gyro() -> impl Iterator<Item = (u32, [f32; 3])> {
-    static RECORDING: &[u8] = include_bytes!("../../../data/hexarotor.f32le");
+/// The gyroscope of a hexarotor that takes off and flies: rates in rad/s.
+fn gyro() -> impl Iterator<Item = (Tick, [f32; 3])> {
+    static RECORDING: &[u8] = flight_data::HEXAROTOR;
     let (records, _) = RECORDING.as_chunks::<28>();
     records.iter().take(2000).map(|record| {
         let (words, _) = record.as_chunks::<4>();
-        (u32::from_le_bytes(words[0]), [1, 2, 3].map(|i| f32::from_le_bytes(words[i])))
+        let tick = Tick::from(u32::from_le_bytes(words[0]));
+        (tick, [1, 2, 3].map(|i| f32::from_le_bytes(words[i])))
     })
 }
 

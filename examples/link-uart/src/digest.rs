@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use spikewire::Tick;
+
 /// FNV-1a over channel, time and bits of every value, in order.
 pub struct Digest {
     values: u32,
@@ -13,9 +15,9 @@ impl Digest {
         Self { values: 0, hash: 0xcbf2_9ce4_8422_2325 }
     }
 
-    pub fn add(&mut self, channel: u16, tick: u32, value: f32) {
+    pub fn add(&mut self, channel: u16, tick: Tick, value: f32) {
         self.values += 1;
-        let words = [u32::from(channel), tick, value.to_bits()];
+        let words = [u32::from(channel), tick.micros(), value.to_bits()];
         for byte in words.into_iter().flat_map(u32::to_le_bytes) {
             self.hash = (self.hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
         }

@@ -1,28 +1,25 @@
 //! The board: the timer's interrupt samples and encodes, main sends.
 
 use crate::{digest::Digest, flight, uart::Uart};
-use core::{
-    cell::{Cell, RefCell},
-    fmt,
-};
+use core::{cell::RefCell, fmt};
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::exception;
 use critical_section::Mutex;
 use spikewire::{
-    Bank, Decoder, Scheme,
-    link::{Coding, MAX_FRAME, Snapshot, Transmitter},
-    sink::{EventQueue, Overflow, SerialSink},
-    temporal::{StepDecoder, StepForward, StepForwardEncoder},
+    Bank, Decoder, EventQueue, Overflow, Scheme,
+    link::{Coding, MAX_FRAME, Transmitter},
+    out::SerialSink,
+    temporal::StepForward,
 };
 
 /// Gyroscope x, y, z, then accelerometer x, y, z.
 pub const CHANNELS: usize = 6;
 /// A spike for every 0.1 rad/s.
-const RATE: StepForward<f32> = StepForward::<f32>::checked(0.1);
+static RATE: StepForward<f32> = StepForward::new(0.1);
 /// A spike for every 0.5 m/s².
-const ACCELERATION: StepForward<f32> = StepForward::<f32>::checked(0.5);
-const SCHEMES: [StepForward<f32>; CHANNELS] =
-    [RATE, RATE, RATE, ACCELERATION, ACCELERATION, ACCELERATION];
+static ACCELERATION: StepForward<f32> = StepForward::new(0.5);
+const SCHEMES: Schemes = [&RATE, &RATE, &RATE, &ACCELERATION, &ACCELERATION, &ACCELERATION];
+type Schemes = [&'static StepForward<f32>; CHANNELS];
 
 /// Samples from one keyframe to the next: a second of the recording.
 const KEYFRAME_EVERY: usize = 200;
@@ -30,27 +27,39 @@ const KEYFRAME_EVERY: usize = 200;
 const PERIOD: u16 = 5_000;
 /// From one sample to the next: some 1000 a second at QEMU's 168 MHz.
 const TIMER_RELOAD: u32 = 168_000;
+/// The board starts once; one that may start again counts its starts.
+const SESSION: u16 = 1;
 
 static EVENTS: EventQueue<64> = EventQueue::new(Overflow::DropOldest);
-static KEYFRAME: Mutex<Cell<Option<Snapshot<f32, CHANNELS>>>> = Mutex::new(Cell::new(None));
-static SAMPLER: Mutex<RefCell<Option<Sampler>>> = Mutex::new(RefCell::new(None));
+static SAMPLER: Mutex<RefCell<Sampler>> = Mutex::new(RefCell::new(Sampler::new()));
 
 struct Sampler {
     next: usize,
     is_done: bool,
-    bank: Bank<StepForwardEncoder<f32>, CHANNELS>,
-    /// The board's own, beside the link.
-    decoders: [StepDecoder<f32>; CHANNELS],
+    bank: Bank<Schemes, CHANNELS>,
+    /// The board's own, beside the link; from the first sample on.
+    decoders: Option<[Decoder<'static, StepForward<f32>>; CHANNELS]>,
     decoded: Digest,
 }
 
 impl Sampler {
+    const fn new() -> Self {
+        Self {
+            next: 0,
+            is_done: false,
+            bank: Bank::per_channel(SCHEMES),
+            decoders: None,
+            decoded: Digest::new(),
+        }
+    }
+
     fn sample(&mut self) {
         let Some((tick, sample)) = flight::sample(self.next) else {
             self.is_done = true;
             return;
         };
         let Self { bank, decoders, decoded, .. } = self;
+        let decoders = decoders.get_or_insert_with(|| decoders_at(sample));
         bank.encode(tick, sample, |event| {
             let _ = EVENTS.push(event); // what does not fit is counted in the queue
             if let Some(decoder) = decoders.get_mut(usize::from(event.address)) {
@@ -58,38 +67,29 @@ impl Sampler {
                 decoded.add(event.address, event.tick, value);
             }
         });
-        if self.next == 0 {
-            // The baselines are the first sample.
-            for (decoder, first) in decoders.iter_mut().zip(sample) {
-                decoder.resync(first);
-            }
-        }
         if self.next.is_multiple_of(KEYFRAME_EVERY) {
-            let snapshot = bank.snapshot(tick, EVENTS.mark());
-            critical_section::with(|cs| KEYFRAME.borrow(cs).set(Some(snapshot)));
+            bank.keyframe_into(tick, &EVENTS);
         }
         self.next += 1;
     }
 }
 
+/// Decoders that hold the first sample, from which the encoders start.
+fn decoders_at(first: [f32; CHANNELS]) -> [Decoder<'static, StepForward<f32>>; CHANNELS] {
+    let mut decoders = SCHEMES.map(Scheme::decoder);
+    for (decoder, first) in decoders.iter_mut().zip(first) {
+        decoder.resync(first);
+    }
+    decoders
+}
+
 #[exception]
 fn SysTick() {
-    critical_section::with(|cs| {
-        if let Some(sampler) = SAMPLER.borrow_ref_mut(cs).as_mut() {
-            sampler.sample();
-        }
-    });
+    critical_section::with(|cs| SAMPLER.borrow_ref_mut(cs).sample());
 }
 
 pub fn run(out: &mut impl fmt::Write) -> fmt::Result {
-    let sampler = Sampler {
-        next: 0,
-        is_done: false,
-        bank: Bank::from_schemes(SCHEMES),
-        decoders: SCHEMES.map(Scheme::decoder),
-        decoded: Digest::new(),
-    };
-    critical_section::with(|cs| SAMPLER.replace(cs, Some(sampler)));
+    let mut events = EVENTS.consumer().ok_or(fmt::Error)?;
     let mut timer = cortex_m::Peripherals::take().ok_or(fmt::Error)?.SYST;
     timer.set_clock_source(SystClkSource::Core);
     timer.set_reload(TIMER_RELOAD - 1);
@@ -98,24 +98,18 @@ pub fn run(out: &mut impl fmt::Write) -> fmt::Result {
     timer.enable_interrupt();
 
     let coding = Coding::for_channels(CHANNELS as u16, PERIOD).with_jitter_bits(5);
-    let transmitter = Transmitter::<f32, CHANNELS>::new(coding);
+    let transmitter = Transmitter::new(coding, SESSION);
     let mut link = SerialSink::<_, _, MAX_FRAME>::new(Uart::new(), transmitter);
     let mut bytes = 0;
     loop {
-        let is_done = critical_section::with(|cs| {
-            SAMPLER.borrow_ref(cs).as_ref().is_none_or(|sampler| sampler.is_done)
-        });
-        if let Some(snapshot) = critical_section::with(|cs| KEYFRAME.borrow(cs).take()) {
-            link.batch().keyframe(snapshot);
-        }
-        match link.send(&EVENTS).map_err(|_| fmt::Error)? {
+        let is_done = critical_section::with(|cs| SAMPLER.borrow_ref(cs).is_done);
+        match link.send(&mut events).map_err(|_| fmt::Error)? {
             0 if is_done => break,
             0 => cortex_m::asm::wfi(),
             count => bytes += count,
         }
     }
 
-    let sampler = critical_section::with(|cs| SAMPLER.take(cs)).ok_or(fmt::Error)?;
-    writeln!(out, "{}", sampler.decoded)?;
+    critical_section::with(|cs| writeln!(out, "{}", SAMPLER.borrow_ref(cs).decoded))?;
     writeln!(out, "{bytes} bytes, {} events lost, peak {}", EVENTS.lost(), EVENTS.peak())
 }

@@ -2,8 +2,8 @@
 
 use fixed::types::{I8F8, I16F16};
 use spikewire::{
-    population::{Centres, Position, ReceptiveFields, Slots},
-    rate::{Ben, BenToolbox, Hough, Taps, ThresholdHough},
+    population::{Position, Slots},
+    rate::{Bsa, BsaToolbox, Hough, Taps, ThresholdHough},
     temporal::{MovingWindow, StepForward, TemporalContrast},
 };
 
@@ -12,21 +12,28 @@ use crate::exercise;
 macro_rules! constants {
     ($sample:ty, $zero:expr, $one:expr) => {{
         const ONE: $sample = $one;
-        static TAPS: Taps<$sample, 9> = Taps::<$sample, _>::triangular(ONE);
-        static CENTRES: Centres<$sample, 5> = Centres::<$sample, _>::linear($zero, ONE);
-        static FIELDS: ReceptiveFields<$sample, 5, 10> =
-            ReceptiveFields::<$sample, _, _>::checked($zero, ONE, 1.5);
+        const TAPS: Taps<$sample, 9> = Taps::triangular(ONE);
+        static CONTRAST: TemporalContrast<$sample> = TemporalContrast::new(ONE);
+        static STEP_FORWARD: StepForward<$sample> = StepForward::new(ONE);
+        static MOVING_WINDOW: MovingWindow<$sample, 6> = MovingWindow::new(ONE);
+        static HOUGH: Hough<$sample, 9> = Hough::new(TAPS);
+        static THRESHOLD_HOUGH: ThresholdHough<$sample, 9> = ThresholdHough::new(TAPS, ONE);
+        static SUBTRACTIVE: Bsa<$sample, 9> = Bsa::subtractive(TAPS, ONE);
+        static MULTIPLICATIVE: Bsa<$sample, 9> = Bsa::multiplicative(TAPS, 0.9);
+        static TOOLBOX: BsaToolbox<$sample, 9> = BsaToolbox::new(TAPS, 1.15);
+        static POSITION: Position<$sample, 5> = Position::linear($zero..=ONE);
+        static SLOTS: Slots<$sample, 5, 10> = Slots::new($zero..=ONE, 1.5);
 
-        exercise::scheme(const { TemporalContrast::<$sample>::checked(ONE) });
-        exercise::scheme(const { StepForward::<$sample>::checked(ONE) });
-        exercise::scheme(const { MovingWindow::<$sample, 6>::checked(ONE) });
-        exercise::scheme(const { Hough::new(&TAPS) });
-        exercise::scheme(const { ThresholdHough::<$sample, _>::checked(&TAPS, ONE) });
-        exercise::scheme(const { Ben::<$sample, _>::checked_subtractive(&TAPS, ONE) });
-        exercise::scheme(const { Ben::<$sample, _>::checked_multiplicative(&TAPS, 0.9) });
-        exercise::scheme(const { BenToolbox::<$sample, _>::checked(&TAPS, 1.15) });
-        exercise::scheme(const { Position::new(&CENTRES) });
-        exercise::scheme(const { Slots::new(&FIELDS) });
+        exercise::scheme(&CONTRAST);
+        exercise::scheme(&STEP_FORWARD);
+        exercise::scheme(&MOVING_WINDOW);
+        exercise::scheme(&HOUGH);
+        exercise::scheme(&THRESHOLD_HOUGH);
+        exercise::scheme(&SUBTRACTIVE);
+        exercise::scheme(&MULTIPLICATIVE);
+        exercise::scheme(&TOOLBOX);
+        exercise::scheme(&POSITION);
+        exercise::scheme(&SLOTS);
     }};
 }
 

@@ -1,153 +1,239 @@
 //! The way to a chip and back: queue, link, sinks, chips and formats, on buses that do nothing.
 
-use core::convert::Infallible;
-use core::hint::black_box;
-use core::num::NonZeroU32;
+use core::{
+    convert::Infallible,
+    hint::black_box,
+    num::NonZeroU32,
+    pin::{Pin, pin},
+    task::{Context, Poll, Waker},
+};
+
 use embedded_hal::{
     delay::DelayNs,
     digital::{self, InputPin},
     spi::{self, ErrorKind, Operation, SpiDevice},
 };
 use spikewire::{
-    Bank, Bins, Event, EventSource, Polarity, Readout,
+    Bank, Bins, Consumer, EventQueue, FromEvents, FromItems, Item, Keyframe, Overflow, Put,
+    Readout, Sample, SampleKind, Source, SpscQueue, Tick,
     chip::{
-        AerPort, Akd1500, ConvolutionEvent, DenseEvent, Input, InputBank, Odin, OdinChip,
-        OdinInput, Registers, TinyOdin, TinyOdinInput, Xylo, XyloMap,
+        AerPort, Akd1500, ConvolutionEvent, DenseEvent, Describe, Input, InputBank, NetworkBytes,
+        Odin, OdinChip, OdinInput, OdinRegisters, OdinSynapse, Registers, Running, Spikes,
+        TinyOdin, TinyOdinInput, Xylo, XyloMap,
     },
     format::{Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, eieio},
-    link::{Coding, FrameView, Framer, MAX_FRAME, Raw, Reader, Receiver, Transmitter},
-    population::{Centres, Position, ReceptiveFields, Slots},
-    sink::{Batch, EventQueue, Formatted, Overflow, SerialSink, SpiSink},
-    temporal::{StepDecoder, StepForward},
-    tick,
+    link::{Coding, FrameView, Framer, MAX_FRAME, Reader, Receiver, Transmitter},
+    out::{AsyncSpiSink, Batch, Formatted, SerialSink, SpiSink},
+    temporal::StepForward,
 };
 
-static EVENTS: EventQueue<16> = EventQueue::new(Overflow::DropOldest);
-
-/// Uses a value where the compiler cannot see how.
-fn hide<T>(value: T) {
-    drop(black_box(value));
-}
+use crate::exercise::{EVENTS, event, hide, tick};
 
 pub fn link() {
-    queue();
-    framed(const { StepForward::<f32>::checked(1.0) });
-    framed(const { StepForward::<i16>::checked(1) });
-    formats();
-    sinks();
-    family::<TinyOdinInput>(TinyOdin::new(Bus, Bus, black_box(3)));
-    family::<OdinInput>(Odin::new(Bus, Bus, black_box(3)));
+    time();
+    hide(queue().is_none());
+    hide(lock_free().is_none());
+    hide(framed(const { &StepForward::<f32>::new(1.0) }).is_none());
+    hide(framed(const { &StepForward::<i16>::new(1) }).is_none());
+    hide(formats().is_none());
+    hide(sinks().is_none());
+    let registers = TinyOdinInput::registers(black_box(3), true, [0; 16]);
+    family(TinyOdin::new(Bus, Bus, black_box(3)), &registers, 1);
+    let synapse = OdinSynapse { weight: black_box(1), is_mapped: true };
+    family(Odin::new(Bus, Bus, black_box(3)), &OdinRegisters::PLAIN, synapse);
     memory();
     counts();
-    readouts();
 }
 
-fn event() -> Event {
-    black_box(Event { tick: 1, address: 2, polarity: Polarity::Up })
+fn time() {
+    let (a, b) = (tick(), tick());
+    hide((a.since(b), a.is_before(b), a.widen(black_box(3)), a.shifted(black_box(-1))));
+    hide((a + black_box(7), a.micros(), Tick::from(black_box(7))));
+    hide(SampleKind::from_byte(black_box(7)).map(|kind| (kind.to_byte(), kind.size())));
 }
 
-fn queue() {
-    let own = EventQueue::<3>::new(black_box(Overflow::Refuse));
-    for queue in [own.push(event()), EVENTS.push(event())] {
-        hide(queue.is_err());
+fn items() -> [Item; 3] {
+    let keyframe = Keyframe::new(tick(), black_box(1), black_box(0.5_f32));
+    hide((keyframe.value::<f32>(), keyframe.value::<i16>()));
+    black_box([event().into(), keyframe.into(), Item::Break(tick())])
+}
+
+/// Takes all that a source has.
+fn drain(mut source: impl Source) {
+    while let Some(taken) = source.take() {
+        hide((taken.is_after_break(), taken.item.tick(), taken));
     }
-    hide((own.pop(), EVENTS.len(), EVENTS.lost(), EVENTS.refused(), EVENTS.peak()));
-    EVENTS.drain().into_iter().for_each(hide);
-    let (a, b) = black_box((1, 2));
-    hide((tick::difference(a, b), tick::widen(a, black_box(3)), tick::compare(a, b)));
+    hide(source.take_event());
 }
 
-fn framed<S: Raw>(scheme: StepForward<S>) {
-    let coding = black_box(Coding::for_channels(black_box(3), black_box(1_000)));
-    let mut bank = Bank::<_, 3>::new(black_box(scheme));
-    bank.encode(black_box(0), black_box([S::default(); 3]), |event| hide(EVENTS.push(event)));
-    bank.encode_into(black_box(0), black_box([S::default(); 3]), &EVENTS);
+fn queue() -> Option<()> {
+    let own = black_box(EventQueue::<3>::new(black_box(Overflow::Refuse)));
+    for item in items() {
+        (&own).put(item);
+        hide((own.push(item).is_err(), EVENTS.push(item).is_err()));
+    }
+    let mut consumer = own.consumer()?;
+    drain(consumer.waiting());
+    drain(&mut consumer);
+    let queue = consumer.queue();
+    hide((queue.len(), queue.is_empty(), queue.capacity(), queue.peak()));
+    hide((queue.lost(), queue.refused(), queue.consumer().is_some()));
+    hide(poll(pin!(consumer.wait())));
+    drop(consumer);
+    drain(FromItems(items().into_iter()).at_most(black_box(2)));
+    drain(FromEvents([event(); 2].into_iter()));
+    Some(())
+}
 
-    let mut transmitter = black_box(Transmitter::<S, 3>::new(coding));
-    transmitter.keyframe(bank.snapshot(black_box(5), EVENTS.mark()));
+/// Polls a future once.
+fn poll<F: Future>(future: Pin<&mut F>) -> Poll<F::Output> {
+    future.poll(&mut Context::from_waker(Waker::noop()))
+}
+
+fn lock_free() -> Option<()> {
+    let queue = black_box(SpscQueue::<4>::new());
+    let (mut producer, mut consumer) = queue.split()?;
+    for item in items() {
+        producer.push(item);
+        producer.put(item);
+    }
+    hide((producer.lost(), consumer.len(), consumer.is_empty(), consumer.lost()));
+    drain(&mut consumer);
+    Some(())
+}
+
+fn framed<S: Sample>(scheme: &'static StepForward<S>) -> Option<()> {
+    let coding = black_box(Coding::for_channels(black_box(3), black_box(1_000)));
+    let mut bank = black_box(Bank::per_channel([scheme; 3]));
+    bank.encode_into(tick(), black_box([S::default(); 3]), &EVENTS);
+    bank.keyframe_into(tick(), &EVENTS);
+    bank.reset_into(tick(), &EVENTS);
+
+    let mut events = EVENTS.consumer()?;
+    let mut transmitter = black_box(Transmitter::new(coding, black_box(1)));
     let mut reader = black_box(Reader::<MAX_FRAME>::new());
-    let mut receiver: Receiver<S, 3> = Receiver::new(scheme);
+    let mut receiver = black_box(Receiver::<_, 3, 0>::per_channel([scheme; 3]));
     let mut buffer = black_box([0; 300]);
     while let Ok(Some(bytes)) =
-        transmitter.next_frame(&EVENTS, buffer.get_mut(..black_box(300)).unwrap_or_default())
+        transmitter.next_frame(&mut events, buffer.get_mut(..black_box(300)).unwrap_or_default())
     {
         let mut input = black_box(bytes);
         while let Some(received) = reader.next_frame(&mut input) {
+            hide((received.is_after_break(), received.gap));
             receiver.apply(&received, |channel, tick, value| hide((channel, tick, value)));
         }
     }
-    let mut framer = black_box(Framer::new(coding));
+    hide((reader.frames(), reader.lost_frames(), reader.bad_checksums(), reader.skipped()));
+    hide((reader.repeated(), reader.late(), receiver.exact(black_box(1))));
+    hide(black_box(Readout::<_, 3>::per_channel([scheme; 3])).decode(tick(), &[event()]));
+
+    let mut framer = black_box(Framer::new(coding, black_box(1)));
     framer.mark_loss();
-    if let Ok(mut frame) = framer.start(black_box(1), &mut buffer) {
-        hide((frame.keyframe(black_box(0), S::default()), frame.event(event()), frame.is_empty()));
-        if let Ok((view, length)) = FrameView::new(black_box(frame.finish())) {
-            hide((view.events().count(), view.keyframes().count(), length));
-        }
-    }
-    hide((receiver.exact(black_box(1)), receiver.estimate(black_box(1)), receiver.misfits()));
-    hide((reader.lost_frames(), reader.skipped(), transmitter.dropped_keyframes()));
-    hide::<Receiver<S, 1>>(Receiver::from_decoders([decoder(scheme)]));
+    let mut frame = framer.start(tick(), &mut buffer).ok()?;
+    let keyframe = Keyframe::new(tick(), black_box(0), S::default());
+    hide((frame.keyframe(keyframe), frame.event(event()), frame.is_empty(), frame.events()));
+    let bytes = black_box(frame.finish());
+    hide(FrameView::length(bytes));
+    let (view, length) = FrameView::new(bytes).ok()?;
+    hide((view.session(), view.sequence(), view.tick(), view.period(), view.is_after_loss()));
+    let mut events = view.events();
+    hide((events.by_ref().count(), events.is_complete(), view.keyframes().count(), length));
+    Some(())
 }
 
-fn decoder<S: Raw>(scheme: StepForward<S>) -> StepDecoder<S> {
-    spikewire::Scheme::decoder(scheme)
-}
-
-fn formats() {
+fn formats() -> Option<()> {
+    let mut events = EVENTS.consumer()?;
     for time in
         [EdvsTime::None, EdvsTime::Delta, EdvsTime::Bits16, EdvsTime::Bits24, EdvsTime::Bits32]
     {
-        let camera = black_box(Edvs::new(time));
-        format(camera.encoder(), camera.decoder());
+        let camera = black_box(Edvs::new(time).with_up_as_zero());
+        let mut decoder = camera.decoder();
+        decoder.set_tick(tick());
+        format(&mut events, camera.encoder_from(tick()), decoder);
     }
-    format(EventStream::encoder(), EventStream::decoder());
-    format(Evt2::encoder(), black_box(Evt2::file_decoder()));
+    let log = EventStream::decoder_from(tick());
+    hide(log.is_foreign());
+    format(&mut events, EventStream::encoder_from(tick()), log);
+    format(&mut events, Evt2::encoder(), black_box(Evt2::file_decoder()));
     let mut bytes = black_box([0; 32]);
     let length = eieio::encode(black_box(Some(1)), black_box([1, 2]), &mut bytes).unwrap_or(0);
     let datagram = bytes.get(..length).and_then(eieio::decode);
     hide(datagram.map(|datagram| datagram.keys().count()));
+    Some(())
 }
 
-fn format(encoder: impl EventFormat, mut decoder: impl EventDecoder) {
+fn format(events: &mut Consumer<'_>, encoder: impl EventFormat, mut decoder: impl EventDecoder) {
     let mut batch = black_box(Formatted::new(encoder));
     let mut bytes = black_box([0; 32]);
-    let length = batch.fill(&mut (&EVENTS), &mut bytes);
+    let length = batch.fill(events, &mut bytes);
     let bytes = bytes.get(..length).unwrap_or_default();
     decoder.decode(black_box(bytes)).for_each(hide);
-    hide((decoder.skipped(), batch.unspeakable()));
+    hide((decoder.skipped(), decoder.is_partial(), batch.unencodable(), batch.format().retimed()));
 }
 
-fn sinks() {
+fn sinks() -> Option<()> {
+    let mut events = EVENTS.consumer()?;
     let mut sink =
         black_box(SpiSink::<_, _, 32, _>::with_ready(Bus, Formatted::new(Evt2::encoder()), Bus));
-    hide((sink.send(&EVENTS).is_ok(), sink.waiting()));
-    let transmitter = Transmitter::<i16, 3>::new(black_box(Coding::for_channels(3, 1)));
+    hide((sink.send(&mut events).is_ok(), sink.waiting(), sink.batch().unencodable()));
+    hide(sink.release());
+    let mut sink = black_box(AsyncSpiSink::<_, _, 32>::new(Bus, Formatted::new(Evt2::encoder())));
+    hide(poll(pin!(sink.send(&mut events))).map(|sent| sent.is_ok()));
+    let transmitter = Transmitter::new(black_box(Coding::for_channels(3, 1)), black_box(1));
     let mut sink = black_box(SerialSink::<_, _, 64>::new(Bus, transmitter));
-    hide((sink.send(&EVENTS).is_ok(), sink.try_send(&EVENTS).is_ok()));
+    hide((sink.send(&mut events).is_ok(), sink.try_send(&mut events).is_ok()));
     hide((sink.flush().is_ok(), sink.waiting()));
+    hide(sink.release());
+    Some(())
 }
 
-fn family<I: Input>(chip: OdinChip<I, Bus, Bus>) {
+fn family<I: Input>(chip: OdinChip<I, Bus, Bus>, registers: &I::Registers, synapse: I::Synapse) {
     let mut chip = black_box(chip).with_time_step(black_box(NonZeroU32::MIN));
     let (a, b, c) = black_box((1, 2, 3));
-    let mut out = |neuron| hide(neuron);
-    hide([
-        chip.reset(&mut Bus).is_ok(),
-        chip.gate().is_ok(),
-        chip.configure(black_box(3), black_box(32)).is_ok(),
-        chip.program_neuron(a, b, c).is_ok(),
-        chip.program_synapse(a, b, c).is_ok(),
-        chip.run().is_ok(),
-        chip.send(black_box(I::LEAK_ALL), &mut out).is_ok(),
-        chip.feed(&EVENTS, |_| black_box(I::LEAK_ALL), &mut out).is_ok(),
-        chip.advance(black_box(5), &mut out).is_ok(),
-        chip.poll(&mut out).is_ok(),
-    ]);
+    let mut out = |neuron: u8| hide(neuron);
+    if let Ok(mut gated) = chip.reset(&mut Bus) {
+        hide([
+            gated.set_neuron(a, &black_box(I::DISABLED)).is_ok(),
+            gated.neuron(a).is_ok(),
+            gated.set_synapse(a, b, black_box(synapse)).is_ok(),
+            gated.synapse(a, b).is_ok(),
+            gated.set_neuron_byte(a, b, c).is_ok(),
+            gated.neuron_byte(a, b).is_ok(),
+        ]);
+        if let Ok(network) = NetworkBytes::<I>::new(black_box(&[0; 64])) {
+            hide(gated.load(&network, |progress| hide(progress.done)).is_ok());
+            hide(gated.verify(&network, |progress| hide(progress.done)).is_ok());
+            let mut copy = [0; 64];
+            hide(NetworkBytes::<I>::write(&network, &mut copy).is_ok());
+            let mut spikes = Spikes::<4>::new();
+            network.answers(tick(), |event| spikes.push(event))(a);
+            hide((network.input(3).is_some(), spikes.as_slice().len()));
+            hide(gated.run(&network.registers()).is_ok());
+        }
+    }
+    if let Ok(gated) = chip.gated() {
+        hide(gated.run(registers).is_ok());
+    }
+    if let Ok(mut running) = chip.running() {
+        hide([
+            running.send(black_box(I::LEAK_ALL), &mut out).is_ok(),
+            feed(&mut running),
+            running.advance(tick(), &mut out).is_ok(),
+            running.poll(&mut out).is_ok(),
+            running.open_loop().and_then(|running| running.gate(&mut out)).is_ok(),
+        ]);
+    }
+    hide(chip.counters().resets);
     let virtual_events = (
         TinyOdinInput::Virtual { neuron: a, weight: black_box(1) }.word::<(), ()>(),
         OdinInput::Virtual { neuron: a, weight: b, is_inhibitory: true }.word::<(), ()>(),
     );
     hide(virtual_events);
+}
+
+fn feed<I: Input>(chip: &mut Running<'_, I, Bus, Bus>) -> bool {
+    let Some(mut events) = EVENTS.consumer() else { return false };
+    chip.feed(events.waiting(), |_| black_box(I::LEAK_ALL), hide).is_ok()
 }
 
 fn memory() {
@@ -162,9 +248,11 @@ fn memory() {
 }
 
 fn counts() {
-    let mut bins = black_box(Bins::<16>::new(0, NonZeroU32::MAX)).with_limit(black_box(15));
+    let Some(mut events) = EVENTS.consumer() else { return };
+    let bins = black_box(Bins::<16>::new(tick(), black_box(NonZeroU32::MAX)));
+    let mut bins = bins.with_limit(black_box(15));
     let mut xylo = black_box(Xylo::new(Bus, XyloMap::a2(1), 3));
-    while let Some(event) = (&EVENTS).next_event() {
+    while let Some(event) = events.take_event() {
         if bins.add(event).is_err() {
             hide((
                 xylo.set_input(black_box(InputBank::First), bins.take()).is_ok(),
@@ -172,19 +260,7 @@ fn counts() {
             ));
         }
     }
-    hide((bins.is_over(black_box(3)), bins.late(), bins.outside(), bins.saturated()));
-}
-
-fn readouts() {
-    static CENTRES: Centres<f32, 5> = Centres::<f32, _>::linear(0.0, 1.0);
-    static FIELDS: ReceptiveFields<f32, 5, 10> =
-        ReceptiveFields::<f32, _, _>::checked(0.0, 1.0, 1.5);
-    let events = black_box([event(); 5]);
-    let events = events.get(..black_box(5)).unwrap_or_default();
-    hide(Readout::<_, 2>::new(StepForward::<f32>::checked(1.0)).decode(black_box(1), events));
-    hide(Readout::<_, 2>::new(Position::new(&CENTRES)).decode(black_box(1), events));
-    let slots = Readout::<_, 2>::new(Slots::new(&FIELDS));
-    hide(slots.with_slot_ticks(black_box(10)).decode(black_box(1), events));
+    hide((bins.is_over(tick()), bins.start(), bins.late(), bins.outside(), bins.saturated()));
 }
 
 /// Every bus and pin there is.
@@ -196,6 +272,13 @@ impl spi::ErrorType for Bus {
 
 impl SpiDevice for Bus {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
+        hide(operations);
+        black_box(Err(ErrorKind::Other))
+    }
+}
+
+impl embedded_hal_async::spi::SpiDevice for Bus {
+    async fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
         hide(operations);
         black_box(Err(ErrorKind::Other))
     }

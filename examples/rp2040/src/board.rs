@@ -10,7 +10,9 @@ use rp2040_hal::{
         FunctionSio, FunctionSpi, FunctionUart, Pin, Pins, PullDown, PullNone, SioInput, SioOutput,
         bank0::{Gpio0, Gpio1, Gpio16, Gpio17, Gpio18, Gpio19, Gpio20},
     },
-    pac, spi,
+    pac,
+    rosc::RingOscillator,
+    spi,
     uart::{self, DataBits, StopBits, UartConfig, UartPeripheral},
 };
 
@@ -37,6 +39,8 @@ pub struct Board {
     pub uart: Uart,
     /// Microseconds since the start; also for pauses.
     pub clock: Timer,
+    /// Another number after most starts.
+    pub session: u16,
 }
 
 pub fn start() -> Board {
@@ -70,6 +74,11 @@ pub fn start() -> Board {
         .enable(serial, peripheral_clock)
         .unwrap();
 
+    // Its phase when it is looked at is a matter of chance.
+    let oscillator = RingOscillator::new(chip.ROSC).initialize();
+    let session =
+        (0..u16::BITS).fold(0, |bits, _| bits << 1 | u16::from(oscillator.get_random_bit()));
+
     let clock = Timer::new(chip.TIMER, &mut chip.RESETS, &clocks);
-    Board { imu, data_ready: pins.gpio20.reconfigure(), uart, clock }
+    Board { imu, data_ready: pins.gpio20.reconfigure(), uart, clock, session }
 }

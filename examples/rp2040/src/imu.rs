@@ -21,12 +21,12 @@ const RATE_COUNT: i32 = 4_000;
 const ACCELERATION_COUNT: i32 = 32;
 
 /// A spike for every 6 °/s.
-const RATE: StepForward<Value> = StepForward::<Value>::checked(Value::lit("6"));
+static RATE: StepForward<Value> = StepForward::new(Value::lit("6"));
 /// A spike for every 0.05 g.
-const ACCELERATION: StepForward<Value> = StepForward::<Value>::checked(Value::lit("0.05"));
+static ACCELERATION: StepForward<Value> = StepForward::new(Value::lit("0.05"));
 /// Rates about x, y and z, then accelerations along them.
-pub const SCHEMES: [StepForward<Value>; 6] =
-    [RATE, RATE, RATE, ACCELERATION, ACCELERATION, ACCELERATION];
+pub const SCHEMES: Schemes = [&RATE, &RATE, &RATE, &ACCELERATION, &ACCELERATION, &ACCELERATION];
+pub type Schemes = [&'static StepForward<Value>; 6];
 
 pub type Imu<D> = Bmi323<SpiTransport<D>>;
 

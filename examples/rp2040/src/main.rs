@@ -13,16 +13,16 @@
 mod board;
 mod imu;
 
-use core::cell::{Cell, RefCell};
+use core::cell::RefCell;
+
 use critical_section::Mutex;
 use defmt_rtt as _;
 use panic_probe as _;
 use rp2040_hal::{gpio::Interrupt::EdgeHigh, pac, pac::interrupt};
 use spikewire::{
-    Bank,
-    link::{Coding, Snapshot, Transmitter},
-    sink::{EventQueue, Overflow, SerialSink},
-    temporal::StepForwardEncoder,
+    Bank, EventQueue, Overflow, Tick,
+    link::{Coding, Transmitter},
+    out::SerialSink,
 };
 
 const CHANNELS: usize = imu::SCHEMES.len();
@@ -33,8 +33,6 @@ const REPORT: u32 = 1_000_000;
 
 /// What the interrupt has for main.
 static EVENTS: EventQueue<256> = EventQueue::new(Overflow::DropOldest);
-/// The latest keyframe that main has not taken yet.
-static KEYFRAME: Mutex<Cell<Option<Snapshot<imu::Value, CHANNELS>>>> = Mutex::new(Cell::new(None));
 /// What the interrupt works with, once it is set up.
 static SAMPLER: Mutex<RefCell<Option<Sampler>>> = Mutex::new(RefCell::new(None));
 
@@ -42,7 +40,7 @@ struct Sampler {
     data_ready: board::DataReady,
     imu: imu::Imu<board::ImuDevice>,
     clock: rp2040_hal::Timer,
-    bank: Bank<StepForwardEncoder<imu::Value>, CHANNELS>,
+    bank: Bank<imu::Schemes, CHANNELS>,
     samples_to_keyframe: u16,
     failed_reads: u32,
 }
@@ -50,7 +48,7 @@ struct Sampler {
 impl Sampler {
     /// Takes one sample: 20 µs on the bus, then six encoders.
     fn sample(&mut self) {
-        let tick = self.clock.get_counter_low();
+        let tick = Tick::from(self.clock.get_counter_low());
         self.data_ready.clear_interrupt(EdgeHigh);
         let Ok(sample) = imu::read(&mut self.imu) else {
             self.failed_reads += 1;
@@ -61,8 +59,7 @@ impl Sampler {
         self.samples_to_keyframe -= 1;
         if self.samples_to_keyframe == 0 {
             self.samples_to_keyframe = KEYFRAME_EVERY;
-            let snapshot = self.bank.snapshot(tick, EVENTS.mark());
-            critical_section::with(|cs| KEYFRAME.borrow(cs).set(Some(snapshot)));
+            self.bank.keyframe_into(tick, &EVENTS);
         }
     }
 }
@@ -78,7 +75,7 @@ fn IO_IRQ_BANK0() {
 
 #[rp2040_hal::entry]
 fn main() -> ! {
-    let board::Board { imu, data_ready, uart, mut clock } = board::start();
+    let board::Board { imu, data_ready, uart, mut clock, session } = board::start();
     let imu = imu::start(imu, &mut clock).expect("no BMI323 on SPI0");
 
     data_ready.set_interrupt_enabled(EdgeHigh, true);
@@ -86,7 +83,7 @@ fn main() -> ! {
         data_ready,
         imu,
         clock,
-        bank: Bank::from_schemes(imu::SCHEMES),
+        bank: Bank::per_channel(imu::SCHEMES),
         samples_to_keyframe: KEYFRAME_EVERY,
         failed_reads: 0,
     };
@@ -96,14 +93,11 @@ fn main() -> ! {
 
     // The sensor's clock is not ours: its samples come a few µs early or late.
     let coding = Coding::for_channels(CHANNELS as u16, imu::PERIOD_US).with_jitter_bits(4);
-    let mut link =
-        SerialSink::<_, _, 128>::new(uart, Transmitter::<imu::Value, CHANNELS>::new(coding));
+    let mut link = SerialSink::<_, _, 128>::new(uart, Transmitter::new(coding, session));
+    let mut events = EVENTS.consumer().expect("taken once");
     let (mut bytes, mut last_report) = (0_u32, clock.get_counter_low());
     loop {
-        if let Some(snapshot) = critical_section::with(|cs| KEYFRAME.borrow(cs).take()) {
-            link.batch().keyframe(snapshot);
-        }
-        match link.send(&EVENTS) {
+        match link.send(&mut events) {
             Ok(0) => cortex_m::asm::wfi(), // until the next sample
             Ok(count) => bytes = bytes.wrapping_add(count as u32),
             Err(_) => defmt::warn!("the UART failed; the frame is kept"),
@@ -115,12 +109,11 @@ fn main() -> ! {
                 SAMPLER.borrow_ref(cs).as_ref().map_or(0, |sampler| sampler.failed_reads)
             });
             defmt::info!(
-                "{} bytes sent; {} events lost, peak {}; {} reads failed; {} keyframes dropped",
+                "{} bytes sent; {} items lost, peak {}; {} reads failed",
                 bytes,
                 EVENTS.lost(),
                 EVENTS.peak(),
                 failed_reads,
-                link.batch().dropped_keyframes(),
             );
         }
     }

@@ -6,11 +6,12 @@ use embassy_stm32::{
     gpio::{Input, Level, Output, Pull, Speed},
     interrupt::typelevel,
     mode::Async,
-    peripherals::{DMA1_CH3, DMA1_CH4, DMA2_CH0, DMA2_CH3},
+    peripherals::{DMA1_CH3, DMA1_CH4, DMA2_CH0, DMA2_CH3, RNG},
     rcc::{
         AHBPrescaler, APBPrescaler, Hse, HseMode, Pll, PllMul, PllPDiv, PllPreDiv, PllQDiv,
         PllSource, Sysclk,
     },
+    rng::{self, Rng},
     spi::{self, Spi, mode::Master},
     time::Hertz,
 };
@@ -23,6 +24,7 @@ bind_interrupts!(struct Interrupts {
     DMA1_STREAM4 => dma::InterruptHandler<DMA1_CH4>;
     DMA2_STREAM0 => dma::InterruptHandler<DMA2_CH0>;
     DMA2_STREAM3 => dma::InterruptHandler<DMA2_CH3>;
+    RNG => rng::InterruptHandler<RNG>;
 });
 
 pub type SpiDevice = ExclusiveDevice<Spi<'static, Async, Master>, Output<'static>, Delay>;
@@ -39,6 +41,8 @@ pub struct Board {
     pub bridge: SpiDevice,
     /// High when the bridge takes a frame, and when it is not wired.
     pub bridge_ready: Input<'static>,
+    /// A number from the part's generator: another after most starts.
+    pub session: u16,
 }
 
 pub fn start() -> Board {
@@ -58,6 +62,7 @@ pub fn start() -> Board {
         data_ready: ExtiInput::new(p.PA3, p.EXTI3, Pull::Down, Interrupts),
         bridge,
         bridge_ready: Input::new(p.PB11, Pull::Up),
+        session: Rng::new(p.RNG, Interrupts).next_u32() as u16,
     }
 }
 

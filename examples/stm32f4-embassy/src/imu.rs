@@ -13,12 +13,12 @@ pub const SAMPLE_RATE: u16 = 800;
 pub const PERIOD_US: u16 = (1_000_000 / SAMPLE_RATE as u32) as u16;
 
 /// A spike for every 6 °/s.
-const RATE: StepForward<f32> = StepForward::<f32>::checked(6.0);
+static RATE: StepForward<f32> = StepForward::new(6.0);
 /// A spike for every 0.05 g.
-const ACCELERATION: StepForward<f32> = StepForward::<f32>::checked(0.05);
+static ACCELERATION: StepForward<f32> = StepForward::new(0.05);
 /// Rates about x, y and z, then accelerations along them.
-pub const SCHEMES: [StepForward<f32>; 6] =
-    [RATE, RATE, RATE, ACCELERATION, ACCELERATION, ACCELERATION];
+pub const SCHEMES: Schemes = [&RATE, &RATE, &RATE, &ACCELERATION, &ACCELERATION, &ACCELERATION];
+pub type Schemes = [&'static StepForward<f32>; 6];
 
 pub type Imu<D> = Bmi323<SpiTransport<D>>;
 

@@ -15,39 +15,36 @@ mod imu;
 use defmt_rtt as _;
 use embassy_executor::Spawner;
 use embassy_stm32::{exti::ExtiInput, mode::Async};
-use embassy_sync::{blocking_mutex::raw::CriticalSectionRawMutex, signal::Signal};
-use embassy_time::{Delay, Duration, Instant, Ticker, TimeoutError, with_timeout};
+use embassy_time::{Delay, Duration, Instant, TimeoutError, Timer, with_timeout};
 use panic_probe as _;
 use spikewire::{
-    Bank,
-    link::{Coding, MAX_FRAME, Snapshot, Transmitter},
-    sink::{AsyncSpiSink, EventQueue, Overflow},
+    Bank, EventQueue, Overflow, Tick,
+    link::{Coding, MAX_FRAME, Transmitter},
+    out::AsyncSpiSink,
 };
 
 const CHANNELS: usize = imu::SCHEMES.len();
 /// Samples from one keyframe to the next: a second.
 const KEYFRAME_EVERY: u16 = imu::SAMPLE_RATE;
-/// From one look at the queue to the next.
-const SEND_EVERY: Duration = Duration::from_millis(5);
+/// How long events gather for a frame.
+const GATHER: Duration = Duration::from_millis(5);
 /// A full frame takes 1.7 ms at the bridge's 1.3125 MHz.
 const SEND_LIMIT: Duration = Duration::from_millis(4);
 const REPORT_EVERY: Duration = Duration::from_secs(1);
 
 /// What the sampling task has for main.
 static EVENTS: EventQueue<256> = EventQueue::new(Overflow::DropOldest);
-/// The latest keyframe that main has not taken yet.
-static KEYFRAME: Signal<CriticalSectionRawMutex, Snapshot<f32, CHANNELS>> = Signal::new();
 
-fn now() -> u32 {
-    spikewire::tick::from_micros(Instant::now().as_micros())
+fn now() -> Tick {
+    Tick::from_micros(Instant::now().as_micros())
 }
 
-defmt::timestamp!("{=u32:us}", now());
+defmt::timestamp!("{=u32:us}", now().micros());
 
 /// Waits for a sample, reads it, encodes it.
 #[embassy_executor::task]
 async fn sample(mut imu: imu::Imu<board::SpiDevice>, mut data_ready: ExtiInput<'static, Async>) {
-    let mut bank = Bank::from_schemes(imu::SCHEMES);
+    let mut bank = Bank::per_channel(imu::SCHEMES);
     loop {
         for _ in 0..KEYFRAME_EVERY {
             data_ready.wait_for_rising_edge().await;
@@ -58,34 +55,38 @@ async fn sample(mut imu: imu::Imu<board::SpiDevice>, mut data_ready: ExtiInput<'
             }
         }
         // No sample has come since the last one, so now is as good a tick as its own.
-        KEYFRAME.signal(bank.snapshot(now(), EVENTS.mark()));
+        bank.keyframe_into(now(), &EVENTS);
     }
 }
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    let board::Board { imu, data_ready, bridge, bridge_ready } = board::start();
+    let board::Board { imu, data_ready, bridge, bridge_ready, session } = board::start();
     let imu = imu::start(imu, &mut Delay).await.expect("no BMI323 on SPI1");
     spawner.spawn(sample(imu, data_ready).expect("spawned once"));
 
     // The sensor's clock is not ours: its samples come a few µs early or late.
     let coding = Coding::for_channels(CHANNELS as u16, imu::PERIOD_US).with_jitter_bits(4);
-    let transmitter = Transmitter::<f32, CHANNELS>::new(coding);
+    let transmitter = Transmitter::new(coding, session);
     let mut link =
         AsyncSpiSink::<_, _, MAX_FRAME, _>::with_ready(bridge, transmitter, bridge_ready);
 
     let (mut bytes, mut failures, mut late) = (0_u32, 0_u32, 0_u32);
-    let mut next_look = Ticker::every(SEND_EVERY);
+    let mut events = EVENTS.consumer().expect("taken once");
     let mut next_report = Instant::now() + REPORT_EVERY;
+    let mut is_all_sent = true;
     loop {
-        next_look.next().await;
-        if let Some(snapshot) = KEYFRAME.try_take() {
-            link.batch().keyframe(snapshot);
+        if is_all_sent {
+            // The report comes without items too.
+            let _ = with_timeout(REPORT_EVERY, events.wait()).await;
         }
+        Timer::after(GATHER).await;
         // A frame that was not sent, for whatever reason, is kept for the next time. One that was too late
         // leaves chip select low until then: the bridge sees its beginning and then all of it in one
         // piece, in which the link's reader finds the frame.
-        match with_timeout(SEND_LIMIT, link.send(&EVENTS)).await {
+        let sent = with_timeout(SEND_LIMIT, link.send(&mut events)).await;
+        is_all_sent = matches!(sent, Ok(Ok(0)));
+        match sent {
             Ok(Ok(count)) => bytes = bytes.wrapping_add(count as u32),
             Ok(Err(_)) => failures = failures.wrapping_add(1),
             Err(TimeoutError) => late = late.wrapping_add(1),
@@ -93,13 +94,12 @@ async fn main(spawner: Spawner) {
         if Instant::now() >= next_report {
             next_report += REPORT_EVERY;
             defmt::info!(
-                "{} bytes sent, {} times not, {} times too late; {} events lost, peak {}; {} keyframes dropped",
+                "{} bytes sent, {} times not, {} times too late; {} items lost, peak {}",
                 bytes,
                 failures,
                 late,
                 EVENTS.lost(),
                 EVENTS.peak(),
-                link.batch().dropped_keyframes(),
             );
         }
     }

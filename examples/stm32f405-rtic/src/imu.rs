@@ -9,12 +9,12 @@ use embedded_hal::{delay::DelayNs, spi::SpiDevice};
 use spikewire::temporal::StepForward;
 
 /// A spike for every 6 °/s.
-const RATE: StepForward<f32> = StepForward::<f32>::checked(6.0);
+static RATE: StepForward<f32> = StepForward::new(6.0);
 /// A spike for every 0.05 g.
-const ACCELERATION: StepForward<f32> = StepForward::<f32>::checked(0.05);
+static ACCELERATION: StepForward<f32> = StepForward::new(0.05);
 /// Rates about x, y and z, then accelerations along them.
-pub const SCHEMES: [StepForward<f32>; 6] =
-    [RATE, RATE, RATE, ACCELERATION, ACCELERATION, ACCELERATION];
+pub const SCHEMES: Schemes = [&RATE, &RATE, &RATE, &ACCELERATION, &ACCELERATION, &ACCELERATION];
+pub type Schemes = [&'static StepForward<f32>; 6];
 
 pub type Imu<D> = Bmi323<SpiTransport<D>>;
 

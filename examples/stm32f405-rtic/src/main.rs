@@ -17,7 +17,7 @@ use core::sync::atomic::AtomicU32;
 use defmt_rtt as _;
 use panic_probe as _;
 use rtic_time::Monotonic;
-use spikewire::sink::{EventQueue, Overflow};
+use spikewire::{EventQueue, Overflow, Tick};
 use stm32f4xx_hal::{pac, timer::MonoTimerUs};
 
 /// What the interrupt has for idle. A chip that falls behind is better fed with what is new.
@@ -29,11 +29,11 @@ static FAILED_READS: AtomicU32 = AtomicU32::new(0);
 /// Microseconds since the start.
 type Clock = MonoTimerUs<pac::TIM5>;
 
-fn now() -> u32 {
-    spikewire::tick::from_micros(Clock::now().duration_since_epoch().to_micros())
+fn now() -> Tick {
+    Tick::from_micros(Clock::now().duration_since_epoch().to_micros())
 }
 
-defmt::timestamp!("{=u32:us}", now());
+defmt::timestamp!("{=u32:us}", now().micros());
 
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
@@ -42,8 +42,7 @@ mod app {
     use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
     use spikewire::{
         Bank,
-        chip::{Input as _, TinyOdin, TinyOdinInput},
-        temporal::StepForwardEncoder,
+        chip::{Describe as _, Input as _, TinyOdin, TinyOdinInput},
     };
     use stm32f4xx_hal::{
         gpio::{Edge, Input, Output, PA3, PA4, PB12, Speed},
@@ -58,7 +57,8 @@ mod app {
     use crate::{
         EVENTS, FAILED_READS,
         imu::{self, Imu},
-        network, now,
+        network::{self, NETWORK},
+        now,
         port::Port,
     };
 
@@ -77,7 +77,7 @@ mod app {
     /// The time step of the chip's neurons, in µs: so often they leak.
     const TIME_STEP: NonZeroU32 = NonZeroU32::new(1_000).unwrap();
     /// How often the counters are logged, in µs.
-    const REPORT: u32 = 1_000_000;
+    const REPORT: i32 = 1_000_000;
 
     #[shared]
     struct Shared {}
@@ -86,7 +86,7 @@ mod app {
     struct Local {
         data_ready: PA3<Input>,
         imu: Imu<ImuDevice>,
-        bank: Bank<StepForwardEncoder<f32>, { imu::SCHEMES.len() }>,
+        bank: Bank<imu::Schemes, { imu::SCHEMES.len() }>,
         chip: TinyOdin<ChipDevice, Port>,
         delay: SysDelay,
     }
@@ -149,7 +149,7 @@ mod app {
         data_ready.trigger_on_edge(&mut cx.device.EXTI, Edge::Rising);
         data_ready.enable_interrupt(&mut cx.device.EXTI);
 
-        let bank = Bank::from_schemes(imu::SCHEMES);
+        let bank = Bank::per_channel(imu::SCHEMES);
         (Shared {}, Local { data_ready, imu, bank, chip, delay })
     }
 
@@ -170,45 +170,45 @@ mod app {
         let (chip, delay) = (cx.local.chip, cx.local.delay);
         let (mut sent, mut fired, mut failures) = (0_u32, [0_u32; network::NEURONS], 0_u32);
         let mut last_report = now();
+        let mut events = EVENTS.consumer().expect("taken once");
 
-        while let Err(error) = network::load(chip, delay) {
+        while let Err(error) = network::start(chip, delay) {
             defmt::error!("tinyODIN is not set up: {}", defmt::Debug2Format(&error));
             delay.delay_ms(500);
         }
         loop {
-            let mut on_output = |neuron: u8| {
-                if let Some(count) = fired.get_mut(usize::from(neuron)) {
-                    *count += 1;
-                }
-            };
-            let fed = chip
-                .feed(EVENTS.drain(), network::input, &mut on_output)
-                .and_then(|count| chip.advance(now(), &mut on_output).map(|()| count))
-                .and_then(|count| chip.poll(&mut on_output).map(|()| count));
+            let fed = chip.running().and_then(|mut chip| {
+                let mut on_output = NETWORK.answers(now(), |output| {
+                    if let Some(count) = fired.get_mut(usize::from(output.address)) {
+                        *count += 1;
+                    }
+                });
+                let count = chip.feed(events.waiting(), network::input, &mut on_output)?;
+                chip.advance(now(), &mut on_output)?;
+                chip.poll(&mut on_output).map(|()| count)
+            });
             match fed {
                 Ok(count) => sent = sent.wrapping_add(count),
                 Err(error) => {
                     failures = failures.wrapping_add(1);
                     defmt::warn!("tinyODIN: {}; starting it again", defmt::Debug2Format(&error));
                     // The event that it did not take is held and comes first.
-                    if network::load(chip, delay).is_err() {
+                    if network::start(chip, delay).is_err() {
                         delay.delay_ms(10);
                     }
                 }
             }
 
-            if now().wrapping_sub(last_report) >= REPORT {
-                last_report = last_report.wrapping_add(REPORT);
+            if now().since(last_report) >= REPORT {
+                last_report = last_report.shifted(REPORT);
                 defmt::info!(
-                    "{} events sent, {} lost, peak {}; {} reads and {} handshakes failed, {} resets, {} steps skipped, {} events late; fired {}",
+                    "{} events sent, {} lost, peak {}; {} reads and {} handshakes failed; {}; fired {}",
                     sent,
                     EVENTS.lost(),
                     EVENTS.peak(),
                     FAILED_READS.load(Relaxed),
                     failures,
-                    chip.resets(),
-                    chip.skipped_steps(),
-                    chip.late_events(),
+                    chip.counters(),
                     fired,
                 );
             }

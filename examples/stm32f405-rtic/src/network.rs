@@ -3,41 +3,44 @@
 use embedded_hal::{delay::DelayNs, spi::SpiDevice};
 use spikewire::{
     Event, Polarity,
-    chip::{AerPort, ChipError, TinyOdin, TinyOdinInput},
+    chip::{
+        AerPort, ChipError, Describe, Inputs, Progress, TinyOdin, TinyOdinInput, TinyOdinNetwork,
+        TinyOdinNeuron,
+    },
 };
 
 /// Two for each of six channels: rises, then falls.
 pub const NEURONS: usize = 12;
 
-const OPEN_LOOP: u16 = 1;
-const OUTPUT_SOURCE: u16 = 2;
-const HIGHEST_NEURON: u16 = 3;
+/// What an event adds to its neuron's potential.
+const WEIGHT: i8 = 7;
 
-/// What an event adds to its neuron's potential, what a time step takes, and where it fires.
-const WEIGHT: u8 = 7;
-const LEAK: u32 = 1;
-const THRESHOLD: u32 = 20;
+/// An input and an output for each neuron. What the neurons fire is for us, not for the chip.
+pub static NETWORK: TinyOdinNetwork<NEURONS, NEURONS, NEURONS> = TinyOdinNetwork {
+    neurons: [TinyOdinNeuron { threshold: 20, leak: 1, ..TinyOdinNeuron::REST }; NEURONS],
+    inputs: Inputs::Rows(diagonal(WEIGHT)),
+    recurrent: &[],
+    outputs: [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11],
+};
 
-/// Resets the chip and writes the network; all that can be read back is.
-pub fn load<D: SpiDevice, P: AerPort>(
+const fn diagonal(weight: i8) -> [[i8; NEURONS]; NEURONS] {
+    let mut rows = [[0; NEURONS]; NEURONS];
+    let mut n = 0;
+    while n < NEURONS {
+        rows[n][n] = weight;
+        n += 1;
+    }
+    rows
+}
+
+/// Resets the chip, writes the network, reads it back and lets the chip run.
+pub fn start<D: SpiDevice, P: AerPort>(
     chip: &mut TinyOdin<D, P>,
     delay: &mut impl DelayNs,
 ) -> Result<(), ChipError<D::Error, P::Error>> {
-    chip.reset(delay)?;
-    chip.gate()?;
-    chip.configure(OPEN_LOOP, 1)?; // what the neurons fire is for us, not for the chip
-    chip.configure(OUTPUT_SOURCE, 0)?;
-    chip.configure(HIGHEST_NEURON, NEURONS as u32 - 1)?;
-    for post in 0..NEURONS as u8 {
-        let parameters = LEAK << 24 | THRESHOLD << 12;
-        for (byte, value) in (0..).zip(parameters.to_le_bytes()) {
-            chip.program_neuron(post, byte, value)?;
-        }
-        for pre in 0..NEURONS as u8 {
-            chip.program_synapse(pre, post, if pre == post { WEIGHT } else { 0 })?;
-        }
-    }
-    chip.run()
+    let mut gated = chip.reset(delay)?;
+    gated.load(&NETWORK, |_: Progress| ())?;
+    gated.run(&NETWORK.registers()).map(drop)
 }
 
 /// The chip's word for an event of the bank.

@@ -1,13 +1,14 @@
-//! Writes `data/*.csv` and `data/*.f32le` from the flight logs that two published crates carry.
+//! Writes `data/*.csv` from the flight logs that two published crates carry, or into the directory that is named.
 //!
 //! ```text
 //! cargo run -p host-tests --features extract --bin extract_flight
 //! ```
 
+use std::env;
 use std::error::Error;
 use std::fmt::Write;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use cargo_metadata::{CargoOpt, MetadataCommand};
 use host_tests::flight::Sample;
@@ -49,6 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .features(CargoOpt::SomeFeatures(vec!["extract".into()]))
         .exec()?;
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
+    let data = env::args_os().nth(1).map_or(data, PathBuf::from);
     for log in &LOGS {
         let package = metadata
             .packages
@@ -64,8 +66,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let samples = inertial_samples(&bytes)?;
         fs::write(data.join(log.output).with_extension("csv"), csv(&samples)?)?;
-        let compact: Vec<u8> = samples.iter().flat_map(Sample::to_bytes).collect();
-        fs::write(data.join(log.output).with_extension("f32le"), compact)?;
         describe(log.output, &samples);
     }
     Ok(())

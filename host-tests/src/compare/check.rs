@@ -1,9 +1,9 @@
 //! What must be equal.
 
 use spikewire::population::Position;
-use spikewire::rate::{RateDecoder, Taps};
-use spikewire::temporal::StepDecoder;
-use spikewire::{Decoder, Encoder, Scheme, Spike};
+use spikewire::rate::{RateDecoderState, Taps};
+use spikewire::temporal::StepState;
+use spikewire::{Decoder, Scheme, Spike, Start};
 
 use super::run::{Run, decode, encode};
 use super::wire::{Wire, assert_same_values, finite, reals, saturated, signs_of, spikes_of};
@@ -51,16 +51,20 @@ pub fn assert_step_spikes<T: Real>(run: &Run<Spike>, recording: &Finite<T>, spik
 ///
 /// # Panics
 /// If a value differs from the reference.
-pub fn check_step_decoder<S: Wire>(decoder: &StepDecoder<S>, signs: &[i8], step: S, start: S) {
+pub fn check_step_decoder<S, P>(scheme: &P, signs: &[i8], step: S, start: S)
+where
+    S: Wire,
+    P: Scheme<Sample = S, Code = Spike, DecoderState = StepState<S>>,
+{
     let [lowest, highest] = S::ends();
-    let mut decoder = *decoder;
+    let mut decoder = scheme.decoder();
     for start in [S::default(), start] {
         decoder.resync(start);
         let expected = step_decode_within(signs, step.real(), start.real(), lowest, highest);
         assert_same_values(&decode(&decoder, &spikes_of(signs)), &expected);
     }
     decoder.reset();
-    assert_eq!(decoder.value(), S::default());
+    assert_eq!(decoder.held(), Some(S::default()));
 }
 
 /// Checks encoder and decoder of a rate scheme.
@@ -70,16 +74,20 @@ pub fn check_step_decoder<S: Wire>(decoder: &StepDecoder<S>, signs: &[i8], step:
 ///
 /// # Panics
 /// If a spike or a value differs from the reference.
-pub fn check_rate<'a, P, S, const F: usize>(
-    scheme: P,
+pub fn check_rate<P, S, const F: usize>(
+    scheme: &P,
     samples: &[S],
     taps: &Taps<S, F>,
     shift: S,
     reference: impl Fn(&[S::Real], S::Real, bool) -> Vec<i8>,
 ) where
     S: Wire,
-    P: Scheme<Sample = S, Decoder = RateDecoder<'a, S, F>>,
-    P::Encoder: Encoder<Sample = S, Output = Option<Spike>> + Clone,
+    P: Start<
+            Sample = S,
+            Code = Spike,
+            Output = Option<Spike>,
+            DecoderState = RateDecoderState<S, F>,
+        >,
 {
     let mut recording = finite(samples);
     let taps = reals(taps.as_array());
@@ -109,14 +117,18 @@ pub fn check_rate<'a, P, S, const F: usize>(
 ///
 /// # Panics
 /// If a value differs from the reference.
-pub fn check_rate_decoder<S: Wire, const F: usize>(
-    decoder: &RateDecoder<'_, S, F>,
+pub fn check_rate_decoder<S, P, const F: usize>(
+    decoder: &Decoder<'_, P>,
     signs: &[i8],
     taps: &[S::Real],
     shift: S,
-) {
+) where
+    S: Wire,
+    P: Scheme<Sample = S, Code = Spike, DecoderState = RateDecoderState<S, F>>,
+{
     let expected = saturated::<S>(&rate_decode(signs, taps, shift.real()));
     let mut decoder = *decoder;
+    assert_eq!(decoder.held(), None);
     assert_same_values(&decode(&decoder, &spikes_of(signs)), &expected);
     for is_reset in [true, false] {
         decoder.decode(Spike::Up);
@@ -135,7 +147,7 @@ pub fn check_rate_decoder<S: Wire, const F: usize>(
 /// # Panics
 /// If a neuron or a value differs from the reference.
 pub fn check_position<S: Wire, const M: usize>(
-    scheme: Position<'_, S, M>,
+    scheme: &Position<S, M>,
     samples: &[S],
     centres: &[S::Real],
     reference: impl Fn(&[S::Real]) -> Vec<usize>,
@@ -161,6 +173,7 @@ pub fn check_position<S: Wire, const M: usize>(
     let mut decoder = scheme.decoder();
     assert_same_values(&decode(&decoder, &run.outputs), &expected);
     decoder.resync(S::default());
+    assert_eq!(decoder.held(), Some(S::default()));
     assert_same_values(&[decoder.decode(None)], &[S::Real::ZERO]);
     decoder.reset();
     assert_same_values(&decode(&decoder, &run.outputs), &expected);

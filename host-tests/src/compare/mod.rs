@@ -11,5 +11,5 @@ pub use check::{
     assert_rate_spikes, assert_step_spikes, check_position, check_rate, check_rate_decoder,
     check_step_decoder,
 };
-pub use run::{Run, decode, encode, run};
+pub use run::{Repeatable, Run, decode, encode, run};
 pub use wire::{Wire, assert_same_values, finite, reals, saturated, signs_of, spikes_of};

@@ -45,6 +45,6 @@ pub use slots::{
     distance_radii, levels_by_distance, levels_exp, slots_by_distance, slots_decode, slots_exp,
     slots_of_levels,
 };
-pub use step_decoder::{step_decode, step_decode_within};
+pub use step_decoder::{step_decode, step_decode_from_first, step_decode_within};
 pub use step_forward::step_forward;
 pub use threshold_hough::threshold_hough;

@@ -1,10 +1,19 @@
 //! The decoder of the temporal schemes: `y[i] = y[i-1] + step*s[i]`, from a known start.
+//!
+//! Of a whole recording the first value is known, `y[0] = x[0]`, and a spike of the first sample changes
+//! nothing. Only a moving window that is primed with the recording's first window can spike there.
 
 use super::Real;
 
 /// Decodes signed spikes; `start` is the value before the first of them.
 pub fn step_decode<T: Real>(spikes: &[i8], step: T, start: T) -> Vec<T> {
     accumulate(spikes, step, start, |value| value)
+}
+
+/// Decodes the spikes of a whole recording, whose first value is known.
+pub fn step_decode_from_first<T: Real>(spikes: &[i8], step: T, first: T) -> Vec<T> {
+    let Some((_, later)) = spikes.split_first() else { return Vec::new() };
+    std::iter::once(first).chain(step_decode(later, step, first)).collect()
 }
 
 /// As [`step_decode`], on numbers that end at `lowest` and `highest`: every sum is clamped, as a
@@ -44,7 +53,7 @@ fn accumulate<T: Real>(spikes: &[i8], step: T, start: T, keep: impl Fn(T) -> T) 
 
 #[cfg(test)]
 mod tests {
-    use super::{step_decode, step_decode_within};
+    use super::{step_decode, step_decode_from_first, step_decode_within};
 
     #[test]
     fn adds_up_the_spikes() {
@@ -52,6 +61,14 @@ mod tests {
         let expected = [2.0, 2.5, 3.0, 3.0, 2.5, 2.0, 1.5];
         assert_eq!(step_decode(&spikes, 0.5, 2.0), expected);
         assert_eq!(step_decode(&spikes, 0.5_f32, 2.0), expected.map(|value| value as f32));
+    }
+
+    #[test]
+    fn the_first_value_is_known_and_its_spike_changes_nothing() {
+        for first in [-1, 0, 1] {
+            assert_eq!(step_decode_from_first(&[first, -1, 0, 1], 0.5, 5.0), [5.0, 4.5, 4.5, 5.0]);
+        }
+        assert!(step_decode_from_first::<f32>(&[], 0.5, 5.0).is_empty());
     }
 
     #[test]

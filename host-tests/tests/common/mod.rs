@@ -9,9 +9,10 @@ use host_tests::flight;
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-/// How many cases a property is tried with.
+/// How many cases a property is tried with: times `CASES_TIMES`, which `cargo verify sweeps` sets.
 pub(crate) fn cases(count: u32) -> ProptestConfig {
-    ProptestConfig { cases: count, failure_persistence: None, ..ProptestConfig::default() }
+    let times = std::env::var("CASES_TIMES").map_or(1, |times| times.parse().unwrap());
+    ProptestConfig { cases: count * times, failure_persistence: None, ..ProptestConfig::default() }
 }
 
 /// The floats that break things.

@@ -10,29 +10,29 @@ use spikewire::rate::Taps;
 /// sample types get all, the others few, as every length is compiled for itself.
 macro_rules! all_lengths {
     ($check:ident, $sample:ty, $taps:expr, $($argument:expr),*) => {
-        common::rate::lengths!([1 2 3 8 15 24] $check, $sample, $taps, ($($argument),*))
+        crate::common::rate::lengths!([1 2 3 8 15 24] $check, $sample, $taps, ($($argument),*))
     };
 }
 macro_rules! few_lengths {
     ($check:ident, $sample:ty, $taps:expr, $($argument:expr),*) => {
-        common::rate::lengths!([1 3 8] $check, $sample, $taps, ($($argument),*))
+        crate::common::rate::lengths!([1 3 8] $check, $sample, $taps, ($($argument),*))
     };
 }
 macro_rules! lengths {
     ([$($length:literal)*] $check:ident, $sample:ty, $taps:expr, $arguments:tt) => {{
-        $(common::rate::length!($length, $check, $sample, $taps, $arguments);)*
+        $(crate::common::rate::length!($length, $check, $sample, $taps, $arguments);)*
     }};
 }
 macro_rules! length {
     ($length:literal, $check:ident, $sample:ty, $taps:expr, ($($argument:expr),*)) => {
-        $check::<$sample, $length>(&common::rate::first_taps($taps), $($argument),*);
+        $check::<$sample, $length>(&crate::common::rate::first_taps($taps), $($argument),*);
     };
 }
 pub(crate) use {all_lengths, few_lengths, length, lengths};
 
 /// The first taps of a list, of which at least one is not 0.
 pub(crate) fn first_taps<S: Wire, const F: usize>(list: &[S]) -> Taps<S, F> {
-    Taps::new(std::array::from_fn(|k| list[k])).unwrap()
+    Taps::try_new(std::array::from_fn(|k| list[k])).unwrap()
 }
 
 /// 24 taps whose sum fits the type, the first of them not 0.

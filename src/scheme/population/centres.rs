@@ -12,13 +12,13 @@ use crate::{ConfigError, Sample, SampleKind};
 ///
 /// The neuron of a value is the one whose centre is nearest, exactly, in every sample type: a value
 /// halfway between two belongs to the lower, a value outside to the neuron at that end. Even centres are
-/// compared as they are before they are rounded to the sample type, others as rounded.
+/// compared unrounded, others as rounded to the sample type.
 ///
-/// - **Memory:** the centres, as many edges, `4 M` bytes for a table of even cells, and 8 bytes.
+/// - **Memory:** the centres, as many edges, `2 M` bytes for a table of even cells, and 8 bytes.
 /// - **Work:** one multiplication finds a value's cell, the table a neuron for the cell, and one
 ///   comparison with an edge whether it is that or the next. Where two edges share a cell, as with
-///   Gaussian-spaced centres from about 140 on or the user's own, and for `f32` without a float unit, it
-///   is a binary search instead.
+///   Gaussian-spaced centres from about 140 on or the user's own, beyond 256 neurons, and for `f32` without a
+///   float unit, it is a binary search instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(
@@ -91,7 +91,8 @@ const fn even_edge<S: Sample>(min: f64, max: f64, i: usize, m: usize) -> S {
     while is_at_most(edge.next_up() as f64 * parts, sum, error) {
         edge = edge.next_up();
     }
-    from_f64(edge as f64)
+    // An edge of -0, which total order places below 0, becomes 0.
+    from_f64(edge as f64 + 0.0)
 }
 
 /// Whether `value <= sum + error`, where the error is that of a rounded sum.

@@ -18,10 +18,11 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 ///   `10 M + 8` bytes of flash in `f32`.
 /// - **Work:** one multiplication finds a value's cell, a table a neuron for the cell, and one comparison
 ///   with an edge whether it is that or the next. Where two edges share a cell, as with Gaussian-spaced
-///   centres from about 140 on or the user's own, beyond 255 neurons, and for `f32` without a float unit,
+///   centres from about 140 on or the user's own, more than 256 neurons, and for `f32` without a float unit,
 ///   it is a binary search instead.
-/// - **Exactness:** the nearest centre exactly, in every sample type. Linear centres are compared as they
-///   are before they are rounded to the sample type, others as rounded.
+/// - **Exactness:** the nearest centre exactly, in every sample type. Linear centres are compared
+///   unrounded: [`centres`](Self::centres), which the decoder returns, rounds them to the sample type. Others are
+///   compared as rounded.
 /// - **Error:** at most half the distance between two centres, inside the centres' range.
 ///
 /// Source: paper, section II-A, algorithm 1.

@@ -124,7 +124,7 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
         Encoder::with_state(self, Self::state(generator))
     }
 
-    /// Encodes into what is empty.
+    /// Encodes into `neurons`, which is empty.
     #[inline]
     fn encode_into(
         &self,
@@ -158,6 +158,13 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
                 break;
             }
         }
+    }
+}
+
+impl<S: Sample, G: Rng, const M: usize, const N: usize> Encoder<'_, Probabilistic<S, G, M, N>> {
+    /// Forgets the count of rejected samples. The generator goes on from where it is.
+    pub fn restart(&mut self) {
+        self.state.tally = Tally::NONE;
     }
 }
 

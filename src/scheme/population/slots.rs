@@ -17,7 +17,7 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 /// centre, so that a table of `N` distances replaces the exponential.
 ///
 /// - **M:** 3 to 1024. **N:** 2 to 256. **Beta:** above 0; the paper takes 1.5.
-/// - **Floor:** 1 to `N`; 1 unless [told](Self::with_floor).
+/// - **Floor:** 1 to `N`; 1 [by default](Self::with_floor).
 /// - **Latency:** 0 samples, within which the slots last as long as the caller makes them.
 ///   **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes
 ///   `4 M + 4 N + 32` bytes of flash in `f32`.
@@ -99,7 +99,7 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
         self.fields.centres()
     }
 
-    /// The spikes of a finite sample, in an empty spikes.
+    /// Writes the spikes of a finite sample into `spikes`, which is empty.
     #[inline]
     fn fire(&self, sample: S, spikes: &mut SlotSpikes<M, N>) {
         if self.fields.is_near(sample) {
@@ -168,7 +168,7 @@ impl<S: Sample, const M: usize, const N: usize> Start for Slots<S, M, N> {
 }
 
 impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
-    /// Encodes into what is empty.
+    /// Encodes into `spikes`, which is empty.
     #[inline]
     fn encode_into(&self, state: &mut SlotsState, sample: S, spikes: &mut SlotSpikes<M, N>) {
         if sample.is_finite() {

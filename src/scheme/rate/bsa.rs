@@ -37,7 +37,6 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(bound = "S: serde::Serialize"))]
 pub struct Bsa<S: Sample, const F: usize> {
     filtered: Filtered<S, F>,
     limit: Limit<S>,
@@ -168,3 +167,13 @@ impl<S: Sample, const F: usize> Rule<S, F> for Bsa<S, F> {
 }
 
 rate_scheme!(Bsa);
+
+/// Its parameters, side by side.
+#[cfg(feature = "serde")]
+impl<S: Sample + serde::Serialize, const F: usize> serde::Serialize for Bsa<S, F> {
+    fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        let Filtered { taps, shift } = &self.filtered;
+        let limit = ("criterion", &self.limit);
+        crate::serial::fields("Bsa", ("taps", taps), limit, ("shift", shift), serializer)
+    }
+}

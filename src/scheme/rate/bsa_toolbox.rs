@@ -33,10 +33,8 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(bound = "S: serde::Serialize"))]
 pub struct BsaToolbox<S: Sample, const F: usize> {
     filtered: Filtered<S, F>,
-    #[cfg_attr(feature = "serde", serde(rename = "threshold"))]
     ratio: Ratio,
 }
 
@@ -190,4 +188,14 @@ impl<S: Sample, const F: usize> Scheme for BsaToolbox<S, F> {
     }
 
     decode_rate!();
+}
+
+/// Its parameters, side by side.
+#[cfg(feature = "serde")]
+impl<S: Sample + serde::Serialize, const F: usize> serde::Serialize for BsaToolbox<S, F> {
+    fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        let Filtered { taps, shift } = &self.filtered;
+        let limit = ("threshold", &self.ratio);
+        crate::serial::fields("BsaToolbox", ("taps", taps), limit, ("shift", shift), serializer)
+    }
 }

@@ -66,7 +66,7 @@ pub enum Shape {
     Hann,
     /// As MATLAB's `gausswin(n, alpha)`: `exp(-½ (alpha (2k - n + 1) / (n - 1))²)`.
     Gaussian {
-        /// The reciprocal of the width; MATLAB takes 2.5 unless told.
+        /// The reciprocal of the width; MATLAB takes 2.5 by default.
         alpha: f64,
     },
 }

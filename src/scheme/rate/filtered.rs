@@ -37,7 +37,7 @@ impl<S: Sample, const F: usize> Filtered<S, F> {
 /// The constructors of the shift, for a scheme with a field `filtered`.
 macro_rules! with_shift {
     () => {
-        /// The signal's minimum, 0 unless told. For constants, where a bad shift fails the build.
+        /// Sets the shift, the signal's minimum; 0 by default. For constants, where a bad shift fails the build.
         ///
         /// # Panics
         /// The shift is not finite, or beyond ±10³¹ in `f32`.
@@ -46,10 +46,11 @@ macro_rules! with_shift {
             unwrap(self.try_with_shift(shift))
         }
 
-        /// The signal's minimum, 0 unless told.
+        /// Sets the shift, the signal's minimum; 0 by default.
         ///
         /// # Errors
         /// The shift is not finite, or beyond ±10³¹ in `f32`.
+        #[allow(clippy::needless_update)] // HSA has no other field
         pub const fn try_with_shift(self, shift: S) -> Result<Self, ConfigError> {
             match self.filtered.try_with_shift(shift) {
                 Ok(filtered) => Ok(Self { filtered, ..self }),

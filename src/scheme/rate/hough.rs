@@ -33,7 +33,11 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(bound = "S: serde::Serialize"))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(transparent, bound = "S: serde::Serialize")
+)]
 pub struct Hough<S: Sample, const F: usize> {
     filtered: Filtered<S, F>,
 }

@@ -11,8 +11,8 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 /// The threshold Hough spike algorithm.
 ///
 /// With `r = x - shift` and `error = sum over j of max(0, h[j] - r[i+j])`: a spike at `i` if
-/// `error <= threshold`; then `r[i+j] -= h[j]`. At the end of a recording samples past the end cost
-/// nothing, so that a tail of zeros can spike.
+/// `error <= threshold`; then `r[i+j] -= h[j]`. Samples past the end of a recording add
+/// no error, so that a tail of zeros can spike.
 ///
 /// - **Threshold:** 0 or more, in the samples' unit; 0 makes it [`Hough`](super::Hough).
 /// - **Latency:** `F - 1` samples. **Memory:** `4 F + 8` bytes a channel in `f32`, and `16 F` of
@@ -35,7 +35,6 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(bound = "S: serde::Serialize"))]
 pub struct ThresholdHough<S: Sample, const F: usize> {
     filtered: Filtered<S, F>,
     threshold: S,
@@ -99,3 +98,13 @@ impl<S: Sample, const F: usize> Rule<S, F> for ThresholdHough<S, F> {
 }
 
 rate_scheme!(ThresholdHough);
+
+/// Its parameters, side by side.
+#[cfg(feature = "serde")]
+impl<S: Sample + serde::Serialize, const F: usize> serde::Serialize for ThresholdHough<S, F> {
+    fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        let Filtered { taps, shift } = &self.filtered;
+        let limit = ("threshold", &self.threshold);
+        crate::serial::fields("ThresholdHough", ("taps", taps), limit, ("shift", shift), serializer)
+    }
+}

@@ -3,9 +3,25 @@
 //! Their decoders add up steps, so that an error adds up too when a spike is lost: send keyframes
 //! ([`Encoder::keyframe`](crate::Encoder::keyframe)) over a link that may lose spikes.
 //!
-//! **First value.** An encoder starts from its first sample, a decoder from 0. Tell the decoder that sample,
-//! or a keyframe, by [`Decoder::resync`](crate::Decoder::resync). The value of the sample from which a decoder
-//! starts is known, so the code of that sample is not decoded.
+//! **First value.** An encoder starts from its first sample, a decoder from 0. Give the decoder the first
+//! sample, or a keyframe, by [`Decoder::resync`](crate::Decoder::resync). Its value is then known, and the spike
+//! of that sample is not decoded:
+//!
+//! ```
+//! use spikewire::{Scheme, temporal::MovingWindow};
+//!
+//! const CLIMB: MovingWindow<f32, 2> = MovingWindow::new(1.0);
+//!
+//! let samples = [5.0, 0.0, 0.0, 0.0];
+//! let mut encoder = CLIMB.encoder();
+//! encoder.prime(&samples[..2]); // the mean is 2.5, so that the first sample spikes
+//! let spikes = samples.map(|x| encoder.encode(x));
+//!
+//! let mut decoder = CLIMB.decoder();
+//! decoder.resync(samples[0]);
+//! let values = [spikes[1], spikes[2], spikes[3]].map(|spike| decoder.decode(spike));
+//! assert_eq!(values, [4.0, 3.0, 3.0]); // after 5, which is known
+//! ```
 
 mod contrast;
 #[cfg(feature = "alloc")]

@@ -14,8 +14,9 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 /// [`Spike::Up`] if `x > mean + threshold`, [`Spike::Down`] if `x < mean - threshold`. The paper's
 /// window is `W = N - 1`. Nothing is emitted before `N` samples have been seen, unless the encoder
 /// was [primed](crate::Encoder::prime); primed with the first `N` samples of a recording it
-/// compares those with their own mean, as the paper does. Only so may the first sample spike. Its value is
-/// known then, and its spike changes nothing: decode from the second sample on.
+/// compares those with their own mean, as the paper does. Only then can the first sample spike. A decoder starts
+/// from the value of that sample, which is known, and decodes from the second sample on: the spike of the first
+/// changes no value.
 ///
 /// - **Threshold:** above 0, in the samples' unit. **N:** 1 to 16 384.
 /// - **Latency:** 0 samples. **Memory:** `4 N + 12` bytes a channel in `f32`, 4 to decode.

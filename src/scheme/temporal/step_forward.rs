@@ -84,7 +84,7 @@ impl<S: Sample> Start for StepForward<S> {
     const START: StepForwardState<S> = StepForwardState { base: S::ZERO, tally: Tally::NONE };
 }
 
-/// Where a sample emits nothing.
+/// The range in which a sample emits no spike.
 #[derive(Clone, Copy)]
 struct Band<S> {
     lower: S,
@@ -178,7 +178,7 @@ impl<S: Sample> Scheme for StepForward<S> {
         first + samples.len().min(spikes.len())
     }
 
-    /// The last of the past becomes the baseline; a decoder must be told, as by a keyframe.
+    /// The last value of the past becomes the baseline. Give the decoder that value by `resync`.
     fn prime(&self, state: &mut StepForwardState<S>, past: &[S]) {
         if let Some(base) = state.tally.last_of(past) {
             state.base = base;

@@ -1,7 +1,7 @@
 //! Frames to values, with the knowledge of which are exact.
 
 use core::fmt;
-use core::num::NonZeroU16;
+use core::num::NonZeroU32;
 
 use super::Received;
 use crate::event::{Addresses, CodeOf, DecoderStateOf, Event, Keyframe, SampleOf, Schemes, Tick};
@@ -65,7 +65,7 @@ struct Sampled<const EVENTS: usize> {
     is_whole: bool,
     /// Whether nothing of the next sample was lost.
     is_next_whole: bool,
-    period: u32,
+    period: NonZeroU32,
 }
 
 impl<'a, P: Scheme, const N: usize, const EVENTS: usize> Receiver<&'a P, N, EVENTS> {
@@ -141,7 +141,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         if received.is_after_break() {
             self.mark_stale();
         }
-        self.sample.period = NonZeroU16::get(frame.period()).into();
+        self.sample.period = frame.period().into();
         for keyframe in frame.keyframes() {
             self.keyframe(keyframe, &mut on_value);
         }
@@ -267,18 +267,19 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         let since = now.since(tick).max(0) as u32;
         // With sub-timesteps an event lies in the period after its sample, otherwise near its sample.
         let has_slots = self.addresses.slot_ticks > 0;
-        let samples = if has_slots { since } else { since + period / 2 } / period;
+        let half = if has_slots { 0 } else { period.get() / 2 };
+        let samples = since.saturating_add(half) / period;
         if samples == 0 {
             return;
         }
-        self.sample.tick = Some(tick + samples.wrapping_mul(period));
+        self.sample.tick = Some(tick + samples.wrapping_mul(period.get()));
         if self.sample.has_begun {
             self.decode(tick, on_value);
             self.sample.is_whole = is_next_whole;
             self.sample.count = 0;
             if let Recovery::Samples(recovery) = T::Scheme::RECOVERY {
                 for sample in (1..samples).take(recovery) {
-                    self.decode(tick + sample.wrapping_mul(period), on_value);
+                    self.decode(tick + sample.wrapping_mul(period.get()), on_value);
                 }
             }
         }
@@ -312,7 +313,7 @@ impl<const EVENTS: usize> Sampled<EVENTS> {
         count: 0,
         is_whole: false,
         is_next_whole: false,
-        period: 1,
+        period: NonZeroU32::MIN,
     };
 }
 

@@ -1,6 +1,6 @@
 //! The counts that were: none may grow by more than a twentieth.
 
-use super::{Measured, Row};
+use super::{figures::Row, measured::Measured};
 use crate::paths;
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,6 @@
 //! What an event costs on its way, and six channels in all.
 
-use super::{mean, table};
+use super::figures::{self, mean};
 use crate::boards::Board;
 use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
@@ -99,7 +99,7 @@ pub fn text(events: &[Event]) -> String {
     text
 }
 
-/// The README's.
+/// Those of docs/costs.md.
 pub fn markdown(events: &[Event]) -> Result<String> {
     let tables = [each_event(events), banks(events)?, six_channels(events)?];
     Ok(format!("\n{}\n", tables.join("\n")))
@@ -107,7 +107,7 @@ pub fn markdown(events: &[Event]) -> Result<String> {
 
 /// A line for each subject, with both directions and both cores.
 fn each_event(events: &[Event]) -> String {
-    let [first, second] = table::CORES;
+    let [first, second] = figures::CORES;
     let mut text = format!(
         "| an event | bytes | {first} write | worst | read | worst | {second} write | worst | read | worst |\n\
          |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
@@ -126,7 +126,7 @@ fn each_event(events: &[Event]) -> String {
             None => "– | –".into(),
         };
         let Some(write) = of(first, &["encode", "push"]) else { continue };
-        let cells = table::CORES.map(|core| {
+        let cells = figures::CORES.map(|core| {
             let [write, read] = [of(core, &["encode", "push"]), of(core, &["decode", "pop"])];
             format!("{} | {}", cell(write), cell(read))
         });
@@ -135,9 +135,10 @@ fn each_event(events: &[Event]) -> String {
     text
 }
 
-/// The subjects as a reader of the README knows them.
-const NAMES: [(&str, &str); 18] = [
+/// The subjects as a reader of the tables knows them.
+const NAMES: [(&str, &str); 19] = [
     ("queue", "queue: push, pop"),
+    ("queue-lock-free", "queue, lock-free: push, pop"),
     ("raw", "raw: tick, address, sign"),
     ("link-full", "link, full frames"),
     ("link-100ms", "link, a frame every 100 ms"),
@@ -163,7 +164,7 @@ fn banks(events: &[Event]) -> Result<String> {
         "| the bank alone | SF | worst | HSA, 15 taps | worst | T-HSA, 15 taps | worst |\n\
          |---|---:|---:|---:|---:|---:|---:|\n",
     );
-    for (core, sample) in table::CORES.into_iter().zip(SAMPLES) {
+    for (core, sample) in figures::CORES.into_iter().zip(SAMPLES) {
         text += &format!("| {core}, `{sample}` |");
         for bank in ["bank-sf-6", "bank-hsa-6", "bank-t-hsa-6"] {
             let bank = find(events, core, bank, "encode", sample)?;
@@ -180,7 +181,7 @@ fn six_channels(events: &[Event]) -> Result<String> {
         "| SF, queue and frames | interrupt: bank, queue | worst | main: frames | all | worst 100 ms |\n\
          |---|---:|---:|---:|---:|---:|\n",
     );
-    for (core, sample) in table::CORES.into_iter().zip(SAMPLES) {
+    for (core, sample) in figures::CORES.into_iter().zip(SAMPLES) {
         for (path, rate) in [("path-8khz", "8 kHz"), ("path-200hz", "200 Hz")] {
             let of = |direction| find(events, core, path, direction, sample);
             let (interrupt, main, all) = (of("interrupt")?, of("main")?, of("all")?);
@@ -194,10 +195,15 @@ fn six_channels(events: &[Event]) -> Result<String> {
             );
         }
     }
+    Ok(format!("{text}\n{}", in_a_sentence(events)?))
+}
+
+/// What six channels take of the core.
+pub fn in_a_sentence(events: &[Event]) -> Result<String> {
     let set = set(events)?;
     let (second, share) = (set * RATE / 1e6, 100.0 * set * RATE / CLOCK);
     Ok(format!(
-        "{text}\nSix channels at 8 kHz, from samples to frames, are {set:.1} × 8000 = {second:.2} million instructions\n\
+        "Six channels at 8 kHz, from samples to frames, are {set:.1} × 8000 = {second:.2} million instructions\n\
          a second: {share:.2} % of a Cortex-M4F at 168 MHz and one instruction a cycle.\n"
     ))
 }

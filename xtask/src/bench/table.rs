@@ -1,15 +1,31 @@
 //! The figures as tables to read.
 
-use super::{Measured, Row, events};
+use super::{
+    events,
+    figures::{CORES, Row},
+    measured::Measured,
+};
+use crate::{markdown::between, paths};
 use anyhow::{Context, Result};
-use std::{fs, path::Path};
+use std::fs;
 
-/// The cores of the README's tables.
-pub const CORES: [&str; 2] = ["M4F", "M0"];
+/// Where the tables stand: the file, and the comments between which they are.
+const CODECS: (&str, &str) = ("docs/costs.md", "bench-target");
+const EVENTS: (&str, &str) = ("docs/costs.md", "bench-target events");
+const BRIEF: (&str, &str) = ("README.md", "bench-target brief");
 
-/// Between which comments a file has the tables.
-const CODECS: &str = "bench-target";
-const EVENTS: &str = "bench-target events";
+/// The codecs of the short table.
+const FEW: [&str; 9] = [
+    "tbr",
+    "sf",
+    "mw-5",
+    "hsa-15",
+    "t-hsa-15",
+    "bsa-24",
+    "position-20",
+    "grf-20",
+    "grf-slots-15x10",
+];
 
 /// What a line of a table tells: one codec, in one sample type, on one core and signal.
 struct Line<'a> {
@@ -103,15 +119,42 @@ pub fn text(rows: &[Row]) -> String {
     text
 }
 
-/// The README's tables.
+/// The tables of the costs' page.
 pub fn markdown(measured: &Measured) -> Result<String> {
-    Ok(tables(measured)?.into_iter().map(|(_, table)| table).collect())
+    let tables = tables(measured)?.into_iter().filter(|(place, _)| *place != BRIEF);
+    Ok(tables.map(|(_, table)| table).collect())
 }
 
-/// Those of what was measured, each with its marker.
-fn tables(Measured { rows, events, .. }: &Measured) -> Result<Vec<(&'static str, String)>> {
-    let codecs = (!rows.is_empty()).then(|| (CODECS, codecs(rows)));
-    Ok(codecs.into_iter().chain([(EVENTS, events::markdown(events)?)]).collect())
+/// Those of what was measured, each with its place.
+fn tables(Measured { rows, events, .. }: &Measured) -> Result<Vec<((&str, &str), String)>> {
+    let mut tables = vec![(EVENTS, events::markdown(events)?)];
+    if !rows.is_empty() {
+        tables.insert(0, (CODECS, codecs(rows)));
+        tables.push((BRIEF, brief(rows) + &events::in_a_sentence(events)? + "\n"));
+    }
+    Ok(tables)
+}
+
+/// A few codecs on the usual core.
+fn brief(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "\n| Cortex-M4F, `f32` | instructions to encode a sample | worst | to decode | RAM, bytes |\n\
+         |---|---:|---:|---:|---:|\n",
+    );
+    for Line { encode, encode_sample, decode, .. } in lines(rows) {
+        let of = (encode.core, encode.sample.as_str(), encode.signal.as_str());
+        if of == (CORES[0], "f32", "paper") && FEW.contains(&encode.codec.as_str()) {
+            text += &format!(
+                "| {} | {:.1} | {} | {:.1} | {} |\n",
+                name(&encode.codec),
+                encode_sample.instructions_mean,
+                encode_sample.instructions_max,
+                decode.instructions_mean,
+                encode.state_bytes,
+            );
+        }
+    }
+    text + "\n"
 }
 
 /// `f32` where there is a floating-point unit, fixed point where there is none.
@@ -147,7 +190,7 @@ fn codecs(rows: &[Row]) -> String {
     text + "\n"
 }
 
-/// The codec as a reader of the README knows it.
+/// The codec as a reader of the tables knows it.
 fn name(codec: &str) -> &str {
     match codec {
         "tbr" => "TBR",
@@ -167,34 +210,13 @@ fn name(codec: &str) -> &str {
     }
 }
 
-/// Puts the tables between the file's markers.
-pub fn write(measured: &Measured, path: &Path) -> Result<()> {
-    let mut file = fs::read_to_string(path).with_context(|| path.display().to_string())?;
-    for (marker, table) in tables(measured)? {
-        file = between(&file, marker, &table)?;
+/// Puts the tables into their files.
+pub fn write(measured: &Measured) -> Result<()> {
+    for ((file, marker), table) in tables(measured)? {
+        let path = paths::root().join(file);
+        let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+        fs::write(&path, between(&text, marker, &table)?)?;
+        println!("{file} has the tables of `{marker}`.");
     }
-    fs::write(path, file)?;
-    println!("{} has the tables.", path.display());
     Ok(())
-}
-
-fn between(file: &str, marker: &str, table: &str) -> Result<String> {
-    let (start, end) = (format!("<!-- {marker} -->\n"), format!("<!-- /{marker} -->"));
-    let missing = || format!("no `{}` … `{end}`", start.trim_end());
-    let (before, rest) = file.split_once(&start).with_context(missing)?;
-    let (_, after) = rest.split_once(&end).with_context(missing)?;
-    Ok(format!("{before}{start}{table}{end}{after}"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_what_is_between_the_markers_changes() {
-        let file = "a\n<!-- x -->\nold\n<!-- /x -->\nb\n<!-- x y -->\n<!-- /x y -->\n";
-        let new = "a\n<!-- x -->\nnew\n<!-- /x -->\nb\n<!-- x y -->\n<!-- /x y -->\n";
-        assert_eq!(between(file, "x", "new\n").unwrap(), new);
-        assert!(between("a", "x", "new\n").is_err());
-    }
 }

@@ -7,7 +7,7 @@ use core::{
 
 use board::stopwatch::{instructions, keep};
 use spikewire::{
-    Bank, Calibration, ConfigError, Encoder, Scheme,
+    Bank, Calibration, ConfigError, Start, Tick,
     rate::{Hough, Scale, Shape, Taps, ThresholdHough},
 };
 
@@ -18,21 +18,22 @@ use super::{
 use crate::signal::Measured;
 
 pub fn measure<S: Measured>(out: &mut impl Write, sample: &str) -> fmt::Result {
-    let six = flight::bank::<S>().ok_or(fmt::Error)?;
-    bank(out, ("bank-sf-6", sample), six)?;
+    let schemes = flight::Schemes::<S>::new().ok_or(fmt::Error)?;
+    bank(out, ("bank-sf-6", sample), schemes.bank())?;
 
     let minima = minima::<S>();
-    let [rates, accelerations] = peaks()
-        .map(|peak| Taps::<S, 15>::shaped(Shape::Triangular, Scale::Peak(S::from_f64(peak))).ok());
+    let [rates, accelerations] = peaks().map(|peak| {
+        Taps::<S, 15>::try_shaped(Shape::Triangular, Scale::Peak(S::from_f64(peak))).ok()
+    });
     let (rates, accelerations) = (rates.ok_or(fmt::Error)?, accelerations.ok_or(fmt::Error)?);
-    let taps = |channel: usize| if channel < 3 { &rates } else { &accelerations };
+    let taps = |channel: usize| if channel < 3 { rates } else { accelerations };
 
-    let scheme = |channel| Hough::new(taps(channel)).with_shift(minima[channel]);
+    let scheme = |channel| Hough::new(taps(channel)).try_with_shift(minima[channel]);
     rate_bank(out, ("bank-hsa-6", sample), scheme)?;
 
     let scheme = |channel: usize| {
         let threshold = S::from_f64(0.85 * peaks()[channel / 3]);
-        ThresholdHough::new(taps(channel), threshold)?.with_shift(minima[channel])
+        ThresholdHough::try_new(taps(channel), threshold)?.try_with_shift(minima[channel])
     };
     rate_bank(out, ("bank-t-hsa-6", sample), scheme)
 }
@@ -51,7 +52,7 @@ fn minima<S: Measured>() -> [S; CHANNELS] {
     calibrations.map(|channel| channel.min().unwrap_or_default())
 }
 
-fn rate_bank<P: Scheme<Sample: Measured>>(
+fn rate_bank<P: Start<Sample: Measured> + Copy>(
     out: &mut impl Write,
     name: (&str, &str),
     scheme: impl Fn(usize) -> Result<P, ConfigError>,
@@ -61,16 +62,16 @@ fn rate_bank<P: Scheme<Sample: Measured>>(
     for (channel, slot) in schemes.iter_mut().enumerate() {
         *slot = scheme(channel).map_err(|_| fmt::Error)?;
     }
-    bank(out, name, Bank::from_schemes(schemes))
+    bank(out, name, Bank::per_channel(schemes.each_ref()))
 }
 
-fn bank<E: Encoder<Sample: Measured>>(
+fn bank<P: Start<Sample: Measured>>(
     out: &mut impl Write,
     (name, sample): (&str, &str),
-    mut bank: Bank<E, CHANNELS>,
+    mut bank: Bank<[&P; CHANNELS], CHANNELS>,
 ) -> fmt::Result {
     let mut cost = Cost::default();
-    for (tick, set) in flight::samples().map(flight::typed::<E::Sample>) {
+    for (tick, set) in flight::samples().map(flight::typed::<P::Sample>) {
         let (tick, set) = (black_box(&tick), black_box(&set));
         let call = *cost.call.get_or_insert_with(|| instructions(|| take(&mut bank, tick, set)));
         let count = instructions(|| encode(&mut bank, tick, set)).saturating_sub(call);
@@ -80,6 +81,10 @@ fn bank<E: Encoder<Sample: Measured>>(
 }
 
 #[inline(never)]
-fn encode<E: Encoder>(bank: &mut Bank<E, CHANNELS>, tick: &u32, set: &[E::Sample; CHANNELS]) {
+fn encode<P: Start>(
+    bank: &mut Bank<[&P; CHANNELS], CHANNELS>,
+    tick: &Tick,
+    set: &[P::Sample; CHANNELS],
+) {
     bank.encode(*tick, *set, |event| keep(&event));
 }

@@ -13,7 +13,7 @@ use embedded_hal::{
     spi::{ErrorType, Operation, SpiDevice},
 };
 use spikewire::{
-    Bins, Event, Polarity,
+    Bins, Event, FromEvents, Polarity, Tick,
     chip::{
         AerPort, ChipError, ConvolutionEvent, DenseEvent, Input, OdinInput, TinyOdin,
         TinyOdinInput, pack_counts,
@@ -77,11 +77,14 @@ fn word<W: Copy>(
 /// The handshake as well, with a chip that answers at once.
 fn tiny_odin_fed(out: &mut impl Write) -> fmt::Result {
     let word = Cell::new(0);
-    let port = || Answers { word: &word, is_requested: false };
+    let port = || Answers { word: &word, is_requested: false, written: 0 };
     let mut chip = TinyOdin::new(port(), port(), 4);
-    let mut agrees = chip.reset(&mut port()).and_then(|()| chip.run()).is_ok();
-    let mut feed =
-        |event: Event, _: &mut [u8]| chip.feed(&mut core::iter::once(event), tiny_odin, |_| ());
+    let registers = TinyOdinInput::registers(255, true, [0; 16]);
+    let mut agrees = chip.reset(&mut port()).and_then(|gated| gated.run(&registers)).is_ok();
+    let mut feed = |event: Event, _: &mut [u8]| {
+        let mut running = chip.running()?;
+        running.feed(FromEvents(core::iter::once(event)), tiny_odin, |_| ())
+    };
     let mut cost = Cost::default();
     flight::events(|event| {
         let mut sent: Result<u32, ChipError<Infallible, Infallible>> = Ok(0);
@@ -98,6 +101,8 @@ fn tiny_odin_fed(out: &mut impl Write) -> fmt::Result {
 struct Answers<'a> {
     word: &'a Cell<u32>,
     is_requested: bool,
+    /// The byte that was written last, and is read.
+    written: u8,
 }
 
 impl ErrorType for Answers<'_> {
@@ -105,7 +110,14 @@ impl ErrorType for Answers<'_> {
 }
 
 impl SpiDevice for Answers<'_> {
-    fn transaction(&mut self, _: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
+    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
+        for operation in operations {
+            match operation {
+                Operation::Write([.., last]) => self.written = *last,
+                Operation::TransferInPlace([.., last]) => *last = self.written,
+                _ => {}
+            }
+        }
         Ok(())
     }
 }
@@ -197,7 +209,7 @@ fn akida(
 /// Counts of 10 ms, packed for two registers.
 fn xylo(out: &mut impl Write) -> fmt::Result {
     const STEP: NonZeroU32 = NonZeroU32::new(10_000).unwrap();
-    let mut bins = Bins::<16>::new(0, STEP).with_limit(15);
+    let mut bins = Bins::<16>::new(Tick::from_micros(0), STEP).with_limit(15);
     let mut count = |event: Event, _: &mut [u8]| {
         let address = event.address << 1 | u16::from(is_up(event));
         let (mut steps, mut counts) = (0, None);

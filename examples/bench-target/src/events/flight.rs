@@ -1,9 +1,6 @@
 //! The recorded flight as events, and as the samples of a faster sensor.
 
-use spikewire::{
-    Bank, Event, Polarity, Sample,
-    temporal::{StepForward, StepForwardEncoder},
-};
+use spikewire::{Bank, Event, Polarity, Sample, Tick, temporal::StepForward};
 
 use crate::signal::Measured;
 
@@ -15,48 +12,61 @@ pub const PERIOD: u16 = 5_038;
 /// A time stamp in µs, then the channels, four bytes each.
 const RECORD: usize = 4 + 4 * CHANNELS;
 
-static RECORDS: &[u8] = include_bytes!("../../../../data/hexarotor.f32le");
+static RECORDS: &[u8] = flight_data::HEXAROTOR;
 
-pub type Six<S> = Bank<StepForwardEncoder<S>, CHANNELS>;
+/// A scheme for each channel.
+pub type Six<'a, S> = [&'a StepForward<S>; CHANNELS];
 
 /// The channels' schemes: a spike for every 0.1 rad/s and every 0.5 m/s².
-pub fn schemes<S: Sample>() -> Option<[StepForward<S>; CHANNELS]> {
-    let [rate, acceleration] =
-        [0.1, 0.5].map(|threshold| StepForward::new(S::from_f64(threshold)).ok());
-    let (rate, acceleration) = (rate?, acceleration?);
-    Some([rate, rate, rate, acceleration, acceleration, acceleration])
+pub struct Schemes<S: Sample> {
+    rate: StepForward<S>,
+    acceleration: StepForward<S>,
 }
 
-pub fn bank<S: Sample>() -> Option<Six<S>> {
-    Some(Bank::from_schemes(schemes()?))
+impl<S: Sample> Schemes<S> {
+    pub fn new() -> Option<Self> {
+        let [rate, acceleration] =
+            [0.1, 0.5].map(|threshold| StepForward::try_new(S::from_f64(threshold)).ok());
+        Some(Self { rate: rate?, acceleration: acceleration? })
+    }
+
+    pub fn each(&self) -> Six<'_, S> {
+        let Self { rate, acceleration } = self;
+        [rate, rate, rate, acceleration, acceleration, acceleration]
+    }
+
+    pub fn bank(&self) -> Bank<Six<'_, S>, CHANNELS> {
+        Bank::per_channel(self.each())
+    }
 }
 
 /// The recording: times in µs, and six channels in rad/s and m/s².
-pub fn samples() -> impl Iterator<Item = (u32, [f32; CHANNELS])> {
+pub fn samples() -> impl Iterator<Item = (Tick, [f32; CHANNELS])> {
     let (records, _) = RECORDS.as_chunks::<RECORD>();
     records.iter().map(|record| {
         let (words, _) = record.as_chunks::<4>();
         let value = |at: usize| f32::from_le_bytes(words[at]);
-        (u32::from_le_bytes(words[0]), core::array::from_fn(|channel| value(channel + 1)))
+        (u32::from_le_bytes(words[0]).into(), core::array::from_fn(|channel| value(channel + 1)))
     })
 }
 
-/// The same in the sample type.
-pub fn typed<S: Measured>((tick, set): (u32, [f32; CHANNELS])) -> (u32, [S; CHANNELS]) {
+/// A set of samples in the sample type.
+pub fn typed<S: Measured>((tick, set): (Tick, [f32; CHANNELS])) -> (Tick, [S; CHANNELS]) {
     (tick, set.map(|value| S::from_f64(value.into())))
 }
 
-/// The same as a sensor at another rate would have seen it, on straight lines between the samples.
-pub fn samples_every(period: u32) -> impl Iterator<Item = (u32, [f32; CHANNELS])> {
+/// The recording as a sensor at another rate would have seen it, on straight lines between the samples.
+pub fn samples_every(period: u32) -> impl Iterator<Item = (Tick, [f32; CHANNELS])> {
     let pairs = samples().zip(samples().skip(1));
     let mut next = 0;
     pairs.flat_map(move |((start, from), (end, to))| {
+        let (start, end) = (start.micros(), end.micros());
         let first = next;
         next = end.next_multiple_of(period);
         (first..end).step_by(period as usize).map(move |tick| {
             let part = (tick - start) as f32 / (end - start) as f32;
             (
-                tick,
+                Tick::from(tick),
                 core::array::from_fn(|channel| {
                     from[channel] + part * (to[channel] - from[channel])
                 }),
@@ -67,18 +77,24 @@ pub fn samples_every(period: u32) -> impl Iterator<Item = (u32, [f32; CHANNELS])
 
 /// Hands every event of the flight to `each`.
 pub fn events(mut each: impl FnMut(Event)) {
-    let Some(mut bank) = bank::<f32>() else { return };
+    let Some(schemes) = Schemes::<f32>::new() else { return };
+    let mut bank = schemes.bank();
     for (tick, sample) in samples() {
         bank.encode(tick, sample, &mut each);
     }
 }
 
+/// For places that wait for an event.
+pub const NO_EVENT: Event =
+    Event { tick: Tick::from_micros(0), address: 0, polarity: Polarity::Up };
+
 /// Hands the events of every `ticks` µs to `each`, up to `N` together.
 pub fn batches<const N: usize>(ticks: u32, mut each: impl FnMut(&[Event])) {
-    let mut batch = [Event { tick: 0, address: 0, polarity: Polarity::Up }; N];
+    let mut batch = [NO_EVENT; N];
     let mut length = 0;
+    let number = |event: Event| event.tick.micros() / ticks;
     events(|event| {
-        if length == N || length > 0 && batch[0].tick / ticks != event.tick / ticks {
+        if length == N || length > 0 && number(batch[0]) != number(event) {
             each(&batch[..length]);
             length = 0;
         }
@@ -100,7 +116,7 @@ impl Digest {
     pub fn add(&mut self, event: Event) {
         let Event { tick, address, polarity } = event;
         let up = u64::from(polarity == Polarity::Up);
-        let event = u64::from(tick) << 17 | u64::from(address) << 1 | up;
+        let event = u64::from(tick.micros()) << 17 | u64::from(address) << 1 | up;
         self.0 = (self.0 ^ event).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(29);
     }
 }

@@ -3,7 +3,7 @@
 use core::fmt::{self, Write};
 
 use spikewire::{
-    Event, Polarity,
+    Event, Polarity, Tick,
     format::{Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, FormatError, eieio},
 };
 
@@ -15,9 +15,12 @@ pub fn measure(out: &mut impl Write) -> fmt::Result {
         let camera = Edvs::new(time);
         format(out, name, camera.encoder(), camera.decoder(), read)
     };
-    camera(out, "edvs-e0", EdvsTime::None, |event| Event { tick: 0, ..event })?;
+    camera(out, "edvs-e0", EdvsTime::None, |event| Event { tick: Tick::from(0), ..event })?;
     camera(out, "edvs-e1", EdvsTime::Delta, |event| event)?;
-    camera(out, "edvs-e2", EdvsTime::Bits16, |event| Event { tick: event.tick & 0xFFFF, ..event })?;
+    camera(out, "edvs-e2", EdvsTime::Bits16, |event| Event {
+        tick: Tick::from(event.tick.micros() & 0xFFFF),
+        ..event
+    })?;
     camera(out, "edvs-e3", EdvsTime::Bits24, |event| event)?;
     camera(out, "edvs-e4", EdvsTime::Bits32, |event| event)?;
     let mut log = EventStream::decoder();
@@ -70,7 +73,7 @@ impl EventFormat for Raw {
     fn encode(&mut self, event: Event, bytes: &mut [u8]) -> Result<usize, FormatError> {
         let target: &mut [u8; 7] =
             bytes.first_chunk_mut().ok_or(FormatError::Full { written: 0 })?;
-        let [t0, t1, t2, t3] = event.tick.to_le_bytes();
+        let [t0, t1, t2, t3] = event.tick.micros().to_le_bytes();
         let [a0, a1] = event.address.to_le_bytes();
         let sign: i8 = if event.polarity == Polarity::Up { 1 } else { -1 };
         *target = [t0, t1, t2, t3, a0, a1, sign as u8];
@@ -97,7 +100,7 @@ impl EventDecoder for Raw {
 
     fn decode(&mut self, bytes: &[u8]) -> impl Iterator<Item = Event> {
         let event = bytes.first_chunk().map(|&[t0, t1, t2, t3, a0, a1, sign]: &[u8; 7]| Event {
-            tick: u32::from_le_bytes([t0, t1, t2, t3]),
+            tick: Tick::from(u32::from_le_bytes([t0, t1, t2, t3])),
             address: u16::from_le_bytes([a0, a1]),
             polarity: if sign == 1 { Polarity::Up } else { Polarity::Down },
         });
@@ -116,7 +119,7 @@ fn eieio(out: &mut impl Write) -> fmt::Result {
         let [first, ..] = events else { return };
         let mut length = 0;
         let mut encode = |first: Event, bytes: &mut [u8]| {
-            eieio::encode(Some(first.tick), events.iter().map(key), bytes).unwrap_or(0)
+            eieio::encode(Some(first.tick.micros()), events.iter().map(key), bytes).unwrap_or(0)
         };
         let writing = written.encoding(&mut encode, *first, &mut bytes, &mut length);
         let mut sum = None;
@@ -127,7 +130,7 @@ fn eieio(out: &mut impl Write) -> fmt::Result {
         let reading = read.decoding(&mut decode, &bytes[..length], &mut sum);
         written.add(events.len(), length, writing);
         read.add(events.len(), length, reading);
-        agrees &= sum == Some((first.tick, events.iter().map(key).fold(0, fold)));
+        agrees &= sum == Some((first.tick.micros(), events.iter().map(key).fold(0, fold)));
     });
     ensure(out, agrees, "eieio")?;
     written.print_event(out, "eieio", "encode")?;

@@ -9,14 +9,14 @@ use core::{
 use board::stopwatch::{instructions, keep};
 use fixed::{FixedI32, types::extra::U16};
 use spikewire::{
-    Decoder, Event, Polarity, Sample, Scheme,
-    link::{Coding, FrameView, MAX_FRAME, Raw, Reader, Receiver, Transmitter},
-    temporal::StepDecoder,
+    Decoder, Event, FromEvents, Sample, Scheme,
+    link::{Coding, FrameView, MAX_FRAME, Reader, Receiver, Transmitter},
+    temporal::StepForward,
 };
 
 use super::{
     ensure,
-    flight::{self, CHANNELS, Digest, PERIOD},
+    flight::{self, CHANNELS, Digest, NO_EVENT, PERIOD, Schemes, Six},
     meter::{Cost, take},
 };
 
@@ -24,8 +24,10 @@ use super::{
 const FULL: usize = 512;
 
 pub fn measure(out: &mut impl Write) -> fmt::Result {
-    let mut full = Link::new().ok_or(fmt::Error)?;
-    let mut waiting = [Event { tick: 0, address: 0, polarity: Polarity::Up }; FULL];
+    let floats = Schemes::new().ok_or(fmt::Error)?;
+    let fixed = Schemes::new().ok_or(fmt::Error)?;
+    let mut full = Link::new(&floats, &fixed);
+    let mut waiting = [NO_EVENT; FULL];
     let mut count = 0;
     flight::events(|event| {
         waiting[count] = event;
@@ -39,56 +41,63 @@ pub fn measure(out: &mut impl Write) -> fmt::Result {
     // What is left fills no frame, and would cost more an event.
     full.print(out, "link-full")?;
 
-    let mut slow = Link::new().ok_or(fmt::Error)?;
-    flight::batches::<FULL>(100_000, |events| slow.all_sent &= slow.send(events) == events.len());
+    let mut slow = Link::new(&floats, &fixed);
+    flight::batches::<FULL>(100_000, |events| {
+        slow.all_sent &= slow.send(events) == events.len() && slow.is_whole();
+    });
     slow.print(out, "link-100ms")
 }
 
 /// Both ends of a link.
-struct Link {
-    transmitter: Transmitter<f32, CHANNELS>,
+struct Link<'a> {
+    transmitter: Transmitter,
     reader: Reader<MAX_FRAME>,
-    floats: Values<f32>,
-    fixed: Values<FixedI32<U16>>,
+    floats: Values<'a, f32>,
+    fixed: Values<'a, FixedI32<U16>>,
     written: Cost,
     read: Cost,
+    /// What the transmitter took, but for the last event, which it may hold for its next frame.
     sent: Digest,
+    last: Option<Event>,
     received: Digest,
     all_sent: bool,
 }
 
 /// Events to values at the far end, and without a link.
-struct Values<S> {
-    receiver: Receiver<S, CHANNELS>,
-    decoders: [StepDecoder<S>; CHANNELS],
+struct Values<'a, S: Sample> {
+    receiver: Receiver<Six<'a, S>, CHANNELS, 0>,
+    decoders: [Decoder<'a, StepForward<S>>; CHANNELS],
     cost: Cost,
 }
 
-impl Link {
-    fn new() -> Option<Self> {
-        Some(Self {
-            transmitter: Transmitter::new(Coding::for_channels(CHANNELS as u16, PERIOD)),
+impl<'a> Link<'a> {
+    fn new(floats: &'a Schemes<f32>, fixed: &'a Schemes<FixedI32<U16>>) -> Self {
+        Self {
+            transmitter: Transmitter::new(Coding::for_channels(CHANNELS as u16, PERIOD), 1),
             reader: Reader::new(),
-            floats: Values::new()?,
-            fixed: Values::new()?,
+            floats: Values::new(floats),
+            fixed: Values::new(fixed),
             written: Cost::default(),
             read: Cost::default(),
             sent: Digest::new(),
+            last: None,
             received: Digest::new(),
             all_sent: true,
-        })
+        }
     }
 
-    /// Sends and receives a frame, and returns how many events were taken for it.
+    /// Sends and receives a frame, and returns how many events were taken for it, or for the next.
     fn send(&mut self, events: &[Event]) -> usize {
-        let mut source = events.iter().copied();
+        let mut source = FromEvents(events.iter().copied());
         let mut buffer = [0; MAX_FRAME];
         let mut length = 0;
         let call = instructions(|| take(&mut self.transmitter, &source, &buffer));
         let writing =
             instructions(|| length = write(&mut self.transmitter, &mut source, &mut buffer));
-        let taken = events.len() - source.len();
-        events[..taken].iter().for_each(|&event| self.sent.add(event));
+        let taken = events.len() - source.0.len();
+        for &event in &events[..taken] {
+            self.last.replace(event).into_iter().for_each(|event| self.sent.add(event));
+        }
 
         let bytes = &buffer[..length];
         let Ok((frame, _)) = FrameView::new(bytes) else { return taken };
@@ -114,8 +123,16 @@ impl Link {
         taken
     }
 
+    /// Whether all events that were taken have arrived.
+    fn is_whole(&self) -> bool {
+        let mut sent = self.sent;
+        self.last.into_iter().for_each(|event| sent.add(event));
+        sent == self.received
+    }
+
     fn print(&mut self, out: &mut impl Write, name: &str) -> fmt::Result {
         let agrees = self.all_sent
+            && (self.is_whole() || self.sent == self.received)
             && self.reader.frames() > 0
             && self.reader.lost_frames() == 0
             && self.floats.agree()
@@ -130,18 +147,18 @@ impl Link {
 
 #[inline(never)]
 fn write(
-    transmitter: &mut Transmitter<f32, CHANNELS>,
-    source: &mut Copied<Iter<'_, Event>>,
+    transmitter: &mut Transmitter,
+    source: &mut FromEvents<Copied<Iter<'_, Event>>>,
     buffer: &mut [u8],
 ) -> usize {
     transmitter.next_frame(source, buffer).ok().flatten().map_or(0, <[u8]>::len)
 }
 
-impl<S: Raw + Sample> Values<S> {
-    fn new() -> Option<Self> {
-        let schemes = flight::schemes()?;
+impl<'a, S: Sample> Values<'a, S> {
+    fn new(schemes: &'a Schemes<S>) -> Self {
+        let schemes = schemes.each();
         let decoders = schemes.map(Scheme::decoder);
-        Some(Self { receiver: Receiver::from_schemes(schemes), decoders, cost: Cost::default() })
+        Self { receiver: Receiver::per_channel(schemes), decoders, cost: Cost::default() }
     }
 
     fn decode(&mut self, event: Event) {
@@ -160,6 +177,8 @@ impl<S: Raw + Sample> Values<S> {
     }
 
     fn agree(&self) -> bool {
-        (0..).zip(&self.decoders).all(|(at, decoder)| self.receiver.estimate(at) == decoder.value())
+        (0..).zip(&self.decoders).all(|(at, decoder)| {
+            decoder.held().is_some_and(|held| self.receiver.estimate(at) == held)
+        })
     }
 }

@@ -35,7 +35,7 @@ impl Cost {
         instructions(|| *given = encode(work, event, bytes)).saturating_sub(empty)
     }
 
-    /// The same the other way.
+    /// Counts a call that reads bytes, and keeps what it gave.
     pub fn decoding<F, R>(&mut self, work: &mut F, bytes: &[u8], given: &mut R) -> u32
     where
         F: FnMut(&[u8]) -> R,
@@ -69,7 +69,7 @@ impl Cost {
         writeln!(out, r#""count":{count},"total":{total},"max":{max},"bytes":{bytes}}}"#)
     }
 
-    /// The same of an event.
+    /// A line of JSON, of an event.
     pub fn print_event(
         &self,
         out: &mut impl fmt::Write,

@@ -7,44 +7,60 @@ use core::{
 
 use board::stopwatch::instructions;
 use spikewire::{
-    Encoder, Event,
-    link::{Coding, MAX_FRAME, Raw, Reader, Receiver, Transmitter},
-    sink::{EventQueue, Overflow},
+    Bank, Consumer, Event, EventQueue, Overflow, Source as _, SpscQueue, Tick,
+    link::{Coding, MAX_FRAME, Reader, Receiver, Transmitter},
 };
 
 use super::{
     ensure,
-    flight::{self, CHANNELS, PERIOD, Six},
+    flight::{self, CHANNELS, PERIOD, Schemes, Six},
     meter::{Cost, take},
 };
 use crate::signal::Measured;
 
 static EVENTS: EventQueue<256> = EventQueue::new(Overflow::DropOldest);
 
-/// An event in and out again.
-pub fn queue(out: &mut impl Write) -> fmt::Result {
+/// An event in and out again, through either queue.
+pub fn queues(out: &mut impl Write) -> fmt::Result {
+    let mut consumer = EVENTS.consumer().ok_or(fmt::Error)?;
+    queue(out, "queue", |event| EVENTS.push(event).is_ok(), || consumer.take_event())?;
+    let lock_free = SpscQueue::<64>::new();
+    let (mut producer, mut consumer) = lock_free.split().ok_or(fmt::Error)?;
+    let push = |event| {
+        producer.push(event);
+        true
+    };
+    queue(out, "queue-lock-free", push, || consumer.take_event())
+}
+
+fn queue(
+    out: &mut impl Write,
+    name: &str,
+    mut push: impl FnMut(Event) -> bool,
+    mut pop: impl FnMut() -> Option<Event>,
+) -> fmt::Result {
     let (mut pushed, mut popped) = (Cost::default(), Cost::default());
     let mut agrees = true;
     flight::events(|event| {
-        let mut result = Ok(());
-        let mut push = |event: Event, _: &mut [u8]| EVENTS.push(event);
-        let pushing = pushed.encoding(&mut push, event, &mut [], &mut result);
+        let mut is_in = false;
+        let pushing = pushed.encoding(&mut |event, _| push(event), event, &mut [], &mut is_in);
         pushed.add(1, 0, pushing);
         let mut back = None;
-        let popping = popped.decoding(&mut |_| EVENTS.pop(), &[], &mut back);
+        let popping = popped.decoding(&mut |_| pop(), &[], &mut back);
         popped.add(1, 0, popping);
-        agrees &= result.is_ok() && back == Some(event);
+        agrees &= is_in && back == Some(event);
     });
-    ensure(out, agrees, "queue")?;
-    pushed.print_event(out, "queue", "push")?;
-    popped.print_event(out, "queue", "pop")
+    ensure(out, agrees, name)?;
+    pushed.print_event(out, name, "push")?;
+    popped.print_event(out, name, "pop")
 }
 
 /// Counts the whole way by sets of six samples, at the recording's own rate and at 8 kHz.
-pub fn measure<S: Measured + Raw>(out: &mut impl Write, sample: &str) -> fmt::Result {
-    Way::<S>::new(PERIOD).ok_or(fmt::Error)?.go(out, ("path-200hz", sample), flight::samples())?;
+pub fn measure<S: Measured>(out: &mut impl Write, sample: &str) -> fmt::Result {
+    let schemes = Schemes::<S>::new().ok_or(fmt::Error)?;
+    Way::new(&schemes, PERIOD).go(out, ("path-200hz", sample), flight::samples())?;
     let fast = flight::samples_every(SPACING.into()).take(10 * 8_000);
-    Way::<S>::new(SPACING).ok_or(fmt::Error)?.go(out, ("path-8khz", sample), fast)
+    Way::new(&schemes, SPACING).go(out, ("path-8khz", sample), fast)
 }
 
 /// Of 8000 samples a second, in µs.
@@ -55,74 +71,76 @@ const KEYFRAMES: u32 = 1_000_000;
 
 /// What an interrupt does.
 #[inline(never)]
-fn interrupt<S: Measured>(bank: &mut Six<S>, tick: &u32, set: &[S; CHANNELS]) {
+fn interrupt<S: Measured>(bank: &mut Bank<Six<'_, S>, CHANNELS>, tick: &Tick, set: &[S; CHANNELS]) {
     bank.encode_into(*tick, *set, &EVENTS);
+}
+
+/// What it does as well, once a second.
+#[inline(never)]
+fn keyframes<S: Measured>(bank: &Bank<Six<'_, S>, CHANNELS>, tick: &Tick) {
+    bank.keyframe_into(*tick, &EVENTS);
 }
 
 /// What main does, and how many bytes it wrote.
 #[inline(never)]
-fn send<S: Raw>(transmitter: &mut Transmitter<S, CHANNELS>, buffer: &mut [u8]) -> usize {
+fn send(transmitter: &mut Transmitter, events: &mut Consumer<'_>, buffer: &mut [u8]) -> usize {
     let mut used = 0;
-    while let Ok(Some(frame)) = transmitter.next_frame(&EVENTS, &mut buffer[used..]) {
+    while let Ok(Some(frame)) = transmitter.next_frame(&mut *events, &mut buffer[used..]) {
         used += frame.len();
     }
     used
 }
 
 /// From samples to frames, and to values at the other end.
-struct Way<S> {
-    bank: Six<S>,
-    transmitter: Transmitter<S, CHANNELS>,
+struct Way<'a, S: Measured> {
+    bank: Bank<Six<'a, S>, CHANNELS>,
+    transmitter: Transmitter,
     reader: Reader<MAX_FRAME>,
-    receiver: Receiver<S, CHANNELS>,
+    receiver: Receiver<Six<'a, S>, CHANNELS, 0>,
     interrupt: Cost,
     main: Cost,
     all: Cost,
 }
 
-impl<S: Measured + Raw> Way<S> {
-    fn new(period: u16) -> Option<Self> {
-        Some(Self {
-            bank: flight::bank()?,
-            transmitter: Transmitter::new(Coding::for_channels(CHANNELS as u16, period)),
+impl<'a, S: Measured> Way<'a, S> {
+    fn new(schemes: &'a Schemes<S>, period: u16) -> Self {
+        Self {
+            bank: schemes.bank(),
+            transmitter: Transmitter::new(Coding::for_channels(CHANNELS as u16, period), 1),
             reader: Reader::new(),
-            receiver: Receiver::from_schemes(flight::schemes()?),
+            receiver: Receiver::per_channel(schemes.each()),
             interrupt: Cost::default(),
             main: Cost::default(),
             all: Cost::default(),
-        })
+        }
     }
 
     fn go(
         &mut self,
         out: &mut impl Write,
         (name, sample): (&str, &str),
-        samples: impl Iterator<Item = (u32, [f32; CHANNELS])>,
+        samples: impl Iterator<Item = (Tick, [f32; CHANNELS])>,
     ) -> fmt::Result {
+        let mut events = EVENTS.consumer().ok_or(fmt::Error)?;
         let (mut sets, mut interrupts) = (0, 0);
-        let (mut frames_at, mut keyframe_at) = (FRAMES, 0);
+        let (mut frames_at, mut keyframes_at) = (Tick::from(FRAMES), Tick::from(0));
         let mut agrees = true;
         for (tick, set) in samples.map(flight::typed) {
-            let (at, set) = (black_box(&tick), black_box(&set));
-            let bank = &mut self.bank;
-            let call =
-                *self.interrupt.call.get_or_insert_with(|| instructions(|| take(bank, at, set)));
-            let count = instructions(|| interrupt(bank, at, set)).saturating_sub(call);
+            let mut count = self.interrupt(&tick, &set);
+            if !tick.is_before(keyframes_at) {
+                count += instructions(|| keyframes(&self.bank, black_box(&tick)));
+                keyframes_at = tick + KEYFRAMES;
+            }
             self.interrupt.add(1, 0, count);
             interrupts += count;
             sets += 1;
 
-            if tick >= frames_at {
-                let mut main = 0;
-                if tick >= keyframe_at {
-                    let bank = &self.bank;
-                    let mark = EVENTS.mark();
-                    main += instructions(|| self.transmitter.keyframe(bank.snapshot(tick, mark)));
-                    keyframe_at = tick + KEYFRAMES;
-                }
-                let mut buffer = [0; 2 * MAX_FRAME];
+            if !tick.is_before(frames_at) {
+                let mut buffer = [0; 3 * MAX_FRAME];
                 let mut length = 0;
-                main += instructions(|| length = send(&mut self.transmitter, &mut buffer));
+                let main = instructions(|| {
+                    length = send(&mut self.transmitter, &mut events, &mut buffer);
+                });
                 self.main.add(sets, length, main);
                 self.all.add(sets, length, interrupts + main);
                 (sets, interrupts) = (0, 0);
@@ -130,11 +148,19 @@ impl<S: Measured + Raw> Way<S> {
                 agrees &= self.arrives(&buffer[..length]);
             }
         }
-        while EVENTS.pop().is_some() {} // after the last frame
+        while events.take().is_some() {} // after the last frame
         ensure(out, agrees && EVENTS.lost() == 0, name)?;
         self.interrupt.print(out, (name, "interrupt"), Some(sample), "sample set")?;
         self.main.print(out, (name, "main"), Some(sample), "sample set")?;
         self.all.print(out, (name, "all"), Some(sample), "sample set")
+    }
+
+    /// The instructions of an interrupt, without its call.
+    fn interrupt(&mut self, tick: &Tick, set: &[S; CHANNELS]) -> u32 {
+        let (tick, set, bank) = (black_box(tick), black_box(set), &mut self.bank);
+        let call =
+            *self.interrupt.call.get_or_insert_with(|| instructions(|| take(bank, tick, set)));
+        instructions(|| interrupt(bank, tick, set)).saturating_sub(call)
     }
 
     /// Whether the values at the other end are those that the encoders hold.
@@ -142,7 +168,6 @@ impl<S: Measured + Raw> Way<S> {
         while let Some(received) = self.reader.next_frame(&mut bytes) {
             self.receiver.apply(&received, |_, _, _| ());
         }
-        let mut channels = (0..).zip(self.bank.channels());
-        channels.all(|(at, encoder)| self.receiver.exact(at) == encoder.keyframe())
+        (0..CHANNELS).all(|at| self.receiver.exact(at as u16) == self.bank.keyframe(at))
     }
 }

@@ -1,57 +1,7 @@
 //! Address events over parallel wires, by the 4-phase handshake.
 
+use super::AerPort;
 use crate::event::Event;
-
-/// The wires of a chip's two address-event buses and its reset, all active high.
-///
-/// One port-wide write each for the data, rather than single pins, keeps words whole: on an STM32 a
-/// store to BSRR.
-pub trait AerPort {
-    /// What can go wrong; `Infallible` for pins of the microcontroller's own.
-    type Error;
-
-    /// Puts a word on the input bus. It must have settled at the chip when this returns.
-    ///
-    /// # Errors
-    /// The port failed; so for all below.
-    fn set_input(&mut self, word: u32) -> Result<(), Self::Error>;
-
-    /// Drives the input bus's REQ.
-    ///
-    /// # Errors
-    /// See [`set_input`](Self::set_input).
-    fn set_input_request(&mut self, is_high: bool) -> Result<(), Self::Error>;
-
-    /// Reads the input bus's ACK.
-    ///
-    /// # Errors
-    /// See [`set_input`](Self::set_input).
-    fn input_acknowledge(&mut self) -> Result<bool, Self::Error>;
-
-    /// Reads the output bus's REQ.
-    ///
-    /// # Errors
-    /// See [`set_input`](Self::set_input).
-    fn output_request(&mut self) -> Result<bool, Self::Error>;
-
-    /// Reads the output bus's word.
-    ///
-    /// # Errors
-    /// See [`set_input`](Self::set_input).
-    fn output(&mut self) -> Result<u8, Self::Error>;
-
-    /// Drives the output bus's ACK.
-    ///
-    /// # Errors
-    /// See [`set_input`](Self::set_input).
-    fn set_output_acknowledge(&mut self, is_high: bool) -> Result<(), Self::Error>;
-
-    /// Drives the chip's reset.
-    ///
-    /// # Errors
-    /// See [`set_input`](Self::set_input).
-    fn set_reset(&mut self, is_high: bool) -> Result<(), Self::Error>;
-}
 
 /// Where a handshake stands, or stands still.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -69,7 +19,7 @@ pub enum Phase {
 
 /// Why a word is not through.
 #[derive(Debug)]
-pub(super) enum AerError<E> {
+pub(in crate::chip) enum AerError<E> {
     Port(E),
     Timeout(Phase),
 }
@@ -78,6 +28,32 @@ impl<E> From<E> for AerError<E> {
     fn from(error: E) -> Self {
         Self::Port(error)
     }
+}
+
+/// What the word under way stands for.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Carries {
+    /// A word of the caller's.
+    Word,
+    /// A question whether the chip runs.
+    Probe,
+    /// A time step.
+    Step,
+    /// An event that was fed.
+    Event(Event),
+}
+
+/// What is known of our ACK on the output bus. A call that fails may have acted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Answer {
+    /// Low: the next REQ is a new output.
+    Idle,
+    /// The output is with the caller; ACK may be high or low.
+    Raising,
+    /// High.
+    High,
+    /// REQ has fallen; ACK may be high or low.
+    Lowering,
 }
 
 /// The microcontroller's side of both buses.
@@ -91,26 +67,42 @@ pub(super) struct Aer<P> {
     polls: u32,
     /// Of the word that was begun last.
     phase: Phase,
-    /// What that word stands for, if it is an event.
-    pub(super) event: Option<Event>,
-    /// Whether the last call to [`send`](Self::send) began its word, even if an error followed.
-    pub(super) is_begun: bool,
-    is_acknowledging: bool,
+    carries: Carries,
+    answer: Answer,
+    is_full: bool,
+    /// How often the queue was seen to become full.
+    pub(super) overflows: u32,
 }
 
 impl<P: AerPort> Aer<P> {
     pub(super) const fn new(port: P, polls: u32) -> Self {
-        let phase = Phase::Idle;
-        Self { port, polls, phase, event: None, is_begun: false, is_acknowledging: false }
+        Self {
+            port,
+            polls,
+            phase: Phase::Idle,
+            carries: Carries::Word,
+            answer: Answer::Idle,
+            is_full: false,
+            overflows: 0,
+        }
     }
 
-    /// Lowers both of our wires, whatever they were, and drops the word under way. Its event comes back.
-    pub(super) fn release(&mut self) -> (Option<Event>, Result<(), P::Error>) {
-        let event = self.event.take().filter(|_| self.phase == Phase::Acknowledge);
-        self.phase = Phase::Idle;
-        self.is_acknowledging = false;
-        let request = self.port.set_input_request(false);
-        (event, request.and_then(|()| self.port.set_output_acknowledge(false)))
+    /// Raises reset while REQ stays as it is: a word that the chip takes in between waits for REQ to fall
+    /// and is gone with the reset, before it has acted. Both of our wires are low after.
+    ///
+    /// Returns what was under way and has not been seen to be taken, and whether an output was lost.
+    pub(super) fn reset(&mut self) -> Result<(Option<Carries>, bool), P::Error> {
+        if self.phase == Phase::Acknowledge && matches!(self.port.input_acknowledge(), Ok(true)) {
+            self.phase = Phase::Release;
+        }
+        let is_output_lost =
+            self.answer == Answer::Idle && matches!(self.port.output_request(), Ok(true));
+        self.port.set_reset(true)?;
+        self.port.set_input_request(false)?;
+        self.port.set_output_acknowledge(false)?;
+        let is_under_way = self.phase == Phase::Acknowledge;
+        (self.phase, self.answer) = (Phase::Idle, Answer::Idle);
+        Ok((is_under_way.then_some(self.carries), is_output_lost))
     }
 
     /// Goes on with both buses, in a few looks at the pins.
@@ -125,21 +117,21 @@ impl<P: AerPort> Aer<P> {
         }
     }
 
-    /// Sends a word, once the one under way is through.
-    pub(super) fn send(
+    /// Puts a word under way, once the one before is through. After an error it is not under way.
+    pub(super) fn begin(
         &mut self,
         word: u32,
+        carries: Carries,
         on_output: &mut impl FnMut(u8),
     ) -> Result<(), AerError<P::Error>> {
-        self.is_begun = false;
         self.finish(on_output).map_err(|error| match error {
             AerError::Timeout(_) => AerError::Timeout(Phase::Idle),
             port @ AerError::Port(_) => port,
         })?;
         self.wait_for(false, self.polls, on_output)?;
         self.port.set_input(word)?;
-        (self.phase, self.event, self.is_begun) = (Phase::Acknowledge, None, true);
-        self.finish(on_output)
+        (self.phase, self.carries) = (Phase::Acknowledge, carries);
+        Ok(())
     }
 
     /// Brings the word under way to its end, if there is one.
@@ -150,7 +142,7 @@ impl<P: AerPort> Aer<P> {
         self.finish_within(self.polls, on_output)
     }
 
-    fn finish_within(
+    pub(super) fn finish_within(
         &mut self,
         polls: u32,
         on_output: &mut impl FnMut(u8),
@@ -166,6 +158,26 @@ impl<P: AerPort> Aer<P> {
             self.phase = Phase::Idle;
         }
         Ok(())
+    }
+
+    /// Waits until the output bus has been still for this many looks, of no more than `limit` in all.
+    pub(super) fn rest(
+        &mut self,
+        looks: u32,
+        limit: u32,
+        on_output: &mut impl FnMut(u8),
+    ) -> Result<bool, P::Error> {
+        let mut still = 0;
+        for _ in 0..limit {
+            if still >= looks {
+                return Ok(true);
+            }
+            let was_idle = self.answer == Answer::Idle;
+            self.serve(on_output)?;
+            let is_still = was_idle && self.answer == Answer::Idle;
+            still = if is_still { still + 1 } else { 0 };
+        }
+        Ok(false)
     }
 
     /// Waits for ACK. While an output event waits the chip acknowledges no input, so this serves the
@@ -187,19 +199,30 @@ impl<P: AerPort> Aer<P> {
 
     /// One step of the output bus's handshake, if the chip waits for one.
     fn serve(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
-        match (self.port.output_request()?, self.is_acknowledging) {
-            (true, false) => {
-                let address = self.port.output()?;
-                self.port.set_output_acknowledge(true)?;
-                self.is_acknowledging = true;
-                on_output(address);
-            }
-            (false, true) => {
-                self.port.set_output_acknowledge(false)?;
-                self.is_acknowledging = false;
-            }
-            _ => {}
+        if let Some(is_full) = self.port.queue_full()? {
+            self.overflows = self.overflows.saturating_add((is_full && !self.is_full).into());
+            self.is_full = is_full;
         }
+        match (self.port.output_request()?, self.answer) {
+            (true, Answer::Idle) => {
+                on_output(self.port.output()?);
+                self.raise()
+            }
+            (true, Answer::Raising) => self.raise(),
+            (false, Answer::Raising | Answer::High) | (_, Answer::Lowering) => {
+                self.answer = Answer::Lowering;
+                self.port.set_output_acknowledge(false)?;
+                self.answer = Answer::Idle;
+                Ok(())
+            }
+            (true, Answer::High) | (false, Answer::Idle) => Ok(()),
+        }
+    }
+
+    fn raise(&mut self) -> Result<(), P::Error> {
+        self.answer = Answer::Raising;
+        self.port.set_output_acknowledge(true)?;
+        self.answer = Answer::High;
         Ok(())
     }
 }

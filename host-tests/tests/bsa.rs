@@ -1,26 +1,26 @@
 //! BSA aligned: with `e1 = sum |r[i+j] - h[j]|` and `e2 = sum |r[i+j]|` a spike if
 //! `e1 <= e2 - threshold` or `e1 <= e2 * threshold`; then `r[i+j] -= h[j]`.
 
-mod common;
-
-use common::rate::{all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle};
-use common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::rate::{
+    all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle,
+};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, check_rate, decode, encode, reals, signs_of};
 use host_tests::reference::{ben_multiplicative, ben_subtractive};
 use proptest::prelude::*;
-use spikewire::rate::{Ben, Scale, Shape, Taps};
-use spikewire::{Encoder, Scheme, Spike};
+use spikewire::rate::{Bsa, Scale, Shape, Taps};
+use spikewire::{Scheme, Spike};
 
 /// Both criteria against the reference, encoder and decoder.
 fn check<S: Wire, const F: usize>(taps: &Taps<S, F>, x: &[S], threshold: S, ratio: f32, shift: S) {
     let h = reals(taps.as_array());
-    let scheme = Ben::subtractive(taps, threshold).unwrap().with_shift(shift).unwrap();
-    check_rate(scheme, x, taps, shift, |r, shift, finish| {
+    let scheme = Bsa::try_subtractive(*taps, threshold).unwrap().try_with_shift(shift).unwrap();
+    check_rate(&scheme, x, taps, shift, |r, shift, finish| {
         ben_subtractive(r, &h, shift, threshold.real(), finish)
     });
-    let scheme = Ben::multiplicative(taps, ratio).unwrap().with_shift(shift).unwrap();
-    check_rate(scheme, x, taps, shift, |r, shift, finish| {
+    let scheme = Bsa::try_multiplicative(*taps, ratio).unwrap().try_with_shift(shift).unwrap();
+    check_rate(&scheme, x, taps, shift, |r, shift, finish| {
         ben_multiplicative(r, &h, shift, S::ratio(ratio), finish)
     });
 }
@@ -38,10 +38,10 @@ fn subtractive_by_hand() {
         ("a single sample: e1 = 0, e2 = 0.25", &[0.25], 0.25, &[1]),
         ("not a number is skipped", &[0.25, 1.0, f32::NAN, 0.5], 1.75, &[1, 0, 0]),
     ];
-    let taps = Taps::new([0.25_f32, 1.0, 0.5]).unwrap();
+    let taps = Taps::try_new([0.25_f32, 1.0, 0.5]).unwrap();
     for (name, x, threshold, expected) in table {
-        let scheme = Ben::subtractive(&taps, threshold).unwrap();
-        assert_eq!(signs_of(&encode(scheme, x).codes()), expected, "{name}");
+        let scheme = Bsa::try_subtractive(taps, threshold).unwrap();
+        assert_eq!(signs_of(&encode(&scheme, x).codes()), expected, "{name}");
     }
 }
 
@@ -56,10 +56,10 @@ fn multiplicative_by_hand() {
         ("a cut window: e1 = 0.25, e2 = 1.5", &[0.0, 0.5, 1.0], 0.1875, &[0, 1, 0]),
         ("the tail: e1 = 0.25, e2 = 0.5", &[0.5], 0.5, &[1]),
     ];
-    let taps = Taps::new([0.25_f32, 1.0, 0.5]).unwrap();
+    let taps = Taps::try_new([0.25_f32, 1.0, 0.5]).unwrap();
     for (name, x, threshold, expected) in table {
-        let scheme = Ben::multiplicative(&taps, threshold).unwrap();
-        assert_eq!(signs_of(&encode(scheme, x).codes()), expected, "{name}");
+        let scheme = Bsa::try_multiplicative(taps, threshold).unwrap();
+        assert_eq!(signs_of(&encode(&scheme, x).codes()), expected, "{name}");
     }
 }
 
@@ -67,7 +67,7 @@ fn multiplicative_by_hand() {
 /// samples 30..970, as printed in the schemes' page.
 #[test]
 fn the_printed_check_values() {
-    let taps = Taps::<f32, 24>::shaped(Shape::Hann, Scale::Sum(1.0)).unwrap();
+    let taps = Taps::<f32, 24>::try_shaped(Shape::Hann, Scale::Sum(1.0)).unwrap();
     let angle = |i| std::f64::consts::TAU * 0.01 * f64::from(i);
     let x: Vec<_> = (0..1000).map(|i| (0.5 + 0.4 * angle(i).sin()) as f32).collect();
     let table = [
@@ -77,8 +77,8 @@ fn the_printed_check_values() {
         (0.955, 493, 0.00707, 5e-6),
     ];
     for (threshold, spikes, error, half_a_digit) in table {
-        let scheme = Ben::subtractive(&taps, threshold).unwrap();
-        let codes = encode(scheme, &x).codes();
+        let scheme = Bsa::try_subtractive(taps, threshold).unwrap();
+        let codes = encode(&scheme, &x).codes();
         assert_eq!(codes.iter().filter(|code| code.is_fired()).count(), spikes, "{threshold}");
         let values = decode(&scheme.decoder(), &codes);
         let squares = (30..970).map(|i| (f64::from(x[i]) - f64::from(values[i])).powi(2));
@@ -147,12 +147,12 @@ fn drawn_recordings() {
 #[test]
 fn all_pairs_of_8_bits() {
     fn check<const F: usize>(taps: [i16; F], threshold: i16, ratio: f32) {
-        let taps = Taps::new(taps.map(I8F8::from_bits)).unwrap();
+        let taps = Taps::try_new(taps.map(I8F8::from_bits)).unwrap();
         let threshold = I8F8::from_bits(threshold);
         let h = reals(taps.as_array());
         let schemes = [
-            Ben::subtractive(&taps, threshold).unwrap(),
-            Ben::multiplicative(&taps, ratio).unwrap(),
+            Bsa::try_subtractive(taps, threshold).unwrap(),
+            Bsa::try_multiplicative(taps, ratio).unwrap(),
         ];
         for pair in pairs_of_8_bits() {
             let pair = pair.map(I8F8::from_bits);

@@ -4,24 +4,20 @@
 //! Spikes and values are the same, to the bit, with two exceptions that are said at their comparison: the winner by
 //! exponentials where two of them differ by rounding only, and fixed-point means of centres, whose last place may differ.
 
-#[allow(clippy::pedantic, dead_code, unreachable_pub)]
-#[path = "../../examples/bench-target/src/plain.rs"]
-mod plain;
-#[allow(clippy::pedantic, dead_code, unreachable_pub)]
-#[path = "../../examples/bench-target/src/signal.rs"]
-mod signal;
+use crate::signal;
 
+use catalogue::{plain, schemes};
 use fixed::types::{I8F8, I16F16};
 use host_tests::compare::{Wire, decode, encode, run, signs_of, spikes_of};
 use host_tests::reference::even_centres;
 use rand_pcg::{Pcg32, rand_core::Rng};
 use signal::{LENGTH, Measured, Signal};
-use spikewire::population::{
-    Centres, Neuron, Pattern, Position, Probabilistic, ReceptiveFields, Slots, Volley,
+use spikewire::population::{FiredNeurons, Neuron, Position, Probabilistic, SlotSpikes, Slots};
+use spikewire::rate::{
+    Bsa, BsaToolbox, Hough, RateDecoderState, Scale, Shape, Taps, ThresholdHough,
 };
-use spikewire::rate::{Ben, BenToolbox, Hough, RateDecoder, Scale, Shape, Taps, ThresholdHough};
-use spikewire::temporal::{MovingWindow, StepForward, TemporalContrast};
-use spikewire::{Calibration, Decoder, Encoder, Scheme, Spike};
+use spikewire::temporal::{MovingWindow, StepForward, StepState, TemporalContrast};
+use spikewire::{Calibration, Scheme, Spike, Start};
 
 /// A signal in a sample type, with what it is scaled by.
 struct Recording<S> {
@@ -71,15 +67,13 @@ const NOWHERE: [usize; 0] = [];
 /// A temporal code, both ways.
 fn temporal<S, P>(
     recording: &Recording<S>,
-    scheme: P,
+    scheme: &P,
     step: S,
     plain: impl Fn(&[S], &mut [i8]),
 ) -> Vec<usize>
 where
     S: Measured + Wire,
-    P: Scheme<Sample = S>,
-    P::Encoder: Encoder<Sample = S, Output = Spike> + Clone,
-    P::Decoder: Decoder<Sample = S, Code = Spike> + Clone,
+    P: Start<Sample = S, Code = Spike, Output = Spike, DecoderState = StepState<S>>,
 {
     let mut spikes = [0; LENGTH];
     plain(&recording.samples, &mut spikes);
@@ -91,16 +85,20 @@ where
 }
 
 /// A rate code, both ways, to the recording's end.
-fn rate<'a, S, P, const F: usize>(
+fn rate<S, P, const F: usize>(
     recording: &Recording<S>,
-    scheme: P,
+    scheme: &P,
     taps: &Taps<S, F>,
     plain: impl Fn(&mut [S], &[S], &mut [i8]),
 ) -> Vec<usize>
 where
     S: Measured + Wire,
-    P: Scheme<Sample = S, Decoder = RateDecoder<'a, S, F>>,
-    P::Encoder: Encoder<Sample = S, Output = Option<Spike>> + Clone,
+    P: Start<
+            Sample = S,
+            Code = Spike,
+            Output = Option<Spike>,
+            DecoderState = RateDecoderState<S, F>,
+        >,
 {
     let mut spikes = [0; LENGTH];
     plain(&mut recording.shifted(), taps.as_array(), &mut spikes);
@@ -114,65 +112,67 @@ fn check_temporal<S: Measured + Wire>(signal: Signal) {
     let recording = Recording::<S>::new(signal);
     let scheme = TemporalContrast::from_magnitudes(&recording.calibration, 0.5).unwrap();
     let threshold = scheme.threshold();
-    let plain = |x: &[S], spikes: &mut [i8]| plain::temporal_contrast(x, threshold, spikes);
-    assert_eq!(temporal(&recording, scheme, scheme.step(), plain), NOWHERE);
+    let plain = |x: &[S], spikes: &mut [i8]| schemes::tbr::transcribed(x, threshold, spikes);
+    assert_eq!(temporal(&recording, &scheme, scheme.step(), plain), NOWHERE);
 
     let threshold = recording.part(0.5);
-    let plain = |x: &[S], spikes: &mut [i8]| plain::step_forward(x, threshold, spikes);
-    let scheme = StepForward::new(threshold).unwrap();
-    assert_eq!(temporal(&recording, scheme, threshold, plain), NOWHERE);
+    let plain = |x: &[S], spikes: &mut [i8]| schemes::sf::transcribed(x, threshold, spikes);
+    let scheme = StepForward::new(threshold);
+    assert_eq!(temporal(&recording, &scheme, threshold, plain), NOWHERE);
 
     let threshold = recording.part(0.25);
-    let plain = |x: &[S], spikes: &mut [i8]| plain::moving_window(x, 6, threshold, spikes);
-    let scheme = MovingWindow::<S, 6>::new(threshold).unwrap();
-    assert_eq!(temporal(&recording, scheme, threshold, plain), NOWHERE);
-    let plain = |x: &[S], spikes: &mut [i8]| plain::moving_window(x, 64, threshold, spikes);
-    let scheme = MovingWindow::<S, 64>::new(threshold).unwrap();
-    assert_eq!(temporal(&recording, scheme, threshold, plain), NOWHERE);
+    let plain = |x: &[S], spikes: &mut [i8]| schemes::mw::transcribed(x, 6, threshold, spikes);
+    let scheme = MovingWindow::<S, 6>::new(threshold);
+    assert_eq!(temporal(&recording, &scheme, threshold, plain), NOWHERE);
+    let plain = |x: &[S], spikes: &mut [i8]| schemes::mw::transcribed(x, 64, threshold, spikes);
+    let scheme = MovingWindow::<S, 64>::new(threshold);
+    assert_eq!(temporal(&recording, &scheme, threshold, plain), NOWHERE);
 }
 
 fn check_rate<S: Measured + Wire>(signal: Signal) {
     let recording = Recording::<S>::new(signal);
     let min = recording.min;
     let peak = Scale::Peak(recording.part(1.0));
-    let taps = Taps::<S, 15>::shaped(Shape::Triangular, peak).unwrap();
-    let scheme = Hough::new(&taps).with_shift(min).unwrap();
-    assert_eq!(rate(&recording, scheme, &taps, plain::hough), NOWHERE);
+    let taps = Taps::<S, 15>::shaped(Shape::Triangular, peak);
+    let scheme = Hough::new(taps).with_shift(min);
+    assert_eq!(rate(&recording, &scheme, &taps, schemes::hsa::transcribed), NOWHERE);
 
     let threshold = recording.part(0.85);
-    let scheme = ThresholdHough::new(&taps, threshold).unwrap().with_shift(min).unwrap();
-    let plain = |x: &mut [S], h: &[S], s: &mut [i8]| plain::threshold_hough(x, h, threshold, s);
-    assert_eq!(rate(&recording, scheme, &taps, plain), NOWHERE);
+    let scheme = ThresholdHough::new(taps, threshold).with_shift(min);
+    let plain =
+        |x: &mut [S], h: &[S], s: &mut [i8]| schemes::t_hsa::transcribed(x, h, threshold, s);
+    assert_eq!(rate(&recording, &scheme, &taps, plain), NOWHERE);
 
     let whole = S::from_f64(recording.range);
     for (sum, threshold) in [
         (whole, S::from_f64(0.955 * recording.range)),
         (recording.part(1.0), recording.part(0.955)),
     ] {
-        let taps = Taps::<S, 24>::shaped(Shape::Hann, Scale::Sum(sum)).unwrap();
-        let scheme = Ben::subtractive(&taps, threshold).unwrap().with_shift(min).unwrap();
-        let plain = |x: &mut [S], h: &[S], s: &mut [i8]| plain::ben(x, h, threshold, s);
-        assert_eq!(rate(&recording, scheme, &taps, plain), NOWHERE);
+        let taps = Taps::<S, 24>::shaped(Shape::Hann, Scale::Sum(sum));
+        let scheme = Bsa::subtractive(taps, threshold).with_shift(min);
+        let plain =
+            |x: &mut [S], h: &[S], s: &mut [i8]| schemes::bsa::transcribed(x, h, threshold, s);
+        assert_eq!(rate(&recording, &scheme, &taps, plain), NOWHERE);
     }
 
-    let taps = Taps::<S, 9>::shaped(Shape::Triangular, peak).unwrap();
+    let taps = Taps::<S, 9>::shaped(Shape::Triangular, peak);
     // The transcription's 1.15, in 128ths.
-    let scheme = BenToolbox::new(&taps, 147.0 / 128.0).unwrap().with_shift(min).unwrap();
-    let plain = |x: &mut [S], h: &[S], s: &mut [i8]| plain::ben_toolbox(x, h, 1.15, s);
-    assert_eq!(rate(&recording, scheme, &taps, plain), NOWHERE);
+    let scheme = BsaToolbox::new(taps, 147.0 / 128.0).with_shift(min);
+    let plain =
+        |x: &mut [S], h: &[S], s: &mut [i8]| schemes::bsa::transcribed_toolbox(x, h, 1.15, s);
+    assert_eq!(rate(&recording, &scheme, &taps, plain), NOWHERE);
 }
 
 /// The winner of the receptive fields and position coding, both ways.
 fn nearest<S: Measured + Wire, const M: usize>(
     recording: &Recording<S>,
-    centres: &Centres<S, M>,
+    scheme: &Position<S, M>,
     plain: impl Fn(&[S], &mut [i8]),
 ) -> (Vec<Option<Neuron<M>>>, Vec<Option<Neuron<M>>>) {
     let mut neurons = [0; LENGTH];
     plain(&recording.samples, &mut neurons);
     let mut values = [S::default(); LENGTH];
-    plain::position_decode(&neurons, centres.as_array(), &mut values);
-    let scheme = Position::new(centres);
+    plain::position_decode(&neurons, scheme.centres(), &mut values);
     let codes = neurons.map(|neuron| Neuron::new(neuron as u16)).to_vec();
     assert_eq!(differing(&decode(&scheme.decoder(), &codes), &values), NOWHERE);
     (encode(scheme, &recording.samples).outputs, codes)
@@ -181,16 +181,17 @@ fn nearest<S: Measured + Wire, const M: usize>(
 fn check_nearest<S: Measured + Wire>(signal: Signal) {
     let recording = Recording::<S>::new(signal);
     let (min, max) = (recording.min, recording.max);
-    let centres = Centres::<S, 20>::new_gaussian_spaced(min, max).unwrap();
-    let plain = |x: &[S], neurons: &mut [i8]| plain::position(x, centres.as_array(), neurons);
-    let (ours, plain) = nearest(&recording, &centres, plain);
+    let scheme = Position::<S, 20>::gaussian_spaced(min..=max);
+    let plain =
+        |x: &[S], neurons: &mut [i8]| schemes::position::transcribed(x, scheme.centres(), neurons);
+    let (ours, plain) = nearest(&recording, &scheme, plain);
     assert_eq!(differing(&ours, &plain), NOWHERE);
 
-    let centres = Centres::<S, 20>::new_linear(min, max).unwrap();
+    let scheme = Position::<S, 20>::linear(min..=max);
     let means = recording.means::<20>();
     let sigma = (recording.range / 18.0) as f32;
-    let plain = |x: &[S], neurons: &mut [i8]| plain::gaussian(x, &means, sigma, neurons);
-    let (ours, plain) = nearest(&recording, &centres, plain);
+    let plain = |x: &[S], neurons: &mut [i8]| schemes::grf::transcribed(x, &means, sigma, neurons);
+    let (ours, plain) = nearest(&recording, &scheme, plain);
     // Halfway between two neurons the rounding of the exponentials may decide.
     for i in differing(&ours, &plain) {
         let x = recording.samples[i].to_f64() as f32;
@@ -209,39 +210,55 @@ fn assert_means<S: Measured>(ours: &[S], plain: &[S]) {
 
 fn check_slots<S: Measured + Wire>(signal: Signal) {
     let recording = Recording::<S>::new(signal);
-    let fields = ReceptiveFields::<S, 15, 10>::new(recording.min, recording.max, 1.5).unwrap();
+    let scheme = Slots::<S, 15, 10>::new(recording.min..=recording.max, 1.5);
     let sigma = (recording.range / (1.5 * 13.0)) as f32;
     let mut slots = vec![0; 15 * LENGTH];
-    plain::slots(&recording.samples, &recording.means::<15>(), sigma, 10, &mut slots);
+    schemes::grf_slots::transcribed(
+        &recording.samples,
+        &recording.means::<15>(),
+        sigma,
+        10,
+        &mut slots,
+    );
     let mut values = [S::default(); LENGTH];
-    plain::slots_decode(&slots, fields.centres(), 10, fields.centres()[7], &mut values);
+    schemes::grf_slots::transcribed_decoder(
+        &slots,
+        scheme.centres(),
+        10,
+        scheme.centres()[7],
+        &mut values,
+    );
 
-    let volley = |slots: &[i8]| {
+    let spikes = |slots: &[i8]| {
         let first = slots.iter().position(|&slot| slot >= 0).unwrap_or(0);
         let fired: Vec<_> = slots.iter().filter_map(|&slot| u8::try_from(slot).ok()).collect();
-        Volley::new(first as u16, &fired).unwrap()
+        SlotSpikes::new(first as u16, &fired).unwrap()
     };
-    let codes: Vec<_> = slots.chunks(15).map(volley).collect();
-    let scheme = Slots::new(&fields);
-    assert_eq!(differing(&encode(scheme, &recording.samples).outputs, &codes), NOWHERE);
+    let codes: Vec<_> = slots.chunks(15).map(spikes).collect();
+    assert_eq!(differing(&encode(&scheme, &recording.samples).outputs, &codes), NOWHERE);
     assert_means(&decode(&scheme.decoder(), &codes), &values);
 }
 
 fn check_probabilistic<S: Measured + Wire>(signal: Signal) {
     let recording = Recording::<S>::new(signal);
-    let fields = ReceptiveFields::<S, 15, 16>::new(recording.min, recording.max, 1.5).unwrap();
+    let scheme = Probabilistic::<S, Pcg32, 15, 16>::new(recording.min..=recording.max, 1.5);
     let sigma = (recording.range / (1.5 * 13.0)) as f32;
     let mut random = Pcg32::new(2, 2);
     let mut fired = vec![0; 15 * LENGTH];
     let (means, draw) = (recording.means::<15>(), || random.next_u32());
-    plain::probabilistic(&recording.samples, &means, sigma, 16, draw, &mut fired);
+    schemes::grf_prob::transcribed(&recording.samples, &means, sigma, 16, draw, &mut fired);
     let mut values = [S::default(); LENGTH];
-    plain::probabilistic_decode(&fired, fields.centres(), fields.centres()[7], &mut values);
+    schemes::grf_prob::transcribed_decoder(
+        &fired,
+        scheme.centres(),
+        scheme.centres()[7],
+        &mut values,
+    );
 
-    let pattern =
-        |fired: &[i8]| Pattern::<15>::new((0..15).filter(|&i| fired[usize::from(i)] == 1)).unwrap();
-    let codes: Vec<_> = fired.chunks(15).map(pattern).collect();
-    let scheme = Probabilistic::new(&fields);
+    let neurons = |fired: &[i8]| {
+        FiredNeurons::<15>::new((0..15).filter(|&i| fired[usize::from(i)] == 1)).unwrap()
+    };
+    let codes: Vec<_> = fired.chunks(15).map(neurons).collect();
     let ours = run(&scheme.encoder(Pcg32::new(2, 2)), &recording.samples).outputs;
     assert_eq!(differing(&ours, &codes), NOWHERE);
     assert_means(&decode(&scheme.decoder(), &codes), &values);

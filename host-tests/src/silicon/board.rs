@@ -1,0 +1,242 @@
+//! A chip on a board: the SPI device and the port of a driver, which share it.
+//!
+//! Time goes on with what the driver does: an SPI clock takes `ratio` clocks of the chip, every call of
+//! the port a number of its own.
+
+use std::cell::{RefCell, RefMut};
+use std::collections::VecDeque;
+use std::rc::Rc;
+
+use embedded_hal::delay::DelayNs;
+use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
+use spikewire::chip::AerPort;
+
+use super::chip::{Chip, Kind};
+
+/// What befalls an SPI clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClockFault {
+    /// The chip does not see it.
+    Lost,
+    /// The chip sees two.
+    Doubled,
+}
+
+/// What a call of the port does instead of what it should.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CallFault {
+    /// It fails before it does anything.
+    Before,
+    /// It acts, and says that it failed.
+    After,
+}
+
+/// Chip and wires.
+#[derive(Debug)]
+pub struct Pins<K> {
+    /// The chip.
+    pub chip: Chip<K>,
+    /// Clocks of the chip to one of SCK, 1 and above.
+    pub ratio: u32,
+    /// Clocks of the chip to a call of the port.
+    pub call_clocks: u32,
+    /// Clocks of the chip from an output's look to its ACK, on top: taken in turn.
+    pub output_delays: VecDeque<u32>,
+    /// SPI clocks so far.
+    pub spi_clocks: u64,
+    /// What befalls them, in order.
+    pub clock_faults: VecDeque<(u64, ClockFault)>,
+    /// Calls of the port so far.
+    pub calls: u64,
+    /// What befalls them, in order.
+    pub call_faults: VecDeque<(u64, CallFault)>,
+    /// Whether the board leads `SCHED_FULL` to the microcontroller.
+    pub has_full_pin: bool,
+}
+
+/// Where a driver and a test meet.
+#[derive(Debug)]
+pub struct Board<K>(Rc<RefCell<Pins<K>>>);
+
+impl<K> Clone for Board<K> {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+}
+
+impl<K: Kind> Board<K> {
+    /// A chip as after power-up, `ratio` clocks to one of SCK and `call_clocks` to a call of the port.
+    pub fn new(ratio: u32, call_clocks: u32) -> Self {
+        Self(Rc::new(RefCell::new(Pins {
+            chip: Chip::default(),
+            ratio,
+            call_clocks,
+            output_delays: VecDeque::new(),
+            spi_clocks: 0,
+            clock_faults: VecDeque::new(),
+            calls: 0,
+            call_faults: VecDeque::new(),
+            has_full_pin: false,
+        })))
+    }
+
+    /// Chip and wires.
+    ///
+    /// # Panics
+    /// They are in use.
+    pub fn pins(&self) -> RefMut<'_, Pins<K>> {
+        self.0.borrow_mut()
+    }
+
+    /// The SPI device.
+    pub fn spi(&self) -> Spi<K> {
+        Spi(self.clone())
+    }
+
+    /// The port.
+    pub fn port(&self) -> Port<K> {
+        Port(self.clone())
+    }
+
+    /// Time passes.
+    pub fn run(&self, clocks: u32) {
+        self.pins().chip.run(clocks);
+    }
+}
+
+/// The chip's SPI pins.
+#[derive(Debug)]
+pub struct Spi<K>(Board<K>);
+
+impl<K> ErrorType for Spi<K> {
+    type Error = ErrorKind;
+}
+
+impl<K: Kind> Pins<K> {
+    fn spi_bit(&mut self, bit: bool) -> bool {
+        self.chip.run(self.ratio / 2);
+        let fault = match self.clock_faults.front() {
+            Some(&(at, fault)) if at == self.spi_clocks => {
+                self.clock_faults.pop_front();
+                Some(fault)
+            }
+            _ => None,
+        };
+        self.spi_clocks += 1;
+        if fault == Some(ClockFault::Lost) {
+            self.chip.run(self.ratio.div_ceil(2));
+            return false;
+        }
+        let out = self.chip.rise(bit);
+        if fault == Some(ClockFault::Doubled) {
+            self.chip.run(1);
+            self.chip.fall();
+            self.chip.run(1);
+            self.chip.rise(bit);
+        }
+        self.chip.run(self.ratio.div_ceil(2));
+        self.chip.fall();
+        out
+    }
+
+    fn spi_byte(&mut self, byte: u8) -> u8 {
+        (0..8).rev().fold(0, |out, at| out << 1 | u8::from(self.spi_bit(byte >> at & 1 == 1)))
+    }
+}
+
+impl<K: Kind> SpiDevice for Spi<K> {
+    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
+        let mut pins = self.0.pins();
+        for operation in operations {
+            match operation {
+                Operation::Write(bytes) => bytes.iter().for_each(|&byte| {
+                    pins.spi_byte(byte);
+                }),
+                Operation::TransferInPlace(bytes) => {
+                    for byte in bytes.iter_mut() {
+                        *byte = pins.spi_byte(*byte);
+                    }
+                }
+                _ => return Err(ErrorKind::Other),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The chip's parallel pins.
+#[derive(Debug)]
+pub struct Port<K>(Board<K>);
+
+impl<K: Kind> Port<K> {
+    /// Time passes, then `act` does what the call is for. The error is the call's number.
+    fn call<T>(&mut self, act: impl FnOnce(&mut Pins<K>) -> T) -> Result<T, u64> {
+        let mut pins = self.0.pins();
+        let call = pins.calls;
+        pins.calls += 1;
+        let clocks = pins.call_clocks;
+        pins.chip.run(clocks);
+        let fault = match pins.call_faults.front() {
+            Some(&(at, fault)) if at == call => {
+                pins.call_faults.pop_front();
+                Some(fault)
+            }
+            _ => None,
+        };
+        if fault == Some(CallFault::Before) {
+            return Err(call);
+        }
+        let value = act(&mut pins);
+        if fault == Some(CallFault::After) { Err(call) } else { Ok(value) }
+    }
+}
+
+impl<K: Kind> AerPort for Port<K> {
+    type Error = u64;
+
+    fn set_input(&mut self, word: u32) -> Result<(), u64> {
+        self.call(|pins| pins.chip.set_word(word))
+    }
+
+    fn set_input_request(&mut self, is_high: bool) -> Result<(), u64> {
+        self.call(|pins| pins.chip.set_request(is_high))
+    }
+
+    fn input_acknowledge(&mut self) -> Result<bool, u64> {
+        self.call(|pins| pins.chip.acknowledge())
+    }
+
+    fn output_request(&mut self) -> Result<bool, u64> {
+        self.call(|pins| pins.chip.output().request)
+    }
+
+    fn output(&mut self) -> Result<u8, u64> {
+        self.call(|pins| {
+            let address = pins.chip.output().address;
+            let delay = pins.output_delays.pop_front().unwrap_or(0);
+            pins.chip.run(delay);
+            address
+        })
+    }
+
+    fn set_output_acknowledge(&mut self, is_high: bool) -> Result<(), u64> {
+        self.call(|pins| pins.chip.set_output_acknowledge(is_high))
+    }
+
+    fn set_reset(&mut self, is_high: bool) -> Result<(), u64> {
+        self.call(|pins| pins.chip.set_reset(is_high))
+    }
+
+    /// Read with the other pins: takes no time of its own.
+    fn queue_full(&mut self) -> Result<Option<bool>, u64> {
+        let pins = self.0.pins();
+        Ok(pins.has_full_pin.then(|| pins.chip.is_full()))
+    }
+}
+
+/// Delays are of the chip's clock, taken as 10 MHz.
+impl<K: Kind> DelayNs for Board<K> {
+    fn delay_ns(&mut self, ns: u32) {
+        self.run(ns.div_ceil(100));
+    }
+}

@@ -1,0 +1,580 @@
+//! The controller, its queue and its memories.
+
+use std::collections::VecDeque;
+use std::fmt::Debug;
+use std::marker::PhantomData;
+
+use super::output::Output;
+use super::spi::SpiSlave;
+
+/// What the two chips do differently.
+pub trait Kind: Clone + Copy + Debug + Default + 'static {
+    /// Bytes of a neuron.
+    const NEURON_BYTES: u16;
+    /// Spikes and virtual events that wait.
+    const QUEUE: usize;
+    /// Whether a spike stays in the queue, after its sweep, until the output bus is free.
+    const POPS_AFTER_OUTPUT: bool;
+    /// Whether the gate waits for the controller.
+    const GATE_WAITS: bool;
+
+    /// What a word on the input bus asks for.
+    fn decode(word: u32) -> Input;
+    /// The last neuron of a sweep.
+    fn last_neuron(registers: &Registers) -> u8;
+    /// Where spikes on the output bus come from: `true` if from the queue.
+    fn outputs_are_popped(registers: &Registers) -> bool;
+    /// A neuron's next state, and whether it fires. Not whether it is disabled.
+    fn update(neuron: u128, drive: Drive, registers: &Registers) -> (u128, bool);
+    /// Whether a neuron never fires.
+    fn is_disabled(neuron: u128) -> bool;
+    /// Whether bistability moves a synapse.
+    fn is_plastic(synapse: u8, registers: &Registers) -> bool;
+    /// Whether the spike of the sweep goes to the output bus at this neuron's write, if spikes are popped.
+    fn is_popped_at(neuron: u8, registers: &Registers) -> bool;
+}
+
+/// A word on the input bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Input {
+    /// A time step of one neuron, or of all.
+    Leak(Option<u8>),
+    /// Bistability of the synapses from one neuron, or of all.
+    Bistability(Option<u8>),
+    /// One synapse.
+    Synapse(u8, u8),
+    /// A spike (0) or a virtual event, for the queue.
+    Queued(u8, u8),
+}
+
+/// What acts on a neuron.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Drive {
+    /// Not in a write over SPI.
+    pub is_event: bool,
+    /// A time step of the controller's.
+    pub is_leak: bool,
+    /// A virtual event's bits.
+    pub virtual_bits: u8,
+    /// The synapse's 4 bits.
+    pub synapse: u8,
+    /// Where the synapse comes from.
+    pub pre: u8,
+}
+
+/// Configuration registers. They have no reset value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Registers(pub [u32; 26]);
+
+impl Registers {
+    /// The bit of a register of one bit.
+    pub const fn bit(&self, register: usize) -> bool {
+        self.0[register] & 1 == 1
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum State {
+    #[default]
+    Wait,
+    WriteNeuron,
+    ReadNeuron,
+    WriteSynapses,
+    ReadSynapses,
+    Leak,
+    Bistability,
+    Synapse,
+    Push,
+    Spike,
+    Virtual,
+    Pop,
+    WaitSpi,
+    WaitRequest,
+}
+
+/// What reset clears, by the chip's clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Clocked {
+    request: [bool; 2],
+    gate: [bool; 2],
+    reading: [bool; 2],
+    writing: [bool; 2],
+    open_loop: [bool; 2],
+    state: State,
+    count: u32,
+    neuron_count: u8,
+    output: Output,
+}
+
+/// What the controller asks of the memories in this clock.
+#[derive(Clone, Copy, Debug, Default)]
+struct Control {
+    neuron: Option<(u8, bool)>,
+    synapses: Option<(u16, bool)>,
+    is_event: bool,
+    is_leak: bool,
+    virtual_bits: u8,
+    push: Option<(u8, u8)>,
+    pop: bool,
+    next_neuron: bool,
+    is_bistability: bool,
+}
+
+/// A chip.
+#[derive(Clone, Debug)]
+pub struct Chip<K> {
+    /// The pin RST.
+    pub reset: bool,
+    /// The input bus's word.
+    pub word: u32,
+    /// The input bus's REQ.
+    pub request: bool,
+    /// The output bus's ACK.
+    pub output_acknowledge: bool,
+    spi: SpiSlave,
+    /// The configuration registers.
+    pub registers: Registers,
+    resets: [bool; 2],
+    clocked: Clocked,
+    neuron_read: u128,
+    synapses_read: u32,
+    queue: VecDeque<(u8, u8)>,
+    /// The neurons' memory.
+    pub neurons: Vec<u128>,
+    /// The synapses' memory: eight in a word.
+    pub synapses: Vec<u32>,
+    is_still: bool,
+    /// How many clocks there were.
+    pub clocks: u64,
+    /// The words that were acknowledged.
+    pub taken: Vec<u32>,
+    /// The spikes that went to the output bus.
+    pub fired: Vec<u8>,
+    /// The spikes for which the queue had no room.
+    pub overflows: u32,
+    kind: PhantomData<K>,
+}
+
+impl<K: Kind> Default for Chip<K> {
+    /// As after power-up at its worst: it runs, in closed loop, and all memories are 0.
+    fn default() -> Self {
+        Self {
+            reset: false,
+            word: 0,
+            request: false,
+            output_acknowledge: false,
+            spi: SpiSlave::default(),
+            registers: Registers([0; 26]),
+            resets: [false; 2],
+            clocked: Clocked::default(),
+            neuron_read: 0,
+            synapses_read: 0,
+            queue: VecDeque::new(),
+            neurons: vec![0; 256],
+            synapses: vec![0; 8192],
+            is_still: false,
+            clocks: 0,
+            taken: Vec::new(),
+            fired: Vec::new(),
+            overflows: 0,
+            kind: PhantomData,
+        }
+    }
+}
+
+impl<K: Kind> Chip<K> {
+    /// The input bus's ACK.
+    pub fn acknowledge(&self) -> bool {
+        self.clocked.state == State::WaitRequest
+    }
+
+    /// The output bus.
+    pub fn output(&self) -> Output {
+        self.clocked.output
+    }
+
+    /// The pin `SCHED_FULL`.
+    pub fn is_full(&self) -> bool {
+        self.queue.len() == K::QUEUE
+    }
+
+    /// Spikes and virtual events that wait.
+    pub fn waiting(&self) -> usize {
+        self.queue.len()
+    }
+
+    /// Whether the gate is shut, as the controller sees it.
+    pub fn is_gated(&self) -> bool {
+        self.clocked.gate[1]
+    }
+
+    /// Whether there is nothing to do.
+    pub fn is_idle(&self) -> bool {
+        self.queue.is_empty() && self.clocked.state == State::Wait && !self.clocked.output.is_busy
+    }
+
+    /// The 4 bits of a synapse.
+    pub fn synapse(&self, pre: u8, post: u8) -> u8 {
+        let word = self.synapses[usize::from(pre) << 5 | usize::from(post) >> 3];
+        (word >> (4 * (post & 7)) & 0xF) as u8
+    }
+
+    /// SCK rises, with this bit on its line. Returns the bit that the master samples.
+    pub fn rise(&mut self, bit: bool) -> bool {
+        let out = self.spi.output();
+        if let Some(written) = self.spi.rise(bit)
+            && let Some(register) = self.registers.0.get_mut(usize::from(written.register))
+        {
+            *register = written.value;
+            self.is_still = false;
+        }
+        out
+    }
+
+    /// SCK falls.
+    pub fn fall(&mut self) {
+        let before = self.spi;
+        self.spi.fall(self.neuron_read, self.synapses_read);
+        let asks = |spi: &SpiSlave| (spi.is_reading, spi.is_writing);
+        self.is_still &= asks(&before) == asks(&self.spi);
+    }
+
+    /// Drives RST.
+    pub fn set_reset(&mut self, is_high: bool) {
+        self.is_still &= self.reset == is_high;
+        self.reset = is_high;
+        if is_high {
+            self.spi.reset();
+        }
+    }
+
+    /// Drives REQ.
+    pub fn set_request(&mut self, is_high: bool) {
+        self.is_still &= self.request == is_high;
+        self.request = is_high;
+    }
+
+    /// Drives the output's ACK.
+    pub fn set_output_acknowledge(&mut self, is_high: bool) {
+        self.is_still &= self.output_acknowledge == is_high;
+        self.output_acknowledge = is_high;
+    }
+
+    /// Puts a word on the input bus.
+    pub fn set_word(&mut self, word: u32) {
+        self.is_still &= self.word == word;
+        self.word = word;
+    }
+
+    /// So many clocks. Stops to count where nothing can change any more.
+    pub fn run(&mut self, clocks: u32) {
+        self.clocks += u64::from(clocks);
+        for _ in 0..clocks {
+            if self.is_still {
+                return;
+            }
+            self.clock();
+        }
+    }
+
+    fn clock(&mut self) {
+        let before = (self.clocked, self.neuron_read, self.synapses_read, self.resets);
+        let spi = self.spi;
+        let was_full = self.is_full();
+        let head = self.queue.front().copied();
+        let control = self.control(head);
+        let next_state = self.next_state(&control, head, was_full);
+        let is_gated = self.clocked.gate[1];
+
+        let fired = self.neuron_memory(&control, head, is_gated);
+        self.synapse_memory(&control, is_gated);
+
+        let c = &mut self.clocked;
+        let spike = if K::outputs_are_popped(&self.registers) {
+            let is_leaving = c.state == State::Spike && next_state != State::Spike;
+            let is_popped = if K::POPS_AFTER_OUTPUT {
+                is_leaving
+            } else {
+                c.state == State::Spike
+                    && c.count & 1 == 1
+                    && K::is_popped_at(c.neuron_count, &self.registers)
+            };
+            head.filter(|_| is_popped).map(|(_, pre)| pre)
+        } else {
+            fired
+        };
+        let is_busy = c.output.is_busy;
+        let was_requested = c.output.request;
+        c.output.clock(self.output_acknowledge, spike);
+        if c.output.request && !was_requested && !is_gated {
+            self.fired.push(c.output.address);
+        }
+
+        if control.pop && head.is_some() {
+            self.queue.pop_front();
+        }
+        let internal = fired.filter(|_| !c.open_loop[1]).map(|neuron| (0, neuron));
+        if let Some(entry) = control.push.or(internal) {
+            if was_full {
+                self.overflows += 1;
+            } else {
+                self.queue.push_back(entry);
+            }
+        }
+        if next_state == State::WaitRequest && c.state != State::WaitRequest {
+            self.taken.push(self.word);
+        }
+
+        let shift = |bits: &mut [bool; 2], pin| *bits = [pin, bits[0]];
+        let gate = c.gate[0] && (!K::GATE_WAITS || next_state == State::Wait || c.gate[1]);
+        c.gate = [self.registers.bit(0), gate];
+        shift(&mut c.request, self.request);
+        shift(&mut c.reading, spi.is_reading);
+        shift(&mut c.writing, spi.is_writing);
+        shift(&mut c.open_loop, self.registers.bit(1));
+        if c.state == State::Wait {
+            (c.count, c.neuron_count) = (0, 0);
+        } else if !is_busy {
+            // Where it only waits, nobody looks at the count.
+            let counts = !matches!(c.state, State::WaitSpi | State::WaitRequest | State::Pop);
+            c.count = c.count.wrapping_add(u32::from(counts));
+            c.neuron_count = c.neuron_count.wrapping_add(u8::from(control.next_neuron));
+        }
+        c.state = next_state;
+
+        self.resets = [self.reset, self.resets[0]];
+        if self.resets[1] {
+            self.clocked = Clocked::default();
+            self.queue.clear();
+        }
+        if is_gated || self.clocked.gate[1] {
+            self.clocked.output = Output::default();
+        }
+        let after = (self.clocked, self.neuron_read, self.synapses_read, self.resets);
+        self.is_still = before == after;
+    }
+
+    fn control(&self, head: Option<(u8, u8)>) -> Control {
+        let Clocked { state, count, neuron_count, output, .. } = self.clocked;
+        let (bits, pre) = head.unwrap_or_default();
+        let is_second = count & 1 == 1;
+        let spi = self.spi.memory_address;
+        let none = Control::default();
+        match state {
+            State::Wait | State::WaitSpi | State::WaitRequest => none,
+            State::WriteNeuron => Control { neuron: Some((spi as u8, count != 0)), ..none },
+            State::ReadNeuron => Control { neuron: Some((spi as u8, false)), ..none },
+            State::WriteSynapses => Control { synapses: Some((spi & 0x1FFF, count != 0)), ..none },
+            State::ReadSynapses => Control { synapses: Some((spi & 0x1FFF, false)), ..none },
+            State::Leak => {
+                let one = match K::decode(self.word) {
+                    Input::Leak(neuron) => neuron,
+                    // The word changed under way: the chip reads its bits all the same.
+                    _ => None,
+                };
+                Control {
+                    neuron: Some((one.unwrap_or(neuron_count), is_second)),
+                    is_event: true,
+                    is_leak: true,
+                    next_neuron: is_second && one.is_none(),
+                    ..none
+                }
+            }
+            State::Bistability => {
+                let one = match K::decode(self.word) {
+                    Input::Bistability(neuron) => neuron,
+                    _ => None,
+                };
+                let pre = u16::from(one.unwrap_or(neuron_count));
+                let group = (count >> 1 & 0x1F) as u16;
+                Control {
+                    synapses: Some((pre << 5 | group, is_second)),
+                    is_bistability: true,
+                    next_neuron: is_second && one.is_none() && group == 0x1F,
+                    ..none
+                }
+            }
+            State::Synapse => {
+                let (pre, post) = ((self.word >> 8) as u16 & 0xFF, self.word as u8);
+                Control {
+                    neuron: Some((post, count != 0)),
+                    synapses: Some((pre << 5 | u16::from(post) >> 3, count != 0)),
+                    is_event: true,
+                    ..none
+                }
+            }
+            State::Push => {
+                let push = match K::decode(self.word) {
+                    Input::Queued(bits, address) => Some((bits, address)),
+                    _ => None,
+                };
+                Control { push, ..none }
+            }
+            State::Spike => {
+                let group = u16::from(pre) << 5 | u16::from(neuron_count) >> 3;
+                Control {
+                    neuron: Some((neuron_count, is_second)),
+                    synapses: (neuron_count & 7 == 0).then_some((group, false)),
+                    is_event: true,
+                    next_neuron: is_second,
+                    pop: !K::POPS_AFTER_OUTPUT && count & 0x1FF == 0x1FF,
+                    ..none
+                }
+            }
+            State::Virtual => Control {
+                neuron: Some((pre, count != 0)),
+                is_event: true,
+                virtual_bits: bits,
+                pop: count != 0,
+                ..none
+            },
+            State::Pop => Control { pop: !output.is_busy, ..none },
+        }
+    }
+
+    fn next_state(&self, control: &Control, head: Option<(u8, u8)>, is_full: bool) -> State {
+        let Clocked { state, count, neuron_count, output, .. } = self.clocked;
+        let is_last = neuron_count == K::last_neuron(&self.registers);
+        match state {
+            State::Wait => self.choose(head, is_full),
+            State::WriteNeuron | State::WriteSynapses if count != 1 => state,
+            State::WriteNeuron | State::ReadNeuron | State::WriteSynapses | State::ReadSynapses => {
+                State::WaitSpi
+            }
+            State::Leak => {
+                let is_over = match K::decode(self.word) {
+                    Input::Leak(Some(_)) => count == 1,
+                    _ => is_last && control.next_neuron,
+                };
+                if is_over { State::WaitRequest } else { state }
+            }
+            State::Bistability => {
+                let is_over = match K::decode(self.word) {
+                    Input::Bistability(Some(_)) => count == 63,
+                    _ => neuron_count == 255 && count & 63 == 63,
+                };
+                if is_over { State::WaitRequest } else { state }
+            }
+            State::Synapse if count != 1 => state,
+            State::Synapse | State::Push => State::WaitRequest,
+            State::Spike => {
+                let last = u32::from(K::last_neuron(&self.registers));
+                match count & 0x1FF == last << 1 | 1 {
+                    false => state,
+                    true if K::POPS_AFTER_OUTPUT => State::Pop,
+                    true => State::Wait,
+                }
+            }
+            State::Virtual if control.pop => State::Wait,
+            State::Virtual => state,
+            State::Pop if output.is_busy => state,
+            State::Pop => State::Wait,
+            State::WaitSpi if self.clocked.reading[1] || self.clocked.writing[1] => state,
+            State::WaitRequest if self.clocked.request[1] => state,
+            State::WaitSpi | State::WaitRequest => State::Wait,
+        }
+    }
+
+    /// What an idle controller turns to.
+    fn choose(&self, head: Option<(u8, u8)>, is_full: bool) -> State {
+        let Clocked { request, gate, reading, writing, output, .. } = self.clocked;
+        let pop = |(bits, _)| if bits == 0 { State::Spike } else { State::Virtual };
+        if output.is_busy {
+            return State::Wait;
+        }
+        if gate[1] {
+            return match (writing[1], reading[1], self.spi.memory) {
+                (true, _, 1) => State::WriteNeuron,
+                (_, true, 1) => State::ReadNeuron,
+                (true, _, 2) => State::WriteSynapses,
+                (_, true, 2) => State::ReadSynapses,
+                _ => State::Wait,
+            };
+        }
+        let input = K::decode(self.word);
+        let is_bistability = matches!(input, Input::Bistability(_));
+        match head {
+            Some(head) if is_full => pop(head),
+            _ if request[1] && !is_bistability => match input {
+                Input::Leak(_) => State::Leak,
+                Input::Synapse(..) => State::Synapse,
+                Input::Queued(..) | Input::Bistability(_) => State::Push,
+            },
+            Some(head) => pop(head),
+            None if request[1] => State::Bistability,
+            None => State::Wait,
+        }
+    }
+
+    /// Reads or writes the neurons' memory. Returns the neuron that fires.
+    fn neuron_memory(
+        &mut self,
+        control: &Control,
+        head: Option<(u8, u8)>,
+        is_gated: bool,
+    ) -> Option<u8> {
+        let (address, is_write) = control.neuron?;
+        let old = self.neuron_read;
+        let pre = match self.clocked.state {
+            State::Synapse => (self.word >> 8) as u8,
+            _ => head.unwrap_or_default().1,
+        };
+        let drive = Drive {
+            is_event: control.is_event,
+            is_leak: control.is_leak,
+            virtual_bits: control.virtual_bits,
+            synapse: (self.synapses_read >> (4 * (address & 7)) & 0xF) as u8,
+            pre,
+        };
+        let (next, fires) = K::update(old, drive, &self.registers);
+        self.neuron_read = self.neurons[usize::from(address)];
+        if !is_write {
+            return None;
+        }
+        self.neurons[usize::from(address)] = if is_gated {
+            let byte = self.spi.memory_address >> 8;
+            if byte < K::NEURON_BYTES {
+                let place = 8 * u32::from(byte);
+                let merged = self.spi.merge((old >> place) as u8);
+                old & !(0xFF << place) | u128::from(merged) << place
+            } else {
+                old
+            }
+        } else {
+            next
+        };
+        (fires && !K::is_disabled(old)).then_some(address)
+    }
+
+    fn synapse_memory(&mut self, control: &Control, is_gated: bool) {
+        let Some((address, is_write)) = control.synapses else { return };
+        let old = self.synapses_read;
+        let address = usize::from(address);
+        self.synapses_read = self.synapses[address];
+        if !is_write {
+            return;
+        }
+        self.synapses[address] = if is_gated {
+            let place = 8 * u32::from(self.spi.memory_address >> 13 & 3);
+            let merged = self.spi.merge((old >> place) as u8);
+            old & !(0xFF << place) | u32::from(merged) << place
+        } else if control.is_bistability {
+            (0..8).fold(0, |word, at| {
+                let synapse = (old >> (4 * at) & 0xF) as u8;
+                word | u32::from(self.settle(synapse)) << (4 * at)
+            })
+        } else {
+            old
+        };
+    }
+
+    /// A synapse after a bistability event: a step towards 7 or 0, from 4 and from 3.
+    fn settle(&self, synapse: u8) -> u8 {
+        match synapse & 7 {
+            _ if !K::is_plastic(synapse, &self.registers) => synapse,
+            0 | 7 => synapse,
+            4.. => synapse + 1,
+            _ => synapse - 1,
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! The SPI slave: 40 clocks a frame, counted from reset, without a chip select.
+
+/// What the slave holds. It runs on SCK alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SpiSlave {
+    count: u8,
+    address: u32,
+    shift_in: u32,
+    shift_out: u32,
+    /// Asks the controller to read a memory.
+    pub is_reading: bool,
+    /// Asks the controller to write a memory.
+    pub is_writing: bool,
+    /// Of the memory access told last.
+    pub memory_address: u16,
+    /// Which memory: 1 neurons, 2 synapses.
+    pub memory: u8,
+    /// The byte to write, and above it the mask of the bits to keep.
+    pub data: u16,
+}
+
+/// A configuration register was clocked in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// Which.
+    pub register: u16,
+    /// The last 20 bits that came in.
+    pub value: u32,
+}
+
+impl SpiSlave {
+    /// What reset clears. The bits shifted in stay.
+    pub fn reset(&mut self) {
+        *self = Self { shift_in: self.shift_in, ..Self::default() };
+    }
+
+    /// The line to the master.
+    pub const fn output(&self) -> bool {
+        self.shift_out >> 19 & 1 == 1
+    }
+
+    /// SCK rises.
+    pub fn rise(&mut self, bit: bool) -> Option<Written> {
+        let before = self.shift_in;
+        self.shift_in = (before << 1 | u32::from(bit)) & 0xF_FFFF;
+        let is_register = self.count == 39 && self.address >> 16 & 3 == 0;
+        is_register.then_some(Written { register: self.address as u16, value: self.shift_in })
+    }
+
+    /// SCK falls. `neuron` and `synapses` are the words that the memories read last.
+    pub fn fall(&mut self, neuron: u128, synapses: u32) {
+        let shifted = self.shift_out << 1 & 0xF_FFFF;
+        match self.count {
+            19 if self.shift_in >> 18 != 0 => {
+                let is_read = self.shift_in >> 19 == 1;
+                self.shift_out = if is_read { shifted } else { 0 };
+                self.memory = (self.shift_in >> 16 & 3) as u8;
+                self.is_reading = is_read && self.memory != 0;
+                self.is_writing = false;
+                self.memory_address = self.shift_in as u16;
+                self.data = 0;
+            }
+            31 if self.address >> 19 == 1 => {
+                let byte = match self.memory {
+                    2 => Some((synapses >> (8 * (self.memory_address >> 13 & 3))) as u8),
+                    1 => {
+                        neuron.checked_shr(8 * u32::from(self.memory_address >> 8)).map(|n| n as u8)
+                    }
+                    _ => None,
+                };
+                self.shift_out = match (byte, self.memory) {
+                    (Some(byte), _) => u32::from(byte) << 12,
+                    (None, 1) => 0,
+                    _ => shifted,
+                };
+                self.is_reading = false;
+                self.is_writing = false;
+                self.data = 0;
+            }
+            39 if self.address >> 18 & 1 == 1 => {
+                self.shift_out = shifted;
+                self.is_reading = false;
+                self.is_writing = self.memory != 0;
+                self.data = self.shift_in as u16;
+            }
+            _ => {
+                self.shift_out = shifted;
+                self.is_writing = false;
+            }
+        }
+        if self.count == 19 {
+            self.address = self.shift_in;
+        }
+        self.count = if self.count == 39 { 0 } else { (self.count + 1) & 63 };
+    }
+
+    /// A byte as the memories write it back: `old` where the mask is 1.
+    pub const fn merge(&self, old: u8) -> u8 {
+        let (keep, byte) = ((self.data >> 8) as u8, self.data as u8);
+        byte & !keep | old & keep
+    }
+}

@@ -1,0 +1,137 @@
+//! tinyODIN's and ODIN's words on the input bus, and their memories' fields.
+
+use proptest::prelude::*;
+use spikewire::chip::{
+    ChipError, Input, OdinInput, OdinLearning, OdinNeuron, OdinSynapse, TinyOdinInput,
+    TinyOdinNeuron,
+};
+
+type Word = Result<u32, ChipError<(), ()>>;
+
+#[test]
+fn tiny_odin_words_are_golden() {
+    use TinyOdinInput::{Leak, LeakAll, Spike, Virtual};
+    for (input, word) in [
+        (Spike { pre: 7 }, 0x007),
+        (Virtual { neuron: 5, weight: 2 }, 0x225),
+        (Virtual { neuron: 15, weight: -8 }, 0x28F),
+        (Virtual { neuron: 0, weight: -1 }, 0x2F0),
+        (Leak { neuron: 254 }, 0x1FE),
+        (LeakAll, 0x1FF),
+    ] {
+        let got: Word = input.word();
+        assert_eq!(got, Ok(word), "{input:?}");
+    }
+    let zero: Word = Virtual { neuron: 5, weight: 0 }.word();
+    assert_eq!(zero, Err(ChipError::ZeroWeight));
+    for input in [
+        Virtual { neuron: 16, weight: 1 },
+        Virtual { neuron: 0, weight: 8 },
+        Virtual { neuron: 0, weight: -9 },
+        Leak { neuron: 255 },
+    ] {
+        let got: Word = input.word();
+        assert!(matches!(got, Err(ChipError::OutOfRange { .. })), "{input:?}");
+    }
+}
+
+#[test]
+fn odin_words_are_those_of_the_documentation() {
+    use OdinInput::{
+        Bistability, BistabilityAll, Leak, LeakAll, Spike, Synapse, Virtual, VirtualLeak,
+    };
+    for (input, word) in [
+        (Synapse { pre: 0xAB, post: 0xCD }, 0x1_ABCD),
+        (Spike { pre: 0xAB }, 0x0_AB07),
+        (Virtual { neuron: 3, weight: 5, is_inhibitory: false }, 0x0_03A1),
+        (Virtual { neuron: 3, weight: 5, is_inhibitory: true }, 0x0_03B1),
+        (VirtualLeak { neuron: 3 }, 0x0_0309),
+        (Leak { neuron: 3 }, 0x0_03FF),
+        (LeakAll, 0x0_007F),
+        (Bistability { neuron: 3 }, 0x0_0380),
+        (BistabilityAll, 0),
+    ] {
+        let got: Word = input.word();
+        assert_eq!(got, Ok(word), "{input:?}");
+    }
+    let zero: Word = Virtual { neuron: 3, weight: 0, is_inhibitory: true }.word();
+    assert_eq!(zero, Err(ChipError::ZeroWeight));
+    let wide: Word = Virtual { neuron: 3, weight: 8, is_inhibitory: true }.word();
+    assert!(matches!(wide, Err(ChipError::OutOfRange { what: "weight", .. })));
+}
+
+type Bytes = Result<[u8; 16], ChipError<(), ()>>;
+
+#[test]
+fn a_neuron_of_tiny_odin_has_its_fields_where_the_documentation_says() {
+    let neuron = TinyOdinNeuron { threshold: 0x123, leak: 0x45, potential: -2, is_disabled: true };
+    let bytes: Bytes = TinyOdinInput::neuron_bytes(&neuron);
+    assert_eq!(bytes.unwrap()[..5], [0xFE, 0x3F, 0x12, 0xC5, 0]);
+    for neuron in [
+        TinyOdinNeuron { threshold: 0, ..neuron },
+        TinyOdinNeuron { threshold: 2048, ..neuron },
+        TinyOdinNeuron { leak: 128, ..neuron },
+        TinyOdinNeuron { potential: 2048, ..neuron },
+        TinyOdinNeuron { potential: -2049, ..neuron },
+    ] {
+        let bytes: Bytes = TinyOdinInput::neuron_bytes(&neuron);
+        assert!(matches!(bytes, Err(ChipError::OutOfRange { .. })), "{neuron:?}");
+    }
+}
+
+#[test]
+fn a_neuron_of_odin_has_its_fields_where_the_documentation_says() {
+    let neuron = OdinNeuron { threshold: 0x81, leak: 3, potential: 0xFF, ..OdinNeuron::DISABLED };
+    let bits = |neuron| {
+        let bytes: Bytes = OdinInput::neuron_bytes(&neuron);
+        bytes.map(u128::from_le_bytes)
+    };
+    let plain = 1 | 3 << 1 | 1 << 8 | 0x81 << 9 | 0xFF << 70 | 1 << 127;
+    assert_eq!(bits(neuron), Ok(plain));
+    let learning = OdinLearning { potential: 0x55, calcium: [1, 2, 7], calcium_leak: 31 };
+    let learns = 1 << 17 | 0x55 << 18 | 1 << 26 | 2 << 29 | 7 << 32 | 31 << 35;
+    assert_eq!(bits(OdinNeuron { learning: Some(learning), ..neuron }), Ok(plain | learns));
+    assert_eq!(bits(OdinNeuron { leak: 0, ..neuron }), Ok(plain & !(3 << 1 | 1 << 8)));
+    assert!(bits(OdinNeuron { threshold: 0, ..neuron }).is_err());
+    assert!(bits(OdinNeuron { leak: 128, ..neuron }).is_err());
+}
+
+#[test]
+fn weights_are_signed_in_tiny_odin_and_have_a_mapping_bit_in_odin() {
+    type Bits = Result<u8, ChipError<(), ()>>;
+    for (weight, tiny, odin) in
+        [(0, 0, Some(0)), (7, 7, Some(0xF)), (-1, 0xF, Some(9)), (-8, 8, None)]
+    {
+        let bits: Bits = TinyOdinInput::weight_bits(weight);
+        assert_eq!(bits, Ok(tiny));
+        assert_eq!(TinyOdinInput::synapse(tiny), weight);
+        let bits: Bits = OdinInput::weight_bits(weight);
+        assert_eq!(bits.ok(), odin);
+    }
+    let bits: Bits = TinyOdinInput::weight_bits(8);
+    assert!(bits.is_err());
+    let bits: Bits = OdinInput::synapse_bits(OdinSynapse { weight: 5, is_mapped: true });
+    assert_eq!(bits, Ok(0xD));
+}
+
+proptest! {
+    #[test]
+    fn neurons_come_back_from_their_bytes(
+        tiny in (1..=2047_u16, 0..=127_u8, -2048..=2047_i16, any::<bool>()),
+        odin in (1..=255_u8, 0..=127_u8, any::<u8>(), any::<bool>()),
+        learning in prop::option::of((any::<u8>(), [0..=7_u8, 0..=7, 0..=7], 0..=31_u8)),
+    ) {
+        let (threshold, leak, potential, is_disabled) = tiny;
+        let neuron = TinyOdinNeuron { threshold, leak, potential, is_disabled };
+        let bytes: Bytes = TinyOdinInput::neuron_bytes(&neuron);
+        prop_assert_eq!(TinyOdinInput::neuron(bytes.unwrap()), neuron);
+
+        let (threshold, leak, potential, is_disabled) = odin;
+        let learning = learning.map(|(potential, calcium, calcium_leak)| {
+            OdinLearning { potential, calcium, calcium_leak }
+        });
+        let neuron = OdinNeuron { threshold, leak, potential, learning, is_disabled };
+        let bytes: Bytes = OdinInput::neuron_bytes(&neuron);
+        prop_assert_eq!(OdinInput::neuron(bytes.unwrap()), neuron);
+    }
+}

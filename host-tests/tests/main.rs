@@ -1,0 +1,65 @@
+//! All comparisons with the reference, as one program: what they share is compiled and linked once.
+
+mod bus;
+mod common;
+mod interleaving_world;
+
+mod bank;
+mod bsa;
+mod bsa_toolbox;
+mod calibration;
+mod chip_akd1500;
+mod chip_faults;
+mod chip_handshake;
+mod chip_network;
+mod chip_search;
+mod chip_silicon;
+mod chip_words;
+mod chip_xylo;
+mod config_errors;
+mod defmt;
+mod formats_bytes;
+mod formats_peers;
+mod gaussian;
+mod hough;
+mod interleaving;
+mod link_bytes;
+mod link_drift;
+mod link_frames;
+mod link_loss;
+mod link_readout;
+mod link_receiver;
+mod link_time;
+mod moving_window;
+mod population_sizes;
+mod position;
+mod probabilistic;
+mod queue;
+mod rooms;
+mod samples;
+mod serde;
+mod sink_bus;
+mod slots;
+mod statics;
+mod step_forward;
+mod taps;
+mod temporal_contrast;
+mod threshold_hough;
+mod transcriptions;
+
+/// The signals that codecs are counted on.
+#[allow(clippy::pedantic, dead_code, unreachable_pub)]
+#[path = "../../examples/bench-target/src/signal.rs"]
+mod signal;
+
+/// A file that is not in the list above would be no test.
+#[test]
+fn every_file_is_listed() {
+    let tests = concat!(env!("CARGO_MANIFEST_DIR"), "/tests");
+    for entry in std::fs::read_dir(tests).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        let listed = include_str!("main.rs").contains(&format!("mod {name};\n"));
+        assert!(listed || name == "main", "tests/{name} is not in tests/main.rs");
+    }
+}

@@ -1,0 +1,59 @@
+//! Events from a source into the chip.
+
+use embedded_hal::spi::SpiDevice;
+
+use super::aer::Carries;
+use super::{AerPort, Input, Outcome, Running};
+use crate::event::{Event, Source};
+
+impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
+    /// Sends the events of a source, each as the input that `to_input` makes of it, and the time steps
+    /// between them. Returns how many events were sent. Of a queue's consumer take
+    /// `events.waiting()`, which ends even if events come faster than the chip takes them. Keyframes and
+    /// breaks are passed by.
+    ///
+    /// Events must come in the order of time. One from a time step that is over is sent in the present
+    /// one, and counted as [late](super::Counters::late_events).
+    ///
+    /// # Errors
+    /// As [`send`](Self::send), but whatever the error, call it again with the events that remain: none
+    /// is lost or sent twice, but for those that a reset [counts](super::Counters::repeated_events). Only one
+    /// whose input is not valid is dropped.
+    pub fn feed(
+        &mut self,
+        mut events: impl Source,
+        mut to_input: impl FnMut(Event) -> I,
+        mut on_output: impl FnMut(u8),
+    ) -> Outcome<u32, D, P> {
+        self.chip.aer.finish(&mut on_output)?;
+        let mut sent = 0;
+        while let Some(event) = self.chip.held.take().or_else(|| self.next_of(&mut events)) {
+            let word = to_input(event).word()?;
+            self.feed_word(word, event, &mut on_output)?;
+            sent += 1;
+        }
+        Ok(sent)
+    }
+
+    /// Sends an event as this word. Until it is under way it is held.
+    fn feed_word(
+        &mut self,
+        word: u32,
+        event: Event,
+        on_output: &mut impl FnMut(u8),
+    ) -> Outcome<(), D, P> {
+        self.chip.held = Some(event);
+        self.advance_with(event.tick, on_output)?;
+        self.chip.aer.begin(word, Carries::Event(event), on_output)?;
+        self.chip.held = None;
+        Ok(self.chip.aer.finish(on_output)?)
+    }
+
+    fn next_of(&mut self, events: &mut impl Source) -> Option<Event> {
+        let event = events.take_event()?;
+        let is_late = self.chip.time.is_some_and(|time| time.is_over(event.tick));
+        let count = &mut self.chip.counters.late_events;
+        *count = count.saturating_add(is_late.into());
+        Some(event)
+    }
+}

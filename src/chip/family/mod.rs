@@ -1,0 +1,212 @@
+//! What tinyODIN and ODIN have in common: SPI without chip select, reset, gate, and event buses.
+
+mod aer;
+mod bytes;
+mod counters;
+mod feed;
+mod gated;
+mod input;
+mod load;
+mod network;
+mod outputs;
+mod port;
+mod running;
+mod step;
+mod time;
+mod wire;
+
+use core::num::NonZeroU32;
+
+use embedded_hal::delay::DelayNs;
+use embedded_hal::spi::{ErrorType, SpiDevice};
+
+use super::ChipError;
+use crate::Event;
+use aer::{Aer, Carries};
+use step::Beacon;
+use time::Time;
+use wire::Wire;
+
+pub(super) use aer::AerError;
+pub use aer::Phase;
+pub use bytes::{FormatError, NetworkBytes};
+pub use counters::Counters;
+pub use gated::Gated;
+pub use input::Input;
+pub use load::Progress;
+pub use network::{Describe, Inputs, Network, neurons_from};
+pub use outputs::Spikes;
+pub use port::AerPort;
+pub use running::Running;
+
+/// A chip of the ODIN family, on an SPI device and a port.
+///
+/// - **SPI:** mode 0, SCK at most a quarter of the chip's clock. The chip has no chip select: it needs
+///   a bus of its own and a device whose chip select is not wired.
+/// - **States:** [`reset`](Self::reset) gives a [`Gated`] chip, whose memories can be accessed;
+///   [`Gated::run`] a [`Running`] one, which takes events; [`Running::gate`] a gated one. Each allows what
+///   is safe in it, and [`gated`](Self::gated) and [`running`](Self::running) give it again later.
+/// - **Resynchronisation:** one clock lost or doubled puts chip and bus out of step, and every call on a
+///   gated chip notices. Not seen are a lost and a doubled clock within the same eight frames, as the
+///   registers cannot be read back. After an error of the bus, or a byte that does not read back, all is
+///   refused until the next reset, and what the memories hold is not known: load them anew.
+/// - **Waits** look at the pins a given number of times, then give up.
+/// - **Words** that the chip has not acknowledged by then stay under way: every call that sends finishes
+///   them first, [`Running::poll`] goes on with them, a reset drops them.
+/// - **Events** that could not be sent are held and come first the next time, after a reset too.
+/// - **Nothing is lost uncounted:** see [`counters`](Self::counters).
+///
+/// # What the chips do
+/// - In closed loop a leak overtakes the spikes that wait in the chip's queue; in open loop never.
+/// - With outputs taken from the queue, in open loop, the chip echoes the inputs and tells no neuron.
+/// - A neuron of threshold 0, as memory that was never written, fires at every event and at every leak,
+///   if it is among those in use.
+/// - The queue's overflow is invisible unless [`AerPort::queue_full`] is wired.
+#[derive(Debug)]
+pub struct OdinChip<I: Input, D, P> {
+    wire: Wire<D>,
+    aer: Aer<P>,
+    state: State,
+    /// What the chip runs with.
+    registers: Option<I::Registers>,
+    /// What the byte of the step check holds, where that is known.
+    anchor: Option<u8>,
+    beacon: Option<Beacon>,
+    looks_a_clock: NonZeroU32,
+    held: Option<Event>,
+    time: Option<Time>,
+    counters: Counters,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    /// Out of step, or not reset yet.
+    NotReset,
+    Gated,
+    Running,
+}
+
+/// What a call on a chip gives.
+type Outcome<T, D, P> = Result<T, ChipError<<D as ErrorType>::Error, <P as AerPort>::Error>>;
+
+/// How long reset is high, and then the chip left alone.
+const RESET_US: u32 = 10;
+
+impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
+    /// A chip that must be [reset](Self::reset) first. Every wait looks at the pins `polls` times.
+    ///
+    /// [`Input::MAX_CLOCKS`] polls suffice if one takes a clock of the chip or longer. Fewer do no harm
+    /// but that long words time out and have to be finished later.
+    pub const fn new(device: D, port: P, polls: u32) -> Self {
+        Self {
+            wire: Wire { device },
+            aer: Aer::new(port, polls),
+            state: State::NotReset,
+            registers: None,
+            anchor: None,
+            beacon: None,
+            looks_a_clock: NonZeroU32::MIN,
+            held: None,
+            time: None,
+            counters: Counters {
+                resets: 0,
+                skipped_steps: 0,
+                late_events: 0,
+                repeated_events: 0,
+                dropped_words: 0,
+                lost_outputs: 0,
+                overflows: 0,
+            },
+        }
+    }
+
+    /// Adds time: leak events are sent as the ticks of fed events pass, one every `step` µs.
+    ///
+    /// Call [`Running::advance`] at least every 35 minutes: a tick 2³¹ µs ahead lies in the past, and no
+    /// leaks are sent until time has caught up.
+    #[must_use]
+    pub fn with_time_step(self, step: NonZeroU32) -> Self {
+        Self { time: Some(Time::new(step)), ..self }
+    }
+
+    /// Tells how many looks at the pins may fall into one clock of the chip, 1 unless told: more where the
+    /// microcontroller is much faster. [`Running::gate`] waits by it: with too few it gates a chip that works,
+    /// whose potentials are then lost.
+    #[must_use]
+    pub fn with_looks_a_clock(self, looks: NonZeroU32) -> Self {
+        Self { looks_a_clock: looks, ..self }
+    }
+
+    /// Pulses reset, which brings chip and bus into step, gates the chip, opens its loop, and checks that it
+    /// listens: a neuron [`Input::PROBED`] that was never written is disabled for it. What the chip has taken and not worked off is gone, and a word under way is dropped; if
+    /// that was an event of [`Running::feed`], it is held again unless the chip has acknowledged it.
+    ///
+    /// # Errors
+    /// The port or the bus failed, or the chip does not read back what is written.
+    pub fn reset(&mut self, delay: &mut impl DelayNs) -> Outcome<Gated<'_, I, D, P>, D, P> {
+        self.state = State::NotReset;
+        let (under_way, is_output_lost) = self.aer.reset().map_err(ChipError::Port)?;
+        self.drop_under_way(under_way, is_output_lost);
+        delay.delay_us(RESET_US);
+        self.aer.port.set_reset(false).map_err(ChipError::Port)?;
+        delay.delay_us(RESET_US);
+        self.counters.resets = self.counters.resets.saturating_add(1);
+        (self.anchor, self.beacon) = (None, None);
+        self.shut()?;
+        self.find_beacon()?;
+        Ok(Gated::new(self))
+    }
+
+    /// The chip, if it is gated.
+    ///
+    /// # Errors
+    /// [`NotReset`](ChipError::NotReset) or [`NotGated`](ChipError::NotGated).
+    pub fn gated(&mut self) -> Outcome<Gated<'_, I, D, P>, D, P> {
+        match self.state {
+            State::NotReset => Err(ChipError::NotReset),
+            State::Running => Err(ChipError::NotGated),
+            State::Gated => Ok(Gated::new(self)),
+        }
+    }
+
+    /// The chip, if it runs.
+    ///
+    /// # Errors
+    /// [`NotReset`](ChipError::NotReset) or [`Gated`](ChipError::Gated).
+    pub fn running(&mut self) -> Outcome<Running<'_, I, D, P>, D, P> {
+        match self.state {
+            State::NotReset => Err(ChipError::NotReset),
+            State::Gated => Err(ChipError::Gated),
+            State::Running => Ok(Running::new(self)),
+        }
+    }
+
+    /// What was lost, skipped and repeated.
+    pub const fn counters(&self) -> Counters {
+        Counters { overflows: self.aer.overflows, ..self.counters }
+    }
+
+    /// The device and the port, for other uses.
+    pub fn release(self) -> (D, P) {
+        (self.wire.device, self.aer.port)
+    }
+
+    fn drop_under_way(&mut self, under_way: Option<Carries>, is_output_lost: bool) {
+        let counters = &mut self.counters;
+        let count = match under_way {
+            None | Some(Carries::Probe) => None,
+            Some(Carries::Word) => Some(&mut counters.dropped_words),
+            Some(Carries::Step) => Some(&mut counters.skipped_steps),
+            Some(Carries::Event(event)) => {
+                self.held = Some(event);
+                Some(&mut counters.repeated_events)
+            }
+        };
+        if let Some(count) = count {
+            *count = count.saturating_add(1);
+        }
+        // Before its first reset a chip may say anything.
+        let is_output_lost = is_output_lost && counters.resets > 0;
+        counters.lost_outputs = counters.lost_outputs.saturating_add(is_output_lost.into());
+    }
+}

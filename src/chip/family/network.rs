@@ -1,0 +1,249 @@
+//! A network as data.
+
+use super::{AerPort, Input};
+use crate::chip::ChipError;
+use crate::{Event, Polarity, Tick};
+
+/// A network for a chip of the family: anything that tells its neurons and weights, be it [constant
+/// data](Network) or [bytes](super::NetworkBytes). [`Gated::load`](super::Gated::load) writes it.
+///
+/// Its neurons are the chip's neurons from 0 on. What an input does is either a row of synapses, as that
+/// of a neuron, or a virtual event. In open loop the rows of the inputs are those of the chip's neurons
+/// from 0 on; in closed loop these are the neurons' own, and the inputs' follow.
+pub trait Describe<I: Input> {
+    /// How many neurons, 1 to 256.
+    fn neurons(&self) -> u16;
+
+    /// A neuron; of those that there are not, a [disabled](Input::DISABLED) one.
+    fn neuron(&self, neuron: u8) -> I::Neuron;
+
+    /// How many inputs.
+    fn inputs(&self) -> u16;
+
+    /// The neuron on which an input acts without a synapse, and its weight; `None` if it has a row.
+    fn virtual_input(&self, input: u16) -> Option<(u8, i8)>;
+
+    /// What an input with a row adds to a neuron.
+    fn input_weight(&self, input: u16, post: u8) -> i8;
+
+    /// Whether neurons send spikes to neurons.
+    fn is_recurrent(&self) -> bool;
+
+    /// What a neuron adds to another, or to itself.
+    fn weight(&self, pre: u8, post: u8) -> i8;
+
+    /// Which output a neuron is.
+    fn output(&self, neuron: u8) -> Option<u16>;
+
+    /// The chip's input for an input of the network; `None` if there is no such.
+    fn input(&self, input: u16) -> Option<I> {
+        if input >= self.inputs() {
+            return None;
+        }
+        match self.virtual_input(input) {
+            Some((neuron, weight)) => Some(I::virtual_event(neuron, weight)),
+            None => u8::try_from(self.first_input_row().saturating_add(input)).ok().map(I::spike),
+        }
+    }
+
+    /// What to do with the neurons that fire: those that are outputs go to `sink`, as events with the
+    /// output's number for address. The network's other neurons go nowhere.
+    fn answers(&self, tick: Tick, mut sink: impl FnMut(Event)) -> impl FnMut(u8) {
+        move |neuron| {
+            if let Some(address) = self.output(neuron) {
+                sink(Event { tick, address, polarity: Polarity::Up });
+            }
+        }
+    }
+
+    /// The registers to [run](super::Gated::run) it with: closed loop if it is recurrent, outputs from the
+    /// neurons, and as many neurons as there are.
+    fn registers(&self) -> I::Registers {
+        let mut inhibitory = [0; 16];
+        for row in 0..self.rows() {
+            let inhibits = (0..self.neurons()).any(|post| self.row_weight(row, post as u8) < 0);
+            if let Some(word) = inhibitory.get_mut(usize::from(row >> 4)) {
+                *word |= u16::from(inhibits) << (row & 15);
+            }
+        }
+        I::registers(self.neurons().saturating_sub(1) as u8, !self.is_recurrent(), inhibitory)
+    }
+
+    /// The row of the first input.
+    fn first_input_row(&self) -> u16 {
+        if self.is_recurrent() { self.neurons() } else { 0 }
+    }
+
+    /// How many rows of synapses, from that of neuron 0 on.
+    fn rows(&self) -> u16 {
+        let is_virtual = self.virtual_input(0).is_some();
+        self.first_input_row().saturating_add(if is_virtual { 0 } else { self.inputs() })
+    }
+
+    /// What a row adds to a neuron.
+    fn row_weight(&self, row: u16, post: u8) -> i8 {
+        match row.checked_sub(self.first_input_row()) {
+            Some(input) => self.input_weight(input, post),
+            None => self.weight(row as u8, post),
+        }
+    }
+}
+
+/// What the inputs of a network do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Inputs<const IN: usize, const N: usize> {
+    /// Each input's weights to all neurons.
+    Rows([[i8; N]; IN]),
+    /// Each input's neuron, and the weight with which it acts on it. tinyODIN has virtual events for its
+    /// first 16 neurons only.
+    Virtual([(u8, i8); IN]),
+}
+
+impl<const IN: usize, const N: usize> Inputs<IN, N> {
+    /// Each input drives the neuron of its number, with this weight, and no other.
+    #[must_use]
+    pub const fn one_to_one(weight: i8) -> Self {
+        let mut rows = [[0; N]; IN];
+        let mut n = 0;
+        while n < IN && n < N {
+            #[allow(clippy::indexing_slicing)] // n is below both
+            {
+                rows[n][n] = weight;
+            }
+            n += 1;
+        }
+        Self::Rows(rows)
+    }
+}
+
+/// The neurons from `FIRST` on, for [`Network::outputs`].
+#[must_use]
+pub const fn neurons_from<const FIRST: u8, const OUT: usize>() -> [u8; OUT] {
+    const { assert!(FIRST as usize + OUT <= 256, "a chip has 256 neurons") };
+    let mut neurons = [0; OUT];
+    let mut n = 0;
+    while n < OUT {
+        #[allow(clippy::indexing_slicing)] // n is below
+        {
+            neurons[n] = FIRST + n as u8;
+        }
+        n += 1;
+    }
+    neurons
+}
+
+/// A network of `N` neurons, with `IN` inputs and `OUT` outputs, as constant data.
+///
+/// Weights are -7 to 7, for tinyODIN also -8. In ODIN all weights from an input or a neuron have one sign.
+///
+/// **Memory:** a byte a weight. [`NetworkBytes`](super::NetworkBytes) take half of that.
+///
+/// ```
+/// use spikewire::chip::{Describe, Inputs, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, neurons_from};
+///
+/// // Each of four inputs drives a neuron of its own and holds down the others.
+/// static NETWORK: TinyOdinNetwork<4, 4, 4> = TinyOdinNetwork {
+///     neurons: [TinyOdinNeuron { threshold: 20, leak: 1, ..TinyOdinNeuron::REST }; 4],
+///     inputs: Inputs::Rows([[7, -1, -1, -1], [-1, 7, -1, -1], [-1, -1, 7, -1], [-1, -1, -1, 7]]),
+///     recurrent: &[],
+///     outputs: neurons_from::<0, 4>(),
+/// };
+/// assert_eq!(NETWORK.input(2), Some(TinyOdinInput::Spike { pre: 2 }));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Network<I: Input, const IN: usize, const N: usize, const OUT: usize> {
+    /// The neurons.
+    pub neurons: [I::Neuron; N],
+    /// The inputs.
+    pub inputs: Inputs<IN, N>,
+    /// What the neurons from 0 on do to all neurons; those beyond do nothing. Empty: the loop is open.
+    pub recurrent: &'static [[i8; N]],
+    /// The neurons that are outputs, in the order of the outputs.
+    pub outputs: [u8; OUT],
+}
+
+impl<I: Input, const IN: usize, const N: usize, const OUT: usize> Describe<I>
+    for Network<I, IN, N, OUT>
+{
+    fn neurons(&self) -> u16 {
+        const { assert!(N >= 1 && N <= 256, "a chip has 256 neurons") };
+        N as u16
+    }
+
+    fn neuron(&self, neuron: u8) -> I::Neuron {
+        self.neurons.get(usize::from(neuron)).copied().unwrap_or(I::DISABLED)
+    }
+
+    fn inputs(&self) -> u16 {
+        const { assert!(IN <= 256, "a chip has 256 rows of synapses") };
+        IN as u16
+    }
+
+    fn virtual_input(&self, input: u16) -> Option<(u8, i8)> {
+        match &self.inputs {
+            Inputs::Virtual(inputs) => inputs.get(usize::from(input)).copied(),
+            Inputs::Rows(_) => None,
+        }
+    }
+
+    fn input_weight(&self, input: u16, post: u8) -> i8 {
+        match &self.inputs {
+            Inputs::Rows(rows) => at(rows, input.into(), post),
+            Inputs::Virtual(_) => 0,
+        }
+    }
+
+    fn is_recurrent(&self) -> bool {
+        !self.recurrent.is_empty()
+    }
+
+    fn weight(&self, pre: u8, post: u8) -> i8 {
+        at(self.recurrent, pre.into(), post)
+    }
+
+    fn output(&self, neuron: u8) -> Option<u16> {
+        let at = self.outputs.iter().position(|&output| output == neuron)?;
+        Some(at as u16)
+    }
+}
+
+fn at<const N: usize>(rows: &[[i8; N]], row: usize, post: u8) -> i8 {
+    rows.get(row).and_then(|row| row.get(usize::from(post))).copied().unwrap_or(0)
+}
+
+/// What is wrong with a network.
+pub(super) fn check<I: Input, B, P: AerPort>(
+    network: &impl Describe<I>,
+) -> Result<(), ChipError<B, P::Error>> {
+    let out_of_range = |what, value: u16, max: u16| {
+        if value > max {
+            return Err(ChipError::OutOfRange {
+                what,
+                value: value.into(),
+                min: 0,
+                max: max.into(),
+            });
+        }
+        Ok(())
+    };
+    out_of_range("neurons", network.neurons(), 256)?;
+    out_of_range("rows of synapses", network.rows(), 256)?;
+    for neuron in 0..network.neurons() {
+        I::neuron_bytes(&network.neuron(neuron as u8))?;
+    }
+    for input in 0..network.inputs() {
+        if let Some(input) = network.input(input) {
+            input.word()?;
+        }
+    }
+    for row in 0..network.rows() {
+        let weights = || (0..network.neurons()).map(|post| network.row_weight(row, post as u8));
+        for weight in weights() {
+            I::weight_bits(weight)?;
+        }
+        if I::SIGNS_BY_ROW && weights().any(|w| w < 0) && weights().any(|w| w > 0) {
+            return Err(ChipError::MixedSigns { pre: row as u8 });
+        }
+    }
+    Ok(())
+}

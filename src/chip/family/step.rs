@@ -1,0 +1,159 @@
+//! Whether chip and bus are in step, and the gate shut.
+
+use embedded_hal::spi::SpiDevice;
+
+use super::wire::Address;
+use super::{AerPort, ChipError, Input, OdinChip, Outcome, State};
+
+/// The gate's register.
+const GATE_ACTIVITY: u16 = 0;
+
+/// In a neuron's last byte: it never fires.
+pub(super) const DISABLE: u8 = 0x80;
+
+/// What a byte of a neuron's parameters holds: not 0.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beacon {
+    address: Address,
+    mask: u8,
+    value: u8,
+}
+
+/// Where the check writes.
+fn anchor() -> Address {
+    Address::synapse(255, 249)
+}
+
+impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
+    /// Shuts the gate of a chip at rest, opens its loop, and checks both the gate and the step.
+    pub(super) fn shut(&mut self) -> Outcome<(), D, P> {
+        self.state = State::NotReset;
+        self.registers = None;
+        self.wire.configure(GATE_ACTIVITY, 1).map_err(ChipError::Bus)?;
+        self.wire.configure(I::OPEN_LOOP, 1).map_err(ChipError::Bus)?;
+        self.state = State::Gated;
+        self.check_step()
+    }
+
+    /// Opens the gate. Should it ever shut on a chip that works, tinyODIN writes to the byte that was accessed
+    /// last in all neurons that are left: so the last is one that there is not.
+    pub(super) fn open(&mut self) -> Outcome<(), D, P> {
+        self.read_byte(Address::nowhere())?;
+        self.configure(GATE_ACTIVITY, 0)
+    }
+
+    /// Looks for a byte that is not 0 among the parameters of neuron [`Input::PROBED`]. Where they are all 0 it
+    /// was never written: it is disabled, so that there is one.
+    pub(super) fn find_beacon(&mut self) -> Outcome<(), D, P> {
+        let last = I::NEURON_BYTES.saturating_sub(1);
+        for byte in (0..=last).rev() {
+            let address = Address::neuron(I::PROBED, byte);
+            let value = self.read_byte(address)?;
+            self.note(address, 0xFF, value);
+            if self.beacon.is_some() {
+                return self.check_step();
+            }
+        }
+        self.write_byte(Address::neuron(I::PROBED, last), !DISABLE, DISABLE)?;
+        self.check_step()
+    }
+
+    /// Writes a register, which cannot be read back, and sees that the bus is still in step.
+    pub(super) fn configure_checked(&mut self, register: u16, value: u32) -> Outcome<(), D, P> {
+        self.configure(register, value)?;
+        self.check_step()
+    }
+
+    /// Turns a byte of the synapses' memory over and back, and reads it each time: that cannot go well on
+    /// a chip that runs, nor where a clock was lost or doubled before. Last it reads a byte that is not 0, if
+    /// one is known: out of step, the chip's line is low.
+    pub(super) fn check_step(&mut self) -> Outcome<(), D, P> {
+        let value = match self.anchor {
+            Some(value) => value,
+            None => self.read_byte(anchor())?,
+        };
+        self.write_byte(anchor(), 0, !value)?;
+        self.write_byte(anchor(), 0, value)?;
+        self.anchor = Some(value);
+        match self.beacon {
+            Some(Beacon { address, mask, value }) => self.expect_byte(address, !mask, value),
+            None => Ok(()),
+        }
+    }
+
+    pub(super) fn configure(&mut self, register: u16, value: u32) -> Outcome<(), D, P> {
+        self.expect_gated()?;
+        let result = self.wire.configure(register, value);
+        self.heed(result)
+    }
+
+    /// Writes the bits of a byte that `keep` has as 0, and reads it back.
+    pub(super) fn write_byte(
+        &mut self,
+        address: Address,
+        keep: u8,
+        value: u8,
+    ) -> Outcome<(), D, P> {
+        self.put_byte(address, keep, value)?;
+        self.expect_byte(address, keep, value)
+    }
+
+    /// Writes the bits of a byte that `keep` has as 0.
+    pub(super) fn put_byte(&mut self, address: Address, keep: u8, value: u8) -> Outcome<(), D, P> {
+        self.expect_gated()?;
+        if address == anchor() {
+            self.anchor = self.anchor.map(|old| old & keep | value & !keep);
+        }
+        self.beacon = self.beacon.filter(|beacon| beacon.address != address);
+        let result = self.wire.write_byte(address, keep, value);
+        self.heed(result)
+    }
+
+    /// Reads a byte, which must be this but for the bits of `ignored`.
+    pub(super) fn expect_byte(
+        &mut self,
+        address: Address,
+        ignored: u8,
+        value: u8,
+    ) -> Outcome<(), D, P> {
+        let read = self.read_byte(address)?;
+        if (read ^ value) & !ignored == 0 {
+            self.note(address, !ignored, read);
+            return Ok(());
+        }
+        self.state = State::NotReset;
+        let (address, written) = (address.number(), u32::from(value & !ignored));
+        Err(ChipError::ReadBack { address, written, read: u32::from(read & !ignored) })
+    }
+
+    /// Remembers what is in memory, if it can serve as a beacon.
+    pub(super) fn note(&mut self, address: Address, mask: u8, value: u8) {
+        let Some(byte) = address.neuron_byte() else { return };
+        let mask = mask & I::PARAMETERS.get(usize::from(byte)).copied().unwrap_or(0);
+        if value & mask != 0 {
+            self.beacon = Some(Beacon { address, mask, value });
+        }
+    }
+
+    pub(super) fn read_byte(&mut self, address: Address) -> Outcome<u8, D, P> {
+        self.expect_gated()?;
+        let result = self.wire.read_byte(address);
+        self.heed(result)
+    }
+
+    fn expect_gated(&self) -> Outcome<(), D, P> {
+        match self.state {
+            State::NotReset => Err(ChipError::NotReset),
+            State::Running => Err(ChipError::NotGated),
+            State::Gated => Ok(()),
+        }
+    }
+
+    /// After an error of the bus a clock may be lost.
+    pub(super) fn heed<T>(&mut self, result: Result<T, D::Error>) -> Outcome<T, D, P> {
+        result.map_err(|error| {
+            self.state = State::NotReset;
+            ChipError::Bus(error)
+        })
+    }
+}

@@ -1,0 +1,81 @@
+//! SPI without chip select: frames of 40 clocks, counted by the chip from its reset.
+
+use embedded_hal::spi::SpiDevice;
+
+/// `a19:16`: read, write and the memory.
+const READ: u32 = 1 << 19;
+const WRITE: u32 = 1 << 18;
+const NEURON: u32 = 1 << 16;
+const SYNAPSE: u32 = 2 << 16;
+
+/// A byte in one of the two memories.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Address(u32);
+
+impl Address {
+    /// Byte `byte` of a neuron.
+    pub(super) fn neuron(neuron: u8, byte: u8) -> Self {
+        Self(NEURON | u32::from(byte) << 8 | u32::from(neuron))
+    }
+
+    /// A byte beyond those of a neuron, which reads as 0.
+    pub(super) fn nowhere() -> Self {
+        Self::neuron(255, 0x7F)
+    }
+
+    /// The byte with the synapse: `{byte, pre, post / 8}`, two synapses a byte, four bytes a word.
+    pub(super) fn synapse(pre: u8, post: u8) -> Self {
+        let (pre, post) = (u32::from(pre), u32::from(post));
+        Self(SYNAPSE | (post >> 1 & 3) << 13 | pre << 5 | post >> 3)
+    }
+
+    /// Which byte of a neuron.
+    pub(super) fn neuron_byte(self) -> Option<u8> {
+        (self.0 & (NEURON | SYNAPSE) == NEURON).then_some((self.0 >> 8) as u8)
+    }
+
+    /// As in an error.
+    pub(super) const fn number(self) -> u32 {
+        self.0
+    }
+}
+
+/// The bus, once it is in step.
+#[derive(Debug)]
+pub(super) struct Wire<D> {
+    pub(super) device: D,
+}
+
+impl<D: SpiDevice> Wire<D> {
+    pub(super) fn configure(&mut self, register: u16, value: u32) -> Result<(), D::Error> {
+        self.write(register.into(), value)
+    }
+
+    /// Bits of `keep` that are 1 stay as they are.
+    pub(super) fn write_byte(
+        &mut self,
+        address: Address,
+        keep: u8,
+        value: u8,
+    ) -> Result<(), D::Error> {
+        self.write(WRITE | address.0, u32::from(keep) << 8 | u32::from(value))
+    }
+
+    /// The last byte that comes back is what was read.
+    pub(super) fn read_byte(&mut self, address: Address) -> Result<u8, D::Error> {
+        let mut frame = frame(READ | address.0, 0);
+        self.device.transfer_in_place(&mut frame)?;
+        let [.., last] = frame;
+        Ok(last)
+    }
+
+    fn write(&mut self, address: u32, data: u32) -> Result<(), D::Error> {
+        self.device.write(&frame(address, data))
+    }
+}
+
+/// 20 bits of address, 20 of data.
+fn frame(address: u32, data: u32) -> [u8; 5] {
+    let [_, _, _, bytes @ ..] = (u64::from(address) << 20 | u64::from(data)).to_be_bytes();
+    bytes
+}

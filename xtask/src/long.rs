@@ -1,0 +1,58 @@
+//! The checks of `cargo verify --long`, which take too long for every change.
+
+use crate::{
+    bench, paths,
+    shell::{cargo, run},
+    toolchain::cargo_for,
+};
+use anyhow::{Context, Result, ensure};
+use std::fs;
+
+/// The recordings, and what they are extracted into for the comparison.
+const RECORDINGS: [&str; 2] = ["hexarotor.csv", "vtol_at_rest.csv"];
+
+/// Extracts the flights from the logs in two published crates, and compares them with the files in `data`.
+pub fn recordings() -> Result<()> {
+    let extracted = paths::target().join("recordings");
+    fs::create_dir_all(&extracted)?;
+    let program = "run --package host-tests --features extract --bin extract_flight --";
+    run(cargo(program).arg(&extracted))?;
+    for name in RECORDINGS {
+        let read = |path: std::path::PathBuf| {
+            fs::read_to_string(&path).with_context(|| path.display().to_string())
+        };
+        let (kept, new) =
+            (read(paths::root().join("data").join(name))?, read(extracted.join(name))?);
+        ensure!(kept == new, "data/{name} is not what the log holds");
+    }
+    println!("{} are what the logs hold.", RECORDINGS.join(" and "));
+    Ok(())
+}
+
+/// Every test, optimised and with many more cases. Those against other people's programs have a check of their own.
+pub fn sweeps() -> Result<()> {
+    let tests =
+        "test --release --package spikewire --package host-tests --package spikewire-cli --tests";
+    let mut cargo = cargo(&format!("{tests} -- --include-ignored --skip formats_peers"));
+    run(cargo.env("CASES_TIMES", "20"))
+}
+
+/// What `clippy` and the builds of firmware lint, and what they leave out.
+pub fn lints() -> Result<()> {
+    let warnings = ["--", "-D", "warnings"];
+    run(cargo("clippy --workspace --all-targets --all-features").args(warnings))?;
+    let firmware = "clippy --workspace --manifest-path examples/Cargo.toml";
+    run(cargo(firmware).args(warnings))?;
+    // One core stands for all: the firmware's source has no conditions on the core.
+    run(cargo_for("thumbv7em-none-eabihf", firmware)?.args(warnings))
+}
+
+/// Tests the part of the laptop program that a feature brings.
+pub fn capture() -> Result<()> {
+    run(&mut cargo("test --package spikewire-cli --all-features --test capture"))
+}
+
+/// The counts of the cores that `cargo verify` leaves out are shown; there is no baseline of them.
+pub fn cores() -> Result<()> {
+    bench::bench(&[])
+}
