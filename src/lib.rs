@@ -47,6 +47,7 @@
 //! | feature | adds |
 //! |---|---|
 //! | `fixed` | `FixedI16` and `FixedI32` with any fraction as [`Sample`]s |
+//! | `alloc` | `dynamic`: any filter length, window and number of neurons at run time, on the heap; not for firmware |
 //! | `rand` | probabilistic spiking, from any `rand_core` generator |
 //! | `defmt` | `defmt::Format` on public data |
 //! | `serde` | `Serialize` on public data, and `Deserialize` where nothing has to be checked |
@@ -58,6 +59,8 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "alloc")]
+extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
@@ -83,6 +86,8 @@ pub use event::{
     SpscQueue,
 };
 pub use num::{Sample, SampleKind};
+#[cfg(feature = "alloc")]
+pub use scheme::dynamic;
 pub use scheme::{
     Calibration, Code, Decoder, Differences, Encoder, Firing, Output, Polarity, Recovery, Scheme,
     Spike, Start, population, rate, temporal,

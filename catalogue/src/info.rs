@@ -15,6 +15,13 @@ pub struct Info {
     pub is_signed: bool,
     /// Whether its decoder adds up steps from a first value.
     pub has_first_value: bool,
+    /// Whether its keyframes are what its decoder holds already, and by which parameter it climbs a sample at
+    /// most.
+    pub climbs_by: Option<&'static str>,
+    /// Whether it is in the paper's first figure.
+    pub is_drawn: bool,
+    /// Its colour in pictures: red, green and blue.
+    pub colour: [u8; 3],
     /// The options that it takes, in the order in which a file of spikes lists them.
     pub parameters: &'static [Parameter],
 }
@@ -32,8 +39,16 @@ pub struct Parameter {
     pub help: &'static str,
     /// The paper's setting.
     pub paper: Paper,
-    /// Whether it stands in the place of what a calibration finds out.
-    pub is_calibrated: bool,
+    /// What it is unless given, if not a preset or found out.
+    pub default: Option<&'static str>,
+    /// What of the signal stands in its place unless it is given.
+    pub found: Option<Found>,
+    /// Whether a file of spikes holds it, so that the file decodes by itself.
+    pub is_recorded: bool,
+    /// Whether decoding does without it.
+    pub is_of_encoder: bool,
+    /// What one may give.
+    pub example: &'static str,
 }
 
 /// What values a parameter takes.
@@ -49,6 +64,19 @@ pub enum Kind {
     Flag,
     /// A word or a list, as its help says.
     Text,
+    /// A filter; a file of spikes holds its taps, as `taps`.
+    Filter,
+}
+
+/// What of a signal may stand in the place of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Found {
+    /// Its first sample.
+    First,
+    /// Its smallest sample.
+    Min,
+    /// Its largest sample.
+    Max,
 }
 
 /// What a 1 of a parameter is.
@@ -78,7 +106,18 @@ pub enum Paper {
 impl Parameter {
     /// A parameter without a preset.
     pub const fn new(name: &'static str, kind: Kind, unit: Unit, help: &'static str) -> Self {
-        Self { name, kind, unit, help, paper: Paper::None, is_calibrated: false }
+        Self {
+            name,
+            kind,
+            unit,
+            help,
+            paper: Paper::None,
+            default: None,
+            found: None,
+            is_recorded: true,
+            is_of_encoder: false,
+            example: "",
+        }
     }
 
     /// With the paper's setting.
@@ -87,10 +126,39 @@ impl Parameter {
         Self { paper, ..self }
     }
 
-    /// In the place of what a calibration finds out.
+    /// With what it is unless given.
     #[must_use]
-    pub const fn calibrated(self) -> Self {
-        Self { is_calibrated: true, ..self }
+    pub const fn with_default(self, default: &'static str) -> Self {
+        Self { default: Some(default), ..self }
+    }
+
+    /// With an example of what one may give.
+    #[must_use]
+    pub const fn with_example(self, example: &'static str) -> Self {
+        Self { example, ..self }
+    }
+
+    /// In the place of what the signal tells.
+    #[must_use]
+    pub const fn in_place_of(self, found: Found) -> Self {
+        Self { found: Some(found), ..self }
+    }
+
+    /// That another one is made from, which the file of spikes holds in its place.
+    #[must_use]
+    pub const fn unrecorded(self) -> Self {
+        Self { is_recorded: false, ..self }
+    }
+
+    /// That decoding does without.
+    #[must_use]
+    pub const fn of_encoder(self) -> Self {
+        Self { is_of_encoder: true, ..self }
+    }
+
+    /// What a file of spikes calls it.
+    pub const fn key(&self) -> &'static str {
+        if matches!(self.kind, Kind::Filter) { "taps" } else { self.name }
     }
 
     /// The value before the first sample, of schemes whose decoders add up steps.
@@ -98,57 +166,75 @@ impl Parameter {
         "start",
         Kind::Number,
         Unit::Signal,
-        "the value before the first sample; unless given, the first sample is where the decoder starts",
+        "the value before the first sample, whose spike then counts; unless given, the first sample is where \
+         the decoder starts",
     )
-    .calibrated();
+    .with_example("0")
+    .in_place_of(Found::First);
 
     /// The signal's minimum, of the rate codes.
     pub const SHIFT: Self = Self::new(
         "shift",
         Kind::Number,
         Unit::Signal,
-        "what the filters add up on: the signal's minimum",
+        "what the filters add up on, the signal's minimum; samples below it cannot be coded",
     )
-    .calibrated();
+    .with_example("-2.5")
+    .in_place_of(Found::Min);
 
     /// The lower end of a population's range.
-    pub const MIN: Self =
-        Self::new("min", Kind::Number, Unit::Signal, "lower end of the neurons' range: the signal's minimum")
-            .calibrated();
+    pub const MIN: Self = Self::new(
+        "min",
+        Kind::Number,
+        Unit::Signal,
+        "lower end of the neurons' range: the signal's minimum",
+    )
+    .with_example("-2.5")
+    .in_place_of(Found::Min);
 
     /// The upper end of a population's range.
-    pub const MAX: Self =
-        Self::new("max", Kind::Number, Unit::Signal, "upper end of the neurons' range: the signal's maximum")
-            .calibrated();
+    pub const MAX: Self = Self::new(
+        "max",
+        Kind::Number,
+        Unit::Signal,
+        "upper end of the neurons' range: the signal's maximum",
+    )
+    .with_example("2.5")
+    .in_place_of(Found::Max);
 
     /// How wide receptive fields are.
     pub const BETA: Self = Self::new(
         "beta",
         Kind::Number,
         Unit::None,
-        "the smaller, the wider the fields, above 0; 1.5 unless given",
-    );
+        "distance of the centres in widths of a field, so the smaller, the wider, above 0",
+    )
+    .with_default("1.5");
 
     /// How many neurons there are.
     pub const fn neurons(paper: &'static str) -> Self {
-        Self::new("neurons", Kind::Count, Unit::None, "how many neurons, 3 to 1024")
+        Self::new("neurons", Kind::Count, Unit::None, "how many neurons share the range, 3 to 1024")
             .with_paper(Paper::Text(paper))
+            .with_example("20")
     }
 
     /// The filter of a rate code.
     pub const fn filter(paper: &'static str) -> Self {
         Self::new(
             "filter",
-            Kind::Text,
+            Kind::Filter,
             Unit::Signal,
-            "`triang:15`, `hann:24`, `gauss:15`, `gauss:15:2.5` (with alpha), or a FILE of taps; \
+            "`triang:15`, `hann:24`, `gauss:15`, `gauss:15:2.5` (with alpha), or a FILE of taps, 1 to 4096; \
              `,peak=2` or `,sum=1` after a shape scales it",
         )
         .with_paper(Paper::Filter(paper))
+        .with_example("triang:15,peak=2")
     }
 
     /// A threshold in the signal's unit.
     pub const fn threshold(help: &'static str, paper: f64) -> Self {
-        Self::new("threshold", Kind::Number, Unit::Signal, help).with_paper(Paper::Signal(paper))
+        Self::new("threshold", Kind::Number, Unit::Signal, help)
+            .with_paper(Paper::Signal(paper))
+            .with_example("0.1")
     }
 }

@@ -19,7 +19,7 @@ mod signal;
 
 pub use channel::Channel;
 pub use entry::{Count, Entry, Flight};
-pub use info::{Info, Kind, Parameter, Paper, Unit};
+pub use info::{Found, Info, Kind, Paper, Parameter, Unit};
 pub use signal::Scaled;
 
 /// Calls a function that is not inlined: a small board has room for one scheme at a time on its stack.
@@ -63,18 +63,25 @@ macro_rules! schemes {
         /// Every scheme, to be chosen at run time.
         #[cfg(feature = "run")]
         pub static ALL: &[&dyn run::RunTime] = &[$(&schemes::$module::Scheme),*];
+
+        /// Builds the scheme of this name in a sample type and hands it to a visitor.
+        ///
+        /// # Errors
+        /// There is no such scheme, a parameter makes no sense, or the visitor's own.
+        #[cfg(feature = "run")]
+        pub fn visit<S: spikewire::Sample, V: run::Visit<S>>(
+            name: &str,
+            given: &run::Given,
+            visitor: V,
+        ) -> anyhow::Result<V::Output> {
+            $(
+                if name == <schemes::$module::Scheme as Entry>::INFO.name {
+                    return <schemes::$module::Scheme as run::Build>::build(given, visitor);
+                }
+            )*
+            anyhow::bail!("there is no scheme `{name}`")
+        }
     };
 }
 
-schemes![
-    tbr,
-    sf,
-    mw,
-    hsa,
-    t_hsa,
-    bsa,
-    position,
-    grf,
-    grf_slots,
-    grf_prob,
-];
+schemes![tbr, mw, sf, sod, bsa, hsa, t_hsa, position, grf, grf_slots, grf_prob,];

@@ -1,26 +1,24 @@
 //! Spikes from recordings and back, and the benchmark of the paper.
 
+mod bank;
 mod bench;
-mod codec;
+mod brief;
 mod commands;
 mod events;
-mod filter;
+mod fit;
 mod input;
 mod live;
 mod options;
 mod output;
 mod plot;
 mod port;
-mod resolve;
 #[cfg(any(test, feature = "capture"))]
 mod rtt;
-mod sample_type;
-mod saturated;
 mod scheme;
-mod settings;
 mod spikes;
 mod steep;
 mod stop;
+mod timeline;
 mod trial;
 mod values;
 

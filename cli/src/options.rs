@@ -1,194 +1,147 @@
-//! The parameters of a scheme as options.
+//! The parameters of the catalogue's schemes as options.
 
-use crate::scheme::SchemeName;
-use anyhow::{Error, Result, anyhow, bail};
-use clap::{Args, ValueEnum};
-use std::str::FromStr;
+use crate::scheme::Scheme;
+use catalogue::run::Options;
+use catalogue::{Found, Info, Kind, Parameter, Unit};
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
+use std::fmt::Write;
+use std::ops::Deref;
 
-/// Parameters, by the names of the paper's Table III, and what calibration takes from the signal.
-#[derive(Args, Clone, Debug, Default)]
-pub(crate) struct SchemeOptions {
-    /// tbr: the threshold is the differences' mean and this many of their standard deviations
-    #[arg(long, allow_negative_numbers = true, help_heading = "Parameters")]
-    pub factor: Option<f64>,
-    /// tbr: mean and deviation of the differences' magnitudes
-    #[arg(long, help_heading = "Parameters")]
-    pub magnitudes: bool,
-    /// tbr, sf, mw, t-hsa, bsa
-    #[arg(long, allow_negative_numbers = true, help_heading = "Parameters")]
-    pub threshold: Option<f64>,
-    /// tbr: step of the decoder, as a number or as `2x` the threshold; `1x` unless given
-    #[arg(long, help_heading = "Parameters")]
-    pub step: Option<Step>,
-    /// mw: the mean is taken over one sample more
-    #[arg(long, help_heading = "Parameters")]
-    pub window: Option<usize>,
-    /// hsa, t-hsa, bsa: `triang:15`, `hann:24`, `gauss:15`, `gauss:15:2.5` (with alpha), or a FILE of taps;
-    /// `,peak=2` or `,sum=1` after a shape scales it
-    #[arg(long, help_heading = "Parameters")]
-    pub filter: Option<String>,
-    /// position, grf, grf-slots, grf-prob
-    #[arg(long, help_heading = "Parameters")]
-    pub neurons: Option<usize>,
-    /// grf-slots: sub-timesteps a sample
-    #[arg(long, help_heading = "Parameters")]
-    pub slots: Option<usize>,
-    /// grf-slots, grf-prob: the smaller, the wider the fields; 1.5 unless given
-    #[arg(long, help_heading = "Parameters")]
-    pub beta: Option<f64>,
-    /// grf-slots: neurons below this level of `--slots` are silent; 1 unless given
-    #[arg(long, help_heading = "Parameters")]
-    pub floor: Option<u16>,
-    /// bsa: as published (aligned, unless given) or as in the paper's tables (toolbox)
-    #[arg(long, help_heading = "Parameters")]
-    pub form: Option<Form>,
-    /// bsa, aligned: e1 <= e2 - threshold (sub, unless given) or e1 <= e2 * threshold (mul)
-    #[arg(long, help_heading = "Parameters")]
-    pub criterion: Option<Criterion>,
-    /// position: `linear` (unless given), `gaussian`, or a rising list such as `-1,-0.2,0,0.2,1`
-    #[arg(long, allow_hyphen_values = true, help_heading = "Parameters")]
-    pub centres: Option<String>,
-    /// grf-prob: where the generator starts; 0 unless given
-    #[arg(long, help_heading = "Parameters")]
-    pub seed: Option<u64>,
-    /// hsa, t-hsa, bsa: the signal's minimum
-    #[arg(long, allow_negative_numbers = true, help_heading = "Instead of calibration")]
-    pub shift: Option<f64>,
-    /// position, grf, grf-slots, grf-prob: the signal's minimum
-    #[arg(long, allow_negative_numbers = true, help_heading = "Instead of calibration")]
-    pub min: Option<f64>,
-    /// position, grf, grf-slots, grf-prob: the signal's maximum
-    #[arg(long, allow_negative_numbers = true, help_heading = "Instead of calibration")]
-    pub max: Option<f64>,
-    /// tbr, sf, mw: the value before the first sample
-    #[arg(long, allow_negative_numbers = true, help_heading = "Instead of calibration")]
-    pub start: Option<f64>,
-    /// Settings of the paper's benchmark, scaled to the signal's range, for what is not given
-    #[arg(long, help_heading = "Parameters")]
-    pub paper: bool,
-}
+/// What a user gave of the parameters of any scheme.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SchemeOptions(pub Options);
 
-/// The decoder's step of temporal contrast.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Step {
-    /// In the signal's unit.
-    Value(f64),
-    /// This many thresholds.
-    Thresholds(f64),
-}
+impl Deref for SchemeOptions {
+    type Target = Options;
 
-/// The two forms of BSA.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Form {
-    /// As published.
-    Aligned,
-    /// With the toolbox's indices.
-    Toolbox,
-}
-
-/// What BSA compares its errors by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Criterion {
-    /// `e1 <= e2 - threshold`.
-    Sub,
-    /// `e1 <= e2 * threshold`.
-    Mul,
-}
-
-impl FromStr for Step {
-    type Err = Error;
-
-    fn from_str(text: &str) -> Result<Self, Error> {
-        let number = |text: &str| text.parse().map_err(|_| anyhow!("`{text}` is not a number"));
-        Ok(match text.strip_suffix('x') {
-            Some(times) => Self::Thresholds(number(times)?),
-            None => Self::Value(number(text)?),
-        })
+    fn deref(&self) -> &Options {
+        &self.0
     }
 }
 
-impl SchemeOptions {
-    /// Refuses what the scheme does not take.
-    ///
-    /// # Errors
-    /// Such an option is given.
-    pub(crate) fn check(&self, scheme: SchemeName) -> Result<()> {
-        let taken = scheme.options();
-        if let Some(option) = self.given().into_iter().find(|option| !taken.contains(option)) {
-            let taken: Vec<String> = taken.iter().map(|option| format!("--{option}")).collect();
-            bail!("{} takes no --{option}; it takes {}", scheme.name(), taken.join(" "));
-        }
+const PARAMETERS: &str = "Parameters";
+const CALIBRATION: &str = "Instead of calibration";
+
+impl Args for SchemeOptions {
+    fn augment_args(command: Command) -> Command {
+        let command = augment(command, |_| true, |_| true);
+        command.arg(
+            Arg::new("paper")
+                .long("paper")
+                .action(ArgAction::SetTrue)
+                .help_heading(PARAMETERS)
+                .help("Settings of the paper's benchmark, scaled to the signal's range, for what is not given"),
+        )
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for SchemeOptions {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        let mut options = given(matches, |_| true, |_| true);
+        options.paper = matches.get_flag("paper");
+        Ok(Self(options))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        *self = Self::from_arg_matches(matches)?;
         Ok(())
     }
+}
 
-    /// Whether any parameter is given.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.given().is_empty()
+/// Adds an option for each of these parameters of these schemes, where several schemes have it for all of them.
+pub(crate) fn augment(
+    mut command: Command,
+    takes: fn(&Info) -> bool,
+    is_taken: fn(&Parameter) -> bool,
+) -> Command {
+    for (name, owners) in parameters(takes, is_taken) {
+        let Some((_, parameter)) = owners.first() else { continue };
+        let heading = if parameter.found.is_some() { CALIBRATION } else { PARAMETERS };
+        let arg = Arg::new(name).long(name).help(help(&owners)).help_heading(heading);
+        let arg = match parameter.kind {
+            Kind::Number => arg.allow_negative_numbers(true).value_name("NUMBER"),
+            Kind::Count => arg.value_name("COUNT"),
+            Kind::Choice(words) => arg.value_parser(PossibleValuesParser::new(words)),
+            Kind::Flag => arg.action(ArgAction::SetTrue),
+            Kind::Text => arg.allow_hyphen_values(true).value_name("VALUE"),
+            Kind::Filter => arg.value_name("FILTER"),
+        };
+        command = command.arg(arg);
     }
+    command
+}
 
-    fn given(&self) -> Vec<&'static str> {
-        let given = [
-            ("factor", self.factor.is_some()),
-            ("magnitudes", self.magnitudes),
-            ("threshold", self.threshold.is_some()),
-            ("step", self.step.is_some()),
-            ("window", self.window.is_some()),
-            ("filter", self.filter.is_some()),
-            ("neurons", self.neurons.is_some()),
-            ("slots", self.slots.is_some()),
-            ("beta", self.beta.is_some()),
-            ("floor", self.floor.is_some()),
-            ("form", self.form.is_some()),
-            ("criterion", self.criterion.is_some()),
-            ("centres", self.centres.is_some()),
-            ("seed", self.seed.is_some()),
-            ("shift", self.shift.is_some()),
-            ("min", self.min.is_some()),
-            ("max", self.max.is_some()),
-            ("start", self.start.is_some()),
-        ];
-        given.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name).collect()
-    }
-
-    /// The paper's benchmark settings where nothing is given, for a signal with this range.
-    #[must_use]
-    pub(crate) fn or_paper(&self, scheme: SchemeName, range: f64) -> Self {
-        /// What the paper calls the amplitude of its signal.
-        const PAPER_RANGE: f64 = 5.8;
-        let scale = range / PAPER_RANGE;
-        let filter =
-            |length: usize| self.filter.clone().or(Some(format!("triang:{length},peak={scale}")));
-        let threshold = |value: f64| self.threshold.or(Some(value));
-        let mut options = self.clone();
-        match scheme {
-            SchemeName::Tbr => {
-                options.factor = self.factor.or(self.threshold.is_none().then_some(0.5));
-                options.step = self.step.or(Some(Step::Thresholds(2.0)));
+/// What was given of these parameters.
+pub(crate) fn given(
+    matches: &ArgMatches,
+    takes: fn(&Info) -> bool,
+    is_taken: fn(&Parameter) -> bool,
+) -> Options {
+    let mut options = Options::default();
+    for (name, owners) in parameters(takes, is_taken) {
+        if owners.first().is_some_and(|(_, parameter)| parameter.kind == Kind::Flag) {
+            if matches.get_flag(name) {
+                options.set(name, "");
             }
-            SchemeName::Sf => options.threshold = threshold(0.5 * scale),
-            SchemeName::Mw => {
-                options.threshold = threshold(0.25 * scale);
-                options.window = self.window.or(Some(5));
-            }
-            SchemeName::Hsa => options.filter = filter(15),
-            SchemeName::THsa => {
-                options.filter = filter(15);
-                options.threshold = threshold(0.85 * scale);
-            }
-            SchemeName::Bsa => {
-                options.filter = filter(9);
-                options.form = self.form.or(Some(Form::Toolbox));
-                options.threshold = threshold(1.15);
-            }
-            SchemeName::Position
-                if self.centres.as_deref().is_some_and(|centres| centres.contains(',')) => {}
-            SchemeName::Position | SchemeName::Grf => options.neurons = self.neurons.or(Some(20)),
-            SchemeName::GrfSlots => {
-                options.neurons = self.neurons.or(Some(15));
-                options.slots = self.slots.or(Some(10));
-            }
-            SchemeName::GrfProb => options.neurons = self.neurons.or(Some(15)),
+        } else if let Some(text) = matches.get_one::<String>(name) {
+            options.set(name, text);
         }
-        options
     }
+    options
+}
+
+/// A name, and the schemes that have a parameter of it, with what it is there.
+type Owned = (&'static str, Vec<(&'static Info, &'static Parameter)>);
+
+fn parameters(takes: fn(&Info) -> bool, is_taken: fn(&Parameter) -> bool) -> Vec<Owned> {
+    let mut all: Vec<Owned> = Vec::new();
+    for scheme in Scheme::all().map(|scheme| scheme.info()).filter(|info| takes(info)) {
+        for parameter in scheme.parameters.iter().filter(|parameter| is_taken(parameter)) {
+            match all.iter_mut().find(|(name, _)| *name == parameter.name) {
+                Some((_, owners)) => owners.push((scheme, parameter)),
+                None => all.push((parameter.name, vec![(scheme, parameter)])),
+            }
+        }
+    }
+    all
+}
+
+/// `sf, mw: what it means, in the signal's unit, such as 0.1. tbr: what it means there`.
+fn help(owners: &[(&'static Info, &'static Parameter)]) -> String {
+    let mut meanings: Vec<(Vec<&str>, String)> = Vec::new();
+    for (info, parameter) in owners {
+        let meaning = meaning(parameter);
+        match meanings.iter_mut().find(|(_, known)| *known == meaning) {
+            Some((names, _)) => names.push(info.name),
+            None => meanings.push((vec![info.name], meaning)),
+        }
+    }
+    let all =
+        meanings.into_iter().map(|(names, meaning)| format!("{}: {meaning}", names.join(", ")));
+    all.collect::<Vec<_>>().join(". ")
+}
+
+fn meaning(parameter: &Parameter) -> String {
+    let mut text = parameter.help.to_owned();
+    // Writing to a string cannot fail.
+    let _ = match parameter.unit {
+        Unit::Signal if parameter.kind == Kind::Number => write!(text, ", in the signal's unit"),
+        _ => Ok(()),
+    };
+    if !parameter.example.is_empty() {
+        let _ = write!(text, ", such as `{}`", parameter.example);
+    }
+    let default = match parameter.found {
+        Some(Found::First) | None => parameter.default,
+        Some(_) => Some("found by a pass over the signal"),
+    };
+    if let Some(default) = default {
+        let _ = write!(text, "; {default} unless given");
+    }
+    text
 }

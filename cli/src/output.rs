@@ -1,13 +1,19 @@
 //! Files that appear whole or not at all.
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
+use same_file::Handle;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 /// Standard output, or a file that is written beside its place and then moved there.
-pub(crate) enum Output {
+pub(crate) struct Output {
+    place: Place,
+    bytes: u64,
+}
+
+enum Place {
     /// Standard output, or a device.
     Direct(BufWriter<Box<dyn Write>>),
     /// A file in the making.
@@ -17,28 +23,48 @@ pub(crate) enum Output {
 const BUFFER: usize = 1 << 18;
 
 impl Output {
-    /// Opens the output; without a path it is standard output.
+    /// Opens the output; without a path it is standard output. A link is followed.
+    ///
+    /// # Errors
+    /// Nothing can be written there, or it is the input.
+    pub(crate) fn open(path: Option<&Path>, input: &Path) -> Result<Self> {
+        if let Some(path) = path.filter(|path| is_same(path, input)) {
+            bail!("{}: the input itself; it would be lost", path.display());
+        }
+        Self::to(path)
+    }
+
+    /// Opens the output where there is no input.
     ///
     /// # Errors
     /// Nothing can be written there.
-    pub(crate) fn open(path: Option<&Path>) -> Result<Self> {
+    pub(crate) fn to(path: Option<&Path>) -> Result<Self> {
         let Some(path) = path.filter(|path| *path != Path::new("-")) else {
-            return Ok(Self::Direct(BufWriter::with_capacity(
-                BUFFER,
-                Box::new(io::stdout().lock()),
-            )));
+            return Ok(Self::direct(Box::new(io::stdout().lock())));
         };
         let name = path.display();
         // Nothing is moved onto a device.
         if fs::metadata(path).is_ok_and(|data| !data.is_file()) {
             let device =
                 File::create(path).with_context(|| format!("{name}: cannot be written"))?;
-            return Ok(Self::Direct(BufWriter::with_capacity(BUFFER, Box::new(device))));
+            return Ok(Self::direct(Box::new(device)));
         }
+        let path =
+            &target(path.to_owned()).with_context(|| format!("{name}: cannot be written"))?;
         let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty());
         let file = named(directory.unwrap_or(Path::new(".")))
             .with_context(|| format!("{name}: cannot be written"))?;
-        Ok(Self::Beside(BufWriter::with_capacity(BUFFER, file), path.to_owned()))
+        let file = BufWriter::with_capacity(BUFFER, file);
+        Ok(Self { place: Place::Beside(file, path.to_owned()), bytes: 0 })
+    }
+
+    fn direct(output: Box<dyn Write>) -> Self {
+        Self { place: Place::Direct(BufWriter::with_capacity(BUFFER, output)), bytes: 0 }
+    }
+
+    /// How many bytes were written.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.bytes
     }
 
     /// Writes what is left and puts the file in its place.
@@ -46,9 +72,9 @@ impl Output {
     /// # Errors
     /// It cannot be written.
     pub(crate) fn finish(self) -> Result<()> {
-        match self {
-            Self::Direct(mut output) => output.flush()?,
-            Self::Beside(output, path) => {
+        match self.place {
+            Place::Direct(mut output) => output.flush()?,
+            Place::Beside(output, path) => {
                 let name = path.display();
                 let file = output.into_inner().map_err(io::IntoInnerError::into_error)?;
                 file.persist(&path).with_context(|| format!("{name}: cannot be written"))?;
@@ -60,18 +86,43 @@ impl Output {
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self {
-            Self::Direct(output) => output.write(bytes),
-            Self::Beside(output, _) => output.write(bytes),
-        }
+        let written = match &mut self.place {
+            Place::Direct(output) => output.write(bytes),
+            Place::Beside(output, _) => output.write(bytes),
+        }?;
+        self.bytes += written as u64;
+        Ok(written)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        match self {
-            Self::Direct(output) => output.flush(),
-            Self::Beside(output, _) => output.flush(),
+        match &mut self.place {
+            Place::Direct(output) => output.flush(),
+            Place::Beside(output, _) => output.flush(),
         }
     }
+}
+
+/// Whether both are one file, also by links and as standard input.
+fn is_same(output: &Path, input: &Path) -> bool {
+    if !fs::metadata(output).is_ok_and(|data| data.is_file()) {
+        return false;
+    }
+    let input = if input == Path::new("-") { Handle::stdin() } else { Handle::from_path(input) };
+    matches!((Handle::from_path(output), input), (Ok(output), Ok(input)) if output == input)
+}
+
+/// Where links lead, even if there is nothing yet.
+fn target(mut path: PathBuf) -> io::Result<PathBuf> {
+    /// More are a circle.
+    const MOST: usize = 40;
+    for _ in 0..MOST {
+        if !fs::symlink_metadata(&path).is_ok_and(|data| data.is_symlink()) {
+            return Ok(path);
+        }
+        let link = fs::read_link(&path)?;
+        path = path.parent().unwrap_or(Path::new("")).join(link);
+    }
+    Err(io::Error::other("links that lead in a circle"))
 }
 
 /// A file with the permissions that a new file has, not those of a secret.

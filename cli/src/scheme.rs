@@ -1,86 +1,68 @@
-//! The names of the schemes, and the parameters that each takes.
+//! Schemes of the catalogue as the value of an option.
 
-use clap::ValueEnum;
+use catalogue::run::RunTime;
+use clap::builder::{MapValueParser, PossibleValue, PossibleValuesParser, ValueParserFactory};
+use std::fmt;
+use std::ops::Deref;
 
-/// A scheme, by the name that options and files use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum SchemeName {
-    /// Temporal contrast.
-    Tbr,
-    /// Step forward.
-    Sf,
-    /// Moving window.
-    Mw,
-    /// Hough spiker.
-    Hsa,
-    /// Threshold Hough spiker.
-    THsa,
-    /// Ben's spiker.
-    Bsa,
-    /// Position coding.
-    Position,
-    /// Gaussian receptive fields, one spike a sample.
-    Grf,
-    /// Gaussian receptive fields with sub-timesteps.
-    GrfSlots,
-    /// Gaussian receptive fields with probabilistic spiking.
-    GrfProb,
+/// A scheme of the catalogue.
+#[derive(Clone, Copy)]
+pub(crate) struct Scheme(&'static dyn RunTime);
+
+impl Scheme {
+    /// All of them, in the order of the catalogue.
+    pub(crate) fn all() -> impl Iterator<Item = Self> {
+        catalogue::ALL.iter().map(|scheme| Self(*scheme))
+    }
+
+    /// The scheme that options and files call so.
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        Self::all().find(|scheme| scheme.name() == name)
+    }
+
+    /// What options and files call it.
+    pub(crate) fn name(self) -> &'static str {
+        self.info().name
+    }
+
+    /// Takes the name of one of these.
+    pub(crate) fn parser(
+        schemes: impl Iterator<Item = Self>,
+    ) -> MapValueParser<PossibleValuesParser, fn(String) -> Self> {
+        let values =
+            schemes.map(|scheme| PossibleValue::new(scheme.name()).help(scheme.info().words));
+        let parser: PossibleValuesParser = values.collect::<Vec<_>>().into();
+        clap::builder::TypedValueParser::map(parser, |name| {
+            // The parser lets no other name pass.
+            Self::named(&name).unwrap_or(Self(catalogue::ALL[0]))
+        })
+    }
 }
 
-impl SchemeName {
-    /// All schemes, in the paper's order.
-    pub(crate) const ALL: [Self; 10] = [
-        Self::Tbr,
-        Self::Mw,
-        Self::Sf,
-        Self::Bsa,
-        Self::Hsa,
-        Self::THsa,
-        Self::Position,
-        Self::Grf,
-        Self::GrfSlots,
-        Self::GrfProb,
-    ];
+impl Deref for Scheme {
+    type Target = dyn RunTime;
 
-    /// The name.
-    pub(crate) fn name(self) -> String {
-        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    fn deref(&self) -> &Self::Target {
+        self.0
     }
+}
 
-    /// The name as the paper prints it.
-    pub(crate) fn title(self) -> &'static str {
-        match self {
-            Self::Tbr => "TBR",
-            Self::Sf => "SF",
-            Self::Mw => "MW",
-            Self::Hsa => "HSA",
-            Self::THsa => "T-HSA",
-            Self::Bsa => "BSA",
-            Self::Position => "Position",
-            Self::Grf => "GRF",
-            Self::GrfSlots => "GRF, slots",
-            Self::GrfProb => "GRF, probabilistic",
-        }
+impl fmt::Debug for Scheme {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
     }
+}
 
-    /// The options that it takes.
-    pub(crate) fn options(self) -> &'static [&'static str] {
-        match self {
-            Self::Tbr => &["factor", "magnitudes", "threshold", "step", "start"],
-            Self::Sf => &["threshold", "start"],
-            Self::Mw => &["threshold", "window", "start"],
-            Self::Hsa => &["filter", "shift"],
-            Self::THsa => &["filter", "threshold", "shift"],
-            Self::Bsa => &["filter", "threshold", "form", "criterion", "shift"],
-            Self::Position => &["centres", "neurons", "min", "max"],
-            Self::Grf => &["neurons", "min", "max"],
-            Self::GrfSlots => &["neurons", "slots", "beta", "floor", "min", "max"],
-            Self::GrfProb => &["neurons", "beta", "seed", "min", "max"],
-        }
+impl PartialEq for Scheme {
+    fn eq(&self, other: &Self) -> bool {
+        self.name() == other.name()
     }
+}
 
-    /// Whether its spikes have a direction.
-    pub(crate) fn is_signed(self) -> bool {
-        matches!(self, Self::Tbr | Self::Sf | Self::Mw)
+impl ValueParserFactory for Scheme {
+    type Parser = MapValueParser<PossibleValuesParser, fn(String) -> Self>;
+
+    fn value_parser() -> Self::Parser {
+        Self::parser(Self::all())
     }
 }

@@ -1,6 +1,7 @@
 //! Ctrl-C ends what has no end of its own, with all that it has so far kept.
 
 use anyhow::{Context, Result};
+use spikewire::Tick;
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -45,7 +46,7 @@ impl Stop {
     }
 
     /// The time since the start, in µs as ticks have it.
-    pub(crate) fn tick(&self) -> u32 {
-        self.start.elapsed().as_micros() as u32
+    pub(crate) fn tick(&self) -> Tick {
+        Tick::from_micros(self.start.elapsed().as_micros() as u64)
     }
 }

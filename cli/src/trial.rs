@@ -1,14 +1,12 @@
 //! A recording there and back, for looking at and for scoring.
 
-use crate::codec::{Calibrated, Codec, Event};
+use crate::brief::short;
+use crate::fit::{Fit, rounded};
 use crate::input::{Chunk, Clock, InputOptions};
 use crate::options::SchemeOptions;
-use crate::resolve::{Known, resolve};
-use crate::sample_type::SampleType;
-use crate::saturated::Saturated;
-use crate::scheme::SchemeName;
-use crate::settings::Settings;
+use crate::scheme::Scheme;
 use anyhow::{Result, anyhow, bail};
+use catalogue::run::{Calibrated, Event, Known, SampleType, Settings, Shape};
 
 /// A recording in memory.
 pub(crate) struct Recording {
@@ -18,9 +16,13 @@ pub(crate) struct Recording {
     pub times: Vec<i64>,
     /// Samples a second, if known.
     pub rate: Option<f64>,
+    /// What it is called.
+    pub name: String,
     /// How many samples were not finite.
     rejected: usize,
     clock: Clock,
+    /// How it was read.
+    notes: Vec<String>,
 }
 
 impl Recording {
@@ -29,36 +31,51 @@ impl Recording {
     /// # Errors
     /// As reading does, or no finite sample.
     pub(crate) fn read(input: &InputOptions) -> Result<Self> {
-        let Chunk { mut values, mut times } = input.read_all()?;
-        let mut clock = Clock::new(&times, input.rate, input.gap);
-        clock.observe(&times);
-        let all = values.len();
-        if !times.is_empty() {
-            let mut is_finite = values.iter().map(|value| value.is_finite());
-            times.retain(|_| is_finite.next().unwrap_or(false));
+        input.single("this command")?;
+        let mut source = input.open()?;
+        let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
+        loop {
+            source.next(&mut chunk)?;
+            if chunk.is_empty() {
+                break;
+            }
+            all.append(&mut chunk);
         }
-        values.retain(|value| value.is_finite());
+        let mut clock = Clock::new(&all.times, input.rate, input.gap);
+        clock.observe(&all.times);
+        let rows = all.finite_rows();
+        let values = all.kept(&rows).pop().unwrap_or_default();
+        let times: Vec<i64> =
+            all.times.iter().zip(&rows).filter(|(_, row)| **row).map(|(time, _)| *time).collect();
         if values.is_empty() {
-            bail!("{}: no finite sample", input.input.display());
+            bail!("{}: none of the {} samples is finite", input.name(), rows.len());
         }
-        Ok(Self { rejected: all - values.len(), values, times, rate: clock.rate(), clock })
+        Ok(Self {
+            rejected: rows.len() - values.len(),
+            values,
+            times,
+            rate: clock.rate(),
+            name: source.origin().last().map_or(String::new(), |(_, name)| name.clone()),
+            clock,
+            notes: source.notes().to_vec(),
+        })
     }
 
-    /// What a user should know of it in this sample type, a line each.
-    pub(crate) fn notes(&self, sample: SampleType) -> String {
-        let rejected = match self.rejected {
-            0 => String::new(),
-            count => format!("{count} samples were not finite and emitted nothing\n"),
-        };
-        let mut saturated = Saturated::new(sample);
-        saturated.observe(&self.values);
-        format!("{rejected}{saturated}{}\n", self.clock)
+    /// What a user should know of it, a line each.
+    pub(crate) fn notes(&self) -> String {
+        let mut notes = self.notes.clone();
+        if self.rejected > 0 {
+            let count = self.rejected;
+            notes.push(format!("{count} samples were not finite or missing and emitted nothing"));
+        }
+        notes.push(format!("{}\n", self.clock));
+        notes.join("\n")
     }
 
     /// How long it is in seconds, if that is known.
     pub(crate) fn seconds(&self) -> Option<f64> {
         match (self.times.first(), self.times.last()) {
-            (Some(first), Some(last)) => Some((last - first) as f64 * 1e-6),
+            (Some(first), Some(last)) => Some(last.saturating_sub(*first) as f64 * 1e-6),
             _ => Some(self.values.len() as f64 / self.rate?),
         }
     }
@@ -67,9 +84,15 @@ impl Recording {
 /// What a scheme made of a recording.
 pub(crate) struct Trial {
     /// The scheme.
-    pub scheme: SchemeName,
-    /// Its parameters.
+    pub scheme: Scheme,
+    /// Its parameters, as they ran.
     pub settings: Settings,
+    /// How many neurons and sub-timesteps it has.
+    pub shape: Shape,
+    /// How many samples after its own the code of a sample comes out.
+    pub latency: usize,
+    /// What a user should know of how the parameters suit the recording.
+    pub notes: Vec<String>,
     /// The spikes.
     pub events: Vec<Event>,
     /// What they decode to, one value a sample.
@@ -82,7 +105,7 @@ impl Trial {
     /// # Errors
     /// The parameters make no sense.
     pub(crate) fn new(
-        scheme: SchemeName,
+        scheme: Scheme,
         options: &SchemeOptions,
         sample: SampleType,
         recording: &Recording,
@@ -91,19 +114,43 @@ impl Trial {
         calibrated.observe(&recording.values);
         let known =
             Known { calibrated: Some(&calibrated), first: &recording.values, can_calibrate: true };
-        let settings = resolve(scheme, options, known)?;
-        let mut codec = Codec::new(sample, &settings)?;
+        let settings = scheme.resolve(options, &known)?;
+        let (settings, rounding) = rounded(scheme, sample, &settings)?;
+        let mut codec = scheme.codec(sample, &settings)?;
         let (mut events, mut decoded) = (Vec::new(), Vec::new());
         codec.encode(&recording.values, &mut events);
         codec.finish(&mut events);
         codec.decode(recording.values.len(), &events, &mut decoded).map_err(|event| {
             anyhow!("{}: sample {} does not decode", scheme.name(), event.sample)
         })?;
-        Ok(Self { scheme, settings, events, decoded })
+        let mut fit = Fit::new(scheme, sample, &settings);
+        fit.observe(&recording.values);
+        let mut notes: Vec<String> = rounding.into_iter().collect();
+        let suits = fit.notes(&settings, events.len() as u64);
+        notes.extend(suits.lines().map(str::to_owned));
+        notes.extend(low(&recording.values, &decoded));
+        let shape = scheme.shape(&settings)?;
+        Ok(Self { scheme, settings, shape, latency: codec.latency(), notes, events, decoded })
     }
 
     /// `(1 - spikes / samples) * 100`.
     pub(crate) fn efficiency(&self) -> f64 {
         (1.0 - self.events.len() as f64 / self.decoded.len() as f64) * 100.0
     }
+}
+
+/// What to say where the decoded values are off on the whole, by more than the signal itself moves.
+fn low(values: &[f64], decoded: &[f64]) -> Option<String> {
+    let mean = |sum: f64| sum / values.len() as f64;
+    let center = mean(values.iter().sum());
+    let deviation = mean(values.iter().map(|value| (value - center).powi(2)).sum()).sqrt();
+    let off = mean(values.iter().zip(decoded).map(|(value, decoded)| decoded - value).sum());
+    (off.abs() > deviation).then(|| {
+        let direction = if off < 0.0 { "low" } else { "high" };
+        format!(
+            "decodes {} too {direction} on average, where the signal's own deviation is {}",
+            short(off.abs()),
+            short(deviation)
+        )
+    })
 }

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::good;
+use common::{good, spikewire};
 use serde_json::Value;
 
 fn bench() -> Value {
@@ -54,4 +54,19 @@ fn every_spike_is_where_it_was() {
             );
         }
     }
+}
+
+/// With two signals a case some seed gives a mean that is too far off.
+#[test]
+fn a_benchmark_that_differs_is_an_error() {
+    let differing = (1..200).find_map(|seed| {
+        let ran = spikewire(&format!("bench --tests 2 --cases 1 --seed {seed}"), "");
+        (ran.status != 0).then_some(ran)
+    });
+    let ran = differing.unwrap();
+    assert_eq!(ran.status, 2);
+    assert!(ran.told.contains("error: not as in the paper: "), "{}", ran.told);
+    assert!(ran.output.contains(" !"), "{}", ran.output);
+    let good = good("bench --tests 40 --cases 1 --seed 7", "").output;
+    assert!(good.contains("\nWith 40 signals a case, a mean may be off by "), "{good}");
 }

@@ -209,8 +209,8 @@ fn wraps_of_ticks_are_told() {
 
 #[test]
 fn a_table_holds_all_that_a_link_does() {
-    let told = "tick,address,polarity\n# restart\n# keyframe=5000,0,3dcccccd\n# keyframe=5000,1,00000000\n\
-                5001,0,1\n# lost_events\n6001,1,-1\n# keyframe=7000,2,ff38\n7000,2,1\n";
+    let told = "tick,address,polarity\n# restart\n# keyframe=5000,0,3dcccccd,f32\n# keyframe=5000,1,00000000,f32\n\
+                5001,0,1\n# lost_events\n6001,1,-1\n# keyframe=7000,2,ff38,q8.8\n7000,2,1\n";
     let link = convert("csv", "link", told.as_bytes());
     let back = convert("link", "csv", &link.output);
     assert_eq!(str::from_utf8(&back.output).unwrap(), told);

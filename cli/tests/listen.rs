@@ -3,11 +3,12 @@
 mod common;
 
 use common::{good_bytes, refused, spikewire_bytes};
+use fixed::types::I8F8;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
-use spikewire::link::{Coding, Framer, MAX_FRAME, Raw, Transmitter};
+use spikewire::link::{Coding, Framer, MAX_FRAME, Transmitter};
 use spikewire::temporal::{MovingWindow, StepForward, TemporalContrast};
-use spikewire::{Bank, Decoder, Encoder, Mark, Output, Sample, Scheme, Spike};
+use spikewire::{Bank, FromItems, Item, Put, Sample, Spike, Start, Tick};
 use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::Path;
@@ -22,39 +23,48 @@ struct Board<S> {
     values: Vec<(u32, u16, S)>,
 }
 
+/// A list that a bank puts its items into.
+#[derive(Default)]
+struct Items(Vec<Item>);
+
+impl Put for &mut Items {
+    fn put(&mut self, item: Item) {
+        self.0.push(item);
+    }
+}
+
 /// A board that encodes waves, with a keyframe every 100 samples.
-fn board<S: Raw, P: Scheme<Sample = S>>(schemes: [P; CHANNELS]) -> Board<S>
-where
-    <P::Encoder as Encoder>::Output: Output<Code = Spike>,
-    P::Decoder: Decoder<Sample = S, Code = Spike>,
-{
-    let mut bank = Bank::from_encoders(schemes.map(Scheme::encoder));
-    let mut decoders = schemes.map(Scheme::decoder);
-    let mut transmitter = Transmitter::<S, CHANNELS>::new(Coding::for_channels(3, 1000));
+fn board<P: Start<Code = Spike>>(schemes: [P; CHANNELS]) -> Board<P::Sample> {
+    let mut bank = Bank::<_, CHANNELS>::per_channel(schemes.each_ref());
+    let mut decoders = schemes.each_ref().map(P::decoder);
+    let mut transmitter = Transmitter::new(Coding::for_channels(3, 1000), 7);
     let mut board = Board { frames: Vec::new(), values: Vec::new() };
     let mut buffer = [0; MAX_FRAME];
     for sample in 0..400_u32 {
-        let wave = |pace: f64| S::from_f64((f64::from(sample) * pace).sin() * 100.0);
-        let tick = sample * 1000;
-        let mut events = Vec::new();
-        bank.encode(tick, [wave(0.05), wave(0.07), wave(0.11)], |event| events.push(event));
-        for event in &events {
-            let value = decoders[usize::from(event.address)].decode(event.polarity.into());
-            board.values.push((event.tick, event.address, value));
-        }
+        let wave = |pace: f64| P::Sample::from_f64((f64::from(sample) * pace).sin() * 100.0);
+        let tick = Tick::from(sample * 1000);
+        let mut items = Items::default();
+        bank.encode_into(tick, [wave(0.05), wave(0.07), wave(0.11)], &mut items);
         // At 3 the moving window has filled.
         if sample == 3 || sample % 100 == 0 {
-            let snapshot = bank.snapshot(tick, Mark::default());
-            // What the board's decoders start from.
-            for (decoder, value) in decoders.iter_mut().zip(snapshot.values) {
-                if let Some(value) = value {
-                    decoder.resync(value);
-                }
-            }
-            transmitter.keyframe(snapshot);
+            bank.keyframe_into(tick, &mut items);
         }
-        let mut events = events.into_iter();
-        while let Some(frame) = transmitter.next_frame(&mut events, &mut buffer).unwrap() {
+        for item in &items.0 {
+            match item {
+                Item::Event(event) => {
+                    let decoder = &mut decoders[usize::from(event.address)];
+                    let value = decoder.decode(event.polarity.into());
+                    board.values.push((event.tick.micros(), event.address, value));
+                }
+                // What the board's decoders start from.
+                Item::Keyframe(keyframe) => {
+                    decoders[usize::from(keyframe.address)].resync(keyframe.value().unwrap())
+                }
+                Item::Break(_) => unreachable!(),
+            }
+        }
+        let mut items = FromItems(items.0.into_iter());
+        while let Some(frame) = transmitter.next_frame(&mut items, &mut buffer).unwrap() {
             board.frames.push(frame.to_vec());
         }
     }
@@ -62,7 +72,7 @@ where
 }
 
 fn three_floats() -> Board<f32> {
-    board([7.5, 3.1, 12.7].map(|threshold| StepForward::<f32>::new(threshold).unwrap()))
+    board([7.5, 3.1, 12.7].map(|threshold| StepForward::<f32>::new(threshold)))
 }
 
 const THREE: &str = "--scheme sf --thresholds 7.5,3.1,12.7";
@@ -123,20 +133,20 @@ fn values_are_those_of_the_board_bit_for_bit() {
         .collect();
     assert!(bits.iter().copied().eq(board_f32.values.iter().map(|(_, _, value)| value.to_bits())));
 
-    let counts = board([7, 3, 12].map(|threshold| StepForward::<i16>::new(threshold).unwrap()));
+    let counts = board([7, 3, 12].map(|threshold| StepForward::<i16>::new(threshold)));
     assert_exact(&counts, 1.0, "--sample i16 --scheme sf --thresholds 7,3,12");
-    let q8_8 = board([StepForward::<i16>::new(7).unwrap(); 3]);
-    assert_exact(&q8_8, 256.0, "--sample q8.8 --scheme sf --threshold 0.02734375");
-    let contrast = board([TemporalContrast::<f32>::with_step(1.5, 3.0).unwrap(); 3]);
+    let q8_8 = board([StepForward::<I8F8>::new(I8F8::from_bits(7)); 3]);
+    assert_exact(&q8_8, 1.0, "--sample q8.8 --scheme sf --threshold 0.02734375");
+    let contrast = board([TemporalContrast::<f32>::new(1.5).with_step(3.0); 3]);
     assert_exact(&contrast, 1.0, "--scheme tbr --threshold 1.5 --step 2x");
-    let window = board([MovingWindow::<f32, 4>::new(2.5).unwrap(); 3]);
+    let window = board([MovingWindow::<f32, 4>::new(2.5); 3]);
     assert_exact(&window, 1.0, "--scheme mw --threshold 2.5 --window 3");
 }
 
 #[test]
 fn after_a_lost_frame_values_are_estimates_until_the_next_keyframe() {
     let board = three_floats();
-    let keyframes = |frame: &Vec<u8>| frame[1] & 4 != 0;
+    let keyframes = |frame: &Vec<u8>| frame[1] & 2 != 0;
     let lost = board.frames.iter().skip(20).position(|frame| !keyframes(frame)).unwrap() + 20;
     let mut frames = board.frames.clone();
     frames.remove(lost);
@@ -161,7 +171,7 @@ fn damage_a_cut_end_and_a_start_in_the_middle_are_counted() {
     let listen = |bytes: &[u8]| good_bytes(&format!("listen {THREE}"), bytes).told;
 
     let mut flipped = board.frames.clone();
-    flipped[10][5] ^= 1;
+    flipped[10][7] ^= 1;
     let told = listen(&flipped.concat());
     let skipped = format!("\n{} bytes skipped\n", board.frames[10].len());
     assert!(told.contains(&format!("{} frames: 1 lost in 1 gaps, ", frames - 1)), "{told}");
@@ -169,7 +179,7 @@ fn damage_a_cut_end_and_a_start_in_the_middle_are_counted() {
 
     // A damaged length asks for more bytes than follow: the frames after it are not held back.
     let mut long = board.frames.clone();
-    long[frames - 3][11] = 0xFF;
+    long[frames - 3][13] = 0xFF;
     let told = listen(&long.concat());
     assert!(told.contains(&format!("{} frames: 1 lost in 1 gaps, ", frames - 1)), "{told}");
 
@@ -200,7 +210,7 @@ fn what_no_decoder_is_there_for_is_counted() {
 
     let narrow =
         good_bytes("listen --sample i16 --scheme sf --threshold 7", &board.frames.concat());
-    let told = "\n15 keyframes with the width of another sample type\n";
+    let told = "\n15 keyframes of another sample type\n";
     assert!(narrow.told.contains(told), "{}", narrow.told);
     assert!(values(&narrow.output).iter().all(|value| value.known == "estimate"));
 }
@@ -215,20 +225,22 @@ fn keyframes_of_step_forward_tell_wrong_parameters() {
     for wrong in ["--scheme sf --thresholds 7.5,6.2,12.7", "--scheme sf --threshold 1"] {
         assert!(told(wrong).contains(" of 12 keyframes contradict"), "{}", told(wrong));
     }
-    assert!(told("--scheme sf --threshold 9 --sample q16.16").contains(all));
+    assert!(told("--scheme sf --threshold 90").contains(all));
+    let other = told("--scheme sf --threshold 9 --sample q16.16");
+    assert!(other.contains("\n15 keyframes of another sample type\n"), "{other}");
     // Theirs are samples.
-    let contrast = board([TemporalContrast::<f32>::with_step(1.5, 3.0).unwrap(); 3]);
+    let contrast = board([TemporalContrast::<f32>::new(1.5).with_step(3.0); 3]);
     let told = good_bytes("listen --scheme tbr --threshold 9", &contrast.frames.concat()).told;
     assert!(!told.contains("contradict"), "{told}");
 }
 
 #[test]
 fn a_loss_at_the_sender_is_told() {
-    let mut framer = Framer::new(Coding::for_channels(1, 1000));
+    let mut framer = Framer::new(Coding::for_channels(1, 1000), 7);
     let mut buffer = [0; 64];
-    let mut bytes = framer.start(0, &mut buffer).unwrap().finish().to_vec();
+    let mut bytes = framer.start(Tick::from(0), &mut buffer).unwrap().finish().to_vec();
     framer.mark_loss();
-    bytes.extend(framer.start(0, &mut buffer).unwrap().finish());
+    bytes.extend(framer.start(Tick::from(0), &mut buffer).unwrap().finish());
     let heard = good_bytes("listen", &bytes);
     assert_eq!(heard.output, b"tick,address,polarity\n# restart\n# lost_events\n");
     assert!(
@@ -254,13 +266,18 @@ fn events_become_any_format() {
 fn options_that_contradict_are_refused() {
     for (options, words) in [
         ("--threshold 1", ["need --scheme", ""]),
-        ("--scheme hsa --filter triang:3 --shift 0", ["hsa", "tbr, sf and mw"]),
+        ("--scheme hsa", ["invalid value 'hsa'", "tbr, mw, sf"]),
+        ("--scheme sf --filter triang:3", ["--filter", "unexpected argument"]),
         ("--scheme sf", ["sf needs --threshold", ""]),
         ("--scheme sf --threshold 0", ["threshold 0", "above 0"]),
         ("--scheme sf --thresholds 1,0", ["threshold 0", "above 0"]),
         ("--scheme sf --threshold 1 --thresholds 1,2", ["--threshold", "cannot be used"]),
         ("--scheme sf --threshold 1 --window 3", ["sf takes no --window", "it takes"]),
-        ("--scheme tbr --factor 1", ["no signal to calibrate", "--threshold"]),
+        ("--scheme tbr --factor 1", ["--factor", "unexpected argument"]),
+        (
+            "--scheme sf --threshold 0.001 --sample q8.8",
+            ["threshold 0.001 is 0 in q8.8", "0.00390625"],
+        ),
         ("--scheme sf --threshold 1 --from es", ["--from link", "keyframes"]),
         ("--scheme sf --threshold 1 --to es", ["--to csv", "values"]),
         ("--from what", ["no format `what`", "edvs:e0"]),

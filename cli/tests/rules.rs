@@ -58,6 +58,58 @@ fn moving_window_takes_the_mean_of_one_sample_more_than_the_window() {
     );
 }
 
+/// The value of the sample from which a decoder starts is known, so that its spike changes nothing.
+#[test]
+fn decoding_starts_at_the_first_sample_or_at_the_value_before_it() {
+    let signal = [5.0, 0.0, 0.0, 0.0, 3.0, 0.0];
+    for sample in ["f32", "q16.16", "q8.8", "i16"] {
+        let mw = format!("--scheme mw --threshold 1 --window 2 --sample {sample}");
+        // The first window's mean is 5/3, so that its first sample spikes.
+        let encoded = good(&format!("encode {mw} -"), &table(&signal)).output;
+        assert!(encoded.contains("# first=5\n") && !encoded.contains("# start="), "{encoded}");
+        assert_eq!(train(&encoded), [1, -1, -1, -1, 1, 0], "{sample}");
+        let decoded = values(&good("decode -", &encoded).output);
+        assert_eq!(decoded, [5.0, 4.0, 3.0, 2.0, 3.0, 3.0], "{sample}");
+        // The value before the first sample is given: that sample's spike counts.
+        let encoded = good(&format!("encode {mw} --start 3 -"), &table(&signal)).output;
+        assert!(encoded.contains("# start=3\n") && !encoded.contains("# first="), "{encoded}");
+        assert_eq!(train(&encoded)[..2], [1, -1], "{sample}");
+        let decoded = values(&good("decode -", &encoded).output);
+        assert_eq!(decoded[..2], [4.0, 3.0], "{sample}");
+    }
+    for scheme in ["sf", "tbr", "mw --window 0"] {
+        let encoded = good(&format!("encode --scheme {scheme} --threshold 1 -"), &table(&signal));
+        let decoded = values(&good("decode -", &encoded.output).output);
+        assert_eq!(decoded[0], 5.0, "{scheme}");
+    }
+}
+
+#[test]
+fn any_filter_window_and_population_runs() {
+    let signal: Vec<f64> = (0..5000).map(|i| (f64::from(i) * 0.01).sin() * 2.0).collect();
+    for scheme in [
+        "hsa --filter triang:257,peak=0.2 --shift -2",
+        "t-hsa --filter hann:100,peak=0.2 --shift -2 --threshold 0.5",
+        "bsa --filter gauss:1023,sum=4 --shift -2 --threshold 1",
+        "bsa --filter triang:33 --form toolbox --shift -2 --threshold 1.15",
+        "bsa --filter triang:1 --shift -2 --threshold 0.1",
+        "mw --threshold 0.1 --window 999",
+        "mw --threshold 0.1 --window 4097",
+        "position --neurons 777 --min -2 --max 2",
+        "position --centres gaussian --neurons 257 --min -2 --max 2",
+        "grf --neurons 1024 --min -2 --max 2",
+        "grf-slots --neurons 77 --slots 255 --min -2 --max 2",
+        "grf-prob --neurons 333 --min -2 --max 2",
+    ] {
+        for sample in ["f32", "q16.16", "q4.12"] {
+            let encode = format!("encode --scheme {scheme} --sample {sample} -");
+            let encoded = good(&encode, &table(&signal)).output;
+            assert!(events(&encoded).len() > 10, "{scheme} {sample}");
+            assert_eq!(values(&good("decode -", &encoded).output).len(), 5000, "{scheme} {sample}");
+        }
+    }
+}
+
 #[test]
 fn hough_spikes_on_equality_and_never_where_the_filter_is_cut() {
     let signal = [0.5, 1.0, 0.5, 0.0, 0.5, 0.75, 0.5, 9.0, 9.0];
@@ -207,7 +259,7 @@ fn values_that_are_not_finite_emit_nothing_and_leave_the_state() {
     );
     for scheme in ["sf --threshold 0.5", "tbr --threshold 0.5", "hsa --filter triang:3 --shift 0"] {
         let ran = good(&format!("encode --scheme {scheme} --skip-non-finite -"), with);
-        assert!(ran.told.contains("3 samples were not finite"), "{}", ran.told);
+        assert!(ran.told.contains("3 samples were not finite or missing"), "{}", ran.told);
         assert!(
             ran.output.contains("# rejected=1,1\n") && ran.output.contains("# rejected=3,2\n"),
             "{}",

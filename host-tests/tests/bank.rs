@@ -169,7 +169,9 @@ fn a_queue_counts_what_a_bank_has_no_room_for() {
     ] {
         let queue = EventQueue::<2>::new(overflow);
         let mut bank = Bank::<_, 3>::new(&COUNTS);
-        samples.map(|sample| bank.encode_into(Tick::default(), sample, &queue));
+        for sample in samples {
+            bank.encode_into(Tick::default(), sample, &queue);
+        }
         assert_eq!((queue.lost(), queue.refused()), (1, refused), "{overflow:?}");
         let mut consumer = queue.consumer().unwrap();
         let events = std::iter::from_fn(|| consumer.take_event());
@@ -178,7 +180,9 @@ fn a_queue_counts_what_a_bank_has_no_room_for() {
     let queue = SpscQueue::<3>::new();
     let (mut producer, mut consumer) = queue.split().unwrap();
     let mut bank = Bank::<_, 3>::new(&COUNTS);
-    samples.map(|sample| bank.encode_into(Tick::default(), sample, &mut producer));
+    for sample in samples {
+        bank.encode_into(Tick::default(), sample, &mut producer);
+    }
     assert_eq!(producer.lost(), 1);
     assert!(std::iter::from_fn(|| consumer.take_event()).map(|event| event.address).eq([0, 1]));
 }

@@ -1,10 +1,10 @@
 //! BSA aligned: with `e1 = sum |r[i+j] - h[j]|` and `e2 = sum |r[i+j]|` a spike if
 //! `e1 <= e2 - threshold` or `e1 <= e2 * threshold`; then `r[i+j] -= h[j]`.
 
-use crate::common;
-
-use common::rate::{all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle};
-use common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::rate::{
+    all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle,
+};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, check_rate, decode, encode, reals, signs_of};
 use host_tests::reference::{ben_multiplicative, ben_subtractive};

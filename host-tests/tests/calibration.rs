@@ -4,9 +4,7 @@
 //! keep a recording; the reference takes two. Where all squares are exact, so is the comparison's
 //! bound: the variance may differ by the rounding of the two sums, a few 2⁻⁵³ of the mean square.
 
-use crate::common;
-
-use common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, finite};
 use host_tests::reference::{Moments, calibrate};

@@ -1,8 +1,6 @@
 //! AKD1500: golden bytes, blocks, and errors at every transaction.
 
-use crate::bus;
-
-use bus::Failing;
+use crate::bus::Failing;
 use embedded_hal::spi::ErrorKind;
 use embedded_hal_mock::eh1::spi::{Mock, Transaction};
 use proptest::prelude::*;

@@ -1,12 +1,10 @@
 //! tinyODIN's and ODIN's frames, order, handshakes and time steps, on the models of the chips.
 
-mod bus;
-
 use std::cell::{Cell, RefCell};
 use std::num::NonZeroU32;
 use std::rc::Rc;
 
-use bus::Failing;
+use crate::bus::Failing;
 use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 use host_tests::silicon::{self, Board};
 use proptest::prelude::*;
@@ -14,7 +12,7 @@ use spikewire::chip::{
     AerPort, ChipError, Input, Odin, OdinInput, OdinRegisters, OutputSource, Phase, TinyOdin,
     TinyOdinInput, TinyOdinNeuron, TinyOdinRegisters,
 };
-use spikewire::{Event, Polarity};
+use spikewire::{Event, FromEvents, Polarity};
 
 type TinyBoard = Board<silicon::TinyOdin>;
 type Tiny = TinyOdin<silicon::Spi<silicon::TinyOdin>, silicon::Port<silicon::TinyOdin>>;
@@ -39,7 +37,7 @@ fn running(clocks: u32, polls: u32, firing: usize) -> (TinyBoard, Tiny) {
 }
 
 fn event(tick: u32, address: u16) -> Event {
-    Event { tick, address, polarity: Polarity::Up }
+    Event { tick: tick.into(), address, polarity: Polarity::Up }
 }
 
 fn spike(event: Event) -> TinyOdinInput {
@@ -104,14 +102,14 @@ fn a_start_takes_as_many_frames_as_it_says() {
     let gated = chip.reset(&mut board.clone()).unwrap();
     let before = board.pins().spi_clocks;
     gated.run(&OPEN).unwrap();
-    assert_eq!(board.pins().spi_clocks - before, 23 * 40);
+    assert_eq!(board.pins().spi_clocks - before, 24 * 40);
 
     let board = Board::<silicon::Odin>::new(4, 1);
     let mut chip = Odin::new(board.spi(), board.port(), 1_600);
     let gated = chip.reset(&mut board.clone()).unwrap();
     let before = board.pins().spi_clocks;
     gated.run(&OdinRegisters::PLAIN).unwrap();
-    assert_eq!(board.pins().spi_clocks - before, 167 * 40);
+    assert_eq!(board.pins().spi_clocks - before, 168 * 40);
 }
 
 #[test]
@@ -240,7 +238,7 @@ proptest! {
         let mut running = chip.running().unwrap();
         let mut out = Vec::new();
         let events = addresses.iter().map(|&address| event(0, address.into()));
-        let sent = running.feed(events, spike, |neuron| out.push(neuron));
+        let sent = running.feed(FromEvents(events), spike, |neuron| out.push(neuron));
         prop_assert_eq!(sent, Ok(addresses.len() as u32));
         running.quiesce(|neuron| out.push(neuron)).unwrap();
         let words: Vec<u32> = addresses.iter().map(|&address| address.into()).collect();
@@ -262,7 +260,7 @@ proptest! {
         let mut out = Vec::new();
         let mut events = (0..).zip(&addresses).map(|(n, &a)| event(n * 1_000, a.into()));
         let is_fed = (0..10_000).any(|_| {
-            running.feed(&mut events, spike, |neuron| out.push(neuron)).is_ok()
+            running.feed(FromEvents(&mut events), spike, |neuron| out.push(neuron)).is_ok()
         });
         prop_assert!(is_fed);
         let words: Vec<u32> = addresses.iter().flat_map(|&a| [0x1FF, a.into()]).skip(1).collect();
@@ -321,11 +319,11 @@ fn leak_events_are_the_time_step() {
     let mut running = chip.running().unwrap();
     let start = u32::MAX - 1_500;
     let events = [0, 900, 1_000, 3_999].map(|since| event(start.wrapping_add(since), 9));
-    assert_eq!(running.feed(events.into_iter(), spike, drop), Ok(4));
+    assert_eq!(running.feed(FromEvents(events.into_iter()), spike, drop), Ok(4));
     assert_eq!(board.pins().chip.taken, [9, 9, 0x1FF, 9, 0x1FF, 0x1FF, 9]);
-    running.advance(start.wrapping_add(4_000), drop).unwrap();
+    running.advance((start.wrapping_add(4_000)).into(), drop).unwrap();
     assert_eq!(board.pins().chip.taken.len(), 8);
-    running.advance(start.wrapping_add(1_004_000), drop).unwrap();
+    running.advance((start.wrapping_add(1_004_000)).into(), drop).unwrap();
     let taken = board.pins().chip.taken.len();
     assert_eq!((taken, running.counters().skipped_steps), (8 + 255, 745));
 }
@@ -335,7 +333,7 @@ fn events_of_a_step_that_is_over_are_sent_in_the_present_one_and_counted() {
     let (board, chip) = running(4, 1_600, 0);
     let mut chip = chip.with_time_step(NonZeroU32::new(1_000).unwrap());
     let events = [0, 2_500, 2_000, 1_999, 3_000, 0].map(|tick| event(tick, 9));
-    assert_eq!(chip.running().unwrap().feed(events.into_iter(), spike, drop), Ok(6));
+    assert_eq!(chip.running().unwrap().feed(FromEvents(events.into_iter()), spike, drop), Ok(6));
     assert_eq!(board.pins().chip.taken, [9, 0x1FF, 0x1FF, 9, 9, 9, 0x1FF, 9, 9]);
     assert_eq!(chip.counters().late_events, 2);
 }
@@ -351,10 +349,10 @@ fn what_a_reset_drops_is_counted() {
     assert!(running.send(TinyOdinInput::Spike { pre: 1 }, drop).is_err());
     let gated = chip.reset(&mut delay).unwrap();
     let mut running = gated.run(&OPEN).unwrap();
-    running.advance(0, drop).unwrap();
+    running.advance(0.into(), drop).unwrap();
     board.pins().chip.registers.0[0] = 1;
     board.run(10);
-    assert!(running.advance(1_000, drop).is_err());
+    assert!(running.advance(1_000.into(), drop).is_err());
     let gated = chip.reset(&mut delay).unwrap();
     let mut running = gated.run(&OPEN).unwrap();
     while running.send(TinyOdinInput::Spike { pre: 1 }, drop).is_err() {
@@ -364,6 +362,20 @@ fn what_a_reset_drops_is_counted() {
     chip.reset(&mut delay).unwrap();
     let counters = chip.counters();
     assert_eq!((counters.dropped_words, counters.skipped_steps, counters.lost_outputs), (1, 1, 1));
+}
+
+#[test]
+fn what_a_chip_says_before_its_first_reset_is_no_output() {
+    let board = TinyBoard::new(4, 1);
+    board.pins().chip.registers.0[3] = 15;
+    board.pins().chip.set_request(true); // the pins float: a spike, at which all neurons fire
+    board.run(10);
+    board.pins().chip.set_request(false);
+    board.run(100);
+    assert!(board.pins().chip.output().request);
+    let mut chip = TinyOdin::new(board.spi(), board.port(), 1_600);
+    chip.reset(&mut board.clone()).unwrap();
+    assert_eq!(chip.counters().lost_outputs, 0);
 }
 
 #[test]

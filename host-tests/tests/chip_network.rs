@@ -11,14 +11,14 @@ use spikewire::chip::{
     ChipError, Describe, FormatError, Input, Inputs, NetworkBytes, Odin, OdinInput, OdinNetwork,
     OdinNeuron, Spikes, TinyOdin, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, neurons_from,
 };
-use spikewire::population::{Centres, Position};
-use spikewire::sink::{EventQueue, Overflow};
-use spikewire::{Bank, Decoder, Encoder, Event, Polarity, Readout, Scheme};
+use spikewire::population::Position;
+use spikewire::{
+    Bank, Event, EventQueue, FromEvents, Overflow, Polarity, Readout, Scheme, Source, Tick,
+};
 
 type TinyBoard = Board<silicon::TinyOdin>;
 
-static CENTRES: Centres<f32, 64> = Centres::<f32, _>::linear(-8.0, 8.0);
-const RATE: Position<f32, 64> = Position::new(&CENTRES);
+static RATE: Position<f32, 64> = Position::linear(-8.0..=8.0);
 
 static NETWORK: TinyOdinNetwork<64, 64, 64> = TinyOdinNetwork {
     neurons: [TinyOdinNeuron { threshold: 7, leak: 3, ..TinyOdinNeuron::REST }; 64],
@@ -42,21 +42,21 @@ fn a_network_of_64_neurons_flies() {
     gated.load(&NETWORK, |_| ()).unwrap();
     gated.verify(&NETWORK, |_| ()).unwrap();
     let mut running = gated.run(&NETWORK.registers()).unwrap();
-    let mut bank = Bank::<_, 1>::new(RATE);
-    let mut readout = Readout::<_, 1>::new(RATE);
+    let mut bank = Bank::<_, 1>::new(&RATE);
+    let mut readout = Readout::<_, 1>::new(&RATE);
     let mut direct = RATE.decoder();
     for sample in flight::hexarotor().iter().take(1_000) {
-        let (now, rate) = (sample.time_us, sample.gyro[0]);
+        let (now, rate) = (Tick::from(sample.time_us), sample.gyro[0]);
         let mut inputs = Vec::new();
         bank.encode(now, [rate], |event| inputs.push(event));
         let mut spikes = Spikes::<64>::new();
         let mut answers = NETWORK.answers(now, |event| spikes.push(event));
         let to_input = |event: Event| NETWORK.input(event.address).unwrap();
-        running.feed(inputs.into_iter(), to_input, &mut answers).unwrap();
+        running.feed(FromEvents(inputs.into_iter()), to_input, &mut answers).unwrap();
         running.quiesce(&mut answers).unwrap();
         drop(answers);
         let [value] = readout.decode(now, spikes.as_slice());
-        assert_eq!(value, direct.decode(RATE.encoder().encode(rate)), "{now}");
+        assert_eq!(value, direct.decode(RATE.encoder().encode(rate)), "{now:?}");
         assert!((value - rate).abs() <= 0.5 * 16.0 / 62.0 + 1e-5, "{rate} came back as {value}");
     }
     assert_eq!(running.counters().skipped_steps, 0);
@@ -71,12 +71,14 @@ fn answers_go_into_a_queue() {
     gated.load(&NETWORK, |_| ()).unwrap();
     let mut running = gated.run(&NETWORK.registers()).unwrap();
     for input in [63, 0] {
-        let mut answers = NETWORK.answers(1_234, |event| _ = ANSWERS.push(event));
+        let mut answers = NETWORK.answers(1_234.into(), |event| _ = ANSWERS.push(event));
         running.send(NETWORK.input(input).unwrap(), &mut answers).unwrap();
         running.quiesce(&mut answers).unwrap();
     }
-    let answer = |address| Event { tick: 1_234, address, polarity: Polarity::Up };
-    assert_eq!([ANSWERS.pop(), ANSWERS.pop()], [Some(answer(63)), Some(answer(0))]);
+    let answer = |address| Event { tick: 1_234.into(), address, polarity: Polarity::Up };
+    let mut answers = ANSWERS.consumer().unwrap();
+    let taken = [answers.take_event(), answers.take_event()];
+    assert_eq!(taken, [Some(answer(63)), Some(answer(0))]);
 }
 
 #[test]
@@ -220,11 +222,11 @@ fn a_recurrent_network_runs_in_closed_loop_on_either_chip() {
     gated.load(&network, |_| ()).unwrap();
     let mut running = gated.run(&network.registers()).unwrap();
     let mut answers = Spikes::<4>::new();
-    let mut on_output = network.answers(7, |event| answers.push(event));
+    let mut on_output = network.answers(7.into(), |event| answers.push(event));
     running.send(network.input(0).unwrap(), &mut on_output).unwrap();
     let mut gated = running.gate(&mut on_output).unwrap();
     drop(on_output);
-    assert_eq!(answers.as_slice(), [Event { tick: 7, address: 0, polarity: Polarity::Up }]);
+    assert_eq!(answers.as_slice(), [Event { tick: 7.into(), address: 0, polarity: Polarity::Up }]);
     assert_eq!(board.pins().chip.fired, [0, 1]);
     assert_eq!(gated.neuron(0).unwrap().potential, -4);
 

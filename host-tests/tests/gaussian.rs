@@ -1,9 +1,7 @@
 //! GRF with one spike: the neuron with the largest response fires, which is the one with the nearest
 //! of `M` even centres.
 
-use crate::common;
-
-use common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, check_position, encode};
 use host_tests::reference::{even_centres, nearest_even, receptive_field_width};

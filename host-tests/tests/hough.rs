@@ -1,10 +1,10 @@
 //! HSA, the Hough spike algorithm: a spike at `i` if `r[i+j] >= h[j]` for all `j`; then
 //! `r[i+j] -= h[j]`.
 
-use crate::common;
-
-use common::rate::{all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle};
-use common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::rate::{
+    all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle,
+};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, check_rate, encode, reals, signs_of};
 use host_tests::reference::hough;

@@ -50,8 +50,8 @@ where
     let mut exact = 0;
 
     for sample in 0..SAMPLES {
-        let away = if way.jitter == 0 { 0 } else { random.next_u32() % (2 * way.jitter) } as i32;
-        let tick = (start + sample * PERIOD).shifted(away - way.jitter as i32);
+        let away = if way.jitter == 0 { 0 } else { random.next_u32() % (2 * way.jitter) };
+        let tick = (start + sample * PERIOD + away).shifted(-way.jitter.cast_signed());
         let samples = std::array::from_fn(|channel| signal(sample, channel));
         bank.encode_into(tick, samples, &queue);
         let mut truth = [P::Sample::default(); CHANNELS];
@@ -61,7 +61,7 @@ where
             }
         }
         truths.push(truth);
-        if random.next_u32() % 10 > 0 {
+        if !random.next_u32().is_multiple_of(10) {
             continue;
         }
         let mut buffer = [0; 64];
@@ -79,7 +79,7 @@ where
                     if let (Some(&(_, tick, value)), Some(known)) = (last, receiver.exact(channel))
                     {
                         assert_eq!(known, value);
-                        let since = tick.since(start) + PERIOD as i32 / 2;
+                        let since = tick.since(start) + PERIOD.cast_signed() / 2;
                         let at = (since as u32 / PERIOD) as usize;
                         assert_eq!(value, truths[at][usize::from(channel)], "sample {at}: {way:?}");
                         exact += 1;

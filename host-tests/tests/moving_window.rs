@@ -1,8 +1,6 @@
 //! MW, moving window: a spike when the sample leaves the band around the mean of the `N` before.
 
-use crate::common;
-
-use common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{
     Wire, assert_same_values, assert_step_spikes, check_step_decoder, decode, encode, finite,

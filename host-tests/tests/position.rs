@@ -3,7 +3,7 @@
 
 use crate::common;
 
-use common::{Drawn, cases, flight_channels, float, hostile_recordings};
+use crate::common::{Drawn, cases, flight_channels, float, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, check_position, encode, reals};
 use host_tests::reference::{even_centres, gaussian_centres, nearest, nearest_even};

@@ -1,12 +1,10 @@
 //! GRF with probabilistic spiking: a neuron of level `k` of `N` fires if the top bits of a draw, a
 //! number below `N`, are below `k`. One draw a neuron of level 1 or more, by rising index.
 
-use crate::common;
-
 use std::convert::Infallible;
 
-use common::fields::Fields;
-use common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::fields::Fields;
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{assert_same_values, decode, finite, run};
 use host_tests::reference::probabilistic_from_levels;

@@ -1,8 +1,6 @@
 //! The sample types: set-up conversions to and from `f64`, exact or rounded as documented.
 
-use crate::common;
-
-use common::{cases, float};
+use crate::common::{cases, float};
 use fixed::types::{I0F16, I0F32, I1F15, I8F8, I16F0, I16F16, I32F0};
 use host_tests::compare::Wire;
 use proptest::prelude::*;

@@ -5,7 +5,7 @@ use rand_pcg::Pcg32;
 use serde::Serialize;
 use serde_json::json;
 use spikewire::{
-    Calibration, ConfigError, Firing, Polarity, SampleKind, Scheme, Spike,
+    Calibration, ConfigError, Event, Firing, Polarity, SampleKind, Scheme, Spike,
     population::{FiredNeurons, Neuron, Position, Probabilistic, Slots},
     rate::{Bsa, BsaToolbox, Criterion, Hough, Scale, Shape, Taps, ThresholdHough},
     temporal::{MovingWindow, StepForward, TemporalContrast},

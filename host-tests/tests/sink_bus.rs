@@ -1,7 +1,5 @@
 //! The sinks for SPI and serial ports: exact transactions, and nothing lost on any error.
 
-use crate::bus;
-
 use std::cell::Cell;
 use std::collections::VecDeque;
 use std::convert::Infallible;
@@ -9,7 +7,7 @@ use std::future::Future;
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
-use bus::Failing;
+use crate::bus::Failing;
 use embedded_hal::digital::{ErrorType, InputPin};
 use embedded_hal::spi::ErrorKind;
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Level};

@@ -1,9 +1,7 @@
 //! GRF with sub-timesteps: a response of level `k` of `N` fires in slot `N - k`.
 
-use crate::common;
-
-use common::fields::Fields;
-use common::{Drawn, cases, flight_channels, float, hostile_recordings};
+use crate::common::fields::Fields;
+use crate::common::{Drawn, cases, flight_channels, float, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{assert_same_values, decode, encode, finite, reals};
 use host_tests::reference::slots_of_levels;

@@ -1,9 +1,7 @@
 //! SF, step forward: a spike when the sample leaves `base ± threshold`, and the base follows by one
 //! threshold.
 
-use crate::common;
-
-use common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{
     Wire, assert_step_spikes, check_step_decoder, encode, finite, run, saturated, signs_of,

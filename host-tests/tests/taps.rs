@@ -1,8 +1,6 @@
 //! The filters of the rate codes: shapes, scales, and where their sums end.
 
-use crate::common;
-
-use common::cases;
+use crate::common::cases;
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, check_rate, check_rate_decoder, reals};
 use host_tests::reference::{

@@ -1,8 +1,6 @@
 //! TBR, temporal contrast: `d = x[i] - x[i-1]`; up if `d > threshold`, down if `d < -threshold`.
 
-use crate::common;
-
-use common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{
     Wire, assert_step_spikes, check_step_decoder, encode, finite, run, signs_of,

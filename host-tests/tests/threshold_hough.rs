@@ -1,10 +1,10 @@
 //! T-HSA, the threshold Hough spike algorithm: `error = sum over j of max(0, h[j] - r[i+j])`; a spike
 //! if `error <= threshold`; then `r[i+j] -= h[j]`.
 
-use crate::common;
-
-use common::rate::{all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle};
-use common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::rate::{
+    all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle,
+};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, check_rate, encode, reals, signs_of};
 use host_tests::reference::threshold_hough;
@@ -112,7 +112,7 @@ fn at_the_limit() {
 #[test]
 fn without_tolerance_it_is_the_hough_spiker() {
     proptest!(cases(128), |((x, taps) in recordings::<f32>())| {
-        let taps = common::rate::first_taps::<f32, 8>(&taps);
+        let taps = crate::common::rate::first_taps::<f32, 8>(&taps);
         let outputs = encode(&ThresholdHough::try_new(taps, 0.0).unwrap(), &x).outputs;
         prop_assert_eq!(outputs, encode(&Hough::new(taps), &x).outputs);
     });

@@ -139,7 +139,8 @@ fn check_rate<S: Measured + Wire>(signal: Signal) {
 
     let threshold = recording.part(0.85);
     let scheme = ThresholdHough::new(taps, threshold).with_shift(min);
-    let plain = |x: &mut [S], h: &[S], s: &mut [i8]| schemes::t_hsa::transcribed(x, h, threshold, s);
+    let plain =
+        |x: &mut [S], h: &[S], s: &mut [i8]| schemes::t_hsa::transcribed(x, h, threshold, s);
     assert_eq!(rate(&recording, &scheme, &taps, plain), NOWHERE);
 
     let whole = S::from_f64(recording.range);
@@ -149,14 +150,16 @@ fn check_rate<S: Measured + Wire>(signal: Signal) {
     ] {
         let taps = Taps::<S, 24>::shaped(Shape::Hann, Scale::Sum(sum));
         let scheme = Bsa::subtractive(taps, threshold).with_shift(min);
-        let plain = |x: &mut [S], h: &[S], s: &mut [i8]| schemes::bsa::transcribed(x, h, threshold, s);
+        let plain =
+            |x: &mut [S], h: &[S], s: &mut [i8]| schemes::bsa::transcribed(x, h, threshold, s);
         assert_eq!(rate(&recording, &scheme, &taps, plain), NOWHERE);
     }
 
     let taps = Taps::<S, 9>::shaped(Shape::Triangular, peak);
     // The transcription's 1.15, in 128ths.
     let scheme = BsaToolbox::new(taps, 147.0 / 128.0).with_shift(min);
-    let plain = |x: &mut [S], h: &[S], s: &mut [i8]| schemes::bsa::transcribed_toolbox(x, h, 1.15, s);
+    let plain =
+        |x: &mut [S], h: &[S], s: &mut [i8]| schemes::bsa::transcribed_toolbox(x, h, 1.15, s);
     assert_eq!(rate(&recording, &scheme, &taps, plain), NOWHERE);
 }
 
@@ -179,7 +182,8 @@ fn check_nearest<S: Measured + Wire>(signal: Signal) {
     let recording = Recording::<S>::new(signal);
     let (min, max) = (recording.min, recording.max);
     let scheme = Position::<S, 20>::gaussian_spaced(min..=max);
-    let plain = |x: &[S], neurons: &mut [i8]| schemes::position::transcribed(x, scheme.centres(), neurons);
+    let plain =
+        |x: &[S], neurons: &mut [i8]| schemes::position::transcribed(x, scheme.centres(), neurons);
     let (ours, plain) = nearest(&recording, &scheme, plain);
     assert_eq!(differing(&ours, &plain), NOWHERE);
 
@@ -209,9 +213,21 @@ fn check_slots<S: Measured + Wire>(signal: Signal) {
     let scheme = Slots::<S, 15, 10>::new(recording.min..=recording.max, 1.5);
     let sigma = (recording.range / (1.5 * 13.0)) as f32;
     let mut slots = vec![0; 15 * LENGTH];
-    schemes::grf_slots::transcribed(&recording.samples, &recording.means::<15>(), sigma, 10, &mut slots);
+    schemes::grf_slots::transcribed(
+        &recording.samples,
+        &recording.means::<15>(),
+        sigma,
+        10,
+        &mut slots,
+    );
     let mut values = [S::default(); LENGTH];
-    schemes::grf_slots::transcribed_decoder(&slots, scheme.centres(), 10, scheme.centres()[7], &mut values);
+    schemes::grf_slots::transcribed_decoder(
+        &slots,
+        scheme.centres(),
+        10,
+        scheme.centres()[7],
+        &mut values,
+    );
 
     let spikes = |slots: &[i8]| {
         let first = slots.iter().position(|&slot| slot >= 0).unwrap_or(0);
@@ -232,7 +248,12 @@ fn check_probabilistic<S: Measured + Wire>(signal: Signal) {
     let (means, draw) = (recording.means::<15>(), || random.next_u32());
     schemes::grf_prob::transcribed(&recording.samples, &means, sigma, 16, draw, &mut fired);
     let mut values = [S::default(); LENGTH];
-    schemes::grf_prob::transcribed_decoder(&fired, scheme.centres(), scheme.centres()[7], &mut values);
+    schemes::grf_prob::transcribed_decoder(
+        &fired,
+        scheme.centres(),
+        scheme.centres()[7],
+        &mut values,
+    );
 
     let neurons = |fired: &[i8]| {
         FiredNeurons::<15>::new((0..15).filter(|&i| fired[usize::from(i)] == 1)).unwrap()

@@ -157,7 +157,7 @@ pub enum OdinInput {
         /// The neuron.
         neuron: u8,
     },
-    /// The same for all synapses.
+    /// Pulls all synapses a step towards their stable states.
     BistabilityAll,
 }
 

@@ -135,7 +135,11 @@ impl<T: Schemes<N>, const N: usize> Readout<T, N> {
 
 impl<T: Schemes<N> + Clone, const N: usize> Clone for Readout<T, N> {
     fn clone(&self) -> Self {
-        Self { schemes: self.schemes.clone(), states: self.states, addresses: self.addresses }
+        Self {
+            schemes: self.schemes.clone(),
+            states: self.states.clone(),
+            addresses: self.addresses,
+        }
     }
 }
 

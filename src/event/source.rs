@@ -8,6 +8,7 @@ pub trait Source {
     fn take(&mut self) -> Option<Taken>;
 
     /// Takes items up to and with the next event, for those who have no use for keyframes.
+    #[inline]
     fn take_event(&mut self) -> Option<Event> {
         loop {
             if let Item::Event(event) = self.take()?.item {

@@ -23,9 +23,10 @@ pub trait Scheme: Sized {
     /// What an encoder keeps from sample to sample.
     type EncoderState;
     /// What a decoder keeps from sample to sample.
-    type DecoderState: Copy + Debug;
+    type DecoderState: Clone + Debug;
 
-    /// How many samples after its own the code of a sample comes out.
+    /// How many samples after its own the code of a sample comes out. Of a shape chosen at run time the most
+    /// that there may be; ask [`latency`](Self::latency).
     const LATENCY: usize;
 
     /// How a decoder becomes exact again after codes were lost.
@@ -240,11 +241,11 @@ pub struct Decoder<'a, P: Scheme> {
 
 impl<P: Scheme> Clone for Decoder<'_, P> {
     fn clone(&self) -> Self {
-        *self
+        Self { scheme: self.scheme, state: self.state.clone() }
     }
 }
 
-impl<P: Scheme> Copy for Decoder<'_, P> {}
+impl<P: Scheme<DecoderState: Copy>> Copy for Decoder<'_, P> {}
 
 impl<P: Scheme> Debug for Decoder<'_, P> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {

@@ -3,6 +3,8 @@
 mod calibrate;
 mod code;
 mod codec;
+#[cfg(feature = "alloc")]
+pub mod dynamic;
 pub mod population;
 pub mod rate;
 pub mod temporal;

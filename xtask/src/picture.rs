@@ -72,7 +72,9 @@ fn caption(area: &Area, signal: &Signal, flown: &Flown) -> Drawn {
     let spikes: usize = flown.steps[shown.clone()].iter().map(|step| step.firings.len()).sum();
     let latency = match flown.latency {
         0 => "no latency".into(),
-        late => format!("latency {:.0} ms", late as f64 * signal.interval() * 1e3),
+        late => {
+            format!("shown without its latency of {:.0} ms", late as f64 * signal.interval() * 1e3)
+        }
     };
     let name = full_name(&flown.scheme);
     let (first, rest) = name.split_at(1);

@@ -2,6 +2,14 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
+#[cfg(feature = "run")]
+use anyhow::{Result, bail};
+#[cfg(feature = "run")]
+use spikewire::dynamic;
+#[cfg(feature = "run")]
+use spikewire::rate::Criterion;
+#[cfg(feature = "run")]
+use crate::run::{Asked, Build, Given, Settings, Visit};
 use spikewire::{Sample, Start};
 use spikewire::rate::{Bsa, BsaToolbox, Scale, Shape, Taps};
 
@@ -20,6 +28,9 @@ impl Entry for Scheme {
         good_for: "a rate code of either sign of taps; with the toolbox's indices the paper's tables",
         is_signed: false,
         has_first_value: false,
+        climbs_by: None,
+        is_drawn: true,
+        colour: [0x8a, 0x5c, 0xb0],
         parameters: &[
             Parameter::filter("triang:9"),
             Parameter::SHIFT,
@@ -27,8 +38,9 @@ impl Entry for Scheme {
                 "form",
                 Kind::Choice(&["aligned", "toolbox"]),
                 Unit::None,
-                "as published (aligned, unless given), or as in the paper's tables (toolbox)",
+                "as published (aligned), or as in the paper's tables (toolbox)",
             )
+            .with_default("aligned")
             .with_paper(Paper::Text("toolbox")),
             Parameter::new(
                 "criterion",
@@ -42,7 +54,8 @@ impl Entry for Scheme {
                 Unit::None,
                 "sub: 0 or more, in the signal's unit; mul and toolbox: a factor above 0 and below 4",
             )
-            .with_paper(Paper::Text("1.15")),
+            .with_paper(Paper::Text("1.15"))
+            .with_example("0.955"),
         ],
     };
 
@@ -62,6 +75,45 @@ impl Entry for Scheme {
         // As the paper's signal meets a filter of unit sum: it spikes nearly always.
         aligned("bsa-24-busy", signal.part(1.0), signal.part(0.955), signal, visitor)?;
         toolbox(signal, visitor)
+    }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    fn resolve(asked: &Asked) -> Result<Settings> {
+        let form = asked.word("form")?;
+        let criterion = match (form.as_str(), asked.user("criterion")) {
+            ("toolbox", Some("sub")) => bail!("--form toolbox compares by --criterion mul only"),
+            ("toolbox", _) => "mul".to_owned(),
+            (_, Some(_)) => asked.word("criterion")?,
+            (_, None) => "sub".to_owned(),
+        };
+        let mut settings = Settings::default();
+        asked.settle("filter", &mut settings)?;
+        asked.settle("shift", &mut settings)?;
+        settings.set("form", form);
+        settings.set("criterion", criterion);
+        asked.settle("threshold", &mut settings)?;
+        Ok(settings)
+    }
+
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        let (form, criterion) = (given.word("form")?, given.word("criterion")?);
+        let (taps, shift) = (given.taps()?, given.signal("shift")?);
+        let criterion = match (form, criterion) {
+            ("toolbox", "mul") => {
+                let scheme = dynamic::BsaToolbox::try_new(taps, given.number("threshold")? as f32)?;
+                let scheme = scheme.try_with_shift(shift)?;
+                let start = scheme.state();
+                return visitor.visit(scheme, start);
+            }
+            ("aligned", "mul") => Criterion::Multiplicative(given.number("threshold")? as f32),
+            ("aligned", "sub") => Criterion::Subtractive(given.signal("threshold")?),
+            _ => bail!("form={form} with criterion={criterion}: there are aligned with sub or mul, and toolbox with mul"),
+        };
+        let scheme = dynamic::Bsa::try_new(taps, criterion)?.try_with_shift(shift)?;
+        let start = scheme.state();
+        visitor.visit(scheme, start)
     }
 }
 

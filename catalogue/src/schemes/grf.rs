@@ -2,6 +2,12 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
+#[cfg(feature = "run")]
+use anyhow::Result;
+#[cfg(feature = "run")]
+use spikewire::{Sample, dynamic};
+#[cfg(feature = "run")]
+use crate::run::{Build, FEW, Given, Visit};
 use spikewire::population::{Gaussian};
 use spikewire::Start;
 
@@ -20,6 +26,9 @@ impl Entry for Scheme {
         good_for: "a value over an even range",
         is_signed: false,
         has_first_value: false,
+        climbs_by: None,
+        is_drawn: true,
+        colour: [0x9a, 0xa1, 0xab],
         parameters: &[Parameter::neurons("20"), Parameter::MIN, Parameter::MAX],
     };
 
@@ -35,6 +44,25 @@ impl Entry for Scheme {
             transcribed(signal, &means, sigma, neurons);
         })
     }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        if Self::shape(given)?.neurons <= FEW {
+            built::<S, V, FEW>(given, visitor)
+        } else {
+            built::<S, V, { dynamic::NEURONS }>(given, visitor)
+        }
+    }
+}
+
+/// With codes of this capacity.
+#[cfg(feature = "run")]
+fn built<S: Sample, V: Visit<S>, const M: usize>(given: &Given, visitor: V) -> Result<V::Output> {
+    let scheme = dynamic::Position::<S, M>::try_linear(given.neurons()?, &given.range()?)?;
+    let start = scheme.state();
+    visitor.visit(scheme, start)
 }
 
 /// The paper's algorithm 2 with its exponentials, in `f32` for every sample type: the winner.

@@ -2,6 +2,16 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
+#[cfg(feature = "run")]
+use anyhow::Result;
+#[cfg(feature = "run")]
+use rand_chacha::ChaCha8Rng;
+#[cfg(feature = "run")]
+use rand_chacha::rand_core::SeedableRng;
+#[cfg(feature = "run")]
+use spikewire::{Sample, dynamic};
+#[cfg(feature = "run")]
+use crate::run::{Build, FEW, Given, Visit};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 use spikewire::population::{FiredNeurons, Probabilistic};
@@ -21,12 +31,16 @@ impl Entry for Scheme {
         good_for: "a value by chance, from your generator",
         is_signed: false,
         has_first_value: false,
+        climbs_by: None,
+        is_drawn: false,
+        colour: [0x9a, 0xa1, 0xab],
         parameters: &[
             Parameter::neurons("15"),
             Parameter::MIN,
             Parameter::MAX,
             Parameter::BETA,
-            Parameter::new("seed", Kind::Count, Unit::None, "where the generator starts; 0 unless given"),
+            Parameter::new("seed", Kind::Count, Unit::None, "where the generator starts")
+                .with_default("0"),
         ],
     };
 
@@ -52,6 +66,26 @@ impl Entry for Scheme {
             },
         )
     }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        if Self::shape(given)?.neurons <= FEW {
+            built::<S, V, FEW>(given, visitor)
+        } else {
+            built::<S, V, { dynamic::NEURONS }>(given, visitor)
+        }
+    }
+}
+
+/// With codes of this capacity.
+#[cfg(feature = "run")]
+fn built<S: Sample, V: Visit<S>, const M: usize>(given: &Given, visitor: V) -> Result<V::Output> {
+    let (neurons, beta) = (given.neurons()?, given.number("beta")? as f32);
+    let generator = ChaCha8Rng::seed_from_u64(given.count("seed", 0..=usize::MAX)? as u64);
+    let scheme = dynamic::Probabilistic::<S, _, M>::try_new(neurons, &given.range()?, beta)?;
+    visitor.visit(scheme, dynamic::Probabilistic::<S, _, M>::state(generator))
 }
 
 /// The generator of what is counted, whose work is counted with it.

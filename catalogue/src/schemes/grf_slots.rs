@@ -2,6 +2,12 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
+#[cfg(feature = "run")]
+use anyhow::Result;
+#[cfg(feature = "run")]
+use spikewire::{Sample, dynamic};
+#[cfg(feature = "run")]
+use crate::run::{Build, FEW, Given, Visit};
 use spikewire::population::{SlotSpikes, Slots};
 use spikewire::Start;
 
@@ -20,19 +26,24 @@ impl Entry for Scheme {
         good_for: "a value finer than the neurons, by spike time",
         is_signed: false,
         has_first_value: false,
+        climbs_by: None,
+        is_drawn: false,
+        colour: [0x9a, 0xa1, 0xab],
         parameters: &[
             Parameter::neurons("15"),
             Parameter::MIN,
             Parameter::MAX,
             Parameter::new("slots", Kind::Count, Unit::None, "sub-timesteps a sample, 2 to 256")
-                .with_paper(Paper::Text("10")),
+                .with_paper(Paper::Text("10"))
+                .with_example("10"),
             Parameter::BETA,
             Parameter::new(
                 "floor",
                 Kind::Count,
                 Unit::None,
-                "neurons below this level of --slots are silent; 1 unless given",
-            ),
+                "neurons below this level of --slots are silent",
+            )
+            .with_default("1"),
         ],
     };
 
@@ -55,6 +66,28 @@ impl Entry for Scheme {
             },
         )
     }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        if Self::shape(given)?.neurons <= FEW {
+            built::<S, V, FEW>(given, visitor)
+        } else {
+            built::<S, V, { dynamic::NEURONS }>(given, visitor)
+        }
+    }
+}
+
+/// With codes of this capacity.
+#[cfg(feature = "run")]
+fn built<S: Sample, V: Visit<S>, const M: usize>(given: &Given, visitor: V) -> Result<V::Output> {
+    let (neurons, beta) = (given.neurons()?, given.number("beta")? as f32);
+    let slots = given.count("slots", 2..=dynamic::LEVELS)?;
+    let scheme = dynamic::Slots::<S, M>::try_new(neurons, slots, &given.range()?, beta)?;
+    let scheme = scheme.try_with_floor(given.count("floor", 1..=slots)? as u16)?;
+    let start = scheme.state();
+    visitor.visit(scheme, start)
 }
 
 /// The code that the transcription writes: the slot of each neuron, or -1.

@@ -2,6 +2,12 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
+#[cfg(feature = "run")]
+use anyhow::Result;
+#[cfg(feature = "run")]
+use spikewire::{Sample, dynamic};
+#[cfg(feature = "run")]
+use crate::run::{Build, Given, Visit};
 use spikewire::Start;
 use spikewire::rate::{Hough, Scale, Shape, Taps};
 
@@ -20,6 +26,9 @@ impl Entry for Scheme {
         good_for: "a value that is never above the signal",
         is_signed: false,
         has_first_value: false,
+        climbs_by: None,
+        is_drawn: true,
+        colour: [0x5b, 0xa8, 0x5a],
         parameters: &[Parameter::filter("triang:15"), Parameter::SHIFT],
     };
 
@@ -37,6 +46,15 @@ impl Entry for Scheme {
         visitor.rate("hsa-15", &scheme, &scheme, taps, signal.min, |signal, spikes| {
             transcribed(signal, taps, spikes);
         })
+    }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        let scheme = dynamic::Hough::try_new(given.taps()?)?.try_with_shift(given.signal("shift")?)?;
+        let start = scheme.state();
+        visitor.visit(scheme, start)
     }
 }
 

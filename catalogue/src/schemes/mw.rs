@@ -2,6 +2,12 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
+#[cfg(feature = "run")]
+use anyhow::Result;
+#[cfg(feature = "run")]
+use spikewire::{Sample, dynamic};
+#[cfg(feature = "run")]
+use crate::run::{Build, Given, Options, Visit};
 use spikewire::Start;
 use spikewire::temporal::MovingWindow;
 
@@ -20,14 +26,19 @@ impl Entry for Scheme {
         good_for: "changes against a short past; drifts",
         is_signed: true,
         has_first_value: true,
+        climbs_by: None,
+        is_drawn: true,
+        colour: [0xe0, 0x85, 0x3a],
         parameters: &[
             Parameter::threshold("what the distance from the mean must exceed, above 0; the decoder's step", 0.25),
             Parameter::new(
                 "window",
                 Kind::Count,
                 Unit::Samples,
-                "the mean is taken over one sample more, 0 to 16383",
+                "samples of the running mean less one, as the paper counts: `5` takes 6; 0 to 16383",
             )
+            .with_example("5")
+            .of_encoder()
             .with_paper(Paper::Text("5")),
             Parameter::START,
         ],
@@ -41,6 +52,21 @@ impl Entry for Scheme {
     fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         window::<V, 6>("mw-5", signal, visitor)?;
         window::<V, 64>("mw-63", signal, visitor)
+    }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    fn looks_back(options: &Options) -> usize {
+        let window = options.get("window").and_then(|window| window.parse().ok()).unwrap_or(0);
+        window.min(dynamic::WIDEST - 1) + 1
+    }
+
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        let samples = given.count("window", 0..=dynamic::WIDEST - 1)? + 1;
+        let scheme = dynamic::MovingWindow::try_new(given.signal("threshold")?, samples)?;
+        let start = scheme.state();
+        visitor.visit_steps(scheme, start)
     }
 }
 

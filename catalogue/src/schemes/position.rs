@@ -2,6 +2,12 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
+#[cfg(feature = "run")]
+use anyhow::{Context, Result, bail};
+#[cfg(feature = "run")]
+use spikewire::{Sample, dynamic};
+#[cfg(feature = "run")]
+use crate::run::{Asked, Build, FEW, Given, Options, Settings, Shape, Visit, is_list, missing};
 use spikewire::population::{Neuron, Position};
 use spikewire::Start;
 
@@ -20,13 +26,17 @@ impl Entry for Scheme {
         good_for: "a value, dense where it matters",
         is_signed: false,
         has_first_value: false,
+        climbs_by: None,
+        is_drawn: false,
+        colour: [0x9a, 0xa1, 0xab],
         parameters: &[
             Parameter::new(
                 "centres",
                 Kind::Text,
                 Unit::Signal,
-                "`linear` (unless given), `gaussian`, or a rising list such as `-1,-0.2,0,0.2,1`",
-            ),
+                "`linear`, `gaussian`, or a rising list such as `-1,-0.2,0,0.2,1`",
+            )
+            .with_default("linear"),
             Parameter::neurons("20"),
             Parameter::MIN,
             Parameter::MAX,
@@ -51,6 +61,64 @@ impl Entry for Scheme {
             |neurons, values| plain::position_decode(neurons, centres, values),
         )
     }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    /// A list of centres says it all.
+    fn resolve(asked: &Asked) -> Result<Settings> {
+        let centres = asked.text("centres").unwrap_or_default();
+        if !is_list(&centres) {
+            return asked.all();
+        }
+        if let Some(option) = ["neurons", "min", "max"].iter().find(|name| asked.user(name).is_some()) {
+            bail!("--centres {centres} says it all; --{option} contradicts it");
+        }
+        let list = centres.split(',').map(|centre| {
+            let number = centre.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+            let number = number.with_context(|| {
+                format!(
+                    "--centres {centres}: `{centre}` is neither a finite number, nor is the whole linear or gaussian"
+                )
+            });
+            number.map(|number| number.to_string())
+        });
+        let mut settings = Settings::default();
+        settings.set("centres", list.collect::<Result<Vec<_>>>()?.join(","));
+        Ok(settings)
+    }
+
+    fn needs_signal(options: &Options) -> Option<String> {
+        if options.get("centres").is_some_and(is_list) { None } else { missing(&Self::INFO, options) }
+    }
+
+    fn shape(given: &Given) -> Result<Shape> {
+        let neurons = match given.word("centres")? {
+            centres if is_list(centres) => given.numbers("centres")?.len(),
+            _ => given.neurons()?,
+        };
+        Ok(Shape { neurons, slots: 1 })
+    }
+
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        if Self::shape(given)?.neurons <= FEW {
+            built::<S, V, FEW>(given, visitor)
+        } else {
+            built::<S, V, { dynamic::NEURONS }>(given, visitor)
+        }
+    }
+}
+
+/// With codes of this capacity.
+#[cfg(feature = "run")]
+fn built<S: Sample, V: Visit<S>, const M: usize>(given: &Given, visitor: V) -> Result<V::Output> {
+    let scheme = match given.word("centres")? {
+        "linear" => dynamic::Position::<S, M>::try_linear(given.neurons()?, &given.range()?)?,
+        "gaussian" => dynamic::Position::<S, M>::try_gaussian_spaced(given.neurons()?, &given.range()?)?,
+        _ => dynamic::Position::<S, M>::try_new(&given.signals("centres")?)?,
+    };
+    let start = scheme.state();
+    visitor.visit(scheme, start)
 }
 
 #[inline(never)]

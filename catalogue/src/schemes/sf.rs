@@ -2,6 +2,12 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
+#[cfg(feature = "run")]
+use anyhow::Result;
+#[cfg(feature = "run")]
+use spikewire::Sample;
+#[cfg(feature = "run")]
+use crate::run::{Build, Given, Visit};
 use spikewire::Start;
 use spikewire::temporal::StepForward;
 
@@ -20,6 +26,9 @@ impl Entry for Scheme {
         good_for: "following a signal closely with few spikes, while it changes by a threshold a sample at most",
         is_signed: true,
         has_first_value: true,
+        climbs_by: Some("threshold"),
+        is_drawn: true,
+        colour: [0xe9, 0xc4, 0x3a],
         parameters: &[
             Parameter::threshold("the step, above 0: what the distance from the baseline must exceed", 0.5),
             Parameter::START,
@@ -37,6 +46,13 @@ impl Entry for Scheme {
         visitor.steps("sf", &scheme, threshold, |signal, spikes| {
             transcribed(signal, threshold, spikes);
         })
+    }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        visitor.visit_steps(StepForward::try_new(given.signal("threshold")?)?, StepForward::START)
     }
 }
 

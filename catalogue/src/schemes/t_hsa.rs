@@ -2,6 +2,12 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
+#[cfg(feature = "run")]
+use anyhow::Result;
+#[cfg(feature = "run")]
+use spikewire::{Sample, dynamic};
+#[cfg(feature = "run")]
+use crate::run::{Build, Given, Visit};
 use spikewire::Start;
 use spikewire::rate::{Scale, Shape, Taps, ThresholdHough};
 
@@ -20,6 +26,9 @@ impl Entry for Scheme {
         good_for: "the nearest reconstruction of the rate codes at the paper's settings",
         is_signed: false,
         has_first_value: false,
+        climbs_by: None,
+        is_drawn: true,
+        colour: [0x3f, 0xb6, 0xc4],
         parameters: &[
             Parameter::filter("triang:15"),
             Parameter::SHIFT,
@@ -43,6 +52,16 @@ impl Entry for Scheme {
         visitor.rate("t-hsa-15", &scheme, &scheme, taps, signal.min, |signal, spikes| {
             transcribed(signal, taps, threshold, spikes);
         })
+    }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        let scheme = dynamic::ThresholdHough::try_new(given.taps()?, given.signal("threshold")?)?;
+        let scheme = scheme.try_with_shift(given.signal("shift")?)?;
+        let start = scheme.state();
+        visitor.visit(scheme, start)
     }
 }
 

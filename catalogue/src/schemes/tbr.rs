@@ -2,6 +2,12 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
+#[cfg(feature = "run")]
+use anyhow::{Context, Result, bail};
+#[cfg(feature = "run")]
+use spikewire::Sample;
+#[cfg(feature = "run")]
+use crate::run::{Asked, Build, Given, Options, Settings, Visit, number};
 use spikewire::Start;
 use spikewire::temporal::TemporalContrast;
 
@@ -20,32 +26,40 @@ impl Entry for Scheme {
         good_for: "changes, as an event camera sees them; drifts",
         is_signed: true,
         has_first_value: true,
+        climbs_by: None,
+        is_drawn: true,
+        colour: [0x3b, 0x6f, 0xb6],
         parameters: &[
             Parameter::new(
                 "threshold",
                 Kind::Number,
                 Unit::Signal,
                 "what the difference from the sample before must exceed, above 0",
-            ),
+            )
+            .with_example("0.1"),
             Parameter::new(
                 "factor",
                 Kind::Number,
                 Unit::None,
                 "in the place of --threshold: the differences' mean and this many of their standard deviations",
             )
-            .with_paper(Paper::Text("0.5")),
+            .with_paper(Paper::Text("0.5"))
+            .with_example("0.5")
+            .unrecorded(),
             Parameter::new(
                 "magnitudes",
                 Kind::Flag,
                 Unit::None,
                 "with --factor: mean and deviation of the differences' magnitudes",
-            ),
+            )
+            .unrecorded(),
             Parameter::new(
                 "step",
                 Kind::Text,
                 Unit::Signal,
-                "step of the decoder, as a number or as `2x` the threshold; `1x` unless given",
+                "what the decoder adds for a spike, as a number or in thresholds, `2x`",
             )
+            .with_default("1x")
             .with_paper(Paper::Text("2x")),
             Parameter::START,
         ],
@@ -62,6 +76,56 @@ impl Entry for Scheme {
         visitor.steps("tbr", &scheme, scheme.step(), |signal, spikes| {
             transcribed(signal, threshold, spikes);
         })
+    }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    /// The threshold is given, or a number of deviations of the signal's differences.
+    fn resolve(asked: &Asked) -> Result<Settings> {
+        let threshold = match (asked.user("threshold"), asked.text("factor")) {
+            (Some(_), _) if asked.user("factor").is_some() => {
+                bail!("tbr takes --factor or --threshold, not both")
+            }
+            (Some(_), _) if asked.user("magnitudes").is_some() => {
+                bail!("--magnitudes goes with --factor")
+            }
+            (Some(_), _) => asked.number("threshold")?,
+            (None, None) => return Err(asked.needs("factor or --threshold")),
+            (None, Some(factor)) => {
+                let of_magnitudes = asked.user("magnitudes").is_some();
+                let calibrated = asked.known.calibrated.context("tbr: no calibration")?;
+                let threshold = calibrated.threshold(asked.number("factor")?, of_magnitudes);
+                threshold.with_context(|| {
+                    let hint = if of_magnitudes {
+                        ""
+                    } else {
+                        " (--magnitudes takes that of the differences' magnitudes)"
+                    };
+                    format!("tbr: --factor {factor} gives no threshold{hint}")
+                })?
+            }
+        };
+        let step = asked.text("step").unwrap_or_default();
+        let step = match step.strip_suffix('x') {
+            Some(times) => number("step", times)? * threshold,
+            None => number("step", &step)?,
+        };
+        let mut settings = Settings::default();
+        settings.set("threshold", threshold.to_string());
+        settings.set("step", step.to_string());
+        asked.settle("start", &mut settings)?;
+        Ok(settings)
+    }
+
+    fn needs_signal(options: &Options) -> Option<String> {
+        options.get("threshold").is_none().then(|| "--threshold".to_owned())
+    }
+
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        let scheme = TemporalContrast::try_new(given.signal("threshold")?)?;
+        let scheme = scheme.try_with_step(given.signal("step")?)?;
+        visitor.visit_steps(scheme, TemporalContrast::START)
     }
 }
 

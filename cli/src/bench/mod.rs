@@ -6,7 +6,7 @@ mod report;
 pub(crate) mod signal;
 mod statistics;
 
-pub(crate) use report::{json, print};
+pub(crate) use report::{differing, json, print};
 
 use paper::CASES;
 use rayon::prelude::*;

@@ -1,10 +1,10 @@
 //! How the paper's toolbox runs each scheme over a signal: its parameters, where its encoders start,
 //! what its decoders do with the first spike, and the last sample.
 
-use spikewire::population::{Centres, Gaussian, ReceptiveFields, Slots};
-use spikewire::rate::{BenToolbox, Hough, Taps, ThresholdHough};
-use spikewire::temporal::{MovingWindow, StepDecoder, StepForward, TemporalContrast};
-use spikewire::{Calibration, Code, ConfigError, Decoder, Encoder, Output, Scheme, Spike};
+use spikewire::population::{Gaussian, Slots};
+use spikewire::rate::{BsaToolbox, Hough, Taps, ThresholdHough};
+use spikewire::temporal::{MovingWindow, StepForward, TemporalContrast};
+use spikewire::{Calibration, Code, ConfigError, Output, Spike, Start};
 
 /// The schemes of the tables, and GRF and GRF with slots, of which the paper gives no figures.
 pub(super) const COLUMNS: usize = 8;
@@ -18,17 +18,13 @@ pub(super) struct Outcome {
     pub rmse: f64,
 }
 
-static TRIANGULAR_9: Taps<f32, 9> = Taps::<f32, _>::triangular(1.0);
-static TRIANGULAR_15: Taps<f32, 15> = Taps::<f32, _>::triangular(1.0);
-
 const CONTRAST_FACTOR: f32 = 0.5;
 const WINDOW: usize = 5 + 1;
-const MOVING_WINDOW: MovingWindow<f32, WINDOW> = MovingWindow::<f32, _>::checked(0.25);
-const STEP_FORWARD: StepForward<f32> = StepForward::<f32>::checked(0.5);
-const BEN: BenToolbox<f32, 9> = BenToolbox::<f32, _>::checked(&TRIANGULAR_9, 1.15);
-const HOUGH: Hough<f32, 15> = Hough::new(&TRIANGULAR_15);
-const THRESHOLD_HOUGH: ThresholdHough<f32, 15> =
-    ThresholdHough::<f32, _>::checked(&TRIANGULAR_15, 0.85);
+const MOVING_WINDOW: MovingWindow<f32, WINDOW> = MovingWindow::new(0.25);
+const STEP_FORWARD: StepForward<f32> = StepForward::new(0.5);
+const BSA: BsaToolbox<f32, 9> = BsaToolbox::new(Taps::triangular(1.0), 1.15);
+const HOUGH: Hough<f32, 15> = Hough::new(Taps::triangular(1.0));
+const THRESHOLD_HOUGH: ThresholdHough<f32, 15> = ThresholdHough::new(Taps::triangular(1.0), 0.85);
 const BETA: f32 = 1.5;
 
 /// Runs all schemes, in the order of the columns.
@@ -50,36 +46,33 @@ fn try_run(signal: &[f32]) -> Result<[Outcome; COLUMNS], ConfigError> {
         contrast(signal, &calibration)?,
         moving_window(signal),
         step_forward(signal),
-        rate(signal, BEN.with_shift(min)?),
-        rate_but_last(signal, HOUGH.with_shift(min)?, Spike::None),
-        rate_but_last(signal, THRESHOLD_HOUGH.with_shift(min)?, Spike::Up),
-        population(signal, Gaussian::new(&Centres::<f32, 20>::new_linear(min, max)?)),
-        population(signal, Slots::new(&ReceptiveFields::<f32, 15, 10>::new(min, max, BETA)?)),
+        rate(signal, &BSA.try_with_shift(min)?),
+        rate_but_last(signal, &HOUGH.try_with_shift(min)?, Spike::None),
+        rate_but_last(signal, &THRESHOLD_HOUGH.try_with_shift(min)?, Spike::Up),
+        population(signal, &Gaussian::<f32, 20>::try_linear(min..=max)?),
+        population(signal, &Slots::<f32, 15, 10>::try_new(min..=max, BETA)?),
     ])
 }
 
 /// Primed so that the first difference counts twice; decoded from 0 in steps of two thresholds.
 fn contrast(signal: &[f32], calibration: &Calibration<f32>) -> Result<Outcome, ConfigError> {
     let threshold = TemporalContrast::from_calibration(calibration, CONTRAST_FACTOR)?.threshold();
-    let scheme = TemporalContrast::with_step(threshold, 2.0 * threshold)?;
-    let mut encoder = scheme.encoder();
-    if let [first, second, ..] = signal {
-        encoder.prime(first - (second - first));
-    }
-    Ok(step_outcome(signal, encoder, scheme.decoder(), 0.0))
+    let scheme = TemporalContrast::try_new(threshold)?.try_with_step(2.0 * threshold)?;
+    let before = match signal {
+        [first, second, ..] => vec![first - (second - first)],
+        _ => Vec::new(),
+    };
+    Ok(step_outcome(signal, &scheme, &before, 0.0))
 }
 
 /// Primed with the first window; decoded from the first sample.
 fn moving_window(signal: &[f32]) -> Outcome {
-    let mut encoder = MOVING_WINDOW.encoder();
-    if let Some(window) = signal.first_chunk() {
-        encoder.prime(window);
-    }
-    step_outcome(signal, encoder, MOVING_WINDOW.decoder(), first(signal))
+    let window = signal.get(..WINDOW).unwrap_or_default();
+    step_outcome(signal, &MOVING_WINDOW, window, first(signal))
 }
 
 fn step_forward(signal: &[f32]) -> Outcome {
-    step_outcome(signal, STEP_FORWARD.encoder(), STEP_FORWARD.decoder(), first(signal))
+    step_outcome(signal, &STEP_FORWARD, &[], first(signal))
 }
 
 fn first(signal: &[f32]) -> f32 {
@@ -87,12 +80,12 @@ fn first(signal: &[f32]) -> f32 {
 }
 
 /// The toolbox's step decoders set the first value and add from the second spike on.
-fn step_outcome(
-    signal: &[f32],
-    mut encoder: impl Encoder<Sample = f32, Output = Spike>,
-    mut decoder: StepDecoder<f32>,
-    start: f32,
-) -> Outcome {
+fn step_outcome<P>(signal: &[f32], scheme: &P, past: &[f32], start: f32) -> Outcome
+where
+    P: Start<Sample = f32, Code = Spike, Output = Spike>,
+{
+    let (mut encoder, mut decoder) = (scheme.encoder(), scheme.decoder());
+    encoder.prime(past);
     let spikes: Vec<Spike> = signal.iter().map(|&sample| encoder.encode(sample)).collect();
     decoder.resync(start);
     let later = spikes.iter().skip(1).map(|&spike| decoder.decode(spike));
@@ -100,9 +93,9 @@ fn step_outcome(
     outcome(signal, count(&spikes), error)
 }
 
-fn rate<S>(signal: &[f32], scheme: S) -> Outcome
+fn rate<P>(signal: &[f32], scheme: &P) -> Outcome
 where
-    S: Scheme<Sample = f32, Encoder: Encoder<Sample = f32, Output = Option<Spike>>>,
+    P: Start<Sample = f32, Code = Spike, Output = Option<Spike>>,
 {
     let spikes = rate_spikes(signal, scheme);
     let mut decoder = scheme.decoder();
@@ -111,9 +104,9 @@ where
 }
 
 /// The last sample takes no part in the windows of the toolbox, whose loops end one too early.
-fn rate_but_last<S>(signal: &[f32], scheme: S, last: Spike) -> Outcome
+fn rate_but_last<P>(signal: &[f32], scheme: &P, last: Spike) -> Outcome
 where
-    S: Scheme<Sample = f32, Encoder: Encoder<Sample = f32, Output = Option<Spike>>>,
+    P: Start<Sample = f32, Code = Spike, Output = Option<Spike>>,
 {
     let mut spikes = rate_spikes(&signal[..signal.len() - 1], scheme);
     spikes.push(last);
@@ -122,9 +115,9 @@ where
     outcome(signal, count(&spikes), error)
 }
 
-fn rate_spikes<S>(signal: &[f32], scheme: S) -> Vec<Spike>
+fn rate_spikes<P>(signal: &[f32], scheme: &P) -> Vec<Spike>
 where
-    S: Scheme<Sample = f32, Encoder: Encoder<Sample = f32, Output = Option<Spike>>>,
+    P: Start<Sample = f32, Code = Spike, Output = Option<Spike>>,
 {
     let mut encoder = scheme.encoder();
     let mut spikes: Vec<Spike> =
@@ -133,9 +126,9 @@ where
     spikes
 }
 
-fn population<S>(signal: &[f32], scheme: S) -> Outcome
+fn population<P>(signal: &[f32], scheme: &P) -> Outcome
 where
-    S: Scheme<Sample = f32>,
+    P: Start<Sample = f32>,
 {
     let (mut encoder, mut decoder) = (scheme.encoder(), scheme.decoder());
     let mut spikes = 0;

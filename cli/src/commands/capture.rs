@@ -46,7 +46,7 @@ pub(crate) fn run(options: &Capture) -> Result<()> {
     use crate::{output::Output, rtt, stop::Stop};
     let stop = Stop::new(options.seconds)?;
     rtt::with_channel(options, |channel| {
-        let mut output = Output::open(options.output.as_deref())?;
+        let mut output = Output::to(options.output.as_deref())?;
         let captured = rtt::capture(channel, &mut output, || stop.is_due());
         // What came before a channel failed is kept.
         output.finish()?;

@@ -15,6 +15,11 @@ use std::path::PathBuf;
 /// goes up; `eieio,base=0x70000,step=1000,signed=1` for the key of address 0, the µs of a time step,
 /// and two keys an address, down and up.
 #[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  spikewire convert --from csv --to es spikes.csv -o flight.es
+  spikewire convert --from link --to csv captured.bytes
+  spikewire convert --from csv --to link,period=5000,channels=6 --from-zero spikes.csv -o flight.link")]
 pub(crate) struct Convert {
     /// File of events; `-` is standard input
     #[arg(default_value = "-")]
@@ -39,7 +44,7 @@ pub(crate) struct Convert {
 pub(crate) fn run(options: &Convert) -> Result<()> {
     let Convert { input, from, to, output, stream } = options;
     let mut port = Port::open(input, None)?;
-    let mut output = Output::open(output.as_deref())?;
+    let mut output = Output::open(output.as_deref(), input)?;
     let mut stream =
         Stream::new(from.reader(port.name()), to.writer(stream.drop), stream.from_zero);
     let mut buffer = vec![0; 1 << 16];
@@ -52,6 +57,7 @@ pub(crate) fn run(options: &Convert) -> Result<()> {
     }
     stream.finish(&mut output)?;
     eprint!("{stream}");
+    eprintln!("{}", stream.written(output.bytes()));
     stream.check_format(*from, port.name())?;
     output.finish()
 }

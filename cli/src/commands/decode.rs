@@ -1,22 +1,31 @@
 //! `spikewire decode`: spikes back to values, in constant memory.
 
-use crate::codec::{Codec, Event};
+use crate::bank::Bank;
+use crate::input::text;
 use crate::output::Output;
-use crate::sample_type::SampleType;
-use crate::spikes::{Item, Reader};
+use crate::spikes::{Header, Item, Reader};
+use crate::timeline::Timeline;
 use anyhow::{Context, Result, anyhow};
+use catalogue::run::{Event, SampleType};
 use clap::Args;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Write};
+use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// Decode a file of spikes.
+/// Decode a file of spikes, as `encode` writes it, from that file alone.
+///
+/// Writes `index,value`, with several channels a column for each by its name, and with recorded times
+/// `time_us`: exact where there are events and at gaps, between them evenly spaced.
 #[derive(Args, Debug)]
+#[command(after_help = "\
+Example:
+  spikewire encode --scheme sf --threshold 0.1 --column gyro_x flight.csv -o spikes.csv
+  spikewire decode spikes.csv -o decoded.csv")]
 pub(crate) struct Decode {
     /// File of spikes; `-` is standard input
     #[arg(default_value = "-")]
     spikes: PathBuf,
-    /// CSV file `index,value`; standard output unless given
+    /// CSV file `index,value` and perhaps `time_us`; standard output unless given
     #[arg(short, long)]
     output: Option<PathBuf>,
 }
@@ -27,27 +36,32 @@ pub(crate) struct Decode {
 /// The file of spikes or the output are not good.
 pub(crate) fn run(options: &Decode) -> Result<()> {
     const BUFFER: usize = 1 << 18;
-    let output = |path| Output::open(path);
-    if options.spikes == Path::new("-") {
-        let input = BufReader::with_capacity(BUFFER, io::stdin().lock());
-        return decode(input, "standard input", || output(options.output.as_deref()));
-    }
-    let name = options.spikes.display().to_string();
-    let file = File::open(&options.spikes).with_context(|| format!("{name}: cannot be opened"))?;
-    let input = BufReader::with_capacity(BUFFER, file);
-    decode(input, &name, || output(options.output.as_deref()))
+    let Decode { spikes, output } = options;
+    let (input, name): (Box<dyn Read>, _) = if spikes == Path::new("-") {
+        (Box::new(io::stdin()), "standard input".to_owned())
+    } else {
+        let name = spikes.display().to_string();
+        let file = File::open(spikes).with_context(|| format!("{name}: cannot be opened"))?;
+        (Box::new(file), name)
+    };
+    let input = BufReader::with_capacity(BUFFER, text(input, &name)?);
+    decode(input, &name, || Output::open(output.as_deref(), spikes))
 }
 
 fn decode(input: impl BufRead, file: &str, open: impl FnOnce() -> Result<Output>) -> Result<()> {
     /// How many events are taken together.
     const BATCH: usize = 4096;
     let (mut reader, header) = Reader::open(input, file)?;
-    let codec = Codec::new(header.sample, &header.settings).with_context(|| file.to_owned())?;
-    let mut decoding = Decoding::new(codec, header.sample, open()?)?;
+    let bank = Bank::new(header.scheme, header.sample, &header.channels)
+        .with_context(|| file.to_owned())?;
+    let mut decoding = Decoding::new(bank, &header, reader.is_timed(), open()?)?;
     let mut events: Vec<Event> = Vec::new();
     loop {
         let decoded = match reader.next()? {
-            Item::Event(event) => {
+            Item::Event { event, time } => {
+                if let Some(time) = time {
+                    decoding.timeline.learn(event.sample, time);
+                }
                 // Events of one sample stay together.
                 let is_next = events.last().is_some_and(|last| last.sample < event.sample);
                 let decoded = if events.len() >= BATCH && is_next {
@@ -57,6 +71,10 @@ fn decode(input: impl BufRead, file: &str, open: impl FnOnce() -> Result<Output>
                 };
                 events.push(event);
                 decoded
+            }
+            Item::Time { sample, time } => {
+                decoding.timeline.learn(sample, time);
+                Ok(())
             }
             Item::Rejected { first, count } => {
                 decoding.advance(first, &mut events).and_then(|()| decoding.skip(count))
@@ -74,14 +92,16 @@ fn decode(input: impl BufRead, file: &str, open: impl FnOnce() -> Result<Output>
 
 /// Values in the making.
 struct Decoding {
-    codec: Codec,
+    bank: Bank,
     output: Output,
     is_single: bool,
+    is_timed: bool,
+    timeline: Timeline,
     /// The next sample, as the file counts.
     next: u64,
     /// How many were skipped before.
     skipped: u64,
-    values: Vec<f64>,
+    columns: Vec<Vec<f64>>,
     line: Vec<u8>,
 }
 
@@ -105,16 +125,18 @@ impl Failure {
 }
 
 impl Decoding {
-    fn new(codec: Codec, sample: SampleType, mut output: Output) -> Result<Self> {
-        output.write_all(b"index,value\n")?;
-        let is_single = sample == SampleType::F32;
+    fn new(bank: Bank, header: &Header, is_timed: bool, mut output: Output) -> Result<Self> {
+        let names = names(header).join(",");
+        writeln!(output, "index,{names}{}", if is_timed { ",time_us" } else { "" })?;
         Ok(Self {
-            codec,
+            bank,
             output,
-            is_single,
+            is_single: header.sample == SampleType::F32,
+            is_timed,
+            timeline: Timeline::new(header.rate),
             next: 0,
             skipped: 0,
-            values: Vec::new(),
+            columns: vec![Vec::new(); header.channels.len()],
             line: Vec::new(),
         })
     }
@@ -130,8 +152,8 @@ impl Decoding {
             let count = (end - self.next).min(MOST);
             let stop = self.next - self.skipped + count;
             let (now, later) = left.split_at(left.partition_point(|event| event.sample < stop));
-            self.values.clear();
-            self.codec.decode(count as usize, now, &mut self.values).map_err(|event| {
+            self.columns.iter_mut().for_each(Vec::clear);
+            self.bank.decode(count as usize, now, &mut self.columns).map_err(|event| {
                 Failure::Code(Event { sample: event.sample + self.skipped, ..event })
             })?;
             self.write().map_err(Failure::Output)?;
@@ -143,26 +165,56 @@ impl Decoding {
 
     /// What the encoder never saw has no value.
     fn skip(&mut self, count: u64) -> Result<(), Failure> {
-        for index in self.next..self.next + count {
-            writeln!(self.output, "{index},NaN").map_err(Failure::Output)?;
-        }
-        self.next += count;
+        const MOST: u64 = 8192;
         self.skipped += count;
+        let mut left = count;
+        while left > 0 {
+            let now = left.min(MOST);
+            for column in &mut self.columns {
+                column.clear();
+                column.resize(now as usize, f64::NAN);
+            }
+            self.write().map_err(Failure::Output)?;
+            left -= now;
+        }
         Ok(())
     }
 
     fn write(&mut self) -> io::Result<()> {
         self.line.clear();
         let (mut whole, mut decimals) = (itoa::Buffer::new(), zmij::Buffer::new());
-        for &value in &self.values {
+        let rows = self.columns.first().map_or(0, Vec::len);
+        for row in 0..rows {
             self.line.extend(whole.format(self.next).as_bytes());
-            self.line.push(b',');
-            let text =
-                if self.is_single { decimals.format(value as f32) } else { decimals.format(value) };
-            self.line.extend(text.as_bytes());
+            for column in &self.columns {
+                let value = column[row];
+                self.line.push(b',');
+                let text = if self.is_single {
+                    decimals.format(value as f32)
+                } else {
+                    decimals.format(value)
+                };
+                self.line.extend(text.as_bytes());
+            }
+            if self.is_timed {
+                self.line.push(b',');
+                self.line.extend(whole.format(self.timeline.at(self.next)).as_bytes());
+            }
             self.line.push(b'\n');
             self.next += 1;
         }
         self.output.write_all(&self.line)
     }
+}
+
+/// What the columns are called: `value`, or with several channels as in the recording.
+fn names(header: &Header) -> Vec<String> {
+    let count = header.channels.len();
+    if count == 1 {
+        return vec!["value".to_owned()];
+    }
+    let note = header.notes.iter().find(|(key, _)| matches!(*key, "column" | "field"));
+    let names: Vec<String> =
+        note.map_or(Vec::new(), |(_, names)| names.split(',').map(str::to_owned).collect());
+    if names.len() == count { names } else { (0..count).map(|n| format!("value{n}")).collect() }
 }

@@ -1,24 +1,32 @@
 //! `spikewire encode`: a recording to spikes, in constant memory.
 
-use crate::codec::{Calibrated, Codec};
-use crate::input::{Chunk, Clock, InputOptions};
+use crate::bank::Bank;
+use crate::fit::{Fit, rounded};
+use crate::input::{Chunk, Clock, InputOptions, Source};
 use crate::options::SchemeOptions;
 use crate::output::Output;
-use crate::resolve::{Known, missing, resolve};
-use crate::sample_type::SampleType;
-use crate::saturated::Saturated;
-use crate::scheme::SchemeName;
-use crate::spikes::{Header, Summary, Writer};
+use crate::scheme::Scheme;
+use crate::spikes::{Header, Summary, Writer, unrecorded};
 use anyhow::{Result, bail};
+use catalogue::run::{Calibrated, Event, Known, SampleType, Settings};
 use clap::Args;
 use std::path::PathBuf;
 
-/// Encode one channel of a recording.
+/// Encode channels of a recording: `index,address,polarity` and, where it has times, `time_us`.
+///
+/// With several columns the address says which: the second column's neurons are numbered on from the
+/// first's. All columns have the same parameters; what is calibrated is each one's own.
 #[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  spikewire encode --scheme sf --threshold 0.1 --column gyro_x flight.csv -o spikes.csv
+  spikewire encode --scheme sf --threshold 0.1 --columns gyro_x,gyro_y,gyro_z flight.csv
+  spikewire encode --scheme hsa --filter triang:15,peak=2 --topic sensor_combined --field 'gyro_rad[0]' flight.ulg
+  spikewire encode --scheme mw --threshold 120 --window 5 --sample i16 --rate 1000 counts.csv")]
 pub(crate) struct Encode {
     /// The scheme
     #[arg(long)]
-    scheme: SchemeName,
+    scheme: Scheme,
     /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8
     #[arg(long, default_value_t)]
     sample: SampleType,
@@ -37,8 +45,8 @@ pub(crate) struct Encode {
 /// The recording, the parameters or the output are not good.
 pub(crate) fn run(options: &Encode) -> Result<()> {
     let Encode { scheme, sample, input, parameters, output } = options;
-    parameters.check(*scheme)?;
-    let calibrated = match missing(*scheme, parameters) {
+    parameters.check(scheme.info())?;
+    let calibrated = match scheme.needs_signal(parameters) {
         None => None,
         Some(what) if input.is_stdin() => bail!(
             "{} calibrates over the whole signal, which standard input gives only once; give {what}",
@@ -48,65 +56,123 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
     };
 
     let mut source = input.open()?;
-    let mut chunk = Chunk::default();
-    source.next(&mut chunk)?;
+    let mut chunk = first(source.as_mut(), scheme.looks_back(parameters))?;
     let mut clock = Clock::new(&chunk.times, input.rate, input.gap);
-    let first: Vec<f64> = chunk.values.iter().copied().filter(|value| value.is_finite()).collect();
-    let known =
-        Known { calibrated: calibrated.as_ref(), first: &first, can_calibrate: !input.is_stdin() };
-    let settings = resolve(*scheme, parameters, known)?;
-    let mut codec = Codec::new(*sample, &settings)?;
+    let rows = chunk.finite_rows();
+    let (count, firsts) = (rows.len(), chunk.kept(&rows));
+    if firsts.first().is_none_or(Vec::is_empty) {
+        bail!("{}: none of the {count} samples is finite", input.name());
+    }
+    let mut asked = Vec::new();
+    for (channel, first) in firsts.iter().enumerate() {
+        let calibrated = calibrated.as_ref().and_then(|all| all.get(channel));
+        let known = Known { calibrated, first, can_calibrate: !input.is_stdin() };
+        asked.push(scheme.resolve(parameters, &known)?);
+    }
+    let mut told = Vec::new();
+    let mut channels: Vec<Settings> = Vec::new();
+    for settings in &asked {
+        let (settings, rounding) = rounded(*scheme, *sample, settings)?;
+        told.extend(rounding.filter(|rounding| !told.contains(rounding)));
+        channels.push(settings);
+    }
+    let mut bank = Bank::new(*scheme, *sample, &channels)?;
 
     let mut notes = source.origin().to_vec();
-    notes.extend(parameters.factor.map(|factor| ("factor", factor.to_string())));
-    notes.extend(parameters.filter.clone().map(|filter| ("filter", filter)));
-    let header = Header { scheme: *scheme, sample: *sample, settings, rate: clock.rate(), notes };
+    let made_from = unrecorded(*scheme).into_iter().filter_map(|name| {
+        parameters.get(name).filter(|text| !text.is_empty()).map(|text| (name, text.to_owned()))
+    });
+    notes.extend(made_from);
+    let mut fits: Vec<Fit> = channels.iter().map(|own| Fit::new(*scheme, *sample, own)).collect();
+    let rate = clock.rate();
+    let header = Header { scheme: *scheme, sample: *sample, channels, rate, notes };
     let is_timed = !chunk.times.is_empty();
-    let mut writer = Writer::new(Output::open(output.as_deref())?, &header, is_timed)?;
+    let output = Output::open(output.as_deref(), &input.input)?;
+    let mut writer = Writer::new(output, &header, is_timed)?;
 
     let mut events = Vec::new();
-    let mut saturated = Saturated::new(*sample);
+    let mut spikes = vec![0; header.channels.len()];
+    let neurons = bank.neurons();
+    let mut count = |events: &[Event]| {
+        for event in events {
+            spikes[usize::from(event.neuron) / neurons] += 1;
+        }
+    };
     let mut finite: u64 = 0;
-    while !chunk.values.is_empty() {
-        let gaps = clock.observe(&chunk.times);
-        writer.observe(&mut chunk.values, &chunk.times, &gaps);
-        saturated.observe(&chunk.values);
-        codec.encode(&chunk.values, &mut events);
-        finite += chunk.values.len() as u64;
-        writer.write(&mut events, finite.saturating_sub(codec.latency() as u64))?;
+    while !chunk.is_empty() {
+        let steps = clock.observe(&chunk.times);
+        writer.observe(&mut chunk, &steps);
+        for (fit, column) in fits.iter_mut().zip(&chunk.columns) {
+            fit.observe(column);
+        }
+        bank.encode(&chunk.columns, &mut events);
+        finite += chunk.len() as u64;
+        count(&events);
+        writer.write(&mut events, finite.saturating_sub(bank.latency() as u64))?;
         source.next(&mut chunk)?;
     }
-    codec.finish(&mut events);
+    bank.finish(&mut events);
+    count(&events);
     let (output, summary) = writer.finish(&mut events)?;
     output.finish()?;
-    report(&summary, &clock, &saturated);
+    for note in source.notes().iter().chain(&told) {
+        eprintln!("{note}");
+    }
+    report(&summary, &clock, header.channels.len());
+    let names = source.origin().last().map_or("", |(_, names)| names.as_str());
+    for (((fit, settings), spikes), name) in
+        fits.iter().zip(&header.channels).zip(spikes).zip(names.split(','))
+    {
+        let of = if fits.len() > 1 { format!("{name}: ") } else { String::new() };
+        for note in fit.notes(settings, spikes).lines() {
+            eprintln!("{of}{note}");
+        }
+    }
     Ok(())
+}
+
+/// The first samples: at least so many finite ones, or all there are.
+fn first(source: &mut dyn Source, enough: usize) -> Result<Chunk> {
+    let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
+    let mut finite = 0;
+    while finite < enough {
+        source.next(&mut chunk)?;
+        if chunk.is_empty() {
+            break;
+        }
+        finite += chunk.finite_rows().iter().filter(|finite| **finite).count();
+        all.append(&mut chunk);
+    }
+    Ok(all)
 }
 
 /// A pass over the recording.
 ///
 /// # Errors
 /// It cannot be read.
-pub(crate) fn calibrate(input: &InputOptions, sample: SampleType) -> Result<Calibrated> {
-    let mut calibrated = Calibrated::new(sample);
+fn calibrate(input: &InputOptions, sample: SampleType) -> Result<Vec<Calibrated>> {
+    let mut calibrated = Vec::new();
     let (mut source, mut chunk) = (input.open()?, Chunk::default());
     loop {
         source.next(&mut chunk)?;
-        if chunk.values.is_empty() {
+        if chunk.is_empty() {
             return Ok(calibrated);
         }
-        chunk.values.retain(|value| value.is_finite());
-        calibrated.observe(&chunk.values);
+        let finite = chunk.kept(&chunk.finite_rows());
+        calibrated.resize_with(finite.len(), || Calibrated::new(sample));
+        for (calibrated, column) in calibrated.iter_mut().zip(&finite) {
+            calibrated.observe(column);
+        }
     }
 }
 
 /// What a user should know, on standard error.
-fn report(summary: &Summary, clock: &Clock, saturated: &Saturated) {
+fn report(summary: &Summary, clock: &Clock, channels: usize) {
     let Summary { samples, rejected, events } = *summary;
-    eprintln!("{samples} samples, {events} spikes");
+    let of = if channels > 1 { format!(" of {channels} channels") } else { String::new() };
+    eprintln!("{samples} samples{of}, {events} spikes");
     if rejected > 0 {
-        eprintln!("{rejected} samples were not finite and emitted nothing");
+        eprintln!("{rejected} samples were not finite or missing and emitted nothing");
     }
-    eprint!("{saturated}");
     eprintln!("{clock}");
 }

@@ -6,15 +6,18 @@ use clap::Args;
 use std::io::{Write, stdout};
 use std::path::PathBuf;
 
-/// List a flight log's topics with their fields, rates and gaps.
+/// List a flight log's topics with their fields, rates and gaps, and the logger's dropouts.
 #[derive(Args, Debug)]
+#[command(after_help = "\
+Example:
+  spikewire info flight.ulg")]
 pub(crate) struct Info {
-    /// PX4 flight log (`ULog`)
+    /// PX4 flight log (`ULog`), also compressed by gzip
     log: PathBuf,
     /// Report steps in time above this many usual steps
     #[arg(long, default_value_t = 1.5, value_parser = above_zero)]
     gap: f64,
-    /// Take the whole messages of a log that is cut short
+    /// Take the whole messages of a log that is cut short or damaged
     #[arg(long)]
     accept_cut: bool,
 }
@@ -27,8 +30,10 @@ pub(crate) fn run(options: &Info) -> Result<()> {
     if !is_flight_log(&options.log)? {
         bail!("{}: not a flight log; ULog files start with `ULog`", options.log.display());
     }
-    let topics = Log::read(&options.log, options.accept_cut)?.topics()?;
+    let log = Log::read(&options.log, options.accept_cut)?;
+    let topics = log.topics()?;
     let mut output = stdout().lock();
+    write!(output, "{}", log.findings)?;
     for (name, topic) in topics {
         let (count, times) = (topic.times.len(), &topic.times);
         let mut clock = Clock::new(times, None, options.gap);
@@ -36,7 +41,7 @@ pub(crate) fn run(options: &Info) -> Result<()> {
         let seconds = times
             .last()
             .zip(times.first())
-            .map_or(0.0, |(last, first)| (last - first) as f64 * 1e-6);
+            .map_or(0.0, |(last, first)| last.saturating_sub(*first) as f64 * 1e-6);
         match clock.rate() {
             Some(rate) => writeln!(
                 output,
@@ -45,6 +50,9 @@ pub(crate) fn run(options: &Info) -> Result<()> {
             None => writeln!(output, "{name}: {count} samples")?,
         }
         writeln!(output, "  {}", fields(&topic.fields))?;
+        if !topic.texts.is_empty() {
+            writeln!(output, "  text: {}", topic.texts.join(", "))?;
+        }
     }
     Ok(())
 }

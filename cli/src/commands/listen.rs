@@ -1,36 +1,43 @@
 //! `spikewire listen`: what a board sends, as events or values, while it comes.
 
-use crate::events::{Format, LinkReader, Stream, StreamOptions, Values, values_writer};
+use crate::events::{
+    EventReader, Format, LinkReader, Stream, StreamOptions, Values, values_writer,
+};
+use crate::fit::rounded;
 use crate::live::Live;
-use crate::options::SchemeOptions;
+use crate::options::{augment, given};
 use crate::output::Output;
 use crate::port::{Bytes, Port};
-use crate::resolve::{Known, missing, resolve};
-use crate::sample_type::SampleType;
-use crate::scheme::SchemeName;
-use crate::settings::Settings;
+use crate::scheme::Scheme;
 use crate::stop::Stop;
-use crate::values;
-use anyhow::{Context, Result, bail};
-use clap::Args;
+use crate::values::with_receiver;
+use anyhow::{Result, bail};
+use catalogue::run::{Known, Options, SampleType, Settings};
+use catalogue::{Info, Parameter};
+use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
 use std::io::Write;
 use std::path::PathBuf;
 
 /// Listen to what a board sends: events, or with `--scheme` the values they mean.
 ///
 /// Formats are called as in `convert`. Values come from a link, by the receiver that runs on boards:
-/// bit for bit those of the sender's own decoder from a keyframe on until something is lost. For sf the
-/// value just before a keyframe equals it; for tbr and mw, whose decoders drift, it is the sample itself,
-/// from which they go on.
+/// bit for bit those of the sender's own decoder from a keyframe on until something is lost. Where the
+/// encoder follows its decoder the value just before a keyframe equals it; decoders that drift go on from
+/// the keyframe, which is the sample itself.
 #[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  spikewire listen --baud 921600 /dev/ttyUSB0 -o events.csv
+  spikewire listen --baud 921600 /dev/ttyUSB0 --scheme sf --thresholds 0.1,0.1,0.1,0.5,0.5,0.5
+  spikewire listen captured.bytes --to es -o flight.es")]
 pub(crate) struct Listen {
     /// Serial port, or file of captured bytes; `-` is standard input
     #[arg(default_value = "-")]
     input: PathBuf,
-    /// The input is a serial port of this speed, 8 data bits, no parity, 1 stop bit
+    /// The input is a serial port of this speed in bits a second, 8 data bits, no parity, 1 stop bit
     #[arg(long)]
     baud: Option<u32>,
-    /// Stop after this time; Ctrl-C stops as well
+    /// Stop after so many seconds; Ctrl-C stops as well
     #[arg(long, requires = "baud")]
     seconds: Option<f64>,
     /// Format of the bytes
@@ -44,23 +51,63 @@ pub(crate) struct Listen {
     output: Option<PathBuf>,
     #[command(flatten)]
     stream: StreamOptions,
-    /// Decode a link's frames: tbr, sf or mw
-    #[arg(long)]
-    scheme: Option<SchemeName>,
+    /// Decode a link's frames by this scheme, the sender's
+    #[arg(long, value_parser = Scheme::parser(Scheme::all().filter(|scheme| adds_up_steps(scheme.info()))))]
+    scheme: Option<Scheme>,
     /// Sample type of the sender: f32, i16, i32, or fixed point such as q16.16 or q8.8
     #[arg(long, default_value_t)]
     sample: SampleType,
-    /// In the place of --threshold, one for each channel from address 0 on: `0.1,0.1,0.5`
-    #[arg(
-        long,
-        value_delimiter = ',',
-        allow_negative_numbers = true,
-        conflicts_with = "threshold",
-        help_heading = "Parameters"
-    )]
-    thresholds: Vec<f64>,
     #[command(flatten)]
-    parameters: SchemeOptions,
+    parameters: StepOptions,
+}
+
+fn adds_up_steps(info: &Info) -> bool {
+    info.has_first_value
+}
+
+fn is_recorded(parameter: &Parameter) -> bool {
+    parameter.is_recorded
+}
+
+/// The parameters that decoding a step code takes.
+#[derive(Clone, Debug, Default)]
+struct StepOptions {
+    options: Options,
+    /// In the place of `--threshold`, one for each channel from address 0 on.
+    thresholds: Vec<f64>,
+}
+
+impl Args for StepOptions {
+    fn augment_args(command: Command) -> Command {
+        augment(command, adds_up_steps, is_recorded).arg(
+            Arg::new("thresholds")
+                .long("thresholds")
+                .value_delimiter(',')
+                .value_parser(value_parser!(f64))
+                .allow_negative_numbers(true)
+                .num_args(1..)
+                .conflicts_with("threshold")
+                .help_heading("Parameters")
+                .help("In the place of --threshold, one for each channel from address 0 on: `0.1,0.1,0.5`"),
+        )
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for StepOptions {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        let thresholds = matches.get_many("thresholds").into_iter().flatten().copied();
+        let options = given(matches, adds_up_steps, is_recorded);
+        Ok(Self { options, thresholds: thresholds.collect() })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
 }
 
 /// Runs the command.
@@ -68,16 +115,22 @@ pub(crate) struct Listen {
 /// # Errors
 /// The options, the port or the output are not good.
 pub(crate) fn run(options: &Listen) -> Result<()> {
-    let values = options.values()?;
+    let Some(scheme) = options.scheme else {
+        if !options.parameters.options.is_empty() || !options.parameters.thresholds.is_empty() {
+            bail!("a scheme's parameters need --scheme");
+        }
+        return listen(options, None);
+    };
+    let settings = options.settings(scheme)?;
+    with_receiver(scheme, options.sample, &settings, |values| listen(options, Some(values)))
+}
+
+fn listen(options: &Listen, values: Option<Box<dyn Values + '_>>) -> Result<()> {
     let mut port = Port::open(&options.input, options.baud)?;
     let stop = Stop::new(options.seconds)?;
-    let mut output = Output::open(options.output.as_deref())?;
-    let (reader, writer) = match values {
-        Some(values) => {
-            let reader: Box<dyn crate::events::EventReader> =
-                Box::new(LinkReader::new(Some(values)));
-            (reader, values_writer(options.sample))
-        }
+    let mut output = Output::open(options.output.as_deref(), &options.input)?;
+    let (reader, writer): (Box<dyn EventReader + '_>, _) = match values {
+        Some(values) => (Box::new(LinkReader::new(Some(values))), values_writer(options.sample)),
         None => (options.from.reader(port.name()), options.to.writer(options.stream.drop)),
     };
     let mut stream = Stream::new(reader, writer, options.stream.from_zero);
@@ -116,39 +169,47 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
 }
 
 impl Listen {
-    /// What decodes the frames, if that is wanted.
-    fn values(&self) -> Result<Option<Box<dyn Values>>> {
-        let Some(scheme) = self.scheme else {
-            if !self.parameters.is_empty() || self.parameters.paper || !self.thresholds.is_empty() {
-                bail!("a scheme's parameters need --scheme");
-            }
-            return Ok(None);
-        };
+    /// The settings of one channel for all, or of each.
+    fn settings(&self, scheme: Scheme) -> Result<Vec<Settings>> {
         if !matches!(self.from, Format::Link(_)) {
             bail!("--scheme needs --from link, whose keyframes say where the sender stands");
         }
         if self.to != Format::Csv {
             bail!("--scheme gives values, which only --to csv holds");
         }
-        let settings = if self.thresholds.is_empty() {
-            vec![settings(scheme, &self.parameters)?]
-        } else {
-            let each = self.thresholds.iter().map(|&threshold| {
-                let options =
-                    SchemeOptions { threshold: Some(threshold), ..self.parameters.clone() };
-                settings(scheme, &options)
-            });
-            each.collect::<Result<_>>()?
+        let StepOptions { options, thresholds } = &self.parameters;
+        let each: Vec<Options> = match thresholds[..] {
+            [] => vec![options.clone()],
+            ref many => many
+                .iter()
+                .map(|threshold| {
+                    let mut options = options.clone();
+                    options.set("threshold", &threshold.to_string());
+                    options
+                })
+                .collect(),
         };
-        values::receiver(self.sample, &settings).map(Some).with_context(|| scheme.name())
+        let mut all = Vec::new();
+        for mut options in each {
+            // Any value will do of what is the encoder's alone.
+            for parameter in scheme.info().parameters.iter().filter(|own| own.is_of_encoder) {
+                if options.get(parameter.name).is_none() {
+                    options.set(parameter.name, parameter.example);
+                }
+            }
+            let settings = settings(scheme, &options)?;
+            let (settings, rounding) = rounded(scheme, self.sample, &settings)?;
+            if let Some(rounding) = rounding {
+                eprintln!("{rounding}");
+            }
+            all.push(settings);
+        }
+        Ok(all)
     }
 }
 
 /// The settings of a channel, from its options alone.
-fn settings(scheme: SchemeName, options: &SchemeOptions) -> Result<Settings> {
-    options.check(scheme)?;
-    if let Some(what) = missing(scheme, options) {
-        bail!("{}: there is no signal to calibrate over; give {what}", scheme.name());
-    }
-    resolve(scheme, options, Known { calibrated: None, first: &[0.0], can_calibrate: false })
+fn settings(scheme: Scheme, options: &Options) -> Result<Settings> {
+    let known = Known { calibrated: None, first: &[0.0], can_calibrate: false };
+    scheme.resolve(options, &known)
 }

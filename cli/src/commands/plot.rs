@@ -4,20 +4,27 @@ use super::score::chosen;
 use crate::input::InputOptions;
 use crate::options::SchemeOptions;
 use crate::plot::{Picture, draw};
-use crate::sample_type::SampleType;
-use crate::scheme::SchemeName;
+use crate::scheme::Scheme;
 use crate::trial::{Recording, Trial};
 use anyhow::{Context, Result, bail};
+use catalogue::run::SampleType;
 use clap::Args;
 use std::ops::Range;
 use std::path::PathBuf;
 
 /// Draw signal and reconstruction over spikes, as the paper's first figure.
+///
+/// A long recording is thinned to what the picture can show. The decoded curve stands at the samples it belongs
+/// to; what a rate code's look-ahead delays it by is told in the panel.
 #[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  spikewire plot --scheme sf --threshold 0.1 --column gyro_x --unit rad/s flight.csv -o sf.png
+  spikewire plot --all --column gyro_x --range 2350..2700 flight.csv -o flight.svg")]
 pub(crate) struct Plot {
     /// The scheme
     #[arg(long, required_unless_present = "all")]
-    scheme: Option<SchemeName>,
+    scheme: Option<Scheme>,
     /// Panels A-G for the paper's schemes with its settings, and H with their efficiency
     #[arg(long, conflicts_with = "scheme")]
     all: bool,
@@ -31,6 +38,9 @@ pub(crate) struct Plot {
     /// Samples to show, such as `1000..1400`; all of them are encoded
     #[arg(long)]
     range: Option<String>,
+    /// The signal's unit, such as `rad/s`; told by the column's name, `gyro_x (rad/s)`, unless given
+    #[arg(long)]
+    unit: Option<String>,
     /// Picture, `.svg` or `.png`
     #[arg(short, long)]
     output: PathBuf,
@@ -46,17 +56,20 @@ pub(crate) fn run(options: &Plot) -> Result<()> {
     let recording = Recording::read(input)?;
     let shown = shown(range.as_deref(), recording.values.len())?;
     // Of the population codes the paper draws GRF.
-    let is_drawn = |scheme: &SchemeName| {
-        !options.all
-            || !matches!(scheme, SchemeName::Position | SchemeName::GrfSlots | SchemeName::GrfProb)
-    };
+    let is_drawn = |scheme: &Scheme| !options.all || scheme.info().is_drawn;
     let trials = schemes
         .into_iter()
         .filter(is_drawn)
         .map(|scheme| Trial::new(scheme, &parameters, *sample, &recording))
         .collect::<Result<Vec<_>>>()?;
-    eprint!("{}", recording.notes(*sample));
-    draw(output, &Picture { recording: &recording, trials: &trials, shown })
+    eprint!("{}", recording.notes());
+    for trial in &trials {
+        for note in &trial.notes {
+            eprintln!("{}: {note}", trial.scheme.name());
+        }
+    }
+    let unit = options.unit.as_deref().or_else(|| known_unit(&recording.name));
+    draw(output, &input.input, &Picture { recording: &recording, trials: &trials, unit, shown })
 }
 
 fn shown(range: Option<&str>, samples: usize) -> Result<Range<usize>> {
@@ -69,4 +82,10 @@ fn shown(range: Option<&str>, samples: usize) -> Result<Range<usize>> {
         (Ok(start), Ok(end)) if start + 1 < end && end <= samples => Ok(start..end),
         _ => bail!("--range {text}: two samples at least, within 0..{samples}"),
     }
+}
+
+/// The unit that a field's name in PX4 logs tells.
+fn known_unit(name: &str) -> Option<&'static str> {
+    let units = [("gyro_rad", "rad/s"), ("_m_s2", "m/s²"), ("_rad_s", "rad/s"), ("_m_s", "m/s")];
+    units.into_iter().find(|(part, _)| name.contains(part)).map(|(_, unit)| unit)
 }

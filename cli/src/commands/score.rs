@@ -1,22 +1,32 @@
 //! `spikewire score`: how few spikes, and how near to the signal.
 
+use crate::brief::brief;
 use crate::input::InputOptions;
 use crate::options::SchemeOptions;
-use crate::sample_type::SampleType;
-use crate::scheme::SchemeName;
-use crate::steep;
+use crate::scheme::Scheme;
+use crate::steep::Steep;
 use crate::trial::{Recording, Trial};
 use anyhow::{Result, bail};
+use catalogue::run::SampleType;
 use clap::Args;
 use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
 use std::io::{self, Write, stdout};
 
-/// Score one scheme, or all with the paper's settings, on a recording.
+/// Score one scheme, or all with the paper's settings, on one channel of a recording.
+///
+/// Efficiency is the percentage of samples without a spike; RMSE is in the signal's unit and compares each
+/// decoded value with the sample it belongs to, so without a rate code's latency; SNR is in dB.
 #[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  spikewire score --column gyro_x flight.csv
+  spikewire score --scheme sf --threshold 0.1 --column gyro_x --json flight.csv")]
 pub(crate) struct Score {
     /// The scheme; all unless given
     #[arg(long)]
-    scheme: Option<SchemeName>,
+    scheme: Option<Scheme>,
     /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8
     #[arg(long, default_value_t)]
     sample: SampleType,
@@ -24,7 +34,7 @@ pub(crate) struct Score {
     input: InputOptions,
     #[command(flatten)]
     parameters: SchemeOptions,
-    /// For programs
+    /// Figures and parameters as JSON, for programs
     #[arg(long)]
     json: bool,
 }
@@ -42,6 +52,14 @@ struct Figures {
     /// Signal to noise in dB: variance of the signal to mean square of the error.
     snr: f64,
     spikes_per_second: Option<f64>,
+    /// What it ran with.
+    parameters: BTreeMap<&'static str, Value>,
+    /// Of step forward only.
+    slope: Option<Steep>,
+    /// What a user should know.
+    notes: Vec<String>,
+    #[serde(skip)]
+    brief: String,
 }
 
 /// Runs the command.
@@ -54,13 +72,17 @@ pub(crate) fn run(options: &Score) -> Result<()> {
     let recording = Recording::read(input)?;
     let scored = schemes.into_iter().map(|scheme| {
         let trial = Trial::new(scheme, &parameters, *sample, &recording)?;
-        Ok((figures(&recording, &trial), steep::note(&recording, &trial.settings)))
+        Ok(figures(&recording, &trial))
     });
-    let (figures, steep): (Vec<_>, Vec<_>) =
-        scored.collect::<Result<Vec<_>>>()?.into_iter().unzip();
-    eprint!("{}", recording.notes(*sample));
-    for note in steep.iter().flatten() {
-        eprintln!("{note}");
+    let figures = scored.collect::<Result<Vec<_>>>()?;
+    eprint!("{}", recording.notes());
+    for Figures { scheme, slope, notes, .. } in &figures {
+        for note in notes {
+            eprintln!("{scheme}: {note}");
+        }
+        if let Some(slope) = slope {
+            eprintln!("{}", slope.words());
+        }
     }
     if *json {
         writeln!(stdout(), "{}", serde_json::to_string_pretty(&figures)?)?;
@@ -75,9 +97,9 @@ pub(crate) fn run(options: &Score) -> Result<()> {
 /// # Errors
 /// Parameters without a scheme to take them.
 pub(crate) fn chosen(
-    scheme: Option<SchemeName>,
+    scheme: Option<Scheme>,
     parameters: &SchemeOptions,
-) -> Result<(Vec<SchemeName>, SchemeOptions)> {
+) -> Result<(Vec<Scheme>, SchemeOptions)> {
     match scheme {
         Some(scheme) => Ok((vec![scheme], parameters.clone())),
         None if !parameters.is_empty() => {
@@ -85,7 +107,11 @@ pub(crate) fn chosen(
                 "all schemes run with the paper's settings; --scheme says which takes the parameters given"
             )
         }
-        None => Ok((SchemeName::ALL.to_vec(), SchemeOptions { paper: true, ..parameters.clone() })),
+        None => {
+            let mut options = parameters.0.clone();
+            options.paper = true;
+            Ok((Scheme::all().collect(), SchemeOptions(options)))
+        }
     }
 }
 
@@ -97,26 +123,53 @@ fn figures(recording: &Recording, trial: &Trial) -> Figures {
     };
     let noise = mean_square(&mut recording.values.iter().zip(&trial.decoded).map(|(x, y)| x - y));
     let variance = mean_square(&mut recording.values.iter().map(|x| x - mean));
+    let parameters = trial.settings.entries();
     Figures {
-        scheme: trial.scheme.name(),
+        scheme: trial.scheme.name().to_owned(),
         samples,
         spikes: trial.events.len(),
         efficiency: trial.efficiency(),
         rmse: noise.sqrt(),
         snr: 10.0 * (variance / noise).log10(),
-        spikes_per_second: recording.seconds().map(|seconds| trial.events.len() as f64 / seconds),
+        spikes_per_second: recording
+            .seconds()
+            .filter(|seconds| *seconds > 0.0)
+            .map(|seconds| trial.events.len() as f64 / seconds),
+        brief: brief(parameters),
+        parameters: parameters.iter().map(|(key, value)| (*key, value_of(value))).collect(),
+        slope: Steep::new(trial.scheme, recording, &trial.settings),
+        notes: trial.notes.clone(),
+    }
+}
+
+/// A number, a list of numbers, or a word.
+fn value_of(text: &str) -> Value {
+    let numbers: Option<Vec<Value>> =
+        text.split(',').map(|number| serde_json::from_str(number).ok()).collect();
+    match numbers.as_deref() {
+        Some([number]) => number.clone(),
+        Some(numbers) => numbers.into(),
+        None => text.into(),
     }
 }
 
 fn print_table(figures: &[Figures]) -> io::Result<()> {
     let mut output = stdout().lock();
-    writeln!(output, "| scheme    |  spikes | efficiency % |       RMSE |  SNR dB | spikes/s |")?;
-    writeln!(output, "|-----------|--------:|-------------:|-----------:|--------:|---------:|")?;
-    for Figures { scheme, spikes, efficiency, rmse, snr, spikes_per_second, .. } in figures {
+    writeln!(
+        output,
+        "| scheme    |  spikes | efficiency % |       RMSE |  SNR dB | spikes/s | parameters |"
+    )?;
+    writeln!(
+        output,
+        "|-----------|--------:|-------------:|-----------:|--------:|---------:|------------|"
+    )?;
+    for figures in figures {
+        let Figures { scheme, spikes, efficiency, rmse, snr, spikes_per_second, brief, .. } =
+            figures;
         let rate = spikes_per_second.map_or("-".to_owned(), |rate| format!("{rate:.1}"));
         writeln!(
             output,
-            "| {scheme:9} | {spikes:7} | {efficiency:12.2} | {rmse:10.5} | {snr:7.2} | {rate:>8} |"
+            "| {scheme:9} | {spikes:7} | {efficiency:12.2} | {rmse:10.5} | {snr:7.2} | {rate:>8} | {brief} |"
         )?;
     }
     Ok(())

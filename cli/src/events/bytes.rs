@@ -3,8 +3,8 @@
 use super::omitted::Omitted;
 use super::{EventReader, EventWriter, Item, Tally};
 use anyhow::{Result, bail};
-use spikewire::Event;
 use spikewire::format::{EventDecoder, EventFormat, FormatError};
+use spikewire::{Event, Tick};
 use std::io::Write;
 
 /// Reads a format.
@@ -18,7 +18,7 @@ pub(super) struct Hooks<D> {
     /// Refuses another format's bytes.
     pub check: fn(&D) -> Result<()>,
     /// Sets the time of events that bring none.
-    pub set_arrival: Option<fn(&mut D, u32)>,
+    pub set_arrival: Option<fn(&mut D, Tick)>,
 }
 
 impl<D: EventDecoder> Reader<D> {
@@ -41,7 +41,7 @@ impl<D: EventDecoder> EventReader for Reader<D> {
         }
     }
 
-    fn set_arrival(&mut self, tick: u32) {
+    fn set_arrival(&mut self, tick: Tick) {
         if let Some(set) = self.hooks.set_arrival {
             set(&mut self.decoder, tick);
         }

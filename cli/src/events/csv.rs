@@ -2,10 +2,9 @@
 
 use super::told::Told;
 use super::{EventReader, EventWriter, Item, Known, Tally};
-use crate::sample_type::SampleType;
 use anyhow::{Context, Result, bail};
-use spikewire::link::Keyframe;
-use spikewire::{Event, Polarity, tick};
+use catalogue::run::SampleType;
+use spikewire::{Event, Keyframe, Polarity, SampleKind, Tick};
 use std::io::Write;
 
 const HEADER: &str = "tick,address,polarity";
@@ -119,8 +118,8 @@ fn event_item(text: &str, columns: Columns, long_ticks: &mut u64) -> Result<Item
     let (tick, address) = (field(columns.tick), field(columns.address));
     let micros: u64 =
         tick.parse().with_context(|| format!("tick `{tick}` is not a number of µs from 0 on"))?;
-    let tick = tick::from_micros(micros);
-    *long_ticks += u64::from(u64::from(tick) != micros);
+    let tick = Tick::from_micros(micros);
+    *long_ticks += u64::from(u64::from(tick.micros()) != micros);
     let address = address
         .parse()
         .with_context(|| format!("address `{address}` is not a number from 0 to {}", u16::MAX))?;
@@ -142,23 +141,36 @@ fn note_item(note: &str) -> Result<Option<Item>> {
         "lost_events" => Some(Item::LostEvents),
         "restart" => Some(Item::Restart),
         "keyframe" => Some(keyframe(value).with_context(|| {
-            format!("keyframe `{value}` is not TICK,ADDRESS,BITS with 4 or 8 hexadecimal digits")
+            format!("keyframe `{value}` is not TICK,ADDRESS,BITS,TYPE with 4 or 8 hexadecimal digits and a sample type")
         })?),
         _ => None,
     })
 }
 
 fn keyframe(value: &str) -> Option<Item> {
-    let (tick, rest) = value.split_once(',')?;
-    let (address, bits) = rest.split_once(',')?;
-    let keyframe =
-        Keyframe { address: address.parse().ok()?, raw: u32::from_str_radix(bits, 16).ok()? };
-    let is_wide = match bits.len() {
-        4 => false,
-        8 => true,
-        _ => return None,
-    };
-    Some(Item::Keyframe { tick: tick.parse().ok()?, keyframe, is_wide })
+    let mut fields = value.split(',');
+    let (tick, address, bits) = (fields.next()?, fields.next()?, fields.next()?);
+    let kind = kind(fields.next()?)?;
+    if fields.next().is_some() || bits.len() != 2 * kind.size() {
+        return None;
+    }
+    let tick = Tick::from(tick.parse::<u32>().ok()?);
+    let (address, bits) = (address.parse().ok()?, u32::from_str_radix(bits, 16).ok()?);
+    Some(Item::Keyframe(Keyframe { tick, address, kind, bits }))
+}
+
+/// The sample type of a name, such as `f32`, `i16` or `q8.8`.
+fn kind(name: &str) -> Option<SampleKind> {
+    let kind = |byte| SampleKind::from_byte(byte).filter(|kind| name_of(*kind) == name);
+    (0..=u8::MAX).find_map(kind)
+}
+
+fn name_of(kind: SampleKind) -> String {
+    match kind {
+        SampleKind::F32 => SampleType::F32.to_string(),
+        SampleKind::Fixed16 { fraction } => SampleType::Fixed16 { fraction }.to_string(),
+        SampleKind::Fixed32 { fraction } => SampleType::Fixed32 { fraction }.to_string(),
+    }
 }
 
 /// Writes a table of events, or of values of a sample type.
@@ -180,10 +192,10 @@ impl Writer {
         Ok(())
     }
 
-    fn start_line(&mut self, tick: u32, address: u16) {
+    fn start_line(&mut self, tick: Tick, address: u16) {
         let mut digits = itoa::Buffer::new();
         self.line.clear();
-        self.line.extend(digits.format(tick).as_bytes());
+        self.line.extend(digits.format(tick.micros()).as_bytes());
         self.line.push(b',');
         self.line.extend(digits.format(address).as_bytes());
         self.line.push(b',');
@@ -221,9 +233,9 @@ impl EventWriter for Writer {
                 self.line.extend(known);
                 output.write_all(&self.line)?;
             }
-            Item::Keyframe { tick, keyframe: Keyframe { address, raw }, is_wide } => {
-                let digits = if is_wide { 8 } else { 4 };
-                writeln!(output, "# keyframe={tick},{address},{raw:0digits$x}")?;
+            Item::Keyframe(Keyframe { tick, address, kind, bits }) => {
+                let (tick, digits, name) = (tick.micros(), 2 * kind.size(), name_of(kind));
+                writeln!(output, "# keyframe={tick},{address},{bits:0digits$x},{name}")?;
             }
             Item::LostFrames(count) => writeln!(output, "# lost_frames={count}")?,
             Item::LostEvents => writeln!(output, "# lost_events")?,

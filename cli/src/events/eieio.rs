@@ -4,7 +4,7 @@ use super::omitted::Omitted;
 use super::{EventReader, EventWriter, Item, Tally};
 use anyhow::{Result, bail};
 use spikewire::format::eieio;
-use spikewire::{Event, Polarity};
+use spikewire::{Event, Polarity, Tick};
 use std::io::Write;
 use std::num::NonZeroU32;
 
@@ -33,7 +33,7 @@ impl Board {
     }
 
     /// The event of a key at a time, if it is one of this board's.
-    fn event(self, key: u32, tick: u32) -> Option<Event> {
+    fn event(self, key: u32, tick: Tick) -> Option<Event> {
         let key = key.checked_sub(self.base)?;
         let (address, polarity) = match (self.is_signed, key & 1) {
             (false, _) => (key, Polarity::Up),
@@ -52,13 +52,13 @@ const LONGEST: usize = 2 + 4 + 4 * MAX_KEYS;
 pub(super) struct Reader {
     board: Board,
     waiting: Vec<u8>,
-    time: u32,
+    time: Tick,
     skipped: u64,
 }
 
 impl Reader {
     pub(super) fn new(board: Board) -> Self {
-        Self { board, waiting: Vec::new(), time: 0, skipped: 0 }
+        Self { board, waiting: Vec::new(), time: Tick::from_micros(0), skipped: 0 }
     }
 
     /// Takes whole datagrams from the front of what waits, and bytes that begin none.
@@ -68,7 +68,7 @@ impl Reader {
         while !bytes.is_empty() {
             if let Some(datagram) = eieio::decode(bytes) {
                 if let Some(stamp) = datagram.timestamp {
-                    *time = stamp.wrapping_mul(board.step.get());
+                    *time = stamp.wrapping_mul(board.step.get()).into();
                 }
                 for key in datagram.keys() {
                     match board.event(key, *time) {
@@ -149,14 +149,14 @@ impl Writer {
                 event.address
             );
         };
-        let stamp = event.tick / self.board.step;
+        let stamp = event.tick.micros() / self.board.step;
         if stamp != self.stamp || self.keys.len() == MAX_KEYS {
             self.datagram(output)?;
         }
         self.stamp = stamp;
         self.keys.push(key);
         self.events += 1;
-        self.omitted.observe_time(stamp * self.board.step.get(), event.tick);
+        self.omitted.observe_time((stamp * self.board.step.get()).into(), event.tick);
         Ok(())
     }
 }

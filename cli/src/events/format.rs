@@ -3,8 +3,9 @@
 use super::bytes::{self, Hooks};
 use super::eieio::{self, Board};
 use super::{EventReader, EventWriter, LinkReader, csv, link};
-use crate::sample_type::SampleType;
 use anyhow::{Context, Error, Result, anyhow, bail};
+use catalogue::run::SampleType;
+use spikewire::Tick;
 use spikewire::format::{Edvs, EdvsTime, EventStream, Evt2};
 use spikewire::link::Coding;
 use std::fmt;
@@ -35,7 +36,7 @@ impl Format {
             Self::Link(_) => Box::new(LinkReader::new(None)),
             Self::Edvs(edvs, time) => {
                 let is_timed = time != EdvsTime::None;
-                let set_arrival: fn(&mut _, u32) = spikewire::format::EdvsDecoder::set_tick;
+                let set_arrival: fn(&mut _, Tick) = spikewire::format::EdvsDecoder::set_tick;
                 let hooks =
                     Hooks { check: |_| Ok(()), set_arrival: (!is_timed).then_some(set_arrival) };
                 Box::new(bytes::Reader::new(edvs.decoder(), hooks))

@@ -2,11 +2,8 @@
 
 use super::{EventReader, EventWriter, Held, Item, LinkTally, Tally};
 use anyhow::Result;
-use fixed::types::I16F16;
-use spikewire::Event;
-use spikewire::link::{
-    Coding, FrameWriter, Framer, Keyframe, LinkError, MAX_FRAME, Raw, Reader, Received,
-};
+use spikewire::link::{Coding, Framer, LinkError, MAX_FRAME, Reader, Received};
+use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;
 
 /// What decodes the frames of a link.
@@ -17,7 +14,7 @@ pub(crate) trait Values {
     /// How many events and keyframes had an address without a decoder.
     fn outside(&self) -> u64;
 
-    /// How many keyframes had the width of another sample type.
+    /// How many keyframes were of another sample type.
     fn misfits(&self) -> u64;
 
     /// How keyframes compare with the values before them.
@@ -25,27 +22,28 @@ pub(crate) trait Values {
 }
 
 /// Reads a link: its events, or its values.
-pub(crate) struct LinkReader {
+pub(crate) struct LinkReader<'a> {
     reader: Reader<MAX_FRAME>,
     /// Zeros of our own that the reader skipped.
     padding: u64,
-    values: Option<Box<dyn Values>>,
+    values: Option<Box<dyn Values + 'a>>,
     tally: LinkTally,
 }
 
-impl LinkReader {
+impl<'a> LinkReader<'a> {
     /// A reader that gives values where there is something to decode them.
-    pub(crate) fn new(values: Option<Box<dyn Values>>) -> Self {
+    pub(crate) fn new(values: Option<Box<dyn Values + 'a>>) -> Self {
         Self { reader: Reader::new(), padding: 0, values, tally: LinkTally::default() }
     }
 }
 
-impl EventReader for LinkReader {
+impl EventReader for LinkReader<'_> {
     fn read(&mut self, mut bytes: &[u8], items: &mut Vec<Item>) -> Result<()> {
-        while let Some(received) = self.reader.next_frame(&mut bytes) {
-            take(&received, &mut self.tally, self.values.as_deref_mut(), items);
+        loop {
+            let is_first = self.reader.frames() == 0;
+            let Some(received) = self.reader.next_frame(&mut bytes) else { return Ok(()) };
+            take(&received, is_first, &mut self.tally, self.values.as_deref_mut(), items);
         }
-        Ok(())
     }
 
     /// A frame whose length was damaged holds those after it back, until as many bytes follow as the
@@ -77,11 +75,12 @@ impl EventReader for LinkReader {
 /// Adds what a frame brings, in the order in which it holds.
 fn take(
     received: &Received<'_>,
+    is_first: bool,
     tally: &mut LinkTally,
-    values: Option<&mut (dyn Values + 'static)>,
+    values: Option<&mut (dyn Values + '_)>,
     items: &mut Vec<Item>,
 ) {
-    let Received { gap, frame } = received;
+    let Received { gap, is_start, frame } = received;
     if let Some(gap) = gap {
         tally.gaps += 1;
         items.push(Item::LostFrames(gap.lost_frames));
@@ -90,7 +89,8 @@ fn take(
         tally.after_loss += 1;
         items.push(Item::LostEvents);
     }
-    if frame.is_restart() {
+    // What is heard from the middle on did not begin there.
+    if *is_start && (!is_first || frame.sequence() == 0) {
         tally.restarts += 1;
         items.push(Item::Restart);
     }
@@ -100,8 +100,7 @@ fn take(
         values.apply(received, items);
         events.by_ref().for_each(drop);
     } else {
-        let (tick, is_wide) = (frame.tick(), frame.is_wide());
-        items.extend(frame.keyframes().map(|keyframe| Item::Keyframe { tick, keyframe, is_wide }));
+        items.extend(frame.keyframes().map(Item::Keyframe));
         items.extend(events.by_ref().map(Item::Event));
     }
     tally.impossible += u64::from(!events.is_complete());
@@ -111,9 +110,14 @@ fn take(
 pub(super) struct Writer {
     framer: Framer,
     coding: Coding,
-    keyframes: Vec<(Keyframe, bool)>,
-    /// When all of them hold.
-    tick: u32,
+    /// Of one tick and sample type.
+    keyframes: Vec<Keyframe>,
+    /// When what comes next happens, as far as it is known.
+    tick: Tick,
+    /// Another after each restart.
+    session: u16,
+    /// Whether the session has no frame yet.
+    is_fresh: bool,
     events: Vec<Event>,
     /// Whether a loss or restart waits for a frame to say it.
     owes_mark: bool,
@@ -124,12 +128,14 @@ const BATCH: usize = 1024;
 
 impl Writer {
     pub(super) fn new(coding: Coding) -> Self {
-        let framer = Framer::new(coding);
+        let framer = Framer::new(coding, 0);
         Self {
             framer,
             coding,
             keyframes: Vec::new(),
-            tick: 0,
+            tick: Tick::from_micros(0),
+            session: 0,
+            is_fresh: true,
             events: Vec::new(),
             owes_mark: false,
         }
@@ -139,6 +145,7 @@ impl Writer {
     fn all_frames(&mut self, output: &mut dyn Write) -> Result<()> {
         self.frames(true, output)?;
         if std::mem::take(&mut self.owes_mark) {
+            self.is_fresh = false;
             output.write_all(self.framer.start(self.tick, &mut [0; MAX_FRAME])?.finish())?;
         }
         Ok(())
@@ -146,16 +153,16 @@ impl Writer {
 
     /// Writes frames; the last only if nothing may be added to it.
     fn frames(&mut self, with_last: bool, output: &mut dyn Write) -> Result<()> {
-        let Self { framer, keyframes, tick, events, owes_mark, .. } = self;
+        let Self { framer, keyframes, events, owes_mark, is_fresh, .. } = self;
         let mut buffer = [0; MAX_FRAME];
         loop {
             let start = match (keyframes.first(), events.first()) {
-                (Some(_), _) => *tick,
+                (Some(keyframe), _) => keyframe.tick,
                 (None, Some(event)) => event.tick,
                 (None, None) => return Ok(()),
             };
             let mut frame = framer.start(start, &mut buffer)?;
-            let keys = fitting(keyframes, |&(key, is_wide)| put(&mut frame, key, is_wide));
+            let keys = fitting(keyframes, |&keyframe| frame.keyframe(keyframe));
             let fired = if keys == keyframes.len() {
                 fitting(events, |&event| frame.event(event))
             } else {
@@ -166,7 +173,7 @@ impl Writer {
                 return Ok(());
             }
             output.write_all(frame.finish())?;
-            *owes_mark = false;
+            (*owes_mark, *is_fresh) = (false, false);
             keyframes.drain(..keys);
             events.drain(..fired);
         }
@@ -178,14 +185,6 @@ fn fitting<T>(items: &[T], put: impl FnMut(&T) -> Result<(), LinkError>) -> usiz
     items.iter().map(put).take_while(Result::is_ok).count()
 }
 
-fn put(frame: &mut FrameWriter<'_, '_>, key: Keyframe, is_wide: bool) -> Result<(), LinkError> {
-    if is_wide {
-        frame.keyframe(key.address, I16F16::from_raw(key.raw))
-    } else {
-        frame.keyframe(key.address, i16::from_raw(key.raw))
-    }
-}
-
 impl EventWriter for Writer {
     fn write(&mut self, item: &Item, output: &mut dyn Write) -> Result<()> {
         match *item {
@@ -195,14 +194,16 @@ impl EventWriter for Writer {
                     self.frames(false, output)?;
                 }
             }
-            Item::Keyframe { tick, keyframe, is_wide } => {
-                let is_other = tick != self.tick
-                    || self.keyframes.last().is_some_and(|&(_, was_wide)| was_wide != is_wide);
+            Item::Keyframe(keyframe) => {
+                let is_other = self
+                    .keyframes
+                    .last()
+                    .is_some_and(|last| (last.tick, last.kind) != (keyframe.tick, keyframe.kind));
                 if is_other || !self.events.is_empty() {
                     self.frames(true, output)?;
                 }
-                self.tick = tick;
-                self.keyframes.push((keyframe, is_wide));
+                self.tick = keyframe.tick;
+                self.keyframes.push(keyframe);
             }
             Item::LostFrames(_) | Item::LostEvents => {
                 self.all_frames(output)?;
@@ -211,7 +212,10 @@ impl EventWriter for Writer {
             }
             Item::Restart => {
                 self.all_frames(output)?;
-                self.framer = Framer::new(self.coding);
+                if !std::mem::replace(&mut self.is_fresh, true) {
+                    self.session = self.session.wrapping_add(1);
+                    self.framer = Framer::new(self.coding, self.session);
+                }
                 self.owes_mark = true;
             }
             Item::Value { .. } => {}

@@ -18,8 +18,7 @@ pub(crate) use stream::{Stream, StreamOptions};
 pub(crate) use tally::{Held, LinkTally, Tally};
 
 use anyhow::Result;
-use spikewire::Event;
-use spikewire::link::Keyframe;
+use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;
 
 /// What a stream brings, in its order.
@@ -28,18 +27,11 @@ pub(crate) enum Item {
     /// A spike.
     Event(Event),
     /// What the sender's encoder held.
-    Keyframe {
-        /// When.
-        tick: u32,
-        /// Where, and its bits.
-        keyframe: Keyframe,
-        /// Whether there are 32 of them, not 16.
-        is_wide: bool,
-    },
+    Keyframe(Keyframe),
     /// What the decoder of an address holds after an event or keyframe.
     Value {
         /// When.
-        tick: u32,
+        tick: Tick,
         /// Where.
         address: u16,
         /// In the recording's unit.
@@ -86,7 +78,7 @@ pub(crate) trait EventReader {
     fn tally(&self) -> Tally;
 
     /// Tells a format without times the time of the bytes that come next.
-    fn set_arrival(&mut self, _: u32) {}
+    fn set_arrival(&mut self, _: Tick) {}
 }
 
 /// Turns items into bytes.

@@ -1,7 +1,7 @@
 //! What a format cannot hold, counted.
 
 use super::Item;
-use spikewire::tick;
+use spikewire::Tick;
 
 /// What was left out, and events that will be read at another time.
 #[derive(Clone, Copy, Default)]
@@ -20,9 +20,9 @@ impl Omitted {
     }
 
     /// Counts an event if it will be read at another time.
-    pub(super) fn observe_time(&mut self, read: u32, event: u32) {
+    pub(super) fn observe_time(&mut self, read: Tick, event: Tick) {
         self.retimed += u64::from(read != event);
-        self.furthest = self.furthest.max(tick::difference(read, event).unsigned_abs());
+        self.furthest = self.furthest.max(read.since(event).unsigned_abs());
     }
 
     /// Counts what is no event.

@@ -3,7 +3,7 @@
 use super::{EventReader, EventWriter, Format, Item, Tally};
 use anyhow::{Result, bail};
 use clap::Args;
-use spikewire::tick;
+use spikewire::Tick;
 use std::fmt;
 use std::io::Write;
 
@@ -19,8 +19,8 @@ pub(crate) struct StreamOptions {
 }
 
 /// A reader, a writer, and counts of what went through.
-pub(crate) struct Stream {
-    reader: Box<dyn EventReader>,
+pub(crate) struct Stream<'a> {
+    reader: Box<dyn EventReader + 'a>,
     writer: Box<dyn EventWriter>,
     /// What is taken off every tick, where they are to start at 0.
     zero: Zero,
@@ -29,7 +29,7 @@ pub(crate) struct Stream {
     events: u64,
     values: u64,
     addresses: Vec<u64>,
-    last: Option<u32>,
+    last: Option<Tick>,
     wraps: u64,
 }
 
@@ -37,13 +37,13 @@ pub(crate) struct Stream {
 enum Zero {
     Keep,
     Wanted,
-    At(u32),
+    At(Tick),
 }
 
-impl Stream {
+impl<'a> Stream<'a> {
     /// Bytes are read by the one and written by the other, with the ticks as they are or from 0 on.
     pub(crate) fn new(
-        reader: Box<dyn EventReader>,
+        reader: Box<dyn EventReader + 'a>,
         writer: Box<dyn EventWriter>,
         from_zero: bool,
     ) -> Self {
@@ -68,7 +68,7 @@ impl Stream {
     pub(crate) fn push(
         &mut self,
         bytes: &[u8],
-        arrival: Option<u32>,
+        arrival: Option<Tick>,
         output: &mut dyn Write,
     ) -> Result<()> {
         /// So many that their items stay small.
@@ -118,28 +118,28 @@ impl Stream {
                 self.values += 1;
                 (tick, *address)
             }
-            Item::Keyframe { tick, .. } => {
-                self.start_at_zero(tick);
+            Item::Keyframe(keyframe) => {
+                self.start_at_zero(&mut keyframe.tick);
                 return;
             }
             _ => return,
         };
         self.addresses[usize::from(address)] += 1;
         self.start_at_zero(now);
-        if self.last.is_some_and(|last| *now < last && tick::difference(*now, last) > 0) {
+        if self.last.is_some_and(|last| now.micros() < last.micros() && last.is_before(*now)) {
             self.wraps += 1;
         }
         self.last = Some(*now);
     }
 
-    fn start_at_zero(&mut self, tick: &mut u32) {
+    fn start_at_zero(&mut self, tick: &mut Tick) {
         match self.zero {
             Zero::Keep => {}
             Zero::Wanted => {
                 self.zero = Zero::At(*tick);
-                *tick = 0;
+                *tick = Tick::from_micros(0);
             }
-            Zero::At(zero) => *tick = tick.wrapping_sub(zero),
+            Zero::At(zero) => *tick = Tick::from(tick.micros().wrapping_sub(zero.micros())),
         }
     }
 
@@ -173,6 +173,17 @@ impl Stream {
         Ok(())
     }
 
+    /// What so many bytes are for what was written, in words.
+    pub(crate) fn written(&self, bytes: u64) -> String {
+        match self.count() {
+            0 => format!("{bytes} bytes written"),
+            count => {
+                let what = if self.values > 0 { "a value" } else { "an event" };
+                format!("{bytes} bytes written, {:.2} {what}", bytes as f64 / count as f64)
+            }
+        }
+    }
+
     /// What there was besides events.
     pub(crate) fn tally(&self) -> Tally {
         self.reader.tally()
@@ -180,7 +191,7 @@ impl Stream {
 }
 
 /// What a user should know at the end.
-impl fmt::Display for Stream {
+impl fmt::Display for Stream<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (count, what) =
             if self.values > 0 { (self.values, "values") } else { (self.events, "events") };
@@ -192,7 +203,7 @@ impl fmt::Display for Stream {
         writeln!(f)?;
         write!(f, "{}", self.tally())?;
         if let Zero::At(zero) = self.zero {
-            writeln!(f, "{zero} µs taken off every tick")?;
+            writeln!(f, "{} µs taken off every tick", zero.micros())?;
         }
         if self.wraps > 0 {
             writeln!(f, "ticks wrapped {} times, after 71.6 minutes each", self.wraps)?;

@@ -38,7 +38,7 @@ pub(crate) struct LinkTally {
     pub impossible: u64,
     /// Events and keyframes of an address without a decoder.
     pub outside: u64,
-    /// Keyframes with the width of another sample type.
+    /// Keyframes of another sample type.
     pub misfits: u64,
     /// Of keyframes and the values before them.
     pub held: Held,
@@ -71,7 +71,7 @@ impl fmt::Display for Tally {
                 (link.after_loss, "frames before which the sender lost events"),
                 (link.impossible, "frames with events that cannot be"),
                 (link.outside, "events and keyframes at addresses without a decoder"),
-                (link.misfits, "keyframes with the width of another sample type"),
+                (link.misfits, "keyframes of another sample type"),
             ];
             for (count, what) in rare.into_iter().filter(|(count, _)| *count > 0) {
                 writeln!(f, "{count} {what}")?;

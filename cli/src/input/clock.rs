@@ -1,10 +1,21 @@
-//! The rate of a recording, and the gaps in it.
+//! The rate of a recording, and steps in time that are not as usual.
 
 use std::fmt;
 
-/// A step in time that is too long, or does not go forward.
+/// What is unusual of a step in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Gap {
+pub(crate) enum Kind {
+    /// It is too long.
+    Gap,
+    /// It goes back.
+    Backward,
+}
+
+/// An unusual step in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Step {
+    /// What it is.
+    pub kind: Kind,
     /// The sample before it.
     pub after: u64,
     /// How long it is, in µs.
@@ -16,92 +27,155 @@ pub(crate) struct Gap {
 pub(crate) struct Clock {
     usual_step: f64,
     longest_step: f64,
+    /// Samples a step forward, more than 1 where most times repeat the one before.
+    samples_a_step: f64,
     previous: Option<i64>,
     seen: u64,
-    count: u64,
-    first: Vec<Gap>,
+    gaps: Told,
+    backward: Told,
+    repeated: u64,
     is_timed: bool,
+}
+
+/// How many there were, and the first of them.
+#[derive(Debug, Default)]
+struct Told {
+    count: u64,
+    first: Vec<Step>,
 }
 
 impl Clock {
     /// A clock that takes the usual step from the first times, or else from a given rate.
     pub(crate) fn new(first_times: &[i64], rate: Option<f64>, steps: f64) -> Self {
-        let usual_step = median_step(first_times).or_else(|| Some(1e6 / rate?)).unwrap_or(f64::NAN);
+        let (usual_step, samples_a_step) =
+            usual_step(first_times).or_else(|| Some((1e6 / rate?, 1.0))).unwrap_or((f64::NAN, 1.0));
         Self {
             usual_step,
             longest_step: usual_step * steps,
+            samples_a_step,
             previous: None,
             seen: 0,
-            count: 0,
-            first: Vec::new(),
+            gaps: Told::default(),
+            backward: Told::default(),
+            repeated: 0,
             is_timed: !first_times.is_empty(),
         }
     }
 
     /// Samples a second, if anything is known of it.
     pub(crate) fn rate(&self) -> Option<f64> {
-        (self.usual_step > 0.0).then(|| 1e6 / self.usual_step)
+        (self.usual_step > 0.0).then(|| 1e6 / self.usual_step * self.samples_a_step)
     }
 
-    /// Takes the next times and gives the gaps among them.
-    pub(crate) fn observe(&mut self, times: &[i64]) -> Vec<Gap> {
-        const TOLD: usize = 5;
-        let mut gaps = Vec::new();
+    /// Takes the next times and gives the unusual steps among them.
+    pub(crate) fn observe(&mut self, times: &[i64]) -> Vec<Step> {
+        let mut steps = Vec::new();
         for &time in times {
             if let Some(previous) = self.previous {
-                let microseconds = time - previous;
-                if microseconds <= 0 || microseconds as f64 > self.longest_step {
-                    gaps.push(Gap { after: self.seen - 1, microseconds });
+                let microseconds = time.saturating_sub(previous);
+                let kind = match microseconds {
+                    0 => {
+                        self.repeated += 1;
+                        None
+                    }
+                    ..0 => Some(Kind::Backward),
+                    _ => (microseconds as f64 > self.longest_step).then_some(Kind::Gap),
+                };
+                if let Some(kind) = kind {
+                    let step = Step { kind, after: self.seen - 1, microseconds };
+                    let told = match kind {
+                        Kind::Gap => &mut self.gaps,
+                        Kind::Backward => &mut self.backward,
+                    };
+                    told.take(step);
+                    steps.push(step);
                 }
             }
             self.previous = Some(time);
             self.seen += 1;
         }
-        self.count += gaps.len() as u64;
-        let left = TOLD.saturating_sub(self.first.len());
-        self.first.extend(gaps.iter().take(left));
-        gaps
+        steps
     }
 }
 
-/// What there is to report, or nothing.
-impl fmt::Display for Clock {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if !self.is_timed {
-            return write!(f, "no times are recorded, so gaps cannot be seen");
+impl Told {
+    fn take(&mut self, step: Step) {
+        const TOLD: usize = 5;
+        self.count += 1;
+        if self.first.len() < TOLD {
+            self.first.push(step);
         }
-        let (usual, longest) = (self.usual_step / 1e3, self.longest_step / 1e3);
-        write!(f, "{} gaps above {longest:.3} ms where {usual:.3} ms are usual", self.count)?;
-        for (place, gap) in self.first.iter().enumerate() {
+    }
+}
+
+impl fmt::Display for Told {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (place, step) in self.first.iter().enumerate() {
             let before = if place == 0 { ": " } else { ", " };
-            write!(
-                f,
-                "{before}{:.3} ms after sample {}",
-                gap.microseconds as f64 / 1e3,
-                gap.after
-            )?;
+            let milliseconds = step.microseconds as f64 / 1e3;
+            write!(f, "{before}{milliseconds:.3} ms after sample {}", step.after)?;
         }
         let more = self.count - self.first.len() as u64;
         if more > 0 { write!(f, ", and {more} more") } else { Ok(()) }
     }
 }
 
-fn median_step(times: &[i64]) -> Option<f64> {
-    let mut steps: Vec<i64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_unstable();
-    steps.get(steps.len() / 2).map(|&step| step as f64)
+/// What there is to report.
+impl fmt::Display for Clock {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.is_timed {
+            return write!(f, "no times are recorded, so gaps cannot be seen");
+        }
+        if self.usual_step > 0.0 {
+            let (usual, longest) = (self.usual_step / 1e3, self.longest_step / 1e3);
+            let (count, gaps) = (self.gaps.count, &self.gaps);
+            write!(f, "{count} gaps above {longest:.3} ms where {usual:.3} ms are usual{gaps}")?;
+        } else {
+            write!(f, "no time comes after the one before, so gaps cannot be seen")?;
+        }
+        if self.backward.count > 0 {
+            write!(f, "; {} steps back in time{}", self.backward.count, self.backward)?;
+        }
+        if self.repeated > 0 {
+            write!(f, "; {} times equal the one before, in whole µs", self.repeated)?;
+        }
+        Ok(())
+    }
+}
+
+/// The median of the steps forward, and how many samples there are for each.
+fn usual_step(times: &[i64]) -> Option<(f64, f64)> {
+    let steps = times.windows(2).map(|pair| pair[1].saturating_sub(pair[0]));
+    let mut forward: Vec<i64> = steps.filter(|&step| step > 0).collect();
+    forward.sort_unstable();
+    let usual = *forward.get(forward.len() / 2)? as f64;
+    let samples = (times.len() - 1) as f64 / forward.len() as f64;
+    Some((usual, if samples >= 2.0 { samples } else { 1.0 }))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Clock, Gap};
+    use super::{Clock, Kind, Step};
 
     #[test]
-    fn long_and_backward_steps_are_gaps() {
-        let times = [0, 10, 20, 30, 60, 70, 65, 75];
+    fn long_backward_and_repeated_steps_are_told_apart() {
+        let times = [0, 10, 20, 30, 60, 70, 65, 75, 75];
         let mut clock = Clock::new(&times, None, 1.5);
-        let gaps = clock.observe(&times);
-        assert_eq!(gaps, [Gap { after: 3, microseconds: 30 }, Gap { after: 5, microseconds: -5 }]);
+        let steps = clock.observe(&times);
+        let step = |kind, after, microseconds| Step { kind, after, microseconds };
+        assert_eq!(steps, [step(Kind::Gap, 3, 30), step(Kind::Backward, 5, -5)]);
         assert_eq!(clock.rate(), Some(1e5));
+        let told = clock.to_string();
+        assert!(told.starts_with("1 gaps above 0.015 ms"), "{told}");
+        assert!(told.contains("; 1 steps back in time: -0.005 ms after sample 5"), "{told}");
+        assert!(told.ends_with("; 1 times equal the one before, in whole µs"), "{told}");
+    }
+
+    #[test]
+    fn times_of_batches_are_no_gaps() {
+        let times: Vec<i64> = (0..1000).map(|sample| sample / 4 * 20_000).collect();
+        let mut clock = Clock::new(&times, None, 1.5);
+        assert_eq!(clock.observe(&times), []);
+        assert!((clock.rate().unwrap() - 200.0).abs() < 1.0, "{:?}", clock.rate());
     }
 }

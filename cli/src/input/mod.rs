@@ -1,19 +1,25 @@
-//! Recordings: one channel of a CSV table or of a flight log, a chunk at a time.
+//! Recordings: channels of a CSV table or of a flight log, a chunk at a time.
 
 mod clock;
 mod csv;
 mod names;
+mod text;
+mod time;
 mod ulog;
 
-pub(crate) use clock::{Clock, Gap};
+pub(crate) use clock::{Clock, Kind, Step};
 pub(crate) use names::near;
+pub(crate) use text::text;
 pub(crate) use ulog::Log;
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use flate2::read::MultiGzDecoder;
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::{self, Cursor, Read};
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use time::TimeUnit;
 
 /// How many samples a chunk holds.
 pub(crate) const CHUNK: usize = 8192;
@@ -21,45 +27,124 @@ pub(crate) const CHUNK: usize = 8192;
 /// Where samples come from.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InputOptions {
-    /// CSV table with a header, or PX4 flight log (`ULog`); `-` is a CSV table on standard input
+    /// CSV table with a header, or PX4 flight log (`ULog`), also compressed by gzip; `-` is a CSV table on
+    /// standard input
     pub input: PathBuf,
-    /// Column of a CSV table, by name or by number from 1
+    /// Column of a CSV table, by name or by number from 1; `encode` takes several
     #[arg(long, help_heading = "Input")]
-    pub column: Option<String>,
-    /// Column that holds the time: in seconds, or as `_ms`, `_us` or `_ns` at the end of its name say.
-    /// `time_us`, `timestamp` (µs) and the like are known
-    #[arg(long, help_heading = "Input")]
+    pub column: Vec<String>,
+    /// Several columns at once: `gyro_x,gyro_y,gyro_z`
+    #[arg(long, value_delimiter = ',', value_name = "NAMES", help_heading = "Input")]
+    columns: Vec<String>,
+    /// Column that holds the time; found by its name, as Betaflight, `ArduPilot`, PX4, ROS and pandas
+    /// write it, unless given
+    #[arg(long, value_name = "COLUMN", help_heading = "Input")]
     pub time: Option<String>,
+    /// Unit of that column; told by its name, such as `time (us)` or `stamp_ns`, or by its values,
+    /// unless given
+    #[arg(long, value_name = "UNIT", help_heading = "Input")]
+    pub time_unit: Option<TimeUnit>,
+    /// What stands between columns: `,` `;` `|` `tab` `space`; found in the header unless given
+    #[arg(long, help_heading = "Input")]
+    pub delimiter: Option<Delimiter>,
     /// Topic of a flight log, `:1` after it for its second instance
     #[arg(long, help_heading = "Input")]
     pub topic: Option<String>,
-    /// Field of that topic, such as `gyro_rad[0]`
+    /// Field of that topic, such as `gyro_rad[0]`; `encode` takes several
     #[arg(long, help_heading = "Input")]
-    pub field: Option<String>,
+    pub field: Vec<String>,
+    /// Several fields at once: `gyro_rad[0],gyro_rad[1]`
+    #[arg(long, value_delimiter = ',', value_name = "NAMES", help_heading = "Input")]
+    fields: Vec<String>,
     /// Samples a second, where no time is recorded
     #[arg(long, value_parser = above_zero, help_heading = "Input")]
     pub rate: Option<f64>,
     /// Report steps in time above this many usual steps
     #[arg(long, default_value_t = 1.5, value_parser = above_zero, help_heading = "Input")]
     pub gap: f64,
-    /// Go on over values that are not finite: they emit nothing and are counted
+    /// Go on over rows with a value that is missing (empty, `NA`) or not finite: they emit nothing and
+    /// are counted
     #[arg(long, help_heading = "Input")]
     pub skip_non_finite: bool,
-    /// Take the whole messages of a flight log that is cut short
+    /// Take the whole messages of a flight log that is cut short or damaged
     #[arg(long, help_heading = "Input")]
     pub accept_cut: bool,
+}
+
+/// What stands between the columns of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Delimiter(pub u8);
+
+impl FromStr for Delimiter {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match (text, text.as_bytes()) {
+            ("tab" | "\\t", _) => Ok(Self(b'\t')),
+            ("space", _) => Ok(Self(b' ')),
+            (_, &[byte]) if byte.is_ascii() && !byte.is_ascii_alphanumeric() => Ok(Self(byte)),
+            _ => Err("must be one character, `tab` or `space`".to_owned()),
+        }
+    }
 }
 
 /// Samples in order, with their times where there are any.
 #[derive(Debug, Default)]
 pub(crate) struct Chunk {
-    /// The samples, perhaps not finite.
-    pub values: Vec<f64>,
+    /// The samples by channel, perhaps not finite, of each channel as many.
+    pub columns: Vec<Vec<f64>>,
     /// Their times in µs: as many, or none at all.
     pub times: Vec<i64>,
 }
 
-/// One channel of a recording.
+impl Chunk {
+    /// How many samples a channel has.
+    pub(crate) fn len(&self) -> usize {
+        self.columns.first().map_or(0, Vec::len)
+    }
+
+    /// Whether there is no sample.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Without samples, for so many channels.
+    fn clear(&mut self, channels: usize) {
+        self.columns.resize(channels, Vec::new());
+        self.columns.iter_mut().for_each(Vec::clear);
+        self.times.clear();
+    }
+
+    /// Adds the samples of another.
+    pub(crate) fn append(&mut self, other: &mut Self) {
+        self.columns.resize(other.columns.len(), Vec::new());
+        for (column, more) in self.columns.iter_mut().zip(&mut other.columns) {
+            column.append(more);
+        }
+        self.times.append(&mut other.times);
+    }
+
+    /// By row, whether all its values are finite.
+    pub(crate) fn finite_rows(&self) -> Vec<bool> {
+        let mut rows = vec![true; self.len()];
+        for column in &self.columns {
+            for (row, value) in rows.iter_mut().zip(column) {
+                *row &= value.is_finite();
+            }
+        }
+        rows
+    }
+
+    /// The values of the rows marked, by channel.
+    pub(crate) fn kept(&self, rows: &[bool]) -> Vec<Vec<f64>> {
+        let kept = |column: &Vec<f64>| {
+            column.iter().zip(rows).filter(|(_, kept)| **kept).map(|(value, _)| *value).collect()
+        };
+        self.columns.iter().map(kept).collect()
+    }
+}
+
+/// Channels of a recording.
 pub(crate) trait Source {
     /// Replaces the chunk by the next samples; none are left if it stays empty.
     ///
@@ -67,8 +152,11 @@ pub(crate) trait Source {
     /// What cannot be read, and where.
     fn next(&mut self, chunk: &mut Chunk) -> Result<()>;
 
-    /// What the channel is, as keys and values for the header of a file of spikes.
+    /// What the channels are, as keys and values for the header of a file of spikes.
     fn origin(&self) -> &[(&'static str, String)];
+
+    /// What a user should know of how it is read, a line each.
+    fn notes(&self) -> &[String];
 }
 
 impl InputOptions {
@@ -79,17 +167,21 @@ impl InputOptions {
     pub(crate) fn open(&self) -> Result<Box<dyn Source>> {
         let of_logs = [
             ("--topic", self.topic.is_some()),
-            ("--field", self.field.is_some()),
+            ("--field", !self.field.is_empty()),
+            ("--fields", !self.fields.is_empty()),
             ("--accept-cut", self.accept_cut),
         ];
         let of_tables = [
-            ("--column", self.column.is_some()),
+            ("--column", !self.column.is_empty()),
+            ("--columns", !self.columns.is_empty()),
             ("--time", self.time.is_some()),
+            ("--time-unit", self.time_unit.is_some()),
+            ("--delimiter", self.delimiter.is_some()),
             ("--rate", self.rate.is_some()),
         ];
         if self.is_stdin() {
             self.refuse(&of_logs, "a CSV table")?;
-            return Ok(Box::new(csv::Table::open(io::stdin().lock(), "standard input", self)?));
+            return Ok(Box::new(csv::Table::open(io::stdin(), "standard input", self)?));
         }
         let name = self.input.display().to_string();
         let file = File::open(&self.input).with_context(|| format!("{name}: cannot be opened"))?;
@@ -106,20 +198,29 @@ impl InputOptions {
         self.input == Path::new("-")
     }
 
-    /// The whole recording.
+    /// Its name, for messages.
+    pub(crate) fn name(&self) -> String {
+        if self.is_stdin() { "standard input".to_owned() } else { self.input.display().to_string() }
+    }
+
+    /// The columns asked for.
+    fn columns(&self) -> impl Iterator<Item = &str> {
+        self.column.iter().chain(&self.columns).map(String::as_str)
+    }
+
+    /// The fields asked for.
+    fn fields(&self) -> impl Iterator<Item = &str> {
+        self.field.iter().chain(&self.fields).map(String::as_str)
+    }
+
+    /// Refuses several channels.
     ///
     /// # Errors
-    /// As [`open`](Self::open), or what cannot be read.
-    pub(crate) fn read_all(&self) -> Result<Chunk> {
-        let mut source = self.open()?;
-        let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
-        loop {
-            source.next(&mut chunk)?;
-            if chunk.values.is_empty() {
-                return Ok(all);
-            }
-            all.values.append(&mut chunk.values);
-            all.times.append(&mut chunk.times);
+    /// More than one is asked for.
+    pub(crate) fn single(&self, command: &str) -> Result<()> {
+        match self.columns().count().max(self.fields().count()) {
+            0 | 1 => Ok(()),
+            many => bail!("{command} takes one column or field, not {many}; encode takes several"),
         }
     }
 
@@ -139,10 +240,18 @@ pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Whether a file starts as flight logs do, whatever its name.
+/// Whether a file starts as flight logs do, whatever its name, also when compressed.
 pub(crate) fn is_flight_log(path: &Path) -> Result<bool> {
-    let mut start = Vec::new();
-    let file = File::open(path).with_context(|| format!("{}: cannot be opened", path.display()))?;
-    file.take(4).read_to_end(&mut start).with_context(|| format!("{}", path.display()))?;
-    Ok(start == b"ULog" || path.extension().is_some_and(|extension| extension == "ulg"))
+    let start = |input: &mut dyn Read| {
+        let mut start = Vec::new();
+        input.take(4).read_to_end(&mut start).map(|_| start)
+    };
+    let mut file =
+        File::open(path).with_context(|| format!("{}: cannot be opened", path.display()))?;
+    let mut found = start(&mut file).with_context(|| format!("{}", path.display()))?;
+    if found.starts_with(&text::GZIP) {
+        let all = Cursor::new(found).chain(file);
+        found = start(&mut MultiGzDecoder::new(all)).unwrap_or_default();
+    }
+    Ok(found == b"ULog" || path.extension().is_some_and(|extension| extension == "ulg"))
 }

@@ -3,7 +3,7 @@
 use super::FONT;
 use super::palette::{self, GRID, INK};
 use super::title::{Drawn, TITLE, title};
-use crate::scheme::SchemeName;
+use crate::scheme::Scheme;
 use crate::trial::Trial;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -13,8 +13,9 @@ pub(super) fn draw<B: DrawingBackend>(
     trials: &[Trial],
     letter: char,
 ) -> Drawn<B> {
-    title(area, Some(letter), "Spiking efficiency, % of samples without a spike")?;
-    let mut ranked: Vec<(SchemeName, f64)> =
+    let details = ["of the whole recording".to_owned()];
+    title(area, Some(letter), "Spiking efficiency, % of samples without a spike", &details)?;
+    let mut ranked: Vec<(Scheme, f64)> =
         trials.iter().map(|trial| (trial.scheme, trial.efficiency())).collect();
     ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
     let area = area.margin(TITLE, 12, 16, 40);
@@ -47,7 +48,7 @@ pub(super) fn draw<B: DrawingBackend>(
                 + Text::new(text, offset, (FONT, 14).into_font().color(&INK))
         };
         chart.draw_series([
-            label(scheme.title().to_owned(), 0.0, (-54, -8)),
+            label(scheme.info().title.to_owned(), 0.0, (-54, -8)),
             label(format!("{efficiency:.1}"), efficiency.max(0.0), (6, -8)),
         ])?;
     }

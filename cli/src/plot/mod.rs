@@ -1,19 +1,22 @@
 //! Pictures of trials, as SVG or PNG.
 
+mod bitmap;
 mod efficiencies;
 mod layout;
 mod palette;
 mod panel;
+mod thin;
 mod title;
 
 use crate::trial::{Recording, Trial};
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow, bail};
+use bitmap::Bitmap;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
-use std::fs;
 use std::io::Write;
 use std::ops::Range;
 use std::path::Path;
+use tiny_skia::{Color, Pixmap};
 
 use crate::output::Output;
 
@@ -23,6 +26,8 @@ pub(crate) struct Picture<'a> {
     pub recording: &'a Recording,
     /// One panel each.
     pub trials: &'a [Trial],
+    /// The unit of the signal, if it is known.
+    pub unit: Option<&'a str>,
     /// The samples to show.
     pub shown: Range<usize>,
 }
@@ -33,8 +38,8 @@ const FONT: &str = "sans-serif";
 /// Draws into a file, by its ending.
 ///
 /// # Errors
-/// The ending is neither `.svg` nor `.png`, or the file cannot be written.
-pub(crate) fn draw(path: &Path, picture: &Picture) -> Result<()> {
+/// The ending is neither `.svg` nor `.png`, or the file cannot be written or is the input.
+pub(crate) fn draw(path: &Path, input: &Path, picture: &Picture) -> Result<()> {
     for style in [FontStyle::Normal, FontStyle::Bold] {
         register_font(FONT, style, epaint_default_fonts::UBUNTU_LIGHT)
             .map_err(|_| anyhow!("the font does not load"))?;
@@ -44,21 +49,22 @@ pub(crate) fn draw(path: &Path, picture: &Picture) -> Result<()> {
         Some("svg") => {
             let mut text = String::new();
             fill(&SVGBackend::with_string(&mut text, size).into_drawing_area(), picture)?;
-            text.into_bytes()
+            // As in PNG: a bend does not stick out beyond the data.
+            text.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1).into_bytes()
         }
         Some("png") => png(size, picture)?,
         _ => bail!("{}: a picture ends in .svg or .png", path.display()),
     };
-    let mut output = Output::open(Some(path))?;
+    let mut output = Output::open(Some(path), input)?;
     output.write_all(&bytes)?;
     output.finish()
 }
 
-/// The encoder of the bitmap backend writes files only.
-fn png(size: (u32, u32), picture: &Picture) -> Result<Vec<u8>> {
-    let file = tempfile::Builder::new().suffix(".png").tempfile()?;
-    fill(&BitMapBackend::new(file.path(), size).into_drawing_area(), picture)?;
-    Ok(fs::read(file.path())?)
+fn png((width, height): (u32, u32), picture: &Picture) -> Result<Vec<u8>> {
+    let mut pixels = Pixmap::new(width, height).context("the picture has no size")?;
+    pixels.fill(Color::WHITE);
+    fill(&Bitmap::new(&mut pixels).into_drawing_area(), picture)?;
+    Ok(pixels.encode_png()?)
 }
 
 fn fill<B: DrawingBackend>(

@@ -1,15 +1,19 @@
 //! One trial's panel: signal and reconstruction over spikes.
 
 use super::palette::{DECODED, DOWN, GRID, INK, SIGNAL, UP};
-use super::title::{Drawn, TITLE, title};
+use super::thin::{column, thin};
+use super::title::{Drawn, TITLE, legend, title};
 use super::{FONT, Picture};
-use crate::codec::Event;
+use crate::brief::brief;
+
 use crate::trial::Trial;
+use catalogue::run::Event;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use spikewire::Polarity;
+use std::collections::HashSet;
 
-const LABELS: u32 = 46;
+const LABELS: u32 = 64;
 /// The part of a panel that the spikes take.
 const SPIKES: f64 = 0.28;
 
@@ -23,7 +27,13 @@ pub(super) fn draw<B: DrawingBackend>(
         trial.events.iter().filter(|event| picture.shown.contains(&(event.sample as usize)));
     let count = spikes_shown.clone().count();
     let shown = picture.shown.len();
-    title(area, letter, &format!("{}   {count} spikes on {shown} samples", trial.scheme.title()))?;
+    let text = format!("{}   {count} spikes on {shown} samples", trial.scheme.info().title);
+    let mut details = vec![brief(trial.settings.entries())];
+    if trial.latency > 0 {
+        details.push(format!("decoded shown without its latency of {} samples", trial.latency));
+    }
+    title(area, letter, &text, &details)?;
+    legend(area)?;
     let (_, height) = area.dim_in_pixel();
     let (upper, lower) = area
         .margin(TITLE, 0, 4, 16)
@@ -48,27 +58,17 @@ pub(super) fn draw<B: DrawingBackend>(
         .bold_line_style(GRID)
         .axis_style(GRID)
         .y_label_formatter(&|value| short(*value))
+        .y_desc(y_label(picture))
+        .axis_desc_style((FONT, 13).into_font().color(&INK))
         .label_style((FONT, 13).into_font().color(&INK))
         .draw()?;
+    let columns = chart.plotting_area().dim_in_pixel().0;
     let points = |values: &[f64]| -> Vec<(f64, f64)> {
-        picture.shown.clone().zip(values).map(|(sample, &value)| (at(sample), value)).collect()
+        let all = picture.shown.clone().zip(values).map(|(sample, &value)| (at(sample), value));
+        thin(all, &x_range, columns)
     };
-    chart
-        .draw_series(LineSeries::new(points(signal), SIGNAL.stroke_width(2)))?
-        .label("signal")
-        .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], SIGNAL.stroke_width(2)));
-    chart
-        .draw_series(LineSeries::new(points(decoded), DECODED.stroke_width(2)))?
-        .label("decoded")
-        .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], DECODED.stroke_width(2)));
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.8))
-        .margin(4)
-        .legend_area_size(20)
-        .label_font((FONT, 13).into_font().color(&INK))
-        .draw()?;
+    chart.draw_series(LineSeries::new(points(signal), SIGNAL.stroke_width(2)))?;
+    chart.draw_series(LineSeries::new(points(decoded), DECODED.stroke_width(2)))?;
     spikes(&lower, picture, trial, x_range, spikes_shown)
 }
 
@@ -80,56 +80,74 @@ fn spikes<'a, B: DrawingBackend>(
     events: impl Iterator<Item = &'a Event>,
 ) -> Drawn<B> {
     let at = times(picture);
-    let neurons = trial.settings.neurons();
-    let rows = match (trial.scheme.is_signed(), neurons) {
+    let neurons = trial.shape.neurons;
+    let rows = match (trial.scheme.info().is_signed, neurons) {
         (true, _) => -1.25..1.25,
         (false, 1) => 0.0..1.25,
         (false, _) => -0.8..neurons as f64 - 0.2,
     };
     let is_population = neurons > 1;
-    let unit = if picture.recording.rate.is_some() { " s" } else { "" };
     let mut chart = ChartBuilder::on(area)
         .set_label_area_size(LabelAreaPosition::Left, LABELS)
-        .set_label_area_size(LabelAreaPosition::Bottom, 30)
-        .build_cartesian_2d(x_range, rows)?;
+        .set_label_area_size(LabelAreaPosition::Bottom, 42)
+        .build_cartesian_2d(x_range.clone(), rows)?;
     chart
         .configure_mesh()
         .disable_mesh()
         .x_labels(8)
         .y_labels(if is_population { 4 } else { 3 })
         .axis_style(GRID)
-        .x_label_formatter(&|value| format!("{}{unit}", short(*value)))
+        .x_desc(if picture.recording.rate.is_some() { "time, s" } else { "sample" })
+        .y_desc(if is_population { "neuron" } else { "spikes" })
+        .axis_desc_style((FONT, 13).into_font().color(&INK))
+        .x_label_formatter(&|value| short(*value))
         .y_label_formatter(&|value| {
             if is_population {
                 format!("{value:.0}")
             } else {
-                format!("{value:+.0}").replace("+0", "0")
+                match *value {
+                    0.0 => "0".to_owned(),
+                    whole if whole.fract() == 0.0 => format!("{whole:+.0}"),
+                    _ => String::new(),
+                }
             }
         })
         .label_style((FONT, 13).into_font().color(&INK))
         .draw()?;
-    let slots = trial.settings.slots() as f64;
-    chart.draw_series(events.map(|event| {
-        let x = at(event.sample as usize)
-            + f64::from(event.slot) / slots
-                * (at(1) - at(0)).max(0.0)
-                * f64::from(u8::from(slots > 1.0));
-        let (low, high) = match (is_population, event.polarity) {
+    let slots = trial.shape.slots as f64;
+    let step = if slots > 1.0 { (at(1) - at(0)).max(0.0) / slots } else { 0.0 };
+    let columns = chart.plotting_area().dim_in_pixel().0;
+    let mut drawn = HashSet::new();
+    for event in events {
+        let x = at(event.sample as usize) + f64::from(event.slot) * step;
+        let is_up = event.polarity == Polarity::Up;
+        // One stroke for all spikes of a neuron that fall on it.
+        if !drawn.insert((column(x, &x_range, columns), event.neuron, is_up)) {
+            continue;
+        }
+        let (low, high) = match (is_population, is_up) {
             (true, _) => (f64::from(event.neuron) - 0.42, f64::from(event.neuron) + 0.42),
-            (false, Polarity::Up) => (0.0, 1.0),
-            (false, Polarity::Down) => (-1.0, 0.0),
+            (false, true) => (0.0, 1.0),
+            (false, false) => (-1.0, 0.0),
         };
-        let colour = if event.polarity == Polarity::Up { UP } else { DOWN };
-        PathElement::new([(x, low), (x, high)], colour.stroke_width(1))
-    }))?;
+        let colour = if is_up { UP } else { DOWN };
+        let stroke = PathElement::new([(x, low), (x, high)], colour.stroke_width(1));
+        chart.draw_series([stroke])?;
+    }
     Ok(())
+}
+
+/// The signal's name and unit.
+fn y_label(picture: &Picture) -> String {
+    let name = &picture.recording.name;
+    picture.unit.map_or(name.clone(), |unit| format!("{name}, {unit}"))
 }
 
 /// When a sample is, in seconds from the start, or else its number.
 fn times<'a>(picture: &'a Picture) -> impl Fn(usize) -> f64 + 'a {
     let recording = picture.recording;
     move |sample| match (recording.times.get(sample), recording.times.first(), recording.rate) {
-        (Some(time), Some(first), _) => (time - first) as f64 * 1e-6,
+        (Some(time), Some(first), _) => time.saturating_sub(*first) as f64 * 1e-6,
         (_, _, Some(rate)) => sample as f64 / rate,
         _ => sample as f64,
     }

@@ -1,27 +1,45 @@
 //! What stands over every panel.
 
 use super::FONT;
-use super::palette::INK;
+use super::palette::{DECODED, INK, QUIET, SIGNAL};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
 pub(super) type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
 /// Its height.
-pub(super) const TITLE: u32 = 34;
+pub(super) const TITLE: u32 = 52;
 
-/// The title of a panel, behind its letter.
+/// The title of a panel, behind its letter, and below it in small letters what it was made with.
 pub(super) fn title<B: DrawingBackend>(
     area: &DrawingArea<B, Shift>,
     letter: Option<char>,
     text: &str,
+    details: &[String],
 ) -> Drawn<B> {
     let bold = (FONT, 19).into_font().style(FontStyle::Bold).color(&INK);
     let plain = (FONT, 16).into_font().color(&INK);
+    let small = (FONT, 12).into_font().color(&QUIET);
     let mut left = 14;
     if let Some(letter) = letter {
-        area.draw(&Text::new(letter.to_string(), (left, 9), bold))?;
+        area.draw(&Text::new(letter.to_string(), (left, 5), bold))?;
         left += 24;
     }
-    area.draw(&Text::new(text.to_owned(), (left, 11), plain))
+    area.draw(&Text::new(text.to_owned(), (left, 7), plain))?;
+    for (top, line) in [25, 38].into_iter().zip(details) {
+        area.draw(&Text::new(line.clone(), (left, top), small.clone()))?;
+    }
+    Ok(())
+}
+
+/// Which curve is which, beside the title, where no curve is.
+pub(super) fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>) -> Drawn<B> {
+    let width = area.dim_in_pixel().0 as i32;
+    let small = (FONT, 13).into_font().color(&INK);
+    for (label, colour, left) in [("signal", SIGNAL, width - 176), ("decoded", DECODED, width - 96)]
+    {
+        area.draw(&PathElement::new([(left, 14), (left + 18, 14)], colour.stroke_width(2)))?;
+        area.draw(&Text::new(label, (left + 24, 8), small.clone()))?;
+    }
+    Ok(())
 }

@@ -1,16 +1,28 @@
 //! Reads a file of spikes line by line.
 
 use super::Header;
-use crate::codec::Event;
 use anyhow::{Context, Result, anyhow, bail};
+use catalogue::run::Event;
 use spikewire::Polarity;
-use std::io::BufRead;
+use std::io::{BufRead, Read};
 
 /// What follows the header.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Item {
     /// A spike; samples are counted as the file does.
-    Event(Event),
+    Event {
+        /// What it is.
+        event: Event,
+        /// The time of its sample in µs.
+        time: Option<i64>,
+    },
+    /// When a sample was taken.
+    Time {
+        /// The sample.
+        sample: u64,
+        /// In µs.
+        time: i64,
+    },
     /// Values that were not finite.
     Rejected {
         /// The first of them.
@@ -35,6 +47,10 @@ pub(crate) struct Reader<R> {
     neurons: u64,
     is_signed: bool,
     columns: usize,
+    /// From sample to sample, in µs.
+    period: u64,
+    /// The last `# time=`.
+    noted: Option<(u64, i64)>,
     previous: u64,
     events: u64,
     samples: Option<u64>,
@@ -56,6 +72,8 @@ impl<R: BufRead> Reader<R> {
             neurons: 1,
             is_signed: false,
             columns: 3,
+            period: 0,
+            noted: None,
             previous: 0,
             events: 0,
             samples: None,
@@ -91,13 +109,21 @@ impl<R: BufRead> Reader<R> {
             break;
         }
         let header = Header::parse(lines).with_context(|| file.to_owned())?;
-        reader.slots = header.settings.slots() as u64;
-        reader.neurons = header.settings.neurons() as u64;
-        reader.is_signed = header.scheme.is_signed();
-        if reader.slots == 0 {
-            bail!("{file}: the header says slots=0");
+        let mut neurons = 0;
+        for settings in &header.channels {
+            let shape = header.scheme.shape(settings).with_context(|| file.to_owned())?;
+            reader.slots = shape.slots as u64;
+            neurons += shape.neurons as u64;
         }
+        reader.neurons = neurons;
+        reader.period = header.rate.map_or(0, |rate| (1e6 / rate).round() as u64);
+        reader.is_signed = header.scheme.info().is_signed;
         Ok((reader, header))
+    }
+
+    /// Whether its events have times.
+    pub(crate) fn is_timed(&self) -> bool {
+        self.columns == 4
     }
 
     /// The next item; the last is [`Item::End`].
@@ -107,7 +133,7 @@ impl<R: BufRead> Reader<R> {
     pub(crate) fn next(&mut self) -> Result<Item> {
         while self.next_line()? {
             if self.line.first() != Some(&b'#') {
-                return Ok(Item::Event(self.event()?));
+                return self.event();
             }
             let text = self.text();
             let note = text.trim_start_matches('#').trim();
@@ -115,12 +141,23 @@ impl<R: BufRead> Reader<R> {
             match key {
                 "samples" => self.samples = Some(self.count(value)?),
                 "events" => self.told_events = Some(self.count(value)?),
-                "gap" => {}
+                "time" => {
+                    let (sample, time) = self.pair(value)?;
+                    self.noted = Some((sample, time));
+                    return Ok(Item::Time { sample, time });
+                }
+                "gap" | "backward" => {
+                    let (after, step) = self.pair(value)?;
+                    if let Some((_, time)) = self.noted.filter(|&(sample, _)| sample == after) {
+                        let time = time.saturating_add(step);
+                        return Ok(Item::Time { sample: after.saturating_add(1), time });
+                    }
+                }
                 "rejected" => {
                     let (first, count) = value.split_once(',').unwrap_or((value, ""));
                     let (first, count) = (self.count(first)?, self.count(count)?);
                     self.rises(first)?;
-                    self.previous = first + count;
+                    self.previous = first.saturating_add(count);
                     return Ok(Item::Rejected { first, count });
                 }
                 _ => bail!("{}: `# {key}=` has no meaning among the events", self.place()),
@@ -151,9 +188,20 @@ impl<R: BufRead> Reader<R> {
         format!("{}: line {}", self.file, self.number)
     }
 
-    fn event(&mut self) -> Result<Event> {
+    /// A sample and a number.
+    fn pair(&self, value: &str) -> Result<(u64, i64)> {
+        let (sample, number) = value.split_once(',').unwrap_or((value, ""));
+        let number = number.parse();
+        Ok((
+            self.count(sample)?,
+            number.map_err(|_| anyhow!("{}: `{value}` is not SAMPLE,µs", self.place()))?,
+        ))
+    }
+
+    fn event(&mut self) -> Result<Item> {
         let mut fields = self.line.split(|&byte| byte == b',');
         let (index, neuron, polarity) = (fields.next(), fields.next(), fields.next());
+        let time = fields.clone().next();
         let (Some(index), Some(neuron), Some(polarity)) = (index, neuron, polarity) else {
             bail!("{}: `{}` is not an event", self.place(), self.text());
         };
@@ -188,7 +236,20 @@ impl<R: BufRead> Reader<R> {
         self.rises(sample)?;
         self.previous = sample;
         self.events += 1;
-        Ok(Event { sample, neuron: neuron as u16, slot, polarity })
+        let within = self.period.saturating_mul(slot.into()) / self.slots;
+        let time = match time {
+            Some(time) => {
+                let time: Option<i64> =
+                    str::from_utf8(time).ok().and_then(|time| time.parse().ok());
+                let Some(time) = time else {
+                    bail!("{}: `{}` has no time in µs", self.place(), self.text());
+                };
+                Some(time.saturating_sub_unsigned(within))
+            }
+            None => None,
+        };
+        let event = Event { sample, neuron: neuron as u16, slot, polarity };
+        Ok(Item::Event { event, time })
     }
 
     fn rises(&self, sample: u64) -> Result<()> {
@@ -203,8 +264,13 @@ impl<R: BufRead> Reader<R> {
     }
 
     fn next_line(&mut self) -> Result<bool> {
+        const LONGEST: u64 = 1 << 20;
         self.line.clear();
-        self.input.read_until(b'\n', &mut self.line).with_context(|| self.file.clone())?;
+        let mut input = (&mut self.input).take(LONGEST);
+        input.read_until(b'\n', &mut self.line).with_context(|| self.file.clone())?;
+        if self.line.iter().any(|byte| matches!(byte, 0..=8 | 14..=31)) {
+            bail!("{}: binary, not a file of spikes", self.file);
+        }
         let is_some = !self.line.is_empty();
         self.number += u64::from(is_some);
         while self.line.last().is_some_and(u8::is_ascii_whitespace) {

@@ -1,9 +1,9 @@
 //! Writes a file of spikes while the samples come in.
 
 use super::Header;
-use crate::codec::Event;
-use crate::input::Gap;
+use crate::input::{Chunk, Kind, Step};
 use anyhow::Result;
+use catalogue::run::Event;
 use spikewire::Polarity;
 use std::collections::VecDeque;
 use std::io::Write;
@@ -26,6 +26,8 @@ pub(crate) struct Writer<W> {
     notes: VecDeque<(u64, String)>,
     /// A run of values that were not finite, which may go on: its first index and length.
     rejected_run: Option<(u64, u64)>,
+    /// The time of the last sample.
+    last_time: i64,
     summary: Summary,
     line: Vec<u8>,
 }
@@ -47,51 +49,82 @@ impl<W: Write> Writer<W> {
     /// # Errors
     /// It cannot be written.
     pub(crate) fn new(mut output: W, header: &Header, is_timed: bool) -> Result<Self> {
+        let slots = match header.channels.first() {
+            Some(settings) => header.scheme.shape(settings)?.slots,
+            None => 1,
+        };
         for (key, value) in header.lines() {
             writeln!(output, "# {key}={value}")?;
         }
         writeln!(output, "index,address,polarity{}", if is_timed { ",time_us" } else { "" })?;
         Ok(Self {
             output,
-            slots: header.settings.slots() as u64,
+            slots: slots as u64,
             period: header.rate.map_or(0, |rate| (1e6 / rate).round() as u64),
             is_timed,
             pending: VecDeque::new(),
             first_pending: 0,
             notes: VecDeque::new(),
             rejected_run: None,
+            last_time: 0,
             summary: Summary::default(),
             line: Vec::new(),
         })
     }
 
-    /// Takes note of the next samples and keeps the finite ones, for the encoder.
-    pub(crate) fn observe(&mut self, values: &mut Vec<f64>, times: &[i64], gaps: &[Gap]) {
-        for gap in gaps {
-            self.notes.push_back((gap.after, format!("# gap={},{}", gap.after, gap.microseconds)));
-        }
-        let mut place = 0;
-        values.retain(|value| {
-            let (index, time) = (self.summary.samples, times.get(place).copied().unwrap_or(0));
-            self.summary.samples += 1;
-            place += 1;
-            if value.is_finite() {
+    /// Takes note of the next samples and keeps the rows that are finite, for the encoder.
+    pub(crate) fn observe(&mut self, chunk: &mut Chunk, steps: &[Step]) {
+        let rows = chunk.finite_rows();
+        let mut steps = steps.iter().peekable();
+        for (place, &is_finite) in rows.iter().enumerate() {
+            let index = self.summary.samples;
+            let time = chunk.times.get(place).copied().unwrap_or(0);
+            while let Some(step) = steps.next_if(|step| step.after < index) {
+                self.end_run();
+                self.note_time(step.after, self.last_time);
+                let key = match step.kind {
+                    Kind::Gap => "gap",
+                    Kind::Backward => "backward",
+                };
+                self.note(step.after, format!("# {key}={},{}", step.after, step.microseconds));
+            }
+            if index == 0 {
+                self.note_time(0, time);
+            }
+            if is_finite {
                 self.end_run();
                 self.pending.push_back((index, time));
-                return true;
+            } else {
+                self.summary.rejected += 1;
+                let (first, length) = self.rejected_run.unwrap_or_else(|| {
+                    self.note_time(index, time);
+                    (index, 0)
+                });
+                self.rejected_run = Some((first, length + 1));
             }
-            self.summary.rejected += 1;
-            let (first, length) = self.rejected_run.unwrap_or((index, 0));
-            self.rejected_run = Some((first, length + 1));
-            false
-        });
+            self.summary.samples += 1;
+            self.last_time = time;
+        }
+        if rows.contains(&false) {
+            chunk.columns = chunk.kept(&rows);
+        }
+    }
+
+    fn note(&mut self, sample: u64, note: String) {
+        self.notes.push_back((sample, note));
+    }
+
+    fn note_time(&mut self, sample: u64, time: i64) {
+        if self.is_timed {
+            self.note(sample, format!("# time={sample},{time}"));
+        }
     }
 
     fn end_run(&mut self) {
         if let Some((first, length)) = self.rejected_run.take() {
-            self.notes.push_back((first, format!("# rejected={first},{length}")));
-            // Gaps of the same chunk may lie before.
-            self.notes.make_contiguous().sort_by_key(|&(at, _)| at);
+            let last = first + length - 1;
+            self.note_time(last, self.last_time);
+            self.note(last, format!("# rejected={first},{length}"));
         }
     }
 
@@ -148,6 +181,9 @@ impl<W: Write> Writer<W> {
     pub(crate) fn finish(mut self, events: &mut Vec<Event>) -> Result<(W, Summary)> {
         self.end_run();
         let decided = self.first_pending + self.pending.len() as u64;
+        if let Some(last) = self.summary.samples.checked_sub(1) {
+            self.note_time(last, self.last_time);
+        }
         self.write(events, decided)?;
         let Summary { samples, events, .. } = self.summary;
         writeln!(self.output, "# samples={samples}\n# events={events}")?;

@@ -34,9 +34,14 @@ pub fn spikewire_bytes(arguments: &str, input: &[u8]) -> RanBytes {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // A program that refuses its options does not read.
-    let _ = child.stdin.take().unwrap().write_all(input);
-    let done = child.wait_with_output().unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    let done = std::thread::scope(|scope| {
+        // A program that refuses its options does not read; one with much to say writes meanwhile.
+        scope.spawn(move || {
+            let _ = stdin.write_all(input);
+        });
+        child.wait_with_output().unwrap()
+    });
     RanBytes {
         status: done.status.code().unwrap(),
         output: done.stdout,
@@ -95,9 +100,17 @@ pub fn train(spikes: &str) -> Vec<i32> {
     train
 }
 
-/// The values of a decoded file.
+/// The values of a decoded file of one channel.
 pub fn values(decoded: &str) -> Vec<f64> {
-    decoded.lines().skip(1).map(|line| line.split_once(',').unwrap().1.parse().unwrap()).collect()
+    decoded.lines().skip(1).map(|line| line.split(',').nth(1).unwrap().parse().unwrap()).collect()
+}
+
+/// A file that holds this, and its directory, which goes with the value.
+pub fn file(name: &str, content: impl AsRef<[u8]>) -> (tempfile::TempDir, String) {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join(name);
+    std::fs::write(&path, content).unwrap();
+    (directory, path.display().to_string())
 }
 
 /// A file of the repository's flight data.

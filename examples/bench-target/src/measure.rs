@@ -138,7 +138,7 @@ fn decoding<P: Scheme>(
     let mut each = Cost::new("decode", "sample", decode_sample::<P> as *const (), size);
     let mut slice = Cost::new("decode", "slice", decode_slice::<P> as *const (), size);
     // One decoder for each thing measured, as every one sees every code once.
-    let mut decoders = [scheme.decoder_state(); 4];
+    let mut decoders = [(); 4].map(|()| scheme.decoder_state());
     let [one, one_stack, many, many_stack] = &mut decoders;
 
     let mut first = start();

@@ -124,17 +124,17 @@ pub fn decode<P: Scheme<Sample: Wire>>(
     decoder: &Decoder<'_, P>,
     codes: &[P::Code],
 ) -> Vec<P::Sample> {
-    let mut single = *decoder;
+    let mut single = decoder.clone();
     let expected: Vec<_> = codes.iter().map(|&code| single.decode(code)).collect();
 
     let scheme = decoder.scheme();
-    let mut apart = *decoder.state();
+    let mut apart = decoder.state().clone();
     let values: Vec<_> = codes.iter().map(|&code| scheme.decode(&mut apart, code)).collect();
     assert_same_values(&values, &reals(&expected));
 
     let few = if codes.len() > 500 { 1 } else { 3 };
     for length in [codes.len().max(1), 3, 7].into_iter().take(few) {
-        let mut mixed = *decoder.state();
+        let mut mixed = decoder.state().clone();
         let mut values = Vec::new();
         for (turn, chunk) in codes.chunks(length).enumerate() {
             if turn % 3 == 2 {
@@ -147,7 +147,7 @@ pub fn decode<P: Scheme<Sample: Wire>>(
         }
         assert_same_values(&values, &reals(&expected));
     }
-    let mut halved = *decoder;
+    let mut halved = decoder.clone();
     let mut values = vec![P::Sample::default(); codes.len() / 2];
     assert_eq!(halved.decode_slice(codes, &mut values), codes.len() / 2);
     values.extend(codes[codes.len() / 2..].iter().map(|&code| halved.decode(code)));

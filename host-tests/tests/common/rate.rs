@@ -10,22 +10,22 @@ use spikewire::rate::Taps;
 /// sample types get all, the others few, as every length is compiled for itself.
 macro_rules! all_lengths {
     ($check:ident, $sample:ty, $taps:expr, $($argument:expr),*) => {
-        common::rate::lengths!([1 2 3 8 15 24] $check, $sample, $taps, ($($argument),*))
+        crate::common::rate::lengths!([1 2 3 8 15 24] $check, $sample, $taps, ($($argument),*))
     };
 }
 macro_rules! few_lengths {
     ($check:ident, $sample:ty, $taps:expr, $($argument:expr),*) => {
-        common::rate::lengths!([1 3 8] $check, $sample, $taps, ($($argument),*))
+        crate::common::rate::lengths!([1 3 8] $check, $sample, $taps, ($($argument),*))
     };
 }
 macro_rules! lengths {
     ([$($length:literal)*] $check:ident, $sample:ty, $taps:expr, $arguments:tt) => {{
-        $(common::rate::length!($length, $check, $sample, $taps, $arguments);)*
+        $(crate::common::rate::length!($length, $check, $sample, $taps, $arguments);)*
     }};
 }
 macro_rules! length {
     ($length:literal, $check:ident, $sample:ty, $taps:expr, ($($argument:expr),*)) => {
-        $check::<$sample, $length>(&common::rate::first_taps($taps), $($argument),*);
+        $check::<$sample, $length>(&crate::common::rate::first_taps($taps), $($argument),*);
     };
 }
 pub(crate) use {all_lengths, few_lengths, length, lengths};

@@ -17,7 +17,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     ///
     /// # Errors
     /// As [`send`](Self::send), but whatever the error, call it again with the events that remain: none
-    /// is lost or sent twice. Only one whose input is not valid is dropped.
+    /// is lost or sent twice, but for those that a reset [counts](super::Counters::repeated_events). Only one
+    /// whose input is not valid is dropped.
     pub fn feed(
         &mut self,
         mut events: impl Source,

@@ -34,7 +34,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// step of neuron [`Input::PROBED`] must be answered, which says that the gate is open. It is left out
     /// where it would change something: where that neuron is in use and leaks, or is at its threshold.
     ///
-    /// **Time:** 23 frames of 5 bytes for tinyODIN, 1.4 ms at 656 kHz; 167 for ODIN.
+    /// **Time:** 24 frames of 5 bytes for tinyODIN, 1.5 ms at 656 kHz; 168 for ODIN.
     ///
     /// # Errors
     /// There is no such value, the bus or the port failed, or the chip does not read back or answer: then

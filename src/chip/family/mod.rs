@@ -120,7 +120,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// The same with time: leak events are sent as the ticks of fed events pass, one every `step` µs.
+    /// Adds time: leak events are sent as the ticks of fed events pass, one every `step` µs.
     ///
     /// Call [`Running::advance`] at least every 35 minutes: a tick 2³¹ µs ahead lies in the past, and no
     /// leaks are sent until time has caught up.
@@ -129,9 +129,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Self { time: Some(Time::new(step)), ..self }
     }
 
-    /// The same on a microcontroller that is faster than the chip: so many looks at the pins may fall into
-    /// one clock of the chip, 1 unless told. [`Running::gate`] waits by it: too few, and it gates a chip
-    /// that works, which breaks the chip's memory.
+    /// Tells how many looks at the pins may fall into one clock of the chip, 1 unless told: more where the
+    /// microcontroller is much faster. [`Running::gate`] waits by it: with too few it gates a chip that works,
+    /// whose potentials are then lost.
     #[must_use]
     pub fn with_looks_a_clock(self, looks: NonZeroU32) -> Self {
         Self { looks_a_clock: looks, ..self }
@@ -205,6 +205,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         if let Some(count) = count {
             *count = count.saturating_add(1);
         }
+        // Before its first reset a chip may say anything.
+        let is_output_lost = is_output_lost && counters.resets > 0;
         counters.lost_outputs = counters.lost_outputs.saturating_add(is_output_lost.into());
     }
 }

@@ -1,7 +1,7 @@
 //! The outputs of one time step.
 
-use crate::event::{Event, Tick};
 use crate::Polarity;
+use crate::event::{Event, Tick};
 
 /// Up to `N` events of one time step, for a [`Readout`](crate::Readout): a list that is filled while the
 /// chip is served and read when the step is over.
@@ -42,7 +42,8 @@ impl<const N: usize> Default for Spikes<N> {
 impl<const N: usize> Spikes<N> {
     /// None yet.
     pub const fn new() -> Self {
-        const NONE: Event = Event { tick: Tick::from_micros(0), address: 0, polarity: Polarity::Up };
+        const NONE: Event =
+            Event { tick: Tick::from_micros(0), address: 0, polarity: Polarity::Up };
         Self { events: [NONE; N], len: 0, lost: 0 }
     }
 

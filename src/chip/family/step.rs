@@ -19,8 +19,7 @@ pub(super) struct Beacon {
     value: u8,
 }
 
-/// Where the check writes. In either chip its address, as that of a neuron's byte, is one that there is
-/// not: should the gate shut on a chip that works, nothing is written to the neurons.
+/// Where the check writes.
 fn anchor() -> Address {
     Address::synapse(255, 249)
 }
@@ -36,8 +35,10 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.check_step()
     }
 
-    /// Opens the gate.
+    /// Opens the gate. Should it ever shut on a chip that works, tinyODIN writes to the byte that was accessed
+    /// last in all neurons that are left: so the last is one that there is not.
     pub(super) fn open(&mut self) -> Outcome<(), D, P> {
+        self.read_byte(Address::nowhere())?;
         self.configure(GATE_ACTIVITY, 0)
     }
 

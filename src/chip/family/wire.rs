@@ -18,6 +18,11 @@ impl Address {
         Self(NEURON | u32::from(byte) << 8 | u32::from(neuron))
     }
 
+    /// A byte beyond those of a neuron, which reads as 0.
+    pub(super) fn nowhere() -> Self {
+        Self::neuron(255, 0x7F)
+    }
+
     /// The byte with the synapse: `{byte, pre, post / 8}`, two synapses a byte, four bytes a word.
     pub(super) fn synapse(pre: u8, post: u8) -> Self {
         let (pre, post) = (u32::from(pre), u32::from(post));

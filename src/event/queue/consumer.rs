@@ -1,7 +1,7 @@
 //! The end of a queue from which main takes.
 
 use super::QueueView;
-use crate::event::{AtMost, Source, Taken};
+use crate::event::{AtMost, Event, Source, Taken};
 
 /// Takes the items of a queue, oldest first; the only one that does while it lives. From
 /// [`EventQueue::consumer`](QueueView::consumer).
@@ -47,6 +47,11 @@ impl Source for Consumer<'_> {
     #[inline]
     fn take(&mut self) -> Option<Taken> {
         self.queue.take()
+    }
+
+    #[inline]
+    fn take_event(&mut self) -> Option<Event> {
+        self.queue.take_event()
     }
 }
 

@@ -10,7 +10,7 @@ use critical_section::{CriticalSection, Mutex};
 
 use super::slot::Slot;
 use super::{Consumer, Overflow, Refused};
-use crate::event::{Item, Put, Taken, Tick};
+use crate::event::{Event, Item, Put, Taken, Tick};
 
 /// A queue of `N` items, shared between interrupts and main: events, keyframes and breaks in one order.
 ///
@@ -310,6 +310,21 @@ impl QueueView {
         }
         let (tick, bits, rest) = slot.unwrap_or(Slot::EMPTY).words();
         self.take_apart(slot.is_some(), tick, bits, rest)
+    }
+
+    /// Takes items up to and with the oldest event.
+    #[inline]
+    pub(super) fn take_event(&self) -> Option<Event> {
+        loop {
+            let slot = critical_section::with(|section| self.remove(section));
+            if let Some(event) = slot.and_then(Slot::plain_event) {
+                return Some(event);
+            }
+            let (tick, bits, rest) = slot.unwrap_or(Slot::EMPTY).words();
+            if let Item::Event(event) = self.take_apart(slot.is_some(), tick, bits, rest)?.item {
+                return Some(event);
+            }
+        }
     }
 
     /// What a slot says that is no plain event. Where there was no slot, one that came meanwhile, or the losses

@@ -19,6 +19,8 @@ pub(super) struct Slot {
 const LOST_AT: u32 = 24;
 const WHAT_AT: u32 = 22;
 const DETAIL_AT: u32 = 16;
+/// Of an event that goes up.
+const UP: u32 = 1 << DETAIL_AT;
 const EVENT: u32 = 0;
 const KEYFRAME: u32 = 1;
 const BREAK: u32 = 2;
@@ -62,7 +64,7 @@ impl Slot {
     #[inline]
     pub(super) fn plain_event(self) -> Option<Event> {
         let Self { tick, rest, .. } = self;
-        let polarity = if rest >> DETAIL_AT == 0 { Polarity::Down } else { Polarity::Up };
+        let polarity = if rest & UP == 0 { Polarity::Down } else { Polarity::Up };
         (rest >> WHAT_AT == EVENT).then_some(Event { tick, address: rest as u16, polarity })
     }
 
@@ -72,7 +74,7 @@ impl Slot {
         let detail = (rest >> DETAIL_AT) as u8 & 0x3F;
         match rest >> WHAT_AT & 3 {
             EVENT => {
-                let polarity = if detail == 0 { Polarity::Down } else { Polarity::Up };
+                let polarity = if rest & UP == 0 { Polarity::Down } else { Polarity::Up };
                 Item::Event(Event { tick, address, polarity })
             }
             KEYFRAME => match SampleKind::from_byte(detail) {
@@ -89,8 +91,8 @@ impl From<Item> for Slot {
     fn from(item: Item) -> Self {
         match item {
             Item::Event(Event { tick, address, polarity }) => {
-                let up = u32::from(polarity == Polarity::Up);
-                Self { tick, bits: 0, rest: up << DETAIL_AT | u32::from(address) }
+                let up = if polarity == Polarity::Up { UP } else { 0 };
+                Self { tick, bits: 0, rest: up | u32::from(address) }
             }
             Item::Keyframe(Keyframe { tick, address, kind, bits }) => {
                 let detail = u32::from(kind.to_byte()) << DETAIL_AT;

@@ -112,6 +112,92 @@ const fn gaussian_centre(min: f64, max: f64, i: usize, m: usize) -> f64 {
     if mirrored == i { middle + offset } else { middle - offset }
 }
 
+/// The number of a finite value's neuron, from 1, given the edges of all but the last.
+#[inline(always)] // into one caller a scheme
+pub(super) fn nearest_by_search<S: Sample>(edges: &[S], value: S) -> usize {
+    1 + count_preceding(edges.len(), |i| edges.get(i).is_some_and(|&edge| value.is_beyond(edge)))
+}
+
+/// Sets each edge but the last to the largest value not above halfway between two centres.
+///
+/// # Errors
+/// A centre is not finite, or does not exceed the one before.
+#[allow(clippy::indexing_slicing)] // constants have no iterators
+pub(super) const fn halfway_edges<S: Sample>(
+    centres: &[S],
+    edges: &mut [S],
+) -> Result<(), ConfigError> {
+    let mut i = 0;
+    while i < centres.len() {
+        let value = to_f64(centres[i]);
+        if let Err(error) = finite("centre", value) {
+            return Err(error);
+        }
+        if i > 0 {
+            let below = to_f64(centres[i - 1]);
+            if value <= below {
+                return Err(not_rising("centres", i, value, below));
+            }
+            edges[i - 1] = floor_from_f64(halfway(below, value));
+        }
+        i += 1;
+    }
+    Ok(())
+}
+
+/// Sets even centres over a range, and the edges halfway between them before they are rounded.
+///
+/// # Errors
+/// The ends are not finite, or do not rise, or the sample type is too coarse to tell the centres apart.
+#[allow(clippy::indexing_slicing)] // constants have no iterators
+pub(super) const fn even<S: Sample>(
+    range: &RangeInclusive<S>,
+    centres: &mut [S],
+    edges: &mut [S],
+) -> Result<(), ConfigError> {
+    let (min, max) = (to_f64(*range.start()), to_f64(*range.end()));
+    if let Err(error) = check_range(min, max) {
+        return Err(error);
+    }
+    let count = centres.len();
+    let mut i = 0;
+    while i < count {
+        centres[i] = from_f64(even_centre(min, max, i, count));
+        i += 1;
+    }
+    if let Err(error) = halfway_edges(centres, edges) {
+        return Err(error);
+    }
+    i = 0;
+    while i < count {
+        edges[i] = even_edge(min, max, i, count);
+        i += 1;
+    }
+    Ok(())
+}
+
+/// Sets centres over a range spaced as the quantiles of a normal distribution.
+///
+/// # Errors
+/// The ends are not finite, or do not rise.
+#[allow(clippy::indexing_slicing)] // constants have no iterators
+pub(super) const fn gaussian_spaced<S: Sample>(
+    range: &RangeInclusive<S>,
+    centres: &mut [S],
+) -> Result<(), ConfigError> {
+    let (min, max) = (to_f64(*range.start()), to_f64(*range.end()));
+    if let Err(error) = check_range(min, max) {
+        return Err(error);
+    }
+    let count = centres.len();
+    let mut i = 0;
+    while i < count {
+        centres[i] = from_f64(gaussian_centre(min, max, i, count));
+        i += 1;
+    }
+    Ok(())
+}
+
 // Constants have no iterators, and every index is compared first.
 #[allow(clippy::indexing_slicing)]
 impl<S: Sample, const M: usize> Centres<S, M> {
@@ -125,20 +211,8 @@ impl<S: Sample, const M: usize> Centres<S, M> {
     pub(super) const fn try_new(values: [S; M]) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
         let mut edges = values;
-        let mut i = 0;
-        while i < M {
-            let value = to_f64(values[i]);
-            if let Err(error) = finite("centre", value) {
-                return Err(error);
-            }
-            if i > 0 {
-                let below = to_f64(values[i - 1]);
-                if value <= below {
-                    return Err(not_rising("centres", i, value, below));
-                }
-                edges[i - 1] = floor_from_f64(halfway(below, value));
-            }
-            i += 1;
+        if let Err(error) = halfway_edges(&values, &mut edges) {
+            return Err(error);
         }
         Ok(Self::with_cells(values, edges))
     }
@@ -150,20 +224,10 @@ impl<S: Sample, const M: usize> Centres<S, M> {
     /// # Errors
     /// The ends are not finite, or do not rise, or the sample type is too coarse to tell the centres apart.
     pub(super) const fn try_linear(range: &RangeInclusive<S>) -> Result<Self, ConfigError> {
-        let (min, max) = (to_f64(*range.start()), to_f64(*range.end()));
-        if let Err(error) = check_range(min, max) {
-            return Err(error);
-        }
         let mut values = [S::ZERO; M];
         let mut edges = [S::ZERO; M];
-        let mut i = 0;
-        while i < M {
-            values[i] = from_f64(even_centre(min, max, i, M));
-            edges[i] = even_edge(min, max, i, M);
-            i += 1;
-        }
-        match Self::try_new(values) {
-            Ok(_) => Ok(Self::with_cells(values, edges)),
+        match even(range, &mut values, &mut edges) {
+            Ok(()) => Ok(Self::with_cells(values, edges)),
             Err(error) => Err(error),
         }
     }
@@ -175,17 +239,11 @@ impl<S: Sample, const M: usize> Centres<S, M> {
     pub(super) const fn try_gaussian_spaced(
         range: &RangeInclusive<S>,
     ) -> Result<Self, ConfigError> {
-        let (min, max) = (to_f64(*range.start()), to_f64(*range.end()));
-        if let Err(error) = check_range(min, max) {
-            return Err(error);
-        }
         let mut values = [S::ZERO; M];
-        let mut i = 0;
-        while i < M {
-            values[i] = from_f64(gaussian_centre(min, max, i, M));
-            i += 1;
+        match gaussian_spaced(range, &mut values) {
+            Ok(()) => Self::try_new(values),
+            Err(error) => Err(error),
         }
-        Self::try_new(values)
     }
 
     /// With the table for the edges, where no two of them share a cell.
@@ -234,8 +292,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
     /// The number of a finite value's neuron, by binary search.
     #[inline(never)] // unrolled, and not to be so more than once
     pub(super) fn by_search(&self, value: S) -> usize {
-        let edges = self.edges();
-        1 + count_preceding(M - 1, |i| edges.get(i).is_some_and(|&edge| value.is_beyond(edge)))
+        nearest_by_search(self.edges(), value)
     }
 
     /// The edges of all neurons but the last, which has none.

@@ -64,6 +64,36 @@ const fn radius(min: f64, max: f64, beta: f64, m: usize, k: usize, n: usize) -> 
     sigma * sqrt(2.0 * ln(n as f64 / (k as f64 - 0.5)))
 }
 
+/// Sets the reaches of the slots of `m` neurons, and says which cells tell who may respond to a value, and
+/// which values have short distances.
+#[allow(clippy::indexing_slicing)] // constants have no iterators
+pub(super) const fn tables<S: Sample>(
+    m: usize,
+    range: &RangeInclusive<S>,
+    beta: f32,
+    reaches: &mut [S::Reach],
+) -> (Cells, [S; 2]) {
+    let (low, high) = (units(*range.start()), units(*range.end()));
+    let n = reaches.len();
+    let mut k = 0;
+    while k < n {
+        reaches[k] = reach::<S>(radius(low, high, beta as f64, m, n - k, n), m);
+        k += 1;
+    }
+    let farthest = radius(low, high, beta as f64, m, 1, n);
+    let width = (high - low) / (m as f64 - 2.0);
+    // A 32nd of a cell for what is rounded.
+    let cells = cells::<S>(low + farthest - 1.46875 * width, width, m + 2);
+    let mut hold = true;
+    let mut i = 0;
+    while i < m {
+        let top = top::<S>(even_centre(low, high, i, m), farthest);
+        hold &= cell(cells, top) <= i;
+        i += 1;
+    }
+    (if hold { cells } else { Cells::ONE }, near(low, high, m, farthest))
+}
+
 // Constants have no iterators, and every index is compared first.
 #[allow(clippy::indexing_slicing)]
 impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
@@ -85,27 +115,10 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
             Ok(centres) => *centres.as_array(),
             Err(error) => return Err(error),
         };
-        let (min, max) = (*range.start(), *range.end());
-        let (low, high) = (units(min), units(max));
         let mut reaches = [reach::<S>(0.0, M); N];
-        let mut k = 0;
-        while k < N {
-            reaches[k] = reach::<S>(radius(low, high, beta as f64, M, N - k, N), M);
-            k += 1;
-        }
-        let farthest = radius(low, high, beta as f64, M, 1, N);
-        let width = (high - low) / (M as f64 - 2.0);
-        // A 32nd of a cell for what is rounded.
-        let cells = cells::<S>(low + farthest - 1.46875 * width, width, M + 2);
-        let mut hold = true;
-        let mut i = 0;
-        while i < M {
-            let top = top::<S>(even_centre(low, high, i, M), farthest);
-            hold &= cell(cells, top) <= i;
-            i += 1;
-        }
-        let cells = if hold { cells } else { Cells::ONE };
-        Ok(Self { centres, min, max, beta, cells, near: near(low, high, M, farthest), reaches })
+        let (cells, near) = tables::<S>(M, range, beta, &mut reaches);
+        let (min, max) = (*range.start(), *range.end());
+        Ok(Self { centres, min, max, beta, cells, near, reaches })
     }
 
     /// The centres, lowest first.

@@ -1,6 +1,8 @@
 //! Population codes: which neuron of `M` fires tells the value.
 
 mod centres;
+#[cfg(feature = "alloc")]
+pub(super) mod dynamic;
 mod fields;
 #[cfg(feature = "rand")]
 mod fired_neurons;

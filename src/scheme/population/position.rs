@@ -145,11 +145,15 @@ impl<S: Sample, const M: usize> Position<S, M> {
 /// The state of a [`Position`] encoder: the count of rejected samples. 4 bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct PositionState {
-    tally: Tally,
+    pub(super) tally: Tally,
+}
+
+impl PositionState {
+    pub(super) const START: Self = Self { tally: Tally::NONE };
 }
 
 impl<S: Sample, const M: usize> Start for Position<S, M> {
-    const START: PositionState = PositionState { tally: Tally::NONE };
+    const START: PositionState = PositionState::START;
 }
 
 impl<S: Sample, const M: usize> Scheme for Position<S, M> {

@@ -116,7 +116,7 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
 
     /// The state of an encoder that draws from this generator, for a bank.
     pub const fn state(generator: G) -> ProbabilisticState<G> {
-        ProbabilisticState { generator, tally: Tally::NONE }
+        ProbabilisticState::new(generator)
     }
 
     /// An encoder that draws from this generator.
@@ -171,8 +171,14 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Encoder<'_, Probabilisti
 /// The state of a [`Probabilistic`] encoder: the generator, and the count of rejected samples.
 #[derive(Clone, Copy, Debug)]
 pub struct ProbabilisticState<G> {
-    generator: G,
-    tally: Tally,
+    pub(super) generator: G,
+    pub(super) tally: Tally,
+}
+
+impl<G> ProbabilisticState<G> {
+    pub(super) const fn new(generator: G) -> Self {
+        Self { generator, tally: Tally::NONE }
+    }
 }
 
 impl<S: Sample, G: Rng, const M: usize, const N: usize> Scheme for Probabilistic<S, G, M, N> {

@@ -156,11 +156,15 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
 /// The state of a [`Slots`] encoder: the count of rejected samples. 4 bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct SlotsState {
-    tally: Tally,
+    pub(super) tally: Tally,
+}
+
+impl SlotsState {
+    pub(super) const START: Self = Self { tally: Tally::NONE };
 }
 
 impl<S: Sample, const M: usize, const N: usize> Start for Slots<S, M, N> {
-    const START: SlotsState = SlotsState { tally: Tally::NONE };
+    const START: SlotsState = SlotsState::START;
 }
 
 impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {

@@ -121,13 +121,16 @@ impl<R: Residual, const F: usize> Registers<R, F> {
 
 /// The sum of `|r|` over the window.
 #[inline]
-fn without_filter<R: Residual>(residuals: &[R]) -> R::Sum {
+pub(super) fn without_filter<R: Residual>(residuals: &[R]) -> R::Sum {
     residuals.iter().fold(R::EMPTY, |sum, residual| residual.add_distance(R::ZERO, sum))
 }
 
 /// The sum of `|r - h|` over the window.
 #[inline]
-fn with_filter<S: Sample>(residuals: &[S::Residual], taps: &[S]) -> <S::Residual as Nearer>::Sum {
+pub(super) fn with_filter<S: Sample>(
+    residuals: &[S::Residual],
+    taps: &[S],
+) -> <S::Residual as Nearer>::Sum {
     let pairs = residuals.iter().zip(taps);
     pairs.fold(S::Residual::EMPTY, |sum, (residual, tap)| residual.add_distance(tap.widen(), sum))
 }

@@ -186,22 +186,10 @@ impl<S: Sample, const F: usize> RateState<S, F> {
     #[cold]
     #[inline(never)]
     fn encode_apart(&mut self, rule: &impl Rule<S, F>) -> Option<Spike> {
-        let filtered = rule.filtered();
-        let length = F.saturating_sub(self.cursor.missing());
-        let (late, early) = cells(&mut self.residuals).split_at_checked(self.cursor.oldest())?;
-        let (taps, absent) = filtered.taps.as_array().split_at_checked(length)?;
-        let (first, rest) = taps.split_at_checked(early.len().min(length))?;
-        let magnitude = absent.iter().fold(filtered.taps.magnitude(), |magnitude, tap| {
-            let tap = tap.widen();
-            if tap < S::Residual::ZERO { magnitude.plus(tap) } else { magnitude.minus(tap) }
-        });
-        if !rule.fits(magnitude, pairs(early, first).chain(pairs(late, rest)), length == F) {
-            return Some(Spike::None);
-        }
-        for (residual, tap) in early.iter().zip(first).chain(late.iter().zip(rest)) {
-            residual.set(residual.get().minus(tap.widen()));
-        }
-        Some(Spike::Up)
+        let taps = &rule.filtered().taps;
+        let (oldest, missing) = (self.cursor.oldest(), self.cursor.missing());
+        let residuals = cells(&mut self.residuals);
+        decide_in_order(rule, taps.as_array(), taps.magnitude(), residuals, oldest, missing)
     }
 
     pub(super) fn finish_next(&mut self, rule: &impl Rule<S, F>) -> Option<Spike> {
@@ -213,9 +201,37 @@ impl<S: Sample, const F: usize> RateState<S, F> {
     }
 }
 
+/// The spike of the residual in the slot `oldest`, first tap first, and with all but the last `missing` taps where
+/// the recording ends within the filter.
+#[inline(always)]
+pub(super) fn decide_in_order<S: Sample, const F: usize>(
+    rule: &impl Rule<S, F>,
+    taps: &[S],
+    magnitude: S::Residual,
+    residuals: &[Cell<S::Residual>],
+    oldest: usize,
+    missing: usize,
+) -> Option<Spike> {
+    let (late, early) = residuals.split_at_checked(oldest)?;
+    let length = taps.len().saturating_sub(missing);
+    let (taps, absent) = taps.split_at_checked(length)?;
+    let (first, rest) = taps.split_at_checked(early.len().min(length))?;
+    let magnitude = absent.iter().fold(magnitude, |magnitude, tap| {
+        let tap = tap.widen();
+        if tap < S::Residual::ZERO { magnitude.plus(tap) } else { magnitude.minus(tap) }
+    });
+    if !rule.fits(magnitude, pairs(early, first).chain(pairs(late, rest)), missing == 0) {
+        return Some(Spike::None);
+    }
+    for (residual, tap) in early.iter().zip(first).chain(late.iter().zip(rest)) {
+        residual.set(residual.get().minus(tap.widen()));
+    }
+    Some(Spike::Up)
+}
+
 /// Residuals, each with the tap beside it.
 #[inline(always)]
-fn pairs<S: Sample>(
+pub(super) fn pairs<S: Sample>(
     residuals: &[Cell<S::Residual>],
     taps: &[S],
 ) -> impl Iterator<Item = (S::Residual, S::Residual)> {

@@ -129,6 +129,28 @@ impl Shape {
     }
 }
 
+/// The sum of the taps' magnitudes.
+///
+/// # Errors
+/// A tap is not finite, all are 0, or the sum is more than the type holds.
+#[allow(clippy::indexing_slicing)] // constants have no iterators
+pub(super) const fn magnitude<S: Sample>(taps: &[S]) -> Result<S::Residual, ConfigError> {
+    let mut magnitude = 0.0;
+    let mut k = 0;
+    while k < taps.len() {
+        let tap = to_f64(taps[k]);
+        if let Err(error) = finite("filter tap", tap) {
+            return Err(error);
+        }
+        magnitude += tap.abs();
+        k += 1;
+    }
+    match check_magnitude::<S>(magnitude) {
+        Ok(()) => Ok(sum::<S>(magnitude)),
+        Err(error) => Err(error),
+    }
+}
+
 /// What must hold for taps that sum up to `magnitude`. Sixteen bits widen to 32 when summed; wider types
 /// must hold the sum themselves.
 const fn check_magnitude<S: Sample>(magnitude: f64) -> Result<(), ConfigError> {
@@ -167,18 +189,8 @@ impl<S: Sample, const F: usize> Taps<S, F> {
     /// (10³¹ in `f32`).
     pub const fn try_new(taps: [S; F]) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
-        let mut magnitude = 0.0;
-        let mut k = 0;
-        while k < F {
-            let tap = to_f64(taps[k]);
-            if let Err(error) = finite("filter tap", tap) {
-                return Err(error);
-            }
-            magnitude += tap.abs();
-            k += 1;
-        }
-        match check_magnitude::<S>(magnitude) {
-            Ok(()) => Ok(Self { twice: [taps; 2], magnitude: sum::<S>(magnitude) }),
+        match magnitude(&taps) {
+            Ok(magnitude) => Ok(Self { twice: [taps; 2], magnitude }),
             Err(error) => Err(error),
         }
     }

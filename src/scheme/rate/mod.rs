@@ -16,6 +16,8 @@ mod bsa;
 mod bsa_toolbox;
 mod cursor;
 mod decoder;
+#[cfg(feature = "alloc")]
+pub(super) mod dynamic;
 mod encoder;
 mod filter;
 mod filtered;

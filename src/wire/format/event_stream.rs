@@ -50,7 +50,7 @@ impl EventStream {
         Self::encoder_from(Tick::from_micros(0))
     }
 
-    /// The same for a file that begins at this tick: it counts time from there, and does not say which
+    /// Writes events of a file that begins at this tick: it counts time from there, and does not say which
     /// tick it was. From tick 0 it would write a byte for every 254 µs since boot, and after 35.8
     /// minutes no event at its time.
     pub const fn encoder_from(start: Tick) -> EventStreamEncoder {
@@ -62,7 +62,7 @@ impl EventStream {
         Self::decoder_from(Tick::from_micros(0))
     }
 
-    /// The same for a file that begins at this tick.
+    /// Reads a file that begins at this tick, from its header on.
     pub const fn decoder_from(start: Tick) -> EventStreamDecoder {
         EventStreamDecoder { tick: start, state: State::Header(0), skipped: 0 }
     }

@@ -145,6 +145,12 @@ impl<'a> FrameView<'a> {
         })
     }
 
+    /// This frame with the bits of its keyframes taken as those of another sample type, if that is as wide:
+    /// for programs that run all fixed point of one width as one type.
+    pub fn with_kind(self, kind: SampleKind) -> Option<Self> {
+        (kind.size() == self.kind.size()).then_some(Self { kind, ..self })
+    }
+
     /// The events, in the order they were written.
     pub fn events(&self) -> Events<'a> {
         Events { bits: BitReader::new(self.events), place: Place::new(self.coding, self.tick) }

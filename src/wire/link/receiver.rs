@@ -319,8 +319,9 @@ impl<const EVENTS: usize> Sampled<EVENTS> {
 
 impl<T: Schemes<N> + Clone, const N: usize, const EVENTS: usize> Clone for Receiver<T, N, EVENTS> {
     fn clone(&self) -> Self {
-        let Self { channels, addresses, sample, outside, misfits, .. } = *self;
-        Self { schemes: self.schemes.clone(), channels, addresses, sample, outside, misfits }
+        let (schemes, channels) = (self.schemes.clone(), self.channels.clone());
+        let Self { addresses, sample, outside, misfits, .. } = *self;
+        Self { schemes, channels, addresses, sample, outside, misfits }
     }
 }
 

@@ -7,7 +7,7 @@ use core::{
 
 use board::stopwatch::instructions;
 use spikewire::{
-    Bank, Consumer, Event, EventQueue, Item, Overflow, Source as _, SpscQueue, Taken, Tick,
+    Bank, Consumer, Event, EventQueue, Overflow, Source as _, SpscQueue, Tick,
     link::{Coding, MAX_FRAME, Reader, Receiver, Transmitter},
 };
 
@@ -23,21 +23,21 @@ static EVENTS: EventQueue<256> = EventQueue::new(Overflow::DropOldest);
 /// An event in and out again, through either queue.
 pub fn queues(out: &mut impl Write) -> fmt::Result {
     let mut consumer = EVENTS.consumer().ok_or(fmt::Error)?;
-    queue(out, "queue", |event| EVENTS.push(event).is_ok(), || consumer.take())?;
+    queue(out, "queue", |event| EVENTS.push(event).is_ok(), || consumer.take_event())?;
     let lock_free = SpscQueue::<64>::new();
     let (mut producer, mut consumer) = lock_free.split().ok_or(fmt::Error)?;
     let push = |event| {
         producer.push(event);
         true
     };
-    queue(out, "queue-lock-free", push, || consumer.take())
+    queue(out, "queue-lock-free", push, || consumer.take_event())
 }
 
 fn queue(
     out: &mut impl Write,
     name: &str,
     mut push: impl FnMut(Event) -> bool,
-    mut pop: impl FnMut() -> Option<Taken>,
+    mut pop: impl FnMut() -> Option<Event>,
 ) -> fmt::Result {
     let (mut pushed, mut popped) = (Cost::default(), Cost::default());
     let mut agrees = true;
@@ -48,7 +48,7 @@ fn queue(
         let mut back = None;
         let popping = popped.decoding(&mut |_| pop(), &[], &mut back);
         popped.add(1, 0, popping);
-        agrees &= is_in && back == Some(Taken::whole(Item::Event(event)));
+        agrees &= is_in && back == Some(event);
     });
     ensure(out, agrees, name)?;
     pushed.print_event(out, name, "push")?;

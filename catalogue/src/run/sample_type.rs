@@ -9,7 +9,7 @@ use std::str::FromStr;
 /// Fixed point is arithmetic on raw integers, whatever their unit. So every format of 16 bits runs as
 /// the crate's `i16` and every format of 32 bits as its `FixedI32`, in the unit that the name states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum SampleType {
+pub enum SampleType {
     /// `f32`.
     #[default]
     F32,
@@ -25,30 +25,32 @@ pub(crate) enum SampleType {
     },
 }
 
+/// What every format of 32 bits runs as.
+pub type Fixed32 = fixed::types::I16F16;
+
 /// Evaluates an expression with a type parameter set to the crate's type.
+#[macro_export]
 macro_rules! for_sample_type {
     ($sample:expr, $S:ident => $body:expr) => {
         match $sample {
-            $crate::sample_type::SampleType::F32 => {
+            $crate::run::SampleType::F32 => {
                 type $S = f32;
                 $body
             }
-            $crate::sample_type::SampleType::Fixed16 { .. } => {
+            $crate::run::SampleType::Fixed16 { .. } => {
                 type $S = i16;
                 $body
             }
-            $crate::sample_type::SampleType::Fixed32 { .. } => {
-                type $S = fixed::types::I16F16;
+            $crate::run::SampleType::Fixed32 { .. } => {
+                type $S = $crate::run::Fixed32;
                 $body
             }
         }
     };
 }
-pub(crate) use for_sample_type;
-
 impl SampleType {
     /// What a 1 is in the unit of the crate's type: a power of two.
-    pub(crate) fn one(self) -> f64 {
+    pub fn one(self) -> f64 {
         match self {
             Self::F32 => 1.0,
             Self::Fixed16 { fraction } => 2_f64.powi(fraction.into()),
@@ -56,8 +58,18 @@ impl SampleType {
         }
     }
 
+    /// From one value to the next; 0 in floating point.
+    pub fn step(self) -> f64 {
+        match self {
+            Self::F32 => 0.0,
+            Self::Fixed16 { fraction } | Self::Fixed32 { fraction } => {
+                2_f64.powi(-i32::from(fraction))
+            }
+        }
+    }
+
     /// The smallest and the largest value that it holds.
-    pub(crate) fn range(self) -> (f64, f64) {
+    pub fn range(self) -> (f64, f64) {
         let (bits, fraction) = match self {
             Self::F32 => return (f32::MIN.into(), f32::MAX.into()),
             Self::Fixed16 { fraction } => (15, fraction),

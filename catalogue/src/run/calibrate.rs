@@ -1,11 +1,12 @@
 //! What a scheme takes from a whole recording, in any sample type.
 
-use crate::sample_type::{SampleType, for_sample_type};
+use super::SampleType;
+use crate::for_sample_type;
 use spikewire::temporal::TemporalContrast;
 use spikewire::{Calibration, ConfigError, Sample};
 
 /// A calibration in the recording's unit.
-pub(crate) struct Calibrated {
+pub struct Calibrated {
     calibration: Box<dyn Calibrate>,
     /// What a 1 is in the unit of the calibration.
     one: f64,
@@ -13,21 +14,21 @@ pub(crate) struct Calibrated {
 
 impl Calibrated {
     /// A calibration that has seen nothing.
-    pub(crate) fn new(sample: SampleType) -> Self {
-        let calibration =
-            for_sample_type!(sample, S => Box::new(Calibration::<S>::new()) as Box<dyn Calibrate>);
+    pub fn new(sample: SampleType) -> Self {
+        let calibration: Box<dyn Calibrate> =
+            for_sample_type!(sample, S => Box::new(Calibration::<S>::new()));
         Self { calibration, one: sample.one() }
     }
 
     /// Takes the next samples, all finite.
-    pub(crate) fn observe(&mut self, samples: &[f64]) {
+    pub fn observe(&mut self, samples: &[f64]) {
         for sample in samples {
             self.calibration.observe(sample * self.one);
         }
     }
 
     /// The smallest and the largest sample, if there was one.
-    pub(crate) fn range(&self) -> Option<(f64, f64)> {
+    pub fn range(&self) -> Option<(f64, f64)> {
         self.calibration.range().map(|(min, max)| (min / self.one, max / self.one))
     }
 
@@ -35,7 +36,7 @@ impl Calibrated {
     ///
     /// # Errors
     /// Too few samples, or a threshold that is not above 0.
-    pub(crate) fn threshold(&self, factor: f64, of_magnitudes: bool) -> Result<f64, ConfigError> {
+    pub fn threshold(&self, factor: f64, of_magnitudes: bool) -> Result<f64, ConfigError> {
         Ok(self.calibration.threshold(factor as f32, of_magnitudes)? / self.one)
     }
 }

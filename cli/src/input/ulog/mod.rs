@@ -1,18 +1,31 @@
 //! PX4 flight logs.
 
+mod format;
+mod scan;
+
+pub(crate) use scan::Findings;
+
+use super::text::GZIP;
 use super::{CHUNK, Chunk, InputOptions, Source, near};
 use anyhow::{Context, Result, anyhow, bail};
+use flate2::read::MultiGzDecoder;
+use format::{Field, Formats};
+use scan::{HEADER, Scan};
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Read;
 use std::path::Path;
 use yule_log::builder::ULogParserBuilder;
 use yule_log::model::inst::{FieldValue, Format};
 use yule_log::model::msg::UlogMessage;
 
-/// The bytes of a flight log, whole messages only.
+/// The messages of a flight log that can be read.
 pub(crate) struct Log {
     bytes: Vec<u8>,
+    formats: Formats,
     file: String,
+    /// What was skipped, and what the logger missed.
+    pub findings: Findings,
 }
 
 /// What a log holds of one instance of a topic.
@@ -20,6 +33,8 @@ pub(crate) struct Log {
 pub(crate) struct Topic {
     /// Its fields of numbers.
     pub fields: Vec<String>,
+    /// Its fields of text.
+    pub texts: Vec<String>,
     /// When it was logged, in µs.
     pub times: Vec<i64>,
 }
@@ -32,24 +47,38 @@ impl Log {
     pub(crate) fn read(path: &Path, accept_cut: bool) -> Result<Self> {
         let file = path.display().to_string();
         let mut bytes = fs::read(path).with_context(|| format!("{file}: cannot be read"))?;
+        if bytes.starts_with(&GZIP) {
+            let mut unpacked = Vec::new();
+            MultiGzDecoder::new(bytes.as_slice())
+                .read_to_end(&mut unpacked)
+                .with_context(|| format!("{file}: cannot be unpacked"))?;
+            bytes = unpacked;
+        }
         if bytes.is_empty() {
             bail!("{file}: empty");
         }
         if bytes.len() < HEADER || &bytes[..4] != b"ULog" {
             bail!("{file}: not a flight log; ULog files start with `ULog` and 12 bytes more");
         }
-        let whole = whole_messages(&bytes);
-        if whole < bytes.len() {
-            if !accept_cut {
+        let scanned = Scan::run(&bytes);
+        let (findings, length) = (scanned.findings, bytes.len());
+        if !accept_cut {
+            if let Some(damage) = &findings.damage {
                 bail!(
-                    "{file}: cut short within the message at byte {whole} of {}; --accept-cut takes what is before",
-                    bytes.len()
+                    "{file}: damaged at byte {} of {length}; --accept-cut goes on at byte {}",
+                    damage.start,
+                    damage.end
                 );
             }
-            bytes.truncate(whole);
+            if let Some(cut) = findings.cut {
+                bail!(
+                    "{file}: cut short within the message at byte {cut} of {length}; --accept-cut takes what is before"
+                );
+            }
         }
+        let mut bytes = scanned.bytes;
         silence_heartbeats(&mut bytes);
-        Ok(Self { bytes, file })
+        Ok(Self { bytes, formats: scanned.formats, file, findings })
     }
 
     /// What the log holds, by topic; later instances as `topic:1`.
@@ -61,11 +90,18 @@ impl Log {
         self.for_each(None, |name, time, data| {
             let topic = topics.entry(name).or_insert_with(|| Topic {
                 fields: leaves(data).into_iter().map(|(name, _)| name).collect(),
+                texts: self.texts(data).map(|field| field.name.clone()).collect(),
                 times: Vec::new(),
             });
             topic.times.push(time);
         })?;
         Ok(topics)
+    }
+
+    /// The fields of text in a message.
+    fn texts(&self, data: &Format) -> impl Iterator<Item = &Field> {
+        let format = self.formats.get(&heard(&data.name));
+        format.into_iter().flat_map(format::Format::texts)
     }
 
     fn for_each(
@@ -92,9 +128,6 @@ impl Log {
         Ok(())
     }
 }
-
-/// The length of the file's header.
-const HEADER: usize = 16;
 
 /// The parser prints every format whose name holds `heartbeat` on standard output, where our tables go.
 /// So it gets to see another name of the same length, and only we the right one.
@@ -123,37 +156,27 @@ fn heard(name: &str) -> String {
     name.replace(HEARTBEAT.1, HEARTBEAT.0)
 }
 
-/// Where the last whole message ends. Each starts with its length in two bytes and its kind in one.
-fn whole_messages(bytes: &[u8]) -> usize {
-    let mut at = HEADER;
-    while let Some(length) = bytes.get(at..at + 2) {
-        let end = at + 3 + usize::from(u16::from_le_bytes([length[0], length[1]]));
-        if end > bytes.len() {
-            break;
-        }
-        at = end;
-    }
-    at
-}
-
-/// One field of one topic of a log.
+/// Fields of one topic of a log.
 pub(super) struct Channel {
-    chunk: Chunk,
+    all: Chunk,
     taken: usize,
     origin: Vec<(&'static str, String)>,
+    notes: Vec<String>,
 }
 
 impl Channel {
     pub(super) fn open(options: &InputOptions) -> Result<Self> {
         let log = Log::read(&options.input, options.accept_cut)?;
         let file = &log.file;
-        let (Some(topic), Some(field)) = (&options.topic, &options.field) else {
+        let asked: Vec<&str> = options.fields().collect();
+        let Some(topic) = options.topic.as_ref().filter(|_| !asked.is_empty()) else {
             bail!("{file}: a flight log needs --topic and --field; `spikewire info` lists them");
         };
         let name = topic.strip_suffix(":0").unwrap_or(topic);
-        let mut chunk = Chunk::default();
-        let mut place = None;
-        let mut fields = Vec::new();
+        let mut all = Chunk::default();
+        all.clear(asked.len());
+        let mut places = Vec::new();
+        let (mut fields, mut texts) = (Vec::new(), Vec::new());
         let parsed = name.split(':').next().unwrap_or(name).replace(HEARTBEAT.0, HEARTBEAT.1);
         log.for_each(Some(&parsed), |instance, time, data| {
             if instance != name {
@@ -161,49 +184,66 @@ impl Channel {
             }
             let numbers = leaves(data);
             if fields.is_empty() {
-                place = numbers.iter().position(|(name, _)| name == field);
+                let place = |asked: &&str| numbers.iter().position(|(name, _)| name == asked);
+                places = asked.iter().map(place).collect();
                 fields = numbers.iter().map(|(name, _)| name.clone()).collect();
+                texts = log.texts(data).map(|field| field.name.clone()).collect();
             }
-            if let Some((_, value)) = place.and_then(|place| numbers.get(place)) {
-                chunk.times.push(time);
-                chunk.values.push(*value);
+            let value = |place: &Option<usize>| numbers.get((*place)?).map(|(_, value)| *value);
+            let Some(values) = places.iter().map(value).collect::<Option<Vec<f64>>>() else {
+                return;
+            };
+            for (column, value) in all.columns.iter_mut().zip(values) {
+                column.push(value);
             }
+            all.times.push(time);
         })?;
         if fields.is_empty() {
             let topics = log.topics()?;
             bail!("{file}: no topic `{topic}`; {}", near(topic, topics.keys().map(String::as_str)));
         }
-        if place.is_none() {
+        if let Some((field, _)) = asked.iter().zip(&places).find(|(_, place)| place.is_none()) {
+            if texts.iter().any(|text| text == field.split('[').next().unwrap_or(field)) {
+                bail!("{file}: topic {name}: field `{field}` is text, not a signal");
+            }
             let near = near(field, fields.iter().map(String::as_str));
             bail!("{file}: topic {name} has no field `{field}`; {near}");
         }
-        let not_finite = chunk.values.iter().position(|value| !value.is_finite());
-        if let Some(at) = not_finite.filter(|_| !options.skip_non_finite) {
-            bail!(
-                "{file}: topic {name}, field {field}: {} at {} µs (sample {at}) is not finite; \
-                 --skip-non-finite goes on over such values",
-                chunk.values[at],
-                chunk.times[at]
-            );
+        for (field, column) in asked.iter().zip(&all.columns) {
+            let not_finite = column.iter().position(|value| !value.is_finite());
+            if let Some(at) = not_finite.filter(|_| !options.skip_non_finite) {
+                bail!(
+                    "{file}: topic {name}, field {field}: {} at {} µs (sample {at}) is not finite; \
+                     --skip-non-finite goes on over such values",
+                    column[at],
+                    all.times[at]
+                );
+            }
         }
-        let origin = vec![("topic", name.to_owned()), ("field", field.clone())];
-        Ok(Self { chunk, taken: 0, origin })
+        let origin = vec![("topic", name.to_owned()), ("field", asked.join(","))];
+        let notes = log.findings.to_string().lines().map(str::to_owned).collect();
+        Ok(Self { all, taken: 0, origin, notes })
     }
 }
 
 impl Source for Channel {
     fn next(&mut self, chunk: &mut Chunk) -> Result<()> {
-        let end = self.chunk.values.len().min(self.taken + CHUNK);
-        chunk.values.clear();
-        chunk.times.clear();
-        chunk.values.extend_from_slice(&self.chunk.values[self.taken..end]);
-        chunk.times.extend_from_slice(&self.chunk.times[self.taken..end]);
+        let end = self.all.len().min(self.taken + CHUNK);
+        chunk.clear(self.all.columns.len());
+        for (column, all) in chunk.columns.iter_mut().zip(&self.all.columns) {
+            column.extend_from_slice(&all[self.taken..end]);
+        }
+        chunk.times.extend_from_slice(&self.all.times[self.taken..end]);
         self.taken = end;
         Ok(())
     }
 
     fn origin(&self) -> &[(&'static str, String)] {
         &self.origin
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.notes
     }
 }
 

@@ -1,0 +1,229 @@
+//! Schemes chosen at run time: from what a user gave and a signal tells to settings, and from settings to a codec.
+//!
+//! A scheme says in its file how it is built from settings, and where needed how these come about. All else is here:
+//! reading options and files, what the paper and the signal stand in for, what a sample type rounds, and the codec
+//! whose type says nothing of the scheme.
+
+mod asked;
+mod calibrate;
+mod codec;
+mod filter;
+mod given;
+mod sample_type;
+mod settings;
+
+pub use asked::{Asked, Known, Options, missing};
+pub use calibrate::Calibrated;
+pub use codec::{Codec, Event};
+pub use given::{Given, Ran};
+pub use sample_type::{Fixed32, SampleType};
+pub use settings::{Settings, is_list, number};
+
+use anyhow::{Result, bail};
+use spikewire::{Sample, Scheme, Spike};
+
+use crate::{Entry, Info, for_sample_type};
+
+/// Populations up to this size have codes of this capacity, larger ones of the largest.
+pub const FEW: usize = 64;
+
+/// How many neurons a code has, and how many sub-timesteps a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shape {
+    /// Neurons.
+    pub neurons: usize,
+    /// Sub-timesteps.
+    pub slots: usize,
+}
+
+/// Takes a scheme of any type in a sample type.
+pub trait Visit<S: Sample> {
+    /// What it makes of it.
+    type Output;
+
+    /// Takes the scheme, and the state from which its encoder starts.
+    ///
+    /// # Errors
+    /// The visitor's own.
+    fn visit<P: Scheme<Sample = S> + 'static>(
+        self,
+        scheme: P,
+        start: P::EncoderState,
+    ) -> Result<Self::Output>;
+
+    /// Takes a scheme whose decoder adds up steps.
+    ///
+    /// # Errors
+    /// The visitor's own.
+    fn visit_steps<P: Scheme<Sample = S, Code = Spike> + 'static>(
+        self,
+        scheme: P,
+        start: P::EncoderState,
+    ) -> Result<Self::Output>
+    where
+        Self: Sized,
+    {
+        self.visit(scheme, start)
+    }
+}
+
+/// How a scheme comes about at run time.
+pub trait Build: Entry {
+    /// Complete settings from options, the paper's settings and the signal.
+    ///
+    /// # Errors
+    /// A parameter is missing or makes no sense.
+    fn resolve(asked: &Asked) -> Result<Settings> {
+        asked.all()
+    }
+
+    /// The options that would make a calibration over the whole signal unnecessary.
+    fn needs_signal(options: &Options) -> Option<String> {
+        missing(&Self::INFO, options)
+    }
+
+    /// How many samples its encoder takes to start from.
+    fn looks_back(_: &Options) -> usize {
+        1
+    }
+
+    /// How many neurons and sub-timesteps it has.
+    ///
+    /// # Errors
+    /// The settings lack them, or they make no sense.
+    fn shape(given: &Given) -> Result<Shape> {
+        let has = |name: &str| Self::INFO.parameters.iter().any(|own| own.name == name);
+        let neurons = if has("neurons") { given.neurons()? } else { 1 };
+        let slots =
+            if has("slots") { given.count("slots", 2..=spikewire::dynamic::LEVELS)? } else { 1 };
+        Ok(Shape { neurons, slots })
+    }
+
+    /// Builds it and hands it to a visitor.
+    ///
+    /// # Errors
+    /// A parameter makes no sense, or the visitor's own.
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output>;
+}
+
+/// A scheme of the catalogue, whichever it is.
+pub trait RunTime: Sync {
+    /// What is known of it without running it.
+    fn info(&self) -> &'static Info;
+
+    /// The options that would make a calibration over the whole signal unnecessary.
+    fn needs_signal(&self, options: &Options) -> Option<String>;
+
+    /// How many samples its encoder takes to start from.
+    fn looks_back(&self, options: &Options) -> usize;
+
+    /// Complete settings from options, the paper's settings and the signal.
+    ///
+    /// # Errors
+    /// A parameter is missing, not taken by the scheme, or makes no sense.
+    fn resolve(&self, options: &Options, known: &Known) -> Result<Settings>;
+
+    /// How many neurons and sub-timesteps it has.
+    ///
+    /// # Errors
+    /// The settings lack them, or they make no sense.
+    fn shape(&self, settings: &Settings) -> Result<Shape>;
+
+    /// The settings as they run in a sample type, and which of them it rounded.
+    ///
+    /// # Errors
+    /// A parameter becomes 0 that must not, or makes no sense.
+    fn rounded(&self, sample: SampleType, settings: &Settings) -> Result<(Settings, Vec<Ran>)>;
+
+    /// An encoder and its decoder, as they start on a recording.
+    ///
+    /// # Errors
+    /// A parameter makes no sense.
+    fn codec(&self, sample: SampleType, settings: &Settings) -> Result<Codec>;
+}
+
+impl<T: Build + Sync> RunTime for T {
+    fn info(&self) -> &'static Info {
+        const { &T::INFO }
+    }
+
+    fn needs_signal(&self, options: &Options) -> Option<String> {
+        if options.paper {
+            return Some("parameters in the place of --paper".to_owned());
+        }
+        T::needs_signal(options)
+    }
+
+    fn looks_back(&self, options: &Options) -> usize {
+        T::looks_back(options)
+    }
+
+    fn resolve(&self, options: &Options, known: &Known) -> Result<Settings> {
+        let asked = Asked::new(&T::INFO, options, known)?;
+        let mut settings = T::resolve(&asked)?;
+        if T::INFO.has_first_value {
+            settings.first = asked.first_window(T::looks_back(asked.options))?;
+        }
+        Ok(settings)
+    }
+
+    fn shape(&self, settings: &Settings) -> Result<Shape> {
+        T::shape(&Given::new(settings, 1.0))
+    }
+
+    fn rounded(&self, sample: SampleType, settings: &Settings) -> Result<(Settings, Vec<Ran>)> {
+        if sample == SampleType::F32 {
+            return Ok((settings.clone(), Vec::new()));
+        }
+        let given = Given::new(settings, sample.one());
+        let built = for_sample_type!(sample, S => T::build::<S, _>(&given, Nothing));
+        let mut told = given.told();
+        if T::INFO.has_first_value
+            && let Some(name) = settings.first_key()
+        {
+            for_sample_type!(sample, S => given.signal::<S>(name).map(drop))?;
+            told = given.told();
+        }
+        let vanished =
+            |ran: &&Ran| matches!((&ran.asked[..], &ran.ran[..]), ([asked], [0.0]) if *asked > 0.0);
+        if let (Err(_), Some(ran)) = (&built, told.iter().find(vanished)) {
+            bail!(
+                "{} {} is 0 in {sample}, whose step is {}; a type with more bits after the point, or f32, would \
+                 hold it",
+                ran.name,
+                ran.asked[0],
+                sample.step()
+            );
+        }
+        built?;
+        let mut rounded = settings.clone();
+        for ran in &told {
+            rounded.set(ran.name, settings::list(&ran.ran));
+        }
+        told.retain(|ran| ran.asked != ran.ran);
+        Ok((rounded, told))
+    }
+
+    fn codec(&self, sample: SampleType, settings: &Settings) -> Result<Codec> {
+        let given = Given::new(settings, sample.one());
+        let mut visitor = codec::Start { settings, one: sample.one(), first: None };
+        if T::INFO.has_first_value {
+            let Some(name) = settings.first_key() else {
+                bail!("the header lacks `# first=` or `# start=`; is it a file of spikes?")
+            };
+            visitor.first = Some(given.number(name)?);
+        }
+        for_sample_type!(sample, S => T::build::<S, _>(&given, visitor))
+    }
+}
+
+/// Asks only whether a scheme can be built.
+struct Nothing;
+
+impl<S: Sample> Visit<S> for Nothing {
+    type Output = ();
+
+    fn visit<P: Scheme<Sample = S> + 'static>(self, _: P, _: P::EncoderState) -> Result<()> {
+        Ok(())
+    }
+}

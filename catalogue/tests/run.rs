@@ -1,0 +1,238 @@
+//! Every scheme of the catalogue at run time: its parameters are whole, it runs in every sample type with the paper's
+//! settings, and its file of spikes says all that decoding needs.
+
+#![cfg(feature = "run")]
+
+use catalogue::run::{Calibrated, Event, Given, Known, Options, RunTime, SampleType, Settings};
+use catalogue::{ALL, Found, Kind};
+
+const SAMPLES: [&str; 6] = ["f32", "i32", "q16.16", "q8.24", "q4.12", "q8.8"];
+
+fn signal() -> Vec<f64> {
+    (0..2000)
+        .map(|i| (f64::from(i) * 0.02).sin() * 2.0 + (f64::from(i) * 0.31).cos() * 0.5)
+        .collect()
+}
+
+/// The signal in the unit of a type that has a fraction, and in larger numbers where it has none.
+fn signal_for(sample: SampleType) -> Vec<f64> {
+    let scale = if sample.step() == 1.0 { 1000.0 } else { 1.0 };
+    signal().into_iter().map(|value| value * scale).collect()
+}
+
+fn paper() -> Options {
+    let mut options = Options::default();
+    options.paper = true;
+    options
+}
+
+fn resolve(
+    scheme: &dyn RunTime,
+    options: &Options,
+    sample: SampleType,
+) -> anyhow::Result<Settings> {
+    let signal = signal_for(sample);
+    let mut calibrated = Calibrated::new(sample);
+    calibrated.observe(&signal);
+    let known = Known { calibrated: Some(&calibrated), first: &signal, can_calibrate: true };
+    scheme.resolve(options, &known)
+}
+
+/// What a scheme makes of the signal: events, and the values that they decode to.
+fn there_and_back(
+    scheme: &dyn RunTime,
+    sample: SampleType,
+    settings: &Settings,
+    piece: usize,
+) -> (Vec<Event>, Vec<f64>) {
+    let signal = signal_for(sample);
+    let mut codec = scheme.codec(sample, settings).unwrap();
+    let (mut events, mut values) = (Vec::new(), Vec::new());
+    for samples in signal.chunks(piece) {
+        codec.encode(samples, &mut events);
+    }
+    codec.finish(&mut events);
+    let mut codec = scheme.codec(sample, settings).unwrap();
+    let mut done = 0;
+    for samples in signal.chunks(piece) {
+        let end = done + samples.len() as u64;
+        let now: Vec<Event> =
+            events.iter().copied().filter(|event| (done..end).contains(&event.sample)).collect();
+        codec.decode(samples.len(), &now, &mut values).unwrap();
+        done = end;
+    }
+    (events, values)
+}
+
+#[test]
+fn parameters_say_what_they_take() {
+    let names: Vec<&str> = ALL.iter().map(|scheme| scheme.info().name).collect();
+    for scheme in ALL {
+        let info = scheme.info();
+        assert_eq!(names.iter().filter(|name| **name == info.name).count(), 1, "{}", info.name);
+        assert!(!info.words.is_empty() && !info.good_for.is_empty() && !info.title.is_empty());
+        let own = info.parameters.iter().map(|parameter| parameter.name).collect::<Vec<_>>();
+        for parameter in info.parameters {
+            let what = format!("{} {}", info.name, parameter.name);
+            assert!(parameter.help.len() > 10, "{what}");
+            assert_eq!(own.iter().filter(|name| **name == parameter.name).count(), 1, "{what}");
+            // Who does not know it sees what to give.
+            let is_shown = parameter.default.is_some() || !parameter.example.is_empty();
+            assert!(is_shown || matches!(parameter.kind, Kind::Flag | Kind::Choice(_)), "{what}");
+        }
+        assert_eq!(
+            info.has_first_value,
+            info.parameters.iter().any(|parameter| parameter.found == Some(Found::First)),
+            "{}",
+            info.name
+        );
+        // What it climbs by is a parameter of its own.
+        assert!(info.climbs_by.is_none_or(|name| own.contains(&name)), "{}", info.name);
+    }
+}
+
+#[test]
+fn every_scheme_runs_with_the_papers_settings_in_every_sample_type() {
+    for scheme in ALL {
+        for sample in SAMPLES {
+            let what = format!("{} {sample}", scheme.info().name);
+            let sample: SampleType = sample.parse().unwrap();
+            let settings = resolve(*scheme, &paper(), sample).unwrap();
+            let (settings, _) = scheme.rounded(sample, &settings).unwrap();
+            let (events, values) = there_and_back(*scheme, sample, &settings, 2000);
+            assert!(events.len() > 20, "{what}: {}", events.len());
+            assert_eq!(values.len(), 2000, "{what}");
+            let shape = scheme.shape(&settings).unwrap();
+            assert!(events.iter().all(|event| usize::from(event.neuron) < shape.neurons), "{what}");
+            assert!(events.iter().all(|event| usize::from(event.slot) < shape.slots), "{what}");
+            // In pieces as in one.
+            for piece in [1, 512] {
+                let again = there_and_back(*scheme, sample, &settings, piece);
+                assert!(again == (events.clone(), values.clone()), "{what} in pieces of {piece}");
+            }
+        }
+    }
+}
+
+#[test]
+fn settings_come_back_from_their_names_and_texts() {
+    for scheme in ALL {
+        for sample in SAMPLES {
+            let sample: SampleType = sample.parse().unwrap();
+            let settings = resolve(*scheme, &paper(), sample).unwrap();
+            let (settings, _) = scheme.rounded(sample, &settings).unwrap();
+            let keys = settings.entries().iter().rev();
+            let mut keys: Vec<_> =
+                keys.map(|(name, text)| ((*name).to_owned(), text.clone())).collect();
+            keys.push(("rate".to_owned(), "200".to_owned()));
+            let read = Settings::take(scheme.info(), &mut keys);
+            assert_eq!(read.entries(), settings.entries(), "{}", scheme.info().name);
+            assert_eq!(keys, [("rate".to_owned(), "200".to_owned())]);
+            // Decoding needs nothing else.
+            let (events, values) = there_and_back(*scheme, sample, &settings, 2000);
+            let mut again = Vec::new();
+            scheme.codec(sample, &read).unwrap().decode(2000, &events, &mut again).unwrap();
+            assert!(again == values, "{}", scheme.info().name);
+            // Rounded once, they stay.
+            let (twice, told) = scheme.rounded(sample, &settings).unwrap();
+            assert_eq!((twice.entries(), told.len()), (settings.entries(), 0));
+        }
+    }
+}
+
+#[test]
+fn a_file_without_one_of_the_entries_is_refused_by_its_name() {
+    for scheme in ALL {
+        let settings = resolve(*scheme, &paper(), SampleType::F32).unwrap();
+        for (name, text) in settings.entries() {
+            // Without a moving window's width or anything else that decoding is built from.
+            let others = settings.entries().iter().filter(|(other, _)| other != name);
+            let mut keys: Vec<_> =
+                others.map(|(name, text)| ((*name).to_owned(), text.clone())).collect();
+            let lacking = Settings::take(scheme.info(), &mut keys);
+            let error = scheme.codec(SampleType::F32, &lacking).err().unwrap().to_string();
+            assert!(error.contains(&format!("`# {name}=`")), "{name}={text}: {error}");
+            // And one that makes no sense.
+            let mut keys: Vec<_> = settings
+                .entries()
+                .iter()
+                .map(|(other, text)| {
+                    let text = if other == name { "1,x" } else { text };
+                    ((*other).to_owned(), text.to_owned())
+                })
+                .collect();
+            let wrong = Settings::take(scheme.info(), &mut keys);
+            let error = scheme.codec(SampleType::F32, &wrong).err().unwrap().to_string();
+            assert!(error.contains(name) && error.contains('x'), "{name}=1,x: {error}");
+        }
+    }
+}
+
+#[test]
+fn events_that_no_encoder_emits_together_are_refused() {
+    for scheme in ALL {
+        let settings = resolve(*scheme, &paper(), SampleType::F32).unwrap();
+        let (events, _) = there_and_back(*scheme, SampleType::F32, &settings, 2000);
+        let event = events[events.len() / 2];
+        let mut twice: Vec<Event> = events.clone();
+        twice.insert(events.len() / 2, event);
+        let mut codec = scheme.codec(SampleType::F32, &settings).unwrap();
+        let refused = codec.decode(2000, &twice, &mut Vec::new()).unwrap_err();
+        assert_eq!(refused.sample, event.sample, "{}", scheme.info().name);
+    }
+}
+
+#[test]
+fn what_is_wanted_of_a_signal_is_said() {
+    for scheme in ALL {
+        let info = scheme.info();
+        assert!(scheme.needs_signal(&paper()).is_some_and(|what| what.contains("--paper")));
+        let mut options = Options::default();
+        for parameter in info.parameters {
+            if parameter.is_recorded && !matches!(parameter.kind, Kind::Choice(_)) {
+                options.set(parameter.name, parameter.default.unwrap_or(parameter.example));
+            }
+        }
+        assert_eq!(scheme.needs_signal(&options), None, "{}", info.name);
+        // With all given it needs none.
+        let known = Known { calibrated: None, first: &[0.25], can_calibrate: false };
+        let settings = scheme.resolve(&options, &known).unwrap();
+        scheme.codec(SampleType::F32, &settings).unwrap();
+        options.set("colour", "blue");
+        let error = scheme.resolve(&options, &known).unwrap_err().to_string();
+        assert!(
+            error.starts_with(&format!("{} takes no --colour; it takes --", info.name)),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn the_spike_of_the_first_sample_changes_nothing() {
+    for scheme in ALL.iter().filter(|scheme| scheme.info().has_first_value) {
+        for sample in SAMPLES {
+            let sample: SampleType = sample.parse().unwrap();
+            let settings = resolve(*scheme, &paper(), sample).unwrap();
+            let (settings, _) = scheme.rounded(sample, &settings).unwrap();
+            let first = settings.first_value().unwrap();
+            let (_, values) = there_and_back(*scheme, sample, &settings, 2000);
+            assert_eq!(values[0], first, "{}", scheme.info().name);
+            assert!((first - signal_for(sample)[0]).abs() <= sample.step());
+        }
+    }
+}
+
+#[test]
+fn errors_name_what_is_allowed() {
+    let mut keys = vec![("neurons".to_owned(), "2".to_owned())];
+    let settings = Settings::take(
+        ALL.iter().map(|scheme| scheme.info()).find(|info| info.name == "grf").unwrap(),
+        &mut keys,
+    );
+    let given = Given::new(&settings, 1.0);
+    assert_eq!(
+        given.neurons().unwrap_err().to_string(),
+        "neurons 2 must be a whole number in 3..=1024"
+    );
+    assert!(given.number("min").unwrap_err().to_string().contains("lacks `# min=`"));
+}

@@ -1,0 +1,187 @@
+//! Flight logs with faults, written byte by byte.
+
+mod common;
+
+use common::{file, good, refused};
+
+/// A log in the making.
+struct Log(Vec<u8>);
+
+const SCHEME: &str = "encode --scheme sf --threshold 0.5 --topic armed";
+
+impl Log {
+    /// A topic `armed` of 9 bytes and padding, and one with text.
+    fn new() -> Self {
+        let mut log = Self([b"ULog\x01\x12\x35\x01".as_slice(), &[0; 8]].concat());
+        log.add(b'F', b"armed:uint64_t timestamp;bool on;uint8_t[7] _padding0;");
+        log.add(b'F', b"gps:uint64_t timestamp;char[4] device;float lat;");
+        log.add(b'A', b"\x00\x01\x00armed");
+        log.add(b'A', b"\x00\x02\x00gps");
+        log
+    }
+
+    fn add(&mut self, kind: u8, content: &[u8]) -> usize {
+        let place = self.0.len();
+        self.0.extend((content.len() as u16).to_le_bytes());
+        self.0.push(kind);
+        self.0.extend(content);
+        place
+    }
+
+    fn armed(&mut self, time: u64, on: u8) -> usize {
+        self.add(b'D', &[&[1, 0], &time.to_le_bytes()[..], &[on]].concat())
+    }
+
+    /// Ten samples, 0 and 1 by turns.
+    fn armed_ten(&mut self, start: u64) {
+        for sample in start..start + 10 {
+            self.armed(sample * 5000, (sample % 2) as u8);
+        }
+    }
+}
+
+#[test]
+fn messages_that_are_not_as_their_format_says_are_skipped_and_told() {
+    let mut log = Log::new();
+    log.armed_ten(0);
+    let place = log.add(b'D', &[&[1, 0], &50_000_u64.to_le_bytes()[..], &[1; 20]].concat());
+    log.armed_ten(10);
+    log.add(b'D', &[1, 0, 1]);
+    log.armed_ten(20);
+    let (_directory, path) = file("long.ulg", &log.0);
+    let told = good(&format!("info {path}"), "").output;
+    assert!(told.contains("armed: 30 samples"), "{told}");
+    let words = format!(
+        "2 messages longer or shorter than their format were skipped, the first at byte {place}\n"
+    );
+    assert!(told.contains(&words), "{told}");
+    let ran = good(&format!("{SCHEME} --field on {path}"), "");
+    assert!(ran.told.contains(&words) && ran.output.contains("# samples=30\n"), "{}", ran.told);
+}
+
+#[test]
+fn padding_at_the_end_may_be_logged_or_not() {
+    let mut log = Log::new();
+    log.armed_ten(0);
+    log.add(b'D', &[&[1, 0], &50_000_u64.to_le_bytes()[..], &[1; 8]].concat());
+    let (_directory, path) = file("padded.ulg", &log.0);
+    let told = good(&format!("info {path}"), "").output;
+    assert!(told.contains("armed: 11 samples") && !told.contains("skipped"), "{told}");
+}
+
+#[test]
+fn unregistered_ids_and_formats_that_are_no_text_are_skipped_and_told() {
+    let mut log = Log::new();
+    log.armed_ten(0);
+    let format = log.add(b'F', b"odd:uint64_t timestamp;float \xff\xfe;");
+    log.add(b'A', b"\x00\x03\x00odd");
+    let data = log.add(b'D', &[&[3, 0], &[0; 12][..]].concat());
+    log.add(b'D', &[&[9, 0], &[0; 12][..]].concat());
+    log.armed_ten(10);
+    let (_directory, path) = file("odd.ulg", &log.0);
+    let told = good(&format!("info {path}"), "").output;
+    assert!(told.contains("armed: 20 samples"), "{told}");
+    let ids = format!(
+        "2 messages with an id that is not registered were skipped, the first at byte {data}\n"
+    );
+    let formats =
+        format!("2 definitions that cannot be read were skipped, the first at byte {format}\n");
+    assert!(told.contains(&ids) && told.contains(&formats), "{told}");
+}
+
+#[test]
+fn damage_is_told_apart_from_a_cut_and_got_past() {
+    let mut log = Log::new();
+    log.armed_ten(0);
+    let damaged = log.armed(50_000, 1);
+    log.armed_ten(11);
+    let mut bytes = log.0;
+    // A length that leads nowhere.
+    bytes[damaged..damaged + 3].copy_from_slice(&[0xff, 0xff, 0xff]);
+    let (_directory, path) = file("damaged.ulg", &bytes);
+    let next = damaged + 3 + 11;
+    let words = format!(
+        "damaged at byte {damaged} of {}; --accept-cut goes on at byte {next}",
+        bytes.len()
+    );
+    refused(&format!("info {path}"), "", &[&words]);
+    let ran = good(&format!("{SCHEME} --field on --accept-cut {path}"), "");
+    assert!(ran.output.contains("# samples=20\n"), "{}", ran.output);
+    let words = format!("1 damaged stretches were skipped, the first at byte {damaged}\n");
+    assert!(ran.told.contains(&words), "{}", ran.told);
+    let (_directory, path) = file("cut.ulg", &bytes[..damaged - 5]);
+    refused(
+        &format!("info {path}"),
+        "",
+        &["cut short within the message at byte", "takes what is before"],
+    );
+    let told = good(&format!("info --accept-cut {path}"), "").output;
+    assert!(told.contains("armed: 9 samples"), "{told}");
+}
+
+#[test]
+fn booleans_keep_their_value() {
+    let mut log = Log::new();
+    for (sample, on) in [0, 1, 2, 255].into_iter().enumerate() {
+        log.armed(sample as u64 * 5000, on);
+    }
+    let (_directory, path) = file("bool.ulg", &log.0);
+    let position =
+        format!("encode --scheme position --centres 0,1,2,255 --topic armed --field on {path}");
+    let decoded = good("decode", &good(&position, "").output).output;
+    assert_eq!(common::values(&decoded), [0.0, 1.0, 2.0, 255.0]);
+}
+
+#[test]
+fn text_is_named_as_such_and_dropouts_are_told() {
+    let mut log = Log::new();
+    log.armed_ten(0);
+    log.add(b'D', &[&[2, 0], &[0; 8][..], b"ublx", &1.5_f32.to_le_bytes()].concat());
+    log.add(b'O', &20_u16.to_le_bytes());
+    log.add(b'O', &300_u16.to_le_bytes());
+    let (_directory, path) = file("text.ulg", &log.0);
+    let told = good(&format!("info {path}"), "").output;
+    assert!(
+        told.contains("2 dropouts of the logger, 320 ms in all, 300 ms the longest\n"),
+        "{told}"
+    );
+    assert!(told.contains("\n  lat\n  text: device\n"), "{told}");
+    let scheme = "encode --scheme sf --threshold 0.5 --topic gps";
+    for field in ["device", "device[0]"] {
+        refused(&format!("{scheme} --field {field} {path}"), "", &["is text, not a signal"]);
+    }
+    good(&format!("{scheme} --field lat {path}"), "");
+}
+
+#[test]
+fn data_appended_after_a_crash_is_read() {
+    let header = Log::new().0[..16].to_vec();
+    let body = Log::new().0[16..].to_vec();
+    let mut log = Log(header);
+    let flags = log.add(b'B', &[0; 40]);
+    log.0.extend(body);
+    log.armed_ten(0);
+    let place = log.0.len();
+    // What the crash cut.
+    log.0.extend([11, 0]);
+    let appended = log.0.len();
+    log.armed_ten(10);
+    log.0[flags + 3 + 8] = 1;
+    log.0[flags + 3 + 16..flags + 3 + 24].copy_from_slice(&(appended as u64).to_le_bytes());
+    assert_eq!(appended, place + 2);
+    let (_directory, path) = file("crash.ulg", &log.0);
+    let told = good(&format!("info {path}"), "").output;
+    assert!(told.contains("armed: 20 samples"), "{told}");
+}
+
+#[test]
+fn a_compressed_log_is_read() {
+    use std::io::Write;
+    let mut log = Log::new();
+    log.armed_ten(0);
+    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    encoder.write_all(&log.0).unwrap();
+    let (_directory, path) = file("log.ulg.gz", encoder.finish().unwrap());
+    assert!(good(&format!("info {path}"), "").output.contains("armed: 10 samples"));
+    good(&format!("{SCHEME} --field on {path}"), "");
+}

@@ -1,0 +1,54 @@
+//! Help: each command has an example, and offers only what it takes.
+
+mod common;
+
+use common::good;
+
+const COMMANDS: [&str; 9] =
+    ["encode", "decode", "listen", "convert", "score", "bench", "plot", "info", "signal"];
+
+#[test]
+fn every_command_has_an_example_that_its_options_allow() {
+    for command in COMMANDS {
+        let help = good(&format!("{command} --help"), "").output;
+        let examples: Vec<&str> =
+            help.lines().filter_map(|line| line.trim().strip_prefix("spikewire ")).collect();
+        assert!(!examples.is_empty(), "{command}: {help}");
+        for example in examples {
+            let mut words = example.split([' ', '|']).filter(|word| word.starts_with("--"));
+            let command = example.split(' ').next().unwrap();
+            let help = good(&format!("{command} --help"), "").output;
+            if example.contains('|') {
+                continue;
+            }
+            assert!(words.all(|word| help.contains(word)), "{example}");
+        }
+    }
+}
+
+#[test]
+fn every_option_says_what_it_means() {
+    for command in COMMANDS {
+        let help = good(&format!("{command} -h"), "").output;
+        let options = help.lines().map(str::trim_start).filter(|line| line.starts_with("--"));
+        for option in options {
+            let words = option.split_once("  ").map_or("", |(_, words)| words.trim());
+            assert!(words.len() > 8, "{command}: {option}");
+        }
+    }
+    let encode = good("encode --help", "").output;
+    assert!(encode.contains("in the signal's unit, such as `0.1`"), "{encode}");
+}
+
+#[test]
+fn listen_offers_what_it_takes() {
+    let help = good("listen --help", "").output;
+    for taken in ["--threshold ", "--thresholds", "--step", "--start", "tbr", "sf", "mw"] {
+        assert!(help.contains(taken), "{taken}");
+    }
+    for other in
+        ["--factor", "--filter", "--neurons", "--slots", "--shift", "--paper", "grf", "hsa"]
+    {
+        assert!(!help.contains(other), "{other}");
+    }
+}

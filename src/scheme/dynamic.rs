@@ -1,0 +1,27 @@
+//! Schemes whose filter length, window or number of neurons is chosen at run time.
+//!
+//! For programs that are no firmware, such as tools on a computer: their taps, centres and states are on the
+//! heap. They give the bits of the schemes in [`rate`](crate::rate), [`temporal`](crate::temporal) and
+//! [`population`](crate::population) with the same parameters, and are slower. Codes of a population have a
+//! capacity: [`Neuron<1024>`](crate::population::Neuron) for any number of neurons up to 1024.
+//!
+//! ```
+//! use spikewire::{Scheme, Spike, dynamic::{Hough, Taps}};
+//!
+//! let taps = [0.5, 1.0, 0.5];
+//! let scheme = Hough::try_new(Taps::try_new(&taps)?)?;
+//! let mut encoder = scheme.encoder();
+//! let spikes = [0.6, 1.2, 0.7, 0.0].map(|x| encoder.encode(x));
+//! assert_eq!(spikes, [None, None, Some(Spike::Up), Some(Spike::None)]);
+//! assert_eq!(scheme.latency(), 2);
+//! # Ok::<(), spikewire::ConfigError>(())
+//! ```
+
+#[cfg(feature = "rand")]
+pub use super::population::dynamic::Probabilistic;
+pub use super::population::dynamic::{LEVELS, NEURONS, Position, Slots};
+pub use super::rate::dynamic::{
+    Bsa, BsaToolbox, BsaToolboxState, Hough, LONGEST, Rate, RateDecoderState, RateState, Taps,
+    ThresholdHough,
+};
+pub use super::temporal::dynamic::{MovingWindow, MovingWindowState, WIDEST};

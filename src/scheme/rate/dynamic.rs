@@ -1,0 +1,374 @@
+//! Rate codes whose filter length is chosen at run time.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::encoder::{Rule, cells, decide_in_order, pairs, subtract};
+use super::filter::magnitude;
+use super::{Criterion, bsa, bsa_toolbox, hough, threshold_hough};
+use crate::error::{offset, ratio, within};
+use crate::num::{Nearer, Ratio, Residual, Tally, to_f64};
+use crate::{ConfigError, Encoder, Recovery, Sample, Scheme, Spike};
+
+/// The most taps of a filter.
+pub const LONGEST: usize = 4096;
+
+/// Filter taps, 1 to 4096, on the heap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Taps<S: Sample> {
+    /// Twice in a row, so that they can be read from any tap on and all around.
+    twice: Vec<S>,
+    magnitude: S::Residual,
+}
+
+impl<S: Sample> Taps<S> {
+    /// Taps of any sign.
+    ///
+    /// # Errors
+    /// There are none, or more than 4096; a tap is not finite, all are 0, or their magnitudes sum up to more
+    /// than the type holds (10³¹ in `f32`).
+    pub fn try_new(taps: &[S]) -> Result<Self, ConfigError> {
+        within("filter length", taps.len() as f64, 1.0, LONGEST as f32)?;
+        Ok(Self { magnitude: magnitude(taps)?, twice: [taps, taps].concat() })
+    }
+
+    /// The taps, first to last.
+    pub fn as_slice(&self) -> &[S] {
+        self.twice.get(self.length()..).unwrap_or_default()
+    }
+
+    fn length(&self) -> usize {
+        self.twice.len() / 2
+    }
+
+    /// The taps, turned so that the first of them is in place `slot`.
+    fn starting_at(&self, slot: usize) -> &[S] {
+        let length = self.length();
+        let start = length.saturating_sub(slot);
+        self.twice.get(start..start + length).unwrap_or_default()
+    }
+
+    /// One of them that is not 0, for a rule that has no use for the others.
+    fn one(&self) -> Result<super::Taps<S, 1>, ConfigError> {
+        let tap = self.twice.iter().copied().find(|&tap| tap != S::ZERO);
+        super::Taps::try_new([tap.unwrap_or_default()])
+    }
+}
+
+/// A place in the ring of residuals, whose length the taps know.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// The slot that is written next: of the oldest residual.
+    next: usize,
+    /// How many residuals are to come before the next one completes a window.
+    missing: usize,
+}
+
+impl Place {
+    /// Passes the slot that was written, and says whether that completed a window.
+    fn advance(&mut self, length: usize) -> bool {
+        self.next = if self.next + 1 < length { self.next + 1 } else { 0 };
+        let is_whole = self.missing == 0;
+        self.missing = self.missing.saturating_sub(1);
+        is_whole
+    }
+
+    fn oldest(self, length: usize) -> usize {
+        let slot = self.next + self.missing;
+        if slot < length { slot } else { slot - length }
+    }
+}
+
+/// The state of a rate code's encoder: what the spikes so far have left of the last samples.
+#[derive(Clone, Debug)]
+pub struct RateState<S: Sample> {
+    residuals: Vec<S::Residual>,
+    place: Place,
+    tally: Tally,
+}
+
+/// The state of a rate code's decoder: what the spikes so far add to the values to come.
+#[derive(Clone, Debug)]
+pub struct RateDecoderState<S: Sample> {
+    /// From `next` on, and around.
+    pending: Vec<S::Residual>,
+    next: usize,
+}
+
+/// A rate code that looks ahead over a filter of any length; `R` is its rule.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rate<S: Sample, R> {
+    taps: Taps<S>,
+    shift: S,
+    /// The rule, in the form of the scheme with a single tap.
+    rule: R,
+}
+
+/// [`rate::Hough`](crate::rate::Hough) with a filter of any length.
+pub type Hough<S> = Rate<S, hough::Hough<S, 1>>;
+
+/// [`rate::ThresholdHough`](crate::rate::ThresholdHough) with a filter of any length.
+pub type ThresholdHough<S> = Rate<S, threshold_hough::ThresholdHough<S, 1>>;
+
+/// [`rate::Bsa`](crate::rate::Bsa) with a filter of any length.
+pub type Bsa<S> = Rate<S, bsa::Bsa<S, 1>>;
+
+impl<S: Sample> Hough<S> {
+    /// A scheme with these taps.
+    ///
+    /// # Errors
+    /// None: taps that exist are good.
+    pub fn try_new(taps: Taps<S>) -> Result<Self, ConfigError> {
+        Ok(Self { rule: hough::Hough::new(taps.one()?), taps, shift: S::ZERO })
+    }
+}
+
+impl<S: Sample> ThresholdHough<S> {
+    /// A scheme with these taps and this threshold.
+    ///
+    /// # Errors
+    /// The threshold is negative or not finite.
+    pub fn try_new(taps: Taps<S>, threshold: S) -> Result<Self, ConfigError> {
+        let rule = threshold_hough::ThresholdHough::try_new(taps.one()?, threshold)?;
+        Ok(Self { taps, shift: S::ZERO, rule })
+    }
+}
+
+impl<S: Sample> Bsa<S> {
+    /// A scheme with these taps and either criterion.
+    ///
+    /// # Errors
+    /// The threshold is out of its range, or not finite.
+    pub fn try_new(taps: Taps<S>, criterion: Criterion<S>) -> Result<Self, ConfigError> {
+        let rule = bsa::Bsa::try_new(taps.one()?, criterion)?;
+        Ok(Self { taps, shift: S::ZERO, rule })
+    }
+}
+
+/// What [`Rate`] and [`BsaToolbox`] share: taps and shift, and the decoder, which is the same.
+macro_rules! filtered {
+    () => {
+        /// With the signal's minimum, 0 unless told.
+        ///
+        /// # Errors
+        /// The shift is not finite, or beyond ±10³¹ in `f32`.
+        pub fn try_with_shift(self, shift: S) -> Result<Self, ConfigError> {
+            offset("shift", to_f64(shift))?;
+            Ok(Self { shift, ..self })
+        }
+
+        /// The taps of its filter.
+        pub fn taps(&self) -> &Taps<S> {
+            &self.taps
+        }
+
+        /// The signal's minimum.
+        pub fn shift(&self) -> S {
+            self.shift
+        }
+
+        /// An encoder in its initial state.
+        pub fn encoder(&self) -> Encoder<'_, Self> {
+            Encoder::with_state(self, self.state())
+        }
+    };
+}
+
+macro_rules! decode {
+    () => {
+        fn decoder_state(&self) -> RateDecoderState<S> {
+            RateDecoderState { pending: vec![S::Residual::ZERO; self.taps.length()], next: 0 }
+        }
+
+        fn decode(&self, state: &mut RateDecoderState<S>, spike: Spike) -> S {
+            if spike == Spike::Up {
+                let taps = self.taps.starting_at(state.next);
+                for (sum, tap) in state.pending.iter_mut().zip(taps) {
+                    *sum = sum.plus(tap.widen());
+                }
+            }
+            let pending = state.pending.get_mut(state.next);
+            let sum =
+                pending.map_or(S::Residual::ZERO, |sum| core::mem::replace(sum, S::Residual::ZERO));
+            state.next = if state.next + 1 < self.taps.length() { state.next + 1 } else { 0 };
+            self.shift.restore(sum)
+        }
+
+        /// Forgets the spikes of the past. A rate decoder's values come from spikes alone.
+        fn resync(&self, state: &mut RateDecoderState<S>, _: S) {
+            *state = self.decoder_state();
+        }
+    };
+}
+
+#[allow(private_bounds)] // the rules are the crate's own
+impl<S: Sample, R: Rule<S, 1>> Rate<S, R> {
+    filtered!();
+
+    /// The state of an encoder that has seen nothing.
+    pub fn state(&self) -> RateState<S> {
+        let length = self.taps.length();
+        RateState {
+            residuals: vec![S::Residual::ZERO; length],
+            place: Place { next: 0, missing: length - 1 },
+            tally: Tally::NONE,
+        }
+    }
+
+    /// The spike of the oldest residual, first tap first and with what is there of the window.
+    fn decide_in_order(&self, state: &mut RateState<S>) -> Option<Spike> {
+        let Taps { magnitude, .. } = self.taps;
+        let (oldest, missing) = (state.place.oldest(self.taps.length()), state.place.missing);
+        let residuals = cells(&mut state.residuals);
+        decide_in_order(&self.rule, self.taps.as_slice(), magnitude, residuals, oldest, missing)
+    }
+}
+
+#[allow(private_bounds)] // the rules are the crate's own
+impl<S: Sample, R: Rule<S, 1>> Scheme for Rate<S, R> {
+    type Sample = S;
+    type Code = Spike;
+    type Output = Option<Spike>;
+    type EncoderState = RateState<S>;
+    type DecoderState = RateDecoderState<S>;
+
+    const LATENCY: usize = LONGEST - 1;
+    const RECOVERY: Recovery = Recovery::Samples(LONGEST);
+
+    fn encode(&self, state: &mut RateState<S>, sample: S) -> Option<Spike> {
+        if !sample.is_finite() {
+            state.tally.reject();
+            return None;
+        }
+        let magnitude = self.taps.magnitude;
+        *state.residuals.get_mut(state.place.next)? = sample.residual(self.shift, magnitude);
+        if !state.place.advance(self.taps.length()) {
+            return None;
+        }
+        if R::IN_ORDER {
+            return self.decide_in_order(state);
+        }
+        let taps = self.taps.starting_at(state.place.next);
+        let residuals = cells(&mut state.residuals);
+        if !self.rule.fits(magnitude, pairs(residuals, taps), true) {
+            return Some(Spike::None);
+        }
+        subtract(residuals, taps);
+        Some(Spike::Up)
+    }
+
+    fn finish_next(&self, state: &mut RateState<S>) -> Option<Spike> {
+        if state.place.missing + 1 >= self.taps.length() {
+            return None;
+        }
+        state.place.missing += 1;
+        self.decide_in_order(state)
+    }
+
+    fn rejected(state: &RateState<S>) -> u32 {
+        state.tally.rejected()
+    }
+
+    fn latency(&self) -> usize {
+        self.taps.length() - 1
+    }
+
+    decode!();
+}
+
+/// [`rate::BsaToolbox`](crate::rate::BsaToolbox) with a filter of any length.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BsaToolbox<S: Sample> {
+    taps: Taps<S>,
+    shift: S,
+    ratio: Ratio,
+}
+
+/// The state of a [`BsaToolbox`] encoder.
+#[derive(Clone, Debug)]
+pub struct BsaToolboxState<S: Sample> {
+    residuals: Vec<S::Residual>,
+    place: Place,
+    /// The last tap of a spike just emitted, to be taken from the sample to come.
+    owed: S::Residual,
+    tally: Tally,
+}
+
+impl<S: Sample> BsaToolbox<S> {
+    /// A scheme with these taps and this threshold.
+    ///
+    /// # Errors
+    /// The threshold is not above 0 and below 4.
+    pub fn try_new(taps: Taps<S>, threshold: f32) -> Result<Self, ConfigError> {
+        ratio("threshold", threshold)?;
+        Ok(Self { taps, shift: S::ZERO, ratio: Ratio::new(threshold) })
+    }
+
+    filtered!();
+
+    /// The state of an encoder that has seen nothing.
+    pub fn state(&self) -> BsaToolboxState<S> {
+        let length = self.taps.length();
+        BsaToolboxState {
+            residuals: vec![S::Residual::ZERO; length],
+            place: Place { next: 0, missing: length },
+            owed: S::Residual::ZERO,
+            tally: Tally::NONE,
+        }
+    }
+}
+
+impl<S: Sample> Scheme for BsaToolbox<S> {
+    type Sample = S;
+    type Code = Spike;
+    type Output = Option<Spike>;
+    type EncoderState = BsaToolboxState<S>;
+    type DecoderState = RateDecoderState<S>;
+
+    const LATENCY: usize = LONGEST;
+    const RECOVERY: Recovery = Recovery::Samples(LONGEST);
+
+    fn encode(&self, state: &mut BsaToolboxState<S>, sample: S) -> Option<Spike> {
+        if !sample.is_finite() {
+            state.tally.reject();
+            return None;
+        }
+        let residual = sample.residual(self.shift, self.taps.magnitude).minus(state.owed);
+        state.owed = S::Residual::ZERO;
+        let without = bsa_toolbox::without_filter(&state.residuals);
+        *state.residuals.get_mut(state.place.next)? = residual;
+        if !state.place.advance(self.taps.length()) {
+            return None;
+        }
+        let oldest = state.place.next;
+        let with = bsa_toolbox::with_filter(&state.residuals, self.taps.starting_at(oldest));
+        if !S::Residual::at_most(with, without, self.ratio) {
+            return Some(Spike::None);
+        }
+        // The taps begin one residual after the oldest; the last of them is left over.
+        let kept = state.residuals.get(oldest).copied()?;
+        subtract(cells(&mut state.residuals), self.taps.starting_at(oldest + 1));
+        *state.residuals.get_mut(oldest)? = kept;
+        state.owed = self.taps.as_slice().last()?.widen();
+        Some(Spike::Up)
+    }
+
+    /// The last samples, as many as there are taps, never spike.
+    fn finish_next(&self, state: &mut BsaToolboxState<S>) -> Option<Spike> {
+        if state.place.missing >= self.taps.length() {
+            return None;
+        }
+        state.place.missing += 1;
+        Some(Spike::None)
+    }
+
+    fn rejected(state: &BsaToolboxState<S>) -> u32 {
+        state.tally.rejected()
+    }
+
+    fn latency(&self) -> usize {
+        self.taps.length()
+    }
+
+    decode!();
+}
