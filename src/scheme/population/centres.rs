@@ -113,6 +113,7 @@ const fn gaussian_centre(min: f64, max: f64, i: usize, m: usize) -> f64 {
 }
 
 /// The number of a finite value's neuron, from 1, given the edges of all but the last.
+#[allow(clippy::inline_always)]
 #[inline(always)] // into one caller a scheme
 pub(super) fn nearest_by_search<S: Sample>(edges: &[S], value: S) -> usize {
     1 + count_preceding(edges.len(), |i| edges.get(i).is_some_and(|&edge| value.is_beyond(edge)))
