@@ -1,8 +1,10 @@
 //! Gaussian receptive fields of equal width, as distances instead of exponentials.
 
+#[cfg(feature = "rand")]
 use core::hint::black_box;
 use core::ops::RangeInclusive;
 
+#[cfg(feature = "rand")]
 use super::FiredNeurons;
 use super::centres::{Centres, even_centre};
 use super::search::count_preceding;
@@ -194,6 +196,7 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
     }
 
     /// The mean of the centres of the neurons that fired, or `None` without any.
+    #[cfg(feature = "rand")]
     #[inline]
     pub(super) fn mean_of(&self, neurons: &FiredNeurons<M>) -> Option<S> {
         // Where the compiler cannot tell that a centre may be read in vain, it passes by the neurons that did not
