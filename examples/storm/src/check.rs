@@ -149,7 +149,7 @@ fn outlast_lock_free(mut items: SpscConsumer<'static>) -> Result<Outcome, &'stat
     weather::start(false);
     while source.offered.load(SeqCst) < STORM || items.lost() == 0 {
         items.take().map_or(Ok(()), |taken| account.take(taken))?;
-        (0..10).for_each(|_| work());
+        (0..30).for_each(|_| work()); // slower than the source
     }
     weather::stop();
     while let Some(taken) = items.take() {

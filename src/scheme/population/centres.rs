@@ -128,19 +128,23 @@ pub(super) const fn halfway_edges<S: Sample>(
     centres: &[S],
     edges: &mut [S],
 ) -> Result<(), ConfigError> {
+    let mut before = None;
     let mut i = 0;
     while i < centres.len() {
         let value = to_f64(centres[i]);
         if let Err(error) = finite("centre", value) {
             return Err(error);
         }
-        if i > 0 {
-            let below = to_f64(centres[i - 1]);
+        if let Some(below) = before {
             if value <= below {
                 return Err(not_rising("centres", i, value, below));
             }
-            edges[i - 1] = floor_from_f64(halfway(below, value));
+            let edge = i.wrapping_sub(1);
+            if edge < edges.len() {
+                edges[edge] = floor_from_f64(halfway(below, value));
+            }
         }
+        before = Some(value);
         i += 1;
     }
     Ok(())
@@ -170,7 +174,7 @@ pub(super) const fn even<S: Sample>(
         return Err(error);
     }
     i = 0;
-    while i < count {
+    while i < count && i < edges.len() {
         edges[i] = even_edge(min, max, i, count);
         i += 1;
     }

@@ -178,13 +178,14 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
             self.prime(state, &[sample]);
             return Steps(0);
         }
+        let least = self.most.wrapping_neg();
         let mut steps = 0;
         let mut base = state.base;
         while steps < self.most && sample > base.plus(self.threshold) {
             base = base.plus(self.threshold);
             steps += 1;
         }
-        while steps <= 0 && steps > -self.most && sample < base.minus(self.threshold) {
+        while steps <= 0 && steps > least && sample < base.minus(self.threshold) {
             base = base.minus(self.threshold);
             steps -= 1;
         }
