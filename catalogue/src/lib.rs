@@ -84,4 +84,4 @@ macro_rules! schemes {
     };
 }
 
-schemes![tbr, mw, sf, bsa, hsa, t_hsa, position, grf, grf_slots, grf_prob,];
+schemes![tbr, mw, sf, sod, bsa, hsa, t_hsa, position, grf, grf_slots, grf_prob,];

@@ -34,7 +34,7 @@ impl Put for &mut Items {
 }
 
 /// A board that encodes waves, with a keyframe every 100 samples.
-fn board<P: Start<Code = Spike>>(schemes: [P; CHANNELS]) -> Board<P::Sample> {
+fn board<P: Start<Code = Spike>>(schemes: &[P; CHANNELS]) -> Board<P::Sample> {
     let mut bank = Bank::<_, CHANNELS>::per_channel(schemes.each_ref());
     let mut decoders = schemes.each_ref().map(P::decoder);
     let mut transmitter = Transmitter::new(Coding::for_channels(3, 1000), 7);
@@ -58,7 +58,7 @@ fn board<P: Start<Code = Spike>>(schemes: [P; CHANNELS]) -> Board<P::Sample> {
                 }
                 // What the board's decoders start from.
                 Item::Keyframe(keyframe) => {
-                    decoders[usize::from(keyframe.address)].resync(keyframe.value().unwrap())
+                    decoders[usize::from(keyframe.address)].resync(keyframe.value().unwrap());
                 }
                 Item::Break(_) => unreachable!(),
             }
@@ -72,7 +72,7 @@ fn board<P: Start<Code = Spike>>(schemes: [P; CHANNELS]) -> Board<P::Sample> {
 }
 
 fn three_floats() -> Board<f32> {
-    board([7.5, 3.1, 12.7].map(|threshold| StepForward::<f32>::new(threshold)))
+    board(&[7.5, 3.1, 12.7].map(StepForward::<f32>::new))
 }
 
 const THREE: &str = "--scheme sf --thresholds 7.5,3.1,12.7";
@@ -133,13 +133,13 @@ fn values_are_those_of_the_board_bit_for_bit() {
         .collect();
     assert!(bits.iter().copied().eq(board_f32.values.iter().map(|(_, _, value)| value.to_bits())));
 
-    let counts = board([7, 3, 12].map(|threshold| StepForward::<i16>::new(threshold)));
+    let counts = board(&[7, 3, 12].map(StepForward::<i16>::new));
     assert_exact(&counts, 1.0, "--sample i16 --scheme sf --thresholds 7,3,12");
-    let q8_8 = board([StepForward::<I8F8>::new(I8F8::from_bits(7)); 3]);
+    let q8_8 = board(&[StepForward::<I8F8>::new(I8F8::from_bits(7)); 3]);
     assert_exact(&q8_8, 1.0, "--sample q8.8 --scheme sf --threshold 0.02734375");
-    let contrast = board([TemporalContrast::<f32>::new(1.5).with_step(3.0); 3]);
+    let contrast = board(&[TemporalContrast::<f32>::new(1.5).with_step(3.0); 3]);
     assert_exact(&contrast, 1.0, "--scheme tbr --threshold 1.5 --step 2x");
-    let window = board([MovingWindow::<f32, 4>::new(2.5); 3]);
+    let window = board(&[MovingWindow::<f32, 4>::new(2.5); 3]);
     assert_exact(&window, 1.0, "--scheme mw --threshold 2.5 --window 3");
 }
 
@@ -229,7 +229,7 @@ fn keyframes_of_step_forward_tell_wrong_parameters() {
     let other = told("--scheme sf --threshold 9 --sample q16.16");
     assert!(other.contains("\n15 keyframes of another sample type\n"), "{other}");
     // Theirs are samples.
-    let contrast = board([TemporalContrast::<f32>::new(1.5).with_step(3.0); 3]);
+    let contrast = board(&[TemporalContrast::<f32>::new(1.5).with_step(3.0); 3]);
     let told = good_bytes("listen --scheme tbr --threshold 9", &contrast.frames.concat()).told;
     assert!(!told.contains("contradict"), "{told}");
 }

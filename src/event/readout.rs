@@ -43,7 +43,7 @@ pub(crate) struct Addresses {
 impl Addresses {
     /// The code of a channel, from the events of a sample at this tick.
     pub(crate) fn code<C: Code>(self, channel: usize, tick: Tick, events: &[Event]) -> C {
-        let first = self.first.wrapping_add((channel * C::NEURONS) as u16);
+        let first = self.first.wrapping_add(channel.wrapping_mul(C::NEURONS) as u16);
         C::assemble(events.iter().filter_map(|event| {
             let since = event.tick.since(tick).max(0) as u32;
             let slot = since.checked_div(self.slot_ticks).unwrap_or(0);

@@ -37,11 +37,11 @@ impl Cells {
     /// So many, in units of the last place.
     pub(crate) const fn of_integers(origin: f64, width: f64, count: usize) -> Self {
         let range = (width * count as f64) as u64;
-        let mut shift = 0;
-        while range >> shift > 0xffff {
-            shift += 1;
+        let mut shift = 0_u32;
+        while range.wrapping_shr(shift) > 0xffff {
+            shift = shift.wrapping_add(1);
         }
-        let mut scale = (1_u64 << shift) as f64 / width;
+        let mut scale = 1_u64.wrapping_shl(shift) as f64 / width;
         let mut fraction = 0;
         while scale < 32_767.0 && fraction < 31 {
             scale *= 2.0;
@@ -49,7 +49,7 @@ impl Cells {
         }
         if scale < 65_535.0 {
             // Rounded up, so that a multiple of a width is not in the cell below.
-            let scale = scale as u32 + 1;
+            let scale = (scale as u32).wrapping_add(1);
             Self { origin: origin as i32 as u32, scale: fraction << 24 | shift << 16 | scale }
         } else {
             Self::ONE

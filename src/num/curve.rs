@@ -19,7 +19,7 @@ pub(crate) const fn exp(x: f64) -> f64 {
         sum += term;
         n += 1.0;
     }
-    sum * f64::from_bits(((1023 + halves) as u64) << 52)
+    sum * f64::from_bits((halves.wrapping_add(1023) as u64) << 52)
 }
 
 /// `ln(x)` for normal `x > 0`.

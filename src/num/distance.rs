@@ -169,12 +169,12 @@ macro_rules! integer {
             // At most 1024 neurons of 256 levels: neither this nor the sum of levels leaves 30 bits.
             #[inline]
             fn weigh(sum: i32, _: Self, neuron: usize, level: u32) -> i32 {
-                sum + (2 * neuron as i32 - 1) * level as i32
+                sum.wrapping_add((neuron as i32).wrapping_mul(2).wrapping_sub(1).wrapping_mul(level as i32))
             }
 
             #[inline]
             fn mean(sum: i32, levels: u32, neurons: usize, min: Self, max: Self) -> Self {
-                let parts = (neurons as i32 - 2) * levels as i32;
+                let parts = (neurons as i32).wrapping_sub(2).wrapping_mul(levels as i32);
                 let value = mean($to_bits(min).into(), $to_bits(max).into(), sum, parts);
                 $from_bits(value.clamp(<$bits>::MIN.into(), <$bits>::MAX.into()) as $bits)
             }
@@ -191,14 +191,16 @@ fn mean(min: i32, max: i32, sum: i32, parts: i32) -> i32 {
     };
     // The floor, also of a negative quotient.
     let sign = dividend >> 31;
-    let quotient = ((dividend ^ sign) as u32).checked_div(2 * parts as u32).unwrap_or(0);
+    let quotient =
+        ((dividend ^ sign) as u32).checked_div((parts as u32).wrapping_mul(2)).unwrap_or(0);
     min.saturating_add(quotient as i32 ^ sign)
 }
 
 #[cold]
 fn long_mean(min: i32, max: i32, sum: i32, parts: i32) -> i32 {
     let [min, max, sum, parts] = [min, max, sum, parts].map(i64::from);
-    let value = min + ((max - min) * sum + parts).div_euclid(2 * parts.max(1));
+    let product = (max - min).wrapping_mul(sum).wrapping_add(parts);
+    let value = product.div_euclid(2 * parts.max(1)).wrapping_add(min);
     value.clamp(i32::MIN.into(), i32::MAX.into()) as i32
 }
 
@@ -217,8 +219,9 @@ macro_rules! distance {
                 let min = Self::from($to_bits(min));
                 let offset = Self::from($to_bits(value)).wrapping_sub(min);
                 let range = Self::from($to_bits(max)).wrapping_sub(min);
-                let centre = (2 * neuron as Self - 1).wrapping_mul(range);
-                offset.wrapping_mul(2 * (neurons as Self - 2)).wrapping_sub(centre).wrapping_abs()
+                let centre = (neuron as Self).wrapping_mul(2).wrapping_sub(1).wrapping_mul(range);
+                let spacings = (neurons as Self).wrapping_sub(2);
+                offset.wrapping_mul(spacings.wrapping_mul(2)).wrapping_sub(centre).wrapping_abs()
             }
 
             #[inline]

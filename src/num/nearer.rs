@@ -72,12 +72,12 @@ impl Nearer for i32 {
 
     #[inline(always)]
     fn add_distance(self, other: i32, sum: i64) -> i64 {
-        sum + i64::from(self.abs_diff(other))
+        sum.wrapping_add(i64::from(self.abs_diff(other)))
     }
 
     #[inline]
     fn at_most(left: i64, right: i64, ratio: Ratio) -> bool {
-        left << 14 <= right * i64::from(ratio.fixed)
+        left << 14 <= right.wrapping_mul(ratio.fixed.into())
     }
 
     #[inline(always)]

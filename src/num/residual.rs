@@ -132,8 +132,8 @@ macro_rules! integer_rated {
 
             #[inline]
             fn residual(self, shift: Self, magnitude: i32) -> i32 {
-                let limit = i32::MAX - magnitude;
-                $to_bits(self).saturating_sub($to_bits(shift)).max(-limit).min(limit)
+                let limit = i32::MAX.wrapping_sub(magnitude);
+                $to_bits(self).saturating_sub($to_bits(shift)).max(limit.wrapping_neg()).min(limit)
             }
 
             #[inline]

@@ -20,13 +20,15 @@ pub(crate) trait Shortfall: Sized {
 #[inline(always)]
 fn twice_shortfall(most: f32, pairs: impl Iterator<Item = (f32, f32)>) -> Option<f32> {
     let mut sum = 0.0;
-    for (count, (residual, tap)) in pairs.enumerate() {
+    let mut count = 0_usize;
+    for (residual, tap) in pairs {
         let left = residual - tap;
         sum += left.abs() - left;
         // The sum only grows. It is compared every fourth pair.
         if count % 4 == 3 && sum > most {
             return None;
         }
+        count = count.wrapping_add(1);
     }
     (sum <= most).then_some(sum)
 }

@@ -64,7 +64,7 @@ pub(crate) const fn margin<S: Sample>(
 ) -> <S::Sum as Difference>::Margin {
     match S::KIND {
         SampleKind::F32 => word(magnitude(units(threshold) as f32 * count as f32) as u64),
-        _ => word((units(threshold) as i64 * count as i64) as u64),
+        _ => word((units(threshold) as i64).wrapping_mul(count as i64) as u64),
     }
 }
 
@@ -73,16 +73,13 @@ pub(crate) const fn fast_margin<S: Sample>(
     threshold: S,
     count: usize,
 ) -> <S::Fast as Difference>::Margin {
-    match S::KIND {
-        SampleKind::F32 => {
-            let margin = units(threshold) as f32 * count as f32;
-            word(magnitude(if margin < f32::MAX { margin } else { f32::MAX }) as u64)
-        }
-        _ => {
-            let margin = units(threshold) as i64 * count as i64;
-            let widest = i32::MAX as i64;
-            word(if margin < widest { margin } else { widest } as u64)
-        }
+    if matches!(S::KIND, SampleKind::F32) {
+        let margin = units(threshold) as f32 * count as f32;
+        word(magnitude(if margin < f32::MAX { margin } else { f32::MAX }) as u64)
+    } else {
+        let margin = (units(threshold) as i64).wrapping_mul(count as i64);
+        let widest = i32::MAX as i64;
+        word(if margin < widest { margin } else { widest } as u64)
     }
 }
 
@@ -185,7 +182,7 @@ macro_rules! integer_difference {
                 fn beyond(self, margin: $sum) -> Ordering {
                     if self > margin {
                         Ordering::Greater
-                    } else if self < -margin {
+                    } else if self < margin.wrapping_neg() {
                         Ordering::Less
                     } else {
                         Ordering::Equal

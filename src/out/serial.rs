@@ -94,10 +94,10 @@ impl<W: Write, B: Batch, const N: usize> SerialSink<W, B, N> {
             }
             match self.port.write(rest).map_err(SinkError::Bus)? {
                 0 => return Err(SinkError::Closed),
-                taken => self.start += taken.min(rest.len()),
+                taken => self.start = self.start.wrapping_add(taken.min(rest.len())),
             }
         }
-        Ok(self.start - before)
+        Ok(self.start.wrapping_sub(before))
     }
 
     /// What makes the bytes: for keyframes and counters.
@@ -107,7 +107,7 @@ impl<W: Write, B: Batch, const N: usize> SerialSink<W, B, N> {
 
     /// How many bytes wait for the next [`send`](Self::send).
     pub const fn waiting(&self) -> usize {
-        self.end - self.start
+        self.end.wrapping_sub(self.start)
     }
 
     /// The port, for other uses.

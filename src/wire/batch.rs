@@ -67,14 +67,14 @@ impl<F: EventFormat> Batch for Formatted<F> {
     const SHORTEST: usize = F::LONGEST;
 
     fn fill(&mut self, events: &mut impl Source, bytes: &mut [u8]) -> usize {
-        let mut written = 0;
+        let mut written = 0_usize;
         while let Some(event) = self.held.take().or_else(|| events.take_event()) {
             let rest = bytes.get_mut(written..).unwrap_or_default();
             match self.format.encode(event, rest) {
-                Ok(length) => written += length,
+                Ok(length) => written = written.wrapping_add(length),
                 Err(FormatError::Full { written: more }) => {
                     self.held = Some(event);
-                    written += more;
+                    written = written.wrapping_add(more);
                     break;
                 }
                 Err(FormatError::Address { .. }) => {

@@ -37,8 +37,8 @@ impl Options {
     /// # Errors
     /// Such a parameter is given.
     pub fn check(&self, info: &Info) -> Result<()> {
-        let takes = |name: &str| info.parameters.iter().any(|own| own.name == name);
-        let Some(name) = self.given.keys().find(|name| !takes(name)) else { return Ok(()) };
+        let has = |name: &str| info.parameters.iter().any(|own| own.name == name);
+        let Some(name) = self.given.keys().find(|name| !has(name)) else { return Ok(()) };
         let taken: Vec<String> =
             info.parameters.iter().map(|own| format!("--{}", own.name)).collect();
         bail!("{} takes no --{name}; it takes {}", info.name, taken.join(" "))

@@ -184,7 +184,7 @@ pub fn transcribed<S: Plain>(input: &mut [S], filter: &[S], threshold: S, spikes
 #[inline(never)]
 pub fn transcribed_toolbox<S: Plain>(input: &mut [S], filter: &[S], threshold: f64, spikes: &mut [i8]) {
     // The ratio in 128ths, so that counts can take part; the paper's 1.15 is then 1.1484.
-    let (parts, threshold) = (S::wide(128.0), S::wide((threshold * 128.0) as i32 as f64));
+    let (parts, threshold) = (S::wide(128.0), S::wide(f64::from((threshold * 128.0) as i32)));
     for i in 0..input.len() - filter.len() {
         let (mut e1, mut e2) = (S::Wide::default(), S::Wide::default());
         for j in 0..filter.len() {

@@ -114,8 +114,8 @@ pub fn transcribed<S: Plain>(
         let x = input[i].to_f64() as f32;
         for j in 0..centres.len() {
             let level = (levels as f32 * response(x, centres[j], sigma) + 0.5) as u32;
-            let fires = level > 0 && draw() / (u32::MAX / levels + 1) < level;
-            fired[i * centres.len() + j] = fires as i8;
+            let does_fire = level > 0 && draw() / (u32::MAX / levels + 1) < level;
+            fired[i * centres.len() + j] = i8::from(does_fire);
         }
     }
 }

@@ -137,7 +137,9 @@ fn framed<S: Sample>(scheme: &'static StepForward<S>) -> Option<()> {
     let (view, length) = FrameView::new(bytes).ok()?;
     hide((view.session(), view.sequence(), view.tick(), view.period(), view.is_after_loss()));
     let mut events = view.events();
-    hide((events.by_ref().count(), events.is_complete(), view.keyframes().count(), length));
+    events.by_ref().for_each(hide);
+    view.keyframes().for_each(hide);
+    hide((events.is_complete(), length));
     Some(())
 }
 
@@ -158,7 +160,7 @@ fn formats() -> Option<()> {
     let mut bytes = black_box([0; 32]);
     let length = eieio::encode(black_box(Some(1)), black_box([1, 2]), &mut bytes).unwrap_or(0);
     let datagram = bytes.get(..length).and_then(eieio::decode);
-    hide(datagram.map(|datagram| datagram.keys().count()));
+    hide(datagram.map(|datagram| datagram.keys().for_each(hide)));
     Some(())
 }
 

@@ -26,11 +26,11 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
         mut on_output: impl FnMut(u8),
     ) -> Outcome<u32, D, P> {
         self.chip.aer.finish(&mut on_output)?;
-        let mut sent = 0;
+        let mut sent = 0_u32;
         while let Some(event) = self.chip.held.take().or_else(|| self.next_of(&mut events)) {
             let word = to_input(event).word()?;
             self.feed_word(word, event, &mut on_output)?;
-            sent += 1;
+            sent = sent.wrapping_add(1);
         }
         Ok(sent)
     }

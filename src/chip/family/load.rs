@@ -37,7 +37,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
     ) -> Outcome<(), D, P> {
         check::<I, D::Error, P>(network)?;
         let half = frames(network);
-        let total = 2 * half;
+        let total = half.wrapping_mul(2);
         let chip = &mut *self.chip;
         each_byte(
             network,
@@ -47,7 +47,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
         each_byte(
             network,
             |address, keep, value| chip.expect_byte(address, keep, value),
-            |done| progress(Progress { done: half + done, total }),
+            |done| progress(Progress { done: half.wrapping_add(done), total }),
         )?;
         chip.check_step()
     }
@@ -79,7 +79,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
 fn frames<I: Input>(network: &impl Describe<I>) -> u32 {
     let (neurons, rows) = (u32::from(network.neurons()), u32::from(network.rows()));
     let bytes = u32::from(I::NEURON_BYTES);
-    neurons * bytes + u32::from(NEURONS).saturating_sub(neurons) + rows * neurons.div_ceil(2)
+    let disabled = u32::from(NEURONS).saturating_sub(neurons);
+    let synapses = rows.wrapping_mul(neurons.div_ceil(2));
+    neurons.wrapping_mul(bytes).wrapping_add(disabled).wrapping_add(synapses)
 }
 
 /// Visits every byte of the chip's memories that is the network's: where, which bits are not, and what
@@ -90,18 +92,18 @@ fn each_byte<I: Input, B, P>(
     mut progress: impl FnMut(u32),
 ) -> Result<(), ChipError<B, P>> {
     let last = I::NEURON_BYTES.saturating_sub(1);
-    let mut done = 0;
+    let mut done = 0_u32;
     for neuron in 0..NEURONS {
         let neuron = neuron as u8;
         if u16::from(neuron) < network.neurons() {
             let bytes = I::neuron_bytes(&network.neuron(neuron))?;
             for (byte, value) in (0..=last).zip(bytes) {
                 visit(Address::neuron(neuron, byte), 0, value)?;
-                done += 1;
+                done = done.wrapping_add(1);
             }
         } else {
             visit(Address::neuron(neuron, last), !DISABLE, DISABLE)?;
-            done += 1;
+            done = done.wrapping_add(1);
         }
         progress(done);
     }
@@ -115,7 +117,7 @@ fn each_byte<I: Input, B, P>(
                 (0xF0, 0)
             };
             visit(Address::synapse(row as u8, even), keep, high << 4 | low)?;
-            done += 1;
+            done = done.wrapping_add(1);
         }
         progress(done);
     }

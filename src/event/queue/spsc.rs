@@ -168,7 +168,8 @@ impl SpscConsumer<'_> {
     /// How many items wait.
     pub fn len(&self) -> usize {
         let [head, tail] = [&self.ring.head, &self.ring.tail].map(|at| at.load(Ordering::Relaxed));
-        if tail >= head { tail - head } else { tail + self.ring.entries.len() - head }
+        let turn = if tail >= head { 0 } else { self.ring.entries.len() };
+        tail.wrapping_add(turn).wrapping_sub(head)
     }
 
     /// Whether none waits.

@@ -103,14 +103,17 @@ const fn is_at_most(value: f64, sum: f64, error: f64) -> bool {
 /// Quantile `(2i + 1) / 2m` of a normal distribution whose outermost quantiles lie at min and max.
 const fn gaussian_centre(min: f64, max: f64, i: usize, m: usize) -> f64 {
     let middle = f64::midpoint(min, max);
-    let mirrored = if 2 * i + 1 < m { m - 1 - i } else { i };
-    let outermost = normal_quantile((2 * m - 1) as f64 / (2 * m) as f64);
-    let offset =
-        (max - min) / 2.0 * normal_quantile((2 * mirrored + 1) as f64 / (2 * m) as f64) / outermost;
+    let from_end = m.wrapping_sub(1).wrapping_sub(i);
+    let mirrored = if i < from_end { from_end } else { i };
+    let (neuron, neurons) = (mirrored as f64, m as f64);
+    let outermost = normal_quantile((2.0 * neurons - 1.0) / (2.0 * neurons));
+    let quantile = normal_quantile((2.0 * neuron + 1.0) / (2.0 * neurons));
+    let offset = (max - min) / 2.0 * quantile / outermost;
     if mirrored == i { middle + offset } else { middle - offset }
 }
 
 /// The number of a finite value's neuron, from 1, given the edges of all but the last.
+#[allow(clippy::inline_always)]
 #[inline(always)] // into one caller a scheme
 pub(super) fn nearest_by_search<S: Sample>(edges: &[S], value: S) -> usize {
     1 + count_preceding(edges.len(), |i| edges.get(i).is_some_and(|&edge| value.is_beyond(edge)))
@@ -283,8 +286,8 @@ impl<S: Sample, const M: usize> Centres<S, M> {
         let cell = value.cell(self.cells);
         // What lies above all cells belongs to the last neuron.
         let lowest = self.starts.as_flattened().get(cell).copied().map_or(M, usize::from);
-        let is_beyond = self.edges().get(lowest - 1).is_some_and(|&edge| value > edge);
-        if is_beyond { lowest + 1 } else { lowest }
+        let is_beyond = self.edges().get(lowest.wrapping_sub(1)).is_some_and(|&edge| value > edge);
+        if is_beyond { lowest.wrapping_add(1) } else { lowest }
     }
 
     /// The number of a finite value's neuron, by binary search.

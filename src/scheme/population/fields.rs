@@ -1,8 +1,10 @@
 //! Gaussian receptive fields of equal width, as distances instead of exponentials.
 
+#[cfg(feature = "rand")]
 use core::hint::black_box;
 use core::ops::RangeInclusive;
 
+#[cfg(feature = "rand")]
 use super::FiredNeurons;
 use super::centres::{Centres, even_centre};
 use super::search::count_preceding;
@@ -157,7 +159,8 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
     ) -> Option<impl ExactSizeIterator<Item = D> + 'f> {
         let &Self { min, max, .. } = self;
         let centres = self.centres.get(first..).filter(|_| first < M)?;
-        let distance = move |(i, &centre)| D::between(value, centre, first + i, M, min, max);
+        let distance =
+            move |(i, &centre)| D::between(value, centre, first.wrapping_add(i), M, min, max);
         Some(centres.iter().enumerate().map(distance))
     }
 
@@ -182,24 +185,25 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         first: usize,
         levels: impl ExactSizeIterator<Item = u32>,
     ) -> Option<S> {
-        let centres = self.centres.get(first..first + levels.len())?;
+        let centres = self.centres.get(first..first.wrapping_add(levels.len()))?;
         let mut weighted = S::Weighted::default();
-        let mut total = 0;
+        let mut total = 0_u32;
         for (i, (level, &centre)) in levels.zip(centres).enumerate() {
-            weighted = S::weigh(weighted, centre, first + i, level);
-            total += level;
+            weighted = S::weigh(weighted, centre, first.wrapping_add(i), level);
+            total = total.wrapping_add(level);
         }
         self.mean(weighted, total)
     }
 
     /// The mean of the centres of the neurons that fired, or `None` without any.
+    #[cfg(feature = "rand")]
     #[inline]
     pub(super) fn mean_of(&self, neurons: &FiredNeurons<M>) -> Option<S> {
         // Where the compiler cannot tell that a centre may be read in vain, it passes by the neurons that did not
         // fire, which are the most, instead of adding their centres and dropping the sum.
         let centres = black_box(&self.centres);
         let mut weighted = S::Weighted::default();
-        let mut total = 0;
+        let mut total = 0_u32;
         neurons.for_each(|neuron| {
             if let Some(&centre) = centres.get(neuron) {
                 weighted = S::weigh(weighted, centre, neuron, 1);

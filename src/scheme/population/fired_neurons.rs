@@ -31,7 +31,7 @@ impl<const M: usize> FiredNeurons<M> {
 
     /// The neurons that fired, by rising index.
     pub fn iter(&self) -> impl Iterator<Item = u16> {
-        (0..).zip(&self.fired).filter_map(|(neuron, &fired)| fired.then_some(neuron))
+        (0..M).zip(&self.fired).filter_map(|(neuron, &fired)| fired.then_some(neuron as u16))
     }
 
     /// Takes every neuron that fired, by rising index. Four that did not are passed by at once.

@@ -35,9 +35,8 @@ impl<const M: usize, const N: usize> SlotSpikes<M, N> {
 
     /// The neurons that fire, by rising index, each with its slot.
     pub fn iter(&self) -> impl Iterator<Item = (u16, u16)> {
-        (self.first..)
-            .zip(self.slots.iter().take(self.length as usize))
-            .map(|(neuron, &slot)| (neuron, slot.into()))
+        let slots = (0..self.length).zip(&self.slots);
+        slots.map(|(i, &slot)| (self.first.wrapping_add(i), slot.into()))
     }
 
     /// The first neuron that fires.
@@ -83,8 +82,9 @@ impl<const M: usize, const N: usize> Code for SlotSpikes<M, N> {
         let (before, after) = slots.split_at_checked(winner).unwrap_or_default();
         let left = before.iter().rev().take_while(|slot| slot.is_some()).count();
         let right = after.iter().take_while(|slot| slot.is_some()).count();
-        let first = winner - left;
-        let mut spikes = Self { first: first as u16, length: (left + right) as u16, ..Self::EMPTY };
+        let first = winner.wrapping_sub(left);
+        let mut spikes =
+            Self { first: first as u16, length: left.wrapping_add(right) as u16, ..Self::EMPTY };
         for (slot, fired) in spikes.slots.iter_mut().zip(slots.iter().skip(first).flatten()) {
             *slot = *fired;
         }

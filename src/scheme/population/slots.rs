@@ -122,7 +122,7 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
     fn fire_anywhere<D: Distance<S>>(&self, sample: S, spikes: &mut SlotSpikes<M, N>) {
         let mut first = self.fields.first(sample);
         while !self.fire_from::<D>(sample, first, spikes) && self.fields.is_above(sample, first) {
-            first += 1;
+            first = first.wrapping_add(1);
         }
     }
 
@@ -143,7 +143,7 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
                 break;
             }
             *slot = self.fields.slot(distance) as u8;
-            length += 1;
+            length = length.wrapping_add(1);
         }
         if length > 0 {
             spikes.first = first as u16;
@@ -219,7 +219,7 @@ impl<S: Sample, const M: usize, const N: usize> Scheme for Slots<S, M, N> {
     }
 
     fn decode(&self, state: &mut Held<S>, spikes: SlotSpikes<M, N>) -> S {
-        let levels = spikes.slots().iter().map(|&slot| N as u32 - u32::from(slot));
+        let levels = spikes.slots().iter().map(|&slot| (N as u32).wrapping_sub(slot.into()));
         state.or_hold(self.fields.weighted_mean(spikes.first(), levels))
     }
 

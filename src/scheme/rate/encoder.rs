@@ -120,9 +120,9 @@ impl<S: Sample, const F: usize> RateState<S, F> {
                 if let Some(spike) = spikes.first_mut() {
                     *spike = None;
                 }
-                done += 1;
+                done = done.wrapping_add(1);
             }
-            done += encoded;
+            done = done.wrapping_add(encoded);
         }
         length
     }
@@ -175,7 +175,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
             }
             *spike = Some(if fits { Spike::Up } else { Spike::None });
         }
-        if let Some(last) = line.get(oldest + length..).and_then(<[_]>::first_chunk) {
+        if let Some(last) = line.get(oldest.wrapping_add(length)..).and_then(<[_]>::first_chunk) {
             self.residuals = *last;
         }
         self.cursor.restart();

@@ -88,7 +88,8 @@ impl Shape {
         let (position, length) = (k as f64, n as f64);
         match self {
             Self::Triangular => {
-                let from_end = if 2 * k < n { position } else { length - 1.0 - position };
+                let from_end =
+                    if k.saturating_mul(2) < n { position } else { length - 1.0 - position };
                 if n % 2 == 1 {
                     2.0 * (from_end + 1.0) / (length + 1.0)
                 } else {

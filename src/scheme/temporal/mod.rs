@@ -27,10 +27,12 @@ mod contrast;
 #[cfg(feature = "alloc")]
 pub(super) mod dynamic;
 mod moving_window;
+mod send_on_delta;
 mod step_forward;
 mod steps;
 
 pub use contrast::{ContrastState, TemporalContrast};
 pub use moving_window::{MovingWindow, MovingWindowState};
+pub use send_on_delta::{SendOnDelta, SendOnDeltaState, Steps};
 pub use step_forward::{StepForward, StepForwardState};
 pub use steps::StepState;

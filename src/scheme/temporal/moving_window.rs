@@ -221,8 +221,8 @@ impl<S: Sample, const N: usize> MovingWindow<S, N> {
         };
         let difference = sample.excess(N, *slot, &mut state.partial);
         *slot = sample;
-        state.next += 1;
-        if next + 1 == N {
+        state.next = state.next.wrapping_add(1);
+        if next.wrapping_add(1) == N {
             state.close_block();
         }
         if is_full && !difference.is_nan() {

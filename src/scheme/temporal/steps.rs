@@ -35,6 +35,7 @@ impl<S: Sample> StepState<S> {
     }
 
     /// The value stays in a register, and eight samples share a turn of the loop.
+    #[allow(clippy::inline_always)]
     #[inline(always)] // shared by the temporal codes, each call would move five arguments
     pub(super) fn decode_slice(&mut self, step: S, spikes: &[Spike], values: &mut [S]) -> usize {
         let steps = [S::ZERO.minus(step), S::ZERO, step];

@@ -219,7 +219,7 @@ impl EventDecoder for EdvsDecoder {
                 None
             }
             State::Time { y, second, time, bytes } => {
-                let bytes = bytes + 1;
+                let bytes = bytes.wrapping_add(1);
                 let time = match self.protocol.time {
                     EdvsTime::Delta => time << 7 | u32::from(byte & 0x7F),
                     _ => time << 8 | u32::from(byte),

@@ -187,7 +187,7 @@ impl EventDecoder for EventStreamDecoder {
                 if let Some(slot) = payload.get_mut(usize::from(at)) {
                     *slot = byte;
                 }
-                if at + 1 < SIZE {
+                if at < SIZE - 1 {
                     State::Payload { payload, at: at + 1 }
                 } else {
                     self.state = State::Time;

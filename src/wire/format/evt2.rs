@@ -192,16 +192,17 @@ impl EventDecoder for Evt2Decoder {
                 if let Some(place) = bytes.get_mut(usize::from(count)) {
                     *place = byte;
                 }
-                State::Percent { bytes, count: count + 1 }
+                State::Percent { bytes, count: count.wrapping_add(1) }
             }
             State::Line { end } => within_line(end, byte),
             State::Word { word, bytes: 3 } => {
                 self.state = State::Word { word: 0, bytes: 0 };
                 return self.word(word | u32::from(byte) << 24);
             }
-            State::Word { word, bytes } => {
-                State::Word { word: word | u32::from(byte) << (8 * bytes), bytes: bytes + 1 }
-            }
+            State::Word { word, bytes } => State::Word {
+                word: word | u32::from(byte).wrapping_shl(8 * u32::from(bytes)),
+                bytes: bytes.wrapping_add(1),
+            },
         };
         None
     }

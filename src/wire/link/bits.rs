@@ -14,8 +14,9 @@ pub(super) trait PutBits {
 /// `value` as `code(value, k)`: a number, how many bits that has, and the low `k` bits.
 #[inline]
 fn code(value: u32, k: u32) -> (u32, u32, u32) {
-    let number = (value >> k) + 1;
-    (number, 32 - number.leading_zeros(), value & ((1 << k) - 1))
+    let number = value.wrapping_shr(k).wrapping_add(1);
+    let low = value & 1_u32.wrapping_shl(k).wrapping_sub(1);
+    (number, 32 - number.leading_zeros(), low)
 }
 
 /// A string of fewer than 32 bits. One that became longer knows only that it did.
@@ -29,13 +30,13 @@ impl PutBits for Word {
     #[inline]
     fn put(&mut self, value: u32, count: u32) {
         self.bits = self.bits.wrapping_shl(count) | value;
-        self.count += count;
+        self.count = self.count.wrapping_add(count);
     }
 
     #[inline]
     fn put_code(&mut self, value: u32, k: u32) {
         let (number, bits, low) = code(value, k);
-        self.put(number << k | low, 2 * bits - 1 + k);
+        self.put(number.wrapping_shl(k) | low, (2 * bits).wrapping_sub(1).wrapping_add(k));
     }
 }
 
@@ -82,15 +83,15 @@ impl<'a> BitWriter<'a> {
     /// Whether there is room for so many bits more.
     #[inline]
     fn fits(&self, count: u32) -> bool {
-        self.pending + count <= 8 * self.bytes.room() as u32
+        self.pending.wrapping_add(count) <= (self.bytes.room() as u32).wrapping_mul(8)
     }
 
     /// Appends bits that complete 32.
     #[inline(never)]
     fn put_across(&mut self, value: u32, count: u32) {
-        let free = 32 - self.pending;
-        let rest = count - free;
-        let bits = self.bits.unbounded_shl(free) | value >> rest;
+        let free = 32_u32.wrapping_sub(self.pending);
+        let rest = count.wrapping_sub(free);
+        let bits = self.bits.unbounded_shl(free) | value.wrapping_shr(rest);
         self.is_full |= self.bytes.put(&bits.to_be_bytes()).is_none();
         self.bits = value;
         self.pending = rest;
@@ -113,7 +114,7 @@ impl<'a> BitWriter<'a> {
 
     /// Writes what is not in the buffer yet, with the last byte filled up with 0.
     pub(super) fn finish(mut self) -> Cursor<'a> {
-        let bytes = self.bits.unbounded_shl(32 - self.pending).to_be_bytes();
+        let bytes = self.bits.unbounded_shl(32_u32.wrapping_sub(self.pending)).to_be_bytes();
         let count = self.pending.div_ceil(8) as usize;
         let _ = self.bytes.put(bytes.get(..count).unwrap_or_default());
         self.bytes
@@ -123,9 +124,10 @@ impl<'a> BitWriter<'a> {
 impl PutBits for BitWriter<'_> {
     #[inline]
     fn put(&mut self, value: u32, count: u32) {
-        if self.pending + count < 32 {
-            self.bits = self.bits << count | value;
-            self.pending += count;
+        let pending = self.pending.wrapping_add(count);
+        if pending < 32 {
+            self.bits = self.bits.wrapping_shl(count) | value;
+            self.pending = pending;
         } else {
             self.put_across(value, count);
         }
@@ -133,7 +135,7 @@ impl PutBits for BitWriter<'_> {
 
     fn put_code(&mut self, value: u32, k: u32) {
         let (number, bits, low) = code(value, k);
-        self.put(0, bits - 1);
+        self.put(0, bits.wrapping_sub(1));
         self.put(number, bits);
         self.put(low, k);
     }
@@ -160,14 +162,14 @@ impl TakeBits for Glance {
     fn take(&mut self, count: u32) -> Option<u32> {
         let value = self.bits.wrapping_shr(32_u32.wrapping_sub(count));
         self.bits = self.bits.wrapping_shl(count);
-        self.taken += count;
+        self.taken = self.taken.wrapping_add(count);
         Some(value)
     }
 
     #[inline]
     fn take_code(&mut self, k: u32) -> Option<u32> {
-        let number = self.take(2 * self.bits.leading_zeros() + 1 + k)?;
-        Some(number.wrapping_sub(1 << k))
+        let number = self.take((2 * self.bits.leading_zeros() + 1).wrapping_add(k))?;
+        Some(number.wrapping_sub(1_u32.wrapping_shl(k)))
     }
 }
 
@@ -199,13 +201,13 @@ impl<'a> BitReader<'a> {
         if glance.taken > 25 || taken > self.left() {
             return None;
         }
-        self.taken += taken;
+        self.taken = self.taken.wrapping_add(taken);
         Some(())
     }
 
     #[inline]
     fn left(&self) -> usize {
-        8 * self.bytes.len() - self.taken
+        self.bytes.len().wrapping_mul(8).wrapping_sub(self.taken)
     }
 
     /// Whether all that is left are fewer than 8 bits of 0.
@@ -240,7 +242,7 @@ impl TakeBits for BitReader<'_> {
                 return None;
             }
         }
-        let number = 1_u32 << zeros | self.take(zeros)?;
-        Some((number - 1).unbounded_shl(k) | self.take(k)?)
+        let number = 1_u32.wrapping_shl(zeros) | self.take(zeros)?;
+        Some(number.wrapping_sub(1).unbounded_shl(k) | self.take(k)?)
     }
 }

@@ -78,8 +78,8 @@ impl Place {
 
 /// `since` as steps of the period, and what is left: at most half a period.
 fn nearest_step(since: i32, period: NonZeroU32) -> (i32, i32) {
-    let magnitude = (since.unsigned_abs() + period.get() / 2) / period;
-    let steps = if since < 0 { -(magnitude as i32) } else { magnitude as i32 };
+    let magnitude = since.unsigned_abs().wrapping_add(period.get() / 2) / period;
+    let steps = if since < 0 { (magnitude as i32).wrapping_neg() } else { magnitude as i32 };
     (steps, since.wrapping_sub(steps.wrapping_mul(period.get() as i32)))
 }
 

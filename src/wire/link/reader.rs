@@ -110,10 +110,10 @@ impl<const N: usize> Reader<N> {
 
     /// The next frame. Takes bytes from the front of `input`, all of them before it returns `None`.
     pub fn next_frame(&mut self, input: &mut &[u8]) -> Option<Received<'_>> {
-        self.start += core::mem::take(&mut self.handed_out);
+        self.start = self.start.wrapping_add(core::mem::take(&mut self.handed_out));
         let (length, standing) = self.find(input)?;
         self.handed_out = length;
-        let end = self.start + length - CHECKSUM;
+        let end = self.start.wrapping_add(length).wrapping_sub(CHECKSUM);
         let frame = FrameView::read(self.buffer.get(self.start..end)?)?;
         self.frames = self.frames.saturating_add(1);
 
@@ -183,7 +183,7 @@ impl<const N: usize> Reader<N> {
                         standing => return Some((length, standing)),
                     };
                     *counter = counter.saturating_add(1);
-                    self.start += length;
+                    self.start = self.start.wrapping_add(length);
                 }
                 Err(LinkError::Truncated { needed, .. }) if needed <= N => {
                     if input.is_empty() {
@@ -196,8 +196,8 @@ impl<const N: usize> Reader<N> {
                         self.bad_checksums = self.bad_checksums.saturating_add(1);
                     }
                     let next = bytes.iter().skip(1).position(|&byte| byte == MAGIC);
-                    let skipped = next.map_or(bytes.len(), |next| next + 1);
-                    self.start += skipped;
+                    let skipped = next.map_or(bytes.len(), |next| next.wrapping_add(1));
+                    self.start = self.start.wrapping_add(skipped);
                     self.skipped = self.skipped.saturating_add(skipped as u32);
                 }
             }
@@ -229,10 +229,11 @@ impl<const N: usize> Reader<N> {
 
     /// Moves what is in use to the front and appends as much of `input` as there is room for.
     fn take_in(&mut self, input: &mut &[u8]) {
-        let used = self.end - self.start;
+        let used = self.end.wrapping_sub(self.start);
         if self.start > 0 {
             for to in 0..used {
-                let byte = self.buffer.get(self.start + to).copied().unwrap_or_default();
+                let byte =
+                    self.buffer.get(self.start.wrapping_add(to)).copied().unwrap_or_default();
                 if let Some(slot) = self.buffer.get_mut(to) {
                     *slot = byte;
                 }
@@ -245,7 +246,7 @@ impl<const N: usize> Reader<N> {
         for (slot, &byte) in free.iter_mut().zip(taken) {
             *slot = byte;
         }
-        self.end = used + count;
+        self.end = used.wrapping_add(count);
         *input = rest;
     }
 }

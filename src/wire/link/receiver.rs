@@ -240,7 +240,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             self.sample_at(event.tick, on_value);
             if let Some(place) = self.sample.events.get_mut(self.sample.count) {
                 *place = event;
-                self.sample.count += 1;
+                self.sample.count = self.sample.count.wrapping_add(1);
             } else {
                 self.misfits = self.misfits.saturating_add(1);
                 self.sample.is_whole = false;
@@ -289,7 +289,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
     fn decode(&mut self, tick: Tick, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
         let events = self.sample.events.get(..self.sample.count).unwrap_or_default();
         let channels = self.channels.iter_mut().zip(self.schemes.each());
-        for (channel, (known, scheme)) in channels.enumerate() {
+        for (channel, (known, scheme)) in (0..N).zip(channels) {
             let code: CodeOf<T, N> = self.addresses.code(channel, tick, events);
             known.value = scheme.decode(&mut known.state, code);
             if self.sample.is_whole {

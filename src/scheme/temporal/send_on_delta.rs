@@ -1,0 +1,244 @@
+//! Send-on-delta: step forward with several spikes a sample, for signals that jump.
+
+use super::StepState;
+use crate::error::{step, unwrap, within};
+use crate::num::{Tally, to_f64};
+use crate::{Code, ConfigError, Firing, Output, Polarity, Recovery, Sample, Scheme, Spike, Start};
+
+/// Send-on-delta: the baseline follows the signal by up to `K` thresholds a sample, one spike each.
+///
+/// While `x > base + threshold` and there were fewer than `K` spikes: a spike up, and `base += threshold`;
+/// downwards alike. The `n` spikes of a sample have one polarity and fire in the sub-timesteps `0..n` of `K`.
+/// With `K = 1` it is [`StepForward`](super::StepForward).
+///
+/// - **Threshold:** above 0, in the samples' unit; up to 10³¹ in `f32`, so that no band reaches infinity.
+///   **K:** 1 to 127, of which [`with_most`](Self::with_most) may allow fewer.
+/// - **Latency:** 0 samples. **Memory:** 8 bytes a channel in `f32`, 4 to decode.
+/// - **Work:** a comparison a spike, and two.
+/// - **Exactness:** `f32` rounds `base ± threshold` once a spike; fixed point is exact.
+/// - **Error:** while `|x[i] - x[i-1]| <= K * threshold`, the decoded value stays within the threshold of the
+///   signal.
+///
+/// Source: Miskowicz, *Send-on-delta concept*, 2006.
+///
+/// ```
+/// use spikewire::{Scheme, temporal::SendOnDelta};
+///
+/// const ROLL: SendOnDelta<i16, 4> = SendOnDelta::new(10);
+/// let mut encoder = ROLL.encoder();
+/// let spikes = [0, 9, 35, 95, 90, 10].map(|x| encoder.encode(x).count());
+/// assert_eq!(spikes, [0, 0, 3, 4, 1, -4]);
+/// ```
+///
+/// A code without spikes does not compile:
+///
+/// ```compile_fail
+/// # use spikewire::temporal::SendOnDelta;
+/// const ROLL: SendOnDelta<i16, 0> = SendOnDelta::new(10);
+/// # let _ = ROLL;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct SendOnDelta<S, const K: usize> {
+    threshold: S,
+    most: i8,
+}
+
+impl<S: Sample, const K: usize> SendOnDelta<S, K> {
+    const SHAPE: () = assert!(K >= 1 && K <= 127, "a sample has 1 to 127 spikes at most");
+
+    /// A scheme with this threshold, which is also the decoder's step. For constants, where a bad threshold
+    /// fails the build.
+    ///
+    /// # Panics
+    /// The threshold is not above 0, not finite, or above 10³¹.
+    pub const fn new(threshold: S) -> Self {
+        unwrap(Self::try_new(threshold))
+    }
+
+    /// A scheme with this threshold, which is also the decoder's step.
+    ///
+    /// # Errors
+    /// The threshold is not above 0, not finite, or above 10³¹.
+    pub const fn try_new(threshold: S) -> Result<Self, ConfigError> {
+        const { Self::SHAPE };
+        match step("threshold", to_f64(threshold)) {
+            Ok(()) => Ok(Self { threshold, most: K as i8 }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// At most so many spikes a sample; `K` unless told. For constants, where a bad number fails the build.
+    ///
+    /// # Panics
+    /// The number is not within 1 to `K`.
+    #[must_use]
+    pub const fn with_most(self, most: u8) -> Self {
+        unwrap(self.try_with_most(most))
+    }
+
+    /// At most so many spikes a sample; `K` unless told.
+    ///
+    /// # Errors
+    /// The number is not within 1 to `K`.
+    pub const fn try_with_most(self, most: u8) -> Result<Self, ConfigError> {
+        match within("most spikes a sample", most as f64, 1.0, K as f32) {
+            Ok(()) => Ok(Self { most: most as i8, ..self }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The threshold, in the samples' unit.
+    pub const fn threshold(&self) -> S {
+        self.threshold
+    }
+}
+
+/// The spikes of one sample: up to `K`, all of one polarity.
+///
+/// One byte.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Steps<const K: usize>(i8);
+
+impl<const K: usize> Steps<K> {
+    /// So many spikes, upwards if positive; cut to `K`.
+    pub const fn new(count: i8) -> Self {
+        let most = K as i8;
+        Self(if count > most {
+            most
+        } else if count < -most {
+            -most
+        } else {
+            count
+        })
+    }
+
+    /// How many spikes, negative if they go down.
+    pub const fn count(self) -> i8 {
+        self.0
+    }
+}
+
+impl<const K: usize> Code for Steps<K> {
+    const NEURONS: usize = 1;
+    const SLOTS: usize = K;
+
+    fn firings(&self) -> impl Iterator<Item = Firing> {
+        let polarity = if self.0 > 0 { Polarity::Up } else { Polarity::Down };
+        (0..self.0.unsigned_abs().into()).map(move |slot| Firing { neuron: 0, slot, polarity })
+    }
+
+    /// As many as went up more than down.
+    fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
+        let steps = firings.filter(|firing| firing.neuron == 0).fold(0_i8, |steps, firing| {
+            match firing.polarity {
+                Polarity::Up => steps.saturating_add(1),
+                Polarity::Down => steps.saturating_sub(1),
+            }
+        });
+        Self::new(steps)
+    }
+}
+
+impl<const K: usize> Output for Steps<K> {
+    type Code = Self;
+
+    fn code(self) -> Option<Self> {
+        Some(self)
+    }
+}
+
+/// The state of a [`SendOnDelta`] encoder: the baseline. 8 bytes in `f32`.
+#[derive(Clone, Copy, Debug)]
+pub struct SendOnDeltaState<S> {
+    base: S,
+    tally: Tally,
+}
+
+impl<S: Sample, const K: usize> Start for SendOnDelta<S, K> {
+    const START: SendOnDeltaState<S> = SendOnDeltaState { base: S::ZERO, tally: Tally::NONE };
+}
+
+impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
+    type Sample = S;
+    type Code = Steps<K>;
+    type Output = Steps<K>;
+    type EncoderState = SendOnDeltaState<S>;
+    type DecoderState = StepState<S>;
+
+    const LATENCY: usize = 0;
+    const RECOVERY: Recovery = Recovery::Keyframe;
+
+    #[inline]
+    fn encode(&self, state: &mut SendOnDeltaState<S>, sample: S) -> Steps<K> {
+        if !state.tally.is_primed() || !sample.is_finite() {
+            self.prime(state, &[sample]);
+            return Steps(0);
+        }
+        let mut steps = 0;
+        let mut base = state.base;
+        while steps < self.most && sample > base.plus(self.threshold) {
+            base = base.plus(self.threshold);
+            steps += 1;
+        }
+        while steps <= 0 && steps > -self.most && sample < base.minus(self.threshold) {
+            base = base.minus(self.threshold);
+            steps -= 1;
+        }
+        state.base = base;
+        Steps(steps)
+    }
+
+    fn encode_slice(
+        &self,
+        state: &mut SendOnDeltaState<S>,
+        samples: &[S],
+        outputs: &mut [Steps<K>],
+    ) -> usize {
+        for (output, &sample) in outputs.iter_mut().zip(samples) {
+            *output = self.encode(state, sample);
+        }
+        samples.len().min(outputs.len())
+    }
+
+    /// The last of the past becomes the baseline; a decoder must be told, as by a keyframe.
+    fn prime(&self, state: &mut SendOnDeltaState<S>, past: &[S]) {
+        if let Some(base) = state.tally.last_of(past) {
+            state.base = base;
+        }
+    }
+
+    /// The baseline.
+    fn keyframe(&self, state: &SendOnDeltaState<S>) -> Option<S> {
+        state.tally.is_primed().then_some(state.base)
+    }
+
+    fn rejected(state: &SendOnDeltaState<S>) -> u32 {
+        state.tally.rejected()
+    }
+
+    fn decoder_state(&self) -> StepState<S> {
+        StepState::ZERO
+    }
+
+    /// Adds step after step, as the encoder did.
+    #[inline]
+    fn decode(&self, state: &mut StepState<S>, steps: Steps<K>) -> S {
+        let spike = if steps.0 > 0 { Spike::Up } else { Spike::Down };
+        for _ in 0..steps.0.unsigned_abs() {
+            state.decode(self.threshold, spike);
+        }
+        state.value()
+    }
+
+    fn held(&self, state: &StepState<S>) -> Option<S> {
+        Some(state.value())
+    }
+
+    fn resync(&self, state: &mut StepState<S>, value: S) {
+        *state = StepState::at(value);
+    }
+}
