@@ -6,6 +6,11 @@ use rand_pcg::Pcg32;
 use spikewire::rate::{Criterion, Scale, Shape, Taps};
 use spikewire::{Code, Output, Sample, Scheme, Start, dynamic, population, rate, temporal};
 
+/// With room for any number of neurons.
+type AnyPosition<S> = dynamic::Position<S>;
+type AnySlots<S> = dynamic::Slots<S>;
+type AnyProbabilistic<S> = dynamic::Probabilistic<S, Pcg32>;
+
 /// A signal that wanders over ±`reach`, holds still, jumps, and has ties with whole eighths of it.
 fn signal<S: Sample>(seed: u64, reach: f64) -> Vec<S> {
     let mut generator = Pcg32::seed_from_u64(seed);
@@ -33,7 +38,12 @@ struct Said {
     rejected: u32,
 }
 
-fn said<P: Scheme>(scheme: &P, mut state: P::EncoderState, past: &[P::Sample], signal: &[P::Sample]) -> Said {
+fn said<P: Scheme>(
+    scheme: &P,
+    mut state: P::EncoderState,
+    past: &[P::Sample],
+    signal: &[P::Sample],
+) -> Said {
     let firings = |code: &P::Code| {
         code.firings()
             .map(|firing| (firing.neuron, firing.slot, firing.polarity == spikewire::Polarity::Up))
@@ -102,7 +112,8 @@ fn rates<S: Sample, const F: usize>(one: f64) {
         let scheme = rate::Hough::new(taps).try_with_shift(shift).unwrap();
         let other = dynamic::Hough::try_new(any()).unwrap().try_with_shift(shift).unwrap();
         if number < 2 {
-            fires[0] += compare(&format!("hough, {what}"), &scheme, &other, || other.state(), 2.0 * one);
+            fires[0] +=
+                compare(&format!("hough, {what}"), &scheme, &other, || other.state(), 2.0 * one);
         }
         for threshold in [0.0, 0.85, 3.0] {
             let threshold = at(threshold);
@@ -111,7 +122,13 @@ fn rates<S: Sample, const F: usize>(one: f64) {
             let other = dynamic::ThresholdHough::try_new(any(), threshold).unwrap();
             let other = other.try_with_shift(shift).unwrap();
             if number < 2 {
-                fires[1] += compare(&format!("t-hsa, {what}"), &scheme, &other, || other.state(), 2.0 * one);
+                fires[1] += compare(
+                    &format!("t-hsa, {what}"),
+                    &scheme,
+                    &other,
+                    || other.state(),
+                    2.0 * one,
+                );
             }
         }
         for criterion in [
@@ -123,13 +140,15 @@ fn rates<S: Sample, const F: usize>(one: f64) {
             let scheme = scheme.try_with_shift(shift).unwrap();
             let other = dynamic::Bsa::try_new(any(), criterion).unwrap();
             let other = other.try_with_shift(shift).unwrap();
-            fires[2] += compare(&format!("bsa, {what}"), &scheme, &other, || other.state(), 2.0 * one);
+            fires[2] +=
+                compare(&format!("bsa, {what}"), &scheme, &other, || other.state(), 2.0 * one);
         }
         let scheme = rate::BsaToolbox::try_new(taps, 1.15).unwrap();
         let scheme = scheme.try_with_shift(shift).unwrap();
         let other = dynamic::BsaToolbox::try_new(any(), 1.15).unwrap();
         let other = other.try_with_shift(shift).unwrap();
-        fires[3] += compare(&format!("toolbox, {what}"), &scheme, &other, || other.state(), 2.0 * one);
+        fires[3] +=
+            compare(&format!("toolbox, {what}"), &scheme, &other, || other.state(), 2.0 * one);
     }
     assert!(fires.iter().all(|&fires| fires > 10), "{F} taps, {:?}: {fires:?} fired", S::KIND);
 }
@@ -147,16 +166,16 @@ fn populations<S: Sample, const M: usize>(one: f64) {
     let range = || S::from_f64(-1.7 * one)..=S::from_f64(1.6 * one);
     let what = format!("{M} neurons, {:?}", S::KIND);
     let scheme = population::Position::<S, M>::try_linear(range()).unwrap();
-    let other = dynamic::Position::try_linear(M, &range()).unwrap();
+    let other = AnyPosition::try_linear(M, &range()).unwrap();
     assert_eq!(scheme.centres(), other.centres());
     compare(&what, &scheme, &other, || other.state(), 2.0 * one);
 
     let scheme = population::Position::<S, M>::try_gaussian_spaced(range());
-    let other = dynamic::Position::try_gaussian_spaced(M, &range());
+    let other = AnyPosition::try_gaussian_spaced(M, &range());
     assert_eq!(scheme.as_ref().err(), other.as_ref().err(), "{what}");
     if let (Ok(scheme), Ok(other)) = (scheme, other) {
         compare(&what, &scheme, &other, || other.state(), 2.0 * one);
-        let listed = dynamic::Position::try_new(scheme.centres()).unwrap();
+        let listed = AnyPosition::try_new(scheme.centres()).unwrap();
         compare(&what, &scheme, &listed, || listed.state(), 2.0 * one);
     }
 
@@ -164,11 +183,12 @@ fn populations<S: Sample, const M: usize>(one: f64) {
     slots::<S, M, 256>(one);
 
     let scheme = population::Probabilistic::<S, Pcg32, M, 256>::try_new(range(), 1.5).unwrap();
-    let other = dynamic::Probabilistic::<S, Pcg32>::try_new(M, &range(), 1.5).unwrap();
+    let other = AnyProbabilistic::<S>::try_new(M, &range(), 1.5).unwrap();
     let state = || Pcg32::seed_from_u64(7);
     let signal = signal::<S>(7, 2.0 * one);
-    let one = said(&scheme, population::Probabilistic::<S, _, M, 256>::state(state()), &[], &signal);
-    let two = said(&other, dynamic::Probabilistic::<S, _>::state(state()), &[], &signal);
+    let one =
+        said(&scheme, population::Probabilistic::<S, _, M, 256>::state(state()), &[], &signal);
+    let two = said(&other, AnyProbabilistic::<S>::state(state()), &[], &signal);
     assert!(one == two, "probabilistic, {what}");
     assert!(one.codes.iter().flatten().any(|code| code.len() > 1), "probabilistic, {what}");
 }
@@ -178,7 +198,7 @@ fn slots<S: Sample, const M: usize, const N: usize>(one: f64) {
     for (beta, floor) in [(1.5, 1), (0.3, 1), (1.5, N as u16 / 2), (4.0, N as u16)] {
         let scheme = population::Slots::<S, M, N>::try_new(range(), beta).unwrap();
         let scheme = scheme.try_with_floor(floor).unwrap();
-        let other = dynamic::Slots::try_new(M, N, &range(), beta).unwrap();
+        let other = AnySlots::try_new(M, N, &range(), beta).unwrap();
         let other = other.try_with_floor(floor).unwrap();
         let what = format!("{M} neurons, {N} slots, beta {beta}, floor {floor}, {:?}", S::KIND);
         let signal = signal::<S>(5, 2.0 * one);
@@ -226,12 +246,12 @@ fn shapes_that_there_are_not() {
         assert_eq!(dynamic::MovingWindow::try_new(1.0_f32, count).is_ok(), is_good, "{count}");
     }
     for (neurons, is_good) in [(0, false), (2, false), (3, true), (1024, true), (1025, false)] {
-        assert_eq!(dynamic::Position::try_linear(neurons, &(0.0..=1.0)).is_ok(), is_good);
-        assert_eq!(dynamic::Slots::try_new(neurons, 2, &(0.0..=1.0), 1.5).is_ok(), is_good);
+        assert_eq!(AnyPosition::try_linear(neurons, &(0.0..=1.0)).is_ok(), is_good);
+        assert_eq!(AnySlots::try_new(neurons, 2, &(0.0..=1.0), 1.5).is_ok(), is_good);
         let centres: Vec<f32> = (0..neurons).map(|centre| centre as f32).collect();
-        assert_eq!(dynamic::Position::try_new(&centres).is_ok(), is_good);
+        assert_eq!(AnyPosition::try_new(&centres).is_ok(), is_good);
     }
     for (slots, is_good) in [(0, false), (1, false), (2, true), (256, true), (257, false)] {
-        assert_eq!(dynamic::Slots::try_new(15, slots, &(0.0..=1.0), 1.5).is_ok(), is_good);
+        assert_eq!(AnySlots::try_new(15, slots, &(0.0..=1.0), 1.5).is_ok(), is_good);
     }
 }

@@ -18,6 +18,7 @@ mod chip_words;
 mod chip_xylo;
 mod config_errors;
 mod defmt;
+mod dynamic;
 mod formats_bytes;
 mod formats_peers;
 mod gaussian;

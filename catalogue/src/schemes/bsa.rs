@@ -2,19 +2,19 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
-#[cfg(feature = "run")]
-use anyhow::{Result, bail};
-#[cfg(feature = "run")]
-use spikewire::dynamic;
-#[cfg(feature = "run")]
-use spikewire::rate::Criterion;
-#[cfg(feature = "run")]
-use crate::run::{Asked, Build, Given, Settings, Visit};
 use spikewire::{Sample, Start};
 use spikewire::rate::{Bsa, BsaToolbox, Scale, Shape, Taps};
 
 use crate::plain::{Plain, magnitude};
 use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+
+#[cfg(feature = "run")]
+use {
+    anyhow::{Result, bail},
+    crate::run::{Asked, Build, Given, Settings, Visit},
+    spikewire::dynamic,
+    spikewire::rate::Criterion,
+};
 
 /// Ben's spiker.
 #[derive(Clone, Copy, Debug)]

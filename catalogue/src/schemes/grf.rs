@@ -2,17 +2,18 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
-#[cfg(feature = "run")]
-use anyhow::Result;
-#[cfg(feature = "run")]
-use spikewire::{Sample, dynamic};
-#[cfg(feature = "run")]
-use crate::run::{Build, FEW, Given, Visit};
 use spikewire::population::{Gaussian};
 use spikewire::Start;
 
 use crate::plain::{Plain, response};
 use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
+
+#[cfg(feature = "run")]
+use {
+    anyhow::Result,
+    crate::run::{Build, FEW, Given, Visit},
+    spikewire::{Sample, dynamic},
+};
 
 /// Gaussian receptive fields, one spike a sample.
 #[derive(Clone, Copy, Debug)]

@@ -2,22 +2,21 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
-#[cfg(feature = "run")]
-use anyhow::Result;
-#[cfg(feature = "run")]
-use rand_chacha::ChaCha8Rng;
-#[cfg(feature = "run")]
-use rand_chacha::rand_core::SeedableRng;
-#[cfg(feature = "run")]
-use spikewire::{Sample, dynamic};
-#[cfg(feature = "run")]
-use crate::run::{Build, FEW, Given, Visit};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 use spikewire::population::{FiredNeurons, Probabilistic};
 
 use crate::plain::{Plain, response};
 use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
+
+#[cfg(feature = "run")]
+use {
+    anyhow::Result,
+    crate::run::{Build, FEW, Given, Visit},
+    rand_chacha::ChaCha8Rng,
+    rand_chacha::rand_core::SeedableRng,
+    spikewire::{Sample, dynamic},
+};
 
 /// Gaussian receptive fields with probabilistic spiking.
 #[derive(Clone, Copy, Debug)]

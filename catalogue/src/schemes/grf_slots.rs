@@ -2,17 +2,18 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
-#[cfg(feature = "run")]
-use anyhow::Result;
-#[cfg(feature = "run")]
-use spikewire::{Sample, dynamic};
-#[cfg(feature = "run")]
-use crate::run::{Build, FEW, Given, Visit};
 use spikewire::population::{SlotSpikes, Slots};
 use spikewire::Start;
 
 use crate::plain::{Plain, response};
 use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+
+#[cfg(feature = "run")]
+use {
+    anyhow::Result,
+    crate::run::{Build, FEW, Given, Visit},
+    spikewire::{Sample, dynamic},
+};
 
 /// Gaussian receptive fields with sub-timesteps.
 #[derive(Clone, Copy, Debug)]

@@ -2,17 +2,18 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
-#[cfg(feature = "run")]
-use anyhow::Result;
-#[cfg(feature = "run")]
-use spikewire::{Sample, dynamic};
-#[cfg(feature = "run")]
-use crate::run::{Build, Given, Options, Visit};
 use spikewire::Start;
 use spikewire::temporal::MovingWindow;
 
 use crate::plain::Plain;
 use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+
+#[cfg(feature = "run")]
+use {
+    anyhow::Result,
+    crate::run::{Build, Given, Options, Visit},
+    spikewire::{Sample, dynamic},
+};
 
 /// Moving window.
 #[derive(Clone, Copy, Debug)]

@@ -2,17 +2,18 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
-#[cfg(feature = "run")]
-use anyhow::{Context, Result, bail};
-#[cfg(feature = "run")]
-use spikewire::{Sample, dynamic};
-#[cfg(feature = "run")]
-use crate::run::{Asked, Build, FEW, Given, Options, Settings, Shape, Visit, is_list, missing};
 use spikewire::population::{Neuron, Position};
 use spikewire::Start;
 
 use crate::plain::{self, Plain, magnitude};
 use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
+
+#[cfg(feature = "run")]
+use {
+    anyhow::{Context, Result, bail},
+    crate::run::{Asked, Build, FEW, Given, Options, Settings, Shape, Visit, is_list, missing},
+    spikewire::{Sample, dynamic},
+};
 
 /// Position coding.
 #[derive(Clone, Copy, Debug)]

@@ -2,18 +2,17 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the definition
 
-#[cfg(feature = "run")]
-use anyhow::Result;
 use spikewire::Start;
 use spikewire::temporal::{SendOnDelta, Steps};
-#[cfg(feature = "run")]
-use {
-    crate::run::{Build, Given, Shape, Visit},
-    spikewire::Sample,
-};
 
 use crate::plain::Plain;
 use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled, Kind, Unit, Paper};
+
+#[cfg(feature = "run")]
+use {
+    anyhow::Result,
+    { crate::run::{Build, Given, Shape, Visit}, spikewire::Sample, },
+};
 
 /// Send-on-delta.
 #[derive(Clone, Copy, Debug)]

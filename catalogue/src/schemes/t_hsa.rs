@@ -2,17 +2,18 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
-#[cfg(feature = "run")]
-use anyhow::Result;
-#[cfg(feature = "run")]
-use spikewire::{Sample, dynamic};
-#[cfg(feature = "run")]
-use crate::run::{Build, Given, Visit};
 use spikewire::Start;
 use spikewire::rate::{Scale, Shape, Taps, ThresholdHough};
 
 use crate::plain::Plain;
 use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
+
+#[cfg(feature = "run")]
+use {
+    anyhow::Result,
+    crate::run::{Build, Given, Visit},
+    spikewire::{Sample, dynamic},
+};
 
 /// Threshold Hough spiker.
 #[derive(Clone, Copy, Debug)]

@@ -2,17 +2,18 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
-#[cfg(feature = "run")]
-use anyhow::{Context, Result, bail};
-#[cfg(feature = "run")]
-use spikewire::Sample;
-#[cfg(feature = "run")]
-use crate::run::{Asked, Build, Given, Options, Settings, Visit, number};
 use spikewire::Start;
 use spikewire::temporal::TemporalContrast;
 
 use crate::plain::Plain;
 use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+
+#[cfg(feature = "run")]
+use {
+    anyhow::{Context, Result, bail},
+    crate::run::{Asked, Build, Given, Options, Settings, Visit, number},
+    spikewire::Sample,
+};
 
 /// Temporal contrast.
 #[derive(Clone, Copy, Debug)]
