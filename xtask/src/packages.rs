@@ -30,7 +30,7 @@ fn apt_get(args: &str) -> Result<()> {
     let mut apt_get = as_root("env")?;
     apt_get.args(["DEBIAN_FRONTEND=noninteractive", "apt-get", "-qq"]);
     apt_get.args(args.split_whitespace());
-    println!("$ apt-get {args}");
+    eprintln!("$ apt-get {args}");
     shell::output(&mut apt_get).map(drop)
 }
 

@@ -31,7 +31,7 @@ pub fn lint(cargo: &mut Command) -> &mut Command {
 
 /// Prints the command, runs it with its output shown, and fails if it fails.
 pub fn run(command: &mut Command) -> Result<()> {
-    println!("$ {}", shown(command));
+    eprintln!("$ {}", shown(command));
     let _running = progress::running(short(command));
     let status =
         command.status().with_context(|| format!("`{}` does not start", shown(command)))?;

@@ -14,7 +14,7 @@ use crate::values::with_receiver;
 use anyhow::{Result, bail};
 use catalogue::run::{Known, Options, SampleType, Settings};
 use catalogue::{Info, Parameter};
-use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -85,7 +85,7 @@ impl Args for StepOptions {
                 .value_delimiter(',')
                 .value_parser(value_parser!(f64))
                 .allow_negative_numbers(true)
-                .num_args(1..)
+                .action(ArgAction::Append)
                 .conflicts_with("threshold")
                 .help_heading("Parameters")
                 .help("In the place of --threshold, one for each channel from address 0 on: `0.1,0.1,0.5`"),

@@ -17,6 +17,7 @@ use super::{
 };
 use crate::signal::Measured;
 
+#[inline(never)] // leaves the stack before the next one comes
 pub fn measure<S: Measured>(out: &mut impl Write, sample: &str) -> fmt::Result {
     let schemes = flight::Schemes::<S>::new().ok_or(fmt::Error)?;
     bank(out, ("bank-sf-6", sample), schemes.bank())?;
@@ -52,6 +53,7 @@ fn minima<S: Measured>() -> [S; CHANNELS] {
     calibrations.map(|channel| channel.min().unwrap_or_default())
 }
 
+#[inline(never)] // leaves the stack before the next one comes
 fn rate_bank<P: Start<Sample: Measured> + Copy>(
     out: &mut impl Write,
     name: (&str, &str),
@@ -65,6 +67,7 @@ fn rate_bank<P: Start<Sample: Measured> + Copy>(
     bank(out, name, Bank::per_channel(schemes.each_ref()))
 }
 
+#[inline(never)] // leaves the stack before the next one comes
 fn bank<P: Start<Sample: Measured>>(
     out: &mut impl Write,
     (name, sample): (&str, &str),

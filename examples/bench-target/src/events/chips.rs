@@ -22,6 +22,7 @@ use spikewire::{
 
 use super::{ensure, flight, meter::Cost};
 
+#[inline(never)] // leaves the stack before the next one comes
 pub fn measure(out: &mut impl Write) -> fmt::Result {
     word(
         out,

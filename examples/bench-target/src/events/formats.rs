@@ -9,6 +9,7 @@ use spikewire::{
 
 use super::{ensure, flight, meter::Cost};
 
+#[inline(never)] // leaves the stack before the next one comes
 pub fn measure(out: &mut impl Write) -> fmt::Result {
     format(out, "raw", Raw, Raw, |event| event)?;
     let camera = |out: &mut _, name, time, read: fn(Event) -> Event| {

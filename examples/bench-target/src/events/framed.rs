@@ -23,6 +23,7 @@ use super::{
 /// More events than a frame holds.
 const FULL: usize = 512;
 
+#[inline(never)] // leaves the stack before the next one comes
 pub fn measure(out: &mut impl Write) -> fmt::Result {
     let floats = Schemes::new().ok_or(fmt::Error)?;
     let fixed = Schemes::new().ok_or(fmt::Error)?;

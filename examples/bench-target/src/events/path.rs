@@ -21,6 +21,7 @@ use crate::signal::Measured;
 static EVENTS: EventQueue<256> = EventQueue::new(Overflow::DropOldest);
 
 /// An event in and out again, through either queue.
+#[inline(never)] // leaves the stack before the next one comes
 pub fn queues(out: &mut impl Write) -> fmt::Result {
     let mut consumer = EVENTS.consumer().ok_or(fmt::Error)?;
     queue(out, "queue", |event| EVENTS.push(event).is_ok(), || consumer.take_event())?;
@@ -56,6 +57,7 @@ fn queue(
 }
 
 /// Counts the whole way by sets of six samples, at the recording's own rate and at 8 kHz.
+#[inline(never)] // leaves the stack before the next one comes
 pub fn measure<S: Measured>(out: &mut impl Write, sample: &str) -> fmt::Result {
     let schemes = Schemes::<S>::new().ok_or(fmt::Error)?;
     Way::new(&schemes, PERIOD).go(out, ("path-200hz", sample), flight::samples())?;
