@@ -136,6 +136,7 @@ impl<S: Sample, const F: usize> Bsa<S, F> {
 /// The error with the filter subtracted is smaller than without, by the criterion.
 impl<S: Sample, const F: usize> Rule<S, F> for Bsa<S, F> {
     const IN_ORDER: bool = false;
+    const KEEPS_A_SUM: bool = true;
 
     #[inline(always)]
     fn filtered(&self) -> &Filtered<S, F> {

@@ -14,6 +14,9 @@ pub(super) trait Rule<S: Sample, const F: usize> {
     /// the first slot on in both forms.
     const IN_ORDER: bool;
 
+    /// Whether it keeps a sum in a register from tap to tap.
+    const KEEPS_A_SUM: bool;
+
     fn filtered(&self) -> &Filtered<S, F>;
 
     /// Whether the sample spikes, given the residuals from it on, each with its tap. `magnitude` is the sum
@@ -133,9 +136,9 @@ impl<S: Sample, const F: usize> RateState<S, F> {
     /// Residuals lie in one line of memory, four filters long on the stack, where windows do not
     /// wrap: the taps do not turn, and stay in registers.
     #[inline(never)]
-    fn encode_line(
+    fn encode_line<R: Rule<S, F>>(
         &mut self,
-        rule: &impl Rule<S, F>,
+        rule: &R,
         samples: &[S],
         spikes: &mut [Option<Spike>],
     ) -> usize {
@@ -151,7 +154,10 @@ impl<S: Sample, const F: usize> RateState<S, F> {
             (line.get(oldest + F..).unwrap_or_default(), after.windows(F))
         };
         let mut length = samples.len().min(spikes.len()).min(newest.len());
-        if S::Residual::IS_EXACT {
+        // A Cortex-M0, which alone has no atomic exchange, has too few registers for it to pay for every rule.
+        let takes_ahead =
+            S::Residual::IS_EXACT && (R::KEEPS_A_SUM || cfg!(target_has_atomic = "32"));
+        if takes_ahead {
             // In a loop of its own, as the limits of a residual take registers that the next one needs.
             for (residual, &sample) in newest.iter().zip(samples).take(length) {
                 residual.set(sample.residual(shift, magnitude));
@@ -164,9 +170,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
                 length = at;
                 break;
             }
-            if !S::Residual::IS_EXACT
-                && let Some(newest) = window.last()
-            {
+            if !takes_ahead && let Some(newest) = window.last() {
                 newest.set(sample.residual(shift, magnitude));
             }
             let fits = rule.fits(magnitude, pairs(window, &taps), true);

@@ -54,6 +54,7 @@ impl<S: Sample, const F: usize> Hough<S, F> {
 /// Every residual reaches its tap.
 impl<S: Sample, const F: usize> Rule<S, F> for Hough<S, F> {
     const IN_ORDER: bool = true;
+    const KEEPS_A_SUM: bool = false;
 
     #[inline(always)]
     fn filtered(&self) -> &Filtered<S, F> {

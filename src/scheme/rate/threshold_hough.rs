@@ -71,6 +71,7 @@ impl<S: Sample, const F: usize> ThresholdHough<S, F> {
 /// The residuals fall short of their taps by the threshold at most.
 impl<S: Sample, const F: usize> Rule<S, F> for ThresholdHough<S, F> {
     const IN_ORDER: bool = true;
+    const KEEPS_A_SUM: bool = true;
 
     #[inline(always)]
     fn filtered(&self) -> &Filtered<S, F> {
