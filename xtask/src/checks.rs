@@ -108,6 +108,7 @@ pub fn laptop() -> Result<()> {
         "the flight's events come out of an Event Stream otherwise"
     );
     print!("{}", spikewire(&format!("score {flight}"))?);
+    crate::schemes::ensure_written()?;
     spikewire(&format!("plot --all {flight} -o {}", picture.display()))?;
     let tables = spikewire("bench")?;
     print!("{tables}");

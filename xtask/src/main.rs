@@ -29,6 +29,7 @@ mod picture;
 mod progress;
 mod qemu;
 mod recipe;
+mod schemes;
 mod setup;
 mod shell;
 mod signal;
@@ -47,6 +48,7 @@ cargo xtask <command>
 
   setup                 compiler targets, QEMU and binutils for Cortex-M; does only what is missing
   firmware [PROGRAM]... runs the example programs on every emulated board and compares with the host
+  schemes [--write]     what each scheme makes of a flight and of the paper's signal; --write puts it into README.md
   firmware --write      puts the spike counts of flight-log, and which bits agree, into docs/bits.md
   demo                  real flight data through encoder, emulated flight controller and decoder
   bench-target          what every codec costs on every emulated board, in instructions and bytes
@@ -75,6 +77,7 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "setup" => setup::setup(),
         "firmware" => firmware::firmware(args),
         "bench-target" => bench::bench(args),
+        "schemes" => schemes::schemes(args),
         "demo" => demo::demo(args),
         "verify" => verify::verify(args),
         "" | "help" | "-h" | "--help" => {

@@ -1,0 +1,74 @@
+//! `cargo xtask schemes`: what each scheme makes of a flight and of the paper's signal, measured by the laptop program.
+
+use crate::{host::spikewire, markdown::between, paths, shell::output};
+use anyhow::{Context, Result, ensure};
+use serde::Deserialize;
+use std::fs;
+
+const PAGE: &str = "README.md";
+const MARKER: &str = "schemes";
+
+/// A line of `spikewire score --json`.
+#[derive(Deserialize)]
+struct Figures {
+    scheme: String,
+    efficiency: f64,
+    rmse: f64,
+    spikes_per_second: Option<f64>,
+}
+
+pub fn schemes(args: &[String]) -> Result<()> {
+    let table = table()?;
+    if args == ["--write"] {
+        let path = paths::root().join(PAGE);
+        fs::write(&path, with(&fs::read_to_string(&path)?, &table)?)?;
+        println!("{PAGE} has the table.");
+    } else {
+        print!("{table}");
+    }
+    Ok(())
+}
+
+/// Fails if the README has other figures.
+pub fn ensure_written() -> Result<()> {
+    let (page, table) = (fs::read_to_string(paths::root().join(PAGE))?, table()?);
+    ensure!(
+        with(&page, &table)? == page,
+        "{PAGE} has other figures; `cargo xtask schemes --write` puts these there:\n{table}"
+    );
+    Ok(())
+}
+
+fn table() -> Result<String> {
+    let signal = paths::target().join("paper-signal.csv");
+    output(&mut spikewire(&format!("signal --seconds 15 -o {}", signal.display()))?)?;
+    let flight = scored("--column gyro_x data/hexarotor.csv")?;
+    let paper = scored(&format!("--column signal {}", signal.display()))?;
+    let mut table = "\n| scheme | flight: spikes a second | RMSE, rad/s | paper's signal: spikes a second | efficiency, % | RMSE |\n\
+                     |---|---:|---:|---:|---:|---:|\n"
+        .to_owned();
+    for (flight, paper) in flight.iter().zip(&paper) {
+        let rate = |figures: &Figures| {
+            figures.spikes_per_second.map_or(String::new(), |rate| format!("{rate:.1}"))
+        };
+        table += &format!(
+            "| `{}` | {} | {:.3} | {} | {:.1} | {:.3} |\n",
+            flight.scheme,
+            rate(flight),
+            flight.rmse,
+            rate(paper),
+            paper.efficiency,
+            paper.rmse
+        );
+    }
+    Ok(table + "\n")
+}
+
+fn scored(what: &str) -> Result<Vec<Figures>> {
+    let json = output(&mut spikewire(&format!("score --json {what}"))?)?;
+    serde_json::from_str(&json).context("the figures of `spikewire score`")
+}
+
+fn with(page: &str, table: &str) -> Result<String> {
+    between(page, MARKER, table)
+}
