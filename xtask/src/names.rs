@@ -6,7 +6,9 @@ use spikewire::{Calibration, ConfigError, Scheme};
 /// A scheme as one would look it up: its words in the catalogue.
 pub fn full_name(scheme: &str) -> &str {
     let mut calibration = Calibration::<f32>::new();
-    [0.0, 1.0, 0.0].map(|sample| calibration.observe(sample));
+    for sample in [0.0, 1.0, 0.0] {
+        calibration.observe(sample);
+    }
     let mut words = Words { name: scheme, words: scheme };
     // Parameters from three samples may be bad for some scheme; its name then stands as it is.
     let _ = catalogue::fly(&Channel::new(0, calibration), &mut words);
