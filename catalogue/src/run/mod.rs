@@ -25,7 +25,7 @@ use spikewire::{Sample, Scheme, Spike};
 use crate::{Entry, Info, for_sample_type};
 
 /// Populations up to this size have codes of this capacity, larger ones of the largest.
-pub const FEW: usize = 64;
+const FEW: usize = 64;
 
 /// How many neurons a code has, and how many sub-timesteps a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,6 +104,30 @@ pub trait Build: Entry {
     /// # Errors
     /// A parameter makes no sense, or the visitor's own.
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output>;
+}
+
+/// A population code, built with codes of a capacity that holds its neurons.
+pub trait BuildPopulation: Build {
+    /// Builds it with codes of the capacity `M` and hands it to a visitor.
+    ///
+    /// # Errors
+    /// A parameter makes no sense, or the visitor's own.
+    fn build_within<S: Sample, V: Visit<S>, const M: usize>(
+        given: &Given,
+        visitor: V,
+    ) -> Result<V::Output>;
+
+    /// Builds it with codes as small as its neurons allow.
+    ///
+    /// # Errors
+    /// A parameter makes no sense, or the visitor's own.
+    fn build_population<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        if Self::shape(given)?.neurons <= FEW {
+            Self::build_within::<S, V, FEW>(given, visitor)
+        } else {
+            Self::build_within::<S, V, { spikewire::dynamic::NEURONS }>(given, visitor)
+        }
+    }
 }
 
 /// A scheme of the catalogue, whichever it is.

@@ -2,16 +2,16 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
-use spikewire::{Sample, Start};
 use spikewire::rate::{Bsa, BsaToolbox, Scale, Shape, Taps};
+use spikewire::{Sample, Start};
 
 use crate::plain::{Plain, magnitude};
 use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
 
 #[cfg(feature = "run")]
 use {
-    anyhow::{Result, bail},
     crate::run::{Asked, Build, Given, Settings, Visit},
+    anyhow::{Result, bail},
     spikewire::dynamic,
     spikewire::rate::Criterion,
 };
@@ -109,7 +109,9 @@ impl Build for Scheme {
             }
             ("aligned", "mul") => Criterion::Multiplicative(given.number("threshold")? as f32),
             ("aligned", "sub") => Criterion::Subtractive(given.signal("threshold")?),
-            _ => bail!("form={form} with criterion={criterion}: there are aligned with sub or mul, and toolbox with mul"),
+            _ => bail!(
+                "form={form} with criterion={criterion}: there are aligned with sub or mul, and toolbox with mul"
+            ),
         };
         let scheme = dynamic::Bsa::try_new(taps, criterion)?.try_with_shift(shift)?;
         let start = scheme.state();
@@ -182,7 +184,12 @@ pub fn transcribed<S: Plain>(input: &mut [S], filter: &[S], threshold: S, spikes
 
 /// The paper's algorithm 5, on the shifted input; the ratio in 14 bits of fraction where products are whole.
 #[inline(never)]
-pub fn transcribed_toolbox<S: Plain>(input: &mut [S], filter: &[S], threshold: f64, spikes: &mut [i8]) {
+pub fn transcribed_toolbox<S: Plain>(
+    input: &mut [S],
+    filter: &[S],
+    threshold: f64,
+    spikes: &mut [i8],
+) {
     // The ratio in 128ths, so that counts can take part; the paper's 1.15 is then 1.1484.
     let (parts, threshold) = (S::wide(128.0), S::wide(f64::from((threshold * 128.0) as i32)));
     for i in 0..input.len() - filter.len() {

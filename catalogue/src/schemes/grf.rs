@@ -2,16 +2,16 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
-use spikewire::population::{Gaussian};
 use spikewire::Start;
+use spikewire::population::Gaussian;
 
 use crate::plain::{Plain, response};
 use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {
+    crate::run::{Build, BuildPopulation, Given, Visit},
     anyhow::Result,
-    crate::run::{Build, FEW, Given, Visit},
     spikewire::{Sample, dynamic},
 };
 
@@ -50,20 +50,20 @@ impl Entry for Scheme {
 #[cfg(feature = "run")]
 impl Build for Scheme {
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        if Self::shape(given)?.neurons <= FEW {
-            built::<S, V, FEW>(given, visitor)
-        } else {
-            built::<S, V, { dynamic::NEURONS }>(given, visitor)
-        }
+        Self::build_population(given, visitor)
     }
 }
 
-/// With codes of this capacity.
 #[cfg(feature = "run")]
-fn built<S: Sample, V: Visit<S>, const M: usize>(given: &Given, visitor: V) -> Result<V::Output> {
-    let scheme = dynamic::Position::<S, M>::try_linear(given.neurons()?, &given.range()?)?;
-    let start = scheme.state();
-    visitor.visit(scheme, start)
+impl BuildPopulation for Scheme {
+    fn build_within<S: Sample, V: Visit<S>, const M: usize>(
+        given: &Given,
+        visitor: V,
+    ) -> Result<V::Output> {
+        let scheme = dynamic::Position::<S, M>::try_linear(given.neurons()?, &given.range()?)?;
+        let start = scheme.state();
+        visitor.visit(scheme, start)
+    }
 }
 
 /// The paper's algorithm 2 with its exponentials, in `f32` for every sample type: the winner.

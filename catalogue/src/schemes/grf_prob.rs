@@ -11,8 +11,8 @@ use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
 
 #[cfg(feature = "run")]
 use {
+    crate::run::{Build, BuildPopulation, Given, Visit},
     anyhow::Result,
-    crate::run::{Build, FEW, Given, Visit},
     rand_chacha::ChaCha8Rng,
     rand_chacha::rand_core::SeedableRng,
     spikewire::{Sample, dynamic},
@@ -70,21 +70,21 @@ impl Entry for Scheme {
 #[cfg(feature = "run")]
 impl Build for Scheme {
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        if Self::shape(given)?.neurons <= FEW {
-            built::<S, V, FEW>(given, visitor)
-        } else {
-            built::<S, V, { dynamic::NEURONS }>(given, visitor)
-        }
+        Self::build_population(given, visitor)
     }
 }
 
-/// With codes of this capacity.
 #[cfg(feature = "run")]
-fn built<S: Sample, V: Visit<S>, const M: usize>(given: &Given, visitor: V) -> Result<V::Output> {
-    let (neurons, beta) = (given.neurons()?, given.number("beta")? as f32);
-    let generator = ChaCha8Rng::seed_from_u64(given.count("seed", 0..=usize::MAX)? as u64);
-    let scheme = dynamic::Probabilistic::<S, _, M>::try_new(neurons, &given.range()?, beta)?;
-    visitor.visit(scheme, dynamic::Probabilistic::<S, _, M>::state(generator))
+impl BuildPopulation for Scheme {
+    fn build_within<S: Sample, V: Visit<S>, const M: usize>(
+        given: &Given,
+        visitor: V,
+    ) -> Result<V::Output> {
+        let (neurons, beta) = (given.neurons()?, given.number("beta")? as f32);
+        let generator = ChaCha8Rng::seed_from_u64(given.count("seed", 0..=usize::MAX)? as u64);
+        let scheme = dynamic::Probabilistic::<S, _, M>::try_new(neurons, &given.range()?, beta)?;
+        visitor.visit(scheme, dynamic::Probabilistic::<S, _, M>::state(generator))
+    }
 }
 
 /// The generator of what is counted, whose work is counted with it.

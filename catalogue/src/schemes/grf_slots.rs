@@ -2,16 +2,16 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
-use spikewire::population::{SlotSpikes, Slots};
 use spikewire::Start;
+use spikewire::population::{SlotSpikes, Slots};
 
 use crate::plain::{Plain, response};
 use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
 
 #[cfg(feature = "run")]
 use {
+    crate::run::{Build, BuildPopulation, Given, Visit},
     anyhow::Result,
-    crate::run::{Build, FEW, Given, Visit},
     spikewire::{Sample, dynamic},
 };
 
@@ -72,23 +72,23 @@ impl Entry for Scheme {
 #[cfg(feature = "run")]
 impl Build for Scheme {
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        if Self::shape(given)?.neurons <= FEW {
-            built::<S, V, FEW>(given, visitor)
-        } else {
-            built::<S, V, { dynamic::NEURONS }>(given, visitor)
-        }
+        Self::build_population(given, visitor)
     }
 }
 
-/// With codes of this capacity.
 #[cfg(feature = "run")]
-fn built<S: Sample, V: Visit<S>, const M: usize>(given: &Given, visitor: V) -> Result<V::Output> {
-    let (neurons, beta) = (given.neurons()?, given.number("beta")? as f32);
-    let slots = given.count("slots", 2..=dynamic::LEVELS)?;
-    let scheme = dynamic::Slots::<S, M>::try_new(neurons, slots, &given.range()?, beta)?;
-    let scheme = scheme.try_with_floor(given.count("floor", 1..=slots)? as u16)?;
-    let start = scheme.state();
-    visitor.visit(scheme, start)
+impl BuildPopulation for Scheme {
+    fn build_within<S: Sample, V: Visit<S>, const M: usize>(
+        given: &Given,
+        visitor: V,
+    ) -> Result<V::Output> {
+        let (neurons, beta) = (given.neurons()?, given.number("beta")? as f32);
+        let slots = given.count("slots", 2..=dynamic::LEVELS)?;
+        let scheme = dynamic::Slots::<S, M>::try_new(neurons, slots, &given.range()?, beta)?;
+        let scheme = scheme.try_with_floor(given.count("floor", 1..=slots)? as u16)?;
+        let start = scheme.state();
+        visitor.visit(scheme, start)
+    }
 }
 
 /// The code that the transcription writes: the slot of each neuron, or -1.
@@ -108,7 +108,13 @@ fn spikes_of(slots: &[i8]) -> SlotSpikes<15, 10> {
 /// The paper's algorithm 2 with its exponentials, in `f32` for every sample type: the slot of each neuron, or -1, one sample
 /// after the other.
 #[inline(never)]
-pub fn transcribed<S: Plain>(input: &[S], centres: &[f32], sigma: f32, levels: usize, slots: &mut [i8]) {
+pub fn transcribed<S: Plain>(
+    input: &[S],
+    centres: &[f32],
+    sigma: f32,
+    levels: usize,
+    slots: &mut [i8],
+) {
     for i in 0..input.len() {
         let x = input[i].to_f64() as f32;
         for j in 0..centres.len() {

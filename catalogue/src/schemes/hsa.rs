@@ -10,8 +10,8 @@ use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {
-    anyhow::Result,
     crate::run::{Build, Given, Visit},
+    anyhow::Result,
     spikewire::{Sample, dynamic},
 };
 
@@ -53,7 +53,8 @@ impl Entry for Scheme {
 #[cfg(feature = "run")]
 impl Build for Scheme {
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let scheme = dynamic::Hough::try_new(given.taps()?)?.try_with_shift(given.signal("shift")?)?;
+        let scheme =
+            dynamic::Hough::try_new(given.taps()?)?.try_with_shift(given.signal("shift")?)?;
         let start = scheme.state();
         visitor.visit(scheme, start)
     }

@@ -10,8 +10,8 @@ use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled,
 
 #[cfg(feature = "run")]
 use {
-    anyhow::Result,
     crate::run::{Build, Given, Options, Visit},
+    anyhow::Result,
     spikewire::{Sample, dynamic},
 };
 

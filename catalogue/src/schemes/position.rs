@@ -2,16 +2,18 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
-use spikewire::population::{Neuron, Position};
 use spikewire::Start;
+use spikewire::population::{Neuron, Position};
 
 use crate::plain::{self, Plain, magnitude};
 use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
 
 #[cfg(feature = "run")]
 use {
+    crate::run::{
+        Asked, Build, BuildPopulation, Given, Options, Settings, Shape, Visit, is_list, missing,
+    },
     anyhow::{Context, Result, bail},
-    crate::run::{Asked, Build, FEW, Given, Options, Settings, Shape, Visit, is_list, missing},
     spikewire::{Sample, dynamic},
 };
 
@@ -47,7 +49,12 @@ impl Entry for Scheme {
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         linear(channel, visitor)?;
         let scheme = Position::<_, 20>::try_gaussian_spaced(channel.min..=channel.max)?;
-        visitor.visit("position-gauss", "position, dense in the middle", &scheme, Position::<V::Sample, 20>::START)
+        visitor.visit(
+            "position-gauss",
+            "position, dense in the middle",
+            &scheme,
+            Position::<V::Sample, 20>::START,
+        )
     }
 
     fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
@@ -72,7 +79,9 @@ impl Build for Scheme {
         if !is_list(&centres) {
             return asked.all();
         }
-        if let Some(option) = ["neurons", "min", "max"].iter().find(|name| asked.user(name).is_some()) {
+        if let Some(option) =
+            ["neurons", "min", "max"].iter().find(|name| asked.user(name).is_some())
+        {
             bail!("--centres {centres} says it all; --{option} contradicts it");
         }
         let list = centres.split(',').map(|centre| {
@@ -90,7 +99,11 @@ impl Build for Scheme {
     }
 
     fn needs_signal(options: &Options) -> Option<String> {
-        if options.get("centres").is_some_and(is_list) { None } else { missing(&Self::INFO, options) }
+        if options.get("centres").is_some_and(is_list) {
+            None
+        } else {
+            missing(&Self::INFO, options)
+        }
     }
 
     fn shape(given: &Given) -> Result<Shape> {
@@ -102,24 +115,26 @@ impl Build for Scheme {
     }
 
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        if Self::shape(given)?.neurons <= FEW {
-            built::<S, V, FEW>(given, visitor)
-        } else {
-            built::<S, V, { dynamic::NEURONS }>(given, visitor)
-        }
+        Self::build_population(given, visitor)
     }
 }
 
-/// With codes of this capacity.
 #[cfg(feature = "run")]
-fn built<S: Sample, V: Visit<S>, const M: usize>(given: &Given, visitor: V) -> Result<V::Output> {
-    let scheme = match given.word("centres")? {
-        "linear" => dynamic::Position::<S, M>::try_linear(given.neurons()?, &given.range()?)?,
-        "gaussian" => dynamic::Position::<S, M>::try_gaussian_spaced(given.neurons()?, &given.range()?)?,
-        _ => dynamic::Position::<S, M>::try_new(&given.signals("centres")?)?,
-    };
-    let start = scheme.state();
-    visitor.visit(scheme, start)
+impl BuildPopulation for Scheme {
+    fn build_within<S: Sample, V: Visit<S>, const M: usize>(
+        given: &Given,
+        visitor: V,
+    ) -> Result<V::Output> {
+        let scheme = match given.word("centres")? {
+            "linear" => dynamic::Position::<S, M>::try_linear(given.neurons()?, &given.range()?)?,
+            "gaussian" => {
+                dynamic::Position::<S, M>::try_gaussian_spaced(given.neurons()?, &given.range()?)?
+            }
+            _ => dynamic::Position::<S, M>::try_new(&given.signals("centres")?)?,
+        };
+        let start = scheme.state();
+        visitor.visit(scheme, start)
+    }
 }
 
 #[inline(never)]

@@ -10,8 +10,8 @@ use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {
-    anyhow::Result,
     crate::run::{Build, Given, Visit},
+    anyhow::Result,
     spikewire::Sample,
 };
 
@@ -31,7 +31,10 @@ impl Entry for Scheme {
         is_drawn: true,
         colour: [0xe9, 0xc4, 0x3a],
         parameters: &[
-            Parameter::threshold("the step, above 0: what the distance from the baseline must exceed", 0.5),
+            Parameter::threshold(
+                "the step, above 0: what the distance from the baseline must exceed",
+                0.5,
+            ),
             Parameter::START,
         ],
     };

@@ -6,12 +6,15 @@ use spikewire::Start;
 use spikewire::temporal::{SendOnDelta, Steps};
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled, Kind, Unit, Paper};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
 
 #[cfg(feature = "run")]
 use {
     anyhow::Result,
-    { crate::run::{Build, Given, Shape, Visit}, spikewire::Sample, },
+    {
+        crate::run::{Build, Given, Shape, Visit},
+        spikewire::Sample,
+    },
 };
 
 /// Send-on-delta.
@@ -131,11 +134,19 @@ mod tests {
             encoder.encode(base);
             decoder.resync(base);
             let steps = encoder.encode(sample);
-            assert!(steps.firings().map(|firing| firing.slot).eq(0..steps.count().unsigned_abs().into()));
+            assert!(
+                steps
+                    .firings()
+                    .map(|firing| firing.slot)
+                    .eq(0..steps.count().unsigned_abs().into())
+            );
             let value = decoder.decode(steps);
             assert_eq!(Some(value), encoder.keyframe());
             let away = (sample - base).unsigned_abs();
-            assert_eq!(i16::from(steps.count().unsigned_abs()), (away.saturating_sub(1) / 10).min(4) as i16);
+            assert_eq!(
+                i16::from(steps.count().unsigned_abs()),
+                (away.saturating_sub(1) / 10).min(4) as i16
+            );
             assert!(away > 50 || (sample - value).abs() <= 10, "{base} {sample}");
         }
     }

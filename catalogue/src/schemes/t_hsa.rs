@@ -10,8 +10,8 @@ use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {
-    anyhow::Result,
     crate::run::{Build, Given, Visit},
+    anyhow::Result,
     spikewire::{Sample, dynamic},
 };
 
@@ -33,7 +33,10 @@ impl Entry for Scheme {
         parameters: &[
             Parameter::filter("triang:15"),
             Parameter::SHIFT,
-            Parameter::threshold("by how much the signal may fall short of the filter in all, 0 or more", 0.85),
+            Parameter::threshold(
+                "by how much the signal may fall short of the filter in all, 0 or more",
+                0.85,
+            ),
         ],
     };
 

@@ -10,8 +10,8 @@ use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled,
 
 #[cfg(feature = "run")]
 use {
-    anyhow::{Context, Result, bail},
     crate::run::{Asked, Build, Given, Options, Settings, Visit, number},
+    anyhow::{Context, Result, bail},
     spikewire::Sample,
 };
 
