@@ -1,7 +1,7 @@
 //! Sensor samples to spikes and back, on a flight controller.
 //!
 //! Streaming encoders and decoders for the spike codes of neuromorphic robotics, one sample at a
-//! time, in fixed capacity: no heap, no panic, no unsafe code. The same bits on every machine.
+//! time, in memory of fixed size: no heap, no panic, no unsafe code, and the same bits on every machine.
 //!
 //! ```
 //! use spikewire::{Scheme, temporal::StepForward};
@@ -9,7 +9,7 @@
 //! const ROLL: StepForward<f32> = StepForward::new(0.35); // a bad constant fails the build
 //!
 //! let mut encoder = ROLL.encoder(); // the first sample becomes the baseline
-//! let mut decoder = ROLL.decoder(); // starts at 0, unless told otherwise
+//! let mut decoder = ROLL.decoder(); // starts at 0; `resync` sets it
 //! for rate in [0.0, 0.4, 0.9, 0.8, 0.2] {
 //!     let spike = encoder.encode(rate); // Up, Down or None
 //!     let estimate = decoder.decode(spike);
@@ -17,9 +17,9 @@
 //! }
 //! ```
 //!
-//! A [`Scheme`] holds parameters, in a `const` or a `static`. An [`Encoder`] and a [`Decoder`] are a
-//! reference to it and a small state; a [`Bank`] is one scheme and a state for each channel. What leaves
-//! the interrupt is one stream of [items](Item) in their order, through a queue to a link, a sink or a chip.
+//! A [`Scheme`] holds parameters, in a `const` or a `static`. An [`Encoder`] or a [`Decoder`] is a reference to it
+//! and a small state; a [`Bank`] is one scheme with a state for each channel. Events, ticks and keyframes leave the
+//! interrupt as one stream of [items](Item), in order, through a queue to a link, a sink or a chip.
 //!
 //! # Schemes
 //!

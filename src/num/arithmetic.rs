@@ -1,15 +1,15 @@
-//! The arithmetic of the step codes.
+//! Arithmetic of the temporal codes: a step up, a step down, and the comparison with a threshold.
 
 use core::cmp::Ordering;
 
-/// Steps and comparisons: rounded once in `f32`, saturating and exact in fixed point.
+/// Steps and comparisons: one rounding in `f32`; exact and saturating in fixed point.
 pub(crate) trait Arithmetic: Sized {
     const ZERO: Self;
 
     fn is_finite(&self) -> bool;
 
-    /// Adds a sample to a sum that only says whether all samples of a slice were finite: one check at the end
-    /// replaces one a sample. A sum in `f32` that is not finite stays so; fixed point is always finite.
+    /// Adds a sample to a sum of a slice's samples. If that sum is finite, so was every sample: one check at the
+    /// end replaces one a sample. Fixed point, which is always finite, returns `self`.
     fn taint(self, sample: Self) -> Self;
 
     /// `self + step`.
@@ -18,7 +18,7 @@ pub(crate) trait Arithmetic: Sized {
     /// `self - step`.
     fn minus(self, step: Self) -> Self;
 
-    /// Whether the difference from `previous` is above the threshold, or below its negative.
+    /// Compares `self - previous` with the threshold: `Greater` above it, `Less` below its negative, else `Equal`.
     fn step(self, previous: Self, threshold: Self) -> Ordering;
 }
 
@@ -51,13 +51,14 @@ impl Arithmetic for f32 {
     }
 }
 
-/// In the order of the values without their sign.
+/// An integer that orders floats by their absolute value.
 #[inline]
 pub(super) const fn magnitude(value: f32) -> u32 {
     value.to_bits() << 1
 }
 
-/// Whether a difference that is not NaN is above a threshold, given as its magnitude, or below its negative.
+/// Compares a difference, which is not NaN, with the [`magnitude`] of a threshold: `Greater` above it, `Less` below
+/// its negative, else `Equal`.
 #[inline]
 pub(super) fn beyond(difference: f32, threshold: u32) -> Ordering {
     if magnitude(difference) <= threshold {
@@ -109,7 +110,7 @@ macro_rules! integer_arithmetic {
                 self.saturating_sub(step)
             }
 
-            // No sample lies beyond a saturated bound, nor would it beyond the exact one.
+            // A bound that saturates is an end of the type, and no sample lies beyond it or the exact bound.
             #[inline]
             fn step(self, previous: Self, threshold: Self) -> Ordering {
                 if self > previous.saturating_add(threshold) {

@@ -1,30 +1,31 @@
-//! Even cells on the line of values: one multiplication tells about where a value lies.
+//! Cells of equal width over a range of values: one multiplication finds the cell of a value.
 
-/// Cells of one width, counted upwards from an origin; what lies below it lies in the first.
+/// Cells of equal width, numbered upwards from an origin; a value below the origin lies in cell 0.
 ///
-/// Rounding decides which of two cells a value close to their border lies in, on every machine alike; and no
-/// value lies in a lower cell than a smaller one. So what is true of the borders that a table is made of,
-/// asked when it is made, holds for all the values between them.
+/// Rounding may put a value close to a border into either cell, but into one and the same on every machine, and
+/// a larger value never lies in a lower cell. So a table checked at its borders when it is built is right for
+/// every value between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct Cells {
     /// A float's bits, or an integer.
     origin: u32,
-    /// Cells for 1: a float's bits; of integers 16 bits of them, 8 bits of the shift that leaves 16 bits of
-    /// a value, and 8 bits of the shift that ends the product.
+    /// Cells per unit. For floats their bits. For integers, from the lowest bit: 16 bits of factor, 8 bits of the
+    /// shift that reduces a value to 16 bits, and 8 bits of the shift of the product.
     scale: u32,
 }
 
 impl Cells {
-    /// All values lie in the first.
+    /// A single cell, which holds all values.
     pub(crate) const ONE: Self = Self { origin: 0, scale: 0 };
 
-    /// Whether all values lie in the first.
+    /// Whether there is a single cell.
     #[inline]
     pub(crate) const fn is_one(self) -> bool {
         self.scale == 0
     }
 
+    /// Cells for `f32`; a single one if `1 / width` is not a positive finite `f32`.
     pub(crate) const fn of_floats(origin: f64, width: f64) -> Self {
         let scale = (1.0 / width) as f32;
         if scale > 0.0 && scale < f32::INFINITY {
@@ -34,7 +35,7 @@ impl Cells {
         }
     }
 
-    /// So many, in units of the last place.
+    /// `count` cells for integers; origin and width in units of the last place.
     pub(crate) const fn of_integers(origin: f64, width: f64, count: usize) -> Self {
         let range = (width * count as f64) as u64;
         let mut shift = 0_u32;
@@ -56,12 +57,13 @@ impl Cells {
         }
     }
 
-    /// The cell of a float; 0 for what is not a number.
+    /// The cell of a float; 0 for NaN.
     #[inline]
     pub(crate) const fn of_float(self, value: f32) -> usize {
         ((value - f32::from_bits(self.origin)) * f32::from_bits(self.scale)) as u32 as usize
     }
 
+    /// The cell of an integer, in units of the last place.
     #[inline]
     pub(crate) const fn of_integer(self, value: i32) -> usize {
         let Self { origin, scale } = self;

@@ -1,6 +1,6 @@
-//! Mathematics of the set-up that also runs at compile time, where `libm` cannot.
+//! Elementary functions for building tables, also at compile time, where `libm` cannot run.
 //!
-//! In double precision, with an error far below the last place of every sample type, and only by
+//! In double precision, with an error far below the last place of every sample type, and only with
 //! `+ - * /`: the same bits at compile time, on the host and on the target.
 
 /// `exp(x)`.
@@ -73,8 +73,8 @@ pub(crate) const fn sin_pi(t: f64) -> f64 {
     sum
 }
 
-/// The value that a standard normal variable exceeds with probability `1 - p`, for
-/// `p` in 0.5 to 1 - 1e-6.
+/// The quantile of the standard normal distribution: the value that a variable exceeds with probability `1 - p`,
+/// for `p` in 0.5 to 1 - 1e-6.
 pub(crate) const fn normal_quantile(p: f64) -> f64 {
     const ROOT_TWO_PI: f64 = 2.506_628_274_631_000_7;
     let mut z = 0.0;

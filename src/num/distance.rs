@@ -1,44 +1,50 @@
-//! Arithmetic of the population codes: cells, distances and means.
+//! Arithmetic of the population codes: the cell of a value, its distance from a centre, and the mean of centres.
 
 use bytemuck::Pod;
 
 use super::convert::{floor, units};
 use super::{Cells, Sample, SampleKind, word};
 
-/// What a sample type computes of centres and distances.
+/// Arithmetic of centres and distances in one sample type.
 pub(crate) trait Spaced: Sized {
-    /// A distance from a centre, in tables: the bits of an `f32`, which have its order, or an integer in
-    /// units of the type's last place over `2 (M - 2)`, in which every centre is whole.
+    /// A distance from a centre, as tables store it: the bits of an `f32`, which sort as the distances do, or a
+    /// count of [`parts`] of a unit in the last place.
     type Reach: Distance<Self> + Pod + core::fmt::Debug;
-    /// A distance of values near the range.
+    /// A distance of a value that [is near](Self::is_near) the range.
     type Short: Distance<Self>;
-    /// Centres times levels, summed.
+    /// A sum of centres, each times the level of its neuron.
     type Weighted: Copy + Default;
 
-    /// Whether every distance of this value fits [`Short`](Self::Short); `near` is from [`near`].
+    /// Whether the distance of this value from every centre fits [`Short`](Self::Short). `near` comes from [`near`].
     fn is_near(&self, near: [Self; 2]) -> bool;
 
-    /// Whether a multiplication is quicker than a search: not where floats have no unit.
+    /// Whether [`cell`](Self::cell) is quicker than a search: false for floats on a core without a float unit.
     const HAS_CELLS: bool;
 
+    /// The cell of this value.
     fn cell(self, cells: Cells) -> usize;
 
-    /// Whether a finite value exceeds an edge, by whole numbers: quick where floats have no unit.
+    /// Whether a finite value exceeds an edge. Compares integers, which is quick without a float unit.
     fn is_beyond(&self, edge: Self) -> bool;
 
+    /// Adds the centre of a neuron, times its level, to the sum.
     fn weigh(sum: Self::Weighted, centre: Self, neuron: usize, level: u32) -> Self::Weighted;
 
+    /// The mean of the centres by their levels: the sum over `levels`, which is the sum of the levels.
     fn mean(sum: Self::Weighted, levels: u32, neurons: usize, min: Self, max: Self) -> Self;
 }
 
 /// How far a value is from a centre.
 pub(crate) trait Distance<S: Spaced>: Copy + PartialOrd {
+    /// The distance of a value from a centre. `f32` takes the centre; integers compute it exactly from the neuron
+    /// and the range, as a count of [`parts`].
     fn between(value: S, centre: S, neuron: usize, neurons: usize, min: S, max: S) -> Self;
 
+    /// A distance of a table, in this type.
     fn of(reach: S::Reach) -> Self;
 }
 
-/// Even cells from an origin, both in [`units`].
+/// `count` cells of this width from this origin, both in [`units`].
 pub(crate) const fn cells<S: Sample>(origin: f64, width: f64, count: usize) -> Cells {
     match S::KIND {
         SampleKind::F32 => Cells::of_floats(origin, width),
@@ -54,7 +60,7 @@ pub(crate) const fn cell<S: Sample>(cells: Cells, value: S) -> usize {
     }
 }
 
-/// A distance in [`units`] as tables have it, rounded down in fixed point.
+/// A distance in [`units`], as tables store it; rounded down in fixed point.
 pub(crate) const fn reach<S: Sample>(distance: f64, neurons: usize) -> S::Reach {
     match S::KIND {
         SampleKind::F32 => word((distance as f32).to_bits() as u64),
@@ -63,8 +69,8 @@ pub(crate) const fn reach<S: Sample>(distance: f64, neurons: usize) -> S::Reach 
     }
 }
 
-/// A value not below the largest within a reach of a centre, both in [`units`]; in `f32` whose rounded
-/// distance may be.
+/// An upper bound of the values within a reach of a centre, both in [`units`]. In `f32` it also covers values
+/// whose distance is within the reach only after rounding.
 pub(crate) const fn top<S: Sample>(centre: f64, reach: f64) -> S {
     let bits = match S::KIND {
         SampleKind::F32 => {
@@ -77,8 +83,8 @@ pub(crate) const fn top<S: Sample>(centre: f64, reach: f64) -> S {
     word(bits)
 }
 
-/// The lowest and the highest value whose distances from every centre fit 32 bits: an empty range, if
-/// `reach`, the largest of the table, does not. All in [`units`]; only 32-bit fixed point asks.
+/// The lowest and the highest value whose distance from every centre fits 32 bits. The range is empty if `reach`,
+/// the largest distance of the table, does not fit. All in [`units`]; only 32-bit fixed point uses it.
 pub(crate) const fn near<S: Sample>(min: f64, max: f64, neurons: usize, reach: f64) -> [S; 2] {
     let parts = parts(neurons);
     let room = (i32::MAX as f64 - 2.0 * neurons as f64 * (max - min)) / parts - 1.0;
@@ -90,7 +96,7 @@ pub(crate) const fn near<S: Sample>(min: f64, max: f64, neurons: usize, reach: f
     [word(low as u64), word(high as u64)]
 }
 
-/// Into how many parts a centre divides the unit.
+/// How many parts a unit in the last place is divided into: in these parts every centre is a whole number.
 const fn parts(neurons: usize) -> f64 {
     2.0 * (neurons as f64 - 2.0)
 }
@@ -112,7 +118,7 @@ impl Spaced for f32 {
         cells.of_float(self)
     }
 
-    // No edge is -0: it is a sum or a float below one.
+    // `total_cmp` sorts -0 below 0, but no edge is -0: it is a sum, or the float below a sum.
     #[inline]
     fn is_beyond(&self, edge: f32) -> bool {
         self.total_cmp(&edge).is_gt()
@@ -148,7 +154,7 @@ macro_rules! integer {
             type Short = i32;
             type Weighted = i32;
 
-                    #[inline]
+            #[inline]
             fn is_near(&self, near: [Self; 2]) -> bool {
                 let is_near: fn($bits, [$bits; 2]) -> bool = $is_near;
                 is_near($to_bits(*self), near.map($to_bits))
@@ -166,7 +172,7 @@ macro_rules! integer {
                 *self > edge
             }
 
-            // At most 1024 neurons of 256 levels: neither this nor the sum of levels leaves 30 bits.
+            // With at most 1024 neurons of 256 levels, this sum and that of the levels fit 30 bits.
             #[inline]
             fn weigh(sum: i32, _: Self, neuron: usize, level: u32) -> i32 {
                 sum.wrapping_add((neuron as i32).wrapping_mul(2).wrapping_sub(1).wrapping_mul(level as i32))

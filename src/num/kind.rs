@@ -1,4 +1,4 @@
-//! What the bits of a sample mean.
+//! The type of a sample as a value: floating point, or fixed point with a fraction.
 
 /// The type of a sample, as a number of six bits that a link can carry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

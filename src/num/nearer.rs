@@ -5,7 +5,7 @@
 
 use super::Ratio;
 
-/// Compares `e1 = sum |residual - tap|` with `e2 = sum |residual|` over pairs.
+/// Compares `e1 = sum |residual - tap|` with `e2 = sum |residual|` over pairs of a residual and its tap.
 pub(crate) trait Nearer: Sized {
     /// A sum of magnitudes.
     type Sum: Copy + core::fmt::Debug;
@@ -18,8 +18,8 @@ pub(crate) trait Nearer: Sized {
     /// `left <= right * ratio`.
     fn at_most(left: Self::Sum, right: Self::Sum, ratio: Ratio) -> bool;
 
-    /// Whether the taps bring the residuals nearer to zero, by the bound. `magnitude` is the sum of the
-    /// taps' magnitudes over the pairs.
+    /// Whether `e1` is within the bound, so that subtracting the taps brings the residuals nearer to zero.
+    /// `magnitude` is the sum of the taps' magnitudes over the pairs.
     fn is_nearer(
         bound: Bound<Self>,
         magnitude: Self,
@@ -27,12 +27,12 @@ pub(crate) trait Nearer: Sized {
     ) -> bool;
 }
 
-/// What `e1` must not exceed.
+/// The largest `e1` at which the filter fires.
 #[derive(Clone, Copy)]
 pub(crate) enum Bound<R> {
-    /// `e2` less this.
+    /// `e2` minus this threshold.
     Less(R),
-    /// This part of `e2`.
+    /// `e2` times this ratio.
     Part(Ratio),
 }
 
@@ -87,12 +87,12 @@ impl Nearer for i32 {
         pairs: impl Iterator<Item = (i32, i32)>,
     ) -> bool {
         match bound {
-            // `e1 - e2 + sum |tap|` grows with every pair, so that it decides as soon as it exceeds its limit.
-            // For a tap of 0 or more, `|r - h| - |r| + |h|` is twice what `r`, if positive, lacks to it.
+            // No pair lowers `e1 - e2 + sum |tap|`, so that the loop ends once that sum exceeds its limit. For a tap
+            // `h >= 0`, the pair adds `|r - h| - |r| + |h| = 2 max(0, h - max(0, r))`.
             Bound::Less(threshold) => {
                 let mut left = magnitude.wrapping_sub(threshold) >> 1;
                 for (residual, tap) in pairs {
-                    // As `tap >= 0 && residual >= tap`.
+                    // One comparison for `tap >= 0 && residual >= tap`.
                     if residual.wrapping_sub(tap) | tap >= 0 {
                         continue;
                     }

@@ -5,11 +5,12 @@ use bytemuck::Pod;
 use super::arithmetic::for_each_integer;
 use super::{Nearer, Shortfall};
 
-/// Samples to residuals and back.
+/// Turns samples into residuals and back.
 pub(crate) trait Rated: Sized {
     type Residual: Residual;
 
-    /// `self - shift`; in 32-bit fixed point within what the sum of the taps' magnitudes leaves free.
+    /// `self - shift`. 32-bit fixed point is clamped so that no subtraction of taps overflows; `magnitude` is the
+    /// sum of the taps' magnitudes.
     fn residual(self, shift: Self, magnitude: Self::Residual) -> Self::Residual;
 
     /// A tap or a threshold, in the residual's unit.
@@ -25,14 +26,14 @@ pub(crate) trait Residual:
 {
     const ZERO: Self;
 
-    /// Whether sums are exact, in any order.
+    /// Whether sums are exact, so that their order does not matter.
     const IS_EXACT: bool;
 
     fn plus(self, other: Self) -> Self;
     fn minus(self, other: Self) -> Self;
 }
 
-/// The factor of the multiplicative BSA: as it is for `f32`, in 14 bits of fraction for integers.
+/// The factor of BSA's multiplicative rule: as given for `f32`, with 14 fraction bits for integers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct Ratio {
@@ -86,8 +87,8 @@ impl Residual for f32 {
     }
 }
 
-/// Sums and differences of two residuals never overflow: `Rated::residual` leaves room for all taps.
-/// `wrapping` says so to the compiler.
+/// Sums and differences of two residuals never overflow, since `Rated::residual` leaves room for all taps: hence
+/// `wrapping`.
 impl Residual for i32 {
     const ZERO: i32 = 0;
     const IS_EXACT: bool = true;
@@ -120,7 +121,7 @@ macro_rules! integer_rated {
 
             #[inline]
             fn restore(self, sum: i32) -> Self {
-                // No filter of 4096 taps of 16 bits overflows.
+                // The sum of 4096 taps of 16 bits fits 32.
                 let value = i32::from($to_bits(self)).wrapping_add(sum);
                 $from_bits(value.clamp(i16::MIN.into(), i16::MAX.into()) as i16)
             }

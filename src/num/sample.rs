@@ -30,7 +30,7 @@ use super::{Arithmetic, Rated, SampleKind, Spaced, Windowed, convert};
 pub trait Sample:
     Copy + PartialOrd + Default + Debug + Pod + Arithmetic + Windowed + Rated + Spaced
 {
-    /// What its bits mean.
+    /// The type, as a value.
     const KIND: SampleKind;
 
     /// The value as a double, exactly. For set-up, not for the hot path.
@@ -44,7 +44,7 @@ pub trait Sample:
         convert::from_f64(value)
     }
 
-    /// The bits, in the low half if there are 16.
+    /// The bits; those of a 16-bit sample in the low half.
     fn to_bits32(self) -> u32;
 
     /// The sample of these bits.

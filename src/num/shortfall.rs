@@ -3,13 +3,13 @@
 // A decision and the subtraction after it share what they load only where both are inlined.
 #![allow(clippy::inline_always)]
 
-/// Sums up `max(0, tap - residual)` over pairs.
+/// Compares the shortfall, the sum of `max(0, tap - residual)` over pairs, with a threshold.
 pub(crate) trait Shortfall: Sized {
-    /// Whether the sum over residuals, each with its tap, is at most the threshold.
+    /// Whether the shortfall over pairs of a residual and its tap is at most the threshold.
     fn falls_short_by_at_most(threshold: Self, pairs: impl Iterator<Item = (Self, Self)>) -> bool;
 
-    /// As [`falls_short_by_at_most`](Self::falls_short_by_at_most), with the pairs in any order; `None` if
-    /// the order decides.
+    /// [`falls_short_by_at_most`](Self::falls_short_by_at_most) with the pairs in any order; `None` if the result
+    /// depends on the order.
     fn falls_short_in_any_order(
         threshold: Self,
         pairs: impl Iterator<Item = (Self, Self)>,
@@ -24,7 +24,7 @@ fn twice_shortfall(most: f32, pairs: impl Iterator<Item = (f32, f32)>) -> Option
     for (residual, tap) in pairs {
         let left = residual - tap;
         sum += left.abs() - left;
-        // The sum only grows. It is compared every fourth pair.
+        // The sum never shrinks, so that a comparison every fourth pair is enough.
         if count % 4 == 3 && sum > most {
             return None;
         }
@@ -39,8 +39,8 @@ impl Shortfall for f32 {
         twice_shortfall(threshold + threshold, pairs).is_some()
     }
 
-    /// Two orders of at most 4096 terms, none negative, make sums that differ by less than 2⁻¹⁰ of
-    /// them. Where the limit is farther away than that, either order decides alike.
+    /// Adding at most 4096 terms of 0 or more in another order changes their sum by less than 2⁻¹⁰ of it. If the
+    /// limit is farther away than that, every order gives one result.
     #[inline(always)]
     fn falls_short_in_any_order(
         threshold: f32,

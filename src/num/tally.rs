@@ -1,8 +1,8 @@
-//! The count of rejected samples.
+//! The count of rejected samples, and whether a first sample has been seen.
 
 use super::Sample;
 
-/// How many samples were rejected, up to 2³¹-1, and whether a first sample has been seen: four bytes.
+/// How many samples were rejected, up to 2³¹-1, and whether a first sample has been seen. Four bytes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tally(u32);
 

@@ -1,4 +1,4 @@
-//! Sums over a moving window, in every sample type.
+//! Arithmetic of the moving window: the sum over the window, and how far a sample is from its mean.
 
 use core::cmp::Ordering;
 use core::fmt::Debug;
@@ -11,49 +11,51 @@ use super::{Sample, SampleKind, word};
 
 /// How a sample type sums a window.
 pub(crate) trait Windowed: SummedIn<Self::Sum> + SummedIn<Self::Fast> {
-    /// Wide enough for 16 384 samples.
+    /// A sum of up to 16 384 samples of any size.
     type Sum: Difference;
 
-    /// Wide enough while they are small.
+    /// A sum of samples that [are small](Self::are_small), which takes fewer instructions.
     type Fast: Difference;
 
-    /// The sum, if the fast one is wide enough for it and for what a block of small samples adds.
+    /// The sum as a fast one; `None` if a block of small samples added to it could overflow.
     fn fast(sum: Self::Sum) -> Option<Self::Fast>;
 
+    /// The fast sum, widened.
     fn exact(sum: Self::Fast) -> Self::Sum;
 
-    /// Whether these samples, and those whose slots they take, are small enough for the fast sum.
+    /// Whether these samples, and the contents of the slots that they take, are small enough for the fast sum.
     fn are_small<const M: usize>(count: usize, samples: &[Self; M], slots: &[Self; M]) -> bool;
 
-    /// At the end of a block, before the first slot's turn comes again.
+    /// Ends a block, when every slot of the ring holds one of its samples.
     fn close_block(ring: &mut [Self], partial: &mut Self::Sum);
 }
 
-/// What a window is summed in.
+/// A sample whose windows are summed in `T`.
 pub(crate) trait SummedIn<T>: Sized {
-    /// `N` times the sample, less the sum over the window, of which the slot is the oldest part; then
-    /// takes the sample into the partial sum.
+    /// `count` times the sample, minus the sum over the window before it. `slot` is the content of the slot that
+    /// the sample takes; the partial sum is brought up to date.
     fn excess(self, count: usize, slot: Self, partial: &mut T) -> T;
 }
 
-/// A sum, or the difference of `N` times a sample from it.
+/// The sum over a window, or `N` times a sample minus that sum.
 pub(crate) trait Difference: Copy + Default + Debug {
-    /// What it is compared with.
+    /// What a difference is compared with: `N` times the threshold.
     type Margin: Pod + PartialEq + Debug;
 
     const ZERO: Self;
 
-    /// What no difference exceeds.
+    /// A margin that no difference exceeds.
     const WIDEST: Self::Margin;
 
     fn is_nan(self) -> bool;
 
     fn is_finite(self) -> bool;
 
-    /// Takes up a difference, so that whether all of a group are finite can be asked once.
+    /// Adds up differences: if the result is finite, so was each of them. One check replaces one a sample.
     fn taint(self, difference: Self) -> Self;
 
-    /// Whether a difference that is a number is above the margin, or below its negative.
+    /// Compares a difference, which is not NaN, with the margin: `Greater` above it, `Less` below its negative, else
+    /// `Equal`.
     fn beyond(self, margin: Self::Margin) -> Ordering;
 }
 
@@ -68,7 +70,7 @@ pub(crate) const fn margin<S: Sample>(
     }
 }
 
-/// The [`margin`] of fast sums, where it is finite: a difference within it is finite, too.
+/// The [`margin`] for fast sums, limited to finite values: a difference within it is finite, too.
 pub(crate) const fn fast_margin<S: Sample>(
     threshold: S,
     count: usize,
@@ -120,8 +122,8 @@ impl SummedIn<f32> for f32 {
     }
 }
 
-/// Slots whose turn has come in this block hold its samples, and `partial` their sum. The others hold,
-/// for each sample of the block before, the sum from it to that block's end.
+/// The slots that the current block has filled hold its samples, and `partial` their sum. Each other slot holds a
+/// sum over the previous block, from the sample that was there to the end of that block.
 impl Windowed for f32 {
     type Sum = f32;
     type Fast = f32;
@@ -208,8 +210,8 @@ macro_rules! integer_summed {
     };
 }
 
-/// The ring holds the samples and `partial` their sum, which integers keep exactly: in 64 bits if need
-/// be, and in 32 for a block of samples that are small.
+/// The ring holds the samples and `partial` their exact sum: of 32-bit samples in 64 bits, or in 32 bits for a
+/// block of samples that are small.
 macro_rules! integer_window {
     ([$($generics:tt)*] $sample:ty, i16, $to_bits:path, $($rest:tt)*) => {
         integer_summed!([$($generics)*] $sample, $to_bits, i32);
@@ -225,8 +227,8 @@ macro_rules! integer_window {
             type Sum = $sum;
             type Fast = i32;
 
-            // A sum up to 2^29, a block of small samples that moves it by as much, and N times one of
-            // them, which is half of that, stay below 2^31 together.
+            // Below 2^31 together: a sum of up to 2^29, a block of small samples that moves it by up to 2^29, and
+            // N times one of them, up to 2^28.
             #[inline]
             fn fast(sum: $sum) -> Option<i32> {
                 let above = sum.wrapping_add(1 << 29).cast_unsigned();

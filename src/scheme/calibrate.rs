@@ -1,16 +1,16 @@
-//! Minimum, maximum and differences of a signal, from which the parameters of a scheme follow.
+//! Calibration: minimum, maximum and differences of a signal, from which thresholds and shifts follow.
 
 use crate::error::finite;
 use crate::{ConfigError, Sample};
 
-/// Watches a signal one sample at a time and gives the quantities that the paper takes from a whole
-/// recording.
+/// Minimum, maximum and statistics of the differences of a signal, taken one sample at a time. The paper takes
+/// them from a whole recording.
 ///
-/// - **Work:** sums are taken in double precision, in software where the core has no such unit: run it
-///   before arming.
-/// - **Range:** it takes up 2³²-1 finite samples, 49 days at 1 kHz. Later ones are counted and change nothing, so
-///   that every quantity is that of the samples [seen](Self::seen).
-/// - **Rejected samples:** a sample that is not finite is counted and changes nothing.
+/// - **Work:** sums are in double precision, which most flight controllers compute in software: calibrate before
+///   arming.
+/// - **Range:** the first 2³²-1 finite samples, 49 days at 1 kHz. Later ones are only [counted](Self::ignored), so
+///   that every result is that of the samples [seen](Self::seen).
+/// - **Rejected samples:** a sample that is not finite is only [counted](Self::rejected).
 /// - **Memory:** 48 bytes in `f32`.
 ///
 /// ```
@@ -52,7 +52,7 @@ pub struct Calibration<S> {
 pub struct Differences {
     /// The mean, in the samples' unit.
     pub mean: f64,
-    /// The standard deviation with N-1, in the samples' unit.
+    /// The standard deviation, over `n - 1` for `n` differences, in the samples' unit.
     pub deviation: f64,
 }
 
@@ -97,7 +97,7 @@ impl<S: Sample> Calibration<S> {
         }
     }
 
-    /// Takes one sample.
+    /// Adds one sample to the statistics.
     pub fn observe(&mut self, sample: S) {
         if !sample.is_finite() {
             self.rejected = self.rejected.saturating_add(1);
@@ -136,12 +136,12 @@ impl<S: Sample> Calibration<S> {
         (self.seen > 0).then_some(self.max)
     }
 
-    /// How many finite samples it has taken up, to 2³²-1.
+    /// How many finite samples the results are taken from, up to 2³²-1.
     pub fn seen(&self) -> u32 {
         self.seen
     }
 
-    /// How many finite samples came after those, up to 2³²-1. They changed nothing.
+    /// How many finite samples came after the first 2³²-1 and are left out; up to 2³²-1.
     pub fn ignored(&self) -> u32 {
         self.ignored
     }
@@ -151,7 +151,7 @@ impl<S: Sample> Calibration<S> {
         self.rejected
     }
 
-    /// Mean and deviation of `x[i] - x[i-1]`.
+    /// Mean and standard deviation of `x[i] - x[i-1]`.
     ///
     /// # Errors
     /// Fewer than three samples.
@@ -159,7 +159,7 @@ impl<S: Sample> Calibration<S> {
         Ok(Differences::from_sums(self.count()?, self.sum, self.sum_of_squares))
     }
 
-    /// Mean and deviation of `|x[i] - x[i-1]|`.
+    /// Mean and standard deviation of `|x[i] - x[i-1]|`.
     ///
     /// # Errors
     /// Fewer than three samples.

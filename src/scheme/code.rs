@@ -1,8 +1,8 @@
-//! What a sample becomes: a spike, or the neurons that fire.
+//! Codes: what a sample becomes, a spike or the neurons that fire.
 
 use core::cmp::Ordering;
 
-/// What a step or rate code emits for one sample.
+/// What a temporal or rate code emits for one sample.
 ///
 /// One byte. Rate codes use only [`Spike::Up`] and [`Spike::None`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -39,7 +39,7 @@ impl Spike {
         }
     }
 
-    /// Up for a signal above its band, down for one below.
+    /// The spike of a signal that is above its band, within it or below it.
     #[inline]
     pub(crate) const fn from_side(side: Ordering) -> Self {
         match side {
@@ -50,7 +50,7 @@ impl Spike {
     }
 }
 
-/// The direction of a spike that did fire.
+/// The direction of a spike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -94,11 +94,11 @@ pub trait Code: Copy {
     /// The neurons that fire, by rising index.
     fn firings(&self) -> impl Iterator<Item = Firing>;
 
-    /// The code of these firings, which come in any order.
+    /// The code that these firings, in any order, make up.
     ///
-    /// A bank's own events give back its codes. A chip may also fire too often, or neurons that no encoder
-    /// would have fired together; each code says what it makes of that. Neurons and slots beyond those of
-    /// the code are left out.
+    /// The firings of a code give that code back. A chip may also fire a neuron twice, or neurons that no encoder
+    /// fires together; each code's own `assemble` says what that becomes. Neurons and slots that the code does
+    /// not have are left out.
     fn assemble(firings: impl Iterator<Item = Firing>) -> Self;
 }
 
@@ -109,7 +109,7 @@ impl Code for Spike {
         self.polarity().map(|polarity| Firing { neuron: 0, slot: 0, polarity }).into_iter()
     }
 
-    /// The direction of most spikes; none if as many went up as down.
+    /// The direction of most spikes; no spike if as many went up as down.
     fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
         let balance =
             firings.filter(|firing| firing.neuron == 0).fold(0_i32, |balance, firing| match firing
@@ -122,12 +122,12 @@ impl Code for Spike {
     }
 }
 
-/// What an encoder returns for a sample: a code, or nothing yet.
+/// What an encoder returns for a sample: a code, or `None` while it waits for later samples.
 pub trait Output: Copy {
-    /// The code within, which a decoder takes.
+    /// The code, which a decoder takes.
     type Code: Code;
 
-    /// The code, or `None` while the encoder still waits for its look-ahead.
+    /// The code, or `None` while the encoder waits for later samples.
     fn code(self) -> Option<Self::Code>;
 }
 
@@ -139,8 +139,8 @@ impl Output for Spike {
     }
 }
 
-/// Rate codes: `None` until the first window is full, then the spike of the sample
-/// [`LATENCY`](crate::Scheme::LATENCY) ago.
+/// What rate codes return: `None` until as many samples have come as the filter has taps, then the spike of the
+/// sample [`LATENCY`](crate::Scheme::LATENCY) ago.
 impl Output for Option<Spike> {
     type Code = Spike;
 

@@ -1,41 +1,41 @@
-//! The contract that every scheme keeps: parameters in flash, a small state for each channel.
+//! The trait of every scheme, and its encoder and decoder: parameters in flash, a small state for each channel.
 
 use core::fmt::Debug;
 
 use super::code::{Code, Output};
 use crate::Sample;
 
-/// A coding scheme: checked parameters, plain data, in a `const` or a `static`.
+/// A coding scheme: checked parameters as plain data, in a `const` or a `static`.
 ///
-/// A scheme owns its taps, centres and thresholds. What changes from sample to sample is a state apart, so that
-/// any number of channels share one scheme. [`Encoder`] and [`Decoder`] are a reference to the scheme
-/// and a state; made by one scheme, they cannot disagree on a parameter.
+/// A scheme owns its taps, centres and thresholds. What changes from sample to sample is kept in a separate state,
+/// so that any number of channels share one scheme. An [`Encoder`] or a [`Decoder`] is a reference to the scheme
+/// and a state; made from one scheme, they cannot disagree on a parameter.
 ///
-/// Encoding cannot fail and never panics. A sample that is not finite emits no spike and is counted; the state
-/// stays otherwise as it was.
+/// Encoding never fails and never panics. A sample that is not finite emits no spike and is counted as
+/// [rejected](Self::rejected); otherwise the state stays as it was.
 pub trait Scheme: Sized {
-    /// The numbers it works on.
+    /// The type of its samples.
     type Sample: Sample;
     /// The code of one sample, which a decoder takes.
     type Code: Code;
-    /// What encoding a sample returns: its code, or nothing yet.
+    /// What encoding a sample returns: a code, or `None` while the encoder waits for later samples.
     type Output: Output<Code = Self::Code>;
     /// What an encoder keeps from sample to sample.
     type EncoderState;
     /// What a decoder keeps from sample to sample.
     type DecoderState: Clone + Debug;
 
-    /// How many samples after its own the code of a sample comes out. Of a shape chosen at run time the most
-    /// that there may be; ask [`latency`](Self::latency).
+    /// The latency in samples: how many samples after its own sample a code comes out. For a filter length chosen
+    /// at run time, the largest possible; [`latency`](Self::latency) gives its own.
     const LATENCY: usize;
 
     /// How a decoder becomes exact again after codes were lost.
     const RECOVERY: Recovery;
 
-    /// Takes one sample and says what is emitted.
+    /// Encodes one sample.
     fn encode(&self, state: &mut Self::EncoderState, sample: Self::Sample) -> Self::Output;
 
-    /// Encodes samples in order into `outputs`: the bits that [`encode`](Self::encode) gives for each. Stops
+    /// Encodes samples in order into `outputs`, with the results of [`encode`](Self::encode), bit for bit. Stops
     /// at the end of the shorter slice and returns its length.
     fn encode_slice(
         &self,
@@ -46,14 +46,12 @@ pub trait Scheme: Sized {
         encode_each(self, state, samples, outputs)
     }
 
-    /// The next code of the tail at the end of a recording; see [`Encoder::finish`].
+    /// At the end of a recording, the next code that still waits for later samples; see [`Encoder::finish`].
     fn finish_next(&self, _state: &mut Self::EncoderState) -> Option<Self::Code> {
         None
     }
 
-    /// Lets an encoder start from the samples before the first, oldest first, as far as it looks back.
-    /// If one of the samples it looks back on is not finite, the past counts as one rejected sample and is
-    /// ignored.
+    /// Starts an encoder from the samples before its first one, oldest first; see [`Encoder::prime`].
     fn prime(&self, _state: &mut Self::EncoderState, _past: &[Self::Sample]) {}
 
     /// The value that a decoder should hold now, for a keyframe on a link that may lose spikes.
@@ -69,11 +67,11 @@ pub trait Scheme: Sized {
     /// The state of a decoder before its first code.
     fn decoder_state(&self) -> Self::DecoderState;
 
-    /// Takes the code of one sample and gives its value.
+    /// Decodes the code of one sample into its value, in the samples' unit.
     fn decode(&self, state: &mut Self::DecoderState, code: Self::Code) -> Self::Sample;
 
-    /// Decodes in order into `values`: the bits that [`decode`](Self::decode) gives for each. Stops at the
-    /// end of the shorter slice and returns its length.
+    /// Decodes codes in order into `values`, with the results of [`decode`](Self::decode), bit for bit. Stops at
+    /// the end of the shorter slice and returns its length.
     fn decode_slice(
         &self,
         state: &mut Self::DecoderState,
@@ -92,8 +90,8 @@ pub trait Scheme: Sized {
         None
     }
 
-    /// Lets a decoder go on from a known value, such as a keyframe's, as if it had just decoded it. Rate
-    /// codes have no such value and only forget their spikes.
+    /// Sets a decoder to a known value, such as a keyframe's, as if it had just decoded it. A rate code, whose
+    /// value is a sum over past spikes, forgets those instead.
     fn resync(&self, state: &mut Self::DecoderState, value: Self::Sample);
 
     /// An encoder in its initial state.
@@ -109,14 +107,14 @@ pub trait Scheme: Sized {
         Decoder { scheme: self, state: self.decoder_state() }
     }
 
-    /// How many samples after its own the code of a sample comes out.
+    /// The latency in samples: how many samples after its own sample a code comes out.
     fn latency(&self) -> usize {
         Self::LATENCY
     }
 }
 
-/// A scheme whose encoder starts from its parameters alone. Only `Probabilistic`, which draws from a generator,
-/// is not one.
+/// A scheme whose encoder starts from the parameters alone: every scheme but `Probabilistic`, which also needs a
+/// random number generator.
 pub trait Start: Scheme<EncoderState: Copy> {
     /// The state of an encoder before its first sample.
     const START: Self::EncoderState;
@@ -128,7 +126,7 @@ pub trait Start: Scheme<EncoderState: Copy> {
 pub enum Recovery {
     /// At the next keyframe: errors add up until then.
     Keyframe,
-    /// After so many samples without a loss.
+    /// After this many samples without a loss.
     Samples(usize),
     /// At the next sample whose code has a spike.
     Spike,
@@ -178,36 +176,36 @@ impl<'a, P: Scheme> Encoder<'a, P> {
         &self.state
     }
 
-    /// Takes one sample and says what is emitted.
+    /// Encodes one sample.
     #[inline]
     pub fn encode(&mut self, sample: P::Sample) -> P::Output {
         self.scheme.encode(&mut self.state, sample)
     }
 
-    /// Encodes samples in order into `outputs`: the bits that [`encode`](Self::encode) gives for each. Stops
+    /// Encodes samples in order into `outputs`, with the results of [`encode`](Self::encode), bit for bit. Stops
     /// at the end of the shorter slice and returns its length.
     #[inline]
     pub fn encode_slice(&mut self, samples: &[P::Sample], outputs: &mut [P::Output]) -> usize {
         self.scheme.encode_slice(&mut self.state, samples, outputs)
     }
 
-    /// The next code of the tail at the end of a recording.
+    /// At the end of a recording, the next code that still waits for later samples; see [`finish`](Self::finish).
     pub fn finish_next(&mut self) -> Option<P::Code> {
         self.scheme.finish_next(&mut self.state)
     }
 
-    /// Where a recording ends, the codes of the samples that still wait for their look-ahead.
+    /// At the end of a recording, the codes of the last samples, which wait for samples that never come.
     ///
-    /// Empty for schemes of latency 0. Never needed in flight. Run it to its end, then
+    /// Empty for schemes of latency 0, and never needed in flight. Take all of them, then
     /// [`reset`](Self::reset) before the next recording.
     pub fn finish(&mut self) -> impl Iterator<Item = P::Code> {
         core::iter::from_fn(|| self.finish_next())
     }
 
-    /// Starts from the samples before the first, oldest first: for temporal contrast and step forward the
-    /// last of them, for a moving window its whole window. Without, the encoder starts from the first
-    /// sample. If one of the samples it looks back on is not finite, the past counts as one rejected sample
-    /// and is ignored.
+    /// Starts from the samples before the first one, oldest first. A moving window takes as many as its window
+    /// holds, the other temporal codes take the last one; rate and population codes need none. Without a past the
+    /// encoder starts from its first sample. If a sample that it takes is not finite, it takes none and counts one
+    /// rejected sample.
     pub fn prime(&mut self, past: &[P::Sample]) {
         self.scheme.prime(&mut self.state, past);
     }
@@ -269,37 +267,37 @@ impl<'a, P: Scheme> Decoder<'a, P> {
         &self.state
     }
 
-    /// Takes the code of one sample and gives its value.
+    /// Decodes the code of one sample into its value, in the samples' unit.
     #[inline]
     pub fn decode(&mut self, code: P::Code) -> P::Sample {
         self.scheme.decode(&mut self.state, code)
     }
 
-    /// Decodes in order into `values`: the bits that [`decode`](Self::decode) gives for each. Stops at the
-    /// end of the shorter slice and returns its length.
+    /// Decodes codes in order into `values`, with the results of [`decode`](Self::decode), bit for bit. Stops at
+    /// the end of the shorter slice and returns its length.
     #[inline]
     pub fn decode_slice(&mut self, codes: &[P::Code], values: &mut [P::Sample]) -> usize {
         self.scheme.decode_slice(&mut self.state, codes, values)
     }
 
-    /// The value that it holds until the next spike; `None` for rate codes.
+    /// The value that it holds until the next spike; `None` for rate codes, whose values change between spikes.
     pub fn held(&self) -> Option<P::Sample> {
         self.scheme.held(&self.state)
     }
 
-    /// Goes on from a known value, such as the first sample or a keyframe, as if it had just decoded it.
-    /// Rate codes have no such value and only forget their spikes.
+    /// Goes on from a known value, such as the first sample or a keyframe, as if it had just decoded it. A rate
+    /// code, whose value is a sum over past spikes, forgets those instead.
     pub fn resync(&mut self, value: P::Sample) {
         self.scheme.resync(&mut self.state, value);
     }
 
-    /// Back to the initial state.
+    /// Returns to the initial state.
     pub fn reset(&mut self) {
         self.state = self.scheme.decoder_state();
     }
 }
 
-/// The slice form by the sample form: apart, so that the usual path of a codec stays small.
+/// Encodes a slice sample by sample. Out of line, so that the usual path of a codec stays small.
 #[cold]
 #[inline(never)]
 pub(super) fn encode_each<P: Scheme>(
@@ -314,7 +312,7 @@ pub(super) fn encode_each<P: Scheme>(
     samples.len().min(outputs.len())
 }
 
-/// Encodes until there is a keyframe; returns how many samples that took.
+/// Encodes until the encoder has seen a first sample, which its keyframe shows; returns how many samples that took.
 #[cold]
 #[inline(never)]
 pub(super) fn encode_first<P: Scheme>(

@@ -1,9 +1,9 @@
 //! Schemes whose filter length, window or number of neurons is chosen at run time.
 //!
-//! For programs that are no firmware, such as tools on a computer: their taps, centres and states are on the
-//! heap. They give the bits of the schemes in [`rate`](crate::rate), [`temporal`](crate::temporal) and
-//! [`population`](crate::population) with the same parameters, and are slower. Codes of a population have a
-//! capacity: [`Neuron<1024>`](crate::population::Neuron) for any number of neurons up to 1024.
+//! For tools on a computer, as taps, centres and states are on the heap. With the same parameters they give the
+//! results of the schemes in [`rate`](crate::rate), [`temporal`](crate::temporal) and
+//! [`population`](crate::population), bit for bit, but more slowly. Codes of a population have a fixed capacity:
+//! [`Neuron<1024>`](crate::population::Neuron) for any number of neurons up to 1024.
 //!
 //! ```
 //! use spikewire::{Scheme, Spike, dynamic::{Hough, Taps}};

@@ -1,4 +1,4 @@
-//! The coding schemes: parameters, states, and the laws between samples and spikes.
+//! The coding schemes: how samples become spikes, and spikes samples.
 
 mod calibrate;
 mod code;

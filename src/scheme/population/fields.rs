@@ -132,7 +132,7 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         self.centres.get(M / 2).copied().unwrap_or(S::ZERO)
     }
 
-    /// Whether the distances of a value fit [`Short`](Spaced::Short).
+    /// Whether the distance of a value from every centre fits `S::Short`, which is quicker.
     #[inline]
     pub(super) fn is_near(&self, value: S) -> bool {
         value.is_near(self.near)

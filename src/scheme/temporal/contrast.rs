@@ -13,12 +13,12 @@ use crate::{Calibration, ConfigError, Recovery, Sample, Scheme, Spike, Start};
 /// `d < -threshold`. The first sample has no predecessor and emits nothing, unless the encoder was
 /// [primed](crate::Encoder::prime).
 ///
-/// - **Threshold:** above 0, in the samples' unit. **Step** of the decoder: the threshold, unless
-///   chosen apart.
+/// - **Threshold:** above 0, in the samples' unit. **Step** of the decoder: the threshold, unless set by
+///   [`with_step`](Self::with_step); above 0, in the samples' unit.
 /// - **Latency:** 0 samples. **Memory:** 8 bytes a channel in `f32`, 4 to decode.
 /// - **Exactness:** `f32` rounds `d` once; fixed point compares exact differences.
-/// - **Error:** the decoded value drifts without bound, since a difference within the threshold is
-///   never made up for. Resynchronise it.
+/// - **Error:** the decoded value drifts without bound, since differences within the threshold are lost.
+///   [Resynchronise](crate::Decoder::resync) it.
 ///
 /// Source: paper, section II-C, algorithm 6.
 ///
@@ -58,7 +58,7 @@ impl<S: Sample> TemporalContrast<S> {
         }
     }
 
-    /// Steps of this size in the decoder; the paper's figures take twice the threshold. For constants,
+    /// Sets the decoder's step, in the samples' unit; the paper's figures take twice the threshold. For constants,
     /// where a bad step fails the build.
     ///
     /// # Panics
@@ -68,7 +68,7 @@ impl<S: Sample> TemporalContrast<S> {
         unwrap(self.try_with_step(step))
     }
 
-    /// Steps of this size in the decoder; the paper's figures take twice the threshold.
+    /// Sets the decoder's step, in the samples' unit; the paper's figures take twice the threshold.
     ///
     /// # Errors
     /// The step is not above 0, or not finite.
@@ -82,9 +82,8 @@ impl<S: Sample> TemporalContrast<S> {
     /// The paper's threshold, `mean(d) + factor * std(d)`, over the differences of a calibration.
     ///
     /// # Errors
-    /// The calibration saw fewer than three samples, or the threshold comes out at 0 or below, as
-    /// it does for a signal that falls more than it varies: then use
-    /// [`from_magnitudes`](Self::from_magnitudes).
+    /// The factor is not finite; the calibration saw fewer than three samples; or the threshold comes out at 0 or
+    /// below, as for a signal that falls more than it varies: then use [`from_magnitudes`](Self::from_magnitudes).
     pub fn from_calibration(
         calibration: &Calibration<S>,
         factor: f32,
@@ -92,11 +91,12 @@ impl<S: Sample> TemporalContrast<S> {
         Self::try_new(S::from_f64(calibration.differences()?.threshold(factor)?))
     }
 
-    /// `mean(|d|) + factor * std(|d|)`: above 0 for any signal that moves, if `factor` is not
-    /// negative.
+    /// The threshold `mean(|d|) + factor * std(|d|)` over the differences of a calibration: above 0 for any signal
+    /// that moves, if the factor is 0 or more.
     ///
     /// # Errors
-    /// The calibration saw fewer than three samples, or a signal that never moved.
+    /// The factor is not finite; the calibration saw fewer than three samples; or the threshold comes out at 0 or
+    /// below, as for a signal that never moved.
     pub fn from_magnitudes(calibration: &Calibration<S>, factor: f32) -> Result<Self, ConfigError> {
         Self::try_new(S::from_f64(calibration.magnitudes()?.threshold(factor)?))
     }
@@ -143,8 +143,8 @@ impl<S: Sample> Scheme for TemporalContrast<S> {
         Spike::from_side(sample.step(previous, self.threshold))
     }
 
-    /// The last sample stays in a register, and whether all were finite is asked once: if not, the
-    /// slice is taken again with care.
+    /// The last sample stays in a register, and one check at the end asks whether all were finite: if not, the
+    /// slice is encoded again, sample by sample.
     #[inline]
     fn encode_slice(
         &self,
@@ -172,7 +172,7 @@ impl<S: Sample> Scheme for TemporalContrast<S> {
         first + samples.len().min(spikes.len())
     }
 
-    /// The last of the past becomes the predecessor of the next sample.
+    /// The last sample of the past becomes the predecessor of the next one.
     fn prime(&self, state: &mut ContrastState<S>, past: &[S]) {
         if let Some(previous) = state.tally.last_of(past) {
             state.previous = previous;

@@ -1,4 +1,4 @@
-//! Moving window over a number of samples that is chosen at run time.
+//! Moving window (MW) whose number of samples is chosen at run time.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -9,10 +9,10 @@ use crate::error::{positive, within};
 use crate::num::{Difference, Tally, margin, to_f64};
 use crate::{ConfigError, Encoder, Recovery, Sample, Scheme, Spike};
 
-/// The most samples of a mean.
+/// The most samples that a mean is taken over.
 pub const WIDEST: usize = 16_384;
 
-/// [`temporal::MovingWindow`](crate::temporal::MovingWindow) over any number of samples.
+/// [`temporal::MovingWindow`](crate::temporal::MovingWindow) over any number of samples, 1 to 16 384.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovingWindow<S: Sample> {
     threshold: S,
@@ -32,10 +32,10 @@ pub struct MovingWindowState<S: Sample> {
 }
 
 impl<S: Sample> MovingWindow<S> {
-    /// A scheme with this threshold, which is also the decoder's step, and the mean of so many samples.
+    /// A scheme with this threshold, which is also the decoder's step, and the mean of `count` samples.
     ///
     /// # Errors
-    /// The threshold is not above 0, or not finite; the mean is of 0 or more than 16 384 samples.
+    /// The threshold is not above 0, or not finite; the count is 0 or above 16 384.
     pub fn try_new(threshold: S, count: usize) -> Result<Self, ConfigError> {
         positive("threshold", to_f64(threshold))?;
         within("samples of the mean", count as f64, 1.0, WIDEST as f32)?;
@@ -52,7 +52,7 @@ impl<S: Sample> MovingWindow<S> {
         self.count
     }
 
-    /// The state of an encoder that has seen nothing.
+    /// The state of an encoder before its first sample.
     pub fn state(&self) -> MovingWindowState<S> {
         MovingWindowState {
             ring: vec![S::ZERO; self.count],
@@ -79,8 +79,7 @@ impl<S: Sample> Scheme for MovingWindow<S> {
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Keyframe;
 
-    /// Nothing is emitted for a sample that is not finite, nor before the window is full, nor for a difference
-    /// that is not a number.
+    /// Emits no spike before the window is full, for a sample that is not finite, and for a difference that is NaN.
     fn encode(&self, state: &mut MovingWindowState<S>, sample: S) -> Spike {
         let Some(slot) = state.ring.get_mut(state.next).filter(|_| sample.is_finite()) else {
             state.tally.reject();
@@ -102,7 +101,7 @@ impl<S: Sample> Scheme for MovingWindow<S> {
         }
     }
 
-    /// The last of the past fill the window; a shorter past is ignored.
+    /// The last samples of the past fill the window; a past shorter than the window is ignored.
     fn prime(&self, state: &mut MovingWindowState<S>, past: &[S]) {
         let start = past.len().checked_sub(self.count);
         let Some(window) = start.and_then(|start| past.get(start..)) else { return };

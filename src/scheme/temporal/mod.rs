@@ -1,11 +1,11 @@
 //! Temporal codes: a spike when the signal moves by a step.
 //!
-//! Their decoders add up steps, so that an error adds up too when a spike is lost: send keyframes
+//! Their decoders add up steps, so that a lost spike leaves an error until the next keyframe: send keyframes
 //! ([`Encoder::keyframe`](crate::Encoder::keyframe)) over a link that may lose spikes.
 //!
-//! **First value.** An encoder starts from its first sample, a decoder from 0. Give the decoder the first
-//! sample, or a keyframe, by [`Decoder::resync`](crate::Decoder::resync). Its value is then known, and the spike
-//! of that sample is not decoded:
+//! **First value.** An encoder starts from its first sample, a decoder from 0. Give the decoder the first sample,
+//! or a keyframe, by [`Decoder::resync`](crate::Decoder::resync), and decode from the next spike on: the value of
+//! that sample is known, so its own spike is left out.
 //!
 //! ```
 //! use spikewire::{Scheme, temporal::MovingWindow};

@@ -12,21 +12,19 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 /// Moving window: the baseline is the mean of the `N` samples before.
 ///
 /// [`Spike::Up`] if `x > mean + threshold`, [`Spike::Down`] if `x < mean - threshold`. The paper's
-/// window is `W = N - 1`. Nothing is emitted before `N` samples have been seen, unless the encoder
-/// was [primed](crate::Encoder::prime); primed with the first `N` samples of a recording it
-/// compares those with their own mean, as the paper does. Only then can the first sample spike. A decoder starts
-/// from the value of that sample, which is known, and decodes from the second sample on: the spike of the first
-/// changes no value.
+/// window is `W = N - 1`. The first `N` samples emit no spike, unless the encoder was
+/// [primed](crate::Encoder::prime). Primed with the first `N` samples of a recording, it compares those samples
+/// with their own mean, as the paper does, and even the first one can spike. The decoder then starts from the
+/// value of the first sample and decodes from the second spike on.
 ///
 /// - **Threshold:** above 0, in the samples' unit. **N:** 1 to 16 384.
 /// - **Latency:** 0 samples. **Memory:** `4 N + 12` bytes a channel in `f32`, 4 to decode.
-/// - **Exactness:** without division, `N x - sum` is compared with `± N threshold`. Fixed point is
-///   exact over its whole range. `f32` takes the sum in this order, which keeps it free of drift:
-///   samples fill blocks of `N` slots; the part of the window in the block before is summed from its
-///   newest sample to its oldest, the part in the current block from its oldest to its newest, and
-///   the two are added. That costs constant work a sample on average and one pass of `N` additions
-///   every `N` samples. Samples must stay below `f32::MAX / N`. `FixedI32` takes fewer instructions
-///   while samples stay below `2^28 / N` units in the last place.
+/// - **Exactness:** `N x - sum` is compared with `± N threshold`, without division. Fixed point is exact over
+///   its whole range. `f32` adds in this order, which keeps the sum free of drift: samples fill blocks of `N`; the
+///   part of the window in the previous block is summed from its newest sample to its oldest, the part in the
+///   current block from its oldest to its newest, and the two are added. Samples must stay below `f32::MAX / N`.
+/// - **Work:** constant, and in `f32` a pass of `N` additions every `N` samples. `FixedI32` takes fewer
+///   instructions while samples stay below `2^28 / N` units in the last place.
 /// - **Error:** the decoded value drifts without bound. Resynchronise it.
 ///
 /// Source: paper, section II-C, algorithm 8.
@@ -54,7 +52,7 @@ pub struct MovingWindow<S: Sample, const N: usize> {
     /// `N` times the threshold, to compare differences with.
     #[cfg_attr(feature = "serde", serde(skip))]
     margin: <S::Sum as Difference>::Margin,
-    /// The same for fast sums.
+    /// The margin for fast sums.
     #[cfg_attr(feature = "serde", serde(skip))]
     fast_margin: <S::Fast as Difference>::Margin,
 }
@@ -100,11 +98,11 @@ impl<S: Sample, const N: usize> MovingWindow<S, N> {
     }
 }
 
-/// Added to the next slot until the window is full: such a slot is not found.
+/// Added to the index of the next slot until the window is full, which puts it out of the ring.
 const FILLING: u16 = 1 << 15;
 
-/// The slice form takes a block of up to so many samples at once, in registers, and of a longer one
-/// groups of [`GROUP`].
+/// The longest window whose blocks [`encode_slice`](Scheme::encode_slice) takes at once, in registers. Of longer
+/// ones it takes groups of [`GROUP`] samples.
 const SHORT: usize = 8;
 
 const GROUP: usize = 4;
@@ -128,8 +126,8 @@ impl<S: Sample, const N: usize> Start for MovingWindow<S, N> {
 }
 
 impl<S: Sample, const N: usize> MovingWindowState<S, N> {
-    /// Takes groups of samples up to the end of a block, and says how many. It stops before a group
-    /// that the fast sum is not wide enough for, as it is not for a sample that is not finite.
+    /// Encodes groups of samples up to the end of a block, and returns how many groups. Stops before a group that
+    /// could overflow the fast sum, or that holds a sample that is not finite.
     #[inline]
     fn encode_groups<const M: usize>(
         &mut self,
@@ -169,7 +167,7 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
         taken
     }
 
-    /// [`encode_groups`](Self::encode_groups) of a long block, with the registers to itself.
+    /// [`encode_groups`](Self::encode_groups) of a long block, out of line so that it has all registers.
     #[inline(never)]
     fn encode_long(
         &mut self,
@@ -197,7 +195,7 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
     }
 }
 
-/// Of a length that the compiler does not know, or it would write out every slot.
+/// Ends a long block. The length is hidden from the compiler, which would unroll the loop over all slots.
 #[inline(never)]
 fn close_long_block<S: Windowed>(ring: &mut [S], partial: &mut S::Sum) {
     let length = black_box(ring.len());
@@ -205,11 +203,11 @@ fn close_long_block<S: Windowed>(ring: &mut [S], partial: &mut S::Sum) {
 }
 
 impl<S: Sample, const N: usize> MovingWindow<S, N> {
-    /// Takes any sample. Nothing is emitted if it is not finite, nor before the window is full, nor for
-    /// a difference that is not a number.
+    /// Encodes any sample. Emits no spike before the window is full, for a sample that is not finite, and for a
+    /// difference that is NaN.
     ///
-    /// Its arguments and its result are those of [`encode`](Scheme::encode), in that order: they stay in
-    /// their registers, and the usual path needs no stack.
+    /// It has the arguments and the result of [`encode`](Scheme::encode), in that order: they stay in their
+    /// registers, and the usual path needs no stack.
     #[cold]
     #[inline(never)]
     fn encode_carefully(&self, state: &mut MovingWindowState<S, N>, sample: S) -> Spike {
@@ -226,8 +224,8 @@ impl<S: Sample, const N: usize> MovingWindow<S, N> {
             state.close_block();
         }
         if is_full && !difference.is_nan() {
-            // An address that the compiler must not look through: it would pass the margin in its place, and
-            // load it early on the usual path, which has no register for it.
+            // Hides the scheme from the compiler, which would otherwise load the margin early, on the usual path,
+            // and pass it here in a register that the usual path lacks.
             Spike::from_side(difference.beyond(black_box(self).margin))
         } else {
             Spike::None
@@ -247,7 +245,7 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
 
     #[inline]
     fn encode(&self, state: &mut MovingWindowState<S, N>, sample: S) -> Spike {
-        // The sample that closes a long block is left to the careful way, so that this one stays short.
+        // The sample that ends a long block is left to `encode_carefully`, so that this path stays short.
         let usual = if N <= SHORT { N } else { N - 1 };
         let next = state.next as usize;
         if let Some(slot) = state.ring.get_mut(..usual).and_then(|slots| slots.get_mut(next))
@@ -301,7 +299,7 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
         length
     }
 
-    /// The last `N` of the past fill the window; a shorter past is ignored.
+    /// The last `N` samples of the past fill the window; a past of fewer is ignored.
     fn prime(&self, state: &mut MovingWindowState<S, N>, past: &[S]) {
         let Some(window) = past.last_chunk::<N>() else { return };
         if window.iter().all(S::is_finite) {

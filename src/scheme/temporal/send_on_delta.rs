@@ -1,20 +1,21 @@
-//! Send-on-delta: step forward with several spikes a sample, for signals that jump.
+//! Send-on-delta: step forward with several spikes for a sample, for signals that jump.
 
 use super::StepState;
 use crate::error::{step, unwrap, within};
 use crate::num::{Tally, to_f64};
 use crate::{Code, ConfigError, Firing, Output, Polarity, Recovery, Sample, Scheme, Spike, Start};
 
-/// Send-on-delta: the baseline follows the signal by up to `K` thresholds a sample, one spike each.
+/// Send-on-delta: the baseline follows the signal by up to `K` thresholds a sample, with one spike for each.
 ///
-/// While `x > base + threshold` and there were fewer than `K` spikes: a spike up, and `base += threshold`;
-/// downwards alike. The `n` spikes of a sample have one polarity and fire in the sub-timesteps `0..n` of `K`.
-/// With `K = 1` it is [`StepForward`](super::StepForward).
+/// While `x > base + threshold`, and at most `K` times: a spike up, and `base += threshold`. While
+/// `x < base - threshold`, and at most `K` times: a spike down, and `base -= threshold`. The `n` spikes of a sample
+/// have one polarity and fire in the sub-timesteps `0..n` of `K`. With `K = 1` this is
+/// [`StepForward`](super::StepForward).
 ///
 /// - **Threshold:** above 0, in the samples' unit; up to 10³¹ in `f32`, so that no band reaches infinity.
 ///   **K:** 1 to 127, of which [`with_most`](Self::with_most) may allow fewer.
 /// - **Latency:** 0 samples. **Memory:** 8 bytes a channel in `f32`, 4 to decode.
-/// - **Work:** a comparison a spike, and two.
+/// - **Work:** two comparisons a sample, and one more for each spike.
 /// - **Exactness:** `f32` rounds `base ± threshold` once a spike; fixed point is exact.
 /// - **Error:** while `|x[i] - x[i-1]| <= K * threshold`, the decoded value stays within the threshold of the
 ///   signal.
@@ -69,7 +70,7 @@ impl<S: Sample, const K: usize> SendOnDelta<S, K> {
         }
     }
 
-    /// At most so many spikes a sample; `K` unless told. For constants, where a bad number fails the build.
+    /// Allows at most this many spikes a sample; `K` by default. For constants, where a bad number fails the build.
     ///
     /// # Panics
     /// The number is not within 1 to `K`.
@@ -78,7 +79,7 @@ impl<S: Sample, const K: usize> SendOnDelta<S, K> {
         unwrap(self.try_with_most(most))
     }
 
-    /// At most so many spikes a sample; `K` unless told.
+    /// Allows at most this many spikes a sample; `K` by default.
     ///
     /// # Errors
     /// The number is not within 1 to `K`.
@@ -104,7 +105,7 @@ impl<S: Sample, const K: usize> SendOnDelta<S, K> {
 pub struct Steps<const K: usize>(i8);
 
 impl<const K: usize> Steps<K> {
-    /// So many spikes, upwards if positive; cut to `K`.
+    /// `count` spikes, up if positive and down if negative; limited to `K`.
     pub const fn new(count: i8) -> Self {
         let most = K as i8;
         Self(if count > most {
@@ -116,7 +117,7 @@ impl<const K: usize> Steps<K> {
         })
     }
 
-    /// How many spikes, negative if they go down.
+    /// The number of spikes, -`K` to `K`; negative if they go down.
     pub const fn count(self) -> i8 {
         self.0
     }
@@ -131,7 +132,7 @@ impl<const K: usize> Code for Steps<K> {
         (0..self.0.unsigned_abs().into()).map(move |slot| Firing { neuron: 0, slot, polarity })
     }
 
-    /// As many as went up more than down.
+    /// The spikes up minus the spikes down.
     fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
         let steps = firings.filter(|firing| firing.neuron == 0).fold(0_i8, |steps, firing| {
             match firing.polarity {
@@ -205,7 +206,7 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
         samples.len().min(outputs.len())
     }
 
-    /// The last of the past becomes the baseline; a decoder must be told, as by a keyframe.
+    /// The last sample of the past becomes the baseline. Give the decoder that value by `resync`.
     fn prime(&self, state: &mut SendOnDeltaState<S>, past: &[S]) {
         if let Some(base) = state.tally.last_of(past) {
             state.base = base;

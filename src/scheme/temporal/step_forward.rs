@@ -7,8 +7,8 @@ use crate::num::{Tally, to_f64};
 use crate::scheme::codec::{encode_each, encode_first};
 use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 
-/// Step forward: the baseline starts at the first sample and follows the signal by one threshold
-/// a spike.
+/// Step forward: the baseline starts at the first sample and follows the signal by one threshold with each
+/// spike.
 ///
 /// If `x > base + threshold`: [`Spike::Up`] and `base += threshold`; if `x < base - threshold`:
 /// [`Spike::Down`] and `base -= threshold`.
@@ -32,7 +32,7 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 /// assert_eq!(spikes.map(|s| decoder.decode(s)), [0.0, 0.25, 0.5, 0.5, 0.25]);
 /// ```
 ///
-/// A threshold that makes no sense does not compile:
+/// A bad threshold does not compile:
 ///
 /// ```compile_fail
 /// # use spikewire::temporal::StepForward;
@@ -98,9 +98,9 @@ impl<S: Sample> Band<S> {
         Self { lower: base.minus(threshold), base, upper: base.plus(threshold) }
     }
 
-    /// Whether the sample is below the band, or not a number.
+    /// Whether the sample is below the band, or NaN.
     #[inline]
-    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "true of what is not a number")]
+    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "true of NaN")]
     fn is_above(self, sample: S) -> bool {
         !(sample >= self.lower)
     }
@@ -141,8 +141,8 @@ impl<S: Sample> Scheme for StepForward<S> {
         }
     }
 
-    /// The band stays in registers, and whether all samples that left it were finite is asked once:
-    /// if not, the slice is taken again with care.
+    /// The band stays in registers, and one check at the end asks whether all samples that left it were finite: if
+    /// not, the slice is encoded again, sample by sample.
     #[inline]
     fn encode_slice(
         &self,
@@ -178,7 +178,7 @@ impl<S: Sample> Scheme for StepForward<S> {
         first + samples.len().min(spikes.len())
     }
 
-    /// The last value of the past becomes the baseline. Give the decoder that value by `resync`.
+    /// The last sample of the past becomes the baseline. Give the decoder that value by `resync`.
     fn prime(&self, state: &mut StepForwardState<S>, past: &[S]) {
         if let Some(base) = state.tally.last_of(past) {
             state.base = base;

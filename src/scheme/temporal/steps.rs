@@ -1,11 +1,11 @@
-//! What the decoders of the temporal codes share: they add up steps.
+//! The decoder that the temporal codes share: it adds up steps.
 
 use crate::{Sample, Spike};
 
 /// The state of a temporal code's decoder: the value decoded last. 4 bytes in `f32`.
 ///
-/// `y[i] = y[i-1] + step * s[i]`, from 0 or from the value it was resynchronised to. One rounding a spike in
-/// `f32`; exact in fixed point until the value reaches an end of the type, where it saturates.
+/// `y[i] = y[i-1] + step * s[i]`, from 0 or from the value given by [`resync`](crate::Decoder::resync). `f32` rounds
+/// once a spike; fixed point is exact until the value reaches an end of the type, where it saturates.
 ///
 /// Source: paper, section II-C.
 #[derive(Clone, Copy, Debug)]
@@ -34,9 +34,9 @@ impl<S: Sample> StepState<S> {
         self.value
     }
 
-    /// The value stays in a register, and eight samples share a turn of the loop.
+    /// The value stays in a register, and a turn of the loop decodes eight samples.
     #[allow(clippy::inline_always)]
-    #[inline(always)] // shared by the temporal codes, each call would move five arguments
+    #[inline(always)] // a call would move five arguments
     pub(super) fn decode_slice(&mut self, step: S, spikes: &[Spike], values: &mut [S]) -> usize {
         let steps = [S::ZERO.minus(step), S::ZERO, step];
         let mut decoded = self.value;
@@ -65,7 +65,7 @@ impl<S: Sample> StepState<S> {
     }
 }
 
-/// The decoding half of a temporal scheme's [`Scheme`](crate::Scheme), with this field as the step.
+/// The decoding half of a temporal code's [`Scheme`](crate::Scheme), with this field as the step.
 macro_rules! decode_steps {
     ($step:ident) => {
         fn decoder_state(&self) -> StepState<S> {
