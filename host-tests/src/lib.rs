@@ -4,4 +4,5 @@
 pub mod compare;
 pub mod flight;
 pub mod reference;
-pub mod silicon;
+
+pub use silicon;

@@ -9,6 +9,7 @@
 //! the neurons, the gate, the write-back over SPI. Left out are ODIN's learning (`ca_en` is taken as 0),
 //! its Izhikevich neurons, its bursts, and the output bus's monitoring.
 
+#![no_std]
 #![allow(
     clippy::match_same_arms,
     clippy::verbose_bit_mask,
@@ -16,6 +17,8 @@
     clippy::struct_excessive_bools,
     reason = "the models are written like the chips"
 )]
+
+extern crate alloc;
 
 pub mod board;
 pub mod chip;

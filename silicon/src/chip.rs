@@ -1,8 +1,10 @@
 //! The controller, its queue and its memories.
 
-use std::collections::VecDeque;
-use std::fmt::Debug;
-use std::marker::PhantomData;
+use alloc::collections::VecDeque;
+use alloc::vec;
+use alloc::vec::Vec;
+use core::fmt::Debug;
+use core::marker::PhantomData;
 
 use super::output::Output;
 use super::spi::SpiSlave;

@@ -3,9 +3,9 @@
 //! Time goes on with what the driver does: an SPI clock takes `ratio` clocks of the chip, every call of
 //! the port a number of its own.
 
-use std::cell::{RefCell, RefMut};
-use std::collections::VecDeque;
-use std::rc::Rc;
+use alloc::collections::VecDeque;
+use alloc::rc::Rc;
+use core::cell::{RefCell, RefMut};
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
