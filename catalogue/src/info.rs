@@ -224,7 +224,7 @@ impl Parameter {
             "filter",
             Kind::Filter,
             Unit::Signal,
-            "`triang:15`, `hann:24`, `gauss:15`, `gauss:15:2.5` (with alpha), or a FILE of taps, 1 to 4096; \
+            "`triang:15`, `hann:24`, `gauss:15`, `gauss:15:2.5` (with alpha), taps as in `0.5,1,0.5`, or a FILE of them, 1 to 4096; \
              `,peak=2` or `,sum=1` after a shape scales it",
         )
         .with_paper(Paper::Filter(paper))

@@ -10,6 +10,7 @@ mod input;
 mod live;
 mod options;
 mod output;
+mod params;
 mod plot;
 mod port;
 #[cfg(any(test, feature = "capture"))]

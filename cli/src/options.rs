@@ -1,12 +1,68 @@
 //! The parameters of the catalogue's schemes as options.
 
+use crate::params::{self, Params};
 use crate::scheme::Scheme;
-use catalogue::run::Options;
+use anyhow::{Result as Checked, bail};
+use catalogue::run::{Options, SampleType};
 use catalogue::{Found, Info, Kind, Parameter, Unit};
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
 use std::fmt::Write;
 use std::ops::Deref;
+
+/// What is run, and how: from the command line, and from a file for what that leaves open.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct Coding {
+    /// The scheme, unless --params says which
+    #[arg(long)]
+    scheme: Option<Scheme>,
+    /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8; f32 unless given
+    #[arg(long)]
+    sample: Option<SampleType>,
+    /// File of parameters, TOML, as `tune --emit toml` writes it; options override it
+    #[arg(long, value_name = "FILE", value_parser = params::parse)]
+    params: Option<Params>,
+    #[command(flatten)]
+    parameters: SchemeOptions,
+}
+
+/// A scheme if one was named, the sample type, and the parameters given.
+pub(crate) type Chosen = (Option<Scheme>, SampleType, SchemeOptions);
+
+impl Coding {
+    /// The scheme, if one is named, the sample type and the parameters.
+    ///
+    /// # Errors
+    /// The file is of another scheme.
+    pub(crate) fn chosen(&self) -> Checked<Chosen> {
+        let Self { scheme, sample, params, parameters } = self;
+        let mut chosen = (*scheme, sample.unwrap_or_default(), parameters.clone());
+        if let Some(params) = params {
+            let scheme = params.agreed(*scheme)?;
+            let sample = sample.or(params.sample).unwrap_or_default();
+            chosen = (Some(scheme), sample, SchemeOptions(parameters.or(&params.options)));
+        }
+        Ok(chosen)
+    }
+
+    /// The same where a scheme must be named.
+    ///
+    /// # Errors
+    /// None is, or the file is of another.
+    pub(crate) fn one(&self) -> Checked<(Scheme, SampleType, SchemeOptions)> {
+        let (scheme, sample, parameters) = self.chosen()?;
+        let Some(scheme) = scheme else {
+            let names: Vec<&str> = Scheme::all().map(Scheme::name).collect();
+            bail!("--scheme must say which, or --params; there are {}", names.join(", "))
+        };
+        Ok((scheme, sample, parameters))
+    }
+
+    /// Whether a scheme is named.
+    pub(crate) fn is_named(&self) -> bool {
+        self.scheme.is_some() || self.params.is_some()
+    }
+}
 
 /// What a user gave of the parameters of any scheme.
 #[derive(Clone, Debug, Default)]

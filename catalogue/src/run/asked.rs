@@ -27,6 +27,19 @@ impl Options {
         self.given.get(name).map(String::as_str)
     }
 
+    /// All that was given, by name.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.given.iter().map(|(name, text)| (name.as_str(), text.as_str()))
+    }
+
+    /// With these for what was not given.
+    #[must_use]
+    pub fn or(&self, others: &Self) -> Self {
+        let mut given = others.given.clone();
+        given.extend(self.given.clone());
+        Self { given, paper: self.paper || others.paper }
+    }
+
     /// Whether no parameter is given.
     pub fn is_empty(&self) -> bool {
         self.given.is_empty()

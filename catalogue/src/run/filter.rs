@@ -19,8 +19,19 @@ pub(super) fn taps(text: &str) -> Result<Vec<f64>> {
             let alpha = positive(alpha).with_context(|| format!("--filter {text}: alpha"))?;
             shaped(text, Shape::Gaussian { alpha }, length, scale)
         }
-        _ => from_file(text),
+        _ => match listed(text) {
+            Some(taps) => Ok(taps),
+            None => from_file(text),
+        },
     }
+}
+
+/// Taps with commas between: `0.5,1,0.5`, and for a single one `1,`.
+fn listed(text: &str) -> Option<Vec<f64>> {
+    let taps = text.strip_suffix(',').or_else(|| text.contains(',').then_some(text))?;
+    let taps =
+        taps.split(',').map(|tap| tap.trim().parse().ok().filter(|tap: &f64| tap.is_finite()));
+    taps.collect()
 }
 
 fn shaped(text: &str, shape: Shape, length: &str, scale: Option<&str>) -> Result<Vec<f64>> {
@@ -54,7 +65,7 @@ fn positive(text: &str) -> Result<f64> {
 
 fn from_file(path: &str) -> Result<Vec<f64>> {
     let text = fs::read_to_string(path).with_context(|| {
-        format!("--filter {path}: neither triang:N, hann:N, gauss:N or gauss:N:ALPHA, nor a file that can be read")
+        format!("--filter {path}: neither triang:N, hann:N, gauss:N or gauss:N:ALPHA, nor taps such as 0.5,1,0.5, nor a file that can be read")
     })?;
     let mut taps = Vec::new();
     for (line, content) in (1..).zip(text.lines()) {
@@ -81,10 +92,19 @@ mod tests {
         assert_eq!(taps("triang:3").unwrap(), [0.5, 1.0, 0.5]);
         assert_eq!(taps("triang:3,peak=4").unwrap(), [2.0, 4.0, 2.0]);
         assert_eq!(taps("triang:3,sum=1").unwrap(), [0.25, 0.5, 0.25]);
+        assert_eq!(taps("0.5,1,-2").unwrap(), [0.5, 1.0, -2.0]);
+        assert_eq!(taps("4,").unwrap(), [4.0]);
         assert!((taps("gauss:3:2").unwrap()[0] - (-2.0_f64).exp()).abs() < 1e-12);
-        for bad in
-            ["triang:0", "hann:x", "gauss:3:-1", "triang:3,sum=0", "triang:3,width=1", "box:3"]
-        {
+        for bad in [
+            "triang:0",
+            "hann:x",
+            "gauss:3:-1",
+            "triang:3,sum=0",
+            "triang:3,width=1",
+            "box:3",
+            "1,x",
+            "1,inf",
+        ] {
             assert!(taps(bad).is_err(), "{bad}");
         }
     }

@@ -3,9 +3,8 @@
 use crate::bank::Bank;
 use crate::fit::{Fit, rounded};
 use crate::input::{Chunk, Clock, InputOptions, Source};
-use crate::options::SchemeOptions;
+use crate::options::Coding;
 use crate::output::Output;
-use crate::scheme::Scheme;
 use crate::spikes::{Header, Summary, Writer, unrecorded};
 use anyhow::{Result, bail};
 use catalogue::run::{Calibrated, Event, Known, SampleType, Settings};
@@ -24,16 +23,10 @@ Examples:
   spikewire encode --scheme hsa --filter triang:15,peak=2 --topic sensor_combined --field 'gyro_rad[0]' flight.ulg
   spikewire encode --scheme mw --threshold 120 --window 5 --sample i16 --rate 1000 counts.csv")]
 pub(crate) struct Encode {
-    /// The scheme
-    #[arg(long)]
-    scheme: Scheme,
-    /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8
-    #[arg(long, default_value_t)]
-    sample: SampleType,
+    #[command(flatten)]
+    coding: Coding,
     #[command(flatten)]
     input: InputOptions,
-    #[command(flatten)]
-    parameters: SchemeOptions,
     /// File of spikes; standard output unless given
     #[arg(short, long)]
     output: Option<PathBuf>,
@@ -44,19 +37,20 @@ pub(crate) struct Encode {
 /// # Errors
 /// The recording, the parameters or the output are not good.
 pub(crate) fn run(options: &Encode) -> Result<()> {
-    let Encode { scheme, sample, input, parameters, output } = options;
+    let Encode { coding, input, output } = options;
+    let (scheme, sample, parameters) = coding.one()?;
     parameters.check(scheme.info())?;
-    let calibrated = match scheme.needs_signal(parameters) {
+    let calibrated = match scheme.needs_signal(&parameters) {
         None => None,
         Some(what) if input.is_stdin() => bail!(
             "{} calibrates over the whole signal, which standard input gives only once; give {what}",
             scheme.name()
         ),
-        Some(_) => Some(calibrate(input, *sample)?),
+        Some(_) => Some(calibrate(input, sample)?),
     };
 
     let mut source = input.open()?;
-    let mut chunk = first(source.as_mut(), scheme.looks_back(parameters))?;
+    let mut chunk = first(source.as_mut(), scheme.looks_back(&parameters))?;
     let mut clock = Clock::new(&chunk.times, input.rate, input.gap);
     let rows = chunk.finite_rows();
     let (count, firsts) = (rows.len(), chunk.kept(&rows));
@@ -67,25 +61,25 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
     for (channel, first) in firsts.iter().enumerate() {
         let calibrated = calibrated.as_ref().and_then(|all| all.get(channel));
         let known = Known { calibrated, first, can_calibrate: !input.is_stdin() };
-        asked.push(scheme.resolve(parameters, &known)?);
+        asked.push(scheme.resolve(&parameters, &known)?);
     }
     let mut told = Vec::new();
     let mut channels: Vec<Settings> = Vec::new();
     for settings in &asked {
-        let (settings, rounding) = rounded(*scheme, *sample, settings)?;
+        let (settings, rounding) = rounded(scheme, sample, settings)?;
         told.extend(rounding.filter(|rounding| !told.contains(rounding)));
         channels.push(settings);
     }
-    let mut bank = Bank::new(*scheme, *sample, &channels)?;
+    let mut bank = Bank::new(scheme, sample, &channels)?;
 
     let mut notes = source.origin().to_vec();
-    let made_from = unrecorded(*scheme).into_iter().filter_map(|name| {
+    let made_from = unrecorded(scheme).into_iter().filter_map(|name| {
         parameters.get(name).filter(|text| !text.is_empty()).map(|text| (name, text.to_owned()))
     });
     notes.extend(made_from);
-    let mut fits: Vec<Fit> = channels.iter().map(|own| Fit::new(*scheme, *sample, own)).collect();
+    let mut fits: Vec<Fit> = channels.iter().map(|own| Fit::new(scheme, sample, own)).collect();
     let rate = clock.rate();
-    let header = Header { scheme: *scheme, sample: *sample, channels, rate, notes };
+    let header = Header { scheme, sample, channels, rate, notes };
     let is_timed = !chunk.times.is_empty();
     let output = Output::open(output.as_deref(), &input.input)?;
     let mut writer = Writer::new(output, &header, is_timed)?;

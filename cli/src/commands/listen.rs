@@ -7,6 +7,7 @@ use crate::fit::rounded;
 use crate::live::Live;
 use crate::options::{augment, given};
 use crate::output::Output;
+use crate::params::{self, Params};
 use crate::port::{Bytes, Port};
 use crate::scheme::Scheme;
 use crate::stop::Stop;
@@ -54,9 +55,12 @@ pub(crate) struct Listen {
     /// Decode a link's frames by this scheme, the sender's
     #[arg(long, value_parser = Scheme::parser(Scheme::all().filter(|scheme| adds_up_steps(scheme.info()))))]
     scheme: Option<Scheme>,
-    /// Sample type of the sender: f32, i16, i32, or fixed point such as q16.16 or q8.8
-    #[arg(long, default_value_t)]
-    sample: SampleType,
+    /// Sample type of the sender: f32, i16, i32, or fixed point such as q16.16 or q8.8; f32 unless given
+    #[arg(long)]
+    sample: Option<SampleType>,
+    /// File of the sender's parameters, TOML, as `tune --emit toml` writes it; options override it
+    #[arg(long, value_name = "FILE", value_parser = params::parse)]
+    params: Option<Params>,
     #[command(flatten)]
     parameters: StepOptions,
 }
@@ -115,22 +119,24 @@ impl FromArgMatches for StepOptions {
 /// # Errors
 /// The options, the port or the output are not good.
 pub(crate) fn run(options: &Listen) -> Result<()> {
-    let Some(scheme) = options.scheme else {
+    let sample = options.params.as_ref().and_then(|params| params.sample);
+    let sample = options.sample.or(sample).unwrap_or_default();
+    let Some(scheme) = options.named()? else {
         if !options.parameters.options.is_empty() || !options.parameters.thresholds.is_empty() {
             bail!("a scheme's parameters need --scheme");
         }
         return listen(options, None);
     };
-    let settings = options.settings(scheme)?;
-    with_receiver(scheme, options.sample, &settings, |values| listen(options, Some(values)))
+    let settings = options.settings(scheme, sample)?;
+    with_receiver(scheme, sample, &settings, |values| listen(options, Some((values, sample))))
 }
 
-fn listen(options: &Listen, values: Option<Box<dyn Values + '_>>) -> Result<()> {
+fn listen(options: &Listen, values: Option<(Box<dyn Values + '_>, SampleType)>) -> Result<()> {
     let mut port = Port::open(&options.input, options.baud)?;
     let stop = Stop::new(options.seconds)?;
     let mut output = Output::open(options.output.as_deref(), &options.input)?;
     let (reader, writer): (Box<dyn EventReader + '_>, _) = match values {
-        Some(values) => (Box::new(LinkReader::new(Some(values))), values_writer(options.sample)),
+        Some((values, sample)) => (Box::new(LinkReader::new(Some(values))), values_writer(sample)),
         None => (options.from.reader(port.name()), options.to.writer(options.stream.drop)),
     };
     let mut stream = Stream::new(reader, writer, options.stream.from_zero);
@@ -169,8 +175,18 @@ fn listen(options: &Listen, values: Option<Box<dyn Values + '_>>) -> Result<()> 
 }
 
 impl Listen {
+    /// The scheme named, here or in the file of parameters.
+    fn named(&self) -> Result<Option<Scheme>> {
+        let Some(params) = &self.params else { return Ok(self.scheme) };
+        let scheme = params.agreed(self.scheme)?;
+        if !adds_up_steps(scheme.info()) {
+            bail!("a link's receiver adds up steps, which {} does not", scheme.name());
+        }
+        Ok(Some(scheme))
+    }
+
     /// The settings of one channel for all, or of each.
-    fn settings(&self, scheme: Scheme) -> Result<Vec<Settings>> {
+    fn settings(&self, scheme: Scheme, sample: SampleType) -> Result<Vec<Settings>> {
         if !matches!(self.from, Format::Link(_)) {
             bail!("--scheme needs --from link, whose keyframes say where the sender stands");
         }
@@ -178,6 +194,10 @@ impl Listen {
             bail!("--scheme gives values, which only --to csv holds");
         }
         let StepOptions { options, thresholds } = &self.parameters;
+        let options = &match &self.params {
+            Some(params) => options.or(&params.options),
+            None => options.clone(),
+        };
         let each: Vec<Options> = match thresholds[..] {
             [] => vec![options.clone()],
             ref many => many
@@ -198,7 +218,7 @@ impl Listen {
                 }
             }
             let settings = settings(scheme, &options)?;
-            let (settings, rounding) = rounded(scheme, self.sample, &settings)?;
+            let (settings, rounding) = rounded(scheme, sample, &settings)?;
             if let Some(rounding) = rounding {
                 eprintln!("{rounding}");
             }

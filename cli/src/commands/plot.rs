@@ -2,12 +2,11 @@
 
 use super::score::chosen;
 use crate::input::InputOptions;
-use crate::options::SchemeOptions;
+use crate::options::Coding;
 use crate::plot::{Picture, draw};
 use crate::scheme::Scheme;
 use crate::trial::{Recording, Trial};
 use anyhow::{Context, Result, bail};
-use catalogue::run::SampleType;
 use clap::Args;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -22,19 +21,13 @@ Examples:
   spikewire plot --scheme sf --threshold 0.1 --column gyro_x --unit rad/s flight.csv -o sf.png
   spikewire plot --all --column gyro_x --range 2350..2700 flight.csv -o flight.svg")]
 pub(crate) struct Plot {
-    /// The scheme
-    #[arg(long, required_unless_present = "all")]
-    scheme: Option<Scheme>,
     /// Panels A-G for the paper's schemes with its settings, and H with their efficiency
-    #[arg(long, conflicts_with = "scheme")]
+    #[arg(long, conflicts_with_all = ["scheme", "params"])]
     all: bool,
-    /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8
-    #[arg(long, default_value_t)]
-    sample: SampleType,
+    #[command(flatten)]
+    coding: Coding,
     #[command(flatten)]
     input: InputOptions,
-    #[command(flatten)]
-    parameters: SchemeOptions,
     /// Samples to show, such as `1000..1400`; all of them are encoded
     #[arg(long)]
     range: Option<String>,
@@ -51,8 +44,11 @@ pub(crate) struct Plot {
 /// # Errors
 /// The recording, the parameters or the output are not good.
 pub(crate) fn run(options: &Plot) -> Result<()> {
-    let Plot { scheme, sample, input, parameters, range, output, .. } = options;
-    let (schemes, parameters) = chosen(*scheme, parameters)?;
+    let Plot { coding, input, range, output, .. } = options;
+    if !options.all && !coding.is_named() {
+        bail!("--scheme must say which, or --params, or --all");
+    }
+    let (schemes, sample, parameters) = chosen(coding)?;
     let recording = Recording::read(input)?;
     let shown = shown(range.as_deref(), recording.values.len())?;
     // Of the population codes the paper draws GRF.
@@ -60,7 +56,7 @@ pub(crate) fn run(options: &Plot) -> Result<()> {
     let trials = schemes
         .into_iter()
         .filter(is_drawn)
-        .map(|scheme| Trial::new(scheme, &parameters, *sample, &recording))
+        .map(|scheme| Trial::new(scheme, &parameters, sample, &recording))
         .collect::<Result<Vec<_>>>()?;
     eprint!("{}", recording.notes());
     for trial in &trials {

@@ -2,7 +2,7 @@
 
 use crate::brief::brief;
 use crate::input::InputOptions;
-use crate::options::SchemeOptions;
+use crate::options::{Coding, SchemeOptions};
 use crate::scheme::Scheme;
 use crate::steep::Steep;
 use crate::trial::{Recording, Trial};
@@ -14,7 +14,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::{self, Write, stdout};
 
-/// Score one scheme, or all with the paper's settings, on one channel of a recording.
+/// Score one scheme, or without `--scheme` all with the paper's settings, on one channel of a recording.
 ///
 /// Efficiency is the percentage of samples without a spike; RMSE is in the signal's unit and compares each
 /// decoded value with the sample it belongs to, so without a rate code's latency; SNR is in dB.
@@ -24,16 +24,10 @@ Examples:
   spikewire score --column gyro_x flight.csv
   spikewire score --scheme sf --threshold 0.1 --column gyro_x --json flight.csv")]
 pub(crate) struct Score {
-    /// The scheme; all unless given
-    #[arg(long)]
-    scheme: Option<Scheme>,
-    /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8
-    #[arg(long, default_value_t)]
-    sample: SampleType,
+    #[command(flatten)]
+    coding: Coding,
     #[command(flatten)]
     input: InputOptions,
-    #[command(flatten)]
-    parameters: SchemeOptions,
     /// Figures and parameters as JSON, for programs
     #[arg(long)]
     json: bool,
@@ -67,11 +61,11 @@ struct Figures {
 /// # Errors
 /// The recording or the parameters are not good.
 pub(crate) fn run(options: &Score) -> Result<()> {
-    let Score { scheme, sample, input, parameters, json } = options;
-    let (schemes, parameters) = chosen(*scheme, parameters)?;
+    let Score { coding, input, json } = options;
+    let (schemes, sample, parameters) = chosen(coding)?;
     let recording = Recording::read(input)?;
     let scored = schemes.into_iter().map(|scheme| {
-        let trial = Trial::new(scheme, &parameters, *sample, &recording)?;
+        let trial = Trial::new(scheme, &parameters, sample, &recording)?;
         Ok(figures(&recording, &trial))
     });
     let figures = scored.collect::<Result<Vec<_>>>()?;
@@ -96,21 +90,18 @@ pub(crate) fn run(options: &Score) -> Result<()> {
 ///
 /// # Errors
 /// Parameters without a scheme to take them.
-pub(crate) fn chosen(
-    scheme: Option<Scheme>,
-    parameters: &SchemeOptions,
-) -> Result<(Vec<Scheme>, SchemeOptions)> {
+pub(crate) fn chosen(coding: &Coding) -> Result<(Vec<Scheme>, SampleType, SchemeOptions)> {
+    let (scheme, sample, mut parameters) = coding.chosen()?;
     match scheme {
-        Some(scheme) => Ok((vec![scheme], parameters.clone())),
+        Some(scheme) => Ok((vec![scheme], sample, parameters)),
         None if !parameters.is_empty() => {
             bail!(
                 "all schemes run with the paper's settings; --scheme says which takes the parameters given"
             )
         }
         None => {
-            let mut options = parameters.0.clone();
-            options.paper = true;
-            Ok((Scheme::all().collect(), SchemeOptions(options)))
+            parameters.0.paper = true;
+            Ok((Scheme::all().collect(), sample, parameters))
         }
     }
 }
