@@ -31,6 +31,7 @@ mod link_loss;
 mod link_readout;
 mod link_receiver;
 mod link_time;
+mod moments;
 mod moving_window;
 mod population_sizes;
 mod position;

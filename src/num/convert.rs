@@ -33,6 +33,16 @@ pub(crate) const fn units<S: Sample>(value: S) -> f64 {
     }
 }
 
+/// What one of the [`units`] is: the type's last place; 1 in `f32`.
+pub(crate) const fn one<S: Sample>() -> f64 {
+    match S::KIND {
+        SampleKind::F32 => 1.0,
+        SampleKind::Fixed16 { fraction } | SampleKind::Fixed32 { fraction } => {
+            1.0 / power_of_two(fraction)
+        }
+    }
+}
+
 /// The nearest value of the type, halves upwards, saturating; NaN gives 0 in fixed point.
 pub(crate) const fn from_f64<S: Sample>(value: f64) -> S {
     match S::KIND {

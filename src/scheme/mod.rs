@@ -5,6 +5,7 @@ mod code;
 mod codec;
 #[cfg(feature = "alloc")]
 pub mod dynamic;
+mod moments;
 pub mod population;
 pub mod rate;
 pub mod temporal;
@@ -12,3 +13,4 @@ pub mod temporal;
 pub use calibrate::{Calibration, Differences};
 pub use code::{Code, Firing, Output, Polarity, Spike};
 pub use codec::{Decoder, Encoder, Recovery, Scheme, Start};
+pub use moments::Moments;
