@@ -1,4 +1,4 @@
-//! Where the neurons of a population are centred.
+//! The centres of a population of neurons, and the search for the one nearest to a value.
 
 use core::ops::RangeInclusive;
 
@@ -10,15 +10,15 @@ use crate::{ConfigError, Sample, SampleKind};
 
 /// The centres of `M` neurons, 3 to 1024, and the edges halfway between them.
 ///
-/// The neuron of a value is the one whose centre is nearest, exactly, in every sample type: a value
-/// halfway between two belongs to the lower, a value outside to the neuron at that end. Even centres are
-/// compared unrounded, others as rounded to the sample type.
+/// A value belongs to the neuron whose centre is nearest, exactly, in every sample type: halfway between two centres
+/// to the lower one, outside the range to the neuron at that end. Even centres are compared unrounded, others as
+/// rounded to the sample type.
 ///
 /// - **Memory:** the centres, as many edges, `2 M` bytes for a table of even cells, and 8 bytes.
-/// - **Work:** one multiplication finds a value's cell, the table a neuron for the cell, and one
-///   comparison with an edge whether it is that or the next. Where two edges share a cell, as with
-///   Gaussian-spaced centres from about 140 on or the user's own, beyond 256 neurons, and for `f32` without a
-///   float unit, it is a binary search instead.
+/// - **Work:** one multiplication finds the cell of a value, a table gives the lowest neuron of that cell, and one
+///   comparison with an edge decides between it and the next. A binary search takes their place where two edges
+///   share a cell, as with Gaussian-spaced centres from about 140 on or the user's own, with more than 256 neurons,
+///   and for `f32` without a float unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(
@@ -34,7 +34,7 @@ pub(super) struct Centres<S, const M: usize> {
     edges: [S; M],
     #[cfg_attr(feature = "serde", serde(skip))]
     cells: Cells,
-    /// The number of the lowest neuron, from 1, of each cell's values.
+    /// For each cell, the number (from 1) of the lowest neuron to which one of its values belongs.
     #[cfg_attr(feature = "serde", serde(skip))]
     starts: [[u8; 2]; M],
 }
@@ -57,8 +57,7 @@ const fn not_rising(
     ConfigError::NotRising { parameter, index, value: value as f32, previous: previous as f32 }
 }
 
-/// Halfway between two, rounded to the next double below where it is none: `f32` centres may be of
-/// very different size.
+/// The midpoint of two doubles, rounded down: that of two `f32` of very different size may be no double.
 const fn halfway(low: f64, high: f64) -> f64 {
     let sum = low + high;
     let rest = sum - low;
@@ -100,7 +99,7 @@ const fn is_at_most(value: f64, sum: f64, error: f64) -> bool {
     value < sum || value - sum <= error
 }
 
-/// Quantile `(2i + 1) / 2m` of a normal distribution whose outermost quantiles lie at min and max.
+/// The quantile `(2i + 1) / 2m` of a normal distribution, scaled so that the first one is `min` and the last `max`.
 const fn gaussian_centre(min: f64, max: f64, i: usize, m: usize) -> f64 {
     let middle = f64::midpoint(min, max);
     let from_end = m.wrapping_sub(1).wrapping_sub(i);
@@ -112,9 +111,9 @@ const fn gaussian_centre(min: f64, max: f64, i: usize, m: usize) -> f64 {
     if mirrored == i { middle + offset } else { middle - offset }
 }
 
-/// The number of a finite value's neuron, from 1, given the edges of all but the last.
+/// The number (from 1) of the neuron that a finite value belongs to, given the edges of all neurons but the last.
 #[allow(clippy::inline_always)]
-#[inline(always)] // into one caller a scheme
+#[inline(always)] // it has one caller for each scheme
 pub(super) fn nearest_by_search<S: Sample>(edges: &[S], value: S) -> usize {
     1 + count_preceding(edges.len(), |i| edges.get(i).is_some_and(|&edge| value.is_beyond(edge)))
 }
@@ -251,7 +250,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
         }
     }
 
-    /// With the table for the edges, where no two of them share a cell.
+    /// Builds the table of cells; a single cell if two edges share one.
     const fn with_cells(values: [S; M], edges: [S; M]) -> Self {
         let lowest = units(edges[0]);
         let count = 2 * M;
@@ -267,35 +266,35 @@ impl<S: Sample, const M: usize> Centres<S, M> {
             }
             i += 1;
         }
-        // Two edges in one cell, and the second was not passed; or more neurons than the table can name.
+        // Otherwise two edges share a cell, or there are more neurons than a byte of the table can number.
         let cells = if edge == M - 1 && i == count { cells } else { Cells::ONE };
         Self { values, edges, cells, starts }
     }
 
-    /// The number of a finite value's neuron, from 1.
+    /// The number (from 1) of the neuron that a finite value belongs to.
     #[inline]
     pub(super) fn nearest(&self, value: S) -> usize {
         if self.has_cells() { self.by_cell(value) } else { self.by_search(value) }
     }
 
-    /// Whether [`by_cell`](Self::by_cell) tells the neuron of every value.
+    /// Whether [`by_cell`](Self::by_cell) finds the neuron of every value.
     #[inline]
     pub(super) fn has_cells(&self) -> bool {
         S::HAS_CELLS && !self.cells.is_one()
     }
 
-    /// The number of a finite value's neuron, by cell; 1 for what is not a number.
+    /// [`nearest`](Self::nearest) by the table of cells; 1 for NaN.
     #[inline]
     pub(super) fn by_cell(&self, value: S) -> usize {
         let cell = value.cell(self.cells);
-        // What lies above all cells belongs to the last neuron.
+        // A value above all cells belongs to the last neuron.
         let lowest = self.starts.as_flattened().get(cell).copied().map_or(M, usize::from);
         let is_beyond = self.edges().get(lowest.wrapping_sub(1)).is_some_and(|&edge| value > edge);
         if is_beyond { lowest.wrapping_add(1) } else { lowest }
     }
 
-    /// The number of a finite value's neuron, by binary search.
-    #[inline(never)] // unrolled, and not to be so more than once
+    /// [`nearest`](Self::nearest) by binary search.
+    #[inline(never)] // the search is unrolled, and one copy is enough
     pub(super) fn by_search(&self, value: S) -> usize {
         nearest_by_search(self.edges(), value)
     }

@@ -17,7 +17,7 @@ use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
 /// The most neurons of a population.
 pub const NEURONS: usize = 1024;
 
-/// The most levels of a response, and slots of a sample.
+/// The most levels of a response, which is also the most slots of a sample.
 pub const LEVELS: usize = 256;
 
 fn check_neurons(neurons: usize, most: usize) -> Result<(), ConfigError> {
@@ -28,7 +28,7 @@ fn check_neurons(neurons: usize, most: usize) -> Result<(), ConfigError> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Position<S: Sample, const M: usize = NEURONS> {
     centres: Vec<S>,
-    /// Of all neurons but the last, the largest value that still belongs to it.
+    /// `edges[i]` is the largest value that belongs to neuron `i`; the last neuron has none.
     edges: Vec<S>,
 }
 
@@ -80,7 +80,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
         &self.centres
     }
 
-    /// The state of an encoder that has seen nothing.
+    /// The state of an encoder before its first sample.
     pub fn state(&self) -> PositionState {
         PositionState::START
     }
@@ -118,7 +118,7 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
         middle(&self.centres)
     }
 
-    /// The centre of the neuron; where none fired, the value before.
+    /// The centre of the neuron; if none fired, the previous value.
     fn decode(&self, state: &mut Held<S>, neuron: Option<Neuron<M>>) -> S {
         let centre = neuron.and_then(|neuron| self.centres.get(usize::from(neuron.index())));
         state.or_hold(centre.copied())
@@ -145,7 +145,7 @@ struct Fields<S: Sample> {
     max: S,
     /// A value in cell `i` is out of reach of the neurons below `i`.
     cells: Cells,
-    /// `reaches[slot]` is the largest distance with a level of at least the number of levels less `slot`.
+    /// `reaches[slot]` is the largest distance at which a neuron fires in this slot or an earlier one.
     reaches: Vec<S::Reach>,
 }
 
@@ -181,14 +181,14 @@ impl<S: Sample> Fields<S> {
         self.reaches.get(self.reaches.len().wrapping_sub(level)).copied()
     }
 
-    /// The levels less the level at this distance, which is at least 1.
+    /// The slot at this distance, which is within the reach of level 1: the number of levels minus the level.
     fn slot(&self, distance: S::Reach) -> usize {
         count_preceding(self.reaches.len() - 1, |slot| {
             self.reaches.get(slot).is_some_and(|&reach| distance > reach)
         })
     }
 
-    /// The mean of the centres from `first` on that have levels, weighted by these, or `None` without any.
+    /// The mean of the centres from `first` on, weighted by their levels; `None` if no neuron has a level.
     fn mean(&self, first: usize, levels: impl Iterator<Item = Option<u32>>) -> Option<S> {
         let mut weighted = S::Weighted::default();
         let mut total = 0;
@@ -203,7 +203,7 @@ impl<S: Sample> Fields<S> {
     }
 }
 
-/// [`population::Slots`](crate::population::Slots) with any number of neurons, up to `M`, and of slots.
+/// [`population::Slots`](crate::population::Slots) with any number of neurons, up to `M`, and 2 to 256 slots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slots<S: Sample, const M: usize = NEURONS> {
     fields: Fields<S>,
@@ -211,8 +211,7 @@ pub struct Slots<S: Sample, const M: usize = NEURONS> {
 }
 
 impl<S: Sample, const M: usize> Slots<S, M> {
-    /// Fields of so many neurons over a range, in which every level from 1 fires; the smaller `beta`, the
-    /// wider they are.
+    /// Receptive fields over a range, with every level from 1 firing. The smaller `beta`, the wider the fields.
     ///
     /// # Errors
     /// There are not 3 to `M` neurons or not 2 to 256 slots; the ends are not finite, or do not rise, or the
@@ -226,7 +225,7 @@ impl<S: Sample, const M: usize> Slots<S, M> {
         Ok(Self { fields: Fields::try_new::<M>(neurons, slots, range, beta)?, floor: 1 })
     }
 
-    /// With silence below this level.
+    /// Sets the lowest level that fires; 1 by default.
     ///
     /// # Errors
     /// The floor is not within 1 to the number of slots.
@@ -240,7 +239,7 @@ impl<S: Sample, const M: usize> Slots<S, M> {
         &self.fields.centres
     }
 
-    /// The state of an encoder that has seen nothing.
+    /// The state of an encoder before its first sample.
     pub fn state(&self) -> SlotsState {
         SlotsState::START
     }
@@ -250,7 +249,7 @@ impl<S: Sample, const M: usize> Slots<S, M> {
         Encoder::with_state(self, self.state())
     }
 
-    /// Fires the neurons from `first` on that have a finite sample within reach, and says whether any has.
+    /// Fires the neurons from `first` on, up to one that does not reach a finite sample; false if none fired.
     fn fire_from(&self, sample: S, first: usize, spikes: &mut SlotSpikes<M, LEVELS>) -> bool {
         let Some(reach) = self.fields.reach(self.floor.into()) else { return false };
         let near = self.fields.distances(sample, first).take_while(|&distance| distance <= reach);
@@ -337,11 +336,11 @@ mod random {
     }
 
     impl<S: Sample, G: Rng, const M: usize> Probabilistic<S, G, M> {
-        /// How many probabilities there are.
+        /// The number of probabilities.
         const LEVELS: usize = super::LEVELS;
 
-        /// Fields of so many neurons over a range, whose responses are rounded to 256 probabilities; the
-        /// smaller `beta`, the wider they are.
+        /// Receptive fields over a range, with responses rounded to 256 probabilities. The smaller `beta`, the
+        /// wider the fields.
         ///
         /// # Errors
         /// There are not 3 to `M` neurons; the ends are not finite, or do not rise, or the sample type is

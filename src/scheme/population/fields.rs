@@ -1,4 +1,4 @@
-//! Gaussian receptive fields of equal width, as distances instead of exponentials.
+//! Gaussian receptive fields of equal width, computed with a table of distances instead of exponentials.
 
 #[cfg(feature = "rand")]
 use core::hint::black_box;
@@ -13,11 +13,11 @@ use crate::num::curve::{ln, sqrt};
 use crate::num::{Cells, Distance, cell, cells, near, reach, top, units};
 use crate::{ConfigError, Sample};
 
-/// `M` neurons, 3 to 1024, whose responses to a value are told apart in `N` levels, 2 to 256.
+/// Receptive fields of `M` neurons, 3 to 1024, whose responses to a value are rounded to `N` levels, 2 to 256.
 ///
 /// The response is `r = exp(-(x - mu)² / (2 sigma²))` with even centres and
-/// `sigma = (max - min) / (beta (M - 2))`; its level is `N r`, rounded half up. A level is reached
-/// within a distance from the centre, so that a table of `N` distances replaces the exponential.
+/// `sigma = (max - min) / (beta (M - 2))`; its level is `N r`, rounded half up. Each level has a largest distance from
+/// the centre, its reach, so that a table of `N` reaches replaces the exponential.
 ///
 /// - **Memory:** `4 M + 4 N + 28` bytes in `f32`.
 /// - **Exactness:** `f32` compares the distance to the rounded centre, rounded once, with the
@@ -32,17 +32,18 @@ pub(super) struct ReceptiveFields<S: Sample, const M: usize, const N: usize> {
     min: S,
     max: S,
     beta: f32,
-    /// A value in cell `i` is out of reach of the neurons below `i`.
+    /// No neuron below `i` responds to a value in cell `i`.
     #[cfg_attr(feature = "serde", serde(skip))]
     cells: Cells,
+    /// The lowest and the highest value whose distances fit `S::Short`.
     #[cfg_attr(feature = "serde", serde(skip))]
     near: [S; 2],
-    /// `reaches[slot]` is the largest distance with a level of at least `N - slot`: rising.
+    /// `reaches[slot]` is the largest distance at which the level is at least `N - slot`. They rise.
     #[cfg_attr(feature = "serde", serde(skip))]
     reaches: [S::Reach; N],
 }
 
-/// Without the tables, which follow from the rest.
+/// Leaves out the tables, which follow from the rest.
 #[cfg(feature = "defmt")]
 impl<S: Sample + defmt::Format, const M: usize, const N: usize> defmt::Format
     for ReceptiveFields<S, M, N>
@@ -60,14 +61,14 @@ impl<S: Sample + defmt::Format, const M: usize, const N: usize> defmt::Format
     }
 }
 
-/// The distance from its centre at which a response of `N` levels falls below level `k`.
+/// The distance from the centre at which the response of a neuron, in `n` levels, falls below level `k`.
 const fn radius(min: f64, max: f64, beta: f64, m: usize, k: usize, n: usize) -> f64 {
     let sigma = (max - min) / (beta * (m as f64 - 2.0));
     sigma * sqrt(2.0 * ln(n as f64 / (k as f64 - 0.5)))
 }
 
-/// Sets the reaches of the slots of `m` neurons, and says which cells tell who may respond to a value, and
-/// which values have short distances.
+/// Sets the reaches of `m` neurons. Returns the cells that give the first neuron that may respond to a value, and the
+/// lowest and the highest value whose distances fit `S::Short`.
 #[allow(clippy::indexing_slicing)] // constants have no iterators
 pub(super) const fn tables<S: Sample>(
     m: usize,
@@ -84,7 +85,7 @@ pub(super) const fn tables<S: Sample>(
     }
     let farthest = radius(low, high, beta as f64, m, 1, n);
     let width = (high - low) / (m as f64 - 2.0);
-    // A 32nd of a cell for what is rounded.
+    // One and a half cells, less a 32nd of a cell as a margin for rounding.
     let cells = cells::<S>(low + farthest - 1.46875 * width, width, m + 2);
     let mut hold = true;
     let mut i = 0;
@@ -104,7 +105,7 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         assert!(N >= 2 && N <= 256, "a response has 2 to 256 levels");
     };
 
-    /// Fields over a range; the wider, the smaller `beta`.
+    /// Fields over a range. The smaller `beta`, the wider the fields.
     ///
     /// # Errors
     /// `beta` is not above 0, or as for [`Centres::try_linear`].
@@ -138,19 +139,21 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         value.is_near(self.near)
     }
 
-    /// The first neuron that may respond to a finite value: it, or the next if the value
-    /// [is above](Self::is_above) it.
+    /// The first neuron that may respond to a finite value. If it does not, the next one may while the value
+    /// [is above](Self::is_above) its centre.
     #[inline]
     pub(super) fn first(&self, value: S) -> usize {
         value.cell(self.cells)
     }
 
+    /// Whether a value is above the centre of a neuron.
     #[inline]
     pub(super) fn is_above(&self, value: S, neuron: usize) -> bool {
         self.centres.get(neuron).is_some_and(|&centre| value > centre)
     }
 
-    /// The distances of a finite value from this neuron and those after it, if there is one.
+    /// The distances of a finite value from the centres of neuron `first` and those after it; `None` if there is no
+    /// such neuron.
     #[inline]
     pub(super) fn distances<'f, D: Distance<S> + 'f>(
         &'f self,
@@ -164,13 +167,13 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         Some(centres.iter().enumerate().map(distance))
     }
 
-    /// The largest distance with at least this level, 1 to `N`.
+    /// The largest distance at which the level is at least this one, 1 to `N`.
     #[inline]
     pub(super) fn reach<D: Distance<S>>(&self, level: usize) -> Option<D> {
         self.reaches.get(N.wrapping_sub(level)).copied().map(D::of)
     }
 
-    /// `N` less the level at this distance, which is at least 1.
+    /// The slot at this distance, which is within the reach of level 1: `N` minus the level.
     #[inline]
     pub(super) fn slot<D: Distance<S>>(&self, distance: D) -> usize {
         count_preceding(N - 1, |slot| {
@@ -178,7 +181,7 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         })
     }
 
-    /// The mean of the centres from `first` on, weighted by their levels, or `None` without any.
+    /// The mean of the centres from `first` on, weighted by their levels; `None` if no neuron has a level.
     #[inline]
     pub(super) fn weighted_mean(
         &self,
@@ -195,12 +198,12 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         self.mean(weighted, total)
     }
 
-    /// The mean of the centres of the neurons that fired, or `None` without any.
+    /// The mean of the centres of the neurons that fired; `None` if none did.
     #[cfg(feature = "rand")]
     #[inline]
     pub(super) fn mean_of(&self, neurons: &FiredNeurons<M>) -> Option<S> {
-        // Where the compiler cannot tell that a centre may be read in vain, it passes by the neurons that did not
-        // fire, which are the most, instead of adding their centres and dropping the sum.
+        // Hidden from the compiler, which would otherwise add up the centres of all neurons and drop most sums, as
+        // most neurons do not fire.
         let centres = black_box(&self.centres);
         let mut weighted = S::Weighted::default();
         let mut total = 0_u32;

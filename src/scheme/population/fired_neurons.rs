@@ -1,4 +1,4 @@
-//! Any neurons of a population, as the code of a sample.
+//! The code of a sample as any number of neurons of a population.
 
 use crate::{Code, Firing, Output, Polarity};
 
@@ -16,8 +16,7 @@ impl<const M: usize> FiredNeurons<M> {
     /// No spike.
     pub const EMPTY: Self = Self { fired: [false; M] };
 
-    /// These neurons, as they came over a link or from a file. `None` if one is not below `M`, or
-    /// comes twice.
+    /// The code in which these neurons fire, from a link or a file. `None` if one is not below `M`, or comes twice.
     pub fn new(neurons: impl IntoIterator<Item = u16>) -> Option<Self> {
         let mut all = Self::EMPTY;
         for neuron in neurons {
@@ -34,7 +33,7 @@ impl<const M: usize> FiredNeurons<M> {
         (0..M).zip(&self.fired).filter_map(|(neuron, &fired)| fired.then_some(neuron as u16))
     }
 
-    /// Takes every neuron that fired, by rising index. Four that did not are passed by at once.
+    /// Calls `take` for each neuron that fired, by rising index. Skips four at once if none of them fired.
     #[inline]
     pub(super) fn for_each(&self, mut take: impl FnMut(usize)) {
         let mut take_fired = |first: usize, neurons: &[bool]| {
@@ -61,7 +60,7 @@ impl<const M: usize> Code for FiredNeurons<M> {
         self.iter().map(|neuron| Firing { neuron, slot: 0, polarity: Polarity::Up })
     }
 
-    /// Every neuron that fired, once or more often.
+    /// Every neuron that fired at least once.
     fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
         let mut neurons = Self::EMPTY;
         for firing in firings {

@@ -4,11 +4,10 @@ use super::position::Position;
 
 /// Gaussian receptive fields: every sample fires the neuron with the largest response.
 ///
-/// Fields of equal width respond by distance alone, so the winner is the nearest centre and no
-/// exponential is needed: this is [`Position`] under its other name, with [even
-/// centres](Position::linear) `mu[i] = min + (2i - 1) / 2 * (max - min) / (M - 2)` as the
-/// paper has them. A value far outside the range fires the neuron at that end, where the paper's
-/// toolbox underflows to neuron 0.
+/// With fields of equal width the largest response is that of the nearest centre, so that no exponential is needed:
+/// this is another name of [`Position`]. The paper takes [even centres](Position::linear),
+/// `mu[i] = min + (2i - 1) / 2 * (max - min) / (M - 2)`. A value far outside the range fires the neuron at that end;
+/// in the paper's toolbox all responses underflow there, and neuron 0 fires.
 ///
 /// - **Latency:** 0 samples. **Memory:** that of [`Position`].
 /// - **Error:** at most half a spacing, `(max - min) / (2 (M - 2))`, inside the range.

@@ -1,7 +1,7 @@
-//! What the decoders of the population codes keep.
+//! The state of the population codes' decoders: the value decoded last.
 
-/// The state of a population code's decoder: the value decoded last, which holds where no neuron fires.
-/// 4 bytes in `f32`. It is the middle centre at first.
+/// The state of a population code's decoder: the value decoded last, which holds while no neuron fires. It starts as
+/// the middle centre. 4 bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
 pub struct Held<S> {
     value: S,
@@ -16,7 +16,7 @@ impl<S: Copy> Held<S> {
         self.value
     }
 
-    /// The new value, or the one before where there is none.
+    /// Takes a new value, if there is one, and returns the current one.
     #[inline]
     pub(super) fn or_hold(&mut self, value: Option<S>) -> S {
         if let Some(value) = value {

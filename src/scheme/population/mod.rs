@@ -1,4 +1,4 @@
-//! Population codes: which neuron of `M` fires tells the value.
+//! Population codes: the value is given by which of `M` neurons fire, and when.
 
 mod centres;
 #[cfg(feature = "alloc")]

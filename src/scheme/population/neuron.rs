@@ -1,4 +1,4 @@
-//! One neuron of a population, as the code of a sample.
+//! The code of a sample as one neuron of a population.
 
 use core::num::NonZeroU16;
 
@@ -6,7 +6,7 @@ use crate::{Code, Firing, Output, Polarity};
 
 /// One of `M` neurons.
 ///
-/// Two bytes, and no more where there may be none.
+/// Two bytes, also as an `Option`.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Neuron<const M: usize>(NonZeroU16);
 
@@ -21,7 +21,7 @@ impl<const M: usize> Neuron<M> {
         self.0.get() - 1
     }
 
-    /// The neuron with this number; the first is 1, and 0 is none.
+    /// The neuron with this number, from 1; `None` for 0.
     pub(super) const fn counted(number: u16) -> Option<Self> {
         match NonZeroU16::new(number) {
             Some(number) => Some(Self(number)),
@@ -51,7 +51,7 @@ impl<const M: usize> serde::Serialize for Neuron<M> {
     }
 }
 
-/// `None` for a sample that was not finite: no neuron fires.
+/// A sample that is not finite fires no neuron: `None`.
 impl<const M: usize> Code for Option<Neuron<M>> {
     const NEURONS: usize = M;
 
@@ -60,7 +60,7 @@ impl<const M: usize> Code for Option<Neuron<M>> {
             .into_iter()
     }
 
-    /// The neuron that fired most often, the lowest of several.
+    /// The neuron that fired most often; the lowest, if there are several.
     fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
         let mut counts = [0_u16; M];
         for firing in firings {

@@ -12,17 +12,16 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 /// Position coding: every sample fires the one neuron whose centre is nearest.
 ///
 /// - **Centres:** `M`, 3 to 1024: [linear](Self::linear), [Gaussian-spaced](Self::gaussian_spaced) or the
-///   [user's](Self::new). A value halfway between two fires the lower; a value outside fires the neuron at
-///   that end.
+///   [user's own](Self::new). A value halfway between two fires the lower; a value outside the range fires the
+///   neuron at that end.
 /// - **Latency:** 0 samples. **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes
 ///   `10 M + 8` bytes of flash in `f32`.
-/// - **Work:** one multiplication finds a value's cell, a table a neuron for the cell, and one comparison
-///   with an edge whether it is that or the next. Where two edges share a cell, as with Gaussian-spaced
-///   centres from about 140 on or the user's own, more than 256 neurons, and for `f32` without a float unit,
-///   it is a binary search instead.
-/// - **Exactness:** the nearest centre exactly, in every sample type. Linear centres are compared
-///   unrounded: [`centres`](Self::centres), which the decoder returns, rounds them to the sample type. Others are
-///   compared as rounded.
+/// - **Work:** one multiplication finds the cell of a value, a table gives the lowest neuron of that cell, and one
+///   comparison with an edge decides between it and the next. A binary search takes their place where two edges
+///   share a cell, as with Gaussian-spaced centres from about 140 on or the user's own, with more than 256 neurons,
+///   and for `f32` without a float unit.
+/// - **Exactness:** the nearest centre exactly, in every sample type. Linear centres are compared unrounded, and
+///   the decoder returns them [rounded](Self::centres) to the sample type. Other centres are compared as rounded.
 /// - **Error:** at most half the distance between two centres, inside the centres' range.
 ///
 /// Source: paper, section II-A, algorithm 1.
@@ -55,7 +54,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// The user's own centres, strictly rising. For constants, where bad centres fail the build.
     ///
     /// # Panics
-    /// As [`try_new`](Self::try_new) fails.
+    /// [`try_new`](Self::try_new) returns an error.
     pub const fn new(centres: [S; M]) -> Self {
         unwrap(Self::try_new(centres))
     }
@@ -73,7 +72,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// where a bad range fails the build.
     ///
     /// # Panics
-    /// As [`try_linear`](Self::try_linear) fails.
+    /// [`try_linear`](Self::try_linear) returns an error.
     pub const fn linear(range: RangeInclusive<S>) -> Self {
         unwrap(Self::of(Centres::try_linear(&range)))
     }
@@ -91,7 +90,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// an error around its set point. For constants, where a bad range fails the build.
     ///
     /// # Panics
-    /// As [`try_gaussian_spaced`](Self::try_gaussian_spaced) fails.
+    /// [`try_gaussian_spaced`](Self::try_gaussian_spaced) returns an error.
     pub const fn gaussian_spaced(range: RangeInclusive<S>) -> Self {
         unwrap(Self::of(Centres::try_gaussian_spaced(&range)))
     }
@@ -117,7 +116,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
         self.centres.as_array()
     }
 
-    /// Apart, so that the usual path stays small.
+    /// Encodes a slice by binary search. Out of line, so that the usual path stays small.
     #[cold]
     #[inline(never)]
     fn search_each(
@@ -184,7 +183,7 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
         let centres = &self.centres;
         let mut taint = S::ZERO;
         if centres.has_cells() {
-            // As if all were finite; if one was not, all over again.
+            // Encodes as if all were finite; if one was not, the slice is encoded again.
             for (output, &sample) in outputs.iter_mut().zip(samples) {
                 taint = taint.taint(sample);
                 *output = Neuron::counted(centres.by_cell(sample) as u16);
@@ -205,7 +204,7 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
         Held::at(self.centres.middle())
     }
 
-    /// The centre of the neuron; where none fired, the value before.
+    /// The centre of the neuron; if none fired, the previous value.
     #[inline]
     fn decode(&self, state: &mut Held<S>, neuron: Option<Neuron<M>>) -> S {
         state.or_hold(self.centre(neuron))

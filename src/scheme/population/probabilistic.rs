@@ -13,22 +13,21 @@ use crate::error::unwrap;
 use crate::num::{Distance, Tally};
 use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
 
-/// Gaussian receptive fields in which a neuron fires with the probability of its response, from a
-/// generator that the caller passes in.
+/// Gaussian receptive fields in which a neuron fires with a probability equal to its response, drawn from the
+/// caller's random number generator.
 ///
 /// The probability is rounded to a multiple of `1 / N`, half up: a neuron of level `k` (see
 /// [`Slots`](super::Slots)) fires if the top bits of a 32-bit draw, a number below `N`, are below `k`.
-/// One draw is taken for each neuron that responds with level 1 or more, by rising index. `N` must
-/// be a power of two.
+/// One draw is taken for each neuron that responds with level 1 or more, by rising index.
 ///
+/// - **M:** 3 to 1024. **N:** a power of two, 2 to 256. **Beta:** above 0; the paper takes 1.5.
 /// - **Latency:** 0 samples. **Memory:** 4 bytes a channel and the generator, 4 to decode in `f32`;
 ///   the scheme takes `4 M + 4 N + 28` bytes of flash in `f32`.
 /// - **Work:** one comparison with the table a neuron; no exponential.
-/// - **Decoder:** the mean of the centres that fired; where none did, the value before. Fixed point gives
-///   the exact mean, rounded to the nearest, halves upwards.
+/// - **Decoder:** the mean of the centres of the neurons that fired; if none did, the previous value. Fixed point
+///   gives the exact mean, rounded to the nearest, halves upwards.
 ///
-/// Its encoder needs the generator, so it has an [`encoder`](Self::encoder) of its own and is no
-/// [`Start`](crate::Start).
+/// Its [`encoder`](Self::encoder) takes the generator, so that it does not implement [`Start`](crate::Start).
 ///
 /// Source: paper, section II-A.
 ///
@@ -83,16 +82,16 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
     const SHAPE: () =
         assert!(N.is_power_of_two(), "a probability takes a power of two as its levels");
 
-    /// Fields over a range; the smaller `beta`, the wider they are. For constants, where bad parameters fail
-    /// the build.
+    /// Fields over a range. The smaller `beta`, the wider the fields. For constants, where bad parameters fail the
+    /// build.
     ///
     /// # Panics
-    /// As [`try_new`](Self::try_new) fails.
+    /// [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>, beta: f32) -> Self {
         unwrap(Self::try_of(&range, beta))
     }
 
-    /// Fields over a range; the smaller `beta`, the wider they are.
+    /// Fields over a range. The smaller `beta`, the wider the fields.
     ///
     /// # Errors
     /// The ends are not finite, or do not rise, or the sample type is too coarse to tell the centres apart;
@@ -124,7 +123,7 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
         Encoder::with_state(self, Self::state(generator))
     }
 
-    /// Encodes into `neurons`, which is empty.
+    /// Encodes a sample into `neurons`, which must be empty.
     #[inline]
     fn encode_into(
         &self,
@@ -141,6 +140,7 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
         }
     }
 
+    /// Fires the neurons that respond to a finite sample, by chance.
     #[inline(never)] // one copy, with the registers to itself
     fn fire<D: Distance<S>>(&self, generator: &mut G, sample: S, neurons: &mut FiredNeurons<M>) {
         let fields = &self.fields;
@@ -162,7 +162,7 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
 }
 
 impl<S: Sample, G: Rng, const M: usize, const N: usize> Encoder<'_, Probabilistic<S, G, M, N>> {
-    /// Forgets the count of rejected samples. The generator goes on from where it is.
+    /// Sets the count of rejected samples to 0. The generator goes on from where it is.
     pub fn restart(&mut self) {
         self.state.tally = Tally::NONE;
     }

@@ -1,6 +1,6 @@
-//! Binary search in a number of steps that depends on the length alone.
+//! Binary search in a number of steps that depends only on the length.
 
-/// How many come before the first of `length` that does not precede, if all that precede come first.
+/// The number of indices below `length` that precede, given that these come first.
 #[inline]
 pub(super) fn count_preceding(length: usize, precedes: impl Fn(usize) -> bool) -> usize {
     let mut preceding = 0;

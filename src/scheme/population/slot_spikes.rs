@@ -1,8 +1,8 @@
-//! The spikes of neighbouring neurons in sub-timesteps, as the code of a sample.
+//! The code of a sample as spikes of neighbouring neurons, each in one of several sub-timesteps.
 
 use crate::{Code, Firing, Output, Polarity};
 
-/// The spikes of one sample: neighbouring neurons, each in its slot of `N`.
+/// The spikes of one sample: neighbouring neurons of `M`, each in one of `N` slots.
 ///
 /// `M + 4` bytes, rounded up to words.
 #[repr(align(4))]
@@ -18,7 +18,7 @@ impl<const M: usize, const N: usize> SlotSpikes<M, N> {
     /// No spike.
     pub const EMPTY: Self = Self { first: 0, length: 0, slots: [0; M] };
 
-    /// Neighbouring neurons from `first` on, each in its slot, as they came over a link or from a file.
+    /// The code in which the neurons from `first` on fire in these slots, from a link or a file.
     ///
     /// `None` if they reach beyond the `M` neurons, or a slot is not below `N`.
     pub fn new(first: u16, slots: &[u8]) -> Option<Self> {
@@ -68,8 +68,8 @@ impl<const M: usize, const N: usize> Code for SlotSpikes<M, N> {
         self.iter().map(|(neuron, slot)| Firing { neuron, slot, polarity: Polarity::Up })
     }
 
-    /// Each neuron in the slot of its first spike: of the neighbours without a gap around the neuron that
-    /// fired first, the lowest of several.
+    /// The neuron that fired first (the lowest, if there are several) and its neighbours on either side up to one that
+    /// did not fire, each in the slot of its first spike.
     fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
         let mut slots = [None::<u8>; M];
         for Firing { neuron, slot, .. } in firings.filter(|firing| usize::from(firing.slot) < N) {

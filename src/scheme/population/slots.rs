@@ -9,24 +9,24 @@ use crate::error::{unwrap, within};
 use crate::num::{Distance, Tally};
 use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 
-/// Gaussian receptive fields with `N` sub-timesteps, slots, a sample.
+/// Gaussian receptive fields whose neurons fire in one of `N` sub-timesteps of a sample, its slots.
 ///
 /// `M` neurons with even centres `mu` respond by `r = exp(-(x - mu)² / (2 sigma²))`, where
 /// `sigma = (max - min) / (beta (M - 2))`. The level `k` of a response is `N r`, rounded half up. A level
-/// fires in slot `N - k`; a level below the floor is silent. A level is reached within a distance from the
-/// centre, so that a table of `N` distances replaces the exponential.
+/// fires in slot `N - k`; a level below the floor is silent. Each level has a largest distance from the centre, so
+/// that a table of `N` distances replaces the exponential.
 ///
 /// - **M:** 3 to 1024. **N:** 2 to 256. **Beta:** above 0; the paper takes 1.5.
-/// - **Floor:** 1 to `N`; 1 [by default](Self::with_floor).
-/// - **Latency:** 0 samples, within which the slots last as long as the caller makes them.
+/// - **Floor:** 1 to `N`; 1 unless set by [`with_floor`](Self::with_floor).
+/// - **Latency:** 0 samples. How long a slot lasts is up to the caller.
 ///   **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes
 ///   `4 M + 4 N + 32` bytes of flash in `f32`.
 /// - **Work:** only neurons that respond, and one more at either end, are visited; no exponential.
 /// - **Exactness:** `f32` compares the distance to the rounded centre, rounded once, with the rounded table;
 ///   fixed point compares exact distances to the unrounded centre.
-/// - **Range:** a value so far outside the range that no neuron reaches the floor fires none.
-/// - **Decoder:** the mean of the centres weighted by their levels, `N - slot`; where no neuron
-///   fired, the value before. One division a sample. Fixed point gives the exact mean, rounded to the
+/// - **Range:** a value so far outside the range that no level reaches the floor fires no neuron.
+/// - **Decoder:** the mean of the centres weighted by their levels, `N - slot`; if no neuron fired, the previous
+///   value. One division a sample. Fixed point gives the exact mean, rounded to the
 ///   nearest, halves upwards.
 ///
 /// Source: Bohté et al. 2002; paper, section II-A.
@@ -49,16 +49,16 @@ pub struct Slots<S: Sample, const M: usize, const N: usize> {
 }
 
 impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
-    /// Fields over a range, in which every level from 1 fires; the smaller `beta`, the wider they are. For
-    /// constants, where bad parameters fail the build.
+    /// Fields over a range, with every level from 1 firing. The smaller `beta`, the wider the fields. For constants,
+    /// where bad parameters fail the build.
     ///
     /// # Panics
-    /// As [`try_new`](Self::try_new) fails.
+    /// [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>, beta: f32) -> Self {
         unwrap(Self::try_of(&range, beta))
     }
 
-    /// Fields over a range, in which every level from 1 fires; the smaller `beta`, the wider they are.
+    /// Fields over a range, with every level from 1 firing. The smaller `beta`, the wider the fields.
     ///
     /// # Errors
     /// The ends are not finite, or do not rise, or the sample type is too coarse to tell the centres apart;
@@ -74,7 +74,7 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
         }
     }
 
-    /// Silence below this level. For constants, where a bad floor fails the build.
+    /// Sets the lowest level that fires; 1 by default. For constants, where a bad floor fails the build.
     ///
     /// # Panics
     /// The floor is not within 1 to `N`.
@@ -83,7 +83,7 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
         unwrap(self.try_with_floor(floor))
     }
 
-    /// Silence below this level.
+    /// Sets the lowest level that fires; 1 by default.
     ///
     /// # Errors
     /// The floor is not within 1 to `N`.
@@ -99,7 +99,7 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
         self.fields.centres()
     }
 
-    /// Writes the spikes of a finite sample into `spikes`, which is empty.
+    /// Writes the spikes of a finite sample into `spikes`, which must be empty.
     #[inline]
     fn fire(&self, sample: S, spikes: &mut SlotSpikes<M, N>) {
         if self.fields.is_near(sample) {
@@ -109,6 +109,7 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
         }
     }
 
+    /// Writes the spikes of a sample whose distances fit `S::Short`.
     #[inline(never)] // one copy, with the registers to itself
     fn fire_near(&self, sample: S, spikes: &mut SlotSpikes<M, N>) {
         if !self.fire_from::<S::Short>(sample, self.fields.first(sample), spikes) {
@@ -116,7 +117,7 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
         }
     }
 
-    /// Where the first neuron does not fire, the next may.
+    /// Writes the spikes of any finite sample: where the first neuron does not fire, tries those after it.
     #[cold]
     #[inline(never)]
     fn fire_anywhere<D: Distance<S>>(&self, sample: S, spikes: &mut SlotSpikes<M, N>) {
@@ -126,7 +127,7 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
         }
     }
 
-    /// Fires the neurons from `first` on that have a finite sample within reach, and says whether any has.
+    /// Fires the neurons from `first` on, up to one that does not reach a finite sample; false if none fired.
     #[inline]
     fn fire_from<D: Distance<S>>(
         &self,
@@ -168,7 +169,7 @@ impl<S: Sample, const M: usize, const N: usize> Start for Slots<S, M, N> {
 }
 
 impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
-    /// Encodes into `spikes`, which is empty.
+    /// Encodes a sample into `spikes`, which must be empty.
     #[inline]
     fn encode_into(&self, state: &mut SlotsState, sample: S, spikes: &mut SlotSpikes<M, N>) {
         if sample.is_finite() {

@@ -12,15 +12,15 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 ///
 /// With `r = x - shift`, `e1 = sum |r[i+j] - h[j]|` and `e2 = sum |r[i+j]|`: a spike at `i` if
 /// `e1 <= e2 - threshold` ([`subtractive`](Self::subtractive)) or `e1 <= e2 * threshold`
-/// ([`multiplicative`](Self::multiplicative)); then `r[i+j] -= h[j]`. At the end of a recording both
-/// sums are cut to what is left.
+/// ([`multiplicative`](Self::multiplicative)); then `r[i+j] -= h[j]`. At the end of a recording both sums end with
+/// its last sample.
 ///
 /// - **Threshold:** subtractive: 0 or more, in the samples' unit. Multiplicative: above 0 and below
 ///   4; with samples in fixed point it is rounded to a multiple of 2⁻¹⁴.
 /// - **Latency:** `F - 1` samples. **Memory:** `4 F + 8` bytes a channel in `f32`.
-/// - **Exactness:** `f32` sums `e1` and `e2` apart, by rising `(i + j) mod F` over a whole window
-///   (which is how it lies in memory), first tap first over a cut one; subtractive compares
-///   `e1 - e2` with `-threshold`. Fixed point is exact within the range of [`rate`](crate::rate).
+/// - **Exactness:** `f32` adds up `e1` and `e2` separately: by rising `(i + j) mod F`, which is their order in
+///   memory, and from the first tap on where the recording ends within the filter. Subtractive compares `e1 - e2`
+///   with `-threshold`. Fixed point is exact within the range given in [`rate`](crate::rate).
 ///
 /// Source: Schrauwen and Van Campenhout, BSA, 2003; paper, section II-B. The paper's own indices are
 /// those of [`BsaToolbox`](super::BsaToolbox).
@@ -42,7 +42,7 @@ pub struct Bsa<S: Sample, const F: usize> {
     limit: Limit<S>,
 }
 
-/// What [`Bsa`] compares the two errors by.
+/// How [`Bsa`] compares the two errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -124,7 +124,7 @@ impl<S: Sample, const F: usize> Bsa<S, F> {
 
     with_shift!();
 
-    /// What it compares the two errors by.
+    /// How it compares the two errors.
     pub const fn criterion(&self) -> Criterion<S> {
         match self.limit {
             Limit::Subtractive(threshold) => Criterion::Subtractive(threshold),
@@ -133,7 +133,7 @@ impl<S: Sample, const F: usize> Bsa<S, F> {
     }
 }
 
-/// The error with the filter subtracted is smaller than without, by the criterion.
+/// The error with the filter subtracted is smaller than without it, by the criterion.
 impl<S: Sample, const F: usize> Rule<S, F> for Bsa<S, F> {
     const IN_ORDER: bool = false;
     const KEEPS_A_SUM: bool = true;
@@ -169,7 +169,7 @@ impl<S: Sample, const F: usize> Rule<S, F> for Bsa<S, F> {
 
 rate_scheme!(Bsa);
 
-/// Its parameters, side by side.
+/// A struct of `taps`, `criterion` and `shift`.
 #[cfg(feature = "serde")]
 impl<S: Sample + serde::Serialize, const F: usize> serde::Serialize for Bsa<S, F> {
     fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {

@@ -1,4 +1,4 @@
-//! Ben's spiker (BSA) with the indices of the paper's toolbox.
+//! Ben's spiker (BSA) with the indices of the paper's toolbox, which differ from the published algorithm's.
 
 use super::Taps;
 use super::cursor::Cursor;
@@ -9,8 +9,8 @@ use crate::error::{ratio, unwrap};
 use crate::num::{Nearer, Ratio, Residual, Tally};
 use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 
-/// Ben's spiker algorithm as the paper's tables were made with: the filter is compared one sample
-/// later and subtracted two samples later than in [`Bsa`](super::Bsa).
+/// Ben's spiker algorithm with the indices behind the paper's tables: the filter is compared one sample later, and
+/// subtracted two samples later, than in [`Bsa`](super::Bsa).
 ///
 /// With `r = x - shift`, `e1 = sum |r[i+j+1] - h[j]|` and `e2 = sum |r[i+j]|`: a spike at `i` if
 /// `e1 <= e2 * threshold`; then `r[i+j+2] -= h[j]`. The last `F` samples of a recording never spike.
@@ -18,7 +18,7 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 /// - **Threshold:** above 0 and below 4; with samples in fixed point it is rounded to a multiple of
 ///   2⁻¹⁴.
 /// - **Latency:** `F` samples. **Memory:** `4 F + 12` bytes a channel in `f32`.
-/// - **Exactness:** as [`Bsa`](super::Bsa), multiplicative; the window of `e1` begins at `i + 1`.
+/// - **Exactness:** that of a multiplicative [`Bsa`](super::Bsa), where the window of `e1` begins at `i + 1`.
 ///
 /// Source: paper, section II-B, algorithm 5.
 ///
@@ -60,7 +60,7 @@ impl<S: Sample, const F: usize> BsaToolbox<S, F> {
 
     with_shift!();
 
-    /// What part of `e2` is allowed.
+    /// The threshold: the factor of `e2`.
     pub const fn threshold(&self) -> f32 {
         self.ratio.factor()
     }
@@ -89,7 +89,7 @@ impl<S: Sample, const F: usize> BsaToolbox<S, F> {
         if !S::Residual::at_most(with, without, self.ratio) {
             return Some(Spike::None);
         }
-        // The taps begin one residual after the oldest; the last of them is left over.
+        // The first tap belongs to the residual after the oldest, so that the last one belongs to the next sample.
         let oldest = state.cursor.next();
         let kept = residuals.get(oldest).copied()?;
         subtract(cells(residuals), taps.starting_at(oldest + 1));
@@ -106,10 +106,10 @@ pub struct BsaToolboxState<S: Sample, const F: usize> {
     residuals: [S::Residual; F],
 }
 
-/// What changes with a sample, besides the residuals: kept in registers over a slice.
+/// The state besides the residuals, which a slice keeps in registers.
 #[derive(Clone, Copy, Debug)]
 struct Registers<R, const F: usize> {
-    /// The last tap of a spike just emitted, to be taken from the sample to come.
+    /// What the spike just emitted still subtracts from the next sample: its last tap, or 0 without a spike.
     owed: R,
     cursor: Cursor<F>,
     tally: Tally,
@@ -190,7 +190,7 @@ impl<S: Sample, const F: usize> Scheme for BsaToolbox<S, F> {
     decode_rate!();
 }
 
-/// Its parameters, side by side.
+/// A struct of `taps`, `threshold` and `shift`.
 #[cfg(feature = "serde")]
 impl<S: Sample + serde::Serialize, const F: usize> serde::Serialize for BsaToolbox<S, F> {
     fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {

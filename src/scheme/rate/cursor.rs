@@ -1,30 +1,30 @@
-//! Where the residuals are that a rate encoder looks ahead over.
+//! The position in the ring of residuals over which a rate encoder looks ahead.
 
-/// A place in a ring of `F` residuals: that of sample `i` stays in slot `i mod F`.
+/// The position in a ring of `F` residuals: the residual of sample `i` is in slot `i mod F`.
 ///
-/// A residual never moves and no run of memory wraps: it is the taps, twice in a row in flash, that
-/// turn until they lie beside their residuals.
+/// Residuals stay in their slots, and loops over them run from the first slot to the last: it is the taps that are
+/// rotated, so that each lies beside its residual.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cursor<const F: usize> {
-    /// The slot that is written next: of the oldest residual.
+    /// The slot that is written next, which holds the oldest residual.
     next: u16,
-    /// How many residuals are to come before the next one completes a window.
+    /// How many residuals must come before the next one completes a window.
     missing: u16,
 }
 
 impl<const F: usize> Cursor<F> {
-    /// For windows that the sample after so many completes.
+    /// An empty ring, whose first window is complete one sample after the look-ahead.
     pub(super) const fn new(look_ahead: usize) -> Self {
         Self { next: 0, missing: look_ahead as u16 }
     }
 
-    /// The slot that is written next. That it is one, the compiler sees here.
+    /// The slot that is written next. `min` shows the compiler that it is below `F`.
     #[inline]
     pub(super) fn next(self) -> usize {
         (self.next as usize).min(F - 1)
     }
 
-    /// How many residuals are to come before the next one completes a window.
+    /// How many residuals must come before the next one completes a window.
     #[inline]
     pub(super) fn missing(self) -> usize {
         self.missing as usize
@@ -36,7 +36,7 @@ impl<const F: usize> Cursor<F> {
         if slot < F { slot } else { slot - F }
     }
 
-    /// Passes the slot that was written, and says whether that completed a window.
+    /// Goes on from the slot that was written, and returns whether that completed a window.
     #[inline]
     pub(super) fn advance(&mut self) -> bool {
         let next = self.next() + 1;
@@ -53,7 +53,7 @@ impl<const F: usize> Cursor<F> {
         self.missing += 1;
     }
 
-    /// The oldest residual comes to lie in the first slot.
+    /// Starts again from the first slot, which the caller has given the oldest residual.
     #[inline]
     pub(super) fn restart(&mut self) {
         self.next = 0;

@@ -1,16 +1,16 @@
-//! How all rate codes decode: they add up the filters of the spikes.
+//! The decoder that the rate codes share: it adds up the filters of the spikes.
 
 use super::filtered::Filtered;
 use crate::num::Residual;
 use crate::{Sample, Spike};
 
-/// The state of a rate code's decoder: what the spikes so far add to the next `F` values.
+/// The state of a rate code's decoder: what past spikes add to the next `F` values.
 ///
 /// `y[i] = shift + sum over j of s[i-j] h[j]`.
 ///
 /// - **Range:** the sum takes the oldest spike first, one rounding each in `f32`; fixed point is
 ///   exact and saturates at the type's ends.
-/// - **Work:** one addition a tap for each spike, two operations for each sample without.
+/// - **Work:** one addition a tap for a sample with a spike, two operations for a sample without.
 /// - **Memory:** `4 F + 4` bytes in `f32`.
 /// - **Loss:** a lost spike is forgotten after `F` samples, so a rate decoder needs no keyframes.
 ///
@@ -19,7 +19,7 @@ use crate::{Sample, Spike};
 /// Source: paper, section II-B.
 #[derive(Clone, Copy, Debug)]
 pub struct RateDecoderState<S: Sample, const F: usize> {
-    /// From `next` on, and around.
+    /// A ring of sums, of which the one in slot `next` belongs to the next value.
     pending: [S::Residual; F],
     next: u16,
 }
@@ -44,7 +44,7 @@ impl<S: Sample, const F: usize> RateDecoderState<S, F> {
     }
 }
 
-/// The decoding half of a rate scheme's [`Scheme`](crate::Scheme), with a field `filtered`.
+/// The decoding half of a rate code's [`Scheme`](crate::Scheme), with a field `filtered`.
 macro_rules! decode_rate {
     () => {
         fn decoder_state(&self) -> RateDecoderState<S, F> {
@@ -69,8 +69,7 @@ macro_rules! decode_rate {
             spikes.len().min(values.len())
         }
 
-        /// Forgets the spikes of the past, whose filters reach into the future. A rate decoder's values come
-        /// from spikes alone.
+        /// Forgets past spikes. The value is unused, since the values of a rate code come from spikes alone.
         fn resync(&self, state: &mut RateDecoderState<S, F>, _: S) {
             *state = RateDecoderState::START;
         }

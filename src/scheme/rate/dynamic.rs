@@ -16,7 +16,7 @@ pub const LONGEST: usize = 4096;
 /// Filter taps, 1 to 4096, on the heap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Taps<S: Sample> {
-    /// Twice in a row, so that they can be read from any tap on and all around.
+    /// The taps twice in a row, so that every rotation of them is one slice.
     twice: Vec<S>,
     magnitude: S::Residual,
 }
@@ -41,31 +41,31 @@ impl<S: Sample> Taps<S> {
         self.twice.len() / 2
     }
 
-    /// The taps, turned so that the first of them is in place `slot`.
+    /// The taps, rotated so that the first is at index `slot`.
     fn starting_at(&self, slot: usize) -> &[S] {
         let length = self.length();
         let start = length.saturating_sub(slot);
         self.twice.get(start..start + length).unwrap_or_default()
     }
 
-    /// One of them that is not 0, for a rule that has no use for the others.
+    /// A filter of one tap that is not 0, with which a rule is made. The rule takes no tap from it.
     fn one(&self) -> Result<super::Taps<S, 1>, ConfigError> {
         let tap = self.twice.iter().copied().find(|&tap| tap != S::ZERO);
         super::Taps::try_new([tap.unwrap_or_default()])
     }
 }
 
-/// A place in the ring of residuals, whose length the taps know.
+/// The position in a ring of residuals, whose length is that of the taps.
 #[derive(Clone, Copy, Debug)]
-struct Place {
-    /// The slot that is written next: of the oldest residual.
+struct Cursor {
+    /// The slot that is written next, which holds the oldest residual.
     next: usize,
-    /// How many residuals are to come before the next one completes a window.
+    /// How many residuals must come before the next one completes a window.
     missing: usize,
 }
 
-impl Place {
-    /// Passes the slot that was written, and says whether that completed a window.
+impl Cursor {
+    /// Goes on from the slot that was written, and returns whether that completed a window.
     fn advance(&mut self, length: usize) -> bool {
         self.next = if self.next + 1 < length { self.next + 1 } else { 0 };
         let is_whole = self.missing == 0;
@@ -79,18 +79,18 @@ impl Place {
     }
 }
 
-/// The state of a rate code's encoder: what the spikes so far have left of the last samples.
+/// The state of a rate code's encoder: what past spikes have left of the last samples.
 #[derive(Clone, Debug)]
 pub struct RateState<S: Sample> {
     residuals: Vec<S::Residual>,
-    place: Place,
+    cursor: Cursor,
     tally: Tally,
 }
 
-/// The state of a rate code's decoder: what the spikes so far add to the values to come.
+/// The state of a rate code's decoder: what past spikes add to the next values.
 #[derive(Clone, Debug)]
 pub struct RateDecoderState<S: Sample> {
-    /// From `next` on, and around.
+    /// A ring of sums, of which the one in slot `next` belongs to the next value.
     pending: Vec<S::Residual>,
     next: usize,
 }
@@ -100,7 +100,7 @@ pub struct RateDecoderState<S: Sample> {
 pub struct Rate<S: Sample, R> {
     taps: Taps<S>,
     shift: S,
-    /// The rule, in the form of the scheme with a single tap.
+    /// The rule: the scheme of fixed length, with a single tap that is unused.
     rule: R,
 }
 
@@ -117,7 +117,7 @@ impl<S: Sample> Hough<S> {
     /// A scheme with these taps.
     ///
     /// # Errors
-    /// None: taps that exist are good.
+    /// None: every filter will do. The result is that of the other schemes.
     pub fn try_new(taps: Taps<S>) -> Result<Self, ConfigError> {
         Ok(Self { rule: hough::Hough::new(taps.one()?), taps, shift: S::ZERO })
     }
@@ -145,10 +145,10 @@ impl<S: Sample> Bsa<S> {
     }
 }
 
-/// What [`Rate`] and [`BsaToolbox`] share: taps and shift, and the decoder, which is the same.
+/// The methods that [`Rate`] and [`BsaToolbox`] share: taps, shift and encoder.
 macro_rules! filtered {
     () => {
-        /// With the signal's minimum, 0 unless told.
+        /// Sets the shift, the signal's minimum; 0 by default.
         ///
         /// # Errors
         /// The shift is not finite, or beyond ±10³¹ in `f32`.
@@ -174,6 +174,7 @@ macro_rules! filtered {
     };
 }
 
+/// The decoding half of the [`Scheme`] of [`Rate`] and [`BsaToolbox`].
 macro_rules! decode {
     () => {
         fn decoder_state(&self) -> RateDecoderState<S> {
@@ -194,7 +195,7 @@ macro_rules! decode {
             self.shift.restore(sum)
         }
 
-        /// Forgets the spikes of the past. A rate decoder's values come from spikes alone.
+        /// Forgets past spikes. The value is unused, since the values of a rate code come from spikes alone.
         fn resync(&self, state: &mut RateDecoderState<S>, _: S) {
             *state = self.decoder_state();
         }
@@ -205,20 +206,21 @@ macro_rules! decode {
 impl<S: Sample, R: Rule<S, 1>> Rate<S, R> {
     filtered!();
 
-    /// The state of an encoder that has seen nothing.
+    /// The state of an encoder before its first sample.
     pub fn state(&self) -> RateState<S> {
         let length = self.taps.length();
         RateState {
             residuals: vec![S::Residual::ZERO; length],
-            place: Place { next: 0, missing: length - 1 },
+            cursor: Cursor { next: 0, missing: length - 1 },
             tally: Tally::NONE,
         }
     }
 
-    /// The spike of the oldest residual, first tap first and with what is there of the window.
+    /// The spike of the oldest residual, decided from the first tap on. At the end of a recording the window is
+    /// shorter than the filter.
     fn decide_in_order(&self, state: &mut RateState<S>) -> Option<Spike> {
         let Taps { magnitude, .. } = self.taps;
-        let (oldest, missing) = (state.place.oldest(self.taps.length()), state.place.missing);
+        let (oldest, missing) = (state.cursor.oldest(self.taps.length()), state.cursor.missing);
         let residuals = cells(&mut state.residuals);
         decide_in_order(&self.rule, self.taps.as_slice(), magnitude, residuals, oldest, missing)
     }
@@ -241,14 +243,14 @@ impl<S: Sample, R: Rule<S, 1>> Scheme for Rate<S, R> {
             return None;
         }
         let magnitude = self.taps.magnitude;
-        *state.residuals.get_mut(state.place.next)? = sample.residual(self.shift, magnitude);
-        if !state.place.advance(self.taps.length()) {
+        *state.residuals.get_mut(state.cursor.next)? = sample.residual(self.shift, magnitude);
+        if !state.cursor.advance(self.taps.length()) {
             return None;
         }
         if R::IN_ORDER {
             return self.decide_in_order(state);
         }
-        let taps = self.taps.starting_at(state.place.next);
+        let taps = self.taps.starting_at(state.cursor.next);
         let residuals = cells(&mut state.residuals);
         if !self.rule.fits(magnitude, pairs(residuals, taps), true) {
             return Some(Spike::None);
@@ -258,10 +260,10 @@ impl<S: Sample, R: Rule<S, 1>> Scheme for Rate<S, R> {
     }
 
     fn finish_next(&self, state: &mut RateState<S>) -> Option<Spike> {
-        if state.place.missing + 1 >= self.taps.length() {
+        if state.cursor.missing + 1 >= self.taps.length() {
             return None;
         }
-        state.place.missing += 1;
+        state.cursor.missing += 1;
         self.decide_in_order(state)
     }
 
@@ -288,8 +290,8 @@ pub struct BsaToolbox<S: Sample> {
 #[derive(Clone, Debug)]
 pub struct BsaToolboxState<S: Sample> {
     residuals: Vec<S::Residual>,
-    place: Place,
-    /// The last tap of a spike just emitted, to be taken from the sample to come.
+    cursor: Cursor,
+    /// What the spike just emitted still subtracts from the next sample: its last tap, or 0 without a spike.
     owed: S::Residual,
     tally: Tally,
 }
@@ -306,12 +308,12 @@ impl<S: Sample> BsaToolbox<S> {
 
     filtered!();
 
-    /// The state of an encoder that has seen nothing.
+    /// The state of an encoder before its first sample.
     pub fn state(&self) -> BsaToolboxState<S> {
         let length = self.taps.length();
         BsaToolboxState {
             residuals: vec![S::Residual::ZERO; length],
-            place: Place { next: 0, missing: length },
+            cursor: Cursor { next: 0, missing: length },
             owed: S::Residual::ZERO,
             tally: Tally::NONE,
         }
@@ -336,16 +338,16 @@ impl<S: Sample> Scheme for BsaToolbox<S> {
         let residual = sample.residual(self.shift, self.taps.magnitude).minus(state.owed);
         state.owed = S::Residual::ZERO;
         let without = bsa_toolbox::without_filter(&state.residuals);
-        *state.residuals.get_mut(state.place.next)? = residual;
-        if !state.place.advance(self.taps.length()) {
+        *state.residuals.get_mut(state.cursor.next)? = residual;
+        if !state.cursor.advance(self.taps.length()) {
             return None;
         }
-        let oldest = state.place.next;
+        let oldest = state.cursor.next;
         let with = bsa_toolbox::with_filter(&state.residuals, self.taps.starting_at(oldest));
         if !S::Residual::at_most(with, without, self.ratio) {
             return Some(Spike::None);
         }
-        // The taps begin one residual after the oldest; the last of them is left over.
+        // The first tap belongs to the residual after the oldest, so that the last one belongs to the next sample.
         let kept = state.residuals.get(oldest).copied()?;
         subtract(cells(&mut state.residuals), self.taps.starting_at(oldest + 1));
         *state.residuals.get_mut(oldest)? = kept;
@@ -355,10 +357,10 @@ impl<S: Sample> Scheme for BsaToolbox<S> {
 
     /// The last samples, as many as there are taps, never spike.
     fn finish_next(&self, state: &mut BsaToolboxState<S>) -> Option<Spike> {
-        if state.place.missing >= self.taps.length() {
+        if state.cursor.missing >= self.taps.length() {
             return None;
         }
-        state.place.missing += 1;
+        state.cursor.missing += 1;
         Some(Spike::None)
     }
 

@@ -1,4 +1,4 @@
-//! How the rate codes encode: each has its own rule for when the filter fits.
+//! The encoder that the rate codes share; each code adds its rule for when a sample spikes.
 
 use core::cell::Cell;
 use core::hint::black_box;
@@ -8,19 +8,20 @@ use super::filtered::Filtered;
 use crate::num::{Residual, Tally};
 use crate::{Sample, Spike};
 
-/// When a filter fits under the signal.
+/// A rate code's rule for when a sample spikes.
 pub(super) trait Rule<S: Sample, const F: usize> {
-    /// Whether it is settled early where it goes from the first tap on. If not, whole windows go from
-    /// the first slot on in both forms.
+    /// Whether slices are decided from the first tap on, which settles this rule early. If false, samples and
+    /// slices are both decided from the first slot on.
     const IN_ORDER: bool;
 
-    /// Whether it keeps a sum in a register from tap to tap.
+    /// Whether the rule keeps a sum in a register from tap to tap.
     const KEEPS_A_SUM: bool;
 
+    /// The filter and the shift.
     fn filtered(&self) -> &Filtered<S, F>;
 
-    /// Whether the sample spikes, given the residuals from it on, each with its tap. `magnitude` is the sum
-    /// of these taps' magnitudes; `is_whole` is false where the recording ends within the filter.
+    /// Whether the sample spikes. `pairs` are the residuals from that sample on, each with its tap; `magnitude` is
+    /// the sum of these taps' magnitudes; `is_whole` is false where the recording ends within the filter.
     fn fits(
         &self,
         magnitude: S::Residual,
@@ -28,7 +29,8 @@ pub(super) trait Rule<S: Sample, const F: usize> {
         is_whole: bool,
     ) -> bool;
 
-    /// Whether a whole window spikes, given from the first slot on; `None` if that order cannot tell.
+    /// Whether the sample spikes, with the pairs of a whole window in the order of the slots; `None` if the result
+    /// depends on the order.
     fn fits_by_slot(
         &self,
         magnitude: S::Residual,
@@ -36,11 +38,11 @@ pub(super) trait Rule<S: Sample, const F: usize> {
     ) -> Option<bool>;
 }
 
-/// The state of a rate code's encoder: what the spikes so far have left of the last `F` samples.
+/// The state of a rate code's encoder: what past spikes have left of the last `F` samples.
 ///
 /// `4 F + 8` bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
-#[repr(C)] // residuals not at the beginning, or loops over them take two more instructions a turn
+#[repr(C)] // loops over residuals at the very start would take two more instructions a turn
 pub struct RateState<S: Sample, const F: usize> {
     cursor: Cursor<F>,
     tally: Tally,
@@ -55,7 +57,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         self.tally.rejected()
     }
 
-    /// Takes up a sample, and returns the slot of its residual if that completes a window.
+    /// Stores the residual of a sample, and returns its slot if that completes a window.
     #[inline]
     fn take(&mut self, filtered: &Filtered<S, F>, sample: S) -> Option<usize> {
         if !sample.is_finite() {
@@ -67,7 +69,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         self.cursor.advance().then_some(slot)
     }
 
-    /// Encodes a sample with the residuals where they are.
+    /// Encodes a sample, with the residuals in their ring.
     #[inline(always)]
     pub(super) fn encode(&mut self, rule: &impl Rule<S, F>, sample: S) -> Option<Spike> {
         let slot = self.take(rule.filtered(), sample)?;
@@ -84,8 +86,8 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         }
     }
 
-    /// [`encode`](Self::encode), called: the criteria of BSA in fixed point make one loop each, and the
-    /// compiler would put each into a loop over samples of its own.
+    /// [`encode`](Self::encode) as a call. In fixed point each criterion of BSA has its own loop over taps, for each
+    /// of which the compiler would repeat the loop over samples.
     #[inline(never)]
     fn encode_called(&mut self, rule: &impl Rule<S, F>, sample: S) -> Option<Spike> {
         self.encode(rule, sample)
@@ -130,11 +132,11 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         length
     }
 
-    /// Encodes the first samples, about three filters of them and none that is not finite, and returns
-    /// how many. Each must complete a window.
+    /// Encodes up to about three filter lengths of samples, ends before one that is not finite, and returns how many
+    /// it has encoded. Each must complete a window.
     ///
-    /// Residuals lie in one line of memory, four filters long on the stack, where windows do not
-    /// wrap: the taps do not turn, and stay in registers.
+    /// The residuals lie in a line of four filter lengths on the stack, where windows do not wrap: the taps need no
+    /// rotation and stay in registers.
     #[inline(never)]
     fn encode_line<R: Rule<S, F>>(
         &mut self,
@@ -154,14 +156,14 @@ impl<S: Sample, const F: usize> RateState<S, F> {
             (line.get(oldest + F..).unwrap_or_default(), after.windows(F))
         };
         let mut length = samples.len().min(spikes.len()).min(newest.len());
-        // A Cortex-M0, which alone has no atomic exchange, has too few registers for it to pay for every rule.
+        // A Cortex-M0, the only core without atomic exchange, has too few registers unless the rule keeps a sum.
         let takes_ahead =
             S::Residual::IS_EXACT && (R::KEEPS_A_SUM || cfg!(target_has_atomic = "32"));
         if takes_ahead {
-            // In a loop of its own, as the limits of a residual take registers that the next one needs.
+            // In a loop of its own, as the limits of a residual take registers that the next loop needs.
             for (residual, &sample) in newest.iter().zip(samples).take(length) {
                 residual.set(sample.residual(shift, magnitude));
-                black_box(()); // or the compiler would write out four turns
+                black_box(()); // keeps the compiler from unrolling the loop
             }
         }
         let all = spikes.iter_mut().zip(samples).zip(windows);
@@ -186,7 +188,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         length
     }
 
-    /// The spike of the oldest residual, in order and with what is there of the window.
+    /// The spike of the oldest residual, decided from the first tap on; see [`decide_in_order`].
     #[cold]
     #[inline(never)]
     fn encode_apart(&mut self, rule: &impl Rule<S, F>) -> Option<Spike> {
@@ -205,8 +207,8 @@ impl<S: Sample, const F: usize> RateState<S, F> {
     }
 }
 
-/// The spike of the residual in the slot `oldest`, first tap first, and with all but the last `missing` taps where
-/// the recording ends within the filter.
+/// The spike of the residual in the slot `oldest`, decided from the first tap on. Where the recording ends within the
+/// filter, the last `missing` taps are left out.
 #[inline(always)]
 pub(super) fn decide_in_order<S: Sample, const F: usize>(
     rule: &impl Rule<S, F>,
@@ -233,7 +235,7 @@ pub(super) fn decide_in_order<S: Sample, const F: usize>(
     Some(Spike::Up)
 }
 
-/// Residuals, each with the tap beside it.
+/// Residuals, each with its tap.
 #[inline(always)]
 pub(super) fn pairs<S: Sample>(
     residuals: &[Cell<S::Residual>],
@@ -242,13 +244,13 @@ pub(super) fn pairs<S: Sample>(
     residuals.iter().zip(taps).map(|(residual, tap)| (residual.get(), tap.widen()))
 }
 
-/// Residuals, for windows that overlap.
+/// Residuals as cells, so that windows that overlap can be written to.
 #[inline]
 pub(super) fn cells<R>(residuals: &mut [R]) -> &[Cell<R>] {
     Cell::from_mut(residuals).as_slice_of_cells()
 }
 
-/// Subtracts from every residual the tap beside it.
+/// Subtracts its tap from each residual.
 #[inline(always)]
 pub(super) fn subtract<S: Sample>(residuals: &[Cell<S::Residual>], taps: &[S]) {
     for (residual, tap) in residuals.iter().zip(taps) {
@@ -256,8 +258,7 @@ pub(super) fn subtract<S: Sample>(residuals: &[Cell<S::Residual>], taps: &[S]) {
     }
 }
 
-/// The [`Scheme`](crate::Scheme) of a rate code that looks ahead over whole filters: it has a field
-/// `filtered`, and this is its rule.
+/// Implements [`Scheme`](crate::Scheme) for a rate code that implements [`Rule`] and has a field `filtered`.
 macro_rules! rate_scheme {
     ($scheme:ident) => {
         impl<S: Sample, const F: usize> Start for $scheme<S, F> {

@@ -1,4 +1,4 @@
-//! The filters of the rate codes.
+//! Filter taps of the rate codes: the user's own, or a triangular, Hann or Gaussian shape.
 
 use crate::error::{LARGEST_STEP, finite, positive, unwrap};
 use crate::num::curve::{exp, sin_pi};
@@ -7,8 +7,8 @@ use crate::{ConfigError, Sample, SampleKind};
 
 /// `F` filter taps, 1 to 4096.
 ///
-/// **Memory:** `8 F + 4` bytes in `f32`, in the scheme that owns them: each tap is there twice, so that a
-/// window that wraps meets them in one run of memory.
+/// **Memory:** `8 F + 4` bytes in `f32`, in the scheme that owns them: the taps are stored twice in a row, so that
+/// every rotation of them is one slice.
 ///
 /// ```
 /// use spikewire::rate::Taps;
@@ -31,7 +31,7 @@ use crate::{ConfigError, Sample, SampleKind};
     serde(transparent, bound = "S: serde::Serialize")
 )]
 pub struct Taps<S: Sample, const F: usize> {
-    /// Twice in a row, so that they can be read from any tap on and all around.
+    /// The taps twice in a row, so that every rotation of them is one slice.
     #[cfg_attr(feature = "serde", serde(serialize_with = "once"))]
     twice: [[S; F]; 2],
     /// The sum of the magnitudes.
@@ -46,7 +46,7 @@ impl<S: Sample + defmt::Format, const F: usize> defmt::Format for Taps<S, F> {
     }
 }
 
-/// Taps without their repetition.
+/// Writes the taps once.
 #[cfg(feature = "serde")]
 fn once<T: serde::Serialize, S: serde::Serializer, const F: usize>(
     [taps, _]: &[[T; F]; 2],
@@ -66,7 +66,7 @@ pub enum Shape {
     Hann,
     /// As MATLAB's `gausswin(n, alpha)`: `exp(-½ (alpha (2k - n + 1) / (n - 1))²)`.
     Gaussian {
-        /// The reciprocal of the width; MATLAB takes 2.5 by default.
+        /// The reciprocal of the width, above 0; MATLAB takes 2.5 by default.
         alpha: f64,
     },
 }
@@ -151,8 +151,8 @@ pub(super) const fn magnitude<S: Sample>(taps: &[S]) -> Result<S::Residual, Conf
     }
 }
 
-/// What must hold for taps that sum up to `magnitude`. Sixteen bits widen to 32 when summed; wider types
-/// must hold the sum themselves.
+/// Checks the sum of the taps' magnitudes. Sums of 16-bit taps have 32 bits, so they always fit; those of wider
+/// types must fit the type.
 const fn check_magnitude<S: Sample>(magnitude: f64) -> Result<(), ConfigError> {
     let largest = to_f64(from_f64::<S>(LARGEST_STEP as f64));
     if magnitude == 0.0 {
@@ -177,7 +177,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
     /// The user's own taps, of any sign. For constants, where bad taps fail the build.
     ///
     /// # Panics
-    /// As [`try_new`](Self::try_new) fails.
+    /// [`try_new`](Self::try_new) returns an error.
     pub const fn new(taps: [S; F]) -> Self {
         unwrap(Self::try_new(taps))
     }
@@ -198,7 +198,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
     /// A shape, scaled and rounded to the sample type. For constants, where a bad scale fails the build.
     ///
     /// # Panics
-    /// As [`try_shaped`](Self::try_shaped) fails.
+    /// [`try_shaped`](Self::try_shaped) returns an error.
     pub const fn shaped(shape: Shape, scale: Scale<S>) -> Self {
         unwrap(Self::try_shaped(shape, scale))
     }
@@ -206,7 +206,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
     /// A shape, scaled and rounded to the sample type.
     ///
     /// # Errors
-    /// The scale is not above 0 and finite, or as for [`try_new`](Self::try_new).
+    /// The scale or `alpha` is not above 0 and finite, or the taps are refused by [`try_new`](Self::try_new).
     pub const fn try_shaped(shape: Shape, scale: Scale<S>) -> Result<Self, ConfigError> {
         let (is_sum, target) = match scale {
             Scale::Peak(peak) => (false, to_f64(peak)),
@@ -231,7 +231,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
     /// build.
     ///
     /// # Panics
-    /// As [`try_triangular`](Self::try_triangular) fails.
+    /// [`try_triangular`](Self::try_triangular) returns an error.
     pub const fn triangular(peak: S) -> Self {
         unwrap(Self::try_triangular(peak))
     }
@@ -250,7 +250,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
         taps
     }
 
-    /// The taps, turned so that the first of them is in place `slot`, which is at most `F`.
+    /// The taps, rotated so that the first is at index `slot`, which is at most `F`.
     #[inline]
     pub(super) fn starting_at(&self, slot: usize) -> &[S; F] {
         let turned = self.twice.as_flattened().get(F.wrapping_sub(slot)..);
@@ -264,7 +264,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
     }
 }
 
-/// A sum of taps, as the residuals have it.
+/// A sum of taps, as a residual.
 const fn sum<S: Sample>(value: f64) -> S::Residual {
     match S::KIND {
         SampleKind::F32 => word((value as f32).to_bits() as u64),

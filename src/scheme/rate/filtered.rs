@@ -19,7 +19,7 @@ impl<S: Sample, const F: usize> Filtered<S, F> {
         Self { taps, shift: S::ZERO }
     }
 
-    /// Finite, and within ±10³¹ in `f32`.
+    /// Sets the shift, which must be finite, and within ±10³¹ in `f32`.
     pub(super) const fn try_with_shift(self, shift: S) -> Result<Self, ConfigError> {
         match offset("shift", to_f64(shift)) {
             Ok(()) => Ok(Self { shift, ..self }),
@@ -34,7 +34,7 @@ impl<S: Sample, const F: usize> Filtered<S, F> {
     }
 }
 
-/// The constructors of the shift, for a scheme with a field `filtered`.
+/// The methods of taps and shift, for a scheme with a field `filtered`.
 macro_rules! with_shift {
     () => {
         /// Sets the shift, the signal's minimum; 0 by default. For constants, where a bad shift fails the build.

@@ -7,10 +7,10 @@ use super::filtered::{Filtered, with_shift};
 use crate::error::unwrap;
 use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 
-/// The Hough spike algorithm.
+/// The Hough spike algorithm (HSA).
 ///
 /// With `r = x - shift`: a spike at `i` if `r[i+j] >= h[j]` for all `j`; then `r[i+j] -= h[j]`.
-/// At the end of a recording a window that is cut never spikes.
+/// The last `F - 1` samples of a recording, over which the filter does not fit, never spike.
 ///
 /// - **Latency:** `F - 1` samples. **Memory:** `4 F + 8` bytes a channel in `f32`, and `16 F` of
 ///   stack for slices.

@@ -1,13 +1,12 @@
 //! Rate codes: spikes whose convolution with a filter gives the signal back.
 //!
-//! All work on `r = x - shift`, look ahead over the filter, and subtract the filter from the
-//! residual at every spike. `shift` is the signal's minimum, from a
-//! [`Calibration`](crate::Calibration). One decoder serves them all, [`RateDecoderState`].
+//! Each looks ahead over the filter, and at every spike subtracts the filter from the residual `r`, which starts
+//! as `x - shift`. `shift` is the signal's minimum, from a [`Calibration`](crate::Calibration). They share one
+//! decoder, [`RateDecoderState`].
 //!
-//! A residual in 32-bit fixed point is exact while `|x - shift|` stays within the type's maximum
-//! less the sum of the taps' magnitudes; beyond, it saturates there. In 16 bits it is always exact.
-//! In `f32` neither the shift nor all taps together reach beyond 10³¹, so that no residual becomes
-//! infinite, whatever the sample.
+//! **Range.** 16-bit residuals are always exact. 32-bit fixed point is exact while `|x - shift|` is at most the
+//! type's maximum minus the sum of the taps' magnitudes, and saturates there. In `f32` the shift and the sum of the
+//! taps' magnitudes are limited to 10³¹, so that no sample makes a residual infinite.
 
 // A decision and the subtraction after it share what they load only where both are inlined.
 #![allow(clippy::inline_always)]

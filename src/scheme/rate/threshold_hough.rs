@@ -1,4 +1,4 @@
-//! Threshold Hough spiker (T-HSA): a spike where the filter fits under the signal, nearly.
+//! Threshold Hough spiker (T-HSA): a spike where the filter exceeds the signal by a threshold at most.
 
 use super::Taps;
 use super::decoder::{RateDecoderState, decode_rate};
@@ -8,7 +8,7 @@ use crate::error::{not_negative, unwrap};
 use crate::num::{Shortfall, to_f64};
 use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 
-/// The threshold Hough spike algorithm.
+/// The threshold Hough spike algorithm (T-HSA).
 ///
 /// With `r = x - shift` and `error = sum over j of max(0, h[j] - r[i+j])`: a spike at `i` if
 /// `error <= threshold`; then `r[i+j] -= h[j]`. Samples past the end of a recording add
@@ -62,7 +62,7 @@ impl<S: Sample, const F: usize> ThresholdHough<S, F> {
 
     with_shift!();
 
-    /// The error that is allowed, in the samples' unit.
+    /// The largest error at which a sample spikes, in the samples' unit.
     pub const fn threshold(&self) -> S {
         self.threshold
     }
@@ -100,7 +100,7 @@ impl<S: Sample, const F: usize> Rule<S, F> for ThresholdHough<S, F> {
 
 rate_scheme!(ThresholdHough);
 
-/// Its parameters, side by side.
+/// A struct of `taps`, `threshold` and `shift`.
 #[cfg(feature = "serde")]
 impl<S: Sample + serde::Serialize, const F: usize> serde::Serialize for ThresholdHough<S, F> {
     fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
