@@ -55,6 +55,12 @@ impl Message {
             ConfigError::AllZero { parameter } => {
                 message.text(parameter).text(" are all 0; at least one must not be")
             }
+            ConfigError::EmptyCell { cell, cells } => message
+                .text("number ")
+                .integer(cell as u64)
+                .text(" of the ")
+                .integer(cells as u64)
+                .text(" cells must hold a sample: a wider range, fewer cells"),
             ConfigError::TooFewSamples { needed, .. } => {
                 message.text("a calibration needs samples, at least ").integer(needed as u64)
             }
@@ -168,6 +174,10 @@ mod tests {
             (
                 ConfigError::AllZero { parameter: "filter taps" },
                 "filter taps are all 0; at least one must not be",
+            ),
+            (
+                ConfigError::EmptyCell { cell: 3, cells: 16 },
+                "number 3 of the 16 cells must hold a sample: a wider range, fewer cells",
             ),
             (
                 ConfigError::TooFewSamples { seen: 2, needed: 3 },

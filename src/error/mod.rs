@@ -63,6 +63,14 @@ pub enum ConfigError {
         /// Which parameter.
         parameter: &'static str,
     },
+    /// A cell holds no sample: the sample type is too coarse for so many cells, or an edge lies outside the
+    /// range.
+    EmptyCell {
+        /// Which cell, from 0, the lowest.
+        cell: usize,
+        /// How many there are.
+        cells: usize,
+    },
     /// A calibration has seen too few samples.
     TooFewSamples {
         /// How many it has seen.
@@ -94,6 +102,11 @@ impl fmt::Display for ConfigError {
             Self::AllZero { parameter } => {
                 write!(f, "{parameter} are all 0; at least one must not be")
             }
+            Self::EmptyCell { cell, cells } => write!(
+                f,
+                "number {cell} of the {cells} cells must hold a sample: use a wider range or fewer cells, and \
+                 edges within the range"
+            ),
             Self::TooFewSamples { seen, needed } => {
                 write!(f, "the calibration has seen {seen} samples and needs at least {needed}")
             }
@@ -165,6 +178,25 @@ pub(crate) const fn ratio(parameter: &'static str, value: f32) -> Result<(), Con
     const STEP: f32 = 1.0 / 16_384.0;
     const MAX: f32 = 4.0 - STEP;
     within(parameter, value as f64, STEP, MAX)
+}
+
+/// `min < max`, both finite.
+pub(crate) const fn range(min: f64, max: f64) -> Result<(), ConfigError> {
+    match (finite("min", min), finite("max", max)) {
+        (Err(error), _) | (_, Err(error)) => Err(error),
+        _ if min < max => Ok(()),
+        _ => Err(not_rising("min and max", 1, max, min)),
+    }
+}
+
+/// That a value does not exceed the one before.
+pub(crate) const fn not_rising(
+    parameter: &'static str,
+    index: usize,
+    value: f64,
+    previous: f64,
+) -> ConfigError {
+    ConfigError::NotRising { parameter, index, value: value as f32, previous: previous as f32 }
 }
 
 /// Finite.

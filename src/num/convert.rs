@@ -67,6 +67,21 @@ pub(crate) const fn floor_from_f64<S: Sample>(value: f64) -> S {
     }
 }
 
+/// The largest value of the type that is below `value`, saturating.
+pub(crate) const fn below_from_f64<S: Sample>(value: f64) -> S {
+    match S::KIND {
+        SampleKind::F32 => {
+            let nearest = value as f32;
+            let below = if nearest as f64 >= value { nearest.next_down() } else { nearest };
+            word(below.to_bits() as u64)
+        }
+        SampleKind::Fixed16 { fraction } | SampleKind::Fixed32 { fraction } => {
+            // The floor below a value is the negative of the floor above its negative, less 1.
+            integer((-1_i64).saturating_sub(floor(-value * power_of_two(fraction))))
+        }
+    }
+}
+
 /// The number of 2, 4 or 8 bytes with these low bits.
 pub(crate) const fn word<T: Pod>(bits: u64) -> T {
     // Repeated, so that the first bytes hold the number on machines of either byte order.

@@ -1,6 +1,7 @@
 //! The coding schemes: how samples become spikes, and spikes samples.
 
 mod calibrate;
+mod cells;
 mod code;
 mod codec;
 #[cfg(feature = "alloc")]

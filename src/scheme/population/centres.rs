@@ -2,10 +2,10 @@
 
 use core::ops::RangeInclusive;
 
-use super::search::count_preceding;
-use crate::error::finite;
+use crate::error::{finite, not_rising, range};
 use crate::num::curve::normal_quantile;
-use crate::num::{Cells, cell, cells, floor_from_f64, from_f64, to_f64, units};
+use crate::num::{floor_from_f64, from_f64, to_f64};
+use crate::scheme::cells::Partition;
 use crate::{ConfigError, Sample, SampleKind};
 
 /// The centres of `M` neurons, 3 to 1024, and the edges halfway between them.
@@ -13,49 +13,7 @@ use crate::{ConfigError, Sample, SampleKind};
 /// A value belongs to the neuron whose centre is nearest, exactly, in every sample type: halfway between two centres
 /// to the lower one, outside the range to the neuron at that end. Even centres are compared unrounded, others as
 /// rounded to the sample type.
-///
-/// - **Memory:** the centres, as many edges, `2 M` bytes for a table of even cells, and 8 bytes.
-/// - **Work:** one multiplication finds the cell of a value, a table gives the lowest neuron of that cell, and one
-///   comparison with an edge decides between it and the next. A binary search takes their place where two edges
-///   share a cell, as with Gaussian-spaced centres from about 140 on or the user's own, with more than 256 neurons,
-///   and for `f32` without a float unit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize),
-    serde(transparent, bound = "S: serde::Serialize")
-)]
-pub(super) struct Centres<S, const M: usize> {
-    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array"))]
-    values: [S; M],
-    /// `edges[i]` is the largest value that still belongs to neuron `i`; the last is not used.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    edges: [S; M],
-    #[cfg_attr(feature = "serde", serde(skip))]
-    cells: Cells,
-    /// For each cell, the number (from 1) of the lowest neuron to which one of its values belongs.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    starts: [[u8; 2]; M],
-}
-
-/// `min < max`, both finite.
-pub(super) const fn check_range(min: f64, max: f64) -> Result<(), ConfigError> {
-    match (finite("min", min), finite("max", max)) {
-        (Err(error), _) | (_, Err(error)) => Err(error),
-        _ if min < max => Ok(()),
-        _ => Err(not_rising("min and max", 1, max, min)),
-    }
-}
-
-const fn not_rising(
-    parameter: &'static str,
-    index: usize,
-    value: f64,
-    previous: f64,
-) -> ConfigError {
-    ConfigError::NotRising { parameter, index, value: value as f32, previous: previous as f32 }
-}
+pub(super) type Centres<S, const M: usize> = Partition<S, M>;
 
 /// The midpoint of two doubles, rounded down: that of two `f32` of very different size may be no double.
 const fn halfway(low: f64, high: f64) -> f64 {
@@ -111,13 +69,6 @@ const fn gaussian_centre(min: f64, max: f64, i: usize, m: usize) -> f64 {
     if mirrored == i { middle + offset } else { middle - offset }
 }
 
-/// The number (from 1) of the neuron that a finite value belongs to, given the edges of all neurons but the last.
-#[allow(clippy::inline_always)]
-#[inline(always)] // it has one caller for each scheme
-pub(super) fn nearest_by_search<S: Sample>(edges: &[S], value: S) -> usize {
-    1 + count_preceding(edges.len(), |i| edges.get(i).is_some_and(|&edge| value.is_beyond(edge)))
-}
-
 /// Sets each edge but the last to the largest value not above halfway between two centres.
 ///
 /// # Errors
@@ -155,12 +106,12 @@ pub(super) const fn halfway_edges<S: Sample>(
 /// The ends are not finite, or do not rise, or the sample type is too coarse to tell the centres apart.
 #[allow(clippy::indexing_slicing)] // constants have no iterators
 pub(super) const fn even<S: Sample>(
-    range: &RangeInclusive<S>,
+    over: &RangeInclusive<S>,
     centres: &mut [S],
     edges: &mut [S],
 ) -> Result<(), ConfigError> {
-    let (min, max) = (to_f64(*range.start()), to_f64(*range.end()));
-    if let Err(error) = check_range(min, max) {
+    let (min, max) = (to_f64(*over.start()), to_f64(*over.end()));
+    if let Err(error) = range(min, max) {
         return Err(error);
     }
     let count = centres.len();
@@ -186,11 +137,11 @@ pub(super) const fn even<S: Sample>(
 /// The ends are not finite, or do not rise.
 #[allow(clippy::indexing_slicing)] // constants have no iterators
 pub(super) const fn gaussian_spaced<S: Sample>(
-    range: &RangeInclusive<S>,
+    over: &RangeInclusive<S>,
     centres: &mut [S],
 ) -> Result<(), ConfigError> {
-    let (min, max) = (to_f64(*range.start()), to_f64(*range.end()));
-    if let Err(error) = check_range(min, max) {
+    let (min, max) = (to_f64(*over.start()), to_f64(*over.end()));
+    if let Err(error) = range(min, max) {
         return Err(error);
     }
     let count = centres.len();
@@ -218,7 +169,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
         if let Err(error) = halfway_edges(&values, &mut edges) {
             return Err(error);
         }
-        Ok(Self::with_cells(values, edges))
+        Ok(Self::new(values, edges, M))
     }
 
     /// Even centres over a range, half a spacing beyond it at either end:
@@ -231,7 +182,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
         let mut values = [S::ZERO; M];
         let mut edges = [S::ZERO; M];
         match even(range, &mut values, &mut edges) {
-            Ok(()) => Ok(Self::with_cells(values, edges)),
+            Ok(()) => Ok(Self::new(values, edges, M)),
             Err(error) => Err(error),
         }
     }
@@ -250,70 +201,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
         }
     }
 
-    /// Builds the table of cells; a single cell if two edges share one.
-    const fn with_cells(values: [S; M], edges: [S; M]) -> Self {
-        let lowest = units(edges[0]);
-        let count = 2 * M;
-        let width = (units(edges[M - 2]) - lowest) / (count - 1) as f64;
-        let cells = cells::<S>(lowest - width / 16.0, width, count);
-        let mut starts = [[1; 2]; M];
-        let mut edge = 0;
-        let mut i = 0;
-        while i < count && edge < u8::MAX as usize {
-            starts[i / 2][i % 2] = edge as u8 + 1;
-            if edge < M - 1 && cell(cells, edges[edge]) == i {
-                edge += 1;
-            }
-            i += 1;
-        }
-        // Otherwise two edges share a cell, or there are more neurons than a byte of the table can number.
-        let cells = if edge == M - 1 && i == count { cells } else { Cells::ONE };
-        Self { values, edges, cells, starts }
-    }
-
-    /// The number (from 1) of the neuron that a finite value belongs to.
-    #[inline]
-    pub(super) fn nearest(&self, value: S) -> usize {
-        if self.has_cells() { self.by_cell(value) } else { self.by_search(value) }
-    }
-
-    /// Whether [`by_cell`](Self::by_cell) finds the neuron of every value.
-    #[inline]
-    pub(super) fn has_cells(&self) -> bool {
-        S::HAS_CELLS && !self.cells.is_one()
-    }
-
-    /// [`nearest`](Self::nearest) by the table of cells; 1 for NaN.
-    #[inline]
-    pub(super) fn by_cell(&self, value: S) -> usize {
-        let cell = value.cell(self.cells);
-        // A value above all cells belongs to the last neuron.
-        let lowest = self.starts.as_flattened().get(cell).copied().map_or(M, usize::from);
-        let is_beyond = self.edges().get(lowest.wrapping_sub(1)).is_some_and(|&edge| value > edge);
-        if is_beyond { lowest.wrapping_add(1) } else { lowest }
-    }
-
-    /// [`nearest`](Self::nearest) by binary search.
-    #[inline(never)] // the search is unrolled, and one copy is enough
-    pub(super) fn by_search(&self, value: S) -> usize {
-        nearest_by_search(self.edges(), value)
-    }
-
-    /// The edges of all neurons but the last, which has none.
-    #[inline]
-    fn edges(&self) -> &[S] {
-        self.edges.get(..M - 1).unwrap_or_default()
-    }
-
-    pub(super) fn get(&self, neuron: usize) -> Option<S> {
-        self.values.get(neuron).copied()
-    }
-
     pub(super) fn middle(&self) -> S {
         self.get(M / 2).unwrap_or(S::ZERO)
-    }
-
-    pub(super) const fn as_array(&self) -> &[S; M] {
-        &self.values
     }
 }

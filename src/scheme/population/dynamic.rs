@@ -5,13 +5,13 @@ use core::ops::RangeInclusive;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::centres::{even, gaussian_spaced, halfway_edges, nearest_by_search};
+use super::centres::{even, gaussian_spaced, halfway_edges};
 use super::fields::tables;
 use super::held::Held;
-use super::search::count_preceding;
 use super::{Neuron, PositionState, SlotSpikes, SlotsState};
 use crate::error::{positive, within};
 use crate::num::{Cells, Distance, reach};
+use crate::scheme::cells::{count_preceding, number_by_search};
 use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
 
 /// The most neurons of a population.
@@ -106,7 +106,7 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
             state.tally.reject();
             return None;
         }
-        Neuron::counted(nearest_by_search(&self.edges, sample) as u16)
+        Neuron::counted(number_by_search(&self.edges, sample) as u16)
     }
 
     fn rejected(state: &PositionState) -> u32 {

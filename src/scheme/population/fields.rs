@@ -7,10 +7,10 @@ use core::ops::RangeInclusive;
 #[cfg(feature = "rand")]
 use super::FiredNeurons;
 use super::centres::{Centres, even_centre};
-use super::search::count_preceding;
 use crate::error::positive;
 use crate::num::curve::{ln, sqrt};
 use crate::num::{Cells, Distance, cell, cells, near, reach, top, units};
+use crate::scheme::cells::count_preceding;
 use crate::{ConfigError, Sample};
 
 /// Receptive fields of `M` neurons, 3 to 1024, whose responses to a value are rounded to `N` levels, 2 to 256.

@@ -12,7 +12,6 @@ mod neuron;
 mod position;
 #[cfg(feature = "rand")]
 mod probabilistic;
-mod search;
 mod slot_spikes;
 mod slots;
 

@@ -171,7 +171,7 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
             state.tally.reject();
             return None;
         }
-        Neuron::counted(self.centres.nearest(sample) as u16)
+        Neuron::counted(self.centres.number(sample) as u16)
     }
 
     fn encode_slice(
@@ -182,14 +182,14 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
     ) -> usize {
         let centres = &self.centres;
         let mut taint = S::ZERO;
-        if centres.has_cells() {
+        if centres.has_bins() {
             // Encodes as if all were finite; if one was not, the slice is encoded again.
             for (output, &sample) in outputs.iter_mut().zip(samples) {
                 taint = taint.taint(sample);
-                *output = Neuron::counted(centres.by_cell(sample) as u16);
+                *output = Neuron::counted(centres.by_bin(sample) as u16);
             }
         }
-        if !centres.has_cells() || !taint.is_finite() {
+        if !centres.has_bins() || !taint.is_finite() {
             self.search_each(state, samples, outputs);
         }
         samples.len().min(outputs.len())

@@ -2,7 +2,7 @@
 
 /// The number of indices below `length` that precede, given that these come first.
 #[inline]
-pub(super) fn count_preceding(length: usize, precedes: impl Fn(usize) -> bool) -> usize {
+pub(in crate::scheme) fn count_preceding(length: usize, precedes: impl Fn(usize) -> bool) -> usize {
     let mut preceding = 0;
     let mut possible = length + 1;
     while possible > 1 {

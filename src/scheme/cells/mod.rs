@@ -1,0 +1,11 @@
+//! Cells: intervals side by side on the line of values. Many codes number a value's cell and spell the number.
+
+#[allow(dead_code)] // until its first code
+mod cuts;
+mod partition;
+mod search;
+
+#[allow(unused_imports)] // until its first code
+pub(super) use cuts::{Cuts, Side};
+pub(super) use partition::{Partition, number_by_search};
+pub(super) use search::count_preceding;
