@@ -4,7 +4,8 @@ use defmt::Format;
 use fixed::types::{I8F8, I16F16};
 use rand_pcg::Pcg32;
 use spikewire::{
-    Calibration, ConfigError, Differences, Firing, Polarity, Recovery, Sample, SampleKind, Spike,
+    Calibration, ConfigError, Differences, Firing, Histogram, Polarity, Recovery, Sample,
+    SampleKind, Spike,
     population::{FiredNeurons, Gaussian, Neuron, Position, Probabilistic, SlotSpikes, Slots},
     rate::{Bsa, BsaToolbox, Criterion, Hough, Scale, Shape, Taps, ThresholdHough},
     temporal::{MovingWindow, StepForward, TemporalContrast},
@@ -31,6 +32,7 @@ const fn is_format_in<S: Sample + Format>() {
     is_format::<Probabilistic<S, Pcg32, 4, 8>>();
 
     is_format::<Calibration<S>>();
+    is_format::<Histogram<S, 4>>();
 }
 
 const _: () = {

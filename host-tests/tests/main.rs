@@ -22,6 +22,7 @@ mod dynamic;
 mod formats_bytes;
 mod formats_peers;
 mod gaussian;
+mod histogram;
 mod hough;
 mod interleaving;
 mod link_bytes;

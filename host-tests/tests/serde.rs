@@ -5,7 +5,7 @@ use rand_pcg::Pcg32;
 use serde::Serialize;
 use serde_json::json;
 use spikewire::{
-    Calibration, ConfigError, Event, Firing, Polarity, SampleKind, Scheme, Spike,
+    Calibration, ConfigError, Event, Firing, Histogram, Polarity, SampleKind, Scheme, Spike,
     population::{FiredNeurons, Neuron, Position, Probabilistic, Slots},
     rate::{Bsa, BsaToolbox, Criterion, Hough, Scale, Shape, Taps, ThresholdHough},
     temporal::{MovingWindow, StepForward, TemporalContrast},
@@ -94,4 +94,11 @@ fn what_is_set_up_from() {
     }
     assert_json(calibration.differences().unwrap().mean, &json!(1.5));
     assert_eq!(serde_json::to_value(calibration).unwrap()["max"], json!(4.0));
+    let histogram = Histogram::<i16, 2>::new(0..=9, 100);
+    assert_json(
+        histogram,
+        &json!({
+            "min": 0, "max": 9, "limit": 100, "total": 0, "counts": [0, 0], "seen": 0, "rejected": 0
+        }),
+    );
 }

@@ -6,6 +6,7 @@ mod code;
 mod codec;
 #[cfg(feature = "alloc")]
 pub mod dynamic;
+mod histogram;
 mod moments;
 pub mod population;
 pub mod rate;
@@ -14,4 +15,5 @@ pub mod temporal;
 pub use calibrate::{Calibration, Differences};
 pub use code::{Code, Firing, Output, Polarity, Spike};
 pub use codec::{Decoder, Encoder, Recovery, Scheme, Start};
+pub use histogram::Histogram;
 pub use moments::Moments;

@@ -4,7 +4,7 @@ use core::hint::black_box;
 
 use catalogue::{Channel, Flight};
 use spikewire::{
-    Calibration, ConfigError, Sample, Scheme, Start,
+    Calibration, ConfigError, Histogram, Sample, Scheme, Start,
     population::{Position, Slots},
     rate::{Bsa, Criterion, Taps},
     temporal::{StepForward, TemporalContrast},
@@ -60,6 +60,10 @@ fn others<S: Sample>() -> Result<(), ConfigError> {
     let taps = Taps::try_new(black_box([value; 15]))?;
     started(&Bsa::try_new(taps, black_box(Criterion::Subtractive(value)))?);
     started(&Position::try_new(black_box([value; 20]))?);
+    let mut histogram = black_box(Histogram::<S, 32>::try_new(value..=value, black_box(1000))?);
+    histogram.observe(value);
+    black_box((histogram.quantile(black_box(1), black_box(2)), histogram.rejected()));
+    started(&Position::try_new(histogram.centres::<20>()?)?);
     started(
         &Slots::<S, 15, 10>::try_new(value..=value, black_box(1.5))?
             .try_with_floor(black_box(2))?,
