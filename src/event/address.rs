@@ -1,18 +1,18 @@
-//! Address events: which neuron fired, when, and in which direction.
+//! Address events: which neuron fired, when, and with which polarity.
 
 use super::Tick;
 use crate::Polarity;
 
-/// An address event: which neuron fired, when, and in which direction.
+/// An address event: which neuron fired, when, and with which polarity.
 ///
 /// Eight bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Event {
-    /// When.
+    /// The time of the spike.
     pub tick: Tick,
-    /// The neuron. A [`Bank`](crate::Bank) numbers its channels' neurons one after the other.
+    /// The neuron. A [`Bank`](crate::Bank) numbers the neurons of its channels one after the other.
     pub address: u16,
     /// The direction.
     pub polarity: Polarity,
@@ -20,7 +20,7 @@ pub struct Event {
 
 #[cfg(feature = "link")]
 impl Event {
-    /// What fills a buffer.
+    /// Fills unused slots of a buffer.
     pub(crate) const ZERO: Self =
         Self { tick: Tick::from_micros(0), address: 0, polarity: Polarity::Down };
 }

@@ -1,4 +1,4 @@
-//! Channels side by side: samples in, addressed and time-stamped events out.
+//! Bank: the encoders of several channels, from samples to address events.
 
 use core::fmt;
 
@@ -6,14 +6,16 @@ use super::schemes::{CodeOf, EncoderStateOf, SampleOf};
 use super::{Event, Item, Keyframe, Put, Schemes, Tick};
 use crate::{Code, ConfigError, Firing, Output, Scheme, Start, error};
 
-/// `N` encoders of one kind, such as the six channels of an inertial sensor: one scheme, or references to
-/// one each, and `N` states.
+/// The encoders of `N` channels, such as the six of an inertial sensor: one scheme for all channels or one for each,
+/// and a state for each.
 ///
-/// Channel `c`, neuron `n` has the address `c * NEURONS + n`, where
-/// [`NEURONS`](Code::NEURONS) counts the neurons of a channel. Events come out at the tick of the
-/// sample that made them known, by rising address; a rate code's sample lies
-/// [`LATENCY`](Scheme::LATENCY) samples before. Where sub-timesteps have ticks of their own, events
-/// come out in the order of time: what chips, formats and [`Bins`](crate::Bins) want.
+/// - **Addresses:** neuron `n` of channel `c` has the address `c * NEURONS + n`, where
+///   [`NEURONS`](Code::NEURONS) is the number of neurons of a channel.
+/// - **Order:** events come by rising address, with the tick of the sample just encoded. A rate code's spike belongs
+///   to the sample [`LATENCY`](Scheme::LATENCY) samples earlier. With a tick for each
+///   [sub-timestep](Self::with_slot_ticks), events come in the order of time, as chips, formats and
+///   [`Bins`](crate::Bins) need them.
+/// - **Memory:** the channels' states and 8 bytes, and 4 bytes for each reference to a scheme on a 32-bit part.
 ///
 /// ```
 /// use spikewire::{Bank, Event, Polarity, Tick, temporal::StepForward};
@@ -64,7 +66,7 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         Self { schemes, states, first_address: 0, slot_ticks: 0 }
     }
 
-    /// This bank with addresses from this one on instead of 0, so that banks share a queue.
+    /// Sets the first address, 0 by default, so that several banks can share a queue.
     ///
     /// # Panics
     /// If the last address is above 65 535; at compile time where it initialises a constant.
@@ -75,7 +77,7 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         self
     }
 
-    /// This bank with addresses from this one on instead of 0.
+    /// Sets the first address, 0 by default.
     ///
     /// # Errors
     /// The last address is above 65 535.
@@ -84,14 +86,14 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         Ok(Self { first_address, ..self })
     }
 
-    /// This bank with sub-timesteps of so many microseconds instead of 0.
+    /// Sets the length of a sub-timestep in microseconds. By default it is 0: all events of a sample have its tick.
     #[must_use]
     pub const fn with_slot_ticks(mut self, slot_ticks: u32) -> Self {
         self.slot_ticks = slot_ticks;
         self
     }
 
-    /// Takes one sample of every channel and hands each event to `emit`.
+    /// Encodes one sample of every channel and passes each event to `emit`.
     #[inline]
     pub fn encode(
         &mut self,
@@ -115,7 +117,7 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         }
     }
 
-    /// Encodes where every sub-timestep has a tick of its own.
+    /// [`encode`](Self::encode) with a tick for each sub-timestep.
     fn encode_by_slot(
         &mut self,
         tick: Tick,
@@ -141,15 +143,15 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         }
     }
 
-    /// Takes one sample of every channel, in the interrupt in which they come, and puts the events into a
-    /// queue. Never blocks; what does not fit is counted by the queue as lost, under any policy.
+    /// Encodes one sample of every channel, in the interrupt that brings them, and puts the events into a queue.
+    /// Never blocks; the queue counts events that do not fit as lost, under any policy.
     #[inline]
     pub fn encode_into(&mut self, tick: Tick, samples: [SampleOf<T, N>; N], mut queue: impl Put) {
         self.encode(tick, samples, |event| queue.put(Item::Event(event)));
     }
 
-    /// Puts a keyframe of every channel that has one into a queue, behind the events of the samples so far:
-    /// call it where the bank encodes. `tick` is that of the last sample.
+    /// Puts a keyframe of every channel that has one into a queue, after the events of the samples so far. Call it
+    /// in the interrupt that encodes; `tick` is that of the last sample.
     pub fn keyframe_into(&self, tick: Tick, mut queue: impl Put) {
         let mut address = self.first_address;
         for (state, scheme) in self.states.iter().zip(self.schemes.each()) {
@@ -160,8 +162,7 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         }
     }
 
-    /// Resets every encoder and puts a [break](Item::Break) into a queue, so that the far end of a link
-    /// knows.
+    /// Resets every encoder and puts a [break](Item::Break) into a queue, which tells the receiver of a link.
     pub fn reset_into(&mut self, tick: Tick, mut queue: impl Put)
     where
         T::Scheme: Start,
@@ -170,8 +171,7 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         queue.put(Item::Break(tick));
     }
 
-    /// Resets every encoder. The far end of a link does not see this; it does with
-    /// [`reset_into`](Self::reset_into).
+    /// Resets every encoder. The receiver of a link is not told; use [`reset_into`](Self::reset_into) for that.
     pub fn reset(&mut self)
     where
         T::Scheme: Start,
@@ -179,8 +179,8 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         self.states = [<T::Scheme as Start>::START; N];
     }
 
-    /// The value that a channel's decoder should hold now; `None` before the first sample, for codes
-    /// without keyframes, and for a channel that there is not.
+    /// The value that a channel's decoder should hold now; `None` before the first sample, for codes without
+    /// keyframes, and for a channel that does not exist.
     pub fn keyframe(&self, channel: usize) -> Option<SampleOf<T, N>> {
         let (state, scheme) = self.states.iter().zip(self.schemes.each()).nth(channel)?;
         scheme.keyframe(state)

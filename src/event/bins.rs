@@ -1,4 +1,4 @@
-//! Time steps: how often each address fired, for chips that take counts instead of events.
+//! Bins: how often each address fired in a time step, for chips that take counts instead of events.
 
 use core::num::NonZeroU32;
 
@@ -6,14 +6,13 @@ use super::{Event, Tick};
 
 /// Counts the events of one time step for `N` addresses, 0 to `N - 1`.
 ///
-/// - **Step:** 1 to 2³¹-1 µs; longer ones are cut to that. **Counts:** saturate at the limit, by default
-///   255; see [`with_limit`](Self::with_limit).
-/// - **Memory:** `N + 28` bytes. **Work:** constant, an event.
-/// - **Order:** give it events in the order of time; one that comes after its step was taken is not
-///   counted but [`late`](Self::late), and so is one 2³¹ µs (35.8 minutes) or more after the step's
-///   start.
-/// - **Polarity:** both count alike; give each its own address where it matters.
-/// - What is not counted has a counter: [`saturated`](Self::saturated), [`late`](Self::late),
+/// - **Step:** 1 to 2³¹-1 µs; a longer one is cut to that. **Counts:** 0 to the [limit](Self::with_limit), 255 by
+///   default.
+/// - **Memory:** `N + 28` bytes. **Work:** constant for each event.
+/// - **Order:** give it events in the order of time. An event of a step that was already taken is late, and so is one
+///   2³¹ µs (35.8 minutes) or more after the start of the step.
+/// - **Polarity:** both polarities count alike; give each its own address if they must be told apart.
+/// - **Events left out** are counted by [`saturated`](Self::saturated), [`late`](Self::late) and
 ///   [`outside`](Self::outside).
 ///
 /// ```
@@ -57,7 +56,7 @@ impl<const N: usize> Bins<N> {
         Self { counts: [0; N], limit: u8::MAX, start, step, saturated: 0, late: 0, outside: 0 }
     }
 
-    /// These bins with counts that stop at `limit`.
+    /// Sets the limit at which counts stop; 255 by default.
     #[must_use]
     pub const fn with_limit(self, limit: u8) -> Self {
         Self { limit, ..self }
@@ -81,7 +80,7 @@ impl<const N: usize> Bins<N> {
         Ok(())
     }
 
-    /// Whether the time step is over at this tick, events or not.
+    /// Whether the time step is over at this tick, with or without events.
     pub fn is_over(&self, now: Tick) -> bool {
         now.since(self.start) >= self.step as i32
     }
@@ -102,7 +101,7 @@ impl<const N: usize> Bins<N> {
         self.saturated
     }
 
-    /// How many events lay before the time step: in one already taken, or before the first.
+    /// How many events lay before the time step: in a step already taken, or before the first.
     pub const fn late(&self) -> u32 {
         self.late
     }

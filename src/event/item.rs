@@ -1,4 +1,4 @@
-//! Items: what goes in one order from the interrupt to the wire.
+//! Items: the events, keyframes and breaks that go from the interrupt to the wire in one order.
 
 use super::{Event, Keyframe, Tick};
 
@@ -9,9 +9,9 @@ use super::{Event, Keyframe, Tick};
 pub enum Item {
     /// A neuron fired.
     Event(Event),
-    /// What the decoder of an address should hold here.
+    /// The value that the decoder of an address should hold at this point of the stream.
     Keyframe(Keyframe),
-    /// The encoders changed without events, as by a reset: no decoder is exact until its next keyframe.
+    /// The encoders changed without events, as by a reset: temporal decoders are wrong until their next keyframe.
     Break(Tick),
 }
 
@@ -43,20 +43,19 @@ impl From<Keyframe> for Item {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Taken {
-    /// How many items were lost between the one taken before and this one; `u32::MAX` stands for that
-    /// many or more.
+    /// How many items were lost since the item taken before this one; `u32::MAX` for that many or more.
     pub lost: u32,
     /// The item.
     pub item: Item,
 }
 
 impl Taken {
-    /// An item with nothing lost before it.
+    /// An item before which none was lost.
     pub const fn whole(item: Item) -> Self {
         Self { lost: 0, item }
     }
 
-    /// Whether decoders are not exact here, because of a loss or a break.
+    /// Whether decoders are not exact at this item, because of a loss or a break.
     pub const fn is_after_break(&self) -> bool {
         self.lost > 0 || matches!(self.item, Item::Break(_))
     }

@@ -1,12 +1,11 @@
-//! Keyframes: what the decoder of a channel should hold at one place among the events.
+//! Keyframes: the value that a channel's decoder should hold at one point of the stream.
 
 use super::Tick;
 use crate::{Sample, SampleKind};
 
-/// The value that the decoder of an address should hold, after all events before the keyframe and
-/// before all events behind it.
+/// The value that the decoder of an address should hold between the events before the keyframe and those after it.
 ///
-/// 16 bytes. It makes a step decoder exact again after a loss.
+/// 16 bytes. It makes the decoder of a temporal code exact again after a loss.
 ///
 /// ```
 /// use spikewire::{Keyframe, SampleKind, Tick};
@@ -26,7 +25,7 @@ pub struct Keyframe {
     pub address: u16,
     /// The sample type.
     pub kind: SampleKind,
-    /// The sample's bits, in the low half if there are 16.
+    /// The sample's bits; those of a 16-bit sample in the low half.
     pub bits: u32,
 }
 

@@ -1,4 +1,4 @@
-//! Spike events on their way: ticks, items, queues, banks (samples to events) and readouts (events to
+//! Address events: time stamps, banks (samples to events), queues from the interrupt to main, and readouts (events to
 //! values).
 
 mod address;

@@ -1,9 +1,9 @@
-//! Where a bank puts its items.
+//! The end of a queue into which a bank puts its items.
 
 use super::Item;
 
-/// Takes items in an interrupt: the end of a queue that is pushed to.
+/// The end of a queue at which an interrupt puts items.
 pub trait Put {
-    /// Puts an item at the end; one that finds no room is lost and counted.
+    /// Appends an item; an item that finds no room is lost and counted.
     fn put(&mut self, item: Item);
 }

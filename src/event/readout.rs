@@ -1,4 +1,4 @@
-//! Events back to values, channel by channel: the inverse of a bank.
+//! Readout: the decoders of several channels, from address events to values.
 
 use core::fmt;
 
@@ -6,14 +6,14 @@ use super::schemes::{CodeOf, DecoderStateOf, SampleOf};
 use super::{Event, Schemes, Tick};
 use crate::{Code, ConfigError, Firing, Scheme, error};
 
-/// `N` decoders of one kind side by side: the events of a time step in, a value of every channel out.
+/// The decoders of `N` channels, which turn the events of a time step into a value for each channel: the inverse of
+/// a [`Bank`](crate::Bank).
 ///
-/// Addresses are those of a [`Bank`](crate::Bank): channel `c`, neuron `n` has the address
-/// `c * NEURONS + n` from the first on. So are sub-timesteps. A chip's output neurons are addresses already.
-///
+/// - **Addresses:** those of a bank: neuron `n` of channel `c` has the address `first + c * NEURONS + n`. The output
+///   neurons of a chip count as addresses.
 /// - **Codes:** all; [`Code::assemble`] says what becomes of neurons that no encoder fires together.
 /// - **Work:** one pass over the events for each channel.
-/// - **Time:** events outside the time step belong to another: give this one only its own.
+/// - **Time:** ticks are not checked: give each call only the events of its time step.
 ///
 /// ```
 /// use spikewire::{Event, Polarity, Readout, Tick, population::Position};
@@ -32,11 +32,11 @@ pub struct Readout<T: Schemes<N>, const N: usize> {
     addresses: Addresses,
 }
 
-/// Which addresses and ticks the firings of a channel have.
+/// How an address and a tick give the channel, the neuron and the slot.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Addresses {
     pub(crate) first: u16,
-    /// 0 if all of a sample's events have its tick.
+    /// The length of a sub-timestep in µs; 0 if all events of a sample have its tick.
     pub(crate) slot_ticks: u32,
 }
 
@@ -82,7 +82,7 @@ impl<T: Schemes<N>, const N: usize> Readout<T, N> {
         Self { schemes, states, addresses: Addresses { first: 0, slot_ticks: 0 } }
     }
 
-    /// This readout with addresses from this one on instead of 0; events of lower ones are left out.
+    /// Sets the first address, 0 by default; events of lower addresses are left out.
     ///
     /// # Panics
     /// If the last address is above 65 535.
@@ -93,7 +93,7 @@ impl<T: Schemes<N>, const N: usize> Readout<T, N> {
         self
     }
 
-    /// This readout with addresses from this one on instead of 0.
+    /// Sets the first address, 0 by default.
     ///
     /// # Errors
     /// The last address is above 65 535.
@@ -102,14 +102,14 @@ impl<T: Schemes<N>, const N: usize> Readout<T, N> {
         Ok(Self { addresses: Addresses { first: first_address, ..self.addresses }, ..self })
     }
 
-    /// This readout with sub-timesteps of so many microseconds instead of 0.
+    /// Sets the length of a sub-timestep in microseconds. By default it is 0: all events of a sample have its tick.
     #[must_use]
     pub const fn with_slot_ticks(mut self, slot_ticks: u32) -> Self {
         self.addresses.slot_ticks = slot_ticks;
         self
     }
 
-    /// Takes the events of one time step, which begins at `tick`, and gives every channel's value.
+    /// Decodes the events of one time step, which begins at `tick`, into a value for each channel.
     pub fn decode(&mut self, tick: Tick, events: &[Event]) -> [SampleOf<T, N>; N] {
         let mut values = [SampleOf::<T, N>::default(); N];
         let channels = self.states.iter_mut().zip(self.schemes.each()).enumerate();
@@ -119,7 +119,7 @@ impl<T: Schemes<N>, const N: usize> Readout<T, N> {
         values
     }
 
-    /// Lets a channel's decoder go on from a known value, such as the first sample.
+    /// Sets a channel's decoder to a known value, such as the first sample. Ignores a channel that does not exist.
     pub fn resync(&mut self, channel: usize, value: SampleOf<T, N>) {
         let mut channels = self.states.iter_mut().zip(self.schemes.each());
         if let Some((state, scheme)) = channels.nth(channel) {
@@ -127,7 +127,7 @@ impl<T: Schemes<N>, const N: usize> Readout<T, N> {
         }
     }
 
-    /// Back to the initial state.
+    /// Returns every decoder to its initial state.
     pub fn reset(&mut self) {
         self.states = self.schemes.map_each(Scheme::decoder_state);
     }

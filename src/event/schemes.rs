@@ -10,7 +10,7 @@ pub trait Schemes<const N: usize>: sealed::Sealed {
     /// The schemes, in the order of the channels.
     fn each(&self) -> impl Iterator<Item = &Self::Scheme>;
 
-    /// What `make` makes of each scheme.
+    /// The results of `make` for each scheme, in the order of the channels.
     fn map_each<R>(&self, make: impl FnMut(&Self::Scheme) -> R) -> [R; N];
 }
 
@@ -46,13 +46,13 @@ impl<P: Scheme, const N: usize> Schemes<N> for [&P; N] {
     }
 }
 
-/// The number type of the schemes.
+/// The sample type of the schemes.
 pub(crate) type SampleOf<T, const N: usize> = <<T as Schemes<N>>::Scheme as Scheme>::Sample;
-/// What one sample becomes.
+/// The code of one sample.
 pub(crate) type CodeOf<T, const N: usize> = <<T as Schemes<N>>::Scheme as Scheme>::Code;
-/// What an encoder keeps.
+/// The state of an encoder.
 pub(crate) type EncoderStateOf<T, const N: usize> =
     <<T as Schemes<N>>::Scheme as Scheme>::EncoderState;
-/// What a decoder keeps.
+/// The state of a decoder.
 pub(crate) type DecoderStateOf<T, const N: usize> =
     <<T as Schemes<N>>::Scheme as Scheme>::DecoderState;

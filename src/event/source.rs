@@ -1,13 +1,13 @@
-//! Where links, sinks and chips take their items from.
+//! Sources: what links, sinks and chips take their items from.
 
 use super::{Event, Item, Taken};
 
 /// A source of items in their order: the consumer of a queue, or an adapter over an iterator.
 pub trait Source {
-    /// Takes the next item, and says how many were lost before it; `None` if there is no item now.
+    /// Takes the next item, with the number of items lost before it; `None` if there is no item now.
     fn take(&mut self) -> Option<Taken>;
 
-    /// Takes items up to and with the next event, for those who have no use for keyframes.
+    /// Takes items up to and including the next event, and returns that event: for users that need no keyframes.
     #[inline]
     fn take_event(&mut self) -> Option<Event> {
         loop {
@@ -17,7 +17,7 @@ pub trait Source {
         }
     }
 
-    /// A source that ends after so many items, so that work on a queue that fills up meanwhile ends.
+    /// A source that ends after this many items, even if a queue is filled again meanwhile.
     fn at_most(self, items: usize) -> AtMost<Self>
     where
         Self: Sized,
@@ -46,7 +46,7 @@ impl<S: Source> Source for AtMost<S> {
     }
 }
 
-/// A source of an iterator's events, none lost.
+/// An iterator of events as a source without losses.
 ///
 /// ```
 /// use spikewire::{Event, FromEvents, Polarity, Source, Tick};
@@ -64,7 +64,7 @@ impl<I: Iterator<Item = Event>> Source for FromEvents<I> {
     }
 }
 
-/// A source of an iterator's items, none lost.
+/// An iterator of items as a source without losses.
 #[derive(Clone, Copy, Debug)]
 pub struct FromItems<I>(pub I);
 

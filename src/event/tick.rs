@@ -1,4 +1,4 @@
-//! Time: microseconds in 32 bits, which wrap after 71.6 minutes.
+//! Ticks: time stamps in microseconds of 32 bits, which wrap after 71.6 minutes.
 
 use core::ops::{Add, AddAssign};
 
@@ -64,21 +64,21 @@ impl Tick {
         }
     }
 
-    /// The tick so many microseconds later, or earlier if negative.
+    /// The tick this many microseconds later, or earlier if negative.
     #[must_use]
     pub const fn shifted(self, micros: i32) -> Self {
         Self(self.0.wrapping_add_signed(micros))
     }
 }
 
-/// The tick of so many microseconds.
+/// The tick of this many microseconds.
 impl From<u32> for Tick {
     fn from(micros: u32) -> Self {
         Self(micros)
     }
 }
 
-/// The tick so many microseconds later.
+/// The tick this many microseconds later.
 impl Add<u32> for Tick {
     type Output = Self;
 

@@ -1,4 +1,4 @@
-//! Items to the bytes of one transfer.
+//! Batches: items as the bytes of one transfer.
 
 use super::format::{EventFormat, FormatError};
 use crate::event::{Event, Source};
@@ -6,14 +6,13 @@ use crate::event::{Event, Source};
 /// Turns items into the bytes of one transfer: an [event format](crate::format) by way of
 /// [`Formatted`], or the frames of a link's transmitter.
 pub trait Batch {
-    /// The bytes in which any event, keyframe or frame fits. A batch of fewer may be too short for the
-    /// next one, and then stays empty.
+    /// The length of a buffer in which every event, keyframe or frame fits. In a shorter buffer the next item may
+    /// not fit, and the batch then stays empty.
     const SHORTEST: usize;
 
-    /// Takes items while they fit, writes their bytes, and returns how many bytes there are; 0 if
-    /// there is nothing to send.
+    /// Takes items while they fit, writes their bytes, and returns how many bytes it wrote; 0 if there are no items.
     ///
-    /// An item that was taken and does not fit is held, and comes first in the next batch.
+    /// An item that was taken and does not fit is kept, and comes first in the next batch.
     fn fill(&mut self, events: &mut impl Source, bytes: &mut [u8]) -> usize;
 }
 
@@ -25,8 +24,8 @@ impl<B: Batch> Batch for &mut B {
     }
 }
 
-/// Events one after the other in an event format, which has no words for keyframes and breaks: those are
-/// left out.
+/// Events in an event format, one after the other. Event formats cannot carry keyframes and breaks, which are left
+/// out.
 ///
 /// ```
 /// use spikewire::{Event, FromEvents, Polarity, Tick};
@@ -37,7 +36,7 @@ impl<B: Batch> Batch for &mut B {
 /// let mut source = FromEvents([event; 3].into_iter());
 /// let mut bytes = [0; 5];
 /// assert_eq!(batch.fill(&mut source, &mut bytes), 4);
-/// assert_eq!(batch.fill(&mut source, &mut bytes), 2); // the third was held
+/// assert_eq!(batch.fill(&mut source, &mut bytes), 2); // the third, which did not fit before
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Formatted<F> {

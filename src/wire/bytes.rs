@@ -1,6 +1,6 @@
-//! Writing into a caller's buffer without a way to panic.
+//! A cursor that writes into the caller's buffer and cannot panic.
 
-/// A buffer and how much of it is written.
+/// A buffer, and how much of it is written.
 #[derive(Debug)]
 pub(crate) struct Cursor<'a> {
     bytes: &'a mut [u8],
@@ -15,7 +15,7 @@ impl<'a> Cursor<'a> {
         Self { bytes, written: 0, limit }
     }
 
-    /// Keeps everything from `limit` on free.
+    /// Keeps the buffer free from `limit` on.
     #[cfg(feature = "link")]
     pub(crate) fn set_limit(&mut self, limit: usize) {
         self.limit = limit.min(self.bytes.len());
@@ -31,7 +31,7 @@ impl<'a> Cursor<'a> {
         self.written
     }
 
-    /// Appends all of `source`, or nothing if it does not fit.
+    /// Appends all of `source`; writes nothing and returns `None` if it does not fit.
     pub(crate) fn put(&mut self, source: &[u8]) -> Option<()> {
         let end = self.written.checked_add(source.len()).filter(|&end| end <= self.limit)?;
         let target = self.bytes.get_mut(self.written..end)?;
@@ -42,13 +42,13 @@ impl<'a> Cursor<'a> {
         Some(())
     }
 
-    /// What has been written.
+    /// The bytes written.
     #[cfg(feature = "link")]
     pub(crate) fn as_slice(&self) -> &[u8] {
         self.bytes.get(..self.written).unwrap_or_default()
     }
 
-    /// What has been written, for as long as the buffer lives.
+    /// The bytes written, for the lifetime of the buffer.
     #[cfg(feature = "link")]
     pub(crate) fn into_slice(self) -> &'a [u8] {
         self.bytes.get(..self.written).unwrap_or_default()

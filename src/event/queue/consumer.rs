@@ -1,10 +1,9 @@
-//! The end of a queue from which main takes.
+//! The end of a queue at which main takes items.
 
 use super::QueueView;
 use crate::event::{AtMost, Event, Source, Taken};
 
-/// Takes the items of a queue, oldest first; the only one that does while it lives. From
-/// [`EventQueue::consumer`](QueueView::consumer).
+/// Takes the items of a queue, oldest first. A queue has [one consumer](QueueView::consumer) at a time.
 #[derive(Debug)]
 pub struct Consumer<'a> {
     queue: &'a QueueView,
@@ -28,7 +27,7 @@ impl<'a> Consumer<'a> {
 
     /// Waits until there is an item to take, without polling: the push that brings it wakes the task.
     ///
-    /// Dropping the future loses nothing.
+    /// Dropping the future loses no item.
     #[cfg(feature = "async")]
     pub async fn wait(&mut self) {
         use core::task::Poll;

@@ -13,16 +13,16 @@ pub use consumer::Consumer;
 pub use ring::{EventQueue, Queue, QueueView};
 pub use spsc::{SpscConsumer, SpscProducer, SpscQueue};
 
-/// What becomes of an item for which a full queue has no room.
+/// What a full queue does with a new item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Overflow {
-    /// The oldest item makes room and is counted as lost: main sees what is new.
+    /// Drops the oldest item and counts it as lost: main gets the newest items.
     DropOldest,
-    /// The new item is counted as lost: main sees what came first.
+    /// Drops the new item and counts it as lost: main gets the oldest items.
     DropNewest,
-    /// The new item goes back to the caller, and is counted as refused.
+    /// Returns the new item to the caller and counts it as refused.
     Refuse,
 }
 

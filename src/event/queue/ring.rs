@@ -1,4 +1,4 @@
-//! The queue for any number of interrupts: a ring of items under critical sections.
+//! The queue for any number of interrupts: a ring of items, guarded by critical sections.
 
 use core::cell::Cell;
 use core::fmt;
@@ -18,8 +18,8 @@ use crate::event::{Event, Item, Put, Taken, Tick};
 ///   [consumer](QueueView::consumer) takes.
 /// - **Never blocks.** Each call holds off interrupts for the copy of one item.
 /// - **Memory:** `12 N + 44` bytes on a 32-bit part, 8 more with the feature `async`.
-/// - **Losses:** each item taken says how many were lost before it. Where the newest items were lost and
-///   none follows, a [break](Item::Break) says so. See also [`lost`](QueueView::lost) and
+/// - **Losses:** each item taken comes with the number of items lost before it. If items were lost after the last
+///   one, that number comes with a [break](Item::Break). See also [`lost`](QueueView::lost) and
 ///   [`refused`](QueueView::refused).
 ///
 /// It dereferences to a [`QueueView`], which has the methods and no capacity in its type.
@@ -52,11 +52,11 @@ pub struct EventQueue<const N: usize>(Queue<[Place; N]>);
 /// A queue of any capacity, behind a reference. [`EventQueue`] dereferences to it.
 pub type QueueView = Queue<[Place]>;
 
-/// The one text of [`EventQueue`] and [`QueueView`].
+/// The common implementation of [`EventQueue`] and [`QueueView`].
 pub struct Queue<C: ?Sized> {
     overflow: Overflow,
     state: Mutex<State>,
-    /// Of the consumer that waits.
+    /// The waker of the consumer that waits.
     #[cfg(feature = "async")]
     waker: Mutex<Cell<Option<Waker>>>,
     places: C,
@@ -70,21 +70,21 @@ struct State {
     head: Cell<usize>,
     /// The place of the next item.
     tail: Cell<usize>,
-    /// How many items there are; with [`CLOSED`] while items are lost after the newest.
+    /// How many items there are, plus [`CLOSED`] while items have been lost after the last one.
     len: Cell<usize>,
-    /// The most items up to the last one taken.
+    /// The most items that there were when one was taken.
     peak: Cell<usize>,
-    /// How many were lost after the newest item, and the tick of the last of them.
+    /// How many items were lost after the last one in the queue, and the tick of the last of those.
     behind: Cell<u32>,
     behind_tick: Cell<Tick>,
-    /// How many losses more than its slot can say lie before a slot that says 255.
+    /// Losses beyond the 255 that a slot can count.
     excess: Cell<u32>,
     lost: Cell<u32>,
     refused: Cell<u32>,
     has_consumer: Cell<bool>,
 }
 
-/// Makes a length too long for any item to be added on the usual path.
+/// Added to the length, makes the queue look full, so that a push leaves the usual path.
 const CLOSED: usize = 1 << (usize::BITS - 1);
 
 impl State {
@@ -146,12 +146,12 @@ impl fmt::Debug for QueueView {
     }
 }
 
-/// Who bears the loss of an item that a queue refuses.
+/// What the caller can do with an item that the queue refuses.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Giver {
-    /// One who takes it back.
+    /// Take it back.
     TakesBack,
-    /// One who does not: it is lost.
+    /// Nothing: the item is lost.
     Leaves,
 }
 
@@ -166,8 +166,7 @@ impl QueueView {
         if self.add(item.into(), Giver::TakesBack) { Ok(()) } else { Err(Refused(item)) }
     }
 
-    /// The consumer, of which there is one at a time; `None` while there is one already. It may be
-    /// dropped and asked for again.
+    /// The consumer; `None` while there is one already. After it is dropped there can be another.
     pub fn consumer(&self) -> Option<Consumer<'_>> {
         let had_one = self.with(|state| state.has_consumer.replace(true));
         (!had_one).then(|| Consumer::new(self))
@@ -188,18 +187,17 @@ impl QueueView {
         self.len() == 0
     }
 
-    /// How many items found no room and were dropped since the start; stays at `u32::MAX` once there.
-    /// What is lost before each item is said by [`Taken::lost`], whatever this counter is.
+    /// How many items were dropped since the start, up to `u32::MAX`. [`Taken::lost`] counts those before each item.
     pub fn lost(&self) -> u32 {
         self.with(|state| state.lost.get())
     }
 
-    /// How often an item went back to the caller; stays at `u32::MAX` once there.
+    /// How many items were refused since the start, up to `u32::MAX`.
     pub fn refused(&self) -> u32 {
         self.with(|state| state.refused.get())
     }
 
-    /// The most items it ever held, to choose the capacity by.
+    /// The most items that it ever held: the capacity that would have been enough.
     pub fn peak(&self) -> usize {
         self.with(|state| state.peak.get().max(state.len()))
     }
@@ -209,7 +207,7 @@ impl QueueView {
         critical_section::with(|section| act(self.state.borrow(section)))
     }
 
-    /// Adds an item, and says whether it was taken.
+    /// Adds an item, and returns whether the queue took it.
     #[inline]
     fn add(&self, slot: Slot, giver: Giver) -> bool {
         #[cfg_attr(not(feature = "async"), expect(unused_variables))]
@@ -227,7 +225,7 @@ impl QueueView {
             let waker = ();
             (is_taken, waker)
         });
-        // Outside of the critical section: it runs code of the executor's.
+        // Outside of the critical section, since it runs the executor's code.
         #[cfg(feature = "async")]
         if let Some(waker) = waker {
             waker.wake();
@@ -277,7 +275,7 @@ impl QueueView {
                 count(&state.lost);
                 let dropped = self.remove(section).map_or(0, Slot::lost);
                 self.append(section, slot);
-                // What was lost before the dropped one was lost before the one that is the oldest now.
+                // Losses before the dropped item come before the next one, which is the oldest now.
                 if let Some(Place(oldest)) = self.places.get(state.head.get()) {
                     let oldest = oldest.borrow(section);
                     oldest.set(with_loss(state, oldest.get(), u32::from(dropped) + 1));
@@ -312,7 +310,7 @@ impl QueueView {
         self.take_apart(slot.is_some(), tick, bits, rest)
     }
 
-    /// Takes items up to and with the oldest event.
+    /// Takes items up to and including the oldest event.
     #[inline]
     pub(super) fn take_event(&self) -> Option<Event> {
         loop {
@@ -327,8 +325,8 @@ impl QueueView {
         }
     }
 
-    /// What a slot says that is no plain event. Where there was no slot, one that came meanwhile, or the losses
-    /// that no item follows, as a break.
+    /// The item of a slot that is no plain event. Without a slot: an item pushed meanwhile, or a break if items were
+    /// lost after the last one.
     #[cold]
     #[inline(never)]
     fn take_apart(&self, has_slot: bool, tick: Tick, bits: u32, rest: u32) -> Option<Taken> {
@@ -363,12 +361,12 @@ impl QueueView {
         Some(place.borrow(section).get())
     }
 
-    /// Lets the next consumer be had.
+    /// Allows another consumer.
     pub(super) fn release_consumer(&self) {
         self.with(|state| state.has_consumer.set(false));
     }
 
-    /// Whether there is something to take; otherwise keeps the waker.
+    /// Whether there is an item or a loss to take; otherwise keeps the waker.
     #[cfg(feature = "async")]
     pub(super) fn is_ready_or_keeps(&self, waker: &Waker) -> bool {
         let waker = waker.clone();
@@ -382,7 +380,7 @@ impl QueueView {
     }
 }
 
-/// A slot before which so many more items were lost.
+/// The slot with this many more losses before it.
 fn with_loss(state: &State, slot: Slot, lost: u32) -> Slot {
     let sum = u32::from(slot.lost()).saturating_add(lost);
     let said = sum.min(u8::MAX.into());

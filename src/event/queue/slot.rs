@@ -1,17 +1,17 @@
-//! An item in a queue: 12 bytes.
+//! An item as a queue stores it: 12 bytes.
 
 use crate::event::{Event, Item, Keyframe, Tick};
 use crate::{Polarity, SampleKind};
 
-/// An item, and how many items were lost before it, in three words, as few stores write them.
+/// An item and how many items were lost before it, in three words, which few stores write.
 ///
-/// The last word is `lost << 24 | what << 22 | detail << 16 | address`: how many were lost before it, 255
-/// for as many or more; whether it is an event, a keyframe or a break; and of an event the polarity, of a
-/// keyframe the sample's type.
+/// The last word is `lost << 24 | what << 22 | detail << 16 | address`. `lost` counts the items lost before this one,
+/// 255 for as many or more; `what` is an event, a keyframe or a break; `detail` is an event's polarity or a keyframe's
+/// sample type.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slot {
     tick: Tick,
-    /// Of a keyframe.
+    /// The value of a keyframe, else 0.
     bits: u32,
     rest: u32,
 }
@@ -19,7 +19,7 @@ pub(super) struct Slot {
 const LOST_AT: u32 = 24;
 const WHAT_AT: u32 = 22;
 const DETAIL_AT: u32 = 16;
-/// Of an event that goes up.
+/// The detail of an event with polarity up.
 const UP: u32 = 1 << DETAIL_AT;
 const EVENT: u32 = 0;
 const KEYFRAME: u32 = 1;
@@ -38,13 +38,13 @@ impl Slot {
         Self { rest, ..self }
     }
 
-    /// How many were lost before it; 255 for as many or more.
+    /// How many items were lost before this one; 255 for as many or more.
     #[inline]
     pub(super) const fn lost(self) -> u8 {
         (self.rest >> LOST_AT) as u8
     }
 
-    /// Its words: in registers where a function is not inlined.
+    /// Its words, which stay in registers when passed to a function that is not inlined.
     #[inline]
     pub(super) const fn words(self) -> (Tick, u32, u32) {
         (self.tick, self.bits, self.rest)
@@ -60,7 +60,7 @@ impl Slot {
         self.tick
     }
 
-    /// The event, if it is one before which nothing was lost: nearly all are.
+    /// The event, if the item is an event and no item was lost before it, as usual.
     #[inline]
     pub(super) fn plain_event(self) -> Option<Event> {
         let Self { tick, rest, .. } = self;

@@ -1,4 +1,4 @@
-//! The queue without critical sections, for one interrupt that drops the newest.
+//! The queue without critical sections, for a single interrupt; when full, it drops new items.
 
 use core::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
@@ -7,14 +7,14 @@ use crate::event::{Item, Put, Source, Taken, Tick};
 
 /// A queue of `N - 1` items from one interrupt to main, without locks.
 ///
-/// Interrupts are never held off, and what finds no room is lost. [`EventQueue`](super::EventQueue) has
-/// other policies, any number of interrupts, and a waker. The algorithm is that of `heapless::spsc`, whose ends
-/// divide by the capacity and so can panic as far as a linker knows.
+/// Interrupts are never held off; an item that finds no room is lost and counted.
+/// [`EventQueue`](super::EventQueue) has other policies, takes any number of interrupts, and can wake a task. The
+/// algorithm is that of `heapless::spsc`, which divides by the capacity, a panic that a linker cannot rule out.
 ///
 /// - **Ends:** [`split`](Self::split) makes an [`SpscProducer`] for the interrupt and an [`SpscConsumer`]
 ///   for main.
 /// - **Memory:** `16 N + 20` bytes on a 32-bit part.
-/// - **Losses** are said as by [`EventQueue`](super::EventQueue), modulo 2³² between two items taken.
+/// - **Losses:** as with [`EventQueue`](super::EventQueue); between two items taken they count modulo 2³².
 ///
 /// ```
 /// use spikewire::{Event, Polarity, Source, SpscQueue, Tick};
@@ -33,19 +33,19 @@ use crate::event::{Item, Put, Source, Taken, Tick};
 #[derive(Debug)]
 pub struct SpscQueue<const N: usize>(Ring<[Entry; N]>);
 
-/// The queue behind its ends. Each counter and place is written by one end alone; loads and stores suffice, as a
-/// Cortex-M0 has no others.
+/// The ring that both ends share. Each field is written by one end only, so that atomic loads and stores suffice: a
+/// Cortex-M0 has no other atomics.
 #[derive(Debug)]
 struct Ring<C: ?Sized> {
-    /// Of the consumer: the place of the oldest item.
+    /// The index of the oldest item; written by the consumer.
     head: AtomicUsize,
-    /// Of the producer: the place of the next item. The place before the head stays empty.
+    /// The index of the next item; written by the producer. The entry before the head stays empty.
     tail: AtomicUsize,
-    /// Of the producer: how many items were lost; wraps.
+    /// How many items were lost; wraps. Written by the producer.
     lost: AtomicU32,
-    /// Of the producer: the tick of the one lost last.
+    /// The tick of the item lost last; written by the producer.
     lost_tick: AtomicU32,
-    /// 1 once the ends are given away.
+    /// 1 after [`SpscQueue::split`].
     is_split: AtomicU32,
     entries: C,
 }
@@ -80,7 +80,7 @@ impl<const N: usize> SpscQueue<N> {
         })
     }
 
-    /// The two ends, the first time; `None` from then on.
+    /// The two ends at the first call; `None` at any later one.
     pub fn split(&self) -> Option<(SpscProducer<'_>, SpscConsumer<'_>)> {
         let ring = &self.0;
         let was_split = critical_section::with(|_| {
@@ -113,7 +113,7 @@ pub struct SpscProducer<'a> {
 }
 
 impl SpscProducer<'_> {
-    /// Puts an item, such as an event, at the end, or counts it as lost.
+    /// Appends an item, such as an event; if the queue is full, the item is lost and counted.
     #[inline]
     pub fn push(&mut self, item: impl Into<Item>) {
         let ring = self.ring;
@@ -160,19 +160,19 @@ impl Put for &mut SpscProducer<'_> {
 #[derive(Debug)]
 pub struct SpscConsumer<'a> {
     ring: &'a Ring<[Entry]>,
-    /// The count of losses that were said.
+    /// The count of losses reported so far.
     known: u32,
 }
 
 impl SpscConsumer<'_> {
-    /// How many items wait.
+    /// How many items are in the queue.
     pub fn len(&self) -> usize {
         let [head, tail] = [&self.ring.head, &self.ring.tail].map(|at| at.load(Ordering::Relaxed));
         let turn = if tail >= head { 0 } else { self.ring.entries.len() };
         tail.wrapping_add(turn).wrapping_sub(head)
     }
 
-    /// Whether none waits.
+    /// Whether the queue is empty.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -182,7 +182,7 @@ impl SpscConsumer<'_> {
         self.ring.lost.load(Ordering::Relaxed)
     }
 
-    /// The losses that no item follows, as a break.
+    /// A break, if items were lost after the last one taken.
     #[cold]
     #[inline(never)]
     fn take_loss(&mut self, count: u32) -> Option<Taken> {
@@ -196,7 +196,7 @@ impl Source for SpscConsumer<'_> {
     #[inline]
     fn take(&mut self) -> Option<Taken> {
         let ring = self.ring;
-        // Before the look into the queue: so all items before these losses are taken, if it is empty.
+        // Read before the tail: if the queue is empty then, all items before these losses have been taken.
         let count = ring.lost.load(Ordering::Acquire);
         let head = ring.head.load(Ordering::Relaxed);
         let entry = ring.entries.get(head);

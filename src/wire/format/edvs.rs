@@ -28,12 +28,11 @@ pub enum EdvsTime {
 /// - **Polarity:** readers disagree; `p = 1` is [`Polarity::Up`] by default, or
 ///   [down](Self::with_up_as_zero).
 /// - **Length:** 2 bytes, and 1 to 4 of time.
-/// - **Resynchronisation:** the first byte of an event has bit 7 set; bytes before one are skipped.
-///   Later bytes may have it too: after a lost byte, or a start in the middle, a few events are wrong.
-///   Where all have `p = 1`, as those of rate and population codes, all that follow may be, with no
-///   byte skipped. Send those [with up as zero](Self::with_up_as_zero): E0, and E1 while less than
-///   2 s pass between events, are right again after three events at most; E2 to E4, whose times are
-///   any bytes, may take longer.
+/// - **Resynchronisation:** the first byte of an event has bit 7 set; bytes before it are skipped. Later bytes may
+///   have it set, too: after a lost byte, or a start in the middle of the stream, a few events are wrong. If all
+///   events have `p = 1`, as those of rate and population codes, they may stay wrong, with no byte skipped: send
+///   those [with up as zero](Self::with_up_as_zero). Then E0, and E1 while less than 2 s pass between events, are
+///   right again after at most three events; E2 to E4, whose time bytes have any value, may take longer.
 ///
 /// Source: eDVS user guide; libcaer, `edvs.c`.
 ///
@@ -63,28 +62,29 @@ const LAST_GROUP: u8 = 0x80;
 const MAX_DELTA: u32 = (1 << 28) - 1;
 
 impl Edvs {
-    /// The protocol with this time, where `p = 1` is up.
+    /// The protocol with this form of time, in which `p = 1` is up.
     pub const fn new(time: EdvsTime) -> Self {
         Self { time, up_is_zero: false }
     }
 
-    /// This protocol with `p = 0` as up.
+    /// Makes `p = 0` up and `p = 1` down.
     #[must_use]
     pub const fn with_up_as_zero(self) -> Self {
         Self { up_is_zero: true, ..self }
     }
 
-    /// Writes events; the first delta counts from tick 0.
+    /// An encoder whose first delta counts from tick 0.
     pub const fn encoder(self) -> EdvsEncoder {
         self.encoder_from(Tick::from_micros(0))
     }
 
-    /// Writes events; the first delta counts from this tick, and the short times of E2 and E3 lie after it.
+    /// An encoder that starts at this tick: the first delta of E1 counts from it, and the first short time of E2 and E3
+    /// is taken to lie after it.
     pub const fn encoder_from(self, start: Tick) -> EdvsEncoder {
         EdvsEncoder { protocol: self, clock: Clock::starting_at(start) }
     }
 
-    /// Reads events; the first delta counts from tick 0 or from [another](EdvsDecoder::set_tick).
+    /// A decoder that starts at tick 0, or at [another](EdvsDecoder::set_tick).
     pub const fn decoder(self) -> EdvsDecoder {
         EdvsDecoder { protocol: self, tick: Tick::from_micros(0), state: State::First, skipped: 0 }
     }
@@ -141,7 +141,7 @@ impl EventFormat for EdvsEncoder {
     }
 }
 
-/// The camera keeps the largest number of a length for the next length: its limits are strict.
+/// Appends a delta in groups of 7 bits. Like the camera, it takes one group more for the largest number of a length.
 fn put_delta(out: &mut Cursor<'_>, delta: u32) -> Option<()> {
     let group = |shift: u32| (delta >> shift) as u8 & 0x7F;
     let last = group(0) | LAST_GROUP;
@@ -170,8 +170,8 @@ enum State {
 }
 
 impl EdvsDecoder {
-    /// Sets the time of the event before: of all events for E0, where the deltas of E1 start, and
-    /// what the short times of E2 and E3 lie after.
+    /// Sets the time of the event before the next one. E0 gives this time to all events, E1 adds its delta to it, and
+    /// E2 and E3 take the first time after it that has the bits received.
     pub fn set_tick(&mut self, tick: Tick) {
         self.tick = tick;
     }
@@ -185,7 +185,7 @@ impl EdvsDecoder {
         }
     }
 
-    /// The next time with these low bits, or the one after this delta, once all its bytes are here.
+    /// The tick of the event from its time, once all `bytes` of it are here.
     fn tick(&self, time: u32, bytes: u8, last: u8) -> Option<Tick> {
         let bits = match self.protocol.time {
             EdvsTime::Delta => {
@@ -229,7 +229,7 @@ impl EventDecoder for EdvsDecoder {
                     return Some(self.event(y, second));
                 }
                 if bytes == 4 {
-                    // A delta without an end: no camera sends one.
+                    // A delta of more than four groups, which no camera sends.
                     self.skipped = self.skipped.saturating_add(6);
                     self.state = State::First;
                 } else {

@@ -1,5 +1,4 @@
-//! EIEIO, the words of `SpiNNaker` boards: the payload of a UDP datagram, up to 255 keys of 32 bits,
-//! little endian.
+//! EIEIO, the format of `SpiNNaker` boards: the payload of a UDP datagram, up to 255 keys of 32 bits, little endian.
 //!
 //! ```
 //! use spikewire::format::eieio;
@@ -21,9 +20,10 @@ const KEYS_32: u8 = 0x08;
 const KEYS_32_TIMED: u8 = 0x38;
 const MAX_KEYS: u8 = u8::MAX;
 
-/// Writes a datagram: a neuron's key is its population's base key plus the neuron. A time stamp, in
-/// the board's time steps, holds for all keys. Returns its length, `2 + 4 * keys`, and 4 more for a
-/// time stamp.
+/// Writes a datagram and returns its length: `2 + 4 * keys`, and 4 more for a time stamp.
+///
+/// A neuron's key is the base key of its population plus the neuron. A time stamp, in the board's time steps, holds for
+/// all keys.
 ///
 /// # Errors
 /// The keys do not fit the buffer, or are more than 255.
@@ -59,7 +59,7 @@ pub struct Datagram<'a> {
 }
 
 impl<'a> Datagram<'a> {
-    /// The neurons that fired.
+    /// The keys of the neurons that fired.
     pub fn keys(&self) -> impl Iterator<Item = u32> + use<'a> {
         self.keys
             .chunks_exact(4)
@@ -67,7 +67,7 @@ impl<'a> Datagram<'a> {
     }
 }
 
-/// Reads a datagram; `None` if it is cut, or not one of 32-bit keys, with or without a time stamp.
+/// Reads a datagram; `None` if it is too short, or of another type than 32-bit keys with or without a time stamp.
 pub fn decode(bytes: &[u8]) -> Option<Datagram<'_>> {
     let (&[count, kind], rest) = bytes.split_first_chunk()?;
     let (timestamp, rest) = match kind {

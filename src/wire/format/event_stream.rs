@@ -1,4 +1,4 @@
-//! Event Stream (`.es`), generic type: any payload with its time, the lossless log.
+//! Event Stream (`.es`) of the generic type: a log file of events that loses nothing.
 
 use super::{Clock, EventDecoder, EventFormat, FormatError};
 use crate::Polarity;
@@ -8,11 +8,11 @@ use crate::wire::bytes::Cursor;
 /// Event Stream version 2, generic events whose payload is the address, little endian, and a byte
 /// that is 1 for up and 0 for down.
 ///
-/// - **Layout:** the [header](Self::HEADER), then for each event the µs since the one before (a byte
-///   up to 253; `FF` lets 254 µs pass, `FE` is a reset), the payload's size, and the payload. The size
-///   is sent in groups of 7 bits, lowest first, each above a bit that says whether more follow.
+/// - **Layout:** the [header](Self::HEADER), then for each event the µs since the one before (a byte up to 253; `FF`
+///   adds 254 µs, `FE` is a reset), the size of the payload, and the payload. The size comes in groups of 7 bits,
+///   lowest group first, each with a lowest bit that is 1 if another group follows.
 /// - **Length:** 5 bytes an event, and one for every 254 µs between two.
-/// - **Resynchronisation:** none; it is a file format. A damaged byte may spoil what follows.
+/// - **Resynchronisation:** none, as it is a file format: a damaged byte may spoil all events after it.
 ///
 /// Source: Event Stream specification, neuromorphic-paris/event_stream.
 ///
@@ -34,8 +34,9 @@ pub struct EventStream;
 const RESET: u8 = 0xFE;
 const OVERFLOW: u8 = 0xFF;
 const OVERFLOW_TICKS: u32 = 254;
-/// Of the payload, and as it is written.
+/// The size of the payload.
 const SIZE: u8 = 3;
+/// The size as it is written.
 const SIZE_BYTE: u8 = SIZE << 1;
 const MORE: u8 = 1;
 
@@ -43,26 +44,26 @@ impl EventStream {
     /// The first bytes of a file: magic, version 2.0.0, type 0.
     pub const HEADER: [u8; 16] = *b"Event Stream\x02\0\0\0";
 
-    /// Writes events, whose file begins at tick 0; write the [header](Self::HEADER) before the first.
+    /// An encoder of a file that begins at tick 0. Write the [header](Self::HEADER) before the first event.
     ///
-    /// For a log that begins long after boot see [`encoder_from`](Self::encoder_from).
+    /// For a log that begins long after boot use [`encoder_from`](Self::encoder_from).
     pub const fn encoder() -> EventStreamEncoder {
         Self::encoder_from(Tick::from_micros(0))
     }
 
-    /// Writes events of a file that begins at this tick: it counts time from there, and does not say which
-    /// tick it was. From tick 0 it would write a byte for every 254 µs since boot, and after 35.8
-    /// minutes no event at its time.
+    /// An encoder of a file that begins at this tick. The file counts time from there, and does not contain the tick
+    /// itself. (From tick 0 it would begin with a byte for every 254 µs since boot, and 35.8 minutes after boot
+    /// event times would be wrong.)
     pub const fn encoder_from(start: Tick) -> EventStreamEncoder {
         EventStreamEncoder { clock: Clock::starting_at(start) }
     }
 
-    /// Reads a file, from its header on; it begins at tick 0.
+    /// A decoder of a file that begins at tick 0, from its header on.
     pub const fn decoder() -> EventStreamDecoder {
         Self::decoder_from(Tick::from_micros(0))
     }
 
-    /// Reads a file that begins at this tick, from its header on.
+    /// A decoder of a file that begins at this tick, from its header on.
     pub const fn decoder_from(start: Tick) -> EventStreamDecoder {
         EventStreamDecoder { tick: start, state: State::Header(0), skipped: 0 }
     }
@@ -77,8 +78,8 @@ pub struct EventStreamEncoder {
 impl EventFormat for EventStreamEncoder {
     const LONGEST: usize = 5;
 
-    /// Writes an event. Time that passes is written as far as it fits, a byte for every 254 µs, and
-    /// not written again.
+    /// Writes an event. The time before it, a byte for every 254 µs, is written as far as it fits and is not written
+    /// again when the event is offered again.
     fn encode(&mut self, event: Event, bytes: &mut [u8]) -> Result<usize, FormatError> {
         let (mut delta, is_retimed) = self.clock.since(event.tick);
         let mut out = Cursor::new(bytes);
@@ -112,8 +113,9 @@ pub struct EventStreamDecoder {
 
 #[derive(Clone, Copy, Debug)]
 enum State {
-    /// That many bytes of the header were right.
+    /// This many bytes of the header were right.
     Header(u8),
+    /// The header was another one.
     Foreign,
     Time,
     Size {
@@ -130,7 +132,7 @@ enum State {
 }
 
 impl EventStreamDecoder {
-    /// Whether the header was another format's or type's: then nothing is read.
+    /// Whether the header is that of another format or type, so that no event is read.
     pub const fn is_foreign(&self) -> bool {
         matches!(self.state, State::Foreign)
     }

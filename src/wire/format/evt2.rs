@@ -1,4 +1,4 @@
-//! EVT2: the words of Prophesee's cameras and tools.
+//! EVT 2.0: the format of Prophesee's cameras and tools.
 
 use super::{EventDecoder, EventFormat, FormatError};
 use crate::Polarity;
@@ -7,12 +7,12 @@ use crate::wire::bytes::Cursor;
 
 /// Prophesee EVT 2.0: words of 32 bits, little endian.
 ///
-/// - **Word of an event:** type\[31:28\] 0 (down) or 1 (up), t\[27:22\] the low 6 bits of the time,
-///   x\[21:11\], y\[10:0\]. **Of time:** type 8, then the time's upper 28 bits.
+/// - **Event word:** type\[31:28\] 0 (down) or 1 (up), t\[27:22\] the low 6 bits of the time, x\[21:11\], y\[10:0\].
+///   **Time word:** type\[31:28\] 8, then the upper 28 bits of the time.
 /// - **Address:** `y << 11 | x`; events of rows from 32 on, which have more than 16 bits, are skipped.
 /// - **Time:** 34 bits of µs, from the first event's tick on; ticks may wrap.
-/// - **Length:** 4 bytes an event, and 4 whenever 64 µs have passed.
-/// - **Resynchronisation:** none but the time words; the stream must be read from a word's start.
+/// - **Length:** 4 bytes an event, and 4 for a time word before the first event in every 64 µs.
+/// - **Resynchronisation:** at each time word; the stream must be read from the start of a word.
 ///
 /// Source: Prophesee, EVT 2.0 format.
 ///
@@ -43,18 +43,18 @@ impl Evt2 {
     pub const HEADER: &[u8] =
         b"% evt 2.0\n% format EVT2;height=32;width=2048\n% geometry 2048x32\n% end\n";
 
-    /// Writes words; for a file write the [header](Self::HEADER) before the first.
+    /// An encoder. For a file, write the [header](Self::HEADER) first.
     pub const fn encoder() -> Evt2Encoder {
         Evt2Encoder { time: None, high: None, retimed: 0 }
     }
 
-    /// Reads words, from a word's start on.
+    /// A decoder of words, from the start of a word on.
     pub const fn decoder() -> Evt2Decoder {
         Evt2Decoder { state: State::Word { word: 0, bytes: 0 }, high: None, skipped: 0 }
     }
 
-    /// Reads a file: skips its header, the lines that begin with `%` up to `% end`, if it has any. A first
-    /// word whose first byte is a `%` is known by its type, which no text has for its fourth byte.
+    /// A decoder of a file. It skips the header, if there is one: lines that begin with `%`, up to `% end`. A file
+    /// without a header may also begin with the byte `%`: the fourth byte of a word, with its type, is no text.
     pub const fn file_decoder() -> Evt2Decoder {
         Evt2Decoder { state: State::LineStart, high: None, skipped: 0 }
     }
@@ -63,8 +63,9 @@ impl Evt2 {
 /// The encoder of [`Evt2`].
 #[derive(Clone, Copy, Debug)]
 pub struct Evt2Encoder {
-    /// The last event's, of 34 bits.
+    /// The time of the last event, 34 bits.
     time: Option<u64>,
+    /// The upper 28 bits of the time, as in the last time word.
     high: Option<u32>,
     retimed: u32,
 }
@@ -115,12 +116,12 @@ pub struct Evt2Decoder {
 #[derive(Clone, Copy, Debug)]
 enum State {
     LineStart,
-    /// The first bytes after which a `%` may begin a line or a word.
+    /// The bytes from a `%` on that begins a line of the header or a word.
     Percent {
         bytes: [u8; 4],
         count: u8,
     },
-    /// Within a line of the header, whose first bytes are `% end` as far as it goes.
+    /// Within a line of the header, whose first `end` bytes are those of `% end`; `u8::MAX` if they are others.
     Line {
         end: u8,
     },
@@ -155,7 +156,7 @@ impl Evt2Decoder {
     }
 }
 
-/// After a byte of a line, which may be the end of the header.
+/// The state after a byte of a line, which may end the header.
 fn within_line(end: u8, byte: u8) -> State {
     const END: &[u8; 6] = b"% end\n";
     let is_end = END.get(usize::from(end)) == Some(&byte);

@@ -7,14 +7,13 @@
 //! | [`Evt2`] | Prophesee's tools | 16 of 22 bits | 34 bits |
 //! | [`eieio`] | `SpiNNaker` boards, by UDP datagram | 32-bit keys | 32 bits a datagram |
 //!
-//! A format is plain data and makes its encoder and decoder. Encoders write whole events into the
-//! caller's buffer; decoders take a byte at a time, from anywhere in a stream, never panic, and count
-//! what they skip.
+//! A format is plain data and makes its encoder and decoder. Encoders write whole events into the caller's buffer.
+//! Decoders take a byte at a time, from anywhere in a stream, never panic, and count the bytes that they skip.
 //!
-//! The formats but [`eieio`] and eDVS E4 have no way to step back in time: an event earlier than the
-//! one before it is written at that one's time, or, by eDVS E2 and E3, at a later one. One that comes
-//! 2³¹ µs (35.8 minutes) or more after the one before looks as if it were earlier. Every event that
-//! will be read at another time is counted as retimed.
+//! **Time** goes forward in all formats but [`eieio`] and eDVS E4: an event earlier than the one before it is written at
+//! the time of that one, or, by eDVS E2 and E3, at a later time. An event 2³¹ µs (35.8 minutes) or more after the one
+//! before counts as earlier. Every event that will be read at another time is counted as
+//! [retimed](EventFormat::retimed).
 
 mod edvs;
 pub mod eieio;
@@ -31,8 +30,8 @@ pub use evt2::{Evt2, Evt2Decoder, Evt2Encoder};
 
 /// Writes events, one after the other.
 pub trait EventFormat {
-    /// The bytes of the longest piece that is written at once: in as many, an event, or some of the
-    /// time before it, always fits.
+    /// The length of the longest piece that is written at once. A buffer of this length always has room for an event,
+    /// or for part of the time before it.
     const LONGEST: usize;
 
     /// Writes an event at the start of `bytes` and returns its length.
@@ -41,7 +40,7 @@ pub trait EventFormat {
     /// The event does not fit, or the format has no word for its address.
     fn encode(&mut self, event: Event, bytes: &mut [u8]) -> Result<usize, FormatError>;
 
-    /// How many events were written so that they are read at another time than theirs.
+    /// How many events will be read at another time than their own.
     fn retimed(&self) -> u32;
 }
 
@@ -50,13 +49,13 @@ pub trait EventDecoder {
     /// Takes a byte, and returns the event that it completes.
     fn push(&mut self, byte: u8) -> Option<Event>;
 
-    /// How many bytes belonged to no event that could be read.
+    /// How many bytes were skipped, as they belonged to no event that could be read.
     fn skipped(&self) -> u32;
 
-    /// Whether the last bytes begin something that has not ended: a stream that ends here is cut.
+    /// Whether the last bytes are part of an event or a header that has not ended: a stream that ends here was cut.
     fn is_partial(&self) -> bool;
 
-    /// Takes bytes, cut anywhere, and returns the events that they complete. Run it to its end.
+    /// Takes bytes, cut anywhere, and returns the events that they complete. Take all of these.
     fn decode(&mut self, bytes: &[u8]) -> impl Iterator<Item = Event> {
         bytes.iter().filter_map(|&byte| self.push(byte))
     }
@@ -68,10 +67,9 @@ pub trait EventDecoder {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum FormatError {
-    /// The event does not fit: offer it again with the rest of the buffer used.
+    /// The event does not fit the buffer: send what is written, and offer the event again.
     Full {
-        /// How many bytes were written nevertheless: time that passed before the event, which is
-        /// not written again.
+        /// How many bytes of the time before the event were written. They count, and are not written again.
         written: usize,
     },
     /// The format has no word for the address.
@@ -96,7 +94,7 @@ impl fmt::Display for FormatError {
 
 impl core::error::Error for FormatError {}
 
-/// The time at which a reader that began with the writer is.
+/// The time that a reader of the stream has reached, and the count of retimed events.
 #[derive(Clone, Copy, Debug, Default)]
 struct Clock {
     tick: Tick,
@@ -108,13 +106,13 @@ impl Clock {
         Self { tick, retimed: 0 }
     }
 
-    /// How much later an event is, in microseconds, and whether it is earlier and has to be retimed.
+    /// How much later an event is, in microseconds; 0 and true if it is earlier and must be retimed.
     fn since(self, tick: Tick) -> (u32, bool) {
         let delta = tick.since(self.tick);
         (delta.max(0) as u32, delta < 0)
     }
 
-    /// Goes on by time that was written.
+    /// Adds time that was written.
     fn advance(&mut self, delta: u32, is_retimed: bool) {
         self.tick += delta;
         self.retimed = self.retimed.saturating_add(is_retimed.into());

@@ -1,8 +1,8 @@
-//! A string of bits, high bit first, and its exponential Golomb codes.
+//! Strings of bits, high bit first, and exponential Golomb codes.
 
 use crate::wire::bytes::Cursor;
 
-/// What bits can be put into.
+/// A sink of bits.
 pub(super) trait PutBits {
     /// Appends a value of `count` bits, up to 32.
     fn put(&mut self, value: u32, count: u32);
@@ -11,7 +11,7 @@ pub(super) trait PutBits {
     fn put_code(&mut self, value: u32, k: u32);
 }
 
-/// `value` as `code(value, k)`: a number, how many bits that has, and the low `k` bits.
+/// The parts of `code(value, k)`: the number `(value >> k) + 1`, how many bits it has, and the low `k` bits of `value`.
 #[inline]
 fn code(value: u32, k: u32) -> (u32, u32, u32) {
     let number = value.wrapping_shr(k).wrapping_add(1);
@@ -19,7 +19,7 @@ fn code(value: u32, k: u32) -> (u32, u32, u32) {
     (number, 32 - number.leading_zeros(), low)
 }
 
-/// A string of fewer than 32 bits. One that became longer knows only that it did.
+/// A string of fewer than 32 bits. A longer one keeps its length alone.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Word {
     bits: u32,
@@ -44,14 +44,14 @@ impl PutBits for Word {
 #[derive(Debug)]
 pub(super) struct BitWriter<'a> {
     bytes: Cursor<'a>,
-    /// The low `pending` bits are not in the buffer yet, fewer than 32; those above are.
+    /// The low `pending` bits, fewer than 32, are not in the buffer yet; the others are.
     bits: u32,
     pending: u32,
-    /// Whether bits found no room.
+    /// Whether bits were lost for want of room.
     is_full: bool,
 }
 
-/// A place to go back to.
+/// A position in the string to go back to.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mark {
     written: usize,
@@ -60,7 +60,7 @@ pub(super) struct Mark {
 }
 
 impl<'a> BitWriter<'a> {
-    /// Goes on after what is written.
+    /// Appends to what is written.
     pub(super) fn new(bytes: Cursor<'a>) -> Self {
         Self { bytes, bits: 0, pending: 0, is_full: false }
     }
@@ -74,19 +74,19 @@ impl<'a> BitWriter<'a> {
         (self.bits, self.pending, self.is_full) = (mark.bits, mark.pending, false);
     }
 
-    /// Appends a word, if it is one and fits.
+    /// Appends a word; `None` if it has 32 bits or more, or does not fit.
     #[inline]
     pub(super) fn put_word(&mut self, word: Word) -> Option<()> {
         (word.count < 32 && self.fits(word.count)).then(|| self.put(word.bits, word.count))
     }
 
-    /// Whether there is room for so many bits more.
+    /// Whether there is room for this many more bits.
     #[inline]
     fn fits(&self, count: u32) -> bool {
         self.pending.wrapping_add(count) <= (self.bytes.room() as u32).wrapping_mul(8)
     }
 
-    /// Appends bits that complete 32.
+    /// Appends bits that complete 32 pending bits, which go to the buffer.
     #[inline(never)]
     fn put_across(&mut self, value: u32, count: u32) {
         let free = 32_u32.wrapping_sub(self.pending);
@@ -107,12 +107,12 @@ impl<'a> BitWriter<'a> {
         self.bytes.room()
     }
 
-    /// Whether there was room for all bits, and is for those that are not in the buffer yet.
+    /// Whether there was room for all bits in the buffer, and there is for those that are not in it yet.
     pub(super) fn is_within_limit(&self) -> bool {
         !self.is_full && self.fits(0)
     }
 
-    /// Writes what is not in the buffer yet, with the last byte filled up with 0.
+    /// Writes the bits that are not in the buffer yet, with the last byte filled up with 0.
     pub(super) fn finish(mut self) -> Cursor<'a> {
         let bytes = self.bits.unbounded_shl(32_u32.wrapping_sub(self.pending)).to_be_bytes();
         let count = self.pending.div_ceil(8) as usize;
@@ -141,7 +141,7 @@ impl PutBits for BitWriter<'_> {
     }
 }
 
-/// What bits can be taken from.
+/// A source of bits.
 pub(super) trait TakeBits {
     /// The next `count` bits, 1 to 32.
     fn take(&mut self, count: u32) -> Option<u32>;
@@ -150,7 +150,7 @@ pub(super) trait TakeBits {
     fn take_code(&mut self, k: u32) -> Option<u32>;
 }
 
-/// The bits that come next, from the highest on. Who takes more than there are gets anything.
+/// The next bits, from the highest on. It can be asked for more bits than it has: [`BitReader::pass`] then fails.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Glance {
     bits: u32,
@@ -186,7 +186,7 @@ impl<'a> BitReader<'a> {
         Self { bytes, taken: 0 }
     }
 
-    /// The next 25 bits or more, and 0 after the last.
+    /// The next 25 bits or more; 0 follow the last one.
     #[inline]
     pub(super) fn glance(&self) -> Glance {
         let rest = self.bytes.get(self.taken / 8..).unwrap_or_default();
@@ -194,7 +194,7 @@ impl<'a> BitReader<'a> {
         Glance { bits: u32::from_be_bytes(bytes) << (self.taken % 8), taken: 0 }
     }
 
-    /// Takes what was taken at a glance, if there was as much.
+    /// Takes the bits that were taken from a glance; `None` if there were fewer.
     #[inline]
     pub(super) fn pass(&mut self, glance: Glance) -> Option<()> {
         let taken = glance.taken as usize;
@@ -210,13 +210,13 @@ impl<'a> BitReader<'a> {
         self.bytes.len().wrapping_mul(8).wrapping_sub(self.taken)
     }
 
-    /// Whether all that is left are fewer than 8 bits of 0.
+    /// Whether fewer than 8 bits are left, all of them 0.
     pub(super) fn is_padding(self) -> bool {
         self.left() < 8 && self.glance().bits == 0
     }
 }
 
-/// The last bytes, fewer than 4, and 0.
+/// The last bytes, fewer than 4, filled up with 0.
 #[cold]
 #[inline(never)]
 fn end(bytes: &[u8]) -> [u8; 4] {

@@ -1,4 +1,4 @@
-//! The bits of an event: what is new since the one before. The module's page specifies them.
+//! The bits of an event, which code its difference from the event before; the module's page specifies them.
 
 use core::num::NonZeroU32;
 
@@ -10,12 +10,12 @@ use crate::event::{Event, Tick};
 /// The longest time between two events of a frame, in µs: 17.9 minutes.
 const MAX_SINCE: u32 = 1 << 30;
 
-/// What the next event is counted from.
+/// The tick and address from which the next event is coded.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     coding: Coding,
     tick: Tick,
-    /// The lowest address of an event at the same tick; 65 536 after the highest.
+    /// The lowest address that the next event can have at this tick: one above the last event, up to 65 536.
     next_address: u32,
 }
 
@@ -25,7 +25,7 @@ impl Place {
         Self { coding, tick, next_address: 0 }
     }
 
-    /// Puts the bits of an event; `None` if it lies too far away.
+    /// Puts the bits of an event; `None` if it lies more than [`MAX_SINCE`] from the one before.
     #[inline]
     pub(super) fn put(&self, event: Event, bits: &mut impl PutBits) -> Option<()> {
         let Coding { period, address_bits, jitter_bits } = self.coding;
@@ -51,7 +51,7 @@ impl Place {
         Some(())
     }
 
-    /// Takes the bits of an event; `None` if they are of none.
+    /// Takes the bits of an event; `None` if they code no event.
     #[inline]
     pub(super) fn take(&self, bits: &mut impl TakeBits) -> Option<Event> {
         let Coding { period, address_bits, jitter_bits } = self.coding;
@@ -68,7 +68,7 @@ impl Place {
         Some(Event { tick, address: address.try_into().ok()?, polarity })
     }
 
-    /// Goes on behind an event.
+    /// Codes the next event from this one.
     #[inline]
     pub(super) fn pass(&mut self, event: Event) {
         self.tick = event.tick;
@@ -76,7 +76,7 @@ impl Place {
     }
 }
 
-/// `since` as steps of the period, and what is left: at most half a period.
+/// `since` as the nearest number of periods, and the rest: at most half a period.
 fn nearest_step(since: i32, period: NonZeroU32) -> (i32, i32) {
     let magnitude = since.unsigned_abs().wrapping_add(period.get() / 2) / period;
     let steps = if since < 0 { (magnitude as i32).wrapping_neg() } else { magnitude as i32 };

@@ -1,4 +1,4 @@
-//! What can be wrong with a frame.
+//! Errors of reading and writing frames.
 
 use core::fmt;
 
@@ -10,31 +10,32 @@ use core::fmt;
 pub enum LinkError {
     /// The bytes end within the frame.
     Truncated {
-        /// How many the frame has, as far as its bytes tell.
+        /// How many bytes the frame has, or at least has as far as is known.
         needed: usize,
-        /// How many there are.
+        /// How many bytes there are.
         found: usize,
     },
     /// The first byte is not the magic.
     NotAFrame {
-        /// What it is.
+        /// The first byte.
         found: u8,
     },
-    /// Another version of the link.
+    /// The frame is of another version of the link.
     Version {
-        /// Which.
+        /// The version.
         found: u8,
     },
-    /// A period of 0, keyframes of no sample type, or more of them than the frame has room for.
+    /// The header is wrong: a period of 0, an unknown sample type of keyframes, or more keyframes than the frame has
+    /// room for.
     Header,
     /// The checksum does not match: the frame was damaged.
     Checksum {
-        /// What the frame says.
+        /// The checksum in the frame.
         found: u32,
-        /// What its bytes give.
+        /// The checksum of its bytes.
         computed: u32,
     },
-    /// The buffer or the frame has no room for this: finish the frame and start the next.
+    /// The buffer or the frame has no room for this item: finish the frame and start the next.
     Full,
     /// A keyframe of another tick or sample type than the frame's, or after an event: finish the frame and
     /// start the next.

@@ -1,4 +1,4 @@
-//! The layout of a frame, and a checked view of one.
+//! The layout of a frame, and a view that reads one.
 
 use core::num::NonZeroU16;
 
@@ -20,7 +20,7 @@ pub(super) const CHECKSUM: usize = 4;
 pub(super) const MAX_LENGTH: usize = u8::MAX as usize;
 pub(super) const MAGIC: u8 = 0xA5;
 pub(super) const VERSION: u8 = 2;
-/// Where the version and flags are, and the length.
+/// The indices of the byte with version and flags, and of the length.
 pub(super) const FLAGS_AT: usize = 1;
 pub(super) const LENGTH_AT: usize = 13;
 
@@ -35,9 +35,9 @@ pub(super) fn checksum(bytes: &[u8]) -> u32 {
     CRC.checksum(bytes)
 }
 
-/// A frame, read in place: nothing is copied.
+/// A frame, read in place without a copy.
 ///
-/// Checked once, by [`new`](Self::new); reading cannot fail then.
+/// [`new`](Self::new) checks it; after that reading cannot fail.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameView<'a> {
     flags: u8,
@@ -54,8 +54,8 @@ impl<'a> FrameView<'a> {
     /// The frame that these bytes begin with, and how long it is.
     ///
     /// # Errors
-    /// Every error but [`Full`](LinkError::Full) and [`KeyframeOrder`](LinkError::KeyframeOrder),
-    /// in the order of the bytes that tell it.
+    /// The bytes begin no frame, only part of one, or a damaged one: every error but [`Full`](LinkError::Full) and
+    /// [`KeyframeOrder`](LinkError::KeyframeOrder).
     pub fn new(bytes: &'a [u8]) -> Result<(Self, usize), LinkError> {
         let length = Self::length(bytes)?;
         let truncated = LinkError::Truncated { needed: length, found: bytes.len() };
@@ -68,7 +68,7 @@ impl<'a> FrameView<'a> {
         Ok((Self::read(body).ok_or(LinkError::Header)?, length))
     }
 
-    /// A frame without its checksum, which was checked.
+    /// Reads a frame without its checksum, which was checked before.
     pub(super) fn read(body: &'a [u8]) -> Option<Self> {
         let (header, payload) = body.split_first_chunk::<HEADER>()?;
         let &[_, flags, n0, n1, s0, s1, t0, t1, t2, t3, p0, p1, coding, _] = header;
@@ -85,10 +85,10 @@ impl<'a> FrameView<'a> {
         })
     }
 
-    /// How long the frame is that these bytes begin with, as soon as they tell.
+    /// The length of the frame that these bytes begin with, from its header.
     ///
     /// # Errors
-    /// They do not tell yet, or begin no frame.
+    /// The header is incomplete, or the bytes begin no frame.
     pub fn length(bytes: &[u8]) -> Result<usize, LinkError> {
         let truncated = LinkError::Truncated { needed: MIN_FRAME, found: bytes.len() };
         match *bytes {
@@ -104,7 +104,7 @@ impl<'a> FrameView<'a> {
         Ok(MIN_FRAME + usize::from(*length))
     }
 
-    /// The number of the sender's session: another after each of its starts.
+    /// The number of the sender's session, which changes at each start of the sender.
     pub fn session(&self) -> u16 {
         self.session
     }
@@ -114,8 +114,7 @@ impl<'a> FrameView<'a> {
         self.sequence
     }
 
-    /// The tick of the keyframes, at or before that of the first event unless events are out of
-    /// order.
+    /// The tick of the keyframes: at or before that of the first event, unless events are out of order.
     pub fn tick(&self) -> Tick {
         self.tick
     }
@@ -130,7 +129,7 @@ impl<'a> FrameView<'a> {
         self.coding.period
     }
 
-    /// What decoders should hold before the events of this frame.
+    /// The values that decoders should hold before the events of this frame.
     pub fn keyframes(&self) -> impl Iterator<Item = Keyframe> + use<'a> {
         let Self { tick, kind, keyframes, .. } = *self;
         keyframes.chunks_exact(keyframe_size(kind)).filter_map(move |entry| {
@@ -145,8 +144,8 @@ impl<'a> FrameView<'a> {
         })
     }
 
-    /// This frame with the bits of its keyframes taken as those of another sample type, if that is as wide:
-    /// for programs that run all fixed point of one width as one type.
+    /// This frame with its keyframes read as another sample type of the same width; `None` if the width differs. For
+    /// programs that handle all fixed point of one width as one type.
     pub fn with_kind(self, kind: SampleKind) -> Option<Self> {
         (kind.size() == self.kind.size()).then_some(Self { kind, ..self })
     }
@@ -181,13 +180,12 @@ pub struct Events<'a> {
 }
 
 impl Events<'_> {
-    /// After the last event: whether all bits were read. Not so if a sender writes what no event
-    /// can be.
+    /// After the last event, whether all bits were read. False if bits are left that code no event.
     pub fn is_complete(&self) -> bool {
         self.bits.is_padding()
     }
 
-    /// An event that a glance does not show: longer, or none.
+    /// The next event, if it is longer than a glance; `None` if the next bits code no event.
     #[cold]
     #[inline(never)]
     fn take_long(&mut self) -> Option<Event> {

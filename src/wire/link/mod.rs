@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | 0 | magic | `A5` |
 //! | 1 | version and flags | version 2 in the high nibble; flags 1 *lost*, 2 *keyframes*; others are 0 |
-//! | 2-3 | session | another after each start of the sender |
+//! | 2-3 | session | changes at each start of the sender |
 //! | 4-5 | sequence | of the frame: 0 first, +1 each, wraps |
 //! | 6-9 | first tick | µs, of the keyframes, and what the first event's time is counted from |
 //! | 10-11 | period | µs from sample to sample, 1 to 65 535 |
@@ -18,9 +18,9 @@
 //! | | events | a string of bits, below |
 //! | | checksum | CRC-32/ISO-HDLC, the one of zlib, of all bytes before it |
 //!
-//! *lost*: before this frame the sender lost items, or its encoders changed without events. **Sample
-//! types:** 0 is `f32`; 1 to 17 fixed point of 16 bits with 0 to 16 of fraction; 18 to 50 fixed point of
-//! 32 bits with 0 to 32 of fraction.
+//! **Flag *lost*:** the sender lost items before this frame, or its encoders changed without events. **Sample types:**
+//! 0 is `f32`; 1 to 17 are fixed point of 16 bits with 0 to 16 fraction bits; 18 to 50 are fixed point of 32 bits with
+//! 0 to 32 fraction bits.
 //!
 //! **Events** follow each other without a gap, each byte filled from its high bit; the last is filled
 //! up with 0. `code(v, k)` is the exponential Golomb code: with `n = (v >> k) + 1`, as many 0 as `n`
@@ -33,23 +33,23 @@
 //!   bits)`, `code(address, address bits)`, where zigzag maps 0, -1, 1, -2 to 0, 1, 2, 3;
 //! - then `1` for up or `0` for down.
 //!
-//! A rest of fewer than 8 bits, all 0, is no event. One of six channels thus takes 3 to 7 bits an
-//! event; the first event one period after the one before takes 2 more, other times more still.
+//! Fewer than 8 bits at the end, all 0, are no event. With six channels an event thus takes 3 to 7 bits; the first
+//! event at a new tick takes 2 more if the tick is one period later, and still more otherwise.
 //!
-//! **Keyframes** say what the decoder of each address should hold after all events of earlier frames and
-//! before those of this one. They make a step decoder exact again after a loss.
+//! **Keyframes** give the value that the decoder of each address should hold after the events of earlier frames and
+//! before those of this one. They make the decoder of a temporal code exact again after a loss.
 //!
-//! **Order:** a reader delivers frames by rising sequence. It leaves out those that come again or late.
+//! **Order:** a reader delivers frames by rising sequence. It leaves out frames that are repeated or late.
 //!
-//! **Resynchronisation:** at any byte that is not a magic, at a header that makes no sense, and at a
-//! checksum that does not match, the reader goes on with the next byte. A frame in whose place others
-//! are found is lost and shows in the sequence.
+//! **Resynchronisation:** after a byte that is not the magic, a wrong header or a wrong checksum, the reader goes on
+//! with the next byte. Frames that are lost this way leave a gap in the sequence.
 //!
 //! # Parts
 //!
-//! Sending: a [`Transmitter`] takes items from a queue and turns them into frames, in their order. Below it, a [`Framer`] counts frames and a [`FrameWriter`] writes one. Receiving: a
-//! [`Reader`] finds frames in bytes cut anywhere, a [`FrameView`] reads one in place, and a
-//! [`Receiver`] applies them to decoders and says which are exact.
+//! - **Sending:** a [`Transmitter`] takes items from a queue and turns them into frames, in their order. It is made of a
+//!   [`Framer`], which numbers frames, and a [`FrameWriter`], which writes one.
+//! - **Receiving:** a [`Reader`] finds frames in bytes cut anywhere, a [`FrameView`] reads one in place, and a
+//!   [`Receiver`] decodes them and knows which values are exact.
 //!
 //! ```
 //! use spikewire::{Bank, EventQueue, Overflow, Tick, link::*, temporal::StepForward};

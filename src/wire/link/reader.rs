@@ -1,31 +1,31 @@
-//! Finds frames in bytes that arrive cut anywhere, damaged, or from the middle of a stream.
+//! Reader: finds frames in bytes that arrive cut anywhere, damaged, or from the middle of a stream.
 
 use super::frame::{CHECKSUM, MAGIC};
 use super::{FrameView, LinkError, MIN_FRAME};
 
-/// Frames that never arrived whole, by their numbers.
+/// A gap in the sequence: frames that are missing between two that arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gap {
-    /// How many, 1 to 65 279: sequences wrap, so that losses count modulo 65 536.
+    /// How many are missing, 1 to 65 279; sequences wrap, so that they count modulo 65 536.
     pub lost_frames: u16,
 }
 
 /// A frame that arrived, and what is missing before it.
 #[derive(Clone, Copy, Debug)]
 pub struct Received<'a> {
-    /// Frames lost since the one before.
+    /// The sequence gap before this frame, if there is one.
     pub gap: Option<Gap>,
-    /// Whether it is the first frame that the reader sees of the sender's session.
+    /// Whether it is the first frame of the sender's session that arrived.
     pub is_start: bool,
     /// The frame.
     pub frame: FrameView<'a>,
 }
 
 impl Received<'_> {
-    /// Whether something is missing between the frame before and this one, or the sender or the reader
-    /// began anew. Only the decoders that this frame has keyframes of are exact then.
+    /// Whether frames or items are missing before this frame, or the sender or the reader has just started. Temporal
+    /// decoders are then exact only if this frame has a keyframe for them.
     pub fn is_after_break(&self) -> bool {
         self.is_start || self.gap.is_some() || self.frame.is_after_loss()
     }
@@ -33,18 +33,18 @@ impl Received<'_> {
 
 /// Finds frames of up to `N` bytes; [`MAX_FRAME`](super::MAX_FRAME) takes all.
 ///
-/// - **Order:** a frame that was delivered already, or that comes up to 256 frames late, is left out: also
-///   of one of the three sessions before, until the present one has delivered 256 frames.
-/// - **Memory:** `N + 68` bytes. **Work:** a checksum a frame; after damage up to one for each byte
-///   that looks like a frame's first.
-/// - **Delay:** none, but a frame whose length was damaged may hold up to 255 more bytes back.
+/// - **Order:** a frame that was already delivered, or that comes up to 256 frames late, is left out. So is a late
+///   frame of the three sessions before, until the present one has delivered 256 frames.
+/// - **Memory:** `N + 68` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
+///   the first of a frame.
+/// - **Delay:** none; a frame whose length was damaged may delay the frames in the 255 bytes after it.
 ///
 /// Counters: [`lost_frames`](Self::lost_frames), [`bad_checksums`](Self::bad_checksums),
 /// [`repeated`](Self::repeated), [`late`](Self::late), [`skipped`](Self::skipped).
 #[derive(Clone, Debug)]
 pub struct Reader<const N: usize> {
     buffer: [u8; N],
-    /// What of the buffer is in use; the frame handed out last comes first.
+    /// The part of the buffer in use; the frame returned last, of `handed_out` bytes, comes first.
     start: usize,
     end: usize,
     handed_out: usize,
@@ -58,7 +58,7 @@ pub struct Reader<const N: usize> {
     skipped: u32,
 }
 
-/// How many frames back a frame counts as late, rather than as one after a long gap.
+/// A frame counts as late up to this many frames back, and beyond that as one after a long gap.
 const LATE: u16 = 256;
 
 #[derive(Clone, Copy, Debug)]
@@ -70,16 +70,16 @@ struct Session {
     delivered: u16,
 }
 
-/// What a frame is to the reader.
+/// Where a frame stands in the sequence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Standing {
     /// The first of its session.
     First,
-    /// The next one, but for so many.
+    /// A later one, with this many missing before it.
     After(u16),
-    /// The one delivered last.
+    /// The frame delivered last.
     Repeated,
-    /// An earlier one.
+    /// An earlier frame.
     Late,
 }
 
@@ -90,7 +90,7 @@ impl<const N: usize> Default for Reader<N> {
 }
 
 impl<const N: usize> Reader<N> {
-    /// A reader that has seen nothing.
+    /// A reader before its first byte.
     pub const fn new() -> Self {
         const { assert!(N >= MIN_FRAME, "a reader has room for at least an empty frame") };
         Self {
@@ -108,7 +108,7 @@ impl<const N: usize> Reader<N> {
         }
     }
 
-    /// The next frame. Takes bytes from the front of `input`, all of them before it returns `None`.
+    /// The next frame. Takes bytes from the front of `input`; when it returns `None`, it has taken all of them.
     pub fn next_frame(&mut self, input: &mut &[u8]) -> Option<Received<'_>> {
         self.start = self.start.wrapping_add(core::mem::take(&mut self.handed_out));
         let (length, standing) = self.find(input)?;
@@ -154,8 +154,8 @@ impl<const N: usize> Reader<N> {
         self.bad_checksums
     }
 
-    /// How many frames had the number of the one before, as when a bus sends again what it could not
-    /// confirm; they are left out.
+    /// How many frames had the number of the one before, as on a bus that repeats what was not acknowledged; they are
+    /// left out.
     pub const fn repeated(&self) -> u32 {
         self.repeated
     }
@@ -170,7 +170,7 @@ impl<const N: usize> Reader<N> {
         self.skipped
     }
 
-    /// The length of the next frame to deliver, which is at `start` then.
+    /// Finds the next frame to deliver, which then begins at `start`, and returns its length.
     fn find(&mut self, input: &mut &[u8]) -> Option<(usize, Standing)> {
         loop {
             let bytes = self.buffer.get(self.start..self.end).unwrap_or_default();
@@ -215,7 +215,7 @@ impl<const N: usize> Reader<N> {
             Some(ahead) if ahead > u16::MAX - LATE => Standing::Late,
             Some(ahead) => Standing::After(ahead),
             None => {
-                // What was on its way when the sender started anew.
+                // A frame that was on its way when the sender restarted is late.
                 let is_late = |ahead: u16| ahead.wrapping_add(LATE) < 2 * LATE;
                 let mut earlier = earlier.iter().flatten();
                 if earlier.any(|session| ahead(session).is_some_and(is_late)) {
@@ -227,7 +227,7 @@ impl<const N: usize> Reader<N> {
         }
     }
 
-    /// Moves what is in use to the front and appends as much of `input` as there is room for.
+    /// Moves the part in use to the front of the buffer, and appends as much of `input` as there is room for.
     fn take_in(&mut self, input: &mut &[u8]) {
         let used = self.end.wrapping_sub(self.start);
         if self.start > 0 {

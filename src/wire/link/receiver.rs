@@ -1,4 +1,4 @@
-//! Frames to values, with the knowledge of which are exact.
+//! Receiver: the decoders of several channels at the end of a link, which know whether their values are exact.
 
 use core::fmt;
 use core::num::NonZeroU32;
@@ -9,23 +9,23 @@ use crate::{Code, ConfigError, Firing, Recovery, Scheme, error};
 
 /// The decoders of `N` channels at the end of a link, for any code.
 ///
-/// A value is *exact* if it is, bit for bit, that of a decoder beside the encoder which loses nothing and is
-/// resynchronised by the keyframes that arrive. How near that is to the signal is the scheme's affair. After a
-/// loss no channel is exact; each becomes so again as its [`RECOVERY`](Scheme::RECOVERY) says. Meanwhile
-/// events go on being decoded, which gives an [`estimate`](Self::estimate).
+/// A value is *exact* if it has the bits of a decoder on the sender's side, which loses no event and takes the
+/// keyframes that arrive here. (How close that is to the signal depends on the scheme.) After a loss no channel is
+/// exact; each becomes exact again as its [`RECOVERY`](Scheme::RECOVERY) says. Until then events are still decoded,
+/// and give an [`estimate`](Self::estimate).
 ///
-/// - **Step codes** ([`Recovery::Keyframe`]) are exact from their next keyframe on. A value holds from its
-///   event on until the next event.
-/// - **Population codes** ([`Recovery::Spike`]) are exact from the next whole sample on in which the channel
-///   fires. A sample is over when an event of a later one arrives, or by [`advance`](Self::advance).
-/// - **Rate codes** ([`Recovery::Samples`]) are exact after so many whole samples. Their samples lie on the
-///   time grid of the link's [period](super::Coding::period): the sender takes a sample every period, with a
-///   jitter below half of it. Samples without events count too; where there are more of them than the code
-///   recovers in, the rest is passed over, as nothing changes any more.
+/// - **Temporal codes** ([`Recovery::Keyframe`]) are exact from their next keyframe on. A value holds from its event
+///   until the next one.
+/// - **Population codes** ([`Recovery::Spike`]) are exact from the next whole sample in which the channel fires. A
+///   sample is over when an event of a later one arrives, or by [`advance`](Self::advance).
+/// - **Rate codes** ([`Recovery::Samples`]) are exact after as many whole samples as the filter has taps. The sender
+///   must take a sample every [period](super::Coding::period) of the link, with a jitter below half a period, since
+///   samples without events are decoded, too: after as many of them as the filter has taps the value no longer
+///   changes, and the others are passed over.
 ///
-/// - **Memory:** per channel the decoder's state and 2 samples; 8 bytes for each of the `EVENTS` that one
-///   sample may have over all channels, which step codes have no use for: give them 0.
-/// - **Latency:** none for step codes, for others until the sample is over.
+/// - **Memory:** per channel the decoder's state and 2 samples; 8 bytes for each of `EVENTS`, the most events that one
+///   sample has over all channels. Temporal codes need none of these: 0.
+/// - **Latency:** none for temporal codes; for others until the sample is over.
 ///
 /// ```
 /// use spikewire::{link::Receiver, temporal::StepForward};
@@ -48,35 +48,35 @@ struct Channel<D, S> {
     state: D,
     value: S,
     is_exact: bool,
-    /// How many whole samples were decoded since the last break, as far as it matters.
+    /// How many samples were decoded since the last loss.
     whole: usize,
 }
 
 /// The sample that is being received, of codes that take all events of a sample at once.
 #[derive(Clone, Copy, Debug)]
 struct Sampled<const EVENTS: usize> {
-    /// When it was taken; before the first sample `None`, or where the time grid lies.
+    /// The tick of the sample. Before the first one: `None`, or a tick from which samples lie whole periods away.
     tick: Option<Tick>,
     /// Whether an event has come.
     has_begun: bool,
     events: [Event; EVENTS],
     count: usize,
-    /// Whether nothing of it was lost.
+    /// Whether none of its events was lost.
     is_whole: bool,
-    /// Whether nothing of the next sample was lost.
+    /// Whether none of the next sample's events was lost.
     is_next_whole: bool,
     period: NonZeroU32,
 }
 
 impl<'a, P: Scheme, const N: usize, const EVENTS: usize> Receiver<&'a P, N, EVENTS> {
-    /// A receiver whose channels share one scheme; that of the sender.
+    /// A receiver whose channels share one scheme, that of the sender.
     pub fn new(scheme: &'a P) -> Self {
         Self::with_schemes(scheme)
     }
 }
 
 impl<'a, P: Scheme, const N: usize, const EVENTS: usize> Receiver<[&'a P; N], N, EVENTS> {
-    /// A receiver with a scheme for each channel; those of the sender.
+    /// A receiver with a scheme for each channel, those of the sender.
     pub fn per_channel(schemes: [&'a P; N]) -> Self {
         Self::with_schemes(schemes)
     }
@@ -100,7 +100,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         Self { schemes, channels, addresses, sample: Sampled::NONE, outside: 0, misfits: 0 }
     }
 
-    /// This receiver with addresses from this one on instead of 0; others are counted as
+    /// Sets the first address, 0 by default; events of addresses without a channel are counted as
     /// [outside](Self::outside).
     ///
     /// # Panics
@@ -112,7 +112,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         self
     }
 
-    /// This receiver with addresses from this one on instead of 0.
+    /// Sets the first address, 0 by default.
     ///
     /// # Errors
     /// The last address is above 65 535.
@@ -121,8 +121,8 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         Ok(Self { addresses: Addresses { first: first_address, ..self.addresses }, ..self })
     }
 
-    /// This receiver for sub-timesteps of so many microseconds, where one of the sender's samples is taken at
-    /// the tick `start` and the others lie whole periods from it.
+    /// Sets the length of a sub-timestep in microseconds, 0 by default. `start` is the tick of one of the sender's
+    /// samples; the others lie whole periods from it.
     #[must_use]
     pub const fn with_slot_ticks(mut self, slot_ticks: u32, start: Tick) -> Self {
         self.addresses.slot_ticks = slot_ticks;
@@ -130,8 +130,8 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         self
     }
 
-    /// Applies a frame, and hands the channel, tick and new value of each keyframe, event or sample to
-    /// `on_value`, in order.
+    /// Decodes a frame, and passes the channel, tick and new value of each keyframe, event or sample to `on_value`, in
+    /// order.
     pub fn apply(
         &mut self,
         received: &Received<'_>,
@@ -155,16 +155,16 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         }
     }
 
-    /// Takes note that all events before this tick have arrived: samples that are over by then are decoded
-    /// and handed to `on_value`. Without it a sample is decoded when an event of a later one arrives. Step
-    /// codes have no use for it.
+    /// Tells the receiver that all events before this tick have arrived: samples that are over by then are decoded and
+    /// passed to `on_value`. Otherwise a sample is decoded when an event of a later one arrives. Temporal codes do
+    /// not need this.
     pub fn advance(&mut self, now: Tick, mut on_value: impl FnMut(u16, Tick, SampleOf<T, N>)) {
         if T::Scheme::RECOVERY != Recovery::Keyframe {
             self.finish_samples(now, &mut on_value);
         }
     }
 
-    /// Marks every channel as not exact, for a loss that the link did not see.
+    /// Marks every channel as not exact, after a loss that the link cannot see.
     pub fn mark_stale(&mut self) {
         for channel in &mut self.channels {
             channel.is_exact = false;
@@ -174,14 +174,14 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         self.sample.is_next_whole = false;
     }
 
-    /// The value of a channel, if it is exact: of a step code that of the last event, of others that of the
-    /// last sample that is over.
+    /// The value of a channel if it is exact, else `None`. Of a temporal code it is the value after the last event, of
+    /// others that of the last sample that is over.
     pub fn exact(&self, channel: u16) -> Option<SampleOf<T, N>> {
         let channel = self.channels.get(usize::from(channel))?;
         channel.is_exact.then_some(channel.value)
     }
 
-    /// The value of a channel, exact or not; 0 for one that there is not.
+    /// The value of a channel, exact or not; 0 for a channel that does not exist.
     pub fn estimate(&self, channel: u16) -> SampleOf<T, N> {
         let channel = self.channels.get(usize::from(channel));
         channel.map(|channel| channel.value).unwrap_or_default()
@@ -192,8 +192,8 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         self.outside
     }
 
-    /// How many keyframes had another sample type or came for a code without keyframes, how many frames had
-    /// events that cannot be, and how many events found no room in their sample.
+    /// How many keyframes had another sample type or came for a code without keyframes, plus how many frames had bits
+    /// that code no event, plus how many events were more than the `EVENTS` of a sample.
     pub const fn misfits(&self) -> u32 {
         self.misfits
     }
@@ -251,16 +251,16 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
     /// Goes on to the sample of an event at this tick.
     fn sample_at(&mut self, tick: Tick, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
         self.finish_samples(tick, on_value);
-        // What was lost before an event belongs to its sample at the latest.
+        // Events that were lost before this one belong to its sample or to an earlier one.
         self.sample.is_next_whole = true;
         self.sample.has_begun = true;
         if self.addresses.slot_ticks == 0 {
-            // Near the grid: what lies between is jitter, or a period that is not quite that of the link.
+            // Near the grid: it differs by jitter, or as the sender's period is not quite that of the link.
             self.sample.tick = Some(tick);
         }
     }
 
-    /// Decodes the sample that is over at this tick, and those without events between it and the present one.
+    /// Decodes the sample that is over at this tick, and the samples without events after it.
     fn finish_samples(&mut self, now: Tick, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
         let Some(tick) = self.sample.tick else { return };
         let Sampled { period, is_next_whole, .. } = self.sample;
@@ -285,7 +285,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         }
     }
 
-    /// Decodes the sample that is over in every channel.
+    /// Decodes a sample that is over, in every channel.
     fn decode(&mut self, tick: Tick, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
         let events = self.sample.events.get(..self.sample.count).unwrap_or_default();
         let channels = self.channels.iter_mut().zip(self.schemes.each());

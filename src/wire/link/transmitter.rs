@@ -1,4 +1,4 @@
-//! Items to frames, in their order.
+//! Transmitter: turns items into frames, in their order.
 
 use super::{Coding, FrameWriter, Framer, LinkError};
 use crate::event::{Item, Source, Taken};
@@ -6,8 +6,8 @@ use crate::wire::Batch;
 
 /// Takes items from a source and turns them into frames, in their order.
 ///
-/// - **Keyframes** lead a frame: one that follows an event starts the next.
-/// - **Losses and breaks** start a frame too, with the flag *lost*: no decoder is exact then until its next
+/// - **Keyframes** come first in a frame: a keyframe after an event starts the next frame.
+/// - **Losses and breaks** also start a frame, with the flag *lost*: a temporal decoder is then wrong until its next
 ///   keyframe.
 /// - **Memory:** 28 bytes on a 32-bit part.
 ///
@@ -29,26 +29,24 @@ use crate::wire::Batch;
 #[derive(Clone, Copy, Debug)]
 pub struct Transmitter {
     framer: Framer,
-    /// Taken, and in no frame yet.
+    /// An item that was taken from the source and is in no frame yet.
     held: Option<Taken>,
 }
 
 impl Transmitter {
-    /// A sender that has sent nothing.
+    /// A transmitter before its first frame.
     ///
-    /// `session` must differ from that of the start before, so that a reader sees the restart even if it
-    /// misses frames: a counter kept in flash or in a backup register, or a number from a generator of
-    /// random numbers.
+    /// `session` must differ from that of the previous start, so that a reader sees the restart even if it misses
+    /// frames: a counter kept in flash or in a backup register, or a random number.
     pub const fn new(coding: Coding, session: u16) -> Self {
         Self { framer: Framer::new(coding, session), held: None }
     }
 
-    /// Writes the next frame, with as many items as fit and are there; `None` if there is nothing to
-    /// send. Call it until then.
+    /// Writes the next frame, with as many items as there are and fit; `None` if there is none. Call it until it
+    /// returns `None`.
     ///
     /// # Errors
-    /// [`LinkError::Full`]: the buffer has no room for a single item. Nothing is lost; 64 bytes are always
-    /// enough.
+    /// [`LinkError::Full`]: the buffer has no room for a single item. No item is lost; 64 bytes are always enough.
     pub fn next_frame<'a>(
         &mut self,
         mut items: impl Source,
@@ -80,7 +78,7 @@ impl Transmitter {
     }
 }
 
-/// A break needs no bytes: the frame's flag says it.
+/// Appends an item. A break needs no bytes, as the frame's flag stands for it.
 #[inline]
 fn append(frame: &mut FrameWriter<'_, '_>, item: Item) -> Result<(), LinkError> {
     match item {

@@ -1,4 +1,4 @@
-//! Writing frames into the caller's buffer.
+//! Framer and frame writer: write frames into the caller's buffer.
 
 use core::num::NonZeroU16;
 
@@ -13,33 +13,34 @@ use crate::SampleKind;
 use crate::event::{Event, Keyframe, Tick};
 use crate::wire::bytes::Cursor;
 
-/// How a sender spends the bits of an event. Any choice carries any event; a good one is shorter.
+/// How many bits the parts of an event take. Every choice can carry every event; a good one takes fewer bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Coding {
     /// The time from sample to sample, in µs.
     pub period: NonZeroU16,
-    /// About the logarithm of the distance between neighbouring addresses that fire; 0 to 15, above
-    /// which it counts as 15.
+    /// About the binary logarithm of the distance between neighbouring addresses that fire. 0 to 15; larger values
+    /// count as 15.
     pub address_bits: u8,
-    /// About the logarithm of the jitter of ticks, in µs, and one for its sign; 0 to 15, as above.
+    /// About the binary logarithm of the jitter of ticks in µs, plus 1 for its sign. 0 to 15; larger values count as
+    /// 15.
     pub jitter_bits: u8,
 }
 
 impl Coding {
-    /// For channels of a neuron each, sampled every `period` µs (0 counts as 1) by a timer.
+    /// A coding for channels of one neuron each, sampled by a timer every `period` µs (0 counts as 1).
     pub const fn for_channels(channels: u16, period: u16) -> Self {
         let period = match NonZeroU16::new(period) {
             Some(period) => period,
             None => NonZeroU16::MIN,
         };
-        // When few fire at a time; more cost a bit or two each.
+        // Best if few channels fire at a time; if many do, an event takes a bit or two more.
         let address_bits = (u16::BITS - (channels / 8).leading_zeros()) as u8;
         Self { period, address_bits, jitter_bits: 0 }
     }
 
-    /// This coding for ticks that jitter by this many bits of µs.
+    /// Sets the [bits for the jitter](Self::jitter_bits).
     #[must_use]
     pub const fn with_jitter_bits(self, jitter_bits: u8) -> Self {
         Self { jitter_bits, ..self }
@@ -65,7 +66,7 @@ impl Coding {
     }
 }
 
-/// Counts a sender's frames.
+/// Starts and numbers a sender's frames. A [`Transmitter`](super::Transmitter) does this for the items of a queue.
 ///
 /// ```
 /// use spikewire::{Event, Polarity, Tick, link::{Coding, FrameView, Framer}};
@@ -92,7 +93,7 @@ pub struct Framer {
 }
 
 impl Framer {
-    /// A sender whose first frame is number 0 of this session; see [`Transmitter::new`](super::Transmitter).
+    /// A framer whose first frame is number 0 of this session; see [`Transmitter::new`](super::Transmitter::new).
     pub const fn new(coding: Coding, session: u16) -> Self {
         Self { coding: coding.within_limits(), session, sequence: 0, flags: 0 }
     }
@@ -102,8 +103,8 @@ impl Framer {
         self.flags |= flag::LOST;
     }
 
-    /// Starts a frame at this tick, best that of its first event. Unless it is
-    /// [finished](FrameWriter::finish), nothing has happened.
+    /// Starts a frame at this tick, best that of its first event. A frame that is not
+    /// [finished](FrameWriter::finish) takes no number.
     ///
     /// # Errors
     /// [`LinkError::Full`]: the buffer is shorter than [`MIN_FRAME`](super::MIN_FRAME).
@@ -148,7 +149,7 @@ pub struct FrameWriter<'f, 'a> {
     bits: BitWriter<'a>,
     flags: u8,
     tick: Tick,
-    /// Of the keyframes, from the first on.
+    /// The sample type of the keyframes; `None` before the first.
     kind: Option<SampleKind>,
     keyframes: u8,
     events: u32,
@@ -159,8 +160,8 @@ impl<'a> FrameWriter<'_, 'a> {
     /// Appends a keyframe, at the frame's tick.
     ///
     /// # Errors
-    /// The frame is full, has another tick, or has events or a keyframe of another sample type already; it
-    /// is as it was.
+    /// The frame is full, has another tick, or already has events or a keyframe of another sample type. It is
+    /// unchanged.
     pub fn keyframe(&mut self, keyframe: Keyframe) -> Result<(), LinkError> {
         let Keyframe { tick, address, kind, bits } = keyframe;
         if self.events > 0 || tick != self.tick || self.kind.is_some_and(|first| first != kind) {
@@ -186,8 +187,8 @@ impl<'a> FrameWriter<'_, 'a> {
     /// Appends an event.
     ///
     /// # Errors
-    /// [`LinkError::Full`]: it does not fit, or lies more than 2³⁰ µs from the one before; the frame is
-    /// as it was.
+    /// [`LinkError::Full`]: the event does not fit, or lies more than 2³⁰ µs from the one before. The frame is
+    /// unchanged.
     pub fn event(&mut self, event: Event) -> Result<(), LinkError> {
         let mut word = Word::default();
         self.place.put(event, &mut word).ok_or(LinkError::Full)?;
@@ -199,7 +200,7 @@ impl<'a> FrameWriter<'_, 'a> {
         Ok(())
     }
 
-    /// An event that is no word, or does not fit.
+    /// Appends an event that is too long for a word; an error if it does not fit.
     #[cold]
     #[inline(never)]
     fn put_long(&mut self, event: Event) -> Result<(), LinkError> {
@@ -222,8 +223,8 @@ impl<'a> FrameWriter<'_, 'a> {
         self.events == 0 && self.keyframes == 0
     }
 
-    /// Closes the frame and returns its bytes, ready to send. From here on it counts: one that is not
-    /// sent is a loss that the reader will see.
+    /// Closes the frame and returns its bytes, ready to send. The frame takes its number: if it is not sent, the reader
+    /// sees a gap.
     pub fn finish(self) -> &'a [u8] {
         let mut bytes = self.bits.finish();
         let length = bytes.written().saturating_sub(HEADER) as u8;
@@ -234,7 +235,7 @@ impl<'a> FrameWriter<'_, 'a> {
         }
         bytes.set_limit(usize::MAX);
         let checksum = checksum(bytes.as_slice());
-        // There is room: the limit kept it free.
+        // There is room, which the limit kept free.
         let _ = bytes.put(&checksum.to_le_bytes());
         self.framer.sequence = self.framer.sequence.wrapping_add(1);
         self.framer.flags = 0;
