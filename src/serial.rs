@@ -1,9 +1,9 @@
-//! What serde does not derive: arrays of any length, and structs without those that they are made of.
+//! Serialization that serde does not derive: arrays of any length, and structs that leave out their inner structure.
 
 use serde::ser::{SerializeSeq, SerializeStruct};
 use serde::{Serialize, Serializer};
 
-/// For `#[serde(serialize_with = …)]`.
+/// Serializes an array of any length; for `#[serde(serialize_with = …)]`.
 pub(crate) fn array<T: Serialize, S: Serializer, const N: usize>(
     items: &[T; N],
     serializer: S,
@@ -11,7 +11,7 @@ pub(crate) fn array<T: Serialize, S: Serializer, const N: usize>(
     serializer.collect_seq(items)
 }
 
-/// A sequence whose length is counted first: compact formats write it before the items.
+/// Serializes a sequence. It is counted first, as compact formats write the length before the items.
 pub(crate) fn sequence<I, S>(items: impl Fn() -> I, serializer: S) -> Result<S::Ok, S::Error>
 where
     I: Iterator<Item: Serialize>,
@@ -24,7 +24,7 @@ where
     sequence.end()
 }
 
-/// A struct of these fields.
+/// Serializes a struct of these fields.
 pub(crate) fn fields<A: Serialize, B: Serialize, C: Serialize, S: Serializer>(
     name: &'static str,
     (first, a): (&'static str, &A),

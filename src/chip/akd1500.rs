@@ -1,18 +1,18 @@
-//! Akida AKD1500: a window onto the chip's memory, and its event words.
+//! Akida AKD1500: access to the chip's memory over SPI, and its event words.
 
 use embedded_hal::spi::{Operation, SpiDevice};
 
 use super::ChipError;
 use super::error::at_most;
 
-/// AKD1500 over SPI: transport and event words. An inference also needs the vendor's compiled program,
-/// which is written through this.
+/// AKD1500 over SPI: reads and writes memory. An inference also needs a program from the vendor's compiler, which is
+/// written with this.
 ///
 /// - **SPI:** mode 0, high bit first, 8 MHz; chip select low over header and data.
 /// - **Blocks:** 1, 4, 8, 16 or 32 words each; a longer run takes several.
-/// - **Addresses:** whole words, and the run within 64 MiB, of which the chip sees the low 26 bits.
+/// - **Addresses:** multiples of 4. The chip sees the low 26 bits, and a run must not cross a border of 64 MiB.
 ///
-/// Source: the vendor's Arduino library and engine, from which the facts were taken but no code.
+/// Source: the vendor's Arduino library and engine, for the protocol; no code was taken.
 ///
 /// ```
 /// use embedded_hal_mock::eh1::spi::{Mock, Transaction};
@@ -35,7 +35,7 @@ pub struct Akd1500<D> {
 
 const WRITE: u8 = 0x80;
 const READ: u8 = 0x60;
-/// Words of a block and its code, longest first.
+/// The number of words of a block, and its code; longest first.
 const BLOCKS: [(usize, u8); 5] = [(32, 4), (16, 3), (8, 2), (4, 1), (1, 0)];
 const WINDOW: u32 = 1 << 26;
 const MAX_BLOCK_BYTES: usize = 128;
@@ -49,7 +49,7 @@ impl<D: SpiDevice> Akd1500<D> {
     /// Writes words from an address on.
     ///
     /// # Errors
-    /// The bus failed, and some blocks may be written; or the address is none.
+    /// The bus failed, and some blocks may be written; or the address is out of range.
     pub fn write(&mut self, address: u32, words: &[u32]) -> Result<(), ChipError<D::Error>> {
         check(address, words.len())?;
         for (address, code, block) in blocks(address, words) {
@@ -70,7 +70,7 @@ impl<D: SpiDevice> Akd1500<D> {
     /// Reads words from an address on.
     ///
     /// # Errors
-    /// The bus failed, or the address is none.
+    /// The bus failed, or the address is out of range.
     pub fn read(&mut self, address: u32, words: &mut [u32]) -> Result<(), ChipError<D::Error>> {
         check(address, words.len())?;
         let mut address = address;
@@ -94,7 +94,7 @@ impl<D: SpiDevice> Akd1500<D> {
     /// Writes words and reads them back.
     ///
     /// # Errors
-    /// As [`write`](Self::write), and at the first word that does not read back.
+    /// Those of [`write`](Self::write), or the first word that reads back differently.
     pub fn program(&mut self, address: u32, words: &[u32]) -> Result<(), ChipError<D::Error>> {
         self.write(address, words)?;
         for (address, _, block) in blocks(address, words) {
@@ -131,7 +131,7 @@ fn header(command: u8, address: u32) -> [u8; 4] {
     [command, high, middle, low]
 }
 
-/// The longest block that takes no more words than these.
+/// The longest block of at most this many words.
 fn block_of(words: usize) -> Option<(usize, u8)> {
     BLOCKS.into_iter().find(|&(count, _)| count <= words)
 }
@@ -211,7 +211,7 @@ impl ConvolutionEvent {
 pub struct DenseEvent {
     /// The feature, 0 to 262 143.
     pub feature: u32,
-    /// The activation, 26 bits.
+    /// The activation, 0 to 67 108 863.
     pub activation: u32,
 }
 

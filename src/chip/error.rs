@@ -1,4 +1,4 @@
-//! What can go wrong with a chip.
+//! Errors of the chips.
 
 use core::convert::Infallible;
 use core::fmt;
@@ -6,7 +6,7 @@ use core::fmt;
 use super::Phase;
 use super::family::AerError;
 
-/// Why a chip did not do what it was asked: `B` is the error of its bus, `P` that of its port.
+/// Why a call on a chip failed. `B` is the error of its bus, `P` that of its port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -16,13 +16,13 @@ pub enum ChipError<B, P = Infallible> {
     Bus(B),
     /// The port failed.
     Port(P),
-    /// The chip did not answer in this phase of a handshake, which says what became of the word.
+    /// The chip did not answer in this phase of a handshake. The phase says whether the chip has taken the word.
     Handshake(Phase),
     /// The chip did not finish its time step.
     Unfinished,
     /// The chip may be out of step with the bus: reset it first.
     NotReset,
-    /// The chip's activity must be gated for this: its memory cannot be accessed while it runs.
+    /// The chip runs: its memory can only be accessed while its activity is gated.
     NotGated,
     /// The chip's activity is gated: it takes no events.
     Gated,
@@ -36,7 +36,7 @@ pub enum ChipError<B, P = Infallible> {
         /// The neuron that they come from, or the input's row.
         pre: u8,
     },
-    /// There is no such value.
+    /// A value is out of its range.
     OutOfRange {
         /// What was out of range.
         what: &'static str,
@@ -49,14 +49,14 @@ pub enum ChipError<B, P = Infallible> {
     },
     /// A virtual event of weight 0, which would act as a full spike.
     ZeroWeight,
-    /// What was read back is not what was written: write it again. Where the chip has a reset, what its
-    /// memories hold is not known: reset it, and write all of it again.
+    /// Memory reads back differently from what was written: write it again. If the chip has a reset, all its memory is
+    /// in doubt: reset it, and write all of it again.
     ReadBack {
-        /// Where.
+        /// The address.
         address: u32,
-        /// What was written.
+        /// The value written.
         written: u32,
-        /// What was read.
+        /// The value read.
         read: u32,
     },
 }
@@ -96,7 +96,7 @@ impl<B, P> From<AerError<P>> for ChipError<B, P> {
     }
 }
 
-/// `value` within `0..=max`.
+/// Checks that `value` lies within `0..=max`.
 pub(super) fn at_most<B, P>(
     what: &'static str,
     value: u32,
@@ -105,7 +105,7 @@ pub(super) fn at_most<B, P>(
     in_range(what, value.into(), 0, max.into())
 }
 
-/// `value` within `min..=max`.
+/// Checks that `value` lies within `min..=max`.
 pub(super) fn in_range<B, P>(
     what: &'static str,
     value: i64,

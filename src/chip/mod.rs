@@ -1,4 +1,4 @@
-//! Neuromorphic chips, each in its own words.
+//! Drivers for neuromorphic chips.
 //!
 //! | chip | spikes in | spikes out | how it was checked |
 //! |---|---|---|---|
@@ -6,8 +6,8 @@
 //! | [`Akd1500`] | a window onto memory, over SPI | the same | bytes of the vendor's library |
 //! | [`Xylo`] | counts in registers | a status register | the registers in the vendor's sources |
 //!
-//! None of this has been seen on hardware. None of the buses has a checksum: what can be read back
-//! should be, and every chip here can verify what it writes.
+//! None of these drivers has run on hardware. No bus has a checksum: read back what can be read back, which every driver
+//! here can do.
 //!
 //! # A network on tinyODIN
 //!
@@ -59,8 +59,7 @@
 //! }
 //! ```
 //!
-//! No wait is unbounded: each looks at the pins or registers as often as it is told, then returns an
-//! error.
+//! Every wait is bounded: it polls the pins or registers a given number of times, and then returns an error.
 
 mod akd1500;
 mod error;

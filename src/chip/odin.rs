@@ -1,4 +1,4 @@
-//! ODIN: tinyODIN's elder, with learning synapses and 17-bit words.
+//! ODIN: 256 neurons and 64k synapses that can learn; 17-bit words.
 
 use super::error::in_range;
 use super::{ChipError, Input, Network, OdinChip, OutputSource};
@@ -25,23 +25,23 @@ pub type OdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OdinNeuron {
-    /// Bits 9-16: where it fires and returns to 0, 1 to 255.
+    /// Bits 9-16: the potential at which the neuron fires and returns to 0, 1 to 255.
     pub threshold: u8,
-    /// Bits 1-7, and 8 unless 0: what a time step takes from the potential, 0 to 127.
+    /// Bits 1-7, and bit 8 unless 0: how much the potential falls in a time step, 0 to 127.
     pub leak: u8,
-    /// Bits 70-77: 0 to 255, where it stops.
+    /// Bits 70-77: the potential, which saturates at 0 and 255.
     pub potential: u8,
-    /// Bits 17-39: how the synapses onto it learn, if they do.
+    /// Bits 17-39: how the synapses onto the neuron learn; `None` if they do not.
     pub learning: Option<OdinLearning>,
-    /// Bit 127: whether it never fires. Its potential goes on.
+    /// Bit 127: whether the neuron never fires. Its potential still changes.
     pub is_disabled: bool,
 }
 
 impl OdinNeuron {
-    /// At 0, without a leak and learning, with the highest threshold.
+    /// A neuron with potential 0 and the highest threshold, without leak and learning.
     pub const REST: Self =
         Self { threshold: 255, leak: 0, potential: 0, learning: None, is_disabled: false };
-    /// Of those that are not in use.
+    /// A neuron that is not in use.
     pub const DISABLED: Self = Self { is_disabled: true, ..Self::REST };
 }
 
@@ -56,16 +56,16 @@ pub struct OdinLearning {
     pub potential: u8,
     /// Bits 26-34, 3 each: the thresholds of calcium, 0 to 7.
     pub calcium: [u8; 3],
-    /// Bits 35-39: after so many time steps calcium falls by 1, 1 to 31; 0: never.
+    /// Bits 35-39: calcium falls by 1 after this many time steps, 1 to 31; 0: never.
     pub calcium_leak: u8,
 }
 
-/// A synapse of ODIN. Its sign is that of the neuron it comes from.
+/// A synapse of ODIN. Its sign is that of the presynaptic neuron.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OdinSynapse {
-    /// 0 to 7.
+    /// The weight, 0 to 7.
     pub weight: u8,
     /// The mapping bit. A synapse without it does nothing, and does not learn, unless registers
     /// [24](OdinRegisters::propagates_unmapped) and [23](OdinRegisters::updates_unmapped) say otherwise.
@@ -78,16 +78,16 @@ pub struct OdinSynapse {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[allow(clippy::struct_excessive_bools, reason = "each is a register")]
 pub struct OdinRegisters {
-    /// Register 1: the neurons' spikes go out, but not to other neurons.
+    /// Register 1: the neurons' spikes go to the output bus only, and not to other neurons.
     pub is_open_loop: bool,
-    /// Registers 2 to 17: bit `n % 16` of word `n / 16` says that neuron `n` inhibits.
+    /// Registers 2 to 17: bit `n % 16` of word `n / 16` is 1 if neuron `n` inhibits.
     pub inhibitory: [u16; 16],
     /// Register 18: clocks of the interval in a burst, 20 bits; 0 without bursts.
     pub burst_clocks: u32,
-    /// Register 19: what goes to the output bus.
+    /// Register 19: the source of the output bus.
     pub output_source: OutputSource,
-    /// Registers 20 to 22: the neuron, and the neuron that its synapse comes from, whose states go to the
-    /// output bus instead of spikes.
+    /// Registers 20 to 22: the neuron, and the presynaptic neuron of one of its synapses, whose states go to the output
+    /// bus instead of spikes.
     pub monitored: Option<(u8, u8)>,
     /// Register 23: synapses without the mapping bit learn.
     pub updates_unmapped: bool,
@@ -111,7 +111,7 @@ impl OdinRegisters {
     };
 }
 
-/// What goes into ODIN: 17 bits.
+/// An input word of ODIN: 17 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -121,7 +121,7 @@ pub enum OdinInput {
     Synapse {
         /// The neuron that fired.
         pre: u8,
-        /// The neuron that it acts on.
+        /// The neuron onto which the synapse acts.
         post: u8,
     },
     /// Neuron `pre` fired: all its synapses act.
@@ -133,7 +133,7 @@ pub enum OdinInput {
     Virtual {
         /// The neuron.
         neuron: u8,
-        /// 1 to 7.
+        /// The weight, 1 to 7.
         weight: u8,
         /// Whether it inhibits.
         is_inhibitory: bool,
@@ -150,14 +150,14 @@ pub enum OdinInput {
     },
     /// A time step for all neurons.
     LeakAll,
-    /// Pulls the synapses *from* one neuron a step towards their stable states, 0 and 7. The chip's manual
-    /// says onto it; its code does otherwise. Synapses without the mapping bit stay, unless
-    /// [`updates_unmapped`](OdinRegisters::updates_unmapped).
+    /// Moves the synapses *from* one neuron a step towards their stable states, 0 and 7. (The chip's manual says the
+    /// synapses onto it; its RTL differs.) Synapses without the mapping bit stay as they are, unless
+    /// [`updates_unmapped`](OdinRegisters::updates_unmapped) is set.
     Bistability {
         /// The neuron.
         neuron: u8,
     },
-    /// Pulls all synapses a step towards their stable states.
+    /// Moves all synapses a step towards their stable states.
     BistabilityAll,
 }
 
@@ -248,11 +248,11 @@ impl Input for OdinInput {
 
     fn is_unmoved(neuron: &OdinNeuron) -> bool {
         let &OdinNeuron { threshold, leak, potential, learning, is_disabled } = neuron;
-        // A time step is one for calcium too.
+        // A time step changes calcium, too.
         learning.is_none() && (is_disabled || leak == 0 && potential < threshold)
     }
 
-    /// Mapped, unless 0.
+    /// The mapping bit is set unless the weight is 0.
     fn weight_bits<B, P>(weight: i8) -> Result<u8, ChipError<B, P>> {
         in_range("weight", weight.into(), -7, 7)?;
         Ok(if weight == 0 { 0 } else { 8 | weight.unsigned_abs() })

@@ -1,15 +1,15 @@
-//! Where tinyODIN's and ODIN's outputs come from.
+//! The source of tinyODIN's and ODIN's outputs.
 
-/// What goes to the output bus.
+/// Which spikes go to the output bus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum OutputSource {
-    /// A neuron, when it fires.
+    /// The spikes of neurons, when they fire.
     #[default]
     Neurons,
-    /// A spike, when the chip has worked it off: in closed loop the neurons' and the inputs', in open loop
-    /// the inputs' alone, which it echoes. In ODIN only at the monitored neuron.
+    /// The spikes of the chip's queue, when they have been processed: in closed loop those of neurons and inputs, in
+    /// open loop those of inputs alone. In ODIN only those at the monitored neuron.
     Queue,
 }
 

@@ -1,4 +1,4 @@
-//! tinyODIN: 256 neurons, 64k synapses of 4 bits.
+//! tinyODIN: 256 neurons and 64k synapses of 4 bits; 10-bit words.
 
 use super::error::in_range;
 use super::{ChipError, Input, Network, OdinChip, OutputSource};
@@ -22,26 +22,26 @@ pub type TinyOdin<D, P> = OdinChip<TinyOdinInput, D, P>;
 pub type TinyOdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
     Network<TinyOdinInput, IN, N, OUT>;
 
-/// A neuron's 32 bits: 0-11 potential, 12-23 threshold, 24-30 leak, 31 disable.
+/// A leaky integrate-and-fire neuron of tinyODIN, in 32 bits: 0-11 potential, 12-23 threshold, 24-30 leak, 31 disable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TinyOdinNeuron {
-    /// Where it fires and returns to 0, 1 to 2047. Memory that was never written may hold 0: such a
-    /// neuron fires at every event.
+    /// The potential at which the neuron fires and returns to 0, 1 to 2047. (Memory that was never written may hold 0:
+    /// such a neuron fires at every event.)
     pub threshold: u16,
-    /// By how much a time step brings the potential nearer to 0, 0 to 127.
+    /// How much nearer to 0 the potential comes in a time step, 0 to 127.
     pub leak: u8,
-    /// -2048 to 2047, where it stops.
+    /// The potential, which saturates at -2048 and 2047.
     pub potential: i16,
-    /// Whether it never fires. Its potential goes on.
+    /// Whether the neuron never fires. Its potential still changes.
     pub is_disabled: bool,
 }
 
 impl TinyOdinNeuron {
-    /// At 0, without a leak, with the highest threshold.
+    /// A neuron with potential 0 and the highest threshold, without leak.
     pub const REST: Self = Self { threshold: 2047, leak: 0, potential: 0, is_disabled: false };
-    /// Of those that are not in use.
+    /// A neuron that is not in use.
     pub const DISABLED: Self = Self { is_disabled: true, ..Self::REST };
 }
 
@@ -50,15 +50,15 @@ impl TinyOdinNeuron {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TinyOdinRegisters {
-    /// Register 1: the neurons' spikes go out, but not to other neurons.
+    /// Register 1: the neurons' spikes go to the output bus only, and not to other neurons.
     pub is_open_loop: bool,
-    /// Register 2: what goes to the output bus.
+    /// Register 2: the source of the output bus.
     pub output_source: OutputSource,
-    /// Register 3: the highest neuron in use. A spike takes 2 clocks for each up to it.
+    /// Register 3: the highest neuron in use. A spike takes 2 clocks for each neuron up to this one.
     pub last_neuron: u8,
 }
 
-/// What goes into tinyODIN: 10 bits.
+/// An input word of tinyODIN: 10 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -72,7 +72,7 @@ pub enum TinyOdinInput {
     Virtual {
         /// The neuron, 0 to 15.
         neuron: u8,
-        /// -8 to 7, but not 0, which would act as a full spike.
+        /// The weight, -8 to 7 but not 0, which would act as a full spike.
         weight: i8,
     },
     /// A time step for one neuron.

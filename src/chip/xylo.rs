@@ -1,10 +1,10 @@
-//! `SynSense` Xylo: counts of 16 channels a time step, in two registers.
+//! `SynSense` Xylo: spike counts of 16 channels for each time step, in two registers.
 
 use super::ChipError;
 
 /// Access to the chip's registers, which the user supplies: the bytes on its bus are not public.
 pub trait Registers {
-    /// What can go wrong.
+    /// The error of the bus.
     type Error;
 
     /// Writes a register.
@@ -20,7 +20,7 @@ pub trait Registers {
     fn read(&mut self, address: u16) -> Result<u32, Self::Error>;
 }
 
-/// Packs counts as the chip takes them: channel `k` in nibble `k`, saturating at 15.
+/// Packs counts into two register values: channel `k` in nibble `k`, saturating at 15.
 ///
 /// ```
 /// use spikewire::chip::pack_counts;
@@ -35,39 +35,38 @@ pub fn pack_counts(counts: [u8; 16]) -> [u32; 2] {
     [packed as u32, (packed >> 32) as u32]
 }
 
-/// Which of the two banks of input registers a time step goes to.
+/// One of the two banks of input registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum InputBank {
-    /// The first.
+    /// The first bank.
     First,
-    /// The second.
+    /// The second bank.
     Second,
 }
 
-/// Where a member of the family has its registers, and what they say.
+/// The registers of a member of the Xylo family.
 ///
-/// Checked against the sources of `rockpool` alone: `syns65302/reg.py` for Audio 3,
-/// `syns61201/xa2_devkit_utils.py` for A2. Both poll for the end of a time step as
-/// [`step`](Xylo::step) does.
+/// Checked only against the sources of `rockpool`: `syns65302/reg.py` for Audio 3, `syns61201/xa2_devkit_utils.py` for
+/// A2. Both poll for the end of a time step as [`step`](Xylo::step) does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct XyloMap {
-    /// The first register of the first bank; the second bank is two further.
+    /// The first register of the first input bank; the second bank begins two registers later.
     pub input: u16,
-    /// Where a time step is triggered: WO.
+    /// The register that triggers a time step; write-only.
     pub control: u16,
-    /// What is written there, and nothing else: bit 0 is the reset.
+    /// The only value to write there; bit 0 would be the reset.
     pub trigger: u32,
-    /// Where it says whether the time step is done.
+    /// The register that shows whether the time step is done.
     pub status: u16,
-    /// The bit of it.
+    /// The bit of `status` that shows it.
     pub done: u32,
-    /// Where the outputs are that fired.
+    /// The register with the outputs that fired.
     pub outputs: u16,
-    /// The bits of them: bit `i` is output `i`.
+    /// The bits of `outputs` in use: bit `i` is output `i`.
     pub output_bits: u32,
 }
 
@@ -98,10 +97,10 @@ impl XyloMap {
     }
 }
 
-/// Xylo Audio 3 and A2, stepped by hand: counts in, a time step, the outputs that fired.
+/// Xylo Audio 3 and A2 in manual mode: set the counts, run a time step, get the outputs that fired.
 ///
-/// Count the events of a time step with [`Bins<16>`](crate::Bins), limited to 15 so that what
-/// saturates is counted.
+/// Count the events of a time step with [`Bins<16>`](crate::Bins), with a limit of 15 so that events beyond it are
+/// counted as saturated.
 ///
 /// Source: register names and layouts of synsense/rockpool.
 #[derive(Debug)]
@@ -112,7 +111,7 @@ pub struct Xylo<R> {
 }
 
 impl<R: Registers> Xylo<R> {
-    /// A chip with these registers. A time step is waited for by reading its status `polls` times.
+    /// A chip with these registers. [`step`](Self::step) reads the status up to `polls` times.
     pub const fn new(registers: R, map: XyloMap, polls: u32) -> Self {
         Self { registers, map, polls }
     }

@@ -1,4 +1,4 @@
-//! The message of a bad constant, put together without `core::fmt`, which does not run at compile time.
+//! The message of a bad constant, written without `core::fmt`, which cannot run at compile time.
 
 use super::ConfigError;
 
@@ -96,8 +96,8 @@ impl Message {
         self
     }
 
-    /// Up to six digits, which tell the end of a range from the next whole number, with a power of ten where the
-    /// number is large or small.
+    /// Up to six digits, enough to tell the end of a range from the next whole number; with a power of ten if the number is
+    /// large or small.
     const fn number(mut self, value: f32) -> Self {
         if value < 0.0 {
             return self.byte(b'-').number(-value);

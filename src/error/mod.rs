@@ -1,4 +1,4 @@
-//! What can be wrong with parameters, said once, when a scheme is built.
+//! Errors of parameters, which are all found when a scheme is built.
 
 mod message;
 
@@ -6,10 +6,9 @@ use core::fmt;
 
 pub(crate) use message::unwrap;
 
-/// A parameter that makes no sense.
+/// A parameter is out of its range.
 ///
-/// Every variant names the parameter, what it was and what is allowed. Values are shown as `f32`,
-/// whatever the sample type.
+/// Every variant names the parameter, its value and what is allowed. Values are shown as `f32` for every sample type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -19,28 +18,28 @@ pub enum ConfigError {
     NotPositive {
         /// Which parameter.
         parameter: &'static str,
-        /// What it was.
+        /// Its value.
         value: f32,
     },
     /// The value must be 0 or more and finite.
     Negative {
         /// Which parameter.
         parameter: &'static str,
-        /// What it was.
+        /// Its value.
         value: f32,
     },
     /// The value must be finite.
     NotFinite {
         /// Which parameter.
         parameter: &'static str,
-        /// What it was.
+        /// Its value.
         value: f32,
     },
     /// The value must lie in `min..=max`.
     OutOfRange {
         /// Which parameter.
         parameter: &'static str,
-        /// What it was.
+        /// Its value.
         value: f32,
         /// The smallest value allowed.
         min: f32,
@@ -58,17 +57,16 @@ pub enum ConfigError {
         /// The value before it, which it must exceed.
         previous: f32,
     },
-    /// All taps are 0: the filter would fire without end and decode to nothing.
+    /// All taps are 0: every sample would spike, and decode to 0.
     AllZero {
         /// Which parameter.
         parameter: &'static str,
     },
-    /// A cell holds no sample: the sample type is too coarse for so many cells, or an edge lies outside the
-    /// range.
+    /// A cell holds no sample: the sample type is too coarse for this many cells, or an edge lies outside the range.
     EmptyCell {
         /// Which cell, from 0, the lowest.
         cell: usize,
-        /// How many there are.
+        /// How many cells there are.
         cells: usize,
     },
     /// A calibration has seen too few samples.
@@ -116,7 +114,7 @@ impl fmt::Display for ConfigError {
 
 impl core::error::Error for ConfigError {}
 
-/// Above 0 and finite.
+/// Checks that a value is above 0 and finite.
 pub(crate) const fn positive(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
     if value > 0.0 && value.is_finite() {
         Ok(())
@@ -125,11 +123,11 @@ pub(crate) const fn positive(parameter: &'static str, value: f64) -> Result<(), 
     }
 }
 
-/// No finite `f32` reaches infinity by a step of this or less: half the last place of the largest is
-/// a little more.
+/// The largest step in `f32`: adding it to any finite value stays finite, as it is less than half a unit in the last
+/// place of the largest one.
 pub(crate) const LARGEST_STEP: f32 = 1e31;
 
-/// Above 0, and at most the largest step.
+/// Checks that a value is above 0 and at most [`LARGEST_STEP`].
 pub(crate) const fn step(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
     match positive(parameter, value) {
         Ok(()) => within(parameter, value, f32::from_bits(1), LARGEST_STEP),
@@ -137,7 +135,7 @@ pub(crate) const fn step(parameter: &'static str, value: f64) -> Result<(), Conf
     }
 }
 
-/// Finite, and within the largest step of 0.
+/// Checks that a value is finite and within ±[`LARGEST_STEP`].
 pub(crate) const fn offset(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
     match finite(parameter, value) {
         Ok(()) => within(parameter, value, -LARGEST_STEP, LARGEST_STEP),
@@ -145,7 +143,7 @@ pub(crate) const fn offset(parameter: &'static str, value: f64) -> Result<(), Co
     }
 }
 
-/// From `min` to `max`.
+/// Checks that a value lies within `min..=max`.
 pub(crate) const fn within(
     parameter: &'static str,
     value: f64,
@@ -159,12 +157,12 @@ pub(crate) const fn within(
     }
 }
 
-/// The first of so many addresses, which all have 16 bits.
+/// Checks that this many addresses from `value` on fit 16 bits.
 pub(crate) const fn first_address(value: u16, addresses: usize) -> Result<(), ConfigError> {
     within("first address", value as f64, 0.0, ((1 << 16) - addresses) as f32)
 }
 
-/// 0 or more and finite.
+/// Checks that a value is 0 or more and finite.
 pub(crate) const fn not_negative(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
     if value >= 0.0 && value.is_finite() {
         Ok(())
@@ -173,14 +171,14 @@ pub(crate) const fn not_negative(parameter: &'static str, value: f64) -> Result<
     }
 }
 
-/// The factor of a multiplicative BSA, which fixed point keeps in 2 bits and 14 of fraction.
+/// Checks the factor of BSA's multiplicative rule, which fixed point stores with 2 integer and 14 fraction bits.
 pub(crate) const fn ratio(parameter: &'static str, value: f32) -> Result<(), ConfigError> {
     const STEP: f32 = 1.0 / 16_384.0;
     const MAX: f32 = 4.0 - STEP;
     within(parameter, value as f64, STEP, MAX)
 }
 
-/// `min < max`, both finite.
+/// Checks that `min < max` and both are finite.
 pub(crate) const fn range(min: f64, max: f64) -> Result<(), ConfigError> {
     match (finite("min", min), finite("max", max)) {
         (Err(error), _) | (_, Err(error)) => Err(error),
@@ -189,7 +187,7 @@ pub(crate) const fn range(min: f64, max: f64) -> Result<(), ConfigError> {
     }
 }
 
-/// That a value does not exceed the one before.
+/// The error that a value does not exceed the one before it.
 pub(crate) const fn not_rising(
     parameter: &'static str,
     index: usize,
@@ -199,7 +197,7 @@ pub(crate) const fn not_rising(
     ConfigError::NotRising { parameter, index, value: value as f32, previous: previous as f32 }
 }
 
-/// Finite.
+/// Checks that a value is finite.
 pub(crate) const fn finite(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
     if value.is_finite() {
         Ok(())

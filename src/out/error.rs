@@ -1,8 +1,8 @@
-//! What can go wrong on the way to a bus.
+//! Errors of the sinks.
 
 use core::fmt;
 
-/// Why a sink sent nothing. The events are kept and come first the next time.
+/// Why a sink did not send all its bytes. It keeps what was not sent, and sends that first the next time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -14,7 +14,7 @@ pub enum SinkError<E> {
     Pin,
     /// The receiver is not ready.
     Busy,
-    /// The receiver takes no more bytes at all.
+    /// The port is closed: it takes no more bytes.
     Closed,
 }
 

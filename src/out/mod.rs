@@ -1,8 +1,7 @@
-//! Sinks: items out over SPI or a serial port.
+//! Sinks: send items over SPI or a serial port.
 //!
-//! A sink takes items from a [`Source`](crate::Source), such as a queue's consumer, and no more than it
-//! can keep. Nothing is lost on an error: what a sink took and could not send, it holds and sends first
-//! the next time.
+//! A sink takes items from a [`Source`](crate::Source), such as the consumer of a queue, one batch at a time. No item is
+//! lost on an error: the sink keeps what it could not send, and sends it first the next time.
 
 mod error;
 #[cfg(feature = "embedded-io")]

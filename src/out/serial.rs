@@ -1,4 +1,4 @@
-//! Items over a UART or USB serial port.
+//! The sink for UART and USB serial ports.
 
 use embedded_io::{Write, WriteReady};
 
@@ -7,15 +7,14 @@ use crate::event::Source;
 
 /// Sends items over an `embedded-io` writer.
 ///
-/// - **Batches:** up to `N` bytes, at least [`Batch::SHORTEST`]. A port may take fewer at a time; the
-///   rest is kept.
-/// - **Errors** come back with what was not taken kept: the next [`send`](Self::send) goes on there, so
-///   that no byte is sent twice or left out.
-/// - **Waiting:** [`send`](Self::send) and [`flush`](Self::flush) wait as long as the port's own calls
-///   do, for ever on a USB port that nobody reads and that no driver drains.
-///   [`try_send`](Self::try_send) never waits.
-/// - **Buffers:** a port may keep up to a packet of what it took; [`flush`](Self::flush) sends it on.
-/// - **Memory:** `N` bytes, and those of its parts.
+/// - **Batches:** up to `N` bytes; `N` is at least [`Batch::SHORTEST`]. If the port takes fewer at a time, the sink
+///   keeps the rest.
+/// - **Errors:** the sink keeps the bytes that the port did not take. The next [`send`](Self::send) goes on from there:
+///   no byte is sent twice or left out.
+/// - **Waiting:** [`send`](Self::send) and [`flush`](Self::flush) wait as long as the port's own calls do: for ever on
+///   a USB port that no host reads. [`try_send`](Self::try_send) never waits.
+/// - **Buffers:** a port may itself keep up to a packet; [`flush`](Self::flush) sends it.
+/// - **Memory:** `N` bytes, the port and the batch.
 ///
 /// ```
 /// use spikewire::{Event, FromEvents, Polarity, Tick};
@@ -43,7 +42,7 @@ pub struct SerialSink<W, B, const N: usize> {
     port: W,
     batch: B,
     bytes: [u8; N],
-    /// What of the bytes waits to be sent.
+    /// The range of `bytes` that waits to be sent.
     start: usize,
     end: usize,
 }
@@ -55,7 +54,7 @@ impl<W: Write, B: Batch, const N: usize> SerialSink<W, B, N> {
         Self { port, batch, bytes: [0; N], start: 0, end: 0 }
     }
 
-    /// Sends a batch, and says how many bytes the port took; 0 if there was nothing to send.
+    /// Sends a batch, and returns how many bytes the port took; 0 if there were no items.
     ///
     /// # Errors
     /// The port failed, or takes no more bytes.
@@ -64,8 +63,8 @@ impl<W: Write, B: Batch, const N: usize> SerialSink<W, B, N> {
         self.write(|_| Ok(true))
     }
 
-    /// Sends what waits here, and has the port send what it keeps. Call it when [`send`](Self::send)
-    /// has returned 0: nothing of a burst is left behind then.
+    /// Sends the bytes that wait here, and then those that the port keeps. Call it when [`send`](Self::send) has
+    /// returned 0, so that the end of a burst goes out.
     ///
     /// # Errors
     /// The port failed, or takes no more bytes.
@@ -74,14 +73,14 @@ impl<W: Write, B: Batch, const N: usize> SerialSink<W, B, N> {
         self.port.flush().map_err(SinkError::Bus)
     }
 
-    /// Takes the next batch, unless some of the last one waits.
+    /// Takes the next batch, unless bytes of the last one still wait.
     fn refill(&mut self, events: &mut impl Source) {
         if self.start == self.end {
             (self.start, self.end) = (0, self.batch.fill(events, &mut self.bytes));
         }
     }
 
-    /// Writes what waits while the port is ready, and says how many bytes it took.
+    /// Writes the waiting bytes while the port is ready, and returns how many it took.
     fn write(
         &mut self,
         is_ready: impl Fn(&mut W) -> Result<bool, W::Error>,
@@ -100,7 +99,7 @@ impl<W: Write, B: Batch, const N: usize> SerialSink<W, B, N> {
         Ok(self.start.wrapping_sub(before))
     }
 
-    /// What makes the bytes: for keyframes and counters.
+    /// The batch, for its counters.
     pub const fn batch(&mut self) -> &mut B {
         &mut self.batch
     }
@@ -120,8 +119,8 @@ impl<W: Write + WriteReady, B: Batch, const N: usize> SerialSink<W, B, N> {
     /// Sends a batch without waiting: asks the port before each write.
     ///
     /// # Errors
-    /// [`SinkError::Busy`]: the port has no room, and the rest waits for the next call. As well those
-    /// of [`send`](Self::send).
+    /// [`SinkError::Busy`]: the port has no room, and the rest waits for the next call. Otherwise those of
+    /// [`send`](Self::send).
     pub fn try_send(&mut self, mut events: impl Source) -> Result<usize, SinkError<W::Error>> {
         self.refill(&mut events);
         self.write(W::write_ready)

@@ -1,4 +1,4 @@
-//! Items over SPI, blocking and asynchronous from one source.
+//! The sinks for SPI, blocking and asynchronous.
 
 use core::convert::Infallible;
 
@@ -7,7 +7,7 @@ use embedded_hal::digital::{ErrorType, InputPin};
 use super::{Batch, SinkError};
 use crate::event::Source;
 
-/// A ready pin for receivers that have none.
+/// The ready pin of a receiver that has none: always high.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct AlwaysReady;
 
@@ -25,18 +25,18 @@ impl InputPin for AlwaysReady {
     }
 }
 
-/// The text of a sink, once; `$asynchronous` and `$wait` are empty for the blocking one.
+/// The code that both sinks share; `$asynchronous` and `$wait` are empty for the blocking one.
 macro_rules! spi_sink {
     ($(#[$documentation:meta])* $name:ident, $device:path, [$($asynchronous:tt)?], [$($wait:tt)*]) => {
         $(#[$documentation])*
         ///
         /// - **Batches:** up to `N` bytes, in one transaction; `N` is at least [`Batch::SHORTEST`].
-        /// - **Ready pin:** high when the receiver takes bytes; a busy pin is one inverted. It is
-        ///   looked at once a batch, never waited for.
-        /// - **Errors** come back with the batch kept: the next [`send`](Self::send) begins with the
-        ///   same bytes. A bus that failed halfway may have delivered some of them, which a link's
-        ///   checksum and sequence tell.
-        /// - **Memory:** `N` bytes, and those of its parts.
+        /// - **Ready pin:** high when the receiver takes bytes; invert a busy pin. It is read once a batch, and
+        ///   never waited for.
+        /// - **Errors:** the sink keeps the batch, and the next [`send`](Self::send) sends all of it again. A bus
+        ///   that failed halfway may have delivered a part before, which the checksum and sequence of a link
+        ///   sort out.
+        /// - **Memory:** `N` bytes, the device, the pin and the batch.
         #[derive(Debug)]
         pub struct $name<D, B, const N: usize, R = AlwaysReady> {
             device: D,
@@ -48,7 +48,7 @@ macro_rules! spi_sink {
         }
 
         impl<D, B: Batch, const N: usize> $name<D, B, N> {
-            /// A receiver that is always ready.
+            /// A sink for a receiver that is always ready.
             pub const fn new(device: D, batch: B) -> Self {
                 const { assert!(N >= B::SHORTEST, "a batch is too short: see Batch::SHORTEST") };
                 Self { device, batch, ready: AlwaysReady, bytes: [0; N], waiting: 0 }
@@ -56,13 +56,13 @@ macro_rules! spi_sink {
         }
 
         impl<D: $device, B: Batch, const N: usize, R: InputPin> $name<D, B, N, R> {
-            /// A receiver with a ready pin.
+            /// A sink for a receiver with a ready pin.
             pub const fn with_ready(device: D, batch: B, ready: R) -> Self {
                 const { assert!(N >= B::SHORTEST, "a batch is too short: see Batch::SHORTEST") };
                 Self { device, batch, ready, bytes: [0; N], waiting: 0 }
             }
 
-            /// Sends a batch, and says how many bytes it had; 0 if there was nothing to send.
+            /// Sends a batch, and returns how many bytes it had; 0 if there were no items.
             ///
             /// # Errors
             /// The receiver is not ready, its pin cannot be read, or the bus failed.
@@ -86,7 +86,7 @@ macro_rules! spi_sink {
                 Ok(core::mem::take(&mut self.waiting))
             }
 
-            /// What makes the bytes: for keyframes and counters.
+            /// The batch, for its counters.
             pub const fn batch(&mut self) -> &mut B {
                 &mut self.batch
             }
@@ -139,9 +139,8 @@ spi_sink! {
 spi_sink! {
     /// Sends items over an `embedded-hal-async` SPI device; see [`SpiSink`].
     ///
-    /// A `send` that is dropped keeps its batch, and the next one begins with the same bytes. Until
-    /// then a device such as the `ExclusiveDevice` of `embedded-hal-bus` leaves chip select low: the
-    /// receiver sees a torn batch, then the whole one, in one selection. A link's reader
-    /// resynchronises.
+    /// If the future of a `send` is dropped, the sink keeps the batch, and the next `send` sends all of it again.
+    /// Until then a device such as the `ExclusiveDevice` of `embedded-hal-bus` leaves chip select low: the receiver
+    /// sees part of a batch and then all of it in one selection, after which the reader of a link resynchronises.
     AsyncSpiSink, embedded_hal_async::spi::SpiDevice, [async], [.await]
 }

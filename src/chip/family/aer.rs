@@ -1,23 +1,23 @@
-//! Address events over parallel wires, by the 4-phase handshake.
+//! Address events over parallel wires, with the 4-phase handshake.
 
 use super::AerPort;
 use crate::event::Event;
 
-/// Where a handshake stands, or stands still.
+/// The phase that a handshake has reached, or in which it timed out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Phase {
-    /// ACK is high before REQ, or the word before this one is still under way. This one was not sent.
+    /// ACK is still high, or the previous word is still under way. This word was not sent.
     Idle,
-    /// ACK has not risen after REQ. The word is under way: it stays on the bus, with REQ, until the chip
-    /// takes it or is reset.
+    /// ACK has not risen after REQ. The word is under way: it stays on the bus, with REQ high, until the chip takes it or
+    /// is reset.
     Acknowledge,
-    /// ACK has not fallen after REQ has. The chip has taken the word.
+    /// ACK has not fallen after REQ fell. The chip has taken the word.
     Release,
 }
 
-/// Why a word is not through.
+/// Why a handshake did not end.
 #[derive(Debug)]
 pub(in crate::chip) enum AerError<E> {
     Port(E),
@@ -30,25 +30,25 @@ impl<E> From<E> for AerError<E> {
     }
 }
 
-/// What the word under way stands for.
+/// What the word under way is.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Carries {
-    /// A word of the caller's.
+    /// A word from [`Running::send`](super::Running::send).
     Word,
-    /// A question whether the chip runs.
+    /// A probe, which a chip answers if it runs.
     Probe,
     /// A time step.
     Step,
-    /// An event that was fed.
+    /// An event from [`Running::feed`](super::Running::feed).
     Event(Event),
 }
 
-/// What is known of our ACK on the output bus. A call that fails may have acted.
+/// The state of our ACK on the output bus. A call on the port that fails may still have changed the pin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
     /// Low: the next REQ is a new output.
     Idle,
-    /// The output is with the caller; ACK may be high or low.
+    /// The output was passed to the caller; ACK may be high or low.
     Raising,
     /// High.
     High,
@@ -58,14 +58,14 @@ enum Answer {
 
 /// The microcontroller's side of both buses.
 ///
-/// The chip reads the word for as long as it works on it, and acknowledges whatever REQ it then finds.
-/// So a word once begun is kept up until it is acknowledged, over as many calls as that takes.
+/// The chip reads the word for as long as it works on it, and then acknowledges any REQ that it finds. So a word stays
+/// on the bus until it is acknowledged, over as many calls as that takes.
 #[derive(Debug)]
 pub(super) struct Aer<P> {
     pub(super) port: P,
-    /// How often a wait looks at the pins.
+    /// How often a wait reads the pins.
     polls: u32,
-    /// Of the word that was begun last.
+    /// The phase of the word that was begun last.
     phase: Phase,
     carries: Carries,
     answer: Answer,
@@ -87,10 +87,10 @@ impl<P: AerPort> Aer<P> {
         }
     }
 
-    /// Raises reset while REQ stays as it is: a word that the chip takes in between waits for REQ to fall
-    /// and is gone with the reset, before it has acted. Both of our wires are low after.
+    /// Raises reset while REQ stays as it is: if the chip takes the word meanwhile, it waits for REQ to fall, and the
+    /// reset drops the word before it acts. Then both of our wires go low.
     ///
-    /// Returns what was under way and has not been seen to be taken, and whether an output was lost.
+    /// Returns the word under way if no ACK was seen for it, and whether an output was lost.
     pub(super) fn reset(&mut self) -> Result<(Option<Carries>, bool), P::Error> {
         if self.phase == Phase::Acknowledge && matches!(self.port.input_acknowledge(), Ok(true)) {
             self.phase = Phase::Release;
@@ -105,9 +105,9 @@ impl<P: AerPort> Aer<P> {
         Ok((is_under_way.then_some(self.carries), is_output_lost))
     }
 
-    /// Goes on with both buses, in a few looks at the pins.
+    /// Goes on with both buses, with a few reads of the pins.
     pub(super) fn poll(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
-        // Up, and down again.
+        // ACK up, and down again.
         for _ in 0..2 {
             self.serve(on_output)?;
         }
@@ -117,7 +117,7 @@ impl<P: AerPort> Aer<P> {
         }
     }
 
-    /// Puts a word under way, once the one before is through. After an error it is not under way.
+    /// Puts a word on the bus, after the one before it has ended. After an error the word is not under way.
     pub(super) fn begin(
         &mut self,
         word: u32,
@@ -134,7 +134,7 @@ impl<P: AerPort> Aer<P> {
         Ok(())
     }
 
-    /// Brings the word under way to its end, if there is one.
+    /// Ends the handshake of the word under way, if there is one.
     pub(super) fn finish(
         &mut self,
         on_output: &mut impl FnMut(u8),
@@ -160,7 +160,7 @@ impl<P: AerPort> Aer<P> {
         Ok(())
     }
 
-    /// Waits until the output bus has been still for this many looks, of no more than `limit` in all.
+    /// Waits until the output bus has been idle for this many reads of the pins in a row; false after `limit` reads.
     pub(super) fn rest(
         &mut self,
         looks: u32,
@@ -180,8 +180,7 @@ impl<P: AerPort> Aer<P> {
         Ok(false)
     }
 
-    /// Waits for ACK. While an output event waits the chip acknowledges no input, so this serves the
-    /// output bus as well.
+    /// Waits for ACK. The chip acknowledges no input while an output waits, so this also serves the output bus.
     fn wait_for(
         &mut self,
         is_high: bool,
@@ -197,7 +196,7 @@ impl<P: AerPort> Aer<P> {
         Err(AerError::Timeout(self.phase))
     }
 
-    /// One step of the output bus's handshake, if the chip waits for one.
+    /// Does one step of the output bus's handshake, if the chip waits for it.
     fn serve(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
         if let Some(is_full) = self.port.queue_full()? {
             self.overflows = self.overflows.saturating_add((is_full && !self.is_full).into());

@@ -1,4 +1,4 @@
-//! A network as bytes, for what is known at run time only.
+//! A network as bytes: from a file or over the air, known only at run time.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -10,25 +10,25 @@ const HEADER: usize = 12;
 const RECURRENT: u8 = 1;
 const VIRTUAL: u8 = 2;
 
-/// Why bytes are no network, or a network no bytes.
+/// Why bytes could not be read as a network, or a network not written as bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum FormatError {
-    /// They do not begin as a network does.
+    /// The bytes do not begin with `SWN1`.
     Magic,
-    /// They are for another chip.
+    /// The bytes are for another chip.
     Chip,
-    /// There are not 1 to 256 neurons, or the rows of synapses are more than 256.
+    /// There are no neurons, or more than 256 neurons, inputs or rows of synapses.
     Size,
-    /// They have another length than they tell.
+    /// The bytes or the buffer have the wrong length.
     Length {
-        /// The length that they tell.
+        /// The length that the network needs.
         needed: usize,
-        /// The length that they have.
+        /// The length given.
         given: usize,
     },
-    /// A neuron or a weight has a value that there is not.
+    /// A neuron or a weight has a value out of its range.
     Value,
 }
 
@@ -48,7 +48,7 @@ impl fmt::Display for FormatError {
 
 impl core::error::Error for FormatError {}
 
-/// A network as bytes: half the size of a [`Network`](super::Network), and known at run time only.
+/// A network as bytes, for networks known only at run time. About half the size of a [`Network`](super::Network).
 ///
 /// | bytes | what |
 /// |---|---|
@@ -57,11 +57,12 @@ impl core::error::Error for FormatError {}
 /// | 1 | bit 0: recurrent; bit 1: inputs are virtual events |
 /// | 2, 2, 2 | neurons, inputs, outputs |
 /// | 4 or 16 a neuron | the neuron as in the chip's memory |
-/// | a row an input | signed weights of 4 bits, two a byte, the first one low; or, 2 bytes an input, neuron and weight |
-/// | a row a neuron | the same, if it is recurrent |
+/// | a row an input | signed weights of 4 bits, two a byte, the first in the low half; of virtual events instead 2 bytes: neuron and weight |
+/// | a row a neuron | weights as those of an input; only if it is recurrent |
 /// | 1 an output | the neuron |
 ///
-/// Numbers of two bytes are little-endian. There is no checksum: what is loaded is compared with these bytes.
+/// Numbers of two bytes are little-endian. There is no checksum; [`Gated::load`](super::Gated::load) compares the chip's
+/// memory with these bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct NetworkBytes<'a, I> {
     shape: Shape,
@@ -82,7 +83,7 @@ struct Shape {
 }
 
 impl Shape {
-    /// Of neurons, inputs, recurrent rows and outputs.
+    /// The lengths in bytes of neurons, inputs, recurrent rows and outputs.
     fn lengths<I: Input>(self) -> [usize; 4] {
         let row = usize::from(self.neurons.div_ceil(2));
         let (neurons, inputs) = (usize::from(self.neurons), usize::from(self.inputs));
@@ -106,7 +107,7 @@ impl Shape {
 }
 
 impl<'a, I: Input> NetworkBytes<'a, I> {
-    /// Reads the header, and sees that the length is right.
+    /// Reads the header, and checks the length.
     ///
     /// # Errors
     /// The bytes are no network for this chip.
@@ -145,7 +146,7 @@ impl<'a, I: Input> NetworkBytes<'a, I> {
     /// Writes a network into a buffer. Returns its length.
     ///
     /// # Errors
-    /// The buffer is too small, or the network has a value that there is not.
+    /// The buffer is too small, or the network has a value out of its range.
     pub fn write(network: &impl Describe<I>, buffer: &mut [u8]) -> Result<usize, FormatError> {
         let shape = Shape {
             neurons: network.neurons(),
@@ -157,11 +158,11 @@ impl<'a, I: Input> NetworkBytes<'a, I> {
         shape.check()?;
         let needed = HEADER + shape.lengths::<I>().iter().sum::<usize>();
         let given = buffer.len();
-        let place = buffer.get_mut(..needed).ok_or(FormatError::Length { needed, given })?;
-        let mut bytes = place.iter_mut();
+        let target = buffer.get_mut(..needed).ok_or(FormatError::Length { needed, given })?;
+        let mut bytes = target.iter_mut();
         let mut put = |byte: u8| {
-            if let Some(place) = bytes.next() {
-                *place = byte;
+            if let Some(target) = bytes.next() {
+                *target = byte;
             }
         };
         MAGIC.into_iter().for_each(&mut put);
@@ -197,8 +198,8 @@ impl<'a, I: Input> NetworkBytes<'a, I> {
 
     fn row(&self, rows: &[u8], row: usize, post: u8) -> i8 {
         let length = usize::from(self.shape.neurons.div_ceil(2));
-        let is_told = u16::from(post) < self.shape.neurons;
-        let byte = rows.get(row * length + usize::from(post >> 1)).filter(|_| is_told);
+        let is_known = u16::from(post) < self.shape.neurons;
+        let byte = rows.get(row * length + usize::from(post >> 1)).filter(|_| is_known);
         let byte = byte.copied().unwrap_or(0);
         (if post & 1 == 0 { byte << 4 } else { byte }) as i8 >> 4
     }
@@ -212,7 +213,7 @@ fn outputs_of<I: Input>(network: &impl Describe<I>) -> impl Iterator<Item = u8> 
     (0..256).map_while(neuron_of)
 }
 
-/// Two weights a byte, the first one low.
+/// Packs two weights a byte, the first in the low half.
 fn pack(
     mut weights: impl Iterator<Item = i8>,
     put: &mut impl FnMut(u8),
@@ -235,9 +236,9 @@ impl<I: Input> Describe<I> for NetworkBytes<'_, I> {
     fn neuron(&self, neuron: u8) -> I::Neuron {
         let length = usize::from(I::NEURON_BYTES);
         let first = usize::from(neuron) * length;
-        let Some(told) = self.neurons.get(first..first + length) else { return I::DISABLED };
+        let Some(stored) = self.neurons.get(first..first + length) else { return I::DISABLED };
         let mut bytes = [0; 16];
-        bytes.iter_mut().zip(told).for_each(|(byte, &told)| *byte = told);
+        bytes.iter_mut().zip(stored).for_each(|(byte, &stored)| *byte = stored);
         I::neuron(bytes)
     }
 

@@ -1,25 +1,24 @@
-//! What a chip's driver counts.
+//! The counters of a chip's driver.
 
-/// What became of resets, time steps, events and words. All counts stop at their largest value.
+/// Counts of resets, and of time steps, events and words that were lost or late. All saturate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Counters {
-    /// Resets: the first, and those that brought the chip into step again.
+    /// Resets, with the first one.
     pub resets: u32,
-    /// Time steps that the chip did not get: after a silence of more than 255, and those under way at a
-    /// reset.
+    /// Time steps that were not sent to the chip: those beyond 255 at a time, and those under way at a reset.
     pub skipped_steps: u32,
     /// Events that were fed after their time step was over.
     pub late_events: u32,
-    /// Events under way at a reset whose ACK was not seen. They are sent again. The chip may have taken
-    /// them in the clocks between the look and the reset; one that waits in the queue had no time to act.
+    /// Events under way at a reset, with no ACK seen. They are sent again. The chip may have taken such an event just
+    /// before the reset; if the event waited in the queue, it did not act.
     pub repeated_events: u32,
-    /// Words of [`send`](super::Running::send) under way at a reset whose ACK was not seen.
+    /// Words of [`send`](super::Running::send) under way at a reset, with no ACK seen. They are lost.
     pub dropped_words: u32,
-    /// Outputs that waited at a reset.
+    /// Outputs that waited at a reset, and were lost.
     pub lost_outputs: u32,
-    /// How often the queue was seen to become full, each time with the loss of any number of spikes that
-    /// neurons send to each other. 0 without the [pin](super::AerPort::queue_full).
+    /// How often the queue was seen to become full. Each time any number of spikes between neurons may have been lost.
+    /// 0 without the [pin](super::AerPort::queue_full).
     pub overflows: u32,
 }

@@ -1,4 +1,4 @@
-//! Events from a source into the chip.
+//! Feeds the events of a source to the chip.
 
 use embedded_hal::spi::SpiDevice;
 
@@ -7,18 +7,17 @@ use super::{AerPort, Input, Outcome, Running};
 use crate::event::{Event, Source};
 
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
-    /// Sends the events of a source, each as the input that `to_input` makes of it, and the time steps
-    /// between them. Returns how many events were sent. Of a queue's consumer take
-    /// `events.waiting()`, which ends even if events come faster than the chip takes them. Keyframes and
-    /// breaks are passed by.
+    /// Sends the events of a source, each as the input that `to_input` returns for it, and the time steps between them.
+    /// Returns how many events were sent. For the consumer of a queue, pass `events.waiting()`, which ends even if
+    /// events come faster than the chip takes them. Skips keyframes and breaks.
     ///
-    /// Events must come in the order of time. One from a time step that is over is sent in the present
-    /// one, and counted as [late](super::Counters::late_events).
+    /// Events must come in the order of time. An event of a time step that is over is sent in the present one, and
+    /// counted as [late](super::Counters::late_events).
     ///
     /// # Errors
-    /// As [`send`](Self::send), but whatever the error, call it again with the events that remain: none
-    /// is lost or sent twice, but for those that a reset [counts](super::Counters::repeated_events). Only one
-    /// whose input is not valid is dropped.
+    /// Those of [`send`](Self::send). After any error call it again with the events that remain: no event is lost or
+    /// sent twice, except those that a reset [counts](super::Counters::repeated_events) and those whose input is not
+    /// valid, which are dropped.
     pub fn feed(
         &mut self,
         mut events: impl Source,
@@ -35,7 +34,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
         Ok(sent)
     }
 
-    /// Sends an event as this word. Until it is under way it is held.
+    /// Sends an event as this word. Holds the event until the word is under way.
     fn feed_word(
         &mut self,
         word: u32,

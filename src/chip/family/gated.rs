@@ -1,4 +1,4 @@
-//! A chip whose memories can be accessed.
+//! A chip whose activity is gated, so that its memories can be accessed.
 
 use embedded_hal::spi::SpiDevice;
 
@@ -7,16 +7,15 @@ use super::wire::Address;
 use super::{AerPort, ChipError, Input, OdinChip, Outcome, Running, State};
 use crate::chip::error::at_most;
 
-/// How often the probe looks at the pins, at least. A time step of one neuron takes the chip 10 clocks.
+/// The least number of times that the probe reads the pins. A time step of one neuron takes the chip 10 clocks.
 const PROBE_LOOKS: u32 = 1_000;
 
-/// A chip that takes no events and whose memories can be accessed. Its loop is open, so that no write makes
-/// a neuron fire.
+/// A gated chip: its memories can be accessed, and it takes no events. Its loop is open, so that no write makes a
+/// neuron fire.
 ///
-/// All that is written is read back, and after every call the bus is known to be in step: one clock lost or
-/// doubled is an error, at the cost of 5 frames a call. Where there is much to write,
-/// [`load`](Self::load) does it with 2 frames a byte. After an error of the kind, what the memories hold is
-/// not known: reset the chip, and write all of it again.
+/// Every write is read back, and every call checks with 5 more frames that chip and bus are in step: one clock lost or
+/// doubled is an error. For whole networks [`load`](Self::load) takes 2 frames a byte. After such an error all memory is
+/// in doubt: reset the chip, and write all of it again.
 #[derive(Debug)]
 pub struct Gated<'a, I: Input, D, P> {
     pub(super) chip: &'a mut OdinChip<I, D, P>,
@@ -29,16 +28,16 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
 
     /// Writes the registers and lets the chip run.
     ///
-    /// **Verified:** after every register the bus must be in step, or one clock lost or doubled is an error;
-    /// two faults that cancel each other within a register's frame and its check are not seen. Then a time
-    /// step of neuron [`Input::PROBED`] must be answered, which says that the gate is open. It is left out
-    /// where it would change something: where that neuron is in use and leaks, or is at its threshold.
+    /// **Verified:** after every register chip and bus must be in step, so that one clock lost or doubled is an error; two
+    /// faults that cancel out within a register's frame and its check go unseen. Then the chip must answer a time step
+    /// of neuron [`Input::PROBED`], which shows that the gate is open. This probe is left out if it would change the
+    /// network: if that neuron is in use, and leaks or is at its threshold.
     ///
     /// **Time:** 24 frames of 5 bytes for tinyODIN, 1.5 ms at 656 kHz; 168 for ODIN.
     ///
     /// # Errors
-    /// There is no such value, the bus or the port failed, or the chip does not read back or answer: then
-    /// reset it.
+    /// A value is out of its range; or the bus or the port failed, or the chip does not read back or answer: then reset
+    /// it.
     pub fn run(self, registers: &I::Registers) -> Outcome<Running<'a, I, D, P>, D, P> {
         I::check_registers(registers)?;
         let chip = self.chip;
@@ -57,7 +56,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Writes a neuron's parameters and state.
     ///
     /// # Errors
-    /// There is no such value, the bus failed, or it does not read back: then reset the chip.
+    /// The value is out of its range; or the bus failed, or it does not read back: then reset the chip.
     pub fn set_neuron(&mut self, neuron: u8, value: &I::Neuron) -> Outcome<(), D, P> {
         let bytes = I::neuron_bytes(value)?;
         for (byte, value) in (0..I::NEURON_BYTES).zip(bytes) {
@@ -79,7 +78,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Writes the synapse from `pre` to `post`.
     ///
     /// # Errors
-    /// There is no such value, the bus failed, or it does not read back: then reset the chip.
+    /// The value is out of its range; or the bus failed, or it does not read back: then reset the chip.
     pub fn set_synapse(&mut self, pre: u8, post: u8, synapse: I::Synapse) -> Outcome<(), D, P> {
         let bits = I::synapse_bits(synapse)?;
         let (keep, value) = if post & 1 == 0 { (0xF0, bits) } else { (0x0F, bits << 4) };
@@ -97,7 +96,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
         Ok(I::synapse(if post & 1 == 0 { byte & 0xF } else { byte >> 4 }))
     }
 
-    /// Writes a byte of a neuron, for what the typed neuron does not name.
+    /// Writes a byte of a neuron, for fields that [`Input::Neuron`] does not have.
     ///
     /// # Errors
     /// There is no such byte, the bus failed, or it does not read back: then reset the chip.

@@ -1,4 +1,4 @@
-//! A network into the chip, and back for comparison.
+//! Loads a network into the chip, and compares it.
 
 use embedded_hal::spi::SpiDevice;
 
@@ -7,7 +7,7 @@ use super::step::DISABLE;
 use super::wire::Address;
 use super::{AerPort, ChipError, Describe, Gated, Input, Outcome};
 
-/// How far loading has come.
+/// The progress of loading or comparing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Progress {
@@ -17,19 +17,19 @@ pub struct Progress {
     pub total: u32,
 }
 
-/// The chips' neurons.
+/// The number of a chip's neurons.
 const NEURONS: u16 = 256;
 
 impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
-    /// Writes a network, disables all other neurons, and then reads all of it back. What the rows hold
-    /// for the other neurons stays as it is. `progress` is called after each neuron and each row.
+    /// Writes a network, disables all other neurons, and then reads all of it back. Synapses onto the other neurons stay
+    /// as they are. Calls `progress` after each neuron and each row.
     ///
-    /// **Time:** 5 bytes a frame, two frames a byte of memory: 2 for each byte of a neuron and for each two
-    /// synapses of a row. 256 neurons of tinyODIN with 256 rows take 67 584 frames, 4.1 s at 656 kHz.
+    /// **Time:** two frames of 5 bytes for each byte of a neuron, and for each two synapses of a row. 256 neurons of
+    /// tinyODIN with 256 rows take 67 584 frames, 4.1 s at 656 kHz.
     ///
     /// # Errors
-    /// The network does not fit: then nothing is written. The bus failed, or the chip does not read back
-    /// what was written: then reset it.
+    /// The network does not fit: then no byte is written. Or the bus failed, or the chip does not read back what was
+    /// written: then reset it.
     pub fn load(
         &mut self,
         network: &impl Describe<I>,
@@ -52,8 +52,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
         chip.check_step()
     }
 
-    /// Compares the chip's memories with a network. Potentials are compared as well: those of a network
-    /// that has run are others.
+    /// Compares the chip's memories with a network. This includes potentials, which change when the network runs.
     ///
     /// # Errors
     /// The network does not fit; [`ReadBack`](ChipError::ReadBack) at the first difference: then reset the
@@ -84,8 +83,8 @@ fn frames<I: Input>(network: &impl Describe<I>) -> u32 {
     neurons.wrapping_mul(bytes).wrapping_add(disabled).wrapping_add(synapses)
 }
 
-/// Visits every byte of the chip's memories that is the network's: where, which bits are not, and what
-/// the others are.
+/// Visits every byte of the chip's memories that belongs to the network: its address, the bits that do not belong to
+/// it, and the value of the others.
 fn each_byte<I: Input, B, P>(
     network: &impl Describe<I>,
     mut visit: impl FnMut(Address, u8, u8) -> Result<(), ChipError<B, P>>,

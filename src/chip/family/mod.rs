@@ -1,4 +1,4 @@
-//! What tinyODIN and ODIN have in common: SPI without chip select, reset, gate, and event buses.
+//! The driver that tinyODIN and ODIN share: SPI without chip select, reset, gate, and event buses.
 
 mod aer;
 mod bytes;
@@ -44,32 +44,33 @@ pub use running::Running;
 /// - **SPI:** mode 0, SCK at most a quarter of the chip's clock. The chip has no chip select: it needs
 ///   a bus of its own and a device whose chip select is not wired.
 /// - **States:** [`reset`](Self::reset) gives a [`Gated`] chip, whose memories can be accessed;
-///   [`Gated::run`] a [`Running`] one, which takes events; [`Running::gate`] a gated one. Each allows what
-///   is safe in it, and [`gated`](Self::gated) and [`running`](Self::running) give it again later.
-/// - **Resynchronisation:** one clock lost or doubled puts chip and bus out of step, and every call on a
-///   gated chip notices. Not seen are a lost and a doubled clock within the same eight frames, as the
-///   registers cannot be read back. After an error of the bus, or a byte that does not read back, all is
-///   refused until the next reset, and what the memories hold is not known: load them anew.
-/// - **Waits** look at the pins a given number of times, then give up.
-/// - **Words** that the chip has not acknowledged by then stay under way: every call that sends finishes
-///   them first, [`Running::poll`] goes on with them, a reset drops them.
-/// - **Events** that could not be sent are held and come first the next time, after a reset too.
-/// - **Nothing is lost uncounted:** see [`counters`](Self::counters).
+///   [`Gated::run`] gives a [`Running`] one, which takes events; [`Running::gate`] gives a gated one again. Each has
+///   only the calls that are safe in its state. [`gated`](Self::gated) and [`running`](Self::running) give them
+///   again later.
+/// - **Resynchronisation:** one clock lost or doubled puts chip and bus out of step, which every call on a gated chip
+///   detects. (A lost and a doubled clock within eight frames go unseen, as the registers cannot be read back.) After
+///   an error of the bus, or a byte that does not read back, all calls are refused until the next reset, and all
+///   memory is in doubt: load it again.
+/// - **Waits** read the pins a given number of times, then return an error.
+/// - **Words** that the chip has not acknowledged by then stay under way: every call that sends finishes them first,
+///   [`Running::poll`] goes on with them, a reset drops them.
+/// - **Events** that could not be sent are held and come first the next time, also after a reset.
+/// - **Losses** are all counted; see [`counters`](Self::counters).
 ///
-/// # What the chips do
+/// # What to know about the chips
 /// - In closed loop a leak overtakes the spikes that wait in the chip's queue; in open loop never.
-/// - With outputs taken from the queue, in open loop, the chip echoes the inputs and tells no neuron.
-/// - A neuron of threshold 0, as memory that was never written, fires at every event and at every leak,
-///   if it is among those in use.
-/// - The queue's overflow is invisible unless [`AerPort::queue_full`] is wired.
+/// - In open loop with [`OutputSource::Queue`](super::OutputSource::Queue) the outputs are the inputs, not the neurons
+///   that fire.
+/// - A neuron in use with threshold 0, as in memory that was never written, fires at every event and every leak.
+/// - An overflow of the queue is invisible unless [`AerPort::queue_full`] is wired.
 #[derive(Debug)]
 pub struct OdinChip<I: Input, D, P> {
     wire: Wire<D>,
     aer: Aer<P>,
     state: State,
-    /// What the chip runs with.
+    /// The registers with which the chip runs.
     registers: Option<I::Registers>,
-    /// What the byte of the step check holds, where that is known.
+    /// The byte that the step check writes to, once it is known.
     anchor: Option<u8>,
     beacon: Option<Beacon>,
     looks_a_clock: NonZeroU32,
@@ -86,17 +87,17 @@ enum State {
     Running,
 }
 
-/// What a call on a chip gives.
+/// The result of a call on a chip.
 type Outcome<T, D, P> = Result<T, ChipError<<D as ErrorType>::Error, <P as AerPort>::Error>>;
 
-/// How long reset is high, and then the chip left alone.
+/// How long reset is high, and how long the chip is then left alone.
 const RESET_US: u32 = 10;
 
 impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
-    /// A chip that must be [reset](Self::reset) first. Every wait looks at the pins `polls` times.
+    /// A chip that must be [reset](Self::reset) first. Every wait reads the pins up to `polls` times.
     ///
-    /// [`Input::MAX_CLOCKS`] polls suffice if one takes a clock of the chip or longer. Fewer do no harm
-    /// but that long words time out and have to be finished later.
+    /// [`Input::MAX_CLOCKS`] polls suffice if each takes a clock of the chip or longer. With fewer, long words time out
+    /// and must be finished later.
     pub const fn new(device: D, port: P, polls: u32) -> Self {
         Self {
             wire: Wire { device },
@@ -120,26 +121,29 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// Adds time: leak events are sent as the ticks of fed events pass, one every `step` µs.
+    /// Sets the time step, in µs: as the ticks of fed events pass, a leak event is sent every `step` µs. By default none
+    /// are sent.
     ///
-    /// Call [`Running::advance`] at least every 35 minutes: a tick 2³¹ µs ahead lies in the past, and no
-    /// leaks are sent until time has caught up.
+    /// Call [`Running::advance`] at least every 35 minutes: a tick 2³¹ µs ahead counts as past, and no leak is sent until
+    /// time has caught up.
     #[must_use]
     pub fn with_time_step(self, step: NonZeroU32) -> Self {
         Self { time: Some(Time::new(step)), ..self }
     }
 
-    /// Tells how many looks at the pins may fall into one clock of the chip, 1 unless told: more where the
-    /// microcontroller is much faster. [`Running::gate`] waits by it: with too few it gates a chip that works,
-    /// whose potentials are then lost.
+    /// Sets how often the pins may be read within one clock of the chip, 1 by default: more if the microcontroller is
+    /// much faster. [`Running::gate`] derives its wait from this. If it is too low, a chip that still works is gated, and
+    /// its potentials are lost.
     #[must_use]
     pub fn with_looks_a_clock(self, looks: NonZeroU32) -> Self {
         Self { looks_a_clock: looks, ..self }
     }
 
-    /// Pulses reset, which brings chip and bus into step, gates the chip, opens its loop, and checks that it
-    /// listens: a neuron [`Input::PROBED`] that was never written is disabled for it. What the chip has taken and not worked off is gone, and a word under way is dropped; if
-    /// that was an event of [`Running::feed`], it is held again unless the chip has acknowledged it.
+    /// Pulses reset, which brings chip and bus into step, gates the chip, opens its loop, and checks that it answers. For
+    /// this check neuron [`Input::PROBED`] is disabled if it was never written.
+    ///
+    /// Spikes in the chip's queue are lost, and a word under way is dropped. If that word was an event of
+    /// [`Running::feed`] that the chip has not acknowledged, it is held and sent again.
     ///
     /// # Errors
     /// The port or the bus failed, or the chip does not read back what is written.
@@ -181,7 +185,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// What was lost, skipped and repeated.
+    /// The counters of losses, skipped time steps and repeated events.
     pub const fn counters(&self) -> Counters {
         Counters { overflows: self.aer.overflows, ..self.counters }
     }
@@ -205,7 +209,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         if let Some(count) = count {
             *count = count.saturating_add(1);
         }
-        // Before its first reset a chip may say anything.
+        // Before its first reset the pins of a chip are undefined.
         let is_output_lost = is_output_lost && counters.resets > 0;
         counters.lost_outputs = counters.lost_outputs.saturating_add(is_output_lost.into());
     }

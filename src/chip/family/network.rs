@@ -1,20 +1,20 @@
-//! A network as data.
+//! A network as data: the trait of its forms, and its form as a constant.
 
 use super::{AerPort, Input};
 use crate::chip::ChipError;
 use crate::{Event, Polarity, Tick};
 
-/// A network for a chip of the family: anything that tells its neurons and weights, be it [constant
-/// data](Network) or [bytes](super::NetworkBytes). [`Gated::load`](super::Gated::load) writes it.
+/// The neurons and weights of a network, as [constant data](Network) or as [bytes](super::NetworkBytes).
+/// [`Gated::load`](super::Gated::load) writes them to the chip.
 ///
-/// Its neurons are the chip's neurons from 0 on. What an input does is either a row of synapses, as that
-/// of a neuron, or a virtual event. In open loop the rows of the inputs are those of the chip's neurons
-/// from 0 on; in closed loop these are the neurons' own, and the inputs' follow.
+/// The network's neurons are the chip's neurons from 0 on. An input is either a row of synapses onto all neurons, or a
+/// virtual event for one neuron. In open loop the chip's rows from 0 on belong to the inputs; in closed loop they belong
+/// to the neurons, and the rows of the inputs follow.
 pub trait Describe<I: Input> {
     /// How many neurons, 1 to 256.
     fn neurons(&self) -> u16;
 
-    /// A neuron; of those that there are not, a [disabled](Input::DISABLED) one.
+    /// A neuron; a [disabled](Input::DISABLED) one if the network has no such neuron.
     fn neuron(&self, neuron: u8) -> I::Neuron;
 
     /// How many inputs.
@@ -23,19 +23,19 @@ pub trait Describe<I: Input> {
     /// The neuron on which an input acts without a synapse, and its weight; `None` if it has a row.
     fn virtual_input(&self, input: u16) -> Option<(u8, i8)>;
 
-    /// What an input with a row adds to a neuron.
+    /// The weight from an input with a row to a neuron.
     fn input_weight(&self, input: u16, post: u8) -> i8;
 
     /// Whether neurons send spikes to neurons.
     fn is_recurrent(&self) -> bool;
 
-    /// What a neuron adds to another, or to itself.
+    /// The weight from a neuron to a neuron.
     fn weight(&self, pre: u8, post: u8) -> i8;
 
-    /// Which output a neuron is.
+    /// The number of the output that a neuron is; `None` if it is no output.
     fn output(&self, neuron: u8) -> Option<u16>;
 
-    /// The chip's input for an input of the network; `None` if there is no such.
+    /// The chip's input for an input of the network; `None` if the network has no such input.
     fn input(&self, input: u16) -> Option<I> {
         if input >= self.inputs() {
             return None;
@@ -46,8 +46,8 @@ pub trait Describe<I: Input> {
         }
     }
 
-    /// What to do with the neurons that fire: those that are outputs go to `sink`, as events with the
-    /// output's number for address. The network's other neurons go nowhere.
+    /// A callback for the neurons that fire. It passes outputs to `sink`, as events whose address is the number of the
+    /// output, and ignores the other neurons.
     fn answers(&self, tick: Tick, mut sink: impl FnMut(Event)) -> impl FnMut(u8) {
         move |neuron| {
             if let Some(address) = self.output(neuron) {
@@ -56,8 +56,8 @@ pub trait Describe<I: Input> {
         }
     }
 
-    /// The registers to [run](super::Gated::run) it with: closed loop if it is recurrent, outputs from the
-    /// neurons, and as many neurons as there are.
+    /// The registers to [run](super::Gated::run) the network with: closed loop if it is recurrent, outputs from its
+    /// neurons, and no other neurons in use.
     fn registers(&self) -> I::Registers {
         let mut inhibitory = [0; 16];
         for row in 0..self.rows() {
@@ -74,13 +74,13 @@ pub trait Describe<I: Input> {
         if self.is_recurrent() { self.neurons() } else { 0 }
     }
 
-    /// How many rows of synapses, from that of neuron 0 on.
+    /// How many rows of synapses the network has, from row 0 on.
     fn rows(&self) -> u16 {
         let is_virtual = self.virtual_input(0).is_some();
         self.first_input_row().saturating_add(if is_virtual { 0 } else { self.inputs() })
     }
 
-    /// What a row adds to a neuron.
+    /// The weight from a row to a neuron.
     fn row_weight(&self, row: u16, post: u8) -> i8 {
         match row.checked_sub(self.first_input_row()) {
             Some(input) => self.input_weight(input, post),
@@ -89,18 +89,17 @@ pub trait Describe<I: Input> {
     }
 }
 
-/// What the inputs of a network do.
+/// The inputs of a network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inputs<const IN: usize, const N: usize> {
     /// Each input's weights to all neurons.
     Rows([[i8; N]; IN]),
-    /// Each input's neuron, and the weight with which it acts on it. tinyODIN has virtual events for its
-    /// first 16 neurons only.
+    /// The neuron on which each input acts, and its weight. tinyODIN has virtual events for its first 16 neurons only.
     Virtual([(u8, i8); IN]),
 }
 
 impl<const IN: usize, const N: usize> Inputs<IN, N> {
-    /// Each input drives the neuron of its number, with this weight, and no other.
+    /// Input `n` drives neuron `n` with this weight, and no other neuron.
     #[must_use]
     pub const fn one_to_one(weight: i8) -> Self {
         let mut rows = [[0; N]; IN];
@@ -156,7 +155,8 @@ pub struct Network<I: Input, const IN: usize, const N: usize, const OUT: usize> 
     pub neurons: [I::Neuron; N],
     /// The inputs.
     pub inputs: Inputs<IN, N>,
-    /// What the neurons from 0 on do to all neurons; those beyond do nothing. Empty: the loop is open.
+    /// The weights from neuron 0, 1 and so on to all neurons. Neurons without a row have no effect on others; without any
+    /// row the loop is open.
     pub recurrent: &'static [[i8; N]],
     /// The neurons that are outputs, in the order of the outputs.
     pub outputs: [u8; OUT],
@@ -211,7 +211,7 @@ fn at<const N: usize>(rows: &[[i8; N]], row: usize, post: u8) -> i8 {
     rows.get(row).and_then(|row| row.get(usize::from(post))).copied().unwrap_or(0)
 }
 
-/// What is wrong with a network.
+/// Checks that a network fits the chip, and that its values are in range.
 pub(super) fn check<I: Input, B, P: AerPort>(
     network: &impl Describe<I>,
 ) -> Result<(), ChipError<B, P::Error>> {

@@ -1,10 +1,9 @@
-//! The outputs of one time step.
+//! The outputs of one time step, as a list of events.
 
 use crate::Polarity;
 use crate::event::{Event, Tick};
 
-/// Up to `N` events of one time step, for a [`Readout`](crate::Readout): a list that is filled while the
-/// chip is served and read when the step is over.
+/// A list of up to `N` events of one time step, to collect the outputs of a chip for a [`Readout`](crate::Readout).
 ///
 /// ```
 /// use spikewire::{Readout, Tick, population::Position};
@@ -21,7 +20,7 @@ use crate::event::{Event, Tick};
 /// let tick = Tick::from_micros(1_000);
 ///
 /// let mut spikes = Spikes::<16>::new();
-/// // As `chip.poll(NETWORK.answers(…))?` does with what the chip fires; neuron 1 is no output.
+/// // As `chip.poll(NETWORK.answers(…))?` does with neurons that fire; neuron 1 is no output.
 /// [1, 6].map(NETWORK.answers(tick, |event| spikes.push(event)));
 /// let [value] = readout.decode(tick, spikes.as_slice());
 /// assert_eq!(value, 0.5);
@@ -40,17 +39,17 @@ impl<const N: usize> Default for Spikes<N> {
 }
 
 impl<const N: usize> Spikes<N> {
-    /// None yet.
+    /// An empty list.
     pub const fn new() -> Self {
         const NONE: Event =
             Event { tick: Tick::from_micros(0), address: 0, polarity: Polarity::Up };
         Self { events: [NONE; N], len: 0, lost: 0 }
     }
 
-    /// Takes an event; one more than `N` is lost, and counted.
+    /// Appends an event; if the list is full, the event is lost and counted.
     pub fn push(&mut self, event: Event) {
-        if let Some(place) = self.events.get_mut(self.len) {
-            *place = event;
+        if let Some(slot) = self.events.get_mut(self.len) {
+            *slot = event;
             self.len += 1;
         } else {
             self.lost = self.lost.saturating_add(1);
@@ -67,7 +66,7 @@ impl<const N: usize> Spikes<N> {
         self.len = 0;
     }
 
-    /// How many events had no room.
+    /// How many events were lost, as the list was full.
     pub const fn lost(&self) -> u32 {
         self.lost
     }

@@ -2,18 +2,18 @@
 
 /// The wires of a chip's two address-event buses and its reset, all active high.
 ///
-/// One port-wide write each for the data, rather than single pins, keeps words whole: on an STM32 a
-/// store to BSRR.
+/// Write the data with one store to the port instead of single pins, so that no half-written word is seen: on an STM32
+/// a store to BSRR.
 ///
-/// A call that fails may have acted or not: the driver makes it again before it goes on.
+/// A call that fails may have changed the pins or not: the driver repeats it before it goes on.
 pub trait AerPort {
-    /// What can go wrong; `Infallible` for pins of the microcontroller's own.
+    /// The error of the port; `Infallible` for the microcontroller's own pins.
     type Error;
 
     /// Puts a word on the input bus. It must have settled at the chip when this returns.
     ///
     /// # Errors
-    /// The port failed; so for all below.
+    /// The port failed.
     fn set_input(&mut self, word: u32) -> Result<(), Self::Error>;
 
     /// Drives the input bus's REQ.
@@ -52,8 +52,8 @@ pub trait AerPort {
     /// See [`set_input`](Self::set_input).
     fn set_reset(&mut self, is_high: bool) -> Result<(), Self::Error>;
 
-    /// Reads `SCHED_FULL`, if it is wired: high while the chip's queue has no room, so that spikes which
-    /// its neurons send to each other are lost. Not wired unless told.
+    /// Reads `SCHED_FULL`; `None`, the default, if it is not wired. It is high while the chip's queue is full, so that
+    /// spikes between neurons are lost.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).

@@ -1,18 +1,18 @@
-//! A chip that takes events.
+//! A chip that runs, and takes events.
 
 use embedded_hal::spi::SpiDevice;
 
 use super::aer::Carries;
 use super::{AerPort, ChipError, Counters, Gated, Input, OdinChip, Outcome};
 
-/// Clocks from an output's answer until the chip goes on, with some to spare.
+/// Clocks from our ACK to an output until the chip goes on, with some to spare.
 const HANDSHAKE_CLOCKS: u32 = 32;
-/// Clocks for which outputs are waited for, beyond four times those for which a chip may work in silence:
-/// enough for a thousand and more.
+/// How many clocks [`Running::quiesce`] allows for outputs, beyond four times the longest time without any: enough for
+/// more than a thousand outputs.
 const OUTPUT_CLOCKS: u32 = 1 << 15;
 
-/// A chip that takes events, and whose memories cannot be accessed. Whatever a call returns, the chip runs
-/// on, unless the call took this away.
+/// A running chip: it takes events, and its memories cannot be accessed. After an error it still runs, unless the call
+/// consumed this value.
 #[derive(Debug)]
 pub struct Running<'a, I: Input, D, P> {
     pub(super) chip: &'a mut OdinChip<I, D, P>,
@@ -23,13 +23,13 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         Self { chip }
     }
 
-    /// Sends one input, and hands the neurons that fire meanwhile to `on_output`. The chip works on after
-    /// it has taken the word: 2 clocks for every neuron in use.
+    /// Sends one input, and passes the neurons that fire meanwhile to `on_output`. After the chip has taken the word, it
+    /// still works on it: 2 clocks for every neuron in use.
     ///
     /// # Errors
-    /// The input is not valid, the chip does not answer, or the port failed. After
-    /// [`Phase::Idle`](super::Phase::Idle) the input was not sent; after any other
-    /// [`Handshake`](ChipError::Handshake) it is under way, and not to be sent again.
+    /// The input is not valid, the chip does not answer, or the port failed. With [`Phase::Idle`](super::Phase::Idle) the
+    /// input was not sent; with any other [`Handshake`](ChipError::Handshake) error it is under way, and must not be
+    /// sent again.
     pub fn send(&mut self, input: I, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         let word = input.word()?;
         let aer = &mut self.chip.aer;
@@ -37,26 +37,25 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         Ok(aer.finish(&mut on_output)?)
     }
 
-    /// Takes the neurons that have fired, and goes on with a word under way. Looks at the pins a bounded
-    /// number of times: call it often, as the chip stands still while an output waits.
+    /// Passes the neurons that have fired to `on_output`, and goes on with a word under way. Reads the pins a few times
+    /// only: call it often, as the chip stands still while an output waits.
     ///
     /// # Errors
-    /// The port failed. An output that was handed over is not handed over again.
+    /// The port failed. No output is passed on twice.
     pub fn poll(&mut self, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         self.chip.aer.poll(&mut on_output).map_err(ChipError::Port)
     }
 
-    /// Waits until the chip has worked off all that it has taken, and hands over the neurons that fire
-    /// meanwhile.
+    /// Waits until the chip has processed all its input, and passes the neurons that fire meanwhile to `on_output`.
     ///
-    /// The chip does not say when it is at rest. A chip without outputs for as long as it can work in
-    /// silence is: in open loop a few sweeps of 2 clocks a neuron, in closed loop a sweep for each spike
-    /// that its queue may hold, 66 000 clocks for tinyODIN's 256 neurons.
+    /// No pin shows that the chip is at rest. It is, once it has had no output for longer than it can work without one:
+    /// in open loop a few sweeps of 2 clocks a neuron, in closed loop a sweep for each spike that its queue can hold,
+    /// 66 000 clocks for tinyODIN's 256 neurons.
     ///
     /// # Errors
-    /// [`Busy`](ChipError::Busy): outputs come without end, as of a network that drives itself; see
-    /// [`open_loop`](Self::open_loop). A word under way is not taken, or the port failed. The chip runs on
-    /// after each.
+    /// [`Busy`](ChipError::Busy): outputs come without end, as from a network that drives itself; see
+    /// [`open_loop`](Self::open_loop). Or the chip does not take a word under way, or the port failed. The chip still
+    /// runs.
     pub fn quiesce(&mut self, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         let chip = &mut *self.chip;
         chip.aer.finish(&mut on_output)?;
@@ -75,11 +74,11 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         }
     }
 
-    /// Waits until the chip is at rest, as [`quiesce`](Self::quiesce) does, and gates it: its memories can
-    /// then be accessed, with the neurons' potentials as they are.
+    /// Waits until the chip is at rest, as [`quiesce`](Self::quiesce) does, and gates it: then its memories can be
+    /// accessed, and the neurons keep their potentials.
     ///
     /// # Errors
-    /// As [`quiesce`](Self::quiesce), and the chip runs on; or the bus failed or the chip does not read
+    /// Those of [`quiesce`](Self::quiesce), after which the chip still runs. Or the bus failed, or the chip does not read
     /// back what is written: then reset it.
     pub fn gate(mut self, on_output: impl FnMut(u8)) -> Outcome<Gated<'a, I, D, P>, D, P> {
         self.quiesce(on_output)?;
@@ -87,8 +86,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         Ok(Gated::new(self.chip))
     }
 
-    /// Opens the loop of a chip that runs, so that a network that drives itself comes to rest. The loop
-    /// stays open until the next [`run`](Gated::run). This write cannot be verified: `gate` is.
+    /// Opens the loop, so that a network that drives itself comes to rest. The loop stays open until the next
+    /// [`run`](Gated::run). This write cannot be verified; [`gate`](Self::gate) verifies its own.
     ///
     /// # Errors
     /// The bus failed: then reset the chip.
@@ -98,7 +97,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         Ok(self)
     }
 
-    /// What was lost, skipped and repeated.
+    /// The counters of losses, skipped time steps and repeated events.
     pub const fn counters(&self) -> Counters {
         self.chip.counters()
     }

@@ -1,4 +1,4 @@
-//! Whether chip and bus are in step, and the gate shut.
+//! Checks that chip and bus are in step and the gate is shut, and reads and writes memory with such checks.
 
 use embedded_hal::spi::SpiDevice;
 
@@ -8,10 +8,10 @@ use super::{AerPort, ChipError, Input, OdinChip, Outcome, State};
 /// The gate's register.
 const GATE_ACTIVITY: u16 = 0;
 
-/// In a neuron's last byte: it never fires.
+/// The bit of a neuron's last byte that disables it.
 pub(super) const DISABLE: u8 = 0x80;
 
-/// What a byte of a neuron's parameters holds: not 0.
+/// A byte of a neuron's parameters that is known not to be 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beacon {
     address: Address,
@@ -19,7 +19,7 @@ pub(super) struct Beacon {
     value: u8,
 }
 
-/// Where the check writes.
+/// The byte that the step check writes to.
 fn anchor() -> Address {
     Address::synapse(255, 249)
 }
@@ -35,15 +35,15 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.check_step()
     }
 
-    /// Opens the gate. Should it ever shut on a chip that works, tinyODIN writes to the byte that was accessed
-    /// last in all neurons that are left: so the last is one that there is not.
+    /// Opens the gate. If the gate later shuts on a chip that works, tinyODIN writes to the byte that was accessed last,
+    /// in each neuron that it has still to process: so the last access is to a byte that does not exist.
     pub(super) fn open(&mut self) -> Outcome<(), D, P> {
         self.read_byte(Address::nowhere())?;
         self.configure(GATE_ACTIVITY, 0)
     }
 
-    /// Looks for a byte that is not 0 among the parameters of neuron [`Input::PROBED`]. Where they are all 0 it
-    /// was never written: it is disabled, so that there is one.
+    /// Looks for a byte that is not 0 among the parameters of neuron [`Input::PROBED`]. If all are 0, the neuron was never
+    /// written: it is disabled, which sets a bit.
     pub(super) fn find_beacon(&mut self) -> Outcome<(), D, P> {
         let last = I::NEURON_BYTES.saturating_sub(1);
         for byte in (0..=last).rev() {
@@ -58,15 +58,15 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.check_step()
     }
 
-    /// Writes a register, which cannot be read back, and sees that the bus is still in step.
+    /// Writes a register, which cannot be read back, and checks that chip and bus are still in step.
     pub(super) fn configure_checked(&mut self, register: u16, value: u32) -> Outcome<(), D, P> {
         self.configure(register, value)?;
         self.check_step()
     }
 
-    /// Turns a byte of the synapses' memory over and back, and reads it each time: that cannot go well on
-    /// a chip that runs, nor where a clock was lost or doubled before. Last it reads a byte that is not 0, if
-    /// one is known: out of step, the chip's line is low.
+    /// Inverts a byte of the synapses' memory and inverts it back, and reads it each time: this fails on a chip that runs,
+    /// and after a clock was lost or doubled. Last it reads a byte that is not 0, if one is known: out of step, the
+    /// chip's line is low.
     pub(super) fn check_step(&mut self) -> Outcome<(), D, P> {
         let value = match self.anchor {
             Some(value) => value,
@@ -87,7 +87,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.heed(result)
     }
 
-    /// Writes the bits of a byte that `keep` has as 0, and reads it back.
+    /// Writes the bits of a byte that are 0 in `keep`, and reads it back.
     pub(super) fn write_byte(
         &mut self,
         address: Address,
@@ -98,7 +98,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.expect_byte(address, keep, value)
     }
 
-    /// Writes the bits of a byte that `keep` has as 0.
+    /// Writes the bits of a byte that are 0 in `keep`.
     pub(super) fn put_byte(&mut self, address: Address, keep: u8, value: u8) -> Outcome<(), D, P> {
         self.expect_gated()?;
         if address == anchor() {
@@ -109,7 +109,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.heed(result)
     }
 
-    /// Reads a byte, which must be this but for the bits of `ignored`.
+    /// Reads a byte, and compares it with this value except for the bits of `ignored`.
     pub(super) fn expect_byte(
         &mut self,
         address: Address,
@@ -126,7 +126,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Err(ChipError::ReadBack { address, written, read: u32::from(read & !ignored) })
     }
 
-    /// Remembers what is in memory, if it can serve as a beacon.
+    /// Remembers a byte of memory, if it can serve as a beacon.
     pub(super) fn note(&mut self, address: Address, mask: u8, value: u8) {
         let Some(byte) = address.neuron_byte() else { return };
         let mask = mask & I::PARAMETERS.get(usize::from(byte)).copied().unwrap_or(0);
@@ -149,7 +149,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// After an error of the bus a clock may be lost.
+    /// Demands a reset after an error of the bus, as a clock may be lost.
     pub(super) fn heed<T>(&mut self, result: Result<T, D::Error>) -> Outcome<T, D, P> {
         result.map_err(|error| {
             self.state = State::NotReset;

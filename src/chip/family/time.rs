@@ -1,4 +1,4 @@
-//! The time steps that leak events tell the chip.
+//! Time steps, which the chip gets as leak events.
 
 use core::num::NonZeroU32;
 
@@ -11,11 +11,11 @@ use crate::event::Tick;
 /// The most leak events at once.
 const MAX_LEAKS: u32 = 255;
 
-/// When leaks are due.
+/// When leak events are due.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Time {
     step: NonZeroU32,
-    /// When the last one was due.
+    /// When the last leak event was due.
     last: Option<Tick>,
 }
 
@@ -31,13 +31,12 @@ impl Time {
 }
 
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
-    /// Sends the leak events of the time steps that have passed at this tick; the first call only
-    /// notes the time. At most 255 are sent, others skipped and [counted](super::Counters::skipped_steps):
-    /// 255 leaks of 1 do not bring a potential of 12 bits to 0. Steps that passed while the chip was gated
-    /// are due as well.
+    /// Sends the leak events of the time steps that have passed at this tick, also those that passed while the chip was
+    /// gated; the first call only notes the time. Sends at most 255; others are skipped and
+    /// [counted](super::Counters::skipped_steps). (255 leaks of 1 may not bring a potential of 12 bits to 0.)
     ///
     /// # Errors
-    /// As [`send`](Self::send). Time steps that were not sent are due the next time.
+    /// Those of [`send`](Self::send). Time steps that were not sent are due the next time.
     pub fn advance(&mut self, now: Tick, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         self.advance_with(now, &mut on_output)
     }

@@ -1,8 +1,8 @@
-//! SPI without chip select: frames of 40 clocks, counted by the chip from its reset.
+//! SPI without chip select: frames of 40 clocks, which the chip counts from its reset on.
 
 use embedded_hal::spi::SpiDevice;
 
-/// `a19:16`: read, write and the memory.
+/// Bits 19 to 16 of an address: read, write, and which memory.
 const READ: u32 = 1 << 19;
 const WRITE: u32 = 1 << 18;
 const NEURON: u32 = 1 << 16;
@@ -23,18 +23,18 @@ impl Address {
         Self::neuron(255, 0x7F)
     }
 
-    /// The byte with the synapse: `{byte, pre, post / 8}`, two synapses a byte, four bytes a word.
+    /// The byte of a synapse: `{byte, pre, post / 8}`, two synapses a byte, four bytes a word.
     pub(super) fn synapse(pre: u8, post: u8) -> Self {
         let (pre, post) = (u32::from(pre), u32::from(post));
         Self(SYNAPSE | (post >> 1 & 3) << 13 | pre << 5 | post >> 3)
     }
 
-    /// Which byte of a neuron.
+    /// The number of the byte in its neuron; `None` if it is of no neuron.
     pub(super) fn neuron_byte(self) -> Option<u8> {
         (self.0 & (NEURON | SYNAPSE) == NEURON).then_some((self.0 >> 8) as u8)
     }
 
-    /// As in an error.
+    /// The address as errors show it.
     pub(super) const fn number(self) -> u32 {
         self.0
     }
@@ -51,7 +51,7 @@ impl<D: SpiDevice> Wire<D> {
         self.write(register.into(), value)
     }
 
-    /// Bits of `keep` that are 1 stay as they are.
+    /// Writes the bits of a byte that are 0 in `keep`.
     pub(super) fn write_byte(
         &mut self,
         address: Address,
@@ -61,7 +61,7 @@ impl<D: SpiDevice> Wire<D> {
         self.write(WRITE | address.0, u32::from(keep) << 8 | u32::from(value))
     }
 
-    /// The last byte that comes back is what was read.
+    /// Reads a byte, which is the last one that comes back.
     pub(super) fn read_byte(&mut self, address: Address) -> Result<u8, D::Error> {
         let mut frame = frame(READ | address.0, 0);
         self.device.transfer_in_place(&mut frame)?;
@@ -74,7 +74,7 @@ impl<D: SpiDevice> Wire<D> {
     }
 }
 
-/// 20 bits of address, 20 of data.
+/// A frame: 20 bits of address, 20 of data.
 fn frame(address: u32, data: u32) -> [u8; 5] {
     let [_, _, _, bytes @ ..] = (u64::from(address) << 20 | u64::from(data)).to_be_bytes();
     bytes
