@@ -28,6 +28,7 @@
 //! | [`temporal`] | [`TemporalContrast`](temporal::TemporalContrast) (TBR) | changes, as an event camera sees them |
 //! | | [`StepForward`](temporal::StepForward) (SF) | following a signal closely with few spikes |
 //! | | [`SendOnDelta`](temporal::SendOnDelta) | following a signal that jumps |
+//! | | [`AdaptiveStepForward`](temporal::AdaptiveStepForward) | following a signal that jumps, one spike a sample |
 //! | | [`MovingWindow`](temporal::MovingWindow) (MW) | changes against a short past |
 //! | [`rate`] | [`Hough`](rate::Hough) (HSA) | a reconstruction that never exceeds the signal |
 //! | | [`ThresholdHough`](rate::ThresholdHough) (T-HSA) | a closer reconstruction than HSA |

@@ -63,6 +63,24 @@ pub trait Count {
         of_plain: impl Fn(i8) -> P::Code,
         encode: impl FnOnce(&[Self::Sample], &mut [i8]),
         decode: impl FnOnce(&[i8], &mut [Self::Sample]),
+    ) -> Result<(), Self::Error> {
+        self.coded_from(name, scheme, &|| P::START, to_plain, of_plain, encode, decode)
+    }
+
+    /// A code of one `i8` a sample, whose encoders start so.
+    ///
+    /// # Errors
+    /// The visitor's own.
+    #[allow(clippy::too_many_arguments)]
+    fn coded_from<P: Scheme<Sample = Self::Sample>>(
+        &mut self,
+        name: &'static str,
+        scheme: &P,
+        start: &impl Fn() -> P::EncoderState,
+        to_plain: impl Fn(P::Code) -> i8,
+        of_plain: impl Fn(i8) -> P::Code,
+        encode: impl FnOnce(&[Self::Sample], &mut [i8]),
+        decode: impl FnOnce(&[i8], &mut [Self::Sample]),
     ) -> Result<(), Self::Error>;
 
     /// A rate code. `encode` works in place on the signal less the shift. `agreeing` is the scheme with the very

@@ -211,6 +211,30 @@ impl Parameter {
     )
     .with_default("1.5");
 
+    /// How the mean of spikes is taken.
+    pub const MEAN: Self = Self::new(
+        "mean",
+        Kind::Choice(&["average", "window"]),
+        Unit::None,
+        "how the decoder takes the mean of spikes: an `average` that forgets, or a `window`",
+    )
+    .with_default("average");
+
+    /// Over how many samples the mean of spikes is taken.
+    pub const POWER: Self = Self::new(
+        "power",
+        Kind::Count,
+        Unit::None,
+        "the mean is over about 2^POWER samples: 1 to 15, of a window 0 to 12",
+    )
+    .with_default("4");
+
+    /// Most spikes a sample.
+    pub const SPIKES: Self =
+        Self::new("spikes", Kind::Count, Unit::None, "most spikes a sample, 1 to 127")
+            .with_example("4")
+            .with_paper(Paper::Text("4"));
+
     /// How many neurons there are.
     pub const fn neurons(paper: &'static str) -> Self {
         Self::new("neurons", Kind::Count, Unit::None, "how many neurons share the range, 3 to 1024")

@@ -7,7 +7,7 @@
 //!
 //! To add a scheme: write its file in the crate, its file under `schemes`, and its line in the list below.
 
-#![cfg_attr(not(feature = "run"), no_std)]
+#![cfg_attr(not(any(feature = "run", test)), no_std)]
 
 mod channel;
 mod entry;
@@ -84,4 +84,4 @@ macro_rules! schemes {
     };
 }
 
-schemes![tbr, mw, sf, sod, bsa, hsa, t_hsa, position, grf, grf_slots, grf_prob,];
+schemes![tbr, mw, sf, sod, asf, bsa, hsa, t_hsa, position, grf, grf_slots, grf_prob,];

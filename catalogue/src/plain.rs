@@ -35,6 +35,14 @@ pub trait Plain: Sample + Into<Self::Wide> {
     fn count(count: i16) -> Self::Wide;
     /// Back to the sample type, which holds it.
     fn narrow(wide: Self::Wide) -> Self;
+    /// So many times twice.
+    fn doubled(wide: Self::Wide, times: u8) -> Self::Wide;
+    /// So many times half; whole numbers are rounded down.
+    fn halved(wide: Self::Wide, times: u8) -> Self::Wide;
+    /// So many times half; whole numbers are rounded to the nearest, halves upwards.
+    fn halved_to_nearest(wide: Self::Wide, times: u8) -> Self::Wide;
+    /// Whether a draw of 16 bits falls below a part of the range: `2^17 part >= (2 draw + 1) range`.
+    fn is_drawn(part: Self::Wide, range: Self::Wide, draw: u32) -> bool;
 }
 
 impl Plain for f32 {
@@ -52,6 +60,22 @@ impl Plain for f32 {
 
     fn narrow(wide: f32) -> f32 {
         wide
+    }
+
+    fn doubled(wide: f32, times: u8) -> f32 {
+        wide * (1_u32 << times) as f32
+    }
+
+    fn halved(wide: f32, times: u8) -> f32 {
+        wide / (1_u32 << times) as f32
+    }
+
+    fn halved_to_nearest(wide: f32, times: u8) -> f32 {
+        Self::halved(wide, times)
+    }
+
+    fn is_drawn(part: f32, range: f32, draw: u32) -> bool {
+        131_072.0 * part >= (2 * draw + 1) as f32 * range
     }
 }
 
@@ -71,6 +95,22 @@ impl Plain for i16 {
     fn narrow(wide: i32) -> i16 {
         wide as i16
     }
+
+    fn doubled(wide: i32, times: u8) -> i32 {
+        wide << times
+    }
+
+    fn halved(wide: i32, times: u8) -> i32 {
+        wide >> times
+    }
+
+    fn halved_to_nearest(wide: i32, times: u8) -> i32 {
+        (wide + (1 << times) / 2) >> times
+    }
+
+    fn is_drawn(part: i32, range: i32, draw: u32) -> bool {
+        i64::from(part) << 17 >= i64::from(2 * draw + 1) * i64::from(range)
+    }
 }
 
 impl Plain for FixedI16<U8> {
@@ -88,6 +128,22 @@ impl Plain for FixedI16<U8> {
 
     fn narrow(wide: FixedI32<U8>) -> Self {
         Self::from_bits(wide.to_bits() as i16)
+    }
+
+    fn doubled(wide: FixedI32<U8>, times: u8) -> FixedI32<U8> {
+        wide << times
+    }
+
+    fn halved(wide: FixedI32<U8>, times: u8) -> FixedI32<U8> {
+        wide >> times
+    }
+
+    fn halved_to_nearest(wide: FixedI32<U8>, times: u8) -> FixedI32<U8> {
+        (wide + FixedI32::from_bits((1 << times) / 2)) >> times
+    }
+
+    fn is_drawn(part: FixedI32<U8>, range: FixedI32<U8>, draw: u32) -> bool {
+        i64::from(part.to_bits()) << 17 >= i64::from(2 * draw + 1) * i64::from(range.to_bits())
     }
 }
 
@@ -107,6 +163,22 @@ impl Plain for FixedI32<U16> {
     fn narrow(wide: FixedI64<U16>) -> Self {
         Self::from_bits(wide.to_bits() as i32)
     }
+
+    fn doubled(wide: FixedI64<U16>, times: u8) -> FixedI64<U16> {
+        wide << times
+    }
+
+    fn halved(wide: FixedI64<U16>, times: u8) -> FixedI64<U16> {
+        wide >> times
+    }
+
+    fn halved_to_nearest(wide: FixedI64<U16>, times: u8) -> FixedI64<U16> {
+        (wide + FixedI64::from_bits((1 << times) / 2)) >> times
+    }
+
+    fn is_drawn(part: FixedI64<U16>, range: FixedI64<U16>, draw: u32) -> bool {
+        part.to_bits() << 17 >= i64::from(2 * draw + 1) * range.to_bits()
+    }
 }
 
 /// Without its sign.
@@ -125,6 +197,57 @@ pub fn step_decode<S: Plain>(spikes: &[i8], step: S, values: &mut [S]) {
             value -= step.into();
         }
         values[i] = S::narrow(value);
+    }
+}
+
+/// A sample above the minimum, within the range.
+pub fn above_min<S: Plain>(x: S, min: S, max: S) -> S::Wide {
+    if x < min {
+        S::Wide::default()
+    } else if x > max {
+        max.into() - min.into()
+    } else {
+        x.into() - min.into()
+    }
+}
+
+/// The decoder of a mean's spikes over a window of `2^power` samples.
+#[inline(never)]
+pub fn window_decode<S: Plain>(spikes: &[i8], min: S, max: S, power: u8, values: &mut [S]) {
+    let range = max.into() - min.into();
+    for i in 0..spikes.len() {
+        let mut count = 0;
+        for j in 0..1 << power {
+            if i >= j && spikes[i - j] == 1 {
+                count += 1;
+            }
+        }
+        values[i] = S::narrow(min.into() + S::halved_to_nearest(S::count(count) * range, power));
+    }
+}
+
+/// The decoder of a mean's spikes by an average, where a spike right behind `g` others weighs `unit * 2^g`, up to
+/// `doublings`.
+#[inline(never)]
+pub fn average_decode<S: Plain>(
+    spikes: &[i8],
+    min: S,
+    max: S,
+    (unit, doublings): (S::Wide, u8),
+    power: u8,
+    values: &mut [S],
+) {
+    let mut average = S::doubled(max.into() - min.into(), power - 1);
+    let mut gain = 0;
+    for i in 0..spikes.len() {
+        average = average - S::halved(average, power);
+        if spikes[i] == 1 {
+            average += S::doubled(unit, gain);
+            gain = doublings.min(gain + 1);
+        } else {
+            gain = 0;
+        }
+        values[i] = S::narrow(min.into() + S::halved(average, power));
     }
 }
 

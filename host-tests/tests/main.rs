@@ -25,6 +25,7 @@ mod gaussian;
 mod histogram;
 mod hough;
 mod interleaving;
+mod link_adaptive;
 mod link_bytes;
 mod link_drift;
 mod link_frames;

@@ -18,6 +18,9 @@ pub(crate) trait Arithmetic: Sized {
     /// `self - step`.
     fn minus(self, step: Self) -> Self;
 
+    /// `self * 2^times`, which the type holds.
+    fn doubled(self, times: u8) -> Self;
+
     /// Compares `self - previous` with the threshold: `Greater` above it, `Less` below its negative, else `Equal`.
     fn step(self, previous: Self, threshold: Self) -> Ordering;
 }
@@ -43,6 +46,11 @@ impl Arithmetic for f32 {
     #[inline]
     fn minus(self, step: Self) -> Self {
         self - step
+    }
+
+    #[inline]
+    fn doubled(self, times: u8) -> Self {
+        self * f32::from_bits(u32::from(times).wrapping_add(127) << 23)
     }
 
     #[inline]
@@ -108,6 +116,11 @@ macro_rules! integer_arithmetic {
             #[inline]
             fn minus(self, step: Self) -> Self {
                 self.saturating_sub(step)
+            }
+
+            #[inline]
+            fn doubled(self, times: u8) -> Self {
+                self.wrapping_shl(times.into())
             }
 
             // A bound that saturates is an end of the type, and no sample lies beyond it or the exact bound.

@@ -43,6 +43,15 @@ pub(crate) const fn one<S: Sample>() -> f64 {
     }
 }
 
+/// The largest value of the type that is a step: 10³¹ in `f32`.
+pub(crate) const fn largest_step<S: Sample>() -> f64 {
+    match S::KIND {
+        SampleKind::F32 => crate::error::LARGEST_STEP as f64,
+        SampleKind::Fixed16 { fraction } => i16::MAX as f64 / power_of_two(fraction),
+        SampleKind::Fixed32 { fraction } => i32::MAX as f64 / power_of_two(fraction),
+    }
+}
+
 /// The nearest value of the type, halves upwards, saturating; NaN gives 0 in fixed point.
 pub(crate) const fn from_f64<S: Sample>(value: f64) -> S {
     match S::KIND {

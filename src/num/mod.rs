@@ -19,7 +19,9 @@ mod window_sum;
 
 pub(crate) use arithmetic::Arithmetic;
 pub(crate) use cells::Cells;
-pub(crate) use convert::{below_from_f64, floor_from_f64, from_f64, one, to_f64, units, word};
+pub(crate) use convert::{
+    below_from_f64, floor_from_f64, from_f64, largest_step, one, to_f64, units, word,
+};
 pub(crate) use distance::{Distance, Spaced, cell, cells, near, reach, top};
 pub use kind::SampleKind;
 pub(crate) use nearer::{Bound, Nearer};

@@ -56,7 +56,8 @@ pub trait Scheme: Sized {
 
     /// The value that a decoder should hold now, for a keyframe on a link that may lose spikes.
     ///
-    /// `None` before the first sample, and for schemes whose decoders recover without keyframes.
+    /// `None` before the first sample, while the value alone does not say what a decoder holds, and for schemes
+    /// whose decoders recover without keyframes.
     fn keyframe(&self, _state: &Self::EncoderState) -> Option<Self::Sample> {
         None
     }
@@ -124,12 +125,16 @@ pub trait Start: Scheme<EncoderState: Copy> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Recovery {
-    /// At the next keyframe: errors add up until then.
+    /// At the next keyframe: errors add up until then. A sample without spikes changes nothing.
     Keyframe,
+    /// At the next keyframe: errors add up until then. Samples without spikes count, so many in a row at most.
+    TimedKeyframe(usize),
     /// After this many samples without a loss.
     Samples(usize),
     /// At the next sample whose code has a spike.
     Spike,
+    /// Never bit for bit: what was lost fades away. After so many samples without spikes little is left to fade.
+    Fading(usize),
 }
 
 /// Turns samples into spikes, one sample at a time: a reference to a scheme, and a state.
@@ -212,7 +217,8 @@ impl<'a, P: Scheme> Encoder<'a, P> {
 
     /// The value that a decoder should hold now, for a keyframe on a link that may lose spikes.
     ///
-    /// `None` before the first sample, and for schemes whose decoders recover without keyframes.
+    /// `None` before the first sample, while the value alone does not say what a decoder holds, and for schemes
+    /// whose decoders recover without keyframes.
     pub fn keyframe(&self) -> Option<P::Sample> {
         self.scheme.keyframe(&self.state)
     }

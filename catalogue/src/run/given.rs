@@ -112,6 +112,18 @@ impl<'a> Given<'a> {
         Ok(self.signal("min")?..=self.signal("max")?)
     }
 
+    /// One of these words.
+    ///
+    /// # Errors
+    /// There is none of this name, or another word.
+    pub fn choice(&self, name: &str, words: &[&str]) -> Result<&'a str> {
+        let text = self.word(name)?;
+        if !words.contains(&text) {
+            bail!("{name} {text}: there are {}", words.join(", "));
+        }
+        Ok(text)
+    }
+
     /// The filter.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use spikewire::Start;
 use spikewire::temporal::{SendOnDelta, Steps};
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {
@@ -37,9 +37,7 @@ impl Entry for Scheme {
                 "the step, above 0: what the distance from the baseline must exceed",
                 0.5,
             ),
-            Parameter::new("spikes", Kind::Count, Unit::None, "most spikes a sample, 1 to 127")
-                .with_example("4")
-                .with_paper(Paper::Text("4")),
+            Parameter::SPIKES,
             Parameter::START,
         ],
     };

@@ -90,10 +90,11 @@ impl<S: Measured, W: Write> Counter<'_, S, W> {
 
     /// Fails unless the codec's spikes and values are those of the transcription, which the buffers hold. Loads the
     /// signal again.
-    fn agree<P: Start<Sample = S>>(
+    fn agree<P: Scheme<Sample = S>>(
         &mut self,
         codec: &'static str,
         scheme: &P,
+        start: &impl Fn() -> P::EncoderState,
         to_plain: impl Fn(P::Code) -> i8,
         of_plain: impl Fn(i8) -> P::Code,
     ) -> Result<(), Failure> {
@@ -102,7 +103,7 @@ impl<S: Measured, W: Write> Counter<'_, S, W> {
             expect(codec, i, decode_sample(scheme, &mut decoder, of_plain(spike)) == value)?;
         }
         self.load();
-        let mut encoder = P::START;
+        let mut encoder = start();
         let mut spikes = self.spikes.iter().enumerate();
         let mut check = |code| match spikes.next() {
             Some((i, &spike)) => expect(codec, i, to_plain(code) == spike),
@@ -117,14 +118,15 @@ impl<S: Measured, W: Write> Counter<'_, S, W> {
         expect(codec, LENGTH, spikes.next().is_none())
     }
 
-    fn finish<P: Start<Sample = S>>(
+    fn finish<P: Scheme<Sample = S>>(
         &mut self,
         codec: &'static str,
         scheme: &P,
+        start: &impl Fn() -> P::EncoderState,
         plain: (u32, u32),
     ) -> Result<(), Failure> {
         let subject = Self::subject(self.sample, self.source, codec, scheme, plain);
-        Ok(subject.measure(self.out, scheme, &self.signal)?)
+        Ok(subject.measure(self.out, scheme, start, &self.signal)?)
     }
 }
 
@@ -136,10 +138,11 @@ impl<S: Measured, W: Write> Count for Counter<'_, S, W> {
     type Sample = S;
     type Error = Failure;
 
-    fn coded<P: Start<Sample = S>>(
+    fn coded_from<P: Scheme<Sample = S>>(
         &mut self,
         name: &'static str,
         scheme: &P,
+        start: &impl Fn() -> P::EncoderState,
         to_plain: impl Fn(P::Code) -> i8,
         of_plain: impl Fn(i8) -> P::Code,
         encode: impl FnOnce(&[S], &mut [i8]),
@@ -148,8 +151,8 @@ impl<S: Measured, W: Write> Count for Counter<'_, S, W> {
         let (signal, spikes) = self.slices();
         let encoding = instructions(|| encode(signal, spikes));
         let decoding = instructions(|| decode(spikes, signal));
-        self.agree(name, scheme, to_plain, of_plain)?;
-        self.finish(name, scheme, (encoding, decoding))
+        self.agree(name, scheme, start, to_plain, of_plain)?;
+        self.finish(name, scheme, start, (encoding, decoding))
     }
 
     fn rate<P: Start<Sample = S, Code = Spike>>(
@@ -167,11 +170,11 @@ impl<S: Measured, W: Write> Count for Counter<'_, S, W> {
         let (signal, spikes) = self.slices();
         let encoding = instructions(|| encode(signal, spikes));
         let decoding = instructions(|| plain::rate_decode(spikes, taps, shift, signal));
-        self.agree(name, agreeing, Spike::sign, |sign| match sign {
+        self.agree(name, agreeing, &|| P::START, Spike::sign, |sign| match sign {
             1 => Spike::Up,
             _ => Spike::None,
         })?;
-        self.finish(name, scheme, (encoding, decoding))
+        self.finish(name, scheme, &|| P::START, (encoding, decoding))
     }
 
     /// Between two neurons, so close to halfway that rounding decides which exponential is the larger, the
@@ -197,8 +200,8 @@ impl<S: Measured, W: Write> Count for Counter<'_, S, W> {
         }
         let decoding = instructions(|| plain::position_decode(neurons, scheme.centres(), signal));
         let index = |neuron: Option<Neuron<M>>| neuron.map_or(-1, |neuron| neuron.index() as i8);
-        self.agree(name, scheme, index, |index| Neuron::new(index as u16))?;
-        self.finish(name, scheme, (encoding, decoding))
+        self.agree(name, scheme, &|| Position::<S, M>::START, index, |index| Neuron::new(index as u16))?;
+        self.finish(name, scheme, &|| Position::<S, M>::START, (encoding, decoding))
     }
 
     /// As many samples at once as the spikes have room for.
@@ -231,6 +234,6 @@ impl<S: Measured, W: Write> Count for Counter<'_, S, W> {
         self.load();
         let plain = (encoding, decoding);
         let subject = Self::subject(self.sample, self.source, name, scheme, plain);
-        Ok(subject.measure_codec(self.out, scheme, start, &self.signal)?)
+        Ok(subject.measure(self.out, scheme, start, &self.signal)?)
     }
 }

@@ -3,7 +3,7 @@
 use core::{fmt, hint::black_box, mem::size_of};
 
 use board::stopwatch::{instructions, keep, stack_depth};
-use spikewire::{Output, Scheme, Start};
+use spikewire::{Output, Scheme};
 
 use crate::signal::LENGTH;
 
@@ -52,18 +52,8 @@ impl Cost {
 }
 
 impl Subject<'_> {
-    /// Measures a scheme, encoding and decoding.
-    pub fn measure<P: Start>(
-        &self,
-        out: &mut impl fmt::Write,
-        scheme: &P,
-        signal: &[P::Sample; LENGTH],
-    ) -> fmt::Result {
-        self.measure_codec(out, scheme, &|| P::START, signal)
-    }
-
-    /// Measures a scheme whose encoders start so.
-    pub fn measure_codec<P: Scheme>(
+    /// Measures a scheme whose encoders start so, encoding and decoding.
+    pub fn measure<P: Scheme>(
         &self,
         out: &mut impl fmt::Write,
         scheme: &P,

@@ -23,6 +23,8 @@
 //! assert_eq!(values, [4.0, 3.0, 3.0]); // after 5, which is known
 //! ```
 
+mod adaptive;
+mod band;
 mod contrast;
 #[cfg(feature = "alloc")]
 pub(super) mod dynamic;
@@ -31,6 +33,7 @@ mod send_on_delta;
 mod step_forward;
 mod steps;
 
+pub use adaptive::{AdaptiveState, AdaptiveStepForward, AdaptiveStepState};
 pub use contrast::{ContrastState, TemporalContrast};
 pub use moving_window::{MovingWindow, MovingWindowState};
 pub use send_on_delta::{SendOnDelta, SendOnDeltaState, Steps};

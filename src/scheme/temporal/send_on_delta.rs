@@ -1,8 +1,10 @@
 //! Send-on-delta: step forward with several spikes for a sample, for signals that jump.
 
 use super::StepState;
+use super::band::Band;
 use crate::error::{step, unwrap, within};
 use crate::num::{Tally, to_f64};
+use crate::scheme::codec::encode_first;
 use crate::{Code, ConfigError, Firing, Output, Polarity, Recovery, Sample, Scheme, Spike, Start};
 
 /// Send-on-delta: the baseline follows the signal by up to `K` thresholds a sample, with one spike for each.
@@ -94,6 +96,31 @@ impl<S: Sample, const K: usize> SendOnDelta<S, K> {
     pub const fn threshold(&self) -> S {
         self.threshold
     }
+
+    /// Follows a sample that is outside the band, the first one, or not finite.
+    #[inline(never)]
+    fn follow(&self, state: &mut SendOnDeltaState<S>, sample: S) -> Steps<K> {
+        if !state.tally.is_primed() || !sample.is_finite() {
+            self.prime(state, &[sample]);
+            return Steps(0);
+        }
+        let least = self.most.wrapping_neg();
+        let mut steps = 0;
+        let mut base = state.base;
+        if sample > base {
+            while steps < self.most && sample > base.plus(self.threshold) {
+                base = base.plus(self.threshold);
+                steps += 1;
+            }
+        } else {
+            while steps > least && sample < base.minus(self.threshold) {
+                base = base.minus(self.threshold);
+                steps -= 1;
+            }
+        }
+        state.base = base;
+        Steps(steps)
+    }
 }
 
 /// The spikes of one sample: up to `K`, all of one polarity.
@@ -175,35 +202,35 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
 
     #[inline]
     fn encode(&self, state: &mut SendOnDeltaState<S>, sample: S) -> Steps<K> {
-        if !state.tally.is_primed() || !sample.is_finite() {
-            self.prime(state, &[sample]);
-            return Steps(0);
+        if state.tally.is_primed() && Band::around(state.base, self.threshold).holds(sample) {
+            Steps(0)
+        } else {
+            self.follow(state, sample)
         }
-        let least = self.most.wrapping_neg();
-        let mut steps = 0;
-        let mut base = state.base;
-        while steps < self.most && sample > base.plus(self.threshold) {
-            base = base.plus(self.threshold);
-            steps += 1;
-        }
-        while steps <= 0 && steps > least && sample < base.minus(self.threshold) {
-            base = base.minus(self.threshold);
-            steps -= 1;
-        }
-        state.base = base;
-        Steps(steps)
     }
 
+    /// The band stays in registers while samples are within it.
+    #[inline]
     fn encode_slice(
         &self,
         state: &mut SendOnDeltaState<S>,
         samples: &[S],
         outputs: &mut [Steps<K>],
     ) -> usize {
+        let first =
+            if state.tally.is_primed() { 0 } else { encode_first(self, state, samples, outputs) };
+        let samples = samples.get(first..).unwrap_or_default();
+        let outputs = outputs.get_mut(first..).unwrap_or_default();
+
+        let mut band = Band::around(state.base, self.threshold);
         for (output, &sample) in outputs.iter_mut().zip(samples) {
-            *output = self.encode(state, sample);
+            *output = Steps(0);
+            if !band.holds(sample) {
+                *output = self.follow(state, sample);
+                band = Band::around(state.base, self.threshold);
+            }
         }
-        samples.len().min(outputs.len())
+        first + samples.len().min(outputs.len())
     }
 
     /// The last sample of the past becomes the baseline. Give the decoder that value by `resync`.

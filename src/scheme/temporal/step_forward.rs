@@ -1,6 +1,7 @@
 //! Step forward (SF): a spike when the signal leaves the band around a baseline that follows it.
 
 use super::StepState;
+use super::band::Band;
 use super::steps::decode_steps;
 use crate::error::{step, unwrap};
 use crate::num::{Tally, to_f64};
@@ -82,28 +83,6 @@ pub struct StepForwardState<S> {
 
 impl<S: Sample> Start for StepForward<S> {
     const START: StepForwardState<S> = StepForwardState { base: S::ZERO, tally: Tally::NONE };
-}
-
-/// The range in which a sample emits no spike.
-#[derive(Clone, Copy)]
-struct Band<S> {
-    lower: S,
-    base: S,
-    upper: S,
-}
-
-impl<S: Sample> Band<S> {
-    #[inline]
-    fn around(base: S, threshold: S) -> Self {
-        Self { lower: base.minus(threshold), base, upper: base.plus(threshold) }
-    }
-
-    /// Whether the sample is below the band, or NaN.
-    #[inline]
-    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "true of NaN")]
-    fn is_above(self, sample: S) -> bool {
-        !(sample >= self.lower)
-    }
 }
 
 impl<S: Sample> Scheme for StepForward<S> {

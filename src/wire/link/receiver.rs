@@ -16,12 +16,16 @@ use crate::{Code, ConfigError, Firing, Recovery, Scheme, error};
 ///
 /// - **Temporal codes** ([`Recovery::Keyframe`]) are exact from their next keyframe on. A value holds from its event
 ///   until the next one.
+/// - **Temporal codes whose step adapts** ([`Recovery::TimedKeyframe`]) are exact from their next keyframe on too. The
+///   sender must take its samples every period, as for rate codes.
 /// - **Population codes** ([`Recovery::Spike`]) are exact from the next whole sample in which the channel fires. A
 ///   sample is over when an event of a later one arrives, or by [`advance`](Self::advance).
 /// - **Rate codes** ([`Recovery::Samples`]) are exact after as many whole samples as the filter has taps. The sender
 ///   must take a sample every [period](super::Coding::period) of the link, with a jitter below half a period, since
 ///   samples without events are decoded, too: after as many of them as the filter has taps the value no longer
 ///   changes, and the others are passed over.
+/// - **Means** ([`Recovery::Fading`]) take their samples every period too. They are never exact: the error of an
+///   estimate fades.
 ///
 /// - **Memory:** per channel the decoder's state and 2 samples; 8 bytes for each of `EVENTS`, the most events that one
 ///   sample has over all channels. Temporal codes need none of these: 0.
@@ -85,6 +89,8 @@ impl<'a, P: Scheme, const N: usize, const EVENTS: usize> Receiver<[&'a P; N], N,
 impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> {
     const NEURONS: usize = CodeOf::<T, N>::NEURONS;
     const ADDRESSES: usize = N * Self::NEURONS;
+    const HAS_KEYFRAMES: bool =
+        matches!(T::Scheme::RECOVERY, Recovery::Keyframe | Recovery::TimedKeyframe(_));
 
     fn with_schemes(schemes: T) -> Self {
         const {
@@ -203,6 +209,9 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         keyframe: Keyframe,
         on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
     ) {
+        if matches!(T::Scheme::RECOVERY, Recovery::TimedKeyframe(_)) {
+            self.sample_behind(keyframe.tick, on_value);
+        }
         let channel =
             usize::from(keyframe.address.wrapping_sub(self.addresses.first)) / Self::NEURONS;
         let mut channels = self.channels.iter_mut().zip(self.schemes.each());
@@ -211,7 +220,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             return;
         };
         match keyframe.value() {
-            Some(value) if T::Scheme::RECOVERY == Recovery::Keyframe => {
+            Some(value) if Self::HAS_KEYFRAMES => {
                 scheme.resync(&mut known.state, value);
                 known.value = value;
                 known.is_exact = true;
@@ -260,6 +269,14 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         }
     }
 
+    /// Goes on to the sample after a keyframe of this tick, whose own sample is over.
+    fn sample_behind(&mut self, tick: Tick, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
+        let next = tick + u32::from(self.sample.period);
+        self.finish_samples(next, on_value);
+        self.sample.tick.get_or_insert(next);
+        self.sample.has_begun = true;
+    }
+
     /// Decodes the sample that is over at this tick, and the samples without events after it.
     fn finish_samples(&mut self, now: Tick, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
         let Some(tick) = self.sample.tick else { return };
@@ -277,7 +294,10 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             self.decode(tick, on_value);
             self.sample.is_whole = is_next_whole;
             self.sample.count = 0;
-            if let Recovery::Samples(recovery) = T::Scheme::RECOVERY {
+            if let Recovery::Samples(recovery)
+            | Recovery::TimedKeyframe(recovery)
+            | Recovery::Fading(recovery) = T::Scheme::RECOVERY
+            {
                 for sample in (1..samples).take(recovery) {
                     self.decode(tick + sample.wrapping_mul(period.get()), on_value);
                 }
@@ -297,7 +317,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
                 known.is_exact |= match T::Scheme::RECOVERY {
                     Recovery::Samples(needed) => known.whole >= needed,
                     Recovery::Spike => code.firings().next().is_some(),
-                    Recovery::Keyframe => false,
+                    Recovery::Keyframe | Recovery::TimedKeyframe(_) | Recovery::Fading(_) => false,
                 };
             }
             on_value(channel as u16, tick, known.value);

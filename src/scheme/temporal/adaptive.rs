@@ -1,0 +1,280 @@
+//! Adaptive step forward: step forward whose step doubles while it has to go on in one direction.
+
+use super::band::Band;
+use crate::error::{step, unwrap, within};
+use crate::num::{Tally, largest_step, to_f64};
+use crate::scheme::codec::encode_first;
+use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
+
+/// Adaptive step forward: the baseline follows the signal by one step a spike, and the step grows while the signal
+/// runs away.
+///
+/// As [`StepForward`](super::StepForward) with the step `threshold * 2^e`, where `e` is 0 at first. After every
+/// sample: if the last `run` spikes went one way without a sample between, `e` grows by 1, up to `doublings`; otherwise
+/// it falls by 1, down to 0. The decoder does the same.
+///
+/// - **Threshold:** above 0, in the samples' unit. The largest step, `threshold * 2^doublings`, is one that the
+///   sample type holds; up to 10³¹ in `f32`. **Doublings:** 0 to 30; 0 is step forward. **Run:** 1 to 8, 2 unless told.
+/// - **Latency:** 0 samples. **Memory:** 12 bytes a channel in `f32`, 8 to decode.
+/// - **Work:** two comparisons.
+/// - **Exactness:** steps are exact, `f32` rounds `base ± step` once; fixed point is exact.
+/// - **Error:** while `|x[i] - x[i-1]| <= threshold`, the decoded value stays within two thresholds of the signal.
+///   It never overshoots. A jump by `J` from rest is followed to within a threshold after
+///   `J / (threshold * 2^doublings) + 3 * doublings` samples, rounded up (for runs of 2 to 4).
+/// - **Keyframes:** only at rest, when `e` is 0 and the last sample had no spike: then the baseline alone is all that
+///   a decoder must know. So taking keyframes changes no spike. Where there is none now, ask again at the next
+///   sample.
+///
+/// Source: Jayant, *Adaptive delta modulation with a one-bit memory*, 1970.
+///
+/// ```
+/// use spikewire::{Scheme, temporal::AdaptiveStepForward};
+///
+/// const ROLL: AdaptiveStepForward<i16> = AdaptiveStepForward::new(1, 4); // steps of 1, 2, 4, 8 and 16
+/// let (mut encoder, mut decoder) = (ROLL.encoder(), ROLL.decoder());
+/// let values = [0, 40, 40, 40, 40, 40, 40, 40].map(|x| decoder.decode(encoder.encode(x)));
+/// assert_eq!(values, [0, 1, 2, 4, 8, 16, 32, 32]);
+/// ```
+///
+/// A step that the sample type cannot hold does not compile:
+///
+/// ```compile_fail
+/// # use spikewire::temporal::AdaptiveStepForward;
+/// const ROLL: AdaptiveStepForward<i16> = AdaptiveStepForward::new(3000, 4);
+/// # let _ = ROLL;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct AdaptiveStepForward<S> {
+    threshold: S,
+    doublings: u8,
+    run: u8,
+}
+
+/// Up to 2³⁰ thresholds.
+const MOST_DOUBLINGS: u8 = 30;
+/// The error is known for runs up to this.
+const LONGEST_RUN: u8 = 8;
+
+impl<S: Sample> AdaptiveStepForward<S> {
+    /// A scheme with this threshold, whose step doubles so many times at most. For constants, where bad parameters
+    /// fail the build.
+    ///
+    /// # Panics
+    /// As [`try_new`](Self::try_new) fails.
+    pub const fn new(threshold: S, doublings: u8) -> Self {
+        unwrap(Self::try_new(threshold, doublings))
+    }
+
+    /// A scheme with this threshold, whose step doubles so many times at most.
+    ///
+    /// # Errors
+    /// The threshold is not above 0, or not finite; there are more than 30 doublings; the largest step is more than the
+    /// sample type holds, or above 10³¹ in `f32`.
+    pub const fn try_new(threshold: S, doublings: u8) -> Result<Self, ConfigError> {
+        let smallest = to_f64(threshold);
+        match (
+            step("threshold", smallest),
+            within("doublings", doublings as f64, 0.0, MOST_DOUBLINGS as f32),
+        ) {
+            (Err(error), _) | (_, Err(error)) => return Err(error),
+            _ => {}
+        }
+        let (value, max) = (smallest * (1_u64 << doublings) as f64, largest_step::<S>());
+        if value > max {
+            let (value, min, max) = (value as f32, smallest as f32, max as f32);
+            return Err(ConfigError::OutOfRange { parameter: "largest step", value, min, max });
+        }
+        Ok(Self { threshold, doublings, run: 2 })
+    }
+
+    /// The step grows after so many spikes in one direction, one a sample; 2 unless told. For constants, where a bad
+    /// number fails the build.
+    ///
+    /// # Panics
+    /// The number is not within 1 to 8.
+    #[must_use]
+    pub const fn with_run(self, run: u8) -> Self {
+        unwrap(self.try_with_run(run))
+    }
+
+    /// The step grows after so many spikes in one direction, one a sample; 2 unless told.
+    ///
+    /// # Errors
+    /// The number is not within 1 to 8.
+    pub const fn try_with_run(self, run: u8) -> Result<Self, ConfigError> {
+        match within("run", run as f64, 1.0, LONGEST_RUN as f32) {
+            Ok(()) => Ok(Self { run, ..self }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The threshold, which is the smallest step, in the samples' unit.
+    pub const fn threshold(&self) -> S {
+        self.threshold
+    }
+
+    #[inline]
+    fn band(&self, base: S, pace: Pace) -> Band<S> {
+        Band::around(base, self.threshold.doubled(pace.exponent))
+    }
+
+    /// Takes a sample that is outside the band at rest, the first one, one that is not finite, or any while not at
+    /// rest.
+    #[inline(never)]
+    fn follow(&self, state: &mut AdaptiveState<S>, sample: S) -> Spike {
+        if !state.tally.is_primed() || !sample.is_finite() {
+            self.prime(state, &[sample]);
+            return Spike::None;
+        }
+        let band = self.band(state.base, state.pace);
+        let (spike, base) = if sample > band.upper {
+            (Spike::Up, band.upper)
+        } else if sample < band.lower {
+            (Spike::Down, band.lower)
+        } else {
+            (Spike::None, band.base)
+        };
+        state.base = base;
+        state.pace.take(spike, self.run, self.doublings);
+        spike
+    }
+}
+
+/// How fast the baseline runs: two bytes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Pace {
+    /// How often the step is doubled.
+    exponent: u8,
+    /// How many spikes in one direction came last, negative if they went down.
+    run: i8,
+}
+
+impl Pace {
+    const REST: Self = Self { exponent: 0, run: 0 };
+
+    #[inline]
+    fn take(&mut self, spike: Spike, run: u8, doublings: u8) {
+        self.run = match spike {
+            Spike::Up => self.run.max(0).saturating_add(1),
+            Spike::None => 0,
+            Spike::Down => self.run.min(0).saturating_sub(1),
+        };
+        self.exponent = if self.run.unsigned_abs() >= run {
+            self.exponent.saturating_add(1).min(doublings)
+        } else {
+            self.exponent.saturating_sub(1)
+        };
+    }
+}
+
+/// The state of an [`AdaptiveStepForward`] encoder: the baseline, the step's exponent and the run. 12 bytes in `f32`.
+#[derive(Clone, Copy, Debug)]
+pub struct AdaptiveState<S> {
+    base: S,
+    tally: Tally,
+    pace: Pace,
+}
+
+/// The state of an [`AdaptiveStepForward`] decoder: the value, the step's exponent and the run. 8 bytes in `f32`.
+#[derive(Clone, Copy, Debug)]
+pub struct AdaptiveStepState<S> {
+    value: S,
+    pace: Pace,
+}
+
+impl<S: Sample> Start for AdaptiveStepForward<S> {
+    const START: AdaptiveState<S> =
+        AdaptiveState { base: S::ZERO, tally: Tally::NONE, pace: Pace::REST };
+}
+
+impl<S: Sample> Scheme for AdaptiveStepForward<S> {
+    type Sample = S;
+    type Code = Spike;
+    type Output = Spike;
+    type EncoderState = AdaptiveState<S>;
+    type DecoderState = AdaptiveStepState<S>;
+
+    const LATENCY: usize = 0;
+    /// After as many silent samples as there are doublings the step is the smallest.
+    const RECOVERY: Recovery = Recovery::TimedKeyframe(MOST_DOUBLINGS as usize);
+
+    #[inline]
+    fn encode(&self, state: &mut AdaptiveState<S>, sample: S) -> Spike {
+        let band = Band::around(state.base, self.threshold);
+        if state.tally.is_primed() && state.pace == Pace::REST && band.holds(sample) {
+            Spike::None
+        } else {
+            self.follow(state, sample)
+        }
+    }
+
+    /// The band stays in registers while samples are within it.
+    #[inline]
+    fn encode_slice(
+        &self,
+        state: &mut AdaptiveState<S>,
+        samples: &[S],
+        spikes: &mut [Spike],
+    ) -> usize {
+        let first =
+            if state.tally.is_primed() { 0 } else { encode_first(self, state, samples, spikes) };
+        let samples = samples.get(first..).unwrap_or_default();
+        let spikes = spikes.get_mut(first..).unwrap_or_default();
+
+        let mut band = Band::around(state.base, self.threshold);
+        let mut is_at_rest = state.pace == Pace::REST;
+        for (spike, &sample) in spikes.iter_mut().zip(samples) {
+            *spike = Spike::None;
+            if !is_at_rest || !band.holds(sample) {
+                *spike = self.follow(state, sample);
+                band = Band::around(state.base, self.threshold);
+                is_at_rest = state.pace == Pace::REST;
+            }
+        }
+        first + samples.len().min(spikes.len())
+    }
+
+    /// The last of the past becomes the baseline, at rest; a decoder must be told, as by a keyframe.
+    fn prime(&self, state: &mut AdaptiveState<S>, past: &[S]) {
+        if let Some(base) = state.tally.last_of(past) {
+            state.base = base;
+            state.pace = Pace::REST;
+        }
+    }
+
+    /// The baseline, at rest.
+    fn keyframe(&self, state: &AdaptiveState<S>) -> Option<S> {
+        (state.tally.is_primed() && state.pace == Pace::REST).then_some(state.base)
+    }
+
+    fn rejected(state: &AdaptiveState<S>) -> u32 {
+        state.tally.rejected()
+    }
+
+    fn decoder_state(&self) -> AdaptiveStepState<S> {
+        AdaptiveStepState { value: S::ZERO, pace: Pace::REST }
+    }
+
+    /// Adds the step, and adapts it as the encoder did.
+    #[inline]
+    fn decode(&self, state: &mut AdaptiveStepState<S>, spike: Spike) -> S {
+        let band = self.band(state.value, state.pace);
+        state.value = match spike {
+            Spike::Up => band.upper,
+            Spike::None => band.base,
+            Spike::Down => band.lower,
+        };
+        state.pace.take(spike, self.run, self.doublings);
+        state.value
+    }
+
+    fn held(&self, state: &AdaptiveStepState<S>) -> Option<S> {
+        Some(state.value)
+    }
+
+    fn resync(&self, state: &mut AdaptiveStepState<S>, value: S) {
+        *state = AdaptiveStepState { value, pace: Pace::REST };
+    }
+}

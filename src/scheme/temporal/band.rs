@@ -1,0 +1,31 @@
+//! The band around a baseline that step forward and its kin compare a sample with.
+
+use crate::Sample;
+
+/// The range in which a sample emits no spike.
+#[derive(Clone, Copy)]
+pub(super) struct Band<S> {
+    pub(super) lower: S,
+    pub(super) base: S,
+    pub(super) upper: S,
+}
+
+impl<S: Sample> Band<S> {
+    #[inline]
+    pub(super) fn around(base: S, threshold: S) -> Self {
+        Self { lower: base.minus(threshold), base, upper: base.plus(threshold) }
+    }
+
+    /// Whether the sample is below the band, or not a number.
+    #[inline]
+    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "true of what is not a number")]
+    pub(super) fn is_above(self, sample: S) -> bool {
+        !(sample >= self.lower)
+    }
+
+    /// Whether the sample is within the band, ends included; nothing that is not a number is.
+    #[inline]
+    pub(super) fn holds(self, sample: S) -> bool {
+        sample <= self.upper && sample >= self.lower
+    }
+}
