@@ -91,8 +91,8 @@ pub use num::{Sample, SampleKind};
 #[cfg(feature = "alloc")]
 pub use scheme::dynamic;
 pub use scheme::{
-    Calibration, Code, Decoder, Differences, Encoder, Firing, Histogram, Moments, Output, Polarity,
-    Recovery, Scheme, Spike, Start, population, rate, temporal,
+    Calibration, Code, Conditions, Decoder, Differences, Encoder, Firing, Fit, Histogram, Moments,
+    Output, Polarity, Recovery, Scheme, Spike, Start, Survey, Unfit, population, rate, temporal,
 };
 pub use wire::format;
 #[cfg(feature = "link")]

@@ -4,8 +4,8 @@ use defmt::Format;
 use fixed::types::{I8F8, I16F16};
 use rand_pcg::Pcg32;
 use spikewire::{
-    Calibration, ConfigError, Differences, Firing, Histogram, Polarity, Recovery, Sample,
-    SampleKind, Spike,
+    Calibration, Conditions, ConfigError, Differences, Firing, Histogram, Polarity, Recovery,
+    Sample, SampleKind, Spike, Unfit,
     population::{FiredNeurons, Gaussian, Neuron, Position, Probabilistic, SlotSpikes, Slots},
     rate::{Bsa, BsaToolbox, Criterion, Hough, Scale, Shape, Taps, ThresholdHough},
     temporal::{MovingWindow, StepForward, TemporalContrast},
@@ -33,10 +33,11 @@ const fn is_format_in<S: Sample + Format>() {
 
     is_format::<Calibration<S>>();
     is_format::<Histogram<S, 4>>();
+    is_format::<Conditions<S>>();
 }
 
 const _: () = {
-    is_format::<(Spike, Polarity, Firing, Recovery, SampleKind)>();
+    is_format::<(Spike, Polarity, Firing, Recovery, SampleKind, Unfit)>();
     is_format::<(Neuron<4>, SlotSpikes<4, 8>, FiredNeurons<4>)>();
     is_format::<(Shape, Differences, ConfigError)>();
     is_format_in::<f32>();

@@ -46,6 +46,7 @@ mod sink_bus;
 mod slots;
 mod statics;
 mod step_forward;
+mod survey;
 mod taps;
 mod temporal_contrast;
 mod threshold_hough;

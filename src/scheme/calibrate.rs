@@ -83,7 +83,7 @@ impl<S: Sample> Default for Calibration<S> {
 
 impl<S: Sample> Calibration<S> {
     /// A calibration before its first sample.
-    pub fn new() -> Self {
+    pub const fn new() -> Self {
         Self {
             previous: S::ZERO,
             min: S::ZERO,

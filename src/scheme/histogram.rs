@@ -90,8 +90,13 @@ impl<S: Sample, const B: usize> Histogram<S, B> {
         if let Err(error) = within("limit", limit as f64, 1.0, u16::MAX as f32) {
             return Err(error);
         }
+        Ok(Self::over([min, max], limit))
+    }
+
+    /// An empty histogram of checked parameters.
+    pub(super) const fn over([min, max]: [S; 2], limit: u16) -> Self {
         let scale = B as f64 / (to_f64(max) - to_f64(min));
-        Ok(Self { min, max, limit, total: 0, scale, counts: [0; B], seen: 0, rejected: 0 })
+        Self { min, max, limit, total: 0, scale, counts: [0; B], seen: 0, rejected: 0 }
     }
 
     /// Takes one sample.

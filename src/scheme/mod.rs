@@ -10,6 +10,7 @@ mod histogram;
 mod moments;
 pub mod population;
 pub mod rate;
+mod survey;
 pub mod temporal;
 
 pub use calibrate::{Calibration, Differences};
@@ -17,3 +18,4 @@ pub use code::{Code, Firing, Output, Polarity, Spike};
 pub use codec::{Decoder, Encoder, Recovery, Scheme, Start};
 pub use histogram::Histogram;
 pub use moments::Moments;
+pub use survey::{Conditions, Fit, Survey, Unfit};

@@ -18,7 +18,8 @@ use fixed::{
     FixedI16, FixedI32,
     types::extra::{U8, U16},
 };
-use flight::{CHANNELS, Recorded};
+use flight::CHANNELS;
+pub use flight::{Recorded, channel};
 use heapless::Vec;
 use line::Line;
 pub use schemes::{Log, Logs, fly};

@@ -4,7 +4,7 @@ use core::hint::black_box;
 
 use catalogue::{Channel, Flight};
 use spikewire::{
-    Calibration, ConfigError, Histogram, Sample, Scheme, Start,
+    Calibration, Conditions, ConfigError, Histogram, Sample, Scheme, Start, Survey,
     population::{Position, Slots},
     rate::{Bsa, Criterion, Taps},
     temporal::{StepForward, TemporalContrast},
@@ -64,6 +64,7 @@ fn others<S: Sample>() -> Result<(), ConfigError> {
     histogram.observe(value);
     black_box((histogram.quantile(black_box(1), black_box(2)), histogram.rejected()));
     started(&Position::try_new(histogram.centres::<20>()?)?);
+    surveyed(value)?;
     started(
         &Slots::<S, 15, 10>::try_new(value..=value, black_box(1.5))?
             .try_with_floor(black_box(2))?,
@@ -73,4 +74,18 @@ fn others<S: Sample>() -> Result<(), ConfigError> {
 
 fn started<P: Start>(scheme: &P) {
     exercise::scheme(black_box(scheme));
+}
+
+fn surveyed<S: Sample>(value: S) -> Result<(), ConfigError> {
+    let conditions = Conditions::try_new(black_box(4), value..=value, value)?;
+    let mut survey =
+        black_box(Survey::<S, 32>::new(conditions.try_with_stillness(black_box(value))?));
+    survey.observe(value);
+    if let Ok(fit) = survey.verdict() {
+        started(&fit.step_forward(black_box(0.1))?);
+        started(&fit.temporal_contrast(black_box(0.1))?);
+        black_box((fit.moments().mean()?, fit.moments().deviation()?));
+    }
+    survey.reset();
+    Ok(())
 }

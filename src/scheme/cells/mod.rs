@@ -7,5 +7,7 @@ mod search;
 
 #[allow(unused_imports)] // until its first code
 pub(super) use cuts::{Cuts, Side};
-pub(super) use partition::{Partition, number_by_search};
+pub(super) use partition::Partition;
+#[cfg(feature = "alloc")]
+pub(super) use partition::number_by_search;
 pub(super) use search::count_preceding;
