@@ -34,6 +34,10 @@
 //! | | [`ThresholdHough`](rate::ThresholdHough) (T-HSA) | a closer reconstruction than HSA |
 //! | | [`Bsa`](rate::Bsa) (BSA) | smooth signals, with a filter of unit sum |
 //! | | [`BsaToolbox`](rate::BsaToolbox) | BSA as in the paper's tables |
+//! | | [`SigmaDelta`](rate::SigmaDelta) | a mean from one neuron |
+//! | | `Bernoulli` | a mean by chance (feature `rand`) |
+//! | | [`WeightedBurst`](rate::WeightedBurst) | a mean, with few spikes for little |
+//! | | [`IntegrateAndFire`](rate::IntegrateAndFire) (IF, LIF) | a mean, and an integral that never drifts |
 //! | [`population`] | [`Position`](population::Position) | a value, dense where it matters |
 //! | | [`Gaussian`](population::Gaussian) (GRF) | a value over an even range |
 //! | | [`Slots`](population::Slots) | a value finer than the neurons, by spike time |
@@ -50,7 +54,7 @@
 //! |---|---|
 //! | `fixed` | `FixedI16` and `FixedI32` with any fraction as [`Sample`]s |
 //! | `alloc` | `dynamic`: any filter length, window and number of neurons at run time, on the heap; not for firmware |
-//! | `rand` | probabilistic spiking, from any `rand_core` generator |
+//! | `rand` | probabilistic and Bernoulli spiking, from any `rand_core` generator |
 //! | `defmt` | `defmt::Format` on public data |
 //! | `serde` | `Serialize` on public data, and `Deserialize` where nothing has to be checked |
 //! | `queue` | bounded queues from interrupts to main; `EventQueue` needs a `critical-section` implementation in the program |

@@ -84,4 +84,22 @@ macro_rules! schemes {
     };
 }
 
-schemes![tbr, mw, sf, sod, asf, bsa, hsa, t_hsa, position, grf, grf_slots, grf_prob,];
+schemes![
+    tbr,
+    mw,
+    sf,
+    sod,
+    asf,
+    bsa,
+    hsa,
+    t_hsa,
+    integrate,
+    lif,
+    sigma_delta,
+    bernoulli,
+    burst_weighted,
+    position,
+    grf,
+    grf_slots,
+    grf_prob,
+];

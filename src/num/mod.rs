@@ -15,6 +15,7 @@ mod sample;
 mod shortfall;
 mod sums;
 mod tally;
+mod total;
 mod window_sum;
 
 pub(crate) use arithmetic::Arithmetic;
@@ -30,4 +31,5 @@ pub use sample::Sample;
 pub(crate) use shortfall::Shortfall;
 pub(crate) use sums::{Summed, Sums};
 pub(crate) use tally::Tally;
+pub(crate) use total::{Total, Totalled};
 pub(crate) use window_sum::{Difference, Windowed, fast_margin, margin};

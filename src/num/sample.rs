@@ -9,7 +9,7 @@ use fixed::{
     types::extra::{LeEqU16, LeEqU32},
 };
 
-use super::{Arithmetic, Rated, SampleKind, Spaced, Summed, Windowed, convert};
+use super::{Arithmetic, Rated, SampleKind, Spaced, Summed, Totalled, Windowed, convert};
 
 /// A number that comes from a sensor: `f32`, raw `i16` counts, or, with the feature `fixed`,
 /// `FixedI16` and `FixedI32` with any fraction.
@@ -28,7 +28,17 @@ use super::{Arithmetic, Rated, SampleKind, Spaced, Summed, Windowed, convert};
 /// ```
 #[allow(private_bounds)] // what seals it
 pub trait Sample:
-    Copy + PartialOrd + Default + Debug + Pod + Arithmetic + Windowed + Rated + Spaced + Summed
+    Copy
+    + PartialOrd
+    + Default
+    + Debug
+    + Pod
+    + Arithmetic
+    + Windowed
+    + Rated
+    + Spaced
+    + Summed
+    + Totalled
 {
     /// The type, as a value.
     const KIND: SampleKind;

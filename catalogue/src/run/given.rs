@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::ops::RangeInclusive;
 
 use anyhow::{Context, Result, bail};
-use spikewire::{Sample, dynamic};
+use spikewire::{Sample, dynamic, rate};
 
 use super::Settings;
 use super::settings::{number, numbers};
@@ -122,6 +122,30 @@ impl<'a> Given<'a> {
             bail!("{name} {text}: there are {}", words.join(", "));
         }
         Ok(text)
+    }
+
+    /// Whether the mean of spikes is taken over a window, and not as an average.
+    ///
+    /// # Errors
+    /// There is no such setting, or it is another word.
+    pub fn takes_window(&self) -> Result<bool> {
+        Ok(self.choice("mean", &["average", "window"])? == "window")
+    }
+
+    /// A mean over a window, in the room of the largest.
+    ///
+    /// # Errors
+    /// As for [`count`](Self::count).
+    pub fn window(&self) -> Result<rate::Window<128>> {
+        Ok(rate::Window::try_new(self.count("power", 0..=12)? as u8)?)
+    }
+
+    /// A mean as an average.
+    ///
+    /// # Errors
+    /// As for [`count`](Self::count).
+    pub fn average(&self) -> Result<rate::Average> {
+        Ok(rate::Average::try_new(self.count("power", 1..=15)? as u8)?)
     }
 
     /// The filter.

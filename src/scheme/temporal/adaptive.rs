@@ -120,25 +120,23 @@ impl<S: Sample> AdaptiveStepForward<S> {
         Band::around(base, self.threshold.doubled(pace.exponent))
     }
 
-    /// Takes a sample that is outside the band at rest, the first one, one that is not finite, or any while not at
-    /// rest.
-    #[inline(never)]
-    fn follow(&self, state: &mut AdaptiveState<S>, sample: S) -> Spike {
-        if !state.tally.is_primed() || !sample.is_finite() {
-            self.prime(state, &[sample]);
-            return Spike::None;
-        }
-        let band = self.band(state.base, state.pace);
-        let (spike, base) = if sample > band.upper {
-            (Spike::Up, band.upper)
-        } else if sample < band.lower {
-            (Spike::Down, band.lower)
+    /// Takes a sample; `None` if it is not finite.
+    #[inline]
+    fn follow(&self, base: &mut S, pace: &mut Pace, sample: S) -> Option<Spike> {
+        let band = self.band(*base, *pace);
+        let spike = if band.holds(sample) {
+            Spike::None
+        } else if !sample.is_finite() {
+            return None;
+        } else if sample > band.upper {
+            *base = band.upper;
+            Spike::Up
         } else {
-            (Spike::None, band.base)
+            *base = band.lower;
+            Spike::Down
         };
-        state.base = base;
-        state.pace.take(spike, self.run, self.doublings);
-        spike
+        pace.take(spike, self.run, self.doublings);
+        Some(spike)
     }
 }
 
@@ -202,15 +200,16 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
 
     #[inline]
     fn encode(&self, state: &mut AdaptiveState<S>, sample: S) -> Spike {
-        let band = Band::around(state.base, self.threshold);
-        if state.tally.is_primed() && state.pace == Pace::REST && band.holds(sample) {
-            Spike::None
-        } else {
-            self.follow(state, sample)
+        if state.tally.is_primed()
+            && let Some(spike) = self.follow(&mut state.base, &mut state.pace, sample)
+        {
+            return spike;
         }
+        self.prime(state, &[sample]);
+        Spike::None
     }
 
-    /// The band stays in registers while samples are within it.
+    /// The baseline and the pace stay in registers, and at rest the band.
     #[inline]
     fn encode_slice(
         &self,
@@ -223,16 +222,20 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         let samples = samples.get(first..).unwrap_or_default();
         let spikes = spikes.get_mut(first..).unwrap_or_default();
 
-        let mut band = Band::around(state.base, self.threshold);
-        let mut is_at_rest = state.pace == Pace::REST;
+        let AdaptiveState { mut base, mut pace, .. } = *state;
+        let mut band = Band::around(base, self.threshold);
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
             *spike = Spike::None;
-            if !is_at_rest || !band.holds(sample) {
-                *spike = self.follow(state, sample);
-                band = Band::around(state.base, self.threshold);
-                is_at_rest = state.pace == Pace::REST;
+            if pace == Pace::REST && band.holds(sample) {
+                continue;
             }
+            match self.follow(&mut base, &mut pace, sample) {
+                Some(told) => *spike = told,
+                None => state.tally.reject(),
+            }
+            band = Band::around(base, self.threshold);
         }
+        (state.base, state.pace) = (base, pace);
         first + samples.len().min(spikes.len())
     }
 

@@ -98,7 +98,7 @@ impl<S: Sample, const K: usize> SendOnDelta<S, K> {
     }
 
     /// Follows a sample that is outside the band, the first one, or not finite.
-    #[inline(never)]
+    #[inline]
     fn follow(&self, state: &mut SendOnDeltaState<S>, sample: S) -> Steps<K> {
         if !state.tally.is_primed() || !sample.is_finite() {
             self.prime(state, &[sample]);

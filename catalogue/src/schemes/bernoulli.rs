@@ -1,0 +1,260 @@
+//! Bernoulli, the random rate code.
+
+#![allow(clippy::needless_range_loop)] // index by index, as the definition
+
+use rand_pcg::Pcg32;
+use rand_pcg::rand_core::Rng;
+use spikewire::Spike;
+use spikewire::rate::{Average, Bernoulli};
+
+use crate::entry::spike_of;
+use crate::plain::{self, Plain};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
+
+#[cfg(feature = "run")]
+use {
+    crate::run::{Build, Given, Visit},
+    anyhow::Result,
+    rand_chacha::ChaCha8Rng,
+    rand_chacha::rand_core::SeedableRng,
+    spikewire::{Sample, rate::Window},
+};
+
+/// Bernoulli.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme;
+
+impl Entry for Scheme {
+    const INFO: Info = Info {
+        name: "bernoulli",
+        title: "Bernoulli",
+        words: "Bernoulli (random rate)",
+        good_for: "a mean by chance, from your generator, as networks are trained with",
+        is_signed: false,
+        has_first_value: false,
+        climbs_by: None,
+        is_drawn: false,
+        colour: [0x8f, 0x8a, 0xa8],
+        parameters: &[
+            Parameter::MIN,
+            Parameter::MAX,
+            Parameter::MEAN,
+            Parameter::POWER,
+            Parameter::new("seed", Kind::Count, Unit::None, "where the generator starts")
+                .with_default("0"),
+        ],
+    };
+
+    fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let scheme = Bernoulli::<_, Pcg32, _>::try_new(channel.min..=channel.max, Average::new(4))?;
+        let generator = Pcg32::new(2026, channel.index as u64);
+        let start = Bernoulli::<V::Sample, Pcg32, Average>::state(generator);
+        visitor.visit("bernoulli", Self::INFO.words, &scheme, start)
+    }
+
+    fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let (min, max) = (signal.min, signal.max);
+        let scheme = Bernoulli::<_, Pcg32, _>::try_new(min..=max, Average::new(4))?;
+        let mut random = generator();
+        visitor.coded_from(
+            "bernoulli",
+            &scheme,
+            &|| Bernoulli::<V::Sample, Pcg32, Average>::state(generator()),
+            Spike::sign,
+            spike_of,
+            |signal, spikes| transcribed(signal, min, max, || random.next_u32(), spikes),
+            |spikes, values| {
+                let range = max.into() - min.into();
+                plain::average_decode(spikes, min, max, (range, 0), 4, values);
+            },
+        )
+    }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        type Random<S, A> = Bernoulli<S, ChaCha8Rng, A>;
+        let generator = ChaCha8Rng::seed_from_u64(given.count("seed", 0..=usize::MAX)? as u64);
+        let range = given.range()?;
+        if given.takes_window()? {
+            let scheme = Random::<S, _>::try_new(range, given.window()?)?;
+            return visitor.visit(scheme, Random::<S, Window<128>>::state(generator));
+        }
+        let scheme = Random::<S, _>::try_new(range, given.average()?)?;
+        visitor.visit(scheme, Random::<S, Average>::state(generator))
+    }
+}
+
+/// The generator of what is counted, whose work is counted with it.
+fn generator() -> Pcg32 {
+    Pcg32::new(2, 2)
+}
+
+/// The definition.
+#[inline(never)]
+pub fn transcribed<S: Plain>(
+    input: &[S],
+    min: S,
+    max: S,
+    mut draw: impl FnMut() -> u32,
+    spikes: &mut [i8],
+) {
+    let range = max.into() - min.into();
+    for i in 0..input.len() {
+        let above = plain::above_min(input[i], min, max);
+        spikes[i] = i8::from(S::is_drawn(above, range, draw() >> 16));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fixed::types::I16F16;
+    use proptest::prelude::*;
+    use rand_pcg::Pcg32;
+    use rand_pcg::rand_core::{Rng, TryRng};
+    use spikewire::rate::{Average, Bernoulli};
+    use spikewire::Sample;
+
+    use super::{Plain, transcribed};
+    use crate::schemes::sigma_delta::tests::{Check, drawn, in_every_type, values_of};
+
+    /// `u = 1664525 u + 1013904223`, of 32 bits.
+    struct Lcg(u32);
+
+    impl TryRng for Lcg {
+        type Error = core::convert::Infallible;
+
+        fn try_next_u32(&mut self) -> Result<u32, Self::Error> {
+            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            Ok(self.0)
+        }
+
+        fn try_next_u64(&mut self) -> Result<u64, Self::Error> {
+            panic!("32 bits a sample")
+        }
+
+        fn try_fill_bytes(&mut self, _: &mut [u8]) -> Result<(), Self::Error> {
+            panic!("32 bits a sample")
+        }
+    }
+
+    /// Always the same draw.
+    struct Same(u32);
+
+    impl TryRng for Same {
+        type Error = core::convert::Infallible;
+
+        fn try_next_u32(&mut self) -> Result<u32, Self::Error> {
+            Ok(self.0)
+        }
+
+        fn try_next_u64(&mut self) -> Result<u64, Self::Error> {
+            panic!("32 bits a sample")
+        }
+
+        fn try_fill_bytes(&mut self, _: &mut [u8]) -> Result<(), Self::Error> {
+            panic!("32 bits a sample")
+        }
+    }
+
+    #[test]
+    fn check_values() {
+        let scheme = Bernoulli::<i16, Lcg, _>::new(0..=255, Average::new(4));
+        let mut encoder = scheme.encoder(Lcg(1));
+        let spikes = [100; 16].map(|x| encoder.encode(x).sign());
+        assert_eq!(spikes, [1, 1, 0, 0, 1, 1, 0, 0, 1, 0, 1, 0, 0, 0, 1, 0]);
+    }
+
+    /// The number of draws that fire, of all 65 536, is the probability to the nearest: unbiased.
+    #[test]
+    fn all_draws() {
+        fn fired<S: Sample>(min: S, max: S, x: S) -> u32 {
+            let scheme = Bernoulli::<S, Same, _>::new(min..=max, Average::new(1));
+            // The draws that fire are the lowest: a search finds how many.
+            let (mut low, mut high) = (0, 1 << 16);
+            while low < high {
+                let middle = (low + high) / 2;
+                let draw = middle << 16 | 0xffff;
+                if scheme.encoder(Same(draw)).encode(x).is_fired() {
+                    low = middle + 1
+                } else {
+                    high = middle
+                }
+            }
+            low
+        }
+        for x in 0..=255 {
+            let exact = (2 * 65_536 * x as u32 + 255) / (2 * 255);
+            assert_eq!(fired(0_i16, 255, x), exact, "{x}");
+            assert_eq!(
+                fired(
+                    I16F16::MIN,
+                    I16F16::MIN + I16F16::from_bits(255),
+                    I16F16::MIN + I16F16::from_bits(x.into())
+                ),
+                exact
+            );
+            assert_eq!(fired(0.0_f32, 255.0, f32::from(x)), exact);
+        }
+        assert_eq!(fired(i16::MIN, i16::MAX, i16::MAX), 65_536);
+        assert_eq!(fired(i16::MIN, i16::MAX, i16::MIN), 0);
+        assert_eq!(fired(i16::MIN, i16::MAX, i16::MAX - 1), 65_535);
+        assert_eq!(fired(I16F16::MIN, I16F16::MAX, I16F16::MAX), 65_536);
+        assert_eq!(fired(I16F16::MIN, I16F16::MAX, I16F16::MIN), 0);
+        assert_eq!(fired(I16F16::MIN, I16F16::MAX, I16F16::ZERO), 32_768);
+        assert_eq!(fired(-1e31_f32, 1e31, f32::MAX), 65_536);
+        assert_eq!(fired(-1e31_f32, 1e31, f32::MIN), 0);
+    }
+
+    /// What is not finite is counted, and draws nothing.
+    #[test]
+    fn what_is_not_finite_draws_nothing() {
+        let scheme = Bernoulli::<f32, Lcg, _>::new(0.0..=255.0, Average::new(4));
+        let mut encoder = scheme.encoder(Lcg(1));
+        let mut beside = scheme.encoder(Lcg(1));
+        for i in 0..100 {
+            assert_eq!(encoder.encode([f32::NAN, f32::INFINITY][i % 2]).sign(), 0);
+            assert_eq!(encoder.encode(100.0), beside.encode(100.0));
+        }
+        assert_eq!((encoder.rejected(), beside.rejected()), (100, 0));
+        encoder.restart();
+        assert_eq!((encoder.rejected(), encoder.encode(100.0)), (0, beside.encode(100.0)));
+    }
+
+    /// The mean over a window of 1024 is as near as said: within four deviations.
+    #[test]
+    fn the_mean_is_unbiased() {
+        let scheme =
+            Bernoulli::<f32, Pcg32, _>::new(0.0..=1.0, spikewire::rate::Window::<32>::new(10));
+        for tenth in 0..=10 {
+            let x = tenth as f32 / 10.0;
+            let mut encoder = scheme.encoder(Pcg32::new(3, tenth));
+            let spikes: Vec<i8> = (0..1024).map(|_| encoder.encode(x).sign()).collect();
+            let value = values_of(&scheme, &spikes)[1023];
+            assert!((value - x).abs() <= 4.0 / (2.0 * 32.0), "{x}: {value}");
+        }
+    }
+
+    struct Agrees;
+
+    impl Check for Agrees {
+        fn check<S: Plain>(&mut self, x: &[S], of: impl Fn(i16) -> S) {
+            let (min, max) = (of(-1000), of(3000));
+            let scheme = Bernoulli::<S, Pcg32, _>::new(min..=max, Average::new(3));
+            let mut random = Pcg32::new(7, 9);
+            let mut encoder = scheme.encoder(random.clone());
+            let mut spikes = vec![0; x.len()];
+            transcribed(x, min, max, || random.next_u32(), &mut spikes);
+            let ours: Vec<i8> = x.iter().map(|&x| encoder.encode(x).sign()).collect();
+            assert_eq!(ours, spikes);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn as_transcribed(x in drawn()) {
+            in_every_type(&x, Agrees);
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! Leaky integrate and fire (LIF).
+
+use spikewire::Start;
+use spikewire::rate::IntegrateAndFire;
+use spikewire::temporal::Steps;
+
+use super::integrate::{PARAMETERS, transcribed, transcribed_decoder};
+use crate::{Channel, Count, Entry, Flight, Info, Scaled};
+
+#[cfg(feature = "run")]
+use {
+    crate::run::{Build, Given, Shape, Visit},
+    anyhow::Result,
+    spikewire::Sample,
+};
+
+/// Leaky integrate and fire.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme;
+
+impl Entry for Scheme {
+    const INFO: Info = Info {
+        name: "lif",
+        title: "LIF",
+        words: "leaky integrate and fire (LIF)",
+        good_for: "a mean that forgets, silent for what stays small",
+        is_signed: true,
+        has_first_value: false,
+        climbs_by: None,
+        is_drawn: false,
+        colour: [0x3f, 0x7f, 0x93],
+        parameters: PARAMETERS,
+    };
+
+    fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let scheme = IntegrateAndFire::<_, 8>::try_new(channel.fraction(0.2), 3)?.leaky();
+        let start = IntegrateAndFire::<V::Sample, 8>::START;
+        visitor.visit("lif", Self::INFO.words, &scheme, start)
+    }
+
+    fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let threshold = signal.part(1.0);
+        let scheme = IntegrateAndFire::<_, 4>::try_new(threshold, 4)?.leaky();
+        visitor.coded(
+            "lif",
+            &scheme,
+            Steps::count,
+            Steps::new,
+            |signal, counts| transcribed(signal, threshold, Some(4), 4, counts),
+            |counts, values| transcribed_decoder(counts, threshold, 4, values),
+        )
+    }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    fn shape(given: &Given) -> Result<Shape> {
+        Ok(Shape { neurons: 1, slots: given.count("spikes", 1..=127)? })
+    }
+
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        let power = given.count("power", 1..=15)? as u8;
+        let most = given.count("spikes", 1..=127)? as u8;
+        let scheme =
+            IntegrateAndFire::<S, 127>::try_new(given.signal("threshold")?, power)?.leaky();
+        let scheme = scheme.try_with_reference(given.signal("reference")?)?.try_with_most(most)?;
+        visitor.visit(scheme, IntegrateAndFire::<S, 127>::START)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use spikewire::Scheme;
+
+    use crate::schemes::integrate::tests::{Neuron, SIGNAL, agrees, counts_of, drawn, mean_error};
+
+    const TEN: Neuron<i16, 1> = Neuron::new(10, 3).leaky();
+
+    #[test]
+    fn check_values() {
+        let counts = [0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0, -1];
+        assert_eq!(counts_of(&TEN, &SIGNAL), counts);
+    }
+
+    /// What leaks is as much as what comes in, before it reaches the threshold.
+    #[test]
+    fn a_small_signal_is_silent() {
+        let scheme = Neuron::<i16, 1>::new(800, 3).leaky();
+        assert_eq!(counts_of(&scheme, &[90; 500]), [0; 500]);
+        assert_ne!(counts_of(&scheme, &[110; 500]), [0; 500]);
+    }
+
+    proptest! {
+        #[test]
+        fn as_transcribed(x in drawn(), threshold in 1_i16..2000, power in 1_u8..8) {
+            agrees(&x, threshold, power, true);
+        }
+
+        #[test]
+        fn the_value_is_near_the_leaky_mean(x in drawn(), threshold in 512_i16..4000, power in 1_u8..10, reference in -90_i16..90) {
+            let scheme = Neuron::<i16, 8>::new(threshold, power).leaky().with_reference(reference);
+            let bound = f64::from(threshold) / f64::from(1_u32 << power) + 3.0;
+            for error in mean_error(&scheme, &x, reference, power) {
+                prop_assert!(error < bound, "{} of {}", error, bound);
+            }
+        }
+    }
+
+    #[test]
+    fn a_reset_encoder_starts_anew() {
+        let mut encoder = TEN.encoder();
+        encoder.encode(9);
+        encoder.reset();
+        assert_eq!(encoder.encode(9).count(), 0);
+    }
+}

@@ -1,0 +1,217 @@
+//! Sums over time of what samples are above a reference, for the codes of a signal's mean.
+
+use core::fmt::Debug;
+
+use super::arithmetic::for_each_integer;
+
+/// What a sample type is summed in: `f32`, 32 bits for 16, 64 bits for 32.
+pub(crate) trait Totalled: Sized {
+    type Total: Total;
+
+    /// `self - reference`.
+    fn above(self, reference: Self) -> Self::Total;
+
+    /// `self + sum`, saturating; `self` is the reference.
+    fn raised(self, sum: Self::Total) -> Self;
+}
+
+/// A sum. In `f32` every operation rounds once. Integers are exact; those of 32 bits saturate, those of 64 bits have
+/// room for all that a code adds up, once it caps what it adds up without end.
+pub trait Total: Copy + PartialOrd + Debug {
+    const ZERO: Self;
+
+    fn is_finite(&self) -> bool;
+    fn plus(self, other: Self) -> Self;
+    fn minus(self, other: Self) -> Self;
+
+    /// Within a quarter of the numbers of 64 bits.
+    fn capped(self) -> Self;
+
+    /// `self * count`.
+    fn times(self, count: u32) -> Self;
+
+    /// `self * 2^times`.
+    fn doubled(self, times: u8) -> Self;
+
+    /// `self / 2^times`; integers are rounded down.
+    fn halved(self, times: u8) -> Self;
+
+    /// `self / 2^times`; integers are rounded to the nearest, halves upwards.
+    fn halved_to_nearest(self, times: u8) -> Self;
+
+    /// Whether `2^17 self >= (2 draw + 1) range`, for a draw of 16 bits.
+    fn is_drawn(self, range: Self, draw: u32) -> bool;
+}
+
+/// 2 to this power.
+#[inline]
+fn power(exponent: i32) -> f32 {
+    f32::from_bits((exponent.wrapping_add(127) as u32) << 23)
+}
+
+impl Totalled for f32 {
+    type Total = f32;
+
+    #[inline]
+    fn above(self, reference: f32) -> f32 {
+        self - reference
+    }
+
+    #[inline]
+    fn raised(self, sum: f32) -> f32 {
+        self + sum
+    }
+}
+
+impl Total for f32 {
+    const ZERO: f32 = 0.0;
+
+    #[inline]
+    fn is_finite(&self) -> bool {
+        f32::is_finite(*self)
+    }
+
+    #[inline]
+    fn plus(self, other: f32) -> f32 {
+        self + other
+    }
+
+    #[inline]
+    fn minus(self, other: f32) -> f32 {
+        self - other
+    }
+
+    #[inline]
+    fn capped(self) -> f32 {
+        self
+    }
+
+    #[inline]
+    fn times(self, count: u32) -> f32 {
+        self * count as f32
+    }
+
+    #[inline]
+    fn doubled(self, times: u8) -> f32 {
+        self * power(times.into())
+    }
+
+    #[inline]
+    fn halved(self, times: u8) -> f32 {
+        self * power(i32::from(times).wrapping_neg())
+    }
+
+    #[inline]
+    fn halved_to_nearest(self, times: u8) -> f32 {
+        self.halved(times)
+    }
+
+    #[inline]
+    fn is_drawn(self, range: f32, draw: u32) -> bool {
+        self * 131_072.0 >= draw.wrapping_mul(2).wrapping_add(1) as f32 * range
+    }
+}
+
+macro_rules! integer_total {
+    ($sum:ty, $plus:ident, $minus:ident, $times:ident, $capped:expr, $is_drawn:expr) => {
+        impl Total for $sum {
+            const ZERO: Self = 0;
+
+            #[inline]
+            fn is_finite(&self) -> bool {
+                true
+            }
+
+            #[inline]
+            fn plus(self, other: Self) -> Self {
+                self.$plus(other)
+            }
+
+            #[inline]
+            fn minus(self, other: Self) -> Self {
+                self.$minus(other)
+            }
+
+            #[inline]
+            fn capped(self) -> Self {
+                let capped: fn(Self) -> Self = $capped;
+                capped(self)
+            }
+
+            #[inline]
+            fn times(self, count: u32) -> Self {
+                self.$times(count as Self)
+            }
+
+            #[inline]
+            fn doubled(self, times: u8) -> Self {
+                self.$times((1 as Self).wrapping_shl(times.into()))
+            }
+
+            #[inline]
+            fn halved(self, times: u8) -> Self {
+                self.wrapping_shr(times.into())
+            }
+
+            #[inline]
+            fn halved_to_nearest(self, times: u8) -> Self {
+                self.$plus((1 as Self).wrapping_shl(times.into()) / 2).halved(times)
+            }
+
+            #[inline]
+            fn is_drawn(self, range: Self, draw: u32) -> bool {
+                let is_drawn: fn(Self, Self, u32) -> bool = $is_drawn;
+                is_drawn(self, range, draw)
+            }
+        }
+    };
+}
+
+// Of 16 bits 2^16 p and draw * R + R / 2, rounded up, fit 32.
+integer_total!(
+    i32,
+    saturating_add,
+    saturating_sub,
+    saturating_mul,
+    |sum| sum,
+    |sum, range, draw| {
+        let (sum, range) = (sum as u32, range as u32);
+        sum.wrapping_shl(16) >= draw.wrapping_mul(range).wrapping_add(range.div_ceil(2))
+    }
+);
+integer_total!(
+    i64,
+    wrapping_add,
+    wrapping_sub,
+    wrapping_mul,
+    |sum| sum.clamp(-(1 << 62), 1 << 62),
+    |sum, range, draw| {
+        sum.wrapping_shl(17) >= i64::from(draw.wrapping_mul(2).wrapping_add(1)).wrapping_mul(range)
+    }
+);
+
+macro_rules! integer_totalled {
+    ([$($generics:tt)*] $sample:ty, i16, $to_bits:path, $from_bits:path) => {
+        integer_totalled!(@ [$($generics)*] $sample, i16, i32, $to_bits, $from_bits);
+    };
+    ([$($generics:tt)*] $sample:ty, i32, $to_bits:path, $from_bits:path) => {
+        integer_totalled!(@ [$($generics)*] $sample, i32, i64, $to_bits, $from_bits);
+    };
+    (@ [$($generics:tt)*] $sample:ty, $bits:ty, $sum:ty, $to_bits:path, $from_bits:path) => {
+        impl<$($generics)*> Totalled for $sample {
+            type Total = $sum;
+
+            #[inline]
+            fn above(self, reference: Self) -> $sum {
+                <$sum>::from($to_bits(self)).wrapping_sub($to_bits(reference).into())
+            }
+
+            #[inline]
+            fn raised(self, sum: $sum) -> Self {
+                let value = <$sum>::from($to_bits(self)).saturating_add(sum);
+                $from_bits(value.clamp(<$bits>::MIN.into(), <$bits>::MAX.into()) as $bits)
+            }
+        }
+    };
+}
+for_each_integer!(integer_totalled);

@@ -1,0 +1,165 @@
+//! Bernoulli, the random rate code: the higher the signal, the likelier a spike.
+
+use core::marker::PhantomData;
+use core::ops::RangeInclusive;
+
+use rand_core::Rng;
+
+use super::averaging::{Averaging, MeanState, decode_mean};
+use super::range::Range;
+use crate::error::unwrap;
+use crate::num::{Tally, Total};
+use crate::{ConfigError, Encoder, Recovery, Sample, Scheme, Spike};
+
+/// A spike with the probability of how high the sample is in its range, from a generator that the caller passes in: a
+/// Poisson spike train, in samples.
+///
+/// With `p` from 0 at the minimum to `R = max - min` at the maximum, outside the value at that end, and `j` the top 16
+/// bits of a 32-bit draw: a spike if `2^17 p >= (2j + 1) R`. There is one draw for every finite sample.
+///
+/// - **Range:** `min < max`, within 10³¹ of 0 in `f32`.
+/// - **Latency:** 0 samples; the mean is that of the past. **Memory:** 4 bytes a channel and the generator; to decode
+///   that of the [`Window`](super::super::Window) or [`Average`](super::super::Average).
+/// - **Work:** a draw and two products.
+/// - **Exactness:** `f32` rounds `(2j + 1) R` once; fixed point is exact.
+/// - **Error:** the mean is right on average, to `2^-17` of the range. The mean over `W` samples deviates by
+///   `R / 2√W` at most (in the middle of the range): [`SigmaDelta`](super::super::SigmaDelta) needs far fewer spikes.
+///
+/// Its encoder needs the generator, so it has an [`encoder`](Self::encoder) of its own and is no
+/// [`Start`](crate::Start).
+///
+/// Source: Guo et al., *Neural coding in spiking neural networks*, 2021 (rate coding).
+///
+/// ```
+/// use spikewire::{Scheme, rate::{Average, Bernoulli}};
+/// # struct Lcg(u32);
+/// # impl rand_core::TryRng for Lcg {
+/// #     type Error = core::convert::Infallible;
+/// #     fn try_next_u32(&mut self) -> Result<u32, Self::Error> { self.0 = self.0.wrapping_mul(1664525).wrapping_add(1013904223); Ok(self.0) }
+/// #     fn try_next_u64(&mut self) -> Result<u64, Self::Error> { unimplemented!() }
+/// #     fn try_fill_bytes(&mut self, _: &mut [u8]) -> Result<(), Self::Error> { unimplemented!() }
+/// # }
+/// # let generator = Lcg(1);
+///
+/// static LIGHT: Bernoulli<i16, Lcg, Average> = Bernoulli::new(0..=255, Average::new(4));
+///
+/// let mut encoder = LIGHT.encoder(generator);
+/// let spikes: i8 = (0..16).map(|_| encoder.encode(100).sign()).sum();
+/// assert_eq!(spikes, 7);
+/// ```
+#[derive(Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(bound = "S: serde::Serialize, A: serde::Serialize"))]
+pub struct Bernoulli<S, G, A> {
+    range: Range<S>,
+    averaging: A,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    generator: PhantomData<fn() -> G>,
+}
+
+#[cfg(feature = "defmt")]
+impl<S: Sample + defmt::Format, G, A: defmt::Format> defmt::Format for Bernoulli<S, G, A> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let Self { range, averaging, .. } = self;
+        defmt::write!(f, "Bernoulli {{ range: {}, averaging: {} }}", range, averaging);
+    }
+}
+
+impl<S: Copy, G, A: Copy> Clone for Bernoulli<S, G, A> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S: Copy, G, A: Copy> Copy for Bernoulli<S, G, A> {}
+
+impl<S: PartialEq, G, A: PartialEq> PartialEq for Bernoulli<S, G, A> {
+    fn eq(&self, other: &Self) -> bool {
+        self.range == other.range && self.averaging == other.averaging
+    }
+}
+
+impl<S: Sample, G: Rng, A: Averaging> Bernoulli<S, G, A> {
+    /// A scheme for a range. For constants, where a bad range fails the build.
+    ///
+    /// # Panics
+    /// As [`try_new`](Self::try_new) fails.
+    pub const fn new(range: RangeInclusive<S>, averaging: A) -> Self {
+        let range = unwrap(Range::try_new(*range.start(), *range.end()));
+        Self { range, averaging, generator: PhantomData }
+    }
+
+    /// A scheme for a range.
+    ///
+    /// # Errors
+    /// The ends are not finite, or do not rise, or are more than 10³¹ from 0.
+    pub const fn try_new(range: RangeInclusive<S>, averaging: A) -> Result<Self, ConfigError> {
+        match Range::try_new(*range.start(), *range.end()) {
+            Ok(range) => Ok(Self { range, averaging, generator: PhantomData }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The state of an encoder that draws from this generator, for a bank.
+    pub const fn state(generator: G) -> BernoulliState<G> {
+        BernoulliState { generator, tally: Tally::NONE }
+    }
+
+    /// An encoder that draws from this generator.
+    pub const fn encoder(&self, generator: G) -> Encoder<'_, Self> {
+        Encoder::with_state(self, Self::state(generator))
+    }
+}
+
+impl<S: Sample, G: Rng, A: Averaging> Encoder<'_, Bernoulli<S, G, A>> {
+    /// Forgets the count of rejected samples. The generator goes on from where it is.
+    pub fn restart(&mut self) {
+        self.state.tally = Tally::NONE;
+    }
+}
+
+/// The state of a [`Bernoulli`] encoder: the generator, and the count of rejected samples.
+#[derive(Clone, Copy, Debug)]
+pub struct BernoulliState<G> {
+    generator: G,
+    tally: Tally,
+}
+
+impl<S: Sample, G: Rng, A: Averaging> Scheme for Bernoulli<S, G, A> {
+    type Sample = S;
+    type Code = Spike;
+    type Output = Spike;
+    type EncoderState = BernoulliState<G>;
+    type DecoderState = MeanState<S, A>;
+
+    const LATENCY: usize = 0;
+    const RECOVERY: Recovery = A::RECOVERY;
+
+    #[inline]
+    fn encode(&self, state: &mut BernoulliState<G>, sample: S) -> Spike {
+        let Some(above) = self.range.above_min(sample) else {
+            state.tally.reject();
+            return Spike::None;
+        };
+        let draw = state.generator.next_u32() >> 16;
+        if above.is_drawn(self.range.width(), draw) { Spike::Up } else { Spike::None }
+    }
+
+    fn encode_slice(
+        &self,
+        state: &mut BernoulliState<G>,
+        samples: &[S],
+        spikes: &mut [Spike],
+    ) -> usize {
+        for (spike, &sample) in spikes.iter_mut().zip(samples) {
+            *spike = self.encode(state, sample);
+        }
+        samples.len().min(spikes.len())
+    }
+
+    fn rejected(state: &BernoulliState<G>) -> u32 {
+        state.tally.rejected()
+    }
+
+    decode_mean!(range);
+}

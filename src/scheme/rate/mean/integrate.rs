@@ -1,0 +1,252 @@
+//! Integrate and fire: spikes of two directions whose sum follows the integral of the signal.
+
+use crate::error::{offset, step, unwrap, within};
+use crate::num::{Tally, Total, to_f64};
+use crate::temporal::Steps;
+use crate::{ConfigError, Recovery, Sample, Scheme, Start};
+
+/// Integrate and fire (IF), and with [`leaky`](Self::leaky) leaky integrate and fire (LIF): a potential adds up the
+/// signal, and fires when it reaches the threshold.
+///
+/// `V += x - reference`. Then, with at most `K` spikes: while `V >= threshold`: a spike up, and `V -= threshold`; while
+/// `V <= -threshold`: a spike down, and `V += threshold`. `V` starts at 0. Leaky: before the sample is added,
+/// `V -= V / 2^k`, in fixed point rounded towards 0. The `n` spikes of a sample have one polarity and fire in the
+/// sub-timesteps `0..n` of `K`. The decoder is a leaky potential itself: `U -= U / 2^k`, `U += n threshold`, and the
+/// value is `reference + U / 2^k`, in fixed point rounded to the nearest, halves upwards.
+///
+/// - **Threshold:** above 0, in the samples' unit times a sample; up to 10³¹ in `f32`. **Power `k`:** 1 to 15: the value
+///   is a mean over about `2^k` samples. **Reference:** 0 unless told. **K:** 1 to 127.
+/// - **Latency:** 0 samples; the mean is that of the past. **Memory:** 8 bytes a channel in `f32` and of 16 bits, 16 of
+///   32-bit fixed point; 4 and 8 to decode.
+/// - **Work:** a sum, two comparisons, and one a spike.
+/// - **Exactness:** `f32` rounds every sum once; fixed point is exact. In `f32` a sample with which the potential is not
+///   finite counts as not finite itself; potentials in fixed point saturate, those of 16 bits at
+///   2³¹ units, those of 32 bits at 2⁶².
+/// - **Error:** while `|x - reference| <= K threshold`, IF keeps `Σ(x - reference) = threshold Σn + V`, `|V| < threshold`:
+///   of a gyroscope the angle never drifts. A decoded value is near the same leaky mean of the samples: within
+///   `2 threshold / 2^k + 3` (IF), `threshold / 2^k + 3` (LIF), where the 3 are units of fixed point, from rounding.
+/// - **Silence:** LIF does not fire for a signal that stays below about `threshold / 2^k`.
+///
+/// Source: Lazar and Tóth, *Perfect recovery and sensitivity analysis of time encoded bandlimited signals*, 2004; Moser
+/// and Lunglmayr, *Quantization in spiking neural networks*, 2023.
+///
+/// ```
+/// use spikewire::{Scheme, rate::IntegrateAndFire};
+///
+/// const ROLL: IntegrateAndFire<i16, 4> = IntegrateAndFire::new(10, 3);
+/// let mut encoder = ROLL.encoder();
+/// let spikes = [12, 12, -30, 45].map(|x| encoder.encode(x).count());
+/// assert_eq!(spikes, [1, 1, -2, 4]); // 39 in 4 samples: 4 spikes up in sum, less one for what is left
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct IntegrateAndFire<S, const K: usize = 1> {
+    threshold: S,
+    reference: S,
+    power: u8,
+    is_leaky: bool,
+    most: i8,
+}
+
+/// The longest mean, as a power of two.
+const MOST_POWER: u8 = 15;
+
+impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
+    const SHAPE: () = assert!(K >= 1 && K <= 127, "a sample has 1 to 127 spikes at most");
+
+    /// A scheme with this threshold, which decodes to a mean over about `2^power` samples. For constants, where bad
+    /// parameters fail the build.
+    ///
+    /// # Panics
+    /// As [`try_new`](Self::try_new) fails.
+    pub const fn new(threshold: S, power: u8) -> Self {
+        unwrap(Self::try_new(threshold, power))
+    }
+
+    /// A scheme with this threshold, which decodes to a mean over about `2^power` samples.
+    ///
+    /// # Errors
+    /// The threshold is not above 0, not finite, or above 10³¹; the power is not within 1 to 15.
+    pub const fn try_new(threshold: S, power: u8) -> Result<Self, ConfigError> {
+        const { Self::SHAPE };
+        match (
+            step("threshold", to_f64(threshold)),
+            within("power of the mean", power as f64, 1.0, MOST_POWER as f32),
+        ) {
+            (Err(error), _) | (_, Err(error)) => Err(error),
+            _ => Ok(Self { threshold, reference: S::ZERO, power, is_leaky: false, most: K as i8 }),
+        }
+    }
+
+    /// The potential leaks: LIF.
+    #[must_use]
+    pub const fn leaky(self) -> Self {
+        Self { is_leaky: true, ..self }
+    }
+
+    /// The value without spikes; 0 unless told. For constants, where a bad value fails the build.
+    ///
+    /// # Panics
+    /// The reference is not within 10³¹ of 0.
+    #[must_use]
+    pub const fn with_reference(self, reference: S) -> Self {
+        unwrap(self.try_with_reference(reference))
+    }
+
+    /// The value without spikes; 0 unless told.
+    ///
+    /// # Errors
+    /// The reference is not within 10³¹ of 0.
+    pub const fn try_with_reference(self, reference: S) -> Result<Self, ConfigError> {
+        match offset("reference", to_f64(reference)) {
+            Ok(()) => Ok(Self { reference, ..self }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// At most so many spikes a sample; `K` unless told. For constants, where a bad number fails the build.
+    ///
+    /// # Panics
+    /// The number is not within 1 to `K`.
+    #[must_use]
+    pub const fn with_most(self, most: u8) -> Self {
+        unwrap(self.try_with_most(most))
+    }
+
+    /// At most so many spikes a sample; `K` unless told.
+    ///
+    /// # Errors
+    /// The number is not within 1 to `K`.
+    pub const fn try_with_most(self, most: u8) -> Result<Self, ConfigError> {
+        match within("most spikes a sample", most as f64, 1.0, K as f32) {
+            Ok(()) => Ok(Self { most: most as i8, ..self }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The threshold, in the samples' unit times a sample.
+    pub const fn threshold(&self) -> S {
+        self.threshold
+    }
+
+    #[inline]
+    fn unit(&self) -> S::Total {
+        self.threshold.above(S::ZERO)
+    }
+
+    /// Takes a potential that has reached the threshold, or is not finite.
+    #[inline]
+    fn fire(&self, state: &mut IntegrateAndFireState<S>, mut potential: S::Total) -> Steps<K> {
+        if !potential.is_finite() {
+            state.tally.reject();
+            return Steps::new(0);
+        }
+        let (threshold, least) = (self.unit(), self.most.wrapping_neg());
+        let mut steps = 0;
+        if potential > S::Total::ZERO {
+            while potential >= threshold && steps < self.most {
+                potential = potential.minus(threshold);
+                steps += 1;
+            }
+        } else {
+            let lowest = S::Total::ZERO.minus(threshold);
+            while potential <= lowest && steps > least {
+                potential = potential.plus(threshold);
+                steps -= 1;
+            }
+        }
+        state.potential = potential.capped();
+        Steps::new(steps)
+    }
+}
+
+/// A sum less its `2^k`th part, which is rounded towards 0.
+#[inline]
+fn leaked<T: Total>(sum: T, power: u8) -> T {
+    if sum < T::ZERO {
+        sum.plus(T::ZERO.minus(sum).halved(power))
+    } else {
+        sum.minus(sum.halved(power))
+    }
+}
+
+/// The state of an [`IntegrateAndFire`] encoder: the potential. 8 bytes in `f32`.
+#[derive(Clone, Copy, Debug)]
+#[allow(private_bounds)] // sums are the crate's own
+pub struct IntegrateAndFireState<S: Sample> {
+    potential: S::Total,
+    tally: Tally,
+}
+
+/// The state of an [`IntegrateAndFire`] decoder: a leaky potential. 4 bytes in `f32`.
+#[derive(Clone, Copy, Debug)]
+pub struct PotentialState<S: Sample> {
+    potential: S::Total,
+}
+
+impl<S: Sample, const K: usize> Start for IntegrateAndFire<S, K> {
+    const START: IntegrateAndFireState<S> =
+        IntegrateAndFireState { potential: S::Total::ZERO, tally: Tally::NONE };
+}
+
+impl<S: Sample, const K: usize> Scheme for IntegrateAndFire<S, K> {
+    type Sample = S;
+    type Code = Steps<K>;
+    type Output = Steps<K>;
+    type EncoderState = IntegrateAndFireState<S>;
+    type DecoderState = PotentialState<S>;
+
+    const LATENCY: usize = 0;
+    /// Ten times the longest mean.
+    const RECOVERY: Recovery = Recovery::Fading(10 << MOST_POWER);
+
+    #[inline]
+    fn encode(&self, state: &mut IntegrateAndFireState<S>, sample: S) -> Steps<K> {
+        let mut potential = state.potential;
+        if self.is_leaky {
+            potential = leaked(potential, self.power);
+        }
+        potential = potential.plus(sample.above(self.reference));
+        let threshold = self.unit();
+        if potential < threshold && potential > S::Total::ZERO.minus(threshold) {
+            state.potential = potential;
+            Steps::new(0)
+        } else {
+            self.fire(state, potential)
+        }
+    }
+
+    fn encode_slice(
+        &self,
+        state: &mut IntegrateAndFireState<S>,
+        samples: &[S],
+        outputs: &mut [Steps<K>],
+    ) -> usize {
+        for (output, &sample) in outputs.iter_mut().zip(samples) {
+            *output = self.encode(state, sample);
+        }
+        samples.len().min(outputs.len())
+    }
+
+    fn rejected(state: &IntegrateAndFireState<S>) -> u32 {
+        state.tally.rejected()
+    }
+
+    fn decoder_state(&self) -> PotentialState<S> {
+        PotentialState { potential: S::Total::ZERO }
+    }
+
+    #[inline]
+    fn decode(&self, state: &mut PotentialState<S>, steps: Steps<K>) -> S {
+        let mut potential = leaked(state.potential, self.power);
+        let told = self.unit().times(steps.count().unsigned_abs().into());
+        potential = if steps.count() < 0 { potential.minus(told) } else { potential.plus(told) };
+        state.potential = potential;
+        self.reference.raised(potential.halved_to_nearest(self.power))
+    }
+
+    fn resync(&self, state: &mut PotentialState<S>, value: S) {
+        state.potential = value.above(self.reference).doubled(self.power);
+    }
+}

@@ -1,0 +1,18 @@
+//! Codes of a signal's mean: how many spikes there are in a time says how high the signal was.
+//!
+//! What their decoders share is here: a range, and how the mean of spikes is taken.
+
+mod averaging;
+#[cfg(feature = "rand")]
+mod bernoulli;
+mod burst;
+mod integrate;
+mod range;
+mod sigma_delta;
+
+pub use averaging::{Average, Averaging, MeanState, Window};
+#[cfg(feature = "rand")]
+pub use bernoulli::{Bernoulli, BernoulliState};
+pub use burst::{WeightedBurst, WeightedBurstState};
+pub use integrate::{IntegrateAndFire, IntegrateAndFireState, PotentialState};
+pub use sigma_delta::{SigmaDelta, SigmaDeltaState};

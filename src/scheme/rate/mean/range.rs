@@ -1,0 +1,65 @@
+//! The range of the codes of a mean, and what a spike of theirs weighs.
+
+use super::averaging::Weight;
+use crate::error::{LARGEST_STEP, range, within};
+use crate::num::{Total, to_f64};
+use crate::{ConfigError, Sample};
+
+/// From the smallest sample to the largest. Samples outside count as the end that they are beyond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub(super) struct Range<S> {
+    pub(super) min: S,
+    pub(super) max: S,
+}
+
+impl<S: Sample> Range<S> {
+    /// `min < max`, both finite and within 10³¹ of 0 in `f32`.
+    pub(super) const fn try_new(min: S, max: S) -> Result<Self, ConfigError> {
+        let (low, high) = (to_f64(min), to_f64(max));
+        match (
+            range(low, high),
+            within("min", low, -LARGEST_STEP, LARGEST_STEP),
+            within("max", high, -LARGEST_STEP, LARGEST_STEP),
+        ) {
+            (Err(error), _, _) | (_, Err(error), _) | (_, _, Err(error)) => Err(error),
+            _ => Ok(Self { min, max }),
+        }
+    }
+
+    /// `max - min`.
+    #[inline]
+    pub(super) fn width(self) -> S::Total {
+        self.max.above(self.min)
+    }
+
+    /// A spike that stands for a whole range.
+    #[inline]
+    pub(super) fn weight(self) -> Weight<S::Total> {
+        let width = self.width();
+        Weight { unit: width, doublings: 0, range: width }
+    }
+
+    /// How far a sample is above the minimum; `None` if it is not finite.
+    #[inline]
+    pub(super) fn above_min(self, sample: S) -> Option<S::Total> {
+        if sample >= self.min && sample <= self.max {
+            Some(sample.above(self.min))
+        } else {
+            self.at_end(sample)
+        }
+    }
+
+    /// Of a sample outside the range.
+    #[cold]
+    fn at_end(self, sample: S) -> Option<S::Total> {
+        if !sample.is_finite() {
+            None
+        } else if sample < self.min {
+            Some(S::Total::ZERO)
+        } else {
+            Some(self.width())
+        }
+    }
+}

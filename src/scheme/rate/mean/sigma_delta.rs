@@ -1,0 +1,121 @@
+//! Sigma-delta, the regular rate code: as many spikes as the signal is high, as evenly as can be.
+
+use core::ops::RangeInclusive;
+
+use super::averaging::{Averaging, MeanState, decode_mean};
+use super::range::Range;
+use crate::error::unwrap;
+use crate::num::{Tally, Total};
+use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
+
+/// First-order sigma-delta: the share of samples with a spike is how high the signal is in its range.
+///
+/// With `p` from 0 at the minimum to `R = max - min` at the maximum, outside the value at that end: `a += p`, and if
+/// `a >= R`: a spike, and `a -= R`. `a` starts at 0.
+///
+/// - **Range:** `min < max`, within 10³¹ of 0 in `f32`.
+/// - **Latency:** 0 samples; the mean is that of the past. **Memory:** 8 bytes a channel in `f32` and of 16 bits, 16 of
+///   32-bit fixed point; to decode that of the [`Window`](super::super::Window) or [`Average`](super::super::Average).
+/// - **Work:** a sum and a comparison.
+/// - **Exactness:** `f32` rounds the sum once a sample; fixed point is exact.
+/// - **Error:** over any `W` samples the `n` spikes tell the sum to less than a spike, `|n R - Σp| < R`. A window's
+///   value is within `R / W + ½` of the mean of its samples, an average's within `R / 2^k + 1` of the same average of
+///   the samples; the ½ and the 1 are units of fixed point, from rounding.
+///
+/// Source: Candy and Temes, *Oversampling methods for A/D and D/A conversion*, 1992; as a neuron: Guo et al.,
+/// *Neural coding in spiking neural networks*, 2021 (rate coding).
+///
+/// ```
+/// use spikewire::{Scheme, rate::{SigmaDelta, Window}};
+///
+/// static LIGHT: SigmaDelta<i16, Window> = SigmaDelta::new(0..=255, Window::new(4)); // mean of 16 samples
+/// let (mut encoder, mut decoder) = (LIGHT.encoder(), LIGHT.decoder());
+/// let values = [100; 16].map(|x| decoder.decode(encoder.encode(x)));
+/// assert_eq!(values[15], 96); // 6 spikes of 16
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct SigmaDelta<S, A> {
+    range: Range<S>,
+    averaging: A,
+}
+
+impl<S: Sample, A: Averaging> SigmaDelta<S, A> {
+    /// A scheme for a range. For constants, where a bad range fails the build.
+    ///
+    /// # Panics
+    /// As [`try_new`](Self::try_new) fails.
+    pub const fn new(range: RangeInclusive<S>, averaging: A) -> Self {
+        Self { range: unwrap(Range::try_new(*range.start(), *range.end())), averaging }
+    }
+
+    /// A scheme for a range.
+    ///
+    /// # Errors
+    /// The ends are not finite, or do not rise, or are more than 10³¹ from 0.
+    pub const fn try_new(range: RangeInclusive<S>, averaging: A) -> Result<Self, ConfigError> {
+        match Range::try_new(*range.start(), *range.end()) {
+            Ok(range) => Ok(Self { range, averaging }),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// The state of a [`SigmaDelta`] encoder: what no spike has told yet. 8 bytes in `f32`.
+#[derive(Clone, Copy, Debug)]
+#[allow(private_bounds)] // sums are the crate's own
+pub struct SigmaDeltaState<S: Sample> {
+    sum: S::Total,
+    tally: Tally,
+}
+
+impl<S: Sample, A: Averaging> Start for SigmaDelta<S, A> {
+    const START: SigmaDeltaState<S> = SigmaDeltaState { sum: S::Total::ZERO, tally: Tally::NONE };
+}
+
+impl<S: Sample, A: Averaging> Scheme for SigmaDelta<S, A> {
+    type Sample = S;
+    type Code = Spike;
+    type Output = Spike;
+    type EncoderState = SigmaDeltaState<S>;
+    type DecoderState = MeanState<S, A>;
+
+    const LATENCY: usize = 0;
+    const RECOVERY: Recovery = A::RECOVERY;
+
+    #[inline]
+    fn encode(&self, state: &mut SigmaDeltaState<S>, sample: S) -> Spike {
+        let Some(above) = self.range.above_min(sample) else {
+            state.tally.reject();
+            return Spike::None;
+        };
+        let width = self.range.width();
+        let sum = state.sum.plus(above);
+        if sum >= width {
+            state.sum = sum.minus(width);
+            Spike::Up
+        } else {
+            state.sum = sum;
+            Spike::None
+        }
+    }
+
+    fn encode_slice(
+        &self,
+        state: &mut SigmaDeltaState<S>,
+        samples: &[S],
+        spikes: &mut [Spike],
+    ) -> usize {
+        for (spike, &sample) in spikes.iter_mut().zip(samples) {
+            *spike = self.encode(state, sample);
+        }
+        samples.len().min(spikes.len())
+    }
+
+    fn rejected(state: &SigmaDeltaState<S>) -> u32 {
+        state.tally.rejected()
+    }
+
+    decode_mean!(range);
+}
