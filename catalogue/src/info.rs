@@ -49,6 +49,28 @@ pub struct Parameter {
     pub is_of_encoder: bool,
     /// What one may give.
     pub example: &'static str,
+    /// Where a good value is looked for; unless there is a place, it stays what it is unless given.
+    pub search: Option<Search>,
+}
+
+/// Where a good value of a parameter is looked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Search {
+    /// A number between these, as likely between 1 and 2 as between 10 and 20. Of a parameter in the signal's unit they
+    /// are parts of the signal's range.
+    Log(f64, f64),
+    /// A number between these, counted from what the signal tells, in parts of the signal's range.
+    Around(f64, f64),
+    /// A number between these, in parts of the filter's sum.
+    OfFilter(f64, f64),
+    /// Between these, in thresholds: `2x`.
+    Thresholds(f64, f64),
+    /// A whole number between these.
+    Whole(u32, u32),
+    /// One of these words.
+    Words(&'static [&'static str]),
+    /// Shape and length of a filter of at most so many taps, and its sum in parts of the signal's range.
+    Filter(u32, f64, f64),
 }
 
 /// What values a parameter takes.
@@ -117,7 +139,14 @@ impl Parameter {
             is_recorded: true,
             is_of_encoder: false,
             example: "",
+            search: None,
         }
+    }
+
+    /// With the place where a good value is looked for.
+    #[must_use]
+    pub const fn searched(self, search: Search) -> Self {
+        Self { search: Some(search), ..self }
     }
 
     /// With the paper's setting.
@@ -180,7 +209,8 @@ impl Parameter {
         "what the filters add up on, the signal's minimum; samples below it cannot be coded",
     )
     .with_example("-2.5")
-    .in_place_of(Found::Min);
+    .in_place_of(Found::Min)
+    .searched(Search::Around(-0.25, 0.25));
 
     /// The lower end of a population's range.
     pub const MIN: Self = Self::new(
@@ -190,7 +220,8 @@ impl Parameter {
         "lower end of the neurons' range: the signal's minimum",
     )
     .with_example("-2.5")
-    .in_place_of(Found::Min);
+    .in_place_of(Found::Min)
+    .searched(Search::Around(-0.1, 0.3));
 
     /// The upper end of a population's range.
     pub const MAX: Self = Self::new(
@@ -200,7 +231,8 @@ impl Parameter {
         "upper end of the neurons' range: the signal's maximum",
     )
     .with_example("2.5")
-    .in_place_of(Found::Max);
+    .in_place_of(Found::Max)
+    .searched(Search::Around(-0.3, 0.1));
 
     /// How wide receptive fields are.
     pub const BETA: Self = Self::new(
@@ -209,7 +241,8 @@ impl Parameter {
         Unit::None,
         "distance of the centres in widths of a field, so the smaller, the wider, above 0",
     )
-    .with_default("1.5");
+    .with_default("1.5")
+    .searched(Search::Log(0.3, 4.0));
 
     /// How the mean of spikes is taken.
     pub const MEAN: Self = Self::new(
@@ -233,13 +266,15 @@ impl Parameter {
     pub const SPIKES: Self =
         Self::new("spikes", Kind::Count, Unit::None, "most spikes a sample, 1 to 127")
             .with_example("4")
-            .with_paper(Paper::Text("4"));
+            .with_paper(Paper::Text("4"))
+            .searched(Search::Whole(1, 16));
 
     /// How many neurons there are.
     pub const fn neurons(paper: &'static str) -> Self {
         Self::new("neurons", Kind::Count, Unit::None, "how many neurons share the range, 3 to 1024")
             .with_paper(Paper::Text(paper))
             .with_example("20")
+            .searched(Search::Whole(3, 64))
     }
 
     /// The filter of a rate code.
@@ -253,6 +288,7 @@ impl Parameter {
         )
         .with_paper(Paper::Filter(paper))
         .with_example("triang:15,peak=2")
+        .searched(Search::Filter(64, 0.3, 8.0))
     }
 
     /// A threshold in the signal's unit.
@@ -260,5 +296,6 @@ impl Parameter {
         Self::new("threshold", Kind::Number, Unit::Signal, help)
             .with_paper(Paper::Signal(paper))
             .with_example("0.1")
+            .searched(Search::Log(1e-4, 0.5))
     }
 }

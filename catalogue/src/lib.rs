@@ -19,7 +19,7 @@ mod signal;
 
 pub use channel::Channel;
 pub use entry::{Count, Entry, Flight};
-pub use info::{Found, Info, Kind, Paper, Parameter, Unit};
+pub use info::{Found, Info, Kind, Paper, Parameter, Search, Unit};
 pub use signal::Scaled;
 
 /// Calls a function that is not inlined: a small board has room for one scheme at a time on its stack.

@@ -8,6 +8,7 @@ mod events;
 mod fit;
 mod input;
 mod live;
+mod look;
 mod options;
 mod output;
 mod params;
@@ -21,6 +22,7 @@ mod steep;
 mod stop;
 mod timeline;
 mod trial;
+mod tune;
 mod values;
 
 use clap::{Parser, Subcommand};
@@ -48,6 +50,7 @@ enum Command {
     Plot(commands::plot::Plot),
     Info(info::Info),
     Signal(signal::Signal),
+    Tune(commands::tune::Tune),
 }
 
 /// As for wrong options.
@@ -65,6 +68,7 @@ fn main() -> ExitCode {
         Command::Plot(options) => commands::plot::run(&options),
         Command::Info(options) => info::run(&options),
         Command::Signal(options) => signal::run(&options),
+        Command::Tune(options) => commands::tune::run(&options),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -87,7 +87,6 @@ fn plain(name: &str, value: &Value) -> Result<String> {
 }
 
 /// The text of a file of parameters, below these comments.
-#[cfg(test)]
 pub(crate) fn write(
     comments: &[String],
     scheme: Scheme,

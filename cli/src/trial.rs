@@ -5,7 +5,7 @@ use crate::fit::{Fit, rounded};
 use crate::input::{Chunk, Clock, InputOptions};
 use crate::options::SchemeOptions;
 use crate::scheme::Scheme;
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use catalogue::run::{Calibrated, Event, Known, SampleType, Settings, Shape};
 
 /// A recording in memory.
@@ -26,12 +26,20 @@ pub(crate) struct Recording {
 }
 
 impl Recording {
-    /// Reads all of it.
+    /// Reads all of its one channel.
     ///
     /// # Errors
-    /// As reading does, or no finite sample.
+    /// As reading does, several channels, or no finite sample.
     pub(crate) fn read(input: &InputOptions) -> Result<Self> {
         input.single("this command")?;
+        Self::read_all(input)?.pop().with_context(|| format!("{}: no channel", input.name()))
+    }
+
+    /// Reads all of every channel asked for.
+    ///
+    /// # Errors
+    /// As reading does, or no row without a value that is not finite.
+    pub(crate) fn read_all(input: &InputOptions) -> Result<Vec<Self>> {
         let mut source = input.open()?;
         let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
         loop {
@@ -41,24 +49,29 @@ impl Recording {
             }
             all.append(&mut chunk);
         }
-        let mut clock = Clock::new(&all.times, input.rate, input.gap);
-        clock.observe(&all.times);
         let rows = all.finite_rows();
-        let values = all.kept(&rows).pop().unwrap_or_default();
         let times: Vec<i64> =
             all.times.iter().zip(&rows).filter(|(_, row)| **row).map(|(time, _)| *time).collect();
-        if values.is_empty() {
-            bail!("{}: none of the {} samples is finite", input.name(), rows.len());
-        }
-        Ok(Self {
-            rejected: rows.len() - values.len(),
-            values,
-            times,
-            rate: clock.rate(),
-            name: source.origin().last().map_or(String::new(), |(_, name)| name.clone()),
-            clock,
-            notes: source.notes().to_vec(),
-        })
+        let names = source.origin().last().map_or(String::new(), |(_, name)| name.clone());
+        let channels = all.kept(&rows).into_iter().zip(names.split(','));
+        channels
+            .map(|(values, name)| {
+                if values.is_empty() {
+                    bail!("{}: none of the {} samples is finite", input.name(), rows.len());
+                }
+                let mut clock = Clock::new(&all.times, input.rate, input.gap);
+                clock.observe(&all.times);
+                Ok(Self {
+                    rejected: rows.len() - values.len(),
+                    values,
+                    times: times.clone(),
+                    rate: clock.rate(),
+                    name: name.to_owned(),
+                    clock,
+                    notes: source.notes().to_vec(),
+                })
+            })
+            .collect()
     }
 
     /// What a user should know of it, a line each.
@@ -70,6 +83,11 @@ impl Recording {
         }
         notes.push(format!("{}\n", self.clock));
         notes.join("\n")
+    }
+
+    /// How many samples were missing or not finite.
+    pub(crate) fn rejected(&self) -> usize {
+        self.rejected
     }
 
     /// How long it is in seconds, if that is known.

@@ -4,8 +4,8 @@ mod common;
 
 use common::good;
 
-const COMMANDS: [&str; 9] =
-    ["encode", "decode", "listen", "convert", "score", "bench", "plot", "info", "signal"];
+const COMMANDS: [&str; 10] =
+    ["encode", "decode", "listen", "convert", "score", "bench", "plot", "info", "signal", "tune"];
 
 #[test]
 fn every_command_has_an_example_that_its_options_allow() {

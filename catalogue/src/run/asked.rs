@@ -22,6 +22,11 @@ impl Options {
         self.given.insert(name.to_owned(), text.to_owned());
     }
 
+    /// Takes a parameter back.
+    pub fn unset(&mut self, name: &str) {
+        self.given.remove(name);
+    }
+
     /// What was given.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.given.get(name).map(String::as_str)

@@ -7,7 +7,7 @@ use spikewire::{Calibration, ConfigError, Sample};
 
 /// A calibration in the recording's unit.
 pub struct Calibrated {
-    calibration: Box<dyn Calibrate>,
+    calibration: Box<dyn Calibrate + Send + Sync>,
     /// What a 1 is in the unit of the calibration.
     one: f64,
 }
@@ -15,7 +15,7 @@ pub struct Calibrated {
 impl Calibrated {
     /// A calibration that has seen nothing.
     pub fn new(sample: SampleType) -> Self {
-        let calibration: Box<dyn Calibrate> =
+        let calibration: Box<dyn Calibrate + Send + Sync> =
             for_sample_type!(sample, S => Box::new(Calibration::<S>::new()));
         Self { calibration, one: sample.one() }
     }

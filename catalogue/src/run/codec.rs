@@ -6,7 +6,7 @@ use spikewire::{Code, Firing, Output, Polarity, Sample, Scheme};
 use super::{Settings, Visit};
 
 /// One neuron's spike for one sample.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Event {
     /// The sample, counted from 0.
     pub sample: u64,

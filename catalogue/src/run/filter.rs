@@ -8,7 +8,7 @@ use std::fs;
 ///
 /// # Errors
 /// There is no such shape or file, or something in it is not a number.
-pub(super) fn taps(text: &str) -> Result<Vec<f64>> {
+pub fn taps(text: &str) -> Result<Vec<f64>> {
     let (shape, scale) =
         text.split_once(',').map_or((text, None), |(shape, scale)| (shape, Some(scale)));
     match shape.split(':').collect::<Vec<_>>()[..] {

@@ -87,6 +87,14 @@ impl<'a> Given<'a> {
         self.count("neurons", 3..=dynamic::NEURONS)
     }
 
+    /// How many taps the filter has.
+    ///
+    /// # Errors
+    /// As for [`numbers`](Self::numbers).
+    pub fn length(&self) -> Result<usize> {
+        Ok(self.numbers("taps")?.len())
+    }
+
     /// A number in the signal's unit.
     ///
     /// # Errors

@@ -7,22 +7,27 @@
 mod asked;
 mod calibrate;
 mod codec;
+mod exact;
 mod filter;
 mod given;
+mod rust;
 mod sample_type;
 mod settings;
 
 pub use asked::{Asked, Known, Options, missing};
 pub use calibrate::Calibrated;
 pub use codec::{Codec, Event};
+pub use exact::{Outcome, Parabola, below, outcomes};
+pub use filter::taps;
 pub use given::{Given, Ran};
+pub use rust::{Constant, Counted, Rust, lengthened, state};
 pub use sample_type::{Fixed32, SampleType};
 pub use settings::{Settings, is_list, number};
 
 use anyhow::{Result, bail};
 use spikewire::{Sample, Scheme, Spike};
 
-use crate::{Entry, Info, for_sample_type};
+use crate::{Entry, Info, Parameter, Search, for_sample_type};
 
 /// Populations up to this size have codes of this capacity, larger ones of the largest.
 const FEW: usize = 64;
@@ -99,6 +104,41 @@ pub trait Build: Entry {
         Ok(Shape { neurons, slots })
     }
 
+    /// The bytes of RAM of one channel's encoder, on a flight controller.
+    ///
+    /// # Errors
+    /// The settings lack its length, or it is not known.
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        bail!("the memory of {} is not known here", Self::INFO.name)
+    }
+
+    /// Which codec of the measured table stands for its work.
+    ///
+    /// # Errors
+    /// The settings lack its length, or none does.
+    fn counted(_: &Given) -> Result<Counted> {
+        bail!("{} is not among the codecs that were measured", Self::INFO.name)
+    }
+
+    /// Every outcome that its threshold can have on stretches of a signal, each coded by itself; about so many at most.
+    /// The settings are of any threshold. `None`: it has no such list.
+    fn outcomes(_: &Given, _: &[&[f64]], _: usize) -> Option<Vec<Outcome>> {
+        None
+    }
+
+    /// It as a constant in Rust.
+    ///
+    /// # Errors
+    /// The settings lack something, or it has no constant.
+    fn constant(_: &Given, _: &Rust) -> Result<Constant> {
+        bail!("{} has no constant", Self::INFO.name)
+    }
+
+    /// Where a good value of a parameter is looked for beside these options.
+    fn search(parameter: &Parameter, _: &Options) -> Option<Search> {
+        parameter.search
+    }
+
     /// Builds it and hands it to a visitor.
     ///
     /// # Errors
@@ -158,6 +198,36 @@ pub trait RunTime: Sync {
     /// # Errors
     /// A parameter becomes 0 that must not, or makes no sense.
     fn rounded(&self, sample: SampleType, settings: &Settings) -> Result<(Settings, Vec<Ran>)>;
+
+    /// Where a good value of a parameter is looked for beside these options.
+    fn search(&self, parameter: &Parameter, options: &Options) -> Option<Search>;
+
+    /// The bytes of RAM of one channel's encoder, on a flight controller.
+    ///
+    /// # Errors
+    /// The settings lack its length, or it is not known.
+    fn ram(&self, sample: SampleType, settings: &Settings) -> Result<usize>;
+
+    /// Which codec of the measured table stands for its work.
+    ///
+    /// # Errors
+    /// The settings lack its length, or none does.
+    fn counted(&self, settings: &Settings) -> Result<Counted>;
+
+    /// Every outcome that its threshold can have on stretches of a signal, each coded by itself; about so many at most.
+    /// The settings are of any threshold. `None`: it has no such list.
+    fn outcomes(
+        &self,
+        settings: &Settings,
+        stretches: &[&[f64]],
+        most: usize,
+    ) -> Option<Vec<Outcome>>;
+
+    /// It as a constant in Rust, of settings that are [rounded](Self::rounded).
+    ///
+    /// # Errors
+    /// The settings lack something, or it has no constant.
+    fn constant(&self, sample: SampleType, settings: &Settings) -> Result<Constant>;
 
     /// An encoder and its decoder, as they start on a recording.
     ///
@@ -226,6 +296,32 @@ impl<T: Build + Sync> RunTime for T {
         }
         told.retain(|ran| ran.asked != ran.ran);
         Ok((rounded, told))
+    }
+
+    fn search(&self, parameter: &Parameter, options: &Options) -> Option<Search> {
+        T::search(parameter, options)
+    }
+
+    fn ram(&self, sample: SampleType, settings: &Settings) -> Result<usize> {
+        let given = Given::new(settings, sample.one());
+        for_sample_type!(sample, S => T::ram::<S>(&given))
+    }
+
+    fn counted(&self, settings: &Settings) -> Result<Counted> {
+        T::counted(&Given::new(settings, 1.0))
+    }
+
+    fn outcomes(
+        &self,
+        settings: &Settings,
+        stretches: &[&[f64]],
+        most: usize,
+    ) -> Option<Vec<Outcome>> {
+        T::outcomes(&Given::new(settings, 1.0), stretches, most)
+    }
+
+    fn constant(&self, sample: SampleType, settings: &Settings) -> Result<Constant> {
+        T::constant(&Given::new(settings, sample.one()), &Rust::new(sample))
     }
 
     fn codec(&self, sample: SampleType, settings: &Settings) -> Result<Codec> {

@@ -7,11 +7,11 @@ use spikewire::temporal::AdaptiveStepForward;
 
 use crate::entry::spike_of;
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Given, Visit},
+    crate::run::{Build, Constant, Counted, Given, Rust, Visit, state},
     anyhow::Result,
     spikewire::Sample,
 };
@@ -43,14 +43,16 @@ impl Entry for Scheme {
                 "how often the step doubles at most, 0 to 30",
             )
             .with_example("3")
-            .with_paper(Paper::Text("3")),
+            .with_paper(Paper::Text("3"))
+            .searched(Search::Whole(0, 8)),
             Parameter::new(
                 "run",
                 Kind::Count,
                 Unit::None,
                 "how many spikes in one direction double the step, 1 to 8",
             )
-            .with_default("2"),
+            .with_default("2")
+            .searched(Search::Whole(1, 4)),
             Parameter::START,
         ],
     };
@@ -76,6 +78,21 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<AdaptiveStepForward<S>>())
+    }
+
+    fn counted(_: &Given) -> Result<Counted> {
+        Ok(Counted::exact("asf"))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let threshold = rust.signal(given, "threshold")?;
+        let (doublings, run) = (given.count("doublings", 0..=30)?, given.count("run", 1..=8)?);
+        let value = format!("new({threshold}, {doublings}).with_run({run})");
+        rust.constant("temporal::AdaptiveStepForward", "", &value)
+    }
+
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
         let doublings = given.count("doublings", 0..=30)? as u8;
         let run = given.count("run", 1..=8)? as u8;

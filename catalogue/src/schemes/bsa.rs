@@ -6,11 +6,13 @@ use spikewire::rate::{Bsa, BsaToolbox, Scale, Shape, Taps};
 use spikewire::{Sample, Start};
 
 use crate::plain::{Plain, magnitude};
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Asked, Build, Given, Settings, Visit},
+    crate::run::{
+        Asked, Build, Constant, Counted, Given, Options, Rust, Settings, Visit, lengthened, state,
+    },
     anyhow::{Result, bail},
     spikewire::dynamic,
     spikewire::rate::Criterion,
@@ -55,7 +57,8 @@ impl Entry for Scheme {
                 "sub: 0 or more, in the signal's unit; mul and toolbox: a factor above 0 and below 4",
             )
             .with_paper(Paper::Text("1.15"))
-            .with_example("0.955"),
+            .with_example("0.955")
+            .searched(Search::OfFilter(0.0, 1.0)),
         ],
     };
 
@@ -95,6 +98,46 @@ impl Build for Scheme {
         settings.set("criterion", criterion);
         asked.settle("threshold", &mut settings)?;
         Ok(settings)
+    }
+
+    /// A factor has another range than a difference.
+    fn search(parameter: &Parameter, options: &Options) -> Option<Search> {
+        let is_factor =
+            options.get("form") == Some("toolbox") || options.get("criterion") == Some("mul");
+        match parameter.name {
+            "threshold" if is_factor => Some(Search::Log(0.3, 3.9)),
+            _ => parameter.search,
+        }
+    }
+
+    fn ram<S: Sample>(given: &Given) -> Result<usize> {
+        let sizes = match given.word("form")? {
+            "toolbox" => [state::<BsaToolbox<S, 8>>(), state::<BsaToolbox<S, 16>>()],
+            _ => [state::<Bsa<S, 8>>(), state::<Bsa<S, 16>>()],
+        };
+        Ok(lengthened(sizes, given.length()?))
+    }
+
+    fn counted(given: &Given) -> Result<Counted> {
+        let length = given.length()? as f64;
+        Ok(match given.word("form")? {
+            "toolbox" => Counted::at_most("bsa-toolbox-9", length / 9.0),
+            _ => Counted::at_most("bsa-24-busy", length / 24.0),
+        })
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let (taps, shift) = (rust.taps(given)?, rust.signal(given, "shift")?);
+        let ratio = || given.number("threshold").map(|ratio| format!("{:?}", ratio as f32));
+        let (scheme, new) = match (given.word("form")?, given.word("criterion")?) {
+            ("toolbox", _) => ("rate::BsaToolbox", format!("new({taps}, {})", ratio()?)),
+            (_, "mul") => ("rate::Bsa", format!("multiplicative({taps}, {})", ratio()?)),
+            _ => {
+                ("rate::Bsa", format!("subtractive({taps}, {})", rust.signal(given, "threshold")?))
+            }
+        };
+        let value = format!("{new}.with_shift({shift})");
+        rust.constant(scheme, &format!("{}", given.length()?), &value)
     }
 
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {

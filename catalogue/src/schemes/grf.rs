@@ -10,7 +10,7 @@ use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, BuildPopulation, Given, Visit},
+    crate::run::{Build, BuildPopulation, Constant, Counted, Given, Rust, Visit, state},
     anyhow::Result,
     spikewire::{Sample, dynamic},
 };
@@ -49,6 +49,21 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<Gaussian<S, 20>>())
+    }
+
+    /// Neurons are found by bisection.
+    fn counted(given: &Given) -> Result<Counted> {
+        Ok(Counted::at_most("grf-20", given.neurons()? as f64 / 20.0))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let (min, max) = (rust.signal(given, "min")?, rust.signal(given, "max")?);
+        let neurons = format!("{}", given.neurons()?);
+        rust.constant("population::Gaussian", &neurons, &format!("linear({min}..={max})"))
+    }
+
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
         Self::build_population(given, visitor)
     }

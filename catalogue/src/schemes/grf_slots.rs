@@ -6,11 +6,11 @@ use spikewire::Start;
 use spikewire::population::{SlotSpikes, Slots};
 
 use crate::plain::{Plain, response};
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, BuildPopulation, Given, Visit},
+    crate::run::{Build, BuildPopulation, Constant, Counted, Given, Rust, Visit, state},
     anyhow::Result,
     spikewire::{Sample, dynamic},
 };
@@ -36,7 +36,8 @@ impl Entry for Scheme {
             Parameter::MAX,
             Parameter::new("slots", Kind::Count, Unit::None, "sub-timesteps a sample, 2 to 256")
                 .with_paper(Paper::Text("10"))
-                .with_example("10"),
+                .with_example("10")
+                .searched(Search::Whole(2, 32)),
             Parameter::BETA,
             Parameter::new(
                 "floor",
@@ -44,7 +45,8 @@ impl Entry for Scheme {
                 Unit::None,
                 "neurons below this level of --slots are silent",
             )
-            .with_default("1"),
+            .with_default("1")
+            .searched(Search::Whole(1, 2)),
         ],
     };
 
@@ -71,6 +73,24 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<Slots<S, 15, 10>>())
+    }
+
+    fn counted(given: &Given) -> Result<Counted> {
+        Ok(Counted::at_most("grf-slots-15x10", given.neurons()? as f64 / 15.0))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let (min, max) = (rust.signal(given, "min")?, rust.signal(given, "max")?);
+        let (slots, beta) =
+            (given.count("slots", 2..=dynamic::LEVELS)?, given.number("beta")? as f32);
+        let shape = format!("{}, {slots}", given.neurons()?);
+        let floor = given.count("floor", 1..=slots)?;
+        let value = format!("new({min}..={max}, {beta:?}).with_floor({floor})");
+        rust.constant("population::Slots", &shape, &value)
+    }
+
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
         Self::build_population(given, visitor)
     }

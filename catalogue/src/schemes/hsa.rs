@@ -10,7 +10,7 @@ use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Given, Visit},
+    crate::run::{Build, Constant, Counted, Given, Rust, Visit, lengthened, state},
     anyhow::Result,
     spikewire::{Sample, dynamic},
 };
@@ -52,6 +52,21 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    fn ram<S: Sample>(given: &Given) -> Result<usize> {
+        let sizes = [state::<Hough<S, 8>>(), state::<Hough<S, 16>>()];
+        Ok(lengthened(sizes, given.length()?))
+    }
+
+    fn counted(given: &Given) -> Result<Counted> {
+        Ok(Counted::at_most("hsa-15", given.length()? as f64 / 15.0))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let (taps, shift) = (rust.taps(given)?, rust.signal(given, "shift")?);
+        let value = format!("new({taps}).with_shift({shift})");
+        rust.constant("rate::Hough", &format!("{}", given.length()?), &value)
+    }
+
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
         let scheme =
             dynamic::Hough::try_new(given.taps()?)?.try_with_shift(given.signal("shift")?)?;

@@ -6,11 +6,13 @@ use spikewire::Start;
 use spikewire::temporal::MovingWindow;
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Given, Options, Visit},
+    crate::run::{
+        Build, Constant, Counted, Given, Options, Outcome, Rust, Visit, lengthened, outcomes, state,
+    },
     anyhow::Result,
     spikewire::{Sample, dynamic},
 };
@@ -40,7 +42,8 @@ impl Entry for Scheme {
             )
             .with_example("5")
             .of_encoder()
-            .with_paper(Paper::Text("5")),
+            .with_paper(Paper::Text("5"))
+            .searched(Search::Whole(0, 127)),
             Parameter::START,
         ],
     };
@@ -61,6 +64,40 @@ impl Build for Scheme {
     fn looks_back(options: &Options) -> usize {
         let window = options.get("window").and_then(|window| window.parse().ok()).unwrap_or(0);
         window.min(dynamic::WIDEST - 1) + 1
+    }
+
+    fn ram<S: Sample>(given: &Given) -> Result<usize> {
+        let sizes = [state::<MovingWindow<S, 8>>(), state::<MovingWindow<S, 16>>()];
+        Ok(lengthened(sizes, given.count("window", 0..=dynamic::WIDEST - 1)? + 1))
+    }
+
+    /// Long windows take no more: the sum is carried along.
+    fn counted(_: &Given) -> Result<Counted> {
+        Ok(Counted::exact("mw-5"))
+    }
+
+    fn outcomes(given: &Given, stretches: &[&[f64]], most: usize) -> Option<Vec<Outcome>> {
+        let samples = given.count("window", 0..=dynamic::WIDEST - 1).ok()? + 1;
+        let distances = |values: &&[f64]| -> Vec<f64> {
+            // The first samples stand before themselves.
+            let past = &values[..samples.min(values.len())];
+            let mut sum: f64 = past.iter().sum();
+            let leaving = past.iter().chain(values.iter());
+            let distance = |(value, leaves): (&f64, &f64)| {
+                let distance = value - sum / past.len() as f64;
+                sum += value - leaves;
+                distance
+            };
+            values.iter().zip(leaving).map(distance).collect()
+        };
+        let distances: Vec<Vec<f64>> = stretches.iter().map(distances).collect();
+        Some(outcomes(stretches, &distances, false, most))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let samples = given.count("window", 0..=dynamic::WIDEST - 1)? + 1;
+        let threshold = rust.signal(given, "threshold")?;
+        rust.constant("temporal::MovingWindow", &format!("{samples}"), &format!("new({threshold})"))
     }
 
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {

@@ -6,12 +6,13 @@ use spikewire::Start;
 use spikewire::population::{Neuron, Position};
 
 use crate::plain::{self, Plain, magnitude};
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Search, Unit};
 
 #[cfg(feature = "run")]
 use {
     crate::run::{
-        Asked, Build, BuildPopulation, Given, Options, Settings, Shape, Visit, is_list, missing,
+        Asked, Build, BuildPopulation, Constant, Counted, Given, Options, Rust, Settings, Shape,
+        Visit, is_list, missing, state,
     },
     anyhow::{Context, Result, bail},
     spikewire::{Sample, dynamic},
@@ -39,7 +40,8 @@ impl Entry for Scheme {
                 Unit::Signal,
                 "`linear`, `gaussian`, or a rising list such as `-1,-0.2,0,0.2,1`",
             )
-            .with_default("linear"),
+            .with_default("linear")
+            .searched(Search::Words(&["linear", "gaussian"])),
             Parameter::neurons("20"),
             Parameter::MIN,
             Parameter::MAX,
@@ -112,6 +114,27 @@ impl Build for Scheme {
             _ => given.neurons()?,
         };
         Ok(Shape { neurons, slots: 1 })
+    }
+
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<Position<S, 20>>())
+    }
+
+    /// Neurons are found by bisection.
+    fn counted(given: &Given) -> Result<Counted> {
+        Ok(Counted::at_most("position-20", Self::shape(given)?.neurons as f64 / 20.0))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let (name, neurons) = ("population::Position", Self::shape(given)?.neurons.to_string());
+        let centres = given.word("centres")?;
+        if is_list(centres) {
+            let value = format!("new({})", rust.signals(given, "centres")?);
+            return rust.constant(name, &neurons, &value);
+        }
+        let (min, max) = (rust.signal(given, "min")?, rust.signal(given, "max")?);
+        let spaced = if centres == "gaussian" { "gaussian_spaced" } else { "linear" };
+        rust.constant(name, &neurons, &format!("{spaced}({min}..={max})"))
     }
 
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {

@@ -10,7 +10,7 @@ use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Given, Visit},
+    crate::run::{Build, Constant, Counted, Given, Outcome, Parabola, Rust, Visit, below, state},
     anyhow::Result,
     spikewire::Sample,
 };
@@ -55,9 +55,73 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<StepForward<S>>())
+    }
+
+    fn counted(_: &Given) -> Result<Counted> {
+        Ok(Counted::exact("sf"))
+    }
+
+    /// The spikes depend on those before, so from a threshold the run itself tells at which the next ones differ.
+    fn outcomes(_: &Given, stretches: &[&[f64]], most: usize) -> Option<Vec<Outcome>> {
+        const SMALLEST: f64 = 1e-3;
+        let range = |values: &&[f64]| {
+            let (low, high) =
+                values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                    (low.min(*value), high.max(*value))
+                });
+            high - low
+        };
+        let range = stretches.iter().map(range).fold(0.0, f64::max);
+        // Narrower intervals are passed over together.
+        let ratio = (-SMALLEST.ln() / most as f64).exp();
+        let (mut found, mut low) = (Vec::new(), SMALLEST * range);
+        while low < range && low > 0.0 {
+            let (outcome, next) = outcome(stretches, low);
+            found.push(outcome);
+            low = next.max(low * ratio);
+        }
+        Some(found)
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let threshold = rust.signal(given, "threshold")?;
+        rust.constant("temporal::StepForward", "", &format!("new({threshold})"))
+    }
+
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
         visitor.visit_steps(StepForward::try_new(given.signal("threshold")?)?, StepForward::START)
     }
+}
+
+/// What step forward makes of stretches at a threshold or just above it, and the threshold at which its spikes differ.
+#[cfg(feature = "run")]
+fn outcome(stretches: &[&[f64]], threshold: f64) -> (Outcome, f64) {
+    let (mut parabola, mut spikes, mut next) = (Parabola::default(), 0, f64::INFINITY);
+    for values in stretches {
+        let first = values.first().copied().unwrap_or_default();
+        let mut count = 0.0;
+        for value in values.iter().map(|value| value - first) {
+            // It spikes upwards while `value > (count + 1) * threshold`, and likewise downwards.
+            let (up, down) = (count + 1.0, count - 1.0);
+            for multiple in [up, down] {
+                let change = value / multiple;
+                if change > threshold && change < next {
+                    next = change;
+                }
+            }
+            if value > up * threshold {
+                (count, spikes) = (up, spikes + 1);
+            } else if value < down * threshold {
+                (count, spikes) = (down, spikes + 1);
+            }
+            parabola.observe(value, count);
+        }
+    }
+    let inside = if next.is_finite() { below(threshold, next) } else { threshold };
+    let step = parabola.lowest().unwrap_or(threshold).clamp(threshold, inside);
+    (Outcome { threshold: step, step, spikes, squares: parabola.squares(step) }, next)
 }
 
 /// The paper's algorithm 7.

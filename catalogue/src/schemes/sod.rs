@@ -12,7 +12,7 @@ use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
 use {
     anyhow::Result,
     {
-        crate::run::{Build, Given, Shape, Visit},
+        crate::run::{Build, Constant, Counted, Given, Rust, Shape, Visit, state},
         spikewire::Sample,
     },
 };
@@ -65,6 +65,20 @@ impl Entry for Scheme {
 impl Build for Scheme {
     fn shape(given: &Given) -> Result<Shape> {
         Ok(Shape { neurons: 1, slots: given.count("spikes", 1..=127)? })
+    }
+
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<SendOnDelta<S, 4>>())
+    }
+
+    fn counted(given: &Given) -> Result<Counted> {
+        let most = given.count("spikes", 1..=127)?;
+        Ok(Counted::at_most("sod-4", most as f64 / 4.0))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let (threshold, most) = (rust.signal(given, "threshold")?, given.count("spikes", 1..=127)?);
+        rust.constant("temporal::SendOnDelta", &format!("{most}"), &format!("new({threshold})"))
     }
 
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {

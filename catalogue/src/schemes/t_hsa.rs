@@ -6,11 +6,11 @@ use spikewire::Start;
 use spikewire::rate::{Scale, Shape, Taps, ThresholdHough};
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
+use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled, Search};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Given, Visit},
+    crate::run::{Build, Constant, Counted, Given, Rust, Visit, lengthened, state},
     anyhow::Result,
     spikewire::{Sample, dynamic},
 };
@@ -36,7 +36,8 @@ impl Entry for Scheme {
             Parameter::threshold(
                 "by how much the signal may fall short of the filter in all, 0 or more",
                 0.85,
-            ),
+            )
+            .searched(Search::OfFilter(0.0, 1.0)),
         ],
     };
 
@@ -61,6 +62,22 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    fn ram<S: Sample>(given: &Given) -> Result<usize> {
+        let sizes = [state::<ThresholdHough<S, 8>>(), state::<ThresholdHough<S, 16>>()];
+        Ok(lengthened(sizes, given.length()?))
+    }
+
+    fn counted(given: &Given) -> Result<Counted> {
+        Ok(Counted::at_most("t-hsa-15", given.length()? as f64 / 15.0))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let (taps, shift) = (rust.taps(given)?, rust.signal(given, "shift")?);
+        let threshold = rust.signal(given, "threshold")?;
+        let value = format!("new({taps}, {threshold}).with_shift({shift})");
+        rust.constant("rate::ThresholdHough", &format!("{}", given.length()?), &value)
+    }
+
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
         let scheme = dynamic::ThresholdHough::try_new(given.taps()?, given.signal("threshold")?)?;
         let scheme = scheme.try_with_shift(given.signal("shift")?)?;

@@ -6,11 +6,14 @@ use spikewire::Start;
 use spikewire::temporal::TemporalContrast;
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Asked, Build, Given, Options, Settings, Visit, number},
+    crate::run::{
+        Asked, Build, Constant, Counted, Given, Options, Outcome, Rust, Settings, Visit, number,
+        outcomes, state,
+    },
     anyhow::{Context, Result, bail},
     spikewire::Sample,
 };
@@ -37,7 +40,8 @@ impl Entry for Scheme {
                 Unit::Signal,
                 "what the difference from the sample before must exceed, above 0",
             )
-            .with_example("0.1"),
+            .with_example("0.1")
+            .searched(Search::Log(1e-5, 0.5)),
             Parameter::new(
                 "factor",
                 Kind::Number,
@@ -61,7 +65,8 @@ impl Entry for Scheme {
                 "what the decoder adds for a spike, as a number or in thresholds, `2x`",
             )
             .with_default("1x")
-            .with_paper(Paper::Text("2x")),
+            .with_paper(Paper::Text("2x"))
+            .searched(Search::Thresholds(0.1, 20.0)),
             Parameter::START,
         ],
     };
@@ -121,6 +126,32 @@ impl Build for Scheme {
 
     fn needs_signal(options: &Options) -> Option<String> {
         options.get("threshold").is_none().then(|| "--threshold".to_owned())
+    }
+
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<TemporalContrast<S>>())
+    }
+
+    fn counted(_: &Given) -> Result<Counted> {
+        Ok(Counted::exact("tbr"))
+    }
+
+    fn outcomes(_: &Given, stretches: &[&[f64]], most: usize) -> Option<Vec<Outcome>> {
+        let distances = |values: &&[f64]| {
+            let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
+            [0.0].into_iter().chain(steps).collect()
+        };
+        let distances: Vec<Vec<f64>> = stretches.iter().map(distances).collect();
+        Some(outcomes(stretches, &distances, true, most))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let (threshold, step) = (rust.signal(given, "threshold")?, rust.signal(given, "step")?);
+        rust.constant(
+            "temporal::TemporalContrast",
+            "",
+            &format!("new({threshold}).with_step({step})"),
+        )
     }
 
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {

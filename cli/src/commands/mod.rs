@@ -10,3 +10,4 @@ pub(crate) mod listen;
 pub(crate) mod plot;
 pub(crate) mod score;
 pub(crate) mod signal;
+pub(crate) mod tune;

@@ -2,7 +2,7 @@
 
 use super::text::{name, text};
 use super::time::{Named, Reading, TimeUnit, implausible, number, of_given, of_name};
-use super::{CHUNK, Chunk, InputOptions, Source, near};
+use super::{ALL, CHUNK, Chunk, InputOptions, Source, near};
 use anyhow::{Context, Result, anyhow, bail};
 use csv::{ByteRecord, Reader, ReaderBuilder};
 use std::collections::VecDeque;
@@ -83,6 +83,7 @@ impl Table {
         let time = table.time_column(&names, options)?;
         table.columns = match options.columns().collect::<Vec<_>>()[..] {
             [] => vec![only(&names, time.as_ref().map(|(column, _)| column), file)?],
+            [ALL] => signals(&names, time.as_ref().map(|(column, _)| column)).collect(),
             ref asked => {
                 asked.iter().map(|name| find(name, &names, file)).collect::<Result<_>>()?
             }
@@ -332,15 +333,21 @@ fn find(asked: &str, names: &[String], file: &str) -> Result<Column> {
     }
 }
 
-/// The column that is neither a time nor a count, if there is just one.
-fn only(names: &[String], time: Option<&Column>, file: &str) -> Result<Column> {
-    let is_signal = |&(index, name): &(usize, &String)| {
+/// The columns that are neither times nor counts.
+fn signals(names: &[String], time: Option<&Column>) -> impl Iterator<Item = Column> {
+    let is_signal = move |&(index, name): &(usize, &String)| {
         time.is_none_or(|time| time.index != index)
             && !COUNTS.contains(&name.to_lowercase().as_str())
     };
-    let mut signals = names.iter().enumerate().filter(is_signal);
+    let signals = names.iter().enumerate().filter(is_signal);
+    signals.map(|(index, name)| Column { index, name: name.clone() })
+}
+
+/// The column that is neither a time nor a count, if there is just one.
+fn only(names: &[String], time: Option<&Column>, file: &str) -> Result<Column> {
+    let mut signals = signals(names, time);
     match (signals.next(), signals.next()) {
-        (Some((index, name)), None) => Ok(Column { index, name: name.clone() }),
+        (Some(column), None) => Ok(column),
         _ => bail!("{file}: --column must say which; there are {}", names.join(", ")),
     }
 }

@@ -17,9 +17,13 @@ use clap::Args;
 use flate2::read::MultiGzDecoder;
 use std::fs::File;
 use std::io::{self, Cursor, Read};
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use time::TimeUnit;
+
+/// All columns that are neither times nor counts.
+const ALL: &str = "all";
 
 /// How many samples a chunk holds.
 pub(crate) const CHUNK: usize = 8192;
@@ -30,11 +34,32 @@ pub(crate) struct InputOptions {
     /// CSV table with a header, or PX4 flight log (`ULog`), also compressed by gzip; `-` is a CSV table on
     /// standard input
     pub input: PathBuf,
+    #[command(flatten)]
+    pub channel: ChannelOptions,
+}
+
+impl Deref for InputOptions {
+    type Target = ChannelOptions;
+
+    fn deref(&self) -> &ChannelOptions {
+        &self.channel
+    }
+}
+
+/// What of a recording is read, and how.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct ChannelOptions {
     /// Column of a CSV table, by name or by number from 1; `encode` takes several
     #[arg(long, help_heading = "Input")]
     pub column: Vec<String>,
-    /// Several columns at once: `gyro_x,gyro_y,gyro_z`
-    #[arg(long, value_delimiter = ',', value_name = "NAMES", help_heading = "Input")]
+    /// Several columns at once: `gyro_x,gyro_y,gyro_z`, or `all`; of a flight log `TOPIC.FIELD`
+    #[arg(
+        long,
+        visible_alias = "channel",
+        value_delimiter = ',',
+        value_name = "NAMES",
+        help_heading = "Input"
+    )]
     columns: Vec<String>,
     /// Column that holds the time; found by its name, as Betaflight, `ArduPilot`, PX4, ROS and pandas
     /// write it, unless given
@@ -186,11 +211,32 @@ impl InputOptions {
         let name = self.input.display().to_string();
         let file = File::open(&self.input).with_context(|| format!("{name}: cannot be opened"))?;
         if is_flight_log(&self.input)? {
+            if let Some(named) = self.named_by_topic() {
+                return named.open();
+            }
             self.refuse(&of_tables, "a flight log")?;
             return Ok(Box::new(ulog::Channel::open(self)?));
         }
         self.refuse(&of_logs, "a CSV table")?;
         Ok(Box::new(csv::Table::open(file, &name, self)?))
+    }
+
+    /// With `--columns TOPIC.FIELD` as `--topic TOPIC --field FIELD`.
+    fn named_by_topic(&self) -> Option<Self> {
+        let names: Option<Vec<_>> = self.columns.iter().map(|name| name.split_once('.')).collect();
+        let names = names.filter(|_| self.topic.is_none() && self.field.is_empty())?;
+        let (topic, _) = *names.first()?;
+        if names.iter().any(|(other, _)| *other != topic) {
+            return None;
+        }
+        let field = names.iter().map(|(_, field)| (*field).to_owned()).collect();
+        let channel = ChannelOptions {
+            topic: Some(topic.to_owned()),
+            field,
+            columns: Vec::new(),
+            ..self.channel.clone()
+        };
+        Some(Self { channel, ..self.clone() })
     }
 
     /// Whether it can be read only once.
@@ -219,6 +265,9 @@ impl InputOptions {
     /// More than one is asked for.
     pub(crate) fn single(&self, command: &str) -> Result<()> {
         match self.columns().count().max(self.fields().count()) {
+            _ if self.columns().any(|name| name == ALL) => {
+                bail!("{command} takes one column, not all")
+            }
             0 | 1 => Ok(()),
             many => bail!("{command} takes one column or field, not {many}; encode takes several"),
         }

@@ -1,7 +1,7 @@
 //! Where the panels are.
 
 use super::title::Drawn;
-use super::{Picture, efficiencies, panel};
+use super::{Picture, efficiencies, front, panel};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
@@ -33,4 +33,25 @@ pub(super) fn fill<B: DrawingBackend>(area: &DrawingArea<B, Shift>, picture: &Pi
         Some(last) => efficiencies::draw(last, picture.trials, 'H'),
         None => Ok(()),
     }
+}
+
+/// The size of so many fronts.
+pub(super) fn fronts_size(panels: usize) -> (u32, u32) {
+    if panels == 1 {
+        return SINGLE;
+    }
+    (PANEL.0 * COLUMNS as u32, PANEL.1 * panels.div_ceil(COLUMNS) as u32)
+}
+
+/// One front alone, or all in a grid.
+pub(super) fn fill_fronts<B: DrawingBackend>(
+    area: &DrawingArea<B, Shift>,
+    panels: &[front::Panel],
+) -> Drawn<B> {
+    area.fill(&WHITE)?;
+    if let [panel] = panels {
+        return front::draw(area, panel);
+    }
+    let areas = area.split_evenly((panels.len().div_ceil(COLUMNS), COLUMNS));
+    areas.iter().zip(panels).try_for_each(|(area, panel)| front::draw(area, panel))
 }

@@ -2,6 +2,7 @@
 
 mod bitmap;
 mod efficiencies;
+pub(crate) mod front;
 mod layout;
 mod palette;
 mod panel;
@@ -35,24 +36,42 @@ pub(crate) struct Picture<'a> {
 /// The name that the embedded font goes by. In an SVG the viewer takes its own of that kind.
 const FONT: &str = "sans-serif";
 
-/// Draws into a file, by its ending.
+/// Draws trials into a file, by its ending.
 ///
 /// # Errors
 /// The ending is neither `.svg` nor `.png`, or the file cannot be written or is the input.
 pub(crate) fn draw(path: &Path, input: &Path, picture: &Picture) -> Result<()> {
+    write(path, input, layout::size(picture), Drawing::Trials(picture))
+}
+
+/// Draws fronts into a file, by its ending.
+///
+/// # Errors
+/// As for [`draw`].
+pub(crate) fn draw_fronts(path: &Path, input: &Path, panels: &[front::Panel]) -> Result<()> {
+    write(path, input, layout::fronts_size(panels.len()), Drawing::Fronts(panels))
+}
+
+/// Whatever is drawn.
+#[derive(Clone, Copy)]
+enum Drawing<'a> {
+    Trials(&'a Picture<'a>),
+    Fronts(&'a [front::Panel]),
+}
+
+fn write(path: &Path, input: &Path, size: (u32, u32), drawing: Drawing) -> Result<()> {
     for style in [FontStyle::Normal, FontStyle::Bold] {
         register_font(FONT, style, epaint_default_fonts::UBUNTU_LIGHT)
             .map_err(|_| anyhow!("the font does not load"))?;
     }
-    let size = layout::size(picture);
     let bytes = match path.extension().and_then(|extension| extension.to_str()) {
         Some("svg") => {
             let mut text = String::new();
-            fill(&SVGBackend::with_string(&mut text, size).into_drawing_area(), picture)?;
+            fill(&SVGBackend::with_string(&mut text, size).into_drawing_area(), drawing)?;
             // As in PNG: a bend does not stick out beyond the data.
             text.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1).into_bytes()
         }
-        Some("png") => png(size, picture)?,
+        Some("png") => png(size, drawing)?,
         _ => bail!("{}: a picture ends in .svg or .png", path.display()),
     };
     let mut output = Output::open(Some(path), input)?;
@@ -60,17 +79,21 @@ pub(crate) fn draw(path: &Path, input: &Path, picture: &Picture) -> Result<()> {
     output.finish()
 }
 
-fn png((width, height): (u32, u32), picture: &Picture) -> Result<Vec<u8>> {
+fn png((width, height): (u32, u32), drawing: Drawing) -> Result<Vec<u8>> {
     let mut pixels = Pixmap::new(width, height).context("the picture has no size")?;
     pixels.fill(Color::WHITE);
-    fill(&Bitmap::new(&mut pixels).into_drawing_area(), picture)?;
+    fill(&Bitmap::new(&mut pixels).into_drawing_area(), drawing)?;
     Ok(pixels.encode_png()?)
 }
 
 fn fill<B: DrawingBackend>(
     area: &DrawingArea<B, plotters::coord::Shift>,
-    picture: &Picture,
+    drawing: Drawing,
 ) -> Result<()> {
-    let drawn = layout::fill(area, picture).and_then(|()| area.present());
+    let filled = match drawing {
+        Drawing::Trials(picture) => layout::fill(area, picture),
+        Drawing::Fronts(panels) => layout::fill_fronts(area, panels),
+    };
+    let drawn = filled.and_then(|()| area.present());
     drawn.map_err(|error| anyhow!("the picture cannot be drawn: {error}"))
 }

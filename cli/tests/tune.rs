@@ -1,0 +1,224 @@
+//! `tune`: settings that keep to what was asked for, checked on held-out blocks, and what it says where there are none.
+
+mod common;
+
+use common::{file, flight, good, refused, spikewire, table};
+use serde_json::Value;
+use std::fmt::Write;
+
+/// A budget that a test build gets through in a second or two.
+const SHORT: &str = "--seconds 60 --evaluations 300";
+
+/// The only channel's only row.
+fn row(arguments: &str) -> Value {
+    let told: Value =
+        serde_json::from_str(&good(&format!("tune --json {arguments}"), "").output).unwrap();
+    let (_, rows) = told.as_object().unwrap().iter().next().unwrap();
+    rows[0].clone()
+}
+
+fn number(row: &Value, path: &str) -> f64 {
+    row.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path}: {row:#}"))
+}
+
+/// Ten seconds of the paper's signal.
+fn paper_signal() -> (tempfile::TempDir, String) {
+    file("signal.csv", good("signal --seconds 10 --seed 3", "").output)
+}
+
+#[test]
+fn each_goal_is_reached_and_beats_the_paper() {
+    let (_directory, signal) = paper_signal();
+    for scheme in ["tbr", "mw", "sf", "bsa", "hsa", "t-hsa"] {
+        let row = row(&format!("{signal} --channel signal --scheme {scheme} {SHORT}"));
+        let (tuned, paper) = (number(&row, "/tuned_on/rmse"), number(&row, "/paper/tuned_on/rmse"));
+        assert!(tuned <= paper, "{scheme}: {tuned}, the paper {paper}");
+        let (tuned, paper) =
+            (number(&row, "/tuned_on/efficiency"), number(&row, "/paper/tuned_on/efficiency"));
+        assert!(tuned >= paper - 1e-9, "{scheme}: {tuned} %, the paper {paper} %");
+    }
+    let row = row(&format!("{signal} --channel signal --scheme sf --max-rmse 0.4 {SHORT}"));
+    assert!(number(&row, "/tuned_on/rmse") <= 0.4 && number(&row, "/tuned_on/efficiency") > 80.0);
+}
+
+/// The step codes' lists of outcomes leave nothing out: no threshold on a grid is better than the one found.
+#[test]
+fn no_threshold_on_a_grid_is_better() {
+    let (_directory, signal) = paper_signal();
+    for (scheme, window) in [("sf", ""), ("tbr", ""), ("mw", "--window 3")] {
+        let tuned = row(&format!(
+            "{signal} --channel signal --scheme {scheme} {window} --hold-out 0 --min-efficiency 60 --seconds 60"
+        ));
+        let least = number(&tuned, "/tuned_on/rmse");
+        for threshold in (1..60).map(|step| f64::from(step) * 0.02) {
+            let told = good(
+                &format!(
+                    "score --json --column signal --scheme {scheme} {window} --threshold {threshold} {signal}"
+                ),
+                "",
+            );
+            let scored: Value = serde_json::from_str(&told.output).unwrap();
+            let (efficiency, rmse) = (number(&scored, "/0/efficiency"), number(&scored, "/0/rmse"));
+            assert!(
+                efficiency < 60.0 || rmse >= least * 0.9999,
+                "{scheme} {threshold}: {rmse} < {least}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_settings() {
+    let flight = flight("hexarotor.csv");
+    let tuned = |seed| {
+        row(&format!(
+            "{flight} --channel gyro_x --scheme hsa --min-efficiency 70 {SHORT} --seed {seed}"
+        ))
+    };
+    assert_eq!(tuned(7)["parameters"], tuned(7)["parameters"]);
+}
+
+/// What is written comes back through `--params` with the very figures.
+#[test]
+fn what_is_emitted_is_what_was_scored() {
+    let (_directory, signal) = paper_signal();
+    for (scheme, sample) in
+        [("sf", "f32"), ("t-hsa", "q16.16"), ("mw", "q8.8"), ("tbr", "f32"), ("bsa", "i16")]
+    {
+        let common = format!(
+            "{signal} --channel signal --scheme {scheme} --sample {sample} --hold-out 0 {SHORT}"
+        );
+        if sample == "i16" {
+            // Its steps are as large as the signal moves.
+            continue;
+        }
+        let tuned = row(&common);
+        let toml = good(&format!("tune {common} --emit toml"), "").output;
+        let (_directory, params) = file("tuned.toml", &toml);
+        let scored =
+            good(&format!("score --json --params {params} --column signal {signal}"), "").output;
+        let scored: Value = serde_json::from_str(&scored).unwrap();
+        for figure in ["rmse", "efficiency", "snr"] {
+            let (a, b) = (
+                number(&tuned, &format!("/whole/{figure}")),
+                number(&scored, &format!("/0/{figure}")),
+            );
+            assert!((a - b).abs() < 1e-9 * a.abs(), "{scheme} {figure}: {a} {b}\n{toml}");
+        }
+        let rust = good(&format!("tune {common} --emit rust"), "").output;
+        assert!(rust.contains("pub static SIGNAL: spikewire::") && rust.ends_with(";\n"), "{rust}");
+    }
+}
+
+#[test]
+fn limits_hold_and_what_cannot_be_had_is_told() {
+    let flight = flight("hexarotor.csv");
+    let hsa = format!("{flight} --channel gyro_x --scheme hsa --min-efficiency 50 {SHORT}");
+    let within = row(&format!("{hsa} --max-latency 5 --max-ram 32 --max-instructions 90"));
+    assert!(number(&within, "/costs/latency") <= 5.0 && number(&within, "/costs/ram") <= 32.0);
+    assert!(number(&within, "/costs/instructions") <= 90.0);
+    refused(
+        &format!(
+            "tune {flight} --channel gyro_x --scheme sf --max-rate 0.001 --max-rmse 0.01 {SHORT}"
+        ),
+        "",
+        &["nothing keeps to all limits", "nearest", "--max-rmse 0.01 is ", "threshold="],
+    );
+    refused(&format!("tune {hsa} --max-ram 8"), "", &["--max-ram 8 is "]);
+}
+
+#[test]
+fn a_front_is_drawn() {
+    let (_directory, signal) = paper_signal();
+    let directory = tempfile::tempdir().unwrap();
+    for (name, magic) in [("front.svg", "<svg "), ("front.png", "\u{fffd}PNG")] {
+        let path = directory.path().join(name);
+        let schemes = if name == "front.svg" { "all" } else { "sf" };
+        let arguments = format!(
+            "tune {signal} --channel signal --scheme {schemes} --seconds 60 --evaluations 150"
+        );
+        good(&format!("{arguments} --front {}", path.display()), "");
+        let drawn = std::fs::read(path).unwrap();
+        assert!(String::from_utf8_lossy(&drawn).starts_with(magic));
+        if name == "front.svg" {
+            assert!(String::from_utf8_lossy(&drawn).contains("the paper"));
+        }
+    }
+}
+
+#[test]
+fn several_logs_are_tuned_on_together() {
+    let (_first, one) = file("a.csv", good("signal --seconds 5 --seed 1", "").output);
+    let (_second, other) = file("b.csv", good("signal --seconds 5 --seed 2", "").output);
+    let row = row(&format!(
+        "{one} {other} --channel signal --scheme sf --min-efficiency 70 --hold-out 0"
+    ));
+    assert_eq!(row["tuned_on"]["samples"], 1000);
+    refused(
+        &format!("tune {one} {} --channel all --scheme sf", flight("hexarotor.csv")),
+        "",
+        &["other channels"],
+    );
+}
+
+/// A verdict, and never a figure.
+#[test]
+fn what_says_nothing_is_refused() {
+    let noise = |count: u64| -> Vec<f64> {
+        let next = |state: &mut u64| {
+            *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            Some(((*state >> 33) % 1000) as f64)
+        };
+        let mut state = 1;
+        (0..count).filter_map(|_| next(&mut state)).collect()
+    };
+    let tune = "tune --column x --rate 100 --scheme sf";
+    for (values, words) in [
+        (noise(2000), "nothing but noise"),
+        (vec![3.5; 2000], "never leaves 3.5"),
+        (noise(10), "10 samples are too few"),
+    ] {
+        let (_directory, path) = file("log.csv", table(&values));
+        let ran = spikewire(&format!("{tune} {path}"), "");
+        assert_eq!((ran.status, ran.output.as_str()), (2, ""), "{}", ran.told);
+        assert!(ran.told.contains(words), "{}", ran.told);
+    }
+    let rest = flight("vtol_at_rest.csv");
+    refused(&format!("tune --channel gyro_x --scheme sf {rest}"), "", &["all on the ground"]);
+    let clipped: Vec<f64> =
+        (0..2000).map(|i| (f64::from(i) * 0.05).sin().clamp(-0.5, 0.5)).collect();
+    let (_directory, path) = file("log.csv", table(&clipped));
+    refused(&format!("{tune} {path}"), "", &["the sensor clips", "--anyway"]);
+    let mut holes = "x\n".to_owned();
+    for value in 0..2000 {
+        let text = if value % 3 == 0 {
+            "nan".to_owned()
+        } else {
+            (f64::from(value) * 0.05).sin().to_string()
+        };
+        writeln!(holes, "{text}").unwrap();
+    }
+    let (_directory, path) = file("log.csv", holes);
+    refused(&format!("{tune} {path}"), "", &["not finite"]);
+    refused(&format!("{tune} --skip-non-finite {path}"), "", &["667 of 2000 samples are missing"]);
+    let (_directory, path) = file("log.csv", "x\nnan\nnan\n");
+    refused(&format!("{tune} --skip-non-finite {path}"), "", &["none of the 2 samples is finite"]);
+}
+
+#[test]
+fn options_that_make_no_sense_are_refused() {
+    let flight = flight("hexarotor.csv");
+    for (options, words) in [
+        ("--scheme all", "--scheme all needs one goal"),
+        ("--scheme all --max-rmse 1 --threshold 2", "--scheme all searches all"),
+        ("--scheme sf --window 5", "sf takes no --window"),
+        ("--scheme snf", "there are tbr, mw, sf"),
+        ("--scheme sf --core M55", "there are M0, M4F"),
+        ("--scheme sf --min-efficiency 101", "must be 100 or less"),
+        ("--scheme sf --hold-out 1", "below 1"),
+        ("--scheme sf --evaluations 0", "must be above 0"),
+        ("--scheme sf --below 0Hz", "above 0"),
+    ] {
+        refused(&format!("tune {flight} --channel gyro_x {options}"), "", &[words]);
+    }
+}
