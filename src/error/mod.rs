@@ -57,7 +57,7 @@ pub enum ConfigError {
         /// The value before it, which it must exceed.
         previous: f32,
     },
-    /// All taps are 0: every sample would spike, and decode to 0.
+    /// All taps are 0: spikes would add 0 to the decoded value.
     AllZero {
         /// Which parameter.
         parameter: &'static str,
