@@ -9,27 +9,41 @@ use spikewire::link::{Received, Receiver};
 use spikewire::{Recovery, Sample, SampleKind, Scheme, Spike, Tick};
 use std::any::Any;
 
-/// The channels that a receiver has, at addresses from 0 on.
+/// The most channels of a code of one neuron.
 const MOST: usize = 256;
+
+/// The most channels of any code: with 1024 neurons each they have all addresses.
+const FEWER: usize = 64;
+
+/// The most events of one sample, over all channels.
+const EVENTS: usize = 1 << 14;
+
+/// The sub-timesteps of a sender.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SlotTicks {
+    /// The length of a sub-timestep in µs.
+    pub length: u32,
+    /// The tick of one of the sender's samples.
+    pub start: Tick,
+}
 
 /// What is done with a receiver.
 type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 
-/// Makes a receiver with these settings, one for each channel, or one for all, and hands it on.
+/// Makes a receiver with these settings, one for each channel, or one for all, and passes it to `then`.
 ///
 /// # Errors
-/// A scheme whose decoder does not add up steps, a parameter that makes no sense, or those of what is done with it.
+/// A parameter out of its range, too many channels, or an error of `then`.
 pub(crate) fn with_receiver<'a>(
     scheme: Chosen,
     sample: SampleType,
     settings: &'a [Settings],
+    slot_ticks: Option<SlotTicks>,
     then: impl FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a,
 ) -> Result<()> {
-    let Some(first) = settings.first().filter(|_| settings.len() <= MOST) else {
-        bail!("a receiver has 1 to {MOST} channels")
-    };
+    let first = settings.first().context("a receiver has at least one channel")?;
     let given = Given::new(first, sample.one());
-    let visitor = Receive { scheme, sample, settings, then: Box::new(then) };
+    let visitor = Receive { scheme, sample, settings, slot_ticks, then: Box::new(then) };
     for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.name(), &given, visitor))
 }
 
@@ -37,6 +51,7 @@ struct Receive<'a> {
     scheme: Chosen,
     sample: SampleType,
     settings: &'a [Settings],
+    slot_ticks: Option<SlotTicks>,
     then: Then<'a>,
 }
 
@@ -44,7 +59,7 @@ impl<S: Sample> Visit<S> for Receive<'_> {
     type Output = ();
 
     fn visit<P: Scheme<Sample = S> + 'static>(self, _: P, _: P::EncoderState) -> Result<()> {
-        bail!("a link's receiver adds up steps, which {} does not", self.scheme.name())
+        self.receive::<P, FEWER, EVENTS>()
     }
 
     fn visit_steps<P: Scheme<Sample = S, Code = Spike> + 'static>(
@@ -52,23 +67,45 @@ impl<S: Sample> Visit<S> for Receive<'_> {
         _: P,
         _: P::EncoderState,
     ) -> Result<()> {
-        let Self { scheme, sample, settings, then } = self;
+        self.receive::<P, MOST, 0>()
+    }
+}
+
+impl Receive<'_> {
+    /// Makes a receiver of `N` channels for this scheme.
+    fn receive<P: Scheme + 'static, const N: usize, const EVENTS: usize>(self) -> Result<()> {
+        let Self { scheme, sample, settings, slot_ticks, then } = self;
+        if settings.len() > N {
+            bail!(
+                "{} channels are too many: {} has 1 to {N} channels",
+                settings.len(),
+                scheme.name()
+            );
+        }
         let mut started = Vec::new();
         for own in settings {
             let given = Given::new(own, sample.one());
-            let built = catalogue::visit::<S, _>(scheme.name(), &given, Boxed)?;
-            let start = own.first_value().map(|start| S::from_f64(start * sample.one()));
+            let built = catalogue::visit::<P::Sample, _>(scheme.name(), &given, Boxed)?;
+            let start = own.first_value().map(|start| P::Sample::from_f64(start * sample.one()));
             let Ok(scheme) = built.downcast::<P>() else {
                 bail!("channels of one scheme differ in more than numbers")
             };
-            started.push(Started { scheme: *scheme, start: start.unwrap_or_default() });
+            started.push(Started { scheme: *scheme, start });
         }
-        let first = started.first().context("a receiver has a channel at least")?;
-        let channels = if started.len() == 1 { MOST } else { started.len() };
+        let first = started.first().context("a receiver has at least one channel")?;
+        let channels = if started.len() == 1 { N } else { started.len() };
         let schemes = std::array::from_fn(|channel| started.get(channel).unwrap_or(first));
+        let mut receiver = Receiver::<_, N, EVENTS>::per_channel(schemes);
+        if let Some(SlotTicks { length, start }) = slot_ticks {
+            receiver = receiver.with_slot_ticks(length, start);
+        }
         then(Box::new(Receiving {
-            receiver: Receiver::<_, MOST, 0>::per_channel(schemes),
+            receiver,
             channels,
+            neurons: first.neurons(),
+            has_fired: [P::RECOVERY == Recovery::Keyframe; N],
+            end: None,
+            unused_keyframes: 0,
             one: sample.one(),
             kind: kind(sample),
             outside: 0,
@@ -103,10 +140,10 @@ fn kind(sample: SampleType) -> SampleKind {
     }
 }
 
-/// A scheme whose decoders start from a value other than 0. Only the decoding half is of use.
+/// A scheme whose decoders start from a given value. Only the decoding half is of use.
 struct Started<P: Scheme> {
     scheme: P,
-    start: P::Sample,
+    start: Option<P::Sample>,
 }
 
 impl<P: Scheme> Scheme for Started<P> {
@@ -129,7 +166,9 @@ impl<P: Scheme> Scheme for Started<P> {
 
     fn decoder_state(&self) -> P::DecoderState {
         let mut state = self.scheme.decoder_state();
-        self.scheme.resync(&mut state, self.start);
+        if let Some(start) = self.start {
+            self.scheme.resync(&mut state, start);
+        }
         state
     }
 
@@ -144,11 +183,27 @@ impl<P: Scheme> Scheme for Started<P> {
     fn resync(&self, state: &mut P::DecoderState, value: P::Sample) {
         self.scheme.resync(state, value);
     }
+
+    fn recovery(&self) -> Recovery {
+        self.scheme.recovery()
+    }
+
+    fn neurons(&self) -> usize {
+        self.scheme.neurons()
+    }
 }
 
-struct Receiving<'a, P: Scheme<Code = Spike>> {
-    receiver: Receiver<[&'a Started<P>; MOST], MOST, 0>,
+struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
+    receiver: Receiver<[&'a Started<P>; N], N, EVENTS>,
     channels: usize,
+    /// How many neurons a channel has.
+    neurons: usize,
+    /// The channels that have values: those of temporal codes, and others from their first event on.
+    has_fired: [bool; N],
+    /// A tick at which the last sample heard is over.
+    end: Option<Tick>,
+    /// Keyframes for a code that has none.
+    unused_keyframes: u64,
     /// What a 1 is in the unit of the decoders.
     one: f64,
     /// The sample type of the sender.
@@ -161,7 +216,7 @@ struct Receiving<'a, P: Scheme<Code = Spike>> {
     decoded: Vec<(u16, Tick, P::Sample)>,
 }
 
-impl<P: Scheme<Code = Spike>> Receiving<'_, P> {
+impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS> {
     /// The frame with keyframes of the sender's type as those of the decoders, which run all fixed point of one width
     /// as one type; keyframes of any other type stay another.
     fn in_our_type<'f>(&self, received: &Received<'f>) -> Received<'f> {
@@ -176,13 +231,55 @@ impl<P: Scheme<Code = Spike>> Receiving<'_, P> {
         Received { frame, ..*received }
     }
 
+    /// Which channels are exact.
+    fn exact(&self) -> [bool; N] {
+        std::array::from_fn(|channel| self.receiver.exact(channel as u16).is_some())
+    }
+
+    /// Notes which channels fire, and when the last sample of a frame is over.
+    fn observe(&mut self, received: &Received<'_>) {
+        for event in received.frame.events() {
+            if let Some(has_fired) =
+                self.has_fired.get_mut(usize::from(event.address) / self.neurons)
+            {
+                *has_fired = true;
+            }
+            self.end = Some(event.tick + u32::from(received.frame.period().get()));
+        }
+    }
+
+    /// Adds the values decoded, of which the first so many are keyframes.
+    ///
+    /// A sample becomes exact amid a frame. Its values are called exact from the next frame on, so that no estimate is.
+    fn tell(&mut self, keyframes: usize, before: [bool; N], items: &mut Vec<Item>) {
+        let after = self.exact();
+        for (place, (channel, tick, value)) in self.decoded.drain(..).enumerate() {
+            let at = usize::from(channel);
+            let is_known = |exact: &[bool; N]| exact.get(at).is_some_and(|is_exact| *is_exact);
+            if at >= self.channels {
+                self.outside += 1;
+            } else if is_known(&self.has_fired) {
+                let by_keyframe = P::RECOVERY == Recovery::Keyframe;
+                let known = if place < keyframes {
+                    Known::Keyframe
+                } else if is_known(&after) && (by_keyframe || is_known(&before)) {
+                    Known::Exact
+                } else {
+                    Known::Estimate
+                };
+                let address = (at * self.neurons) as u16;
+                items.push(Item::Value { tick, address, value: value.to_f64() / self.one, known });
+            }
+        }
+    }
+
     /// Compares keyframes with what their channels hold before them, where that is exact.
     fn compare(&mut self, received: &Received<'_>) {
         if received.is_after_break() {
             return;
         }
         for keyframe in received.frame.keyframes() {
-            let known = self.receiver.exact(keyframe.address);
+            let known = self.receiver.exact(keyframe.address); // of a code of one neuron
             let told = keyframe.value::<P::Sample>();
             if let (Some(value), Some(told)) = (known, told)
                 && usize::from(keyframe.address) < self.channels
@@ -194,32 +291,38 @@ impl<P: Scheme<Code = Spike>> Receiving<'_, P> {
     }
 }
 
-impl<P: Scheme<Code = Spike>> Values for Receiving<'_, P> {
+impl<P: Scheme, const N: usize, const EVENTS: usize> Values for Receiving<'_, P, N, EVENTS> {
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>) {
         let received = &self.in_our_type(received);
         if self.are_held {
             self.compare(received);
         }
-        let Self { receiver, channels, one, outside, decoded, .. } = self;
-        // Keyframes come first.
         let keyframes = received.frame.keyframes().filter(|keyframe| {
-            usize::from(keyframe.address) < MOST && keyframe.value::<P::Sample>().is_some()
+            usize::from(keyframe.address) < N * self.neurons
+                && keyframe.value::<P::Sample>().is_some()
         });
-        let keyframes = keyframes.count();
-        receiver.apply(received, |address, tick, value| decoded.push((address, tick, value)));
-        for (place, (address, tick, value)) in decoded.drain(..).enumerate() {
-            if usize::from(address) >= *channels {
-                *outside += 1;
-                continue;
-            }
-            let known = if place < keyframes {
-                Known::Keyframe
-            } else if receiver.exact(address).is_some() {
-                Known::Exact
-            } else {
-                Known::Estimate
-            };
-            items.push(Item::Value { tick, address, value: value.to_f64() / *one, known });
+        let mut keyframes = keyframes.count();
+        match P::RECOVERY {
+            Recovery::Keyframe => {}
+            // Keyframes come among samples, and count as such.
+            Recovery::TimedKeyframe(_) => keyframes = 0,
+            _ => self.unused_keyframes += std::mem::take(&mut keyframes) as u64,
+        }
+        if P::RECOVERY != Recovery::Keyframe {
+            self.observe(received);
+        }
+        let before = if received.is_after_break() { [false; N] } else { self.exact() };
+        let decoded = &mut self.decoded;
+        self.receiver.apply(received, |channel, tick, value| decoded.push((channel, tick, value)));
+        self.tell(keyframes, before, items);
+    }
+
+    fn finish(&mut self, items: &mut Vec<Item>) {
+        if let Some(end) = self.end {
+            let before = self.exact();
+            let decoded = &mut self.decoded;
+            self.receiver.advance(end, |channel, tick, value| decoded.push((channel, tick, value)));
+            self.tell(0, before, items);
         }
     }
 
@@ -228,7 +331,11 @@ impl<P: Scheme<Code = Spike>> Values for Receiving<'_, P> {
     }
 
     fn misfits(&self) -> u64 {
-        self.receiver.misfits().into()
+        u64::from(self.receiver.misfits()).saturating_sub(self.unused_keyframes)
+    }
+
+    fn unused_keyframes(&self) -> u64 {
+        self.unused_keyframes
     }
 
     fn held(&self) -> Held {

@@ -7,8 +7,10 @@ use fixed::types::I8F8;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use spikewire::link::{Coding, Framer, MAX_FRAME, Transmitter};
-use spikewire::temporal::{MovingWindow, StepForward, TemporalContrast};
-use spikewire::{Bank, FromItems, Item, Put, Sample, Spike, Start, Tick};
+use spikewire::population::{Position, Slots};
+use spikewire::rate::{Bsa, Hough, Taps, ThresholdHough};
+use spikewire::temporal::{MovingWindow, SendOnDelta, StepForward, TemporalContrast};
+use spikewire::{Bank, Code, FromItems, Item, Put, Readout, Sample, Scheme, Spike, Start, Tick};
 use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::Path;
@@ -69,6 +71,45 @@ fn board<P: Start<Code = Spike>>(schemes: &[P; CHANNELS]) -> Board<P::Sample> {
         }
     }
     board
+}
+
+/// A board whose code is decoded a sample at a time: its values after each sample, by the address of each channel.
+fn sampled_board<P: Start>(scheme: &P, slot_ticks: u32) -> Board<P::Sample> {
+    let mut bank = Bank::<_, CHANNELS>::new(scheme).with_slot_ticks(slot_ticks);
+    let mut readout = Readout::<_, CHANNELS>::new(scheme).with_slot_ticks(slot_ticks);
+    let mut transmitter = Transmitter::new(Coding::for_channels(3, 1000), 7);
+    let mut board = Board { frames: Vec::new(), values: Vec::new() };
+    let mut buffer = [0; MAX_FRAME];
+    for sample in 0..400_u32 {
+        let wave = |pace: f64| P::Sample::from_f64((f64::from(sample) * pace).sin() * 100.0);
+        let tick = Tick::from(sample * 1000);
+        let mut events = Vec::new();
+        bank.encode(tick, [wave(0.05), wave(0.07), wave(0.11)], |event| events.push(event));
+        for (channel, value) in readout.decode(tick, &events).into_iter().enumerate() {
+            let address = channel * <P as Scheme>::Code::NEURONS;
+            board.values.push((tick.micros(), address as u16, value));
+        }
+        let mut items = FromItems(events.into_iter().map(Item::Event));
+        while let Some(frame) = transmitter.next_frame(&mut items, &mut buffer).unwrap() {
+            board.frames.push(frame.to_vec());
+        }
+    }
+    board
+}
+
+/// All exact values are the board's; returns the lines.
+fn assert_sampled<S: Sample>(board: &Board<S>, frames: &[Vec<u8>], options: &str) -> Vec<Line> {
+    let heard = good_bytes(&format!("listen {options}"), &frames.concat());
+    let lines = values(&heard.output);
+    let exact = lines.iter().filter(|line| line.known == "exact");
+    assert!(exact.clone().count() > 500, "{options}: {}", heard.told);
+    for line in exact {
+        let place =
+            |&(tick, address, _): &(u32, u16, S)| (tick, address) == (line.tick, line.address);
+        let (.., value) = board.values.iter().copied().find(place).unwrap();
+        assert_eq!(S::from_f64(line.value), value, "{options}: {line:?}");
+    }
+    lines
 }
 
 fn three_floats() -> Board<f32> {
@@ -144,6 +185,82 @@ fn values_are_those_of_the_board_bit_for_bit() {
 }
 
 #[test]
+fn values_of_rate_and_population_codes_are_those_of_the_board() {
+    let rate = "--filter triang:15,peak=20 --shift -100";
+    let range = "--min -100 --max 100";
+    let hough = Hough::new(Taps::<f32, 15>::triangular(20.0)).with_shift(-100.0);
+    let hough = sampled_board(&hough, 0);
+    let options = format!("--scheme hsa {rate}");
+    let lines = assert_sampled(&hough, &hough.frames, &options);
+    let end = lines.last().unwrap();
+    assert_eq!((end.tick, end.address, end.known.as_str()), (399_000, 2, "exact"));
+
+    let counts = ThresholdHough::new(Taps::<i16, 15>::triangular(20), 17).with_shift(-100);
+    let counts = sampled_board(&counts, 0);
+    assert_sampled(&counts, &counts.frames, &format!("--sample i16 --scheme t-hsa {rate}"));
+    let bsa = Bsa::subtractive(Taps::<f32, 15>::triangular(20.0), 5.0).with_shift(-100.0);
+    let bsa = sampled_board(&bsa, 0);
+    assert_sampled(&bsa, &bsa.frames, &format!("--scheme bsa {rate}"));
+
+    // Codes of up to 64 neurons and of more have types of their own.
+    let few = sampled_board(&Position::<f32, 20>::linear(-100.0..=100.0), 0);
+    let lines = assert_sampled(&few, &few.frames, &format!("--scheme grf --neurons 20 {range}"));
+    assert_eq!(lines.len(), 3 * 400);
+    assert!(lines.iter().skip(3).all(|line| [0, 20, 40].contains(&line.address)));
+    let many = sampled_board(&Position::<i16, 100>::linear(-100..=100), 0);
+    let options = format!("--sample i16 --scheme position --neurons 100 {range}");
+    assert_sampled(&many, &many.frames, &options);
+    let slots = sampled_board(&Slots::<f32, 15, 10>::new(-100.0..=100.0, 1.5), 50);
+    let options = format!("--scheme grf-slots --neurons 15 --slots 10 {range} --slot-ticks 50");
+    assert_sampled(&slots, &slots.frames, &options);
+}
+
+#[test]
+fn after_a_lost_frame_rate_codes_are_estimates_for_as_long_as_the_filter() {
+    let scheme = Hough::new(Taps::<f32, 15>::triangular(20.0)).with_shift(-100.0);
+    let board = sampled_board(&scheme, 0);
+    let lost = board.frames.len() / 2;
+    let frames = [&board.frames[..lost], &board.frames[lost + 1..]].concat();
+    let options = "--scheme hsa --filter triang:15,peak=20 --shift -100";
+    let lines = assert_sampled(&board, &frames, options);
+    let stale = lines.iter().skip_while(|line| line.known == "estimate");
+    let stale = stale.filter(|line| line.known == "estimate").count();
+    assert!((3 * 14..3 * 30).contains(&stale), "{stale}");
+    assert_eq!(lines.last().unwrap().known, "exact");
+}
+
+#[test]
+fn send_on_delta_is_heard_spike_by_spike() {
+    let scheme = SendOnDelta::<f32, 4>::new(3.1);
+    let mut bank = Bank::<_, CHANNELS>::new(&scheme);
+    let mut transmitter = Transmitter::new(Coding::for_channels(3, 1000), 7);
+    let mut items = Items::default();
+    for sample in 0..400_u16 {
+        let tick = Tick::from(u32::from(sample) * 1000);
+        bank.encode_into(
+            tick,
+            [0.05_f32, 0.07, 0.11].map(|pace| (f32::from(sample) * pace).sin() * 100.0),
+            &mut items,
+        );
+        if sample == 0 {
+            bank.keyframe_into(tick, &mut items);
+        }
+    }
+    let mut bytes = Vec::new();
+    let (mut items, mut buffer) = (FromItems(items.0.into_iter()), [0; MAX_FRAME]);
+    while let Some(frame) = transmitter.next_frame(&mut items, &mut buffer).unwrap() {
+        bytes.extend(frame);
+    }
+    let lines =
+        values(&good_bytes("listen --scheme sod --threshold 3.1 --spikes 4", &bytes).output);
+    assert!(lines.len() > 1000 && lines.iter().all(|line| line.known != "estimate"));
+    for channel in 0..3 {
+        let end = lines.iter().rfind(|line| line.address == channel).unwrap();
+        assert_eq!(Some(end.value as f32), bank.keyframe(channel.into()));
+    }
+}
+
+#[test]
 fn after_a_lost_frame_values_are_estimates_until_the_next_keyframe() {
     let board = three_floats();
     let keyframes = |frame: &Vec<u8>| frame[1] & 2 != 0;
@@ -213,6 +330,11 @@ fn what_no_decoder_is_there_for_is_counted() {
     let told = "\n15 keyframes of another sample type\n";
     assert!(narrow.told.contains(told), "{}", narrow.told);
     assert!(values(&narrow.output).iter().all(|value| value.known == "estimate"));
+
+    let other =
+        good_bytes("listen --scheme hsa --filter triang:3 --shift 0", &board.frames.concat());
+    let told = "\n15 keyframes, which this scheme does not have: is --scheme the sender's?\n";
+    assert!(other.told.contains(told) && !other.told.contains("sample type"), "{}", other.told);
 }
 
 #[test]
@@ -266,8 +388,17 @@ fn events_become_any_format() {
 fn options_that_contradict_are_refused() {
     for (options, words) in [
         ("--threshold 1", ["need --scheme", ""]),
-        ("--scheme hsa", ["invalid value 'hsa'", "tbr, mw, sf"]),
-        ("--scheme sf --filter triang:3", ["--filter", "unexpected argument"]),
+        ("--scheme what", ["invalid value 'what'", "tbr, mw, sf"]),
+        ("--scheme hsa --filter triang:3", ["hsa needs --shift", "as the sender has it"]),
+        ("--scheme hsa --shift 0", ["hsa needs --filter", ""]),
+        ("--scheme grf --neurons 20", ["grf needs --min and --max", "as the sender has it"]),
+        (
+            "--scheme grf-slots --neurons 15 --slots 10 --min 0 --max 1",
+            ["grf-slots needs --slot-ticks", "sub-timesteps"],
+        ),
+        ("--scheme sf --threshold 1 --slot-ticks 5", ["sf has no sub-timesteps", "--slot-ticks"]),
+        ("--slot-ticks 5", ["need --scheme", ""]),
+        ("--scheme sf --threshold 1 --filter triang:3", ["sf takes no --filter", "it takes"]),
         ("--scheme sf", ["sf needs --threshold", ""]),
         ("--scheme sf --threshold 0", ["threshold 0", "above 0"]),
         ("--scheme sf --thresholds 1,0", ["threshold 0", "above 0"]),
@@ -278,7 +409,7 @@ fn options_that_contradict_are_refused() {
             "--scheme sf --threshold 0.001 --sample q8.8",
             ["threshold 0.001 is 0 in q8.8", "0.00390625"],
         ),
-        ("--scheme sf --threshold 1 --from es", ["--from link", "keyframes"]),
+        ("--scheme sf --threshold 1 --from es", ["--from link", "frames"]),
         ("--scheme sf --threshold 1 --to es", ["--to csv", "values"]),
         ("--from what", ["no format `what`", "edvs:e0"]),
         ("--seconds 1", ["--baud", ""]),

@@ -9,8 +9,8 @@ use crate::{Code, ConfigError, Firing, Output, Scheme, Start, error};
 /// The encoders of `N` channels, such as the six of an inertial sensor: one scheme for all channels or one for each,
 /// and a state for each.
 ///
-/// - **Addresses:** neuron `n` of channel `c` has the address `c * NEURONS + n`, where
-///   [`NEURONS`](Code::NEURONS) is the number of neurons of a channel.
+/// - **Addresses:** neuron `n` of channel `c` has the address `c * neurons + n`, where
+///   [`neurons`](Scheme::neurons) is the number of neurons of a channel.
 /// - **Order:** events come by rising address, with the tick of the sample just encoded. A rate code's spike belongs
 ///   to the sample [`LATENCY`](Scheme::LATENCY) samples earlier. With a tick for each
 ///   [sub-timestep](Self::with_slot_ticks), events come in the order of time, as chips, formats and
@@ -113,7 +113,7 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
                     emit(event(tick, first, firing));
                 }
             }
-            first = first.wrapping_add(CodeOf::<T, N>::NEURONS as u16);
+            first = first.wrapping_add(scheme.neurons() as u16);
         }
     }
 
@@ -132,12 +132,12 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         let mut tick = tick;
         for slot in 0..CodeOf::<T, N>::SLOTS {
             let mut first = self.first_address;
-            for code in &codes {
+            for (code, scheme) in codes.iter().zip(self.schemes.each()) {
                 let firings = code.iter().flat_map(Code::firings);
                 for firing in firings.filter(|firing| usize::from(firing.slot) == slot) {
                     emit(event(tick, first, firing));
                 }
-                first = first.wrapping_add(CodeOf::<T, N>::NEURONS as u16);
+                first = first.wrapping_add(scheme.neurons() as u16);
             }
             tick += self.slot_ticks;
         }
@@ -158,7 +158,7 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
             if let Some(value) = scheme.keyframe(state) {
                 queue.put(Item::Keyframe(Keyframe::new(tick, address, value)));
             }
-            address = address.wrapping_add(CodeOf::<T, N>::NEURONS as u16);
+            address = address.wrapping_add(scheme.neurons() as u16);
         }
     }
 

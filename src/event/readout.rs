@@ -9,7 +9,7 @@ use crate::{Code, ConfigError, Firing, Scheme, error};
 /// The decoders of `N` channels, which turn the events of a time step into a value for each channel: the inverse of
 /// a [`Bank`](crate::Bank).
 ///
-/// - **Addresses:** those of a bank: neuron `n` of channel `c` has the address `first + c * NEURONS + n`. The output
+/// - **Addresses:** those of a bank: neuron `n` of channel `c` has the address `first + c * neurons + n`. The output
 ///   neurons of a chip count as addresses.
 /// - **Codes:** all; [`Code::assemble`] says what becomes of neurons that no encoder fires together.
 /// - **Work:** one pass over the events for each channel.
@@ -41,10 +41,20 @@ pub(crate) struct Addresses {
 }
 
 impl Addresses {
-    /// The code of a channel, from the events of a sample at this tick.
-    pub(crate) fn code<C: Code>(self, channel: usize, tick: Tick, events: &[Event]) -> C {
-        let first = self.first.wrapping_add(channel.wrapping_mul(C::NEURONS) as u16);
-        C::assemble(events.iter().filter_map(|event| {
+    /// The code of a channel of this many neurons, from the events of a sample at this tick.
+    pub(crate) fn code<C: Code>(
+        self,
+        channel: usize,
+        neurons: usize,
+        tick: Tick,
+        events: &[Event],
+    ) -> C {
+        let first = self.first.wrapping_add(channel.wrapping_mul(neurons) as u16);
+        // A code leaves out the neurons that it does not have.
+        let is_ours = |event: &Event| {
+            neurons == C::NEURONS || usize::from(event.address.wrapping_sub(first)) < neurons
+        };
+        C::assemble(events.iter().filter(|event| is_ours(event)).filter_map(|event| {
             let since = event.tick.since(tick).max(0) as u32;
             let slot = since.checked_div(self.slot_ticks).unwrap_or(0);
             Some(Firing {
@@ -114,7 +124,8 @@ impl<T: Schemes<N>, const N: usize> Readout<T, N> {
         let mut values = [SampleOf::<T, N>::default(); N];
         let channels = self.states.iter_mut().zip(self.schemes.each()).enumerate();
         for (value, (channel, (state, scheme))) in values.iter_mut().zip(channels) {
-            *value = scheme.decode(state, self.addresses.code(channel, tick, events));
+            let code = self.addresses.code(channel, scheme.neurons(), tick, events);
+            *value = scheme.decode(state, code);
         }
         values
     }

@@ -29,7 +29,8 @@ pub trait Scheme: Sized {
     /// at run time, the largest possible; [`latency`](Self::latency) gives its own.
     const LATENCY: usize;
 
-    /// How a decoder becomes exact again after codes were lost.
+    /// How a decoder becomes exact again after codes were lost. For a filter length chosen at run time, after the
+    /// longest possible; [`recovery`](Self::recovery) gives its own.
     const RECOVERY: Recovery;
 
     /// Encodes one sample.
@@ -111,6 +112,16 @@ pub trait Scheme: Sized {
     /// The latency in samples: how many samples after its own sample a code comes out.
     fn latency(&self) -> usize {
         Self::LATENCY
+    }
+
+    /// How a decoder becomes exact again after codes were lost.
+    fn recovery(&self) -> Recovery {
+        Self::RECOVERY
+    }
+
+    /// How many neurons a channel has. Channels of one bank, readout or receiver have the same number.
+    fn neurons(&self) -> usize {
+        Self::Code::NEURONS
     }
 }
 

@@ -58,7 +58,8 @@ impl Entry for Scheme {
             )
             .with_paper(Paper::Text("1.15"))
             .with_example("0.955")
-            .searched(Search::OfFilter(0.0, 1.0)),
+            .searched(Search::OfFilter(0.0, 1.0))
+            .of_encoder(),
         ],
     };
 

@@ -37,7 +37,8 @@ impl Entry for Scheme {
                 "by how much the signal may fall short of the filter in all, 0 or more",
                 0.85,
             )
-            .searched(Search::OfFilter(0.0, 1.0)),
+            .searched(Search::OfFilter(0.0, 1.0))
+            .of_encoder(),
         ],
     };
 

@@ -11,25 +11,28 @@ use crate::params::{self, Params};
 use crate::port::{Bytes, Port};
 use crate::scheme::Scheme;
 use crate::stop::Stop;
-use crate::values::with_receiver;
+use crate::values::{SlotTicks, with_receiver};
 use anyhow::{Result, bail};
+use catalogue::Parameter;
 use catalogue::run::{Known, Options, SampleType, Settings};
-use catalogue::{Info, Parameter};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
+use spikewire::Tick;
 use std::io::Write;
 use std::path::PathBuf;
 
 /// Listen to what a board sends: events, or with `--scheme` the values they mean.
 ///
-/// Formats are called as in `convert`. Values come from a link, by the receiver that runs on boards:
-/// bit for bit those of the sender's own decoder from a keyframe on until something is lost. Where the
-/// encoder follows its decoder the value just before a keyframe equals it; decoders that drift go on from
-/// the keyframe, which is the sample itself.
+/// Formats are called as in `convert`. Values come from a link, by the receiver that runs on boards. Those
+/// marked `exact` are bit for bit those of a decoder on the sender's side: of a temporal code from a keyframe on until
+/// something is lost, of a rate code after as many samples as its filter has taps, of a population code from the next
+/// spike on. A temporal code has a value for each event; the others have one for each sample and channel, from the
+/// first event of the channel on.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   spikewire listen --baud 921600 /dev/ttyUSB0 -o events.csv
   spikewire listen --baud 921600 /dev/ttyUSB0 --scheme sf --thresholds 0.1,0.1,0.1,0.5,0.5,0.5
+  spikewire listen captured.bytes --scheme grf --neurons 20 --min=-9 --max=9
   spikewire listen captured.bytes --to es -o flight.es")]
 pub(crate) struct Listen {
     /// Serial port, or file of captured bytes; `-` is standard input
@@ -53,7 +56,7 @@ pub(crate) struct Listen {
     #[command(flatten)]
     stream: StreamOptions,
     /// Decode a link's frames by this scheme, the sender's
-    #[arg(long, value_parser = Scheme::parser(Scheme::all().filter(|scheme| adds_up_steps(scheme.info()))))]
+    #[arg(long)]
     scheme: Option<Scheme>,
     /// Sample type of the sender: f32, i16, i32, or fixed point such as q16.16 or q8.8; f32 unless given
     #[arg(long)]
@@ -61,29 +64,31 @@ pub(crate) struct Listen {
     /// File of the sender's parameters, TOML, as `tune --emit toml` writes it; options override it
     #[arg(long, value_name = "FILE", value_parser = params::parse)]
     params: Option<Params>,
+    /// Length of the sender's sub-timesteps in µs, of schemes that have them
+    #[arg(long, value_name = "µs", value_parser = value_parser!(u32).range(1..))]
+    slot_ticks: Option<u32>,
+    /// Tick in µs of one of the sender's samples, from which the others lie whole periods; 0 unless given
+    #[arg(long, value_name = "µs", requires = "slot_ticks")]
+    slot_start: Option<u32>,
     #[command(flatten)]
-    parameters: StepOptions,
-}
-
-fn adds_up_steps(info: &Info) -> bool {
-    info.has_first_value
+    parameters: DecoderOptions,
 }
 
 fn is_recorded(parameter: &Parameter) -> bool {
     parameter.is_recorded
 }
 
-/// The parameters that decoding a step code takes.
+/// The parameters that decoding takes.
 #[derive(Clone, Debug, Default)]
-struct StepOptions {
+struct DecoderOptions {
     options: Options,
-    /// In the place of `--threshold`, one for each channel from address 0 on.
+    /// Instead of `--threshold`, one for each channel from address 0 on.
     thresholds: Vec<f64>,
 }
 
-impl Args for StepOptions {
+impl Args for DecoderOptions {
     fn augment_args(command: Command) -> Command {
-        augment(command, adds_up_steps, is_recorded).arg(
+        augment(command, |_| true, is_recorded).arg(
             Arg::new("thresholds")
                 .long("thresholds")
                 .value_delimiter(',')
@@ -92,7 +97,9 @@ impl Args for StepOptions {
                 .action(ArgAction::Append)
                 .conflicts_with("threshold")
                 .help_heading("Parameters")
-                .help("In the place of --threshold, one for each channel from address 0 on: `0.1,0.1,0.5`"),
+                .help(
+                    "Instead of --threshold, one for each channel from address 0 on: `0.1,0.1,0.5`",
+                ),
         )
     }
 
@@ -101,10 +108,10 @@ impl Args for StepOptions {
     }
 }
 
-impl FromArgMatches for StepOptions {
+impl FromArgMatches for DecoderOptions {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
         let thresholds = matches.get_many("thresholds").into_iter().flatten().copied();
-        let options = given(matches, adds_up_steps, is_recorded);
+        let options = given(matches, |_| true, is_recorded);
         Ok(Self { options, thresholds: thresholds.collect() })
     }
 
@@ -122,13 +129,19 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
     let sample = options.params.as_ref().and_then(|params| params.sample);
     let sample = options.sample.or(sample).unwrap_or_default();
     let Some(scheme) = options.named()? else {
-        if !options.parameters.options.is_empty() || !options.parameters.thresholds.is_empty() {
+        if !options.parameters.options.is_empty()
+            || !options.parameters.thresholds.is_empty()
+            || options.slot_ticks.is_some()
+        {
             bail!("a scheme's parameters need --scheme");
         }
         return listen(options, None);
     };
     let settings = options.settings(scheme, sample)?;
-    with_receiver(scheme, sample, &settings, |values| listen(options, Some((values, sample))))
+    let slot_ticks = options.slot_ticks(scheme, &settings)?;
+    with_receiver(scheme, sample, &settings, slot_ticks, |values| {
+        listen(options, Some((values, sample)))
+    })
 }
 
 fn listen(options: &Listen, values: Option<(Box<dyn Values + '_>, SampleType)>) -> Result<()> {
@@ -178,22 +191,44 @@ impl Listen {
     /// The scheme named, here or in the file of parameters.
     fn named(&self) -> Result<Option<Scheme>> {
         let Some(params) = &self.params else { return Ok(self.scheme) };
-        let scheme = params.agreed(self.scheme)?;
-        if !adds_up_steps(scheme.info()) {
-            bail!("a link's receiver adds up steps, which {} does not", scheme.name());
+        Ok(Some(params.agreed(self.scheme)?))
+    }
+
+    /// The sub-timesteps of the sender, of a scheme that has them.
+    fn slot_ticks(&self, scheme: Scheme, settings: &[Settings]) -> Result<Option<SlotTicks>> {
+        // The spikes of a temporal code are all alike, whatever their sub-timestep.
+        let has_slots = !scheme.info().has_first_value
+            && settings
+                .first()
+                .map(|own| scheme.shape(own))
+                .transpose()?
+                .is_some_and(|shape| shape.slots > 1);
+        let start = Tick::from(self.slot_start.unwrap_or(0));
+        match self.slot_ticks {
+            None if has_slots => {
+                bail!(
+                    "{} needs --slot-ticks, the length of the sender's sub-timesteps in µs",
+                    scheme.name()
+                )
+            }
+            Some(_) if !has_slots => {
+                bail!("{} has no sub-timesteps: it takes no --slot-ticks", scheme.name())
+            }
+            length => Ok(length.map(|length| SlotTicks { length, start })),
         }
-        Ok(Some(scheme))
     }
 
     /// The settings of one channel for all, or of each.
     fn settings(&self, scheme: Scheme, sample: SampleType) -> Result<Vec<Settings>> {
         if !matches!(self.from, Format::Link(_)) {
-            bail!("--scheme needs --from link, whose keyframes say where the sender stands");
+            bail!(
+                "--scheme needs --from link, whose frames say what was lost and where keyframes are"
+            );
         }
         if self.to != Format::Csv {
             bail!("--scheme gives values, which only --to csv holds");
         }
-        let StepOptions { options, thresholds } = &self.parameters;
+        let DecoderOptions { options, thresholds } = &self.parameters;
         let options = &match &self.params {
             Some(params) => options.or(&params.options),
             None => options.clone(),
@@ -216,6 +251,9 @@ impl Listen {
                 if options.get(parameter.name).is_none() {
                     options.set(parameter.name, parameter.example);
                 }
+            }
+            if let Some(missing) = scheme.needs_signal(&options) {
+                bail!("{} needs {missing}, as the sender has it", scheme.name());
             }
             let settings = settings(scheme, &options)?;
             let (settings, rounding) = rounded(scheme, sample, &settings)?;

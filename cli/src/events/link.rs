@@ -8,14 +8,20 @@ use std::io::Write;
 
 /// What decodes the frames of a link.
 pub(crate) trait Values {
-    /// Applies a frame, and adds a value for each of its keyframes and events.
+    /// Decodes a frame, and adds a value for each keyframe and event, or for each sample that is over.
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>);
+
+    /// Adds the values of the last sample, after the last frame.
+    fn finish(&mut self, items: &mut Vec<Item>);
 
     /// How many events and keyframes had an address without a decoder.
     fn outside(&self) -> u64;
 
     /// How many keyframes were of another sample type.
     fn misfits(&self) -> u64;
+
+    /// How many keyframes came for a scheme that has none.
+    fn unused_keyframes(&self) -> u64;
 
     /// How keyframes compare with the values before them.
     fn held(&self) -> Held;
@@ -51,6 +57,9 @@ impl EventReader for LinkReader<'_> {
     fn finish(&mut self, items: &mut Vec<Item>) -> Result<()> {
         self.read(&[0; MAX_FRAME], items)?;
         self.padding = MAX_FRAME as u64;
+        if let Some(values) = &mut self.values {
+            values.finish(items);
+        }
         Ok(())
     }
 
@@ -64,6 +73,7 @@ impl EventReader for LinkReader<'_> {
             repeated: reader.repeated().into(),
             outside: values.map_or(0, Values::outside),
             misfits: values.map_or(0, Values::misfits),
+            unused_keyframes: values.map_or(0, Values::unused_keyframes),
             held: values.map_or_else(Held::default, Values::held),
             ..self.tally
         };

@@ -40,6 +40,8 @@ pub(crate) struct LinkTally {
     pub outside: u64,
     /// Keyframes of another sample type.
     pub misfits: u64,
+    /// Keyframes for a scheme that has none.
+    pub unused_keyframes: u64,
     /// Of keyframes and the values before them.
     pub held: Held,
 }
@@ -72,6 +74,10 @@ impl fmt::Display for Tally {
                 (link.impossible, "frames with events that cannot be"),
                 (link.outside, "events and keyframes at addresses without a decoder"),
                 (link.misfits, "keyframes of another sample type"),
+                (
+                    link.unused_keyframes,
+                    "keyframes, which this scheme does not have: is --scheme the sender's?",
+                ),
             ];
             for (count, what) in rare.into_iter().filter(|(count, _)| *count > 0) {
                 writeln!(f, "{count} {what}")?;

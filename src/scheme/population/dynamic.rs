@@ -128,6 +128,10 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
         Some(state.value())
     }
 
+    fn neurons(&self) -> usize {
+        self.centres.len()
+    }
+
     fn resync(&self, state: &mut Held<S>, value: S) {
         *state = Held::at(value);
     }
@@ -308,6 +312,10 @@ impl<S: Sample, const M: usize> Scheme for Slots<S, M> {
         Some(state.value())
     }
 
+    fn neurons(&self) -> usize {
+        self.fields.centres.len()
+    }
+
     fn resync(&self, state: &mut Held<S>, value: S) {
         *state = Held::at(value);
     }
@@ -419,6 +427,10 @@ mod random {
 
         fn held(&self, state: &Held<S>) -> Option<S> {
             Some(state.value())
+        }
+
+        fn neurons(&self) -> usize {
+            self.fields.centres.len()
         }
 
         fn resync(&self, state: &mut Held<S>, value: S) {

@@ -275,6 +275,10 @@ impl<S: Sample, R: Rule<S, 1>> Scheme for Rate<S, R> {
         self.taps.length() - 1
     }
 
+    fn recovery(&self) -> Recovery {
+        Recovery::Samples(self.taps.length())
+    }
+
     decode!();
 }
 
@@ -370,6 +374,10 @@ impl<S: Sample> Scheme for BsaToolbox<S> {
 
     fn latency(&self) -> usize {
         self.taps.length()
+    }
+
+    fn recovery(&self) -> Recovery {
+        Recovery::Samples(self.taps.length())
     }
 
     decode!();

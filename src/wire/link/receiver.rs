@@ -87,8 +87,7 @@ impl<'a, P: Scheme, const N: usize, const EVENTS: usize> Receiver<[&'a P; N], N,
 }
 
 impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> {
-    const NEURONS: usize = CodeOf::<T, N>::NEURONS;
-    const ADDRESSES: usize = N * Self::NEURONS;
+    const ADDRESSES: usize = N * CodeOf::<T, N>::NEURONS;
     const HAS_KEYFRAMES: bool =
         matches!(T::Scheme::RECOVERY, Recovery::Keyframe | Recovery::TimedKeyframe(_));
 
@@ -204,6 +203,12 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         self.misfits
     }
 
+    /// How many neurons a channel has.
+    #[inline]
+    fn neurons(&self) -> usize {
+        self.schemes.each().next().map_or(1, Scheme::neurons).max(1)
+    }
+
     fn keyframe(
         &mut self,
         keyframe: Keyframe,
@@ -212,8 +217,8 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         if matches!(T::Scheme::RECOVERY, Recovery::TimedKeyframe(_)) {
             self.sample_behind(keyframe.tick, on_value);
         }
-        let channel =
-            usize::from(keyframe.address.wrapping_sub(self.addresses.first)) / Self::NEURONS;
+        let address = usize::from(keyframe.address.wrapping_sub(self.addresses.first));
+        let channel = address / self.neurons();
         let mut channels = self.channels.iter_mut().zip(self.schemes.each());
         let Some((known, scheme)) = channels.nth(channel) else {
             self.outside = self.outside.saturating_add(1);
@@ -233,13 +238,14 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
     #[inline]
     fn event(&mut self, event: Event, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
         let address = usize::from(event.address.wrapping_sub(self.addresses.first));
-        if address >= Self::ADDRESSES {
+        let neurons = self.neurons();
+        if address >= N * neurons {
             self.outside = self.outside.saturating_add(1);
         } else if T::Scheme::RECOVERY == Recovery::Keyframe {
-            let channel = address / Self::NEURONS;
+            let channel = address / neurons;
             let mut channels = self.channels.iter_mut().zip(self.schemes.each());
             if let Some((known, scheme)) = channels.nth(channel) {
-                let neuron = (address % Self::NEURONS) as u16;
+                let neuron = (address % neurons) as u16;
                 let firing = Firing { neuron, slot: 0, polarity: event.polarity };
                 let code = Code::assemble(core::iter::once(firing));
                 known.value = scheme.decode(&mut known.state, code);
@@ -294,9 +300,12 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             self.decode(tick, on_value);
             self.sample.is_whole = is_next_whole;
             self.sample.count = 0;
-            if let Recovery::Samples(recovery)
-            | Recovery::TimedKeyframe(recovery)
-            | Recovery::Fading(recovery) = T::Scheme::RECOVERY
+            let recovery = self.schemes.each().next().map(Scheme::recovery);
+            if let Some(
+                Recovery::Samples(recovery)
+                | Recovery::TimedKeyframe(recovery)
+                | Recovery::Fading(recovery),
+            ) = recovery
             {
                 for sample in (1..samples).take(recovery) {
                     self.decode(tick + sample.wrapping_mul(period.get()), on_value);
@@ -310,11 +319,11 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         let events = self.sample.events.get(..self.sample.count).unwrap_or_default();
         let channels = self.channels.iter_mut().zip(self.schemes.each());
         for (channel, (known, scheme)) in (0..N).zip(channels) {
-            let code: CodeOf<T, N> = self.addresses.code(channel, tick, events);
+            let code: CodeOf<T, N> = self.addresses.code(channel, scheme.neurons(), tick, events);
             known.value = scheme.decode(&mut known.state, code);
             if self.sample.is_whole {
                 known.whole = known.whole.saturating_add(1);
-                known.is_exact |= match T::Scheme::RECOVERY {
+                known.is_exact |= match scheme.recovery() {
                     Recovery::Samples(needed) => known.whole >= needed,
                     Recovery::Spike => code.firings().next().is_some(),
                     Recovery::Keyframe | Recovery::TimedKeyframe(_) | Recovery::Fading(_) => false,
