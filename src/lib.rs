@@ -42,6 +42,10 @@
 //! | | [`Gaussian`](population::Gaussian) (GRF) | a value over an even range |
 //! | | [`Slots`](population::Slots) | a value finer than the neurons, by spike time |
 //! | | `Probabilistic` | a value by chance (feature `rand`) |
+//! | [`timing`] | [`FirstSpike`](timing::FirstSpike) (TTFS) | a value by one spike's time, fine where it is small |
+//! | | [`LatencyPhase`](timing::LatencyPhase) | many channels on one line |
+//! | | [`WeightedPhase`](timing::WeightedPhase) | a value in binary: the finest in few slots |
+//! | | [`Burst`](timing::Burst) | a value by the count and interval of its spikes |
 //!
 //! The paper is Dupeyroux, Stroobants and de Croon, *A toolbox for neuromorphic perception in
 //! robotics*, 2022.
@@ -97,6 +101,7 @@ pub use scheme::dynamic;
 pub use scheme::{
     Calibration, Code, Conditions, Decoder, Differences, Encoder, Firing, Fit, Histogram, Moments,
     Output, Polarity, Recovery, Scheme, Spike, Start, Survey, Unfit, population, rate, temporal,
+    timing,
 };
 pub use wire::format;
 #[cfg(feature = "link")]

@@ -102,4 +102,8 @@ schemes![
     grf,
     grf_slots,
     grf_prob,
+    ttfs,
+    latency_phase,
+    weighted_phase,
+    burst,
 ];

@@ -9,6 +9,9 @@ use spikewire::{
     population::{FiredNeurons, Gaussian, Neuron, Position, Probabilistic, SlotSpikes, Slots},
     rate::{Bsa, BsaToolbox, Criterion, Hough, Scale, Shape, Taps, ThresholdHough},
     temporal::{MovingWindow, StepForward, TemporalContrast},
+    timing::{
+        Burst, BurstSpikes, FirstSpike, LatencyPhase, PhaseBits, PhaseSpikes, Slot, WeightedPhase,
+    },
 };
 
 const fn is_format<T: Format>() {}
@@ -31,6 +34,11 @@ const fn is_format_in<S: Sample + Format>() {
     is_format::<Slots<S, 4, 8>>();
     is_format::<Probabilistic<S, Pcg32, 4, 8>>();
 
+    is_format::<FirstSpike<S, 4>>();
+    is_format::<LatencyPhase<S, 2, 16, 4>>();
+    is_format::<WeightedPhase<S, 4>>();
+    is_format::<Burst<S, 19>>();
+
     is_format::<Calibration<S>>();
     is_format::<Histogram<S, 4>>();
     is_format::<Conditions<S>>();
@@ -39,6 +47,7 @@ const fn is_format_in<S: Sample + Format>() {
 const _: () = {
     is_format::<(Spike, Polarity, Firing, Recovery, SampleKind, Unfit)>();
     is_format::<(Neuron<4>, SlotSpikes<4, 8>, FiredNeurons<4>)>();
+    is_format::<(Slot<4>, PhaseSpikes<2, 16, 4>, PhaseBits<4>, BurstSpikes<19>)>();
     is_format::<(Shape, Differences, ConfigError)>();
     is_format_in::<f32>();
     is_format_in::<i16>();

@@ -7,6 +7,7 @@ mod interleaving_world;
 mod bank;
 mod bsa;
 mod bsa_toolbox;
+mod burst;
 mod calibration;
 mod chip_akd1500;
 mod chip_faults;
@@ -19,12 +20,14 @@ mod chip_xylo;
 mod config_errors;
 mod defmt;
 mod dynamic;
+mod first_spike;
 mod formats_bytes;
 mod formats_peers;
 mod gaussian;
 mod histogram;
 mod hough;
 mod interleaving;
+mod latency_phase;
 mod link_adaptive;
 mod link_bytes;
 mod link_drift;
@@ -51,6 +54,7 @@ mod taps;
 mod temporal_contrast;
 mod threshold_hough;
 mod transcriptions;
+mod weighted_phase;
 
 /// The signals that codecs are counted on.
 #[allow(clippy::pedantic, dead_code, unreachable_pub)]

@@ -9,6 +9,9 @@ use spikewire::{
     population::{FiredNeurons, Neuron, Position, Probabilistic, Slots},
     rate::{Bsa, BsaToolbox, Criterion, Hough, Scale, Shape, Taps, ThresholdHough},
     temporal::{MovingWindow, StepForward, TemporalContrast},
+    timing::{
+        Burst, BurstSpikes, FirstSpike, LatencyPhase, PhaseBits, PhaseSpikes, Slot, WeightedPhase,
+    },
 };
 
 const TAPS: Taps<f32, 3> = Taps::triangular(1.0);
@@ -79,6 +82,33 @@ fn population_schemes_with_their_neurons() {
     assert_json(SLOTS, &json!({ "fields": fields, "floor": 1 }));
     let scheme = Probabilistic::<f32, Pcg32, 4, 128>::new(0.0..=1.0, 1.5);
     assert_json(scheme, &json!({ "fields": fields }));
+}
+
+#[test]
+fn timing_codes_and_schemes() {
+    assert_json(Slot::<4>::new(2), &json!(2));
+    assert_json(PhaseBits::<4>::new(11), &json!(11));
+    assert_json(PhaseSpikes::<2, 16, 4>::new([None, Some(9)]), &json!([[1, 9]]));
+    assert_json(BurstSpikes::<19>::new(2, 7), &json!({ "count": 2, "interval": 7 }));
+
+    let scheme = FirstSpike::new(0.0_f32..=3.0, [1.0, 2.0]);
+    let silence = json!({ "last": 1.0, "value": 0.5 });
+    assert_json(scheme, &json!({ "cells": [1.5, 2.5], "silence": silence, "slots": 2 }));
+    let scheme = WeightedPhase::<i16, 4>::new(0..=999);
+    assert_json(scheme, &json!({ "min": 0, "max": 999, "slots": 4 }));
+    let scheme = LatencyPhase::<i16, 2, 2, 4>::new(0..=9, 2);
+    let cells = json!([0, 5]);
+    assert_json(
+        scheme,
+        &json!({
+            "cells": cells, "max": 9, "width": 2, "period": 4, "neurons": 2, "spacing": 2, "phase": 0
+        }),
+    );
+    let scheme = Burst::<i16, 2>::new(0..=9, 1, 1..=1);
+    assert_json(
+        scheme,
+        &json!({ "cells": [5, 0], "bursts": [[1, 0], [1, 0]], "count": 1, "min": 0 }),
+    );
 }
 
 #[test]

@@ -24,6 +24,12 @@ pub(crate) const fn exp(x: f64) -> f64 {
 
 /// `ln(x)` for normal `x > 0`.
 pub(crate) const fn ln(x: f64) -> f64 {
+    let (exponent, mantissa) = ln_parts(x);
+    exponent * core::f64::consts::LN_2 + mantissa
+}
+
+/// The exponent of a normal `x > 0` to the base 2, and `ln` of the rest: 0 for a power of 2.
+const fn ln_parts(x: f64) -> (f64, f64) {
     const MANTISSA: u64 = (1 << 52) - 1;
     let mut exponent = (x.to_bits() >> 52) as i64 - 1023;
     let mut mantissa = f64::from_bits((x.to_bits() & MANTISSA) | (1023 << 52));
@@ -41,7 +47,19 @@ pub(crate) const fn ln(x: f64) -> f64 {
         power *= square;
         n += 2.0;
     }
-    exponent as f64 * core::f64::consts::LN_2 + 2.0 * sum
+    (exponent as f64, 2.0 * sum)
+}
+
+/// `base^(part/parts)` for normal `base > 0`; exact where base and result are powers of 2.
+pub(crate) const fn power(base: f64, part: f64, parts: f64) -> f64 {
+    let (exponent, mantissa) = ln_parts(base);
+    let exponent = (exponent + mantissa / core::f64::consts::LN_2) * part / parts;
+    let whole = exponent as i64;
+    let rest = exp((exponent - whole as f64) * core::f64::consts::LN_2);
+    if whole < -1022 {
+        return 0.0;
+    }
+    rest * f64::from_bits((whole.wrapping_add(1023) as u64) << 52)
 }
 
 /// The square root of a normal `x > 0`, or 0.
@@ -117,6 +135,17 @@ mod tests {
             assert_close(sqrt(x), libm::sqrt(x));
             let t = f64::from(i) / 1000.0;
             assert_close(sin_pi(t), libm::sin(core::f64::consts::PI * t));
+        }
+    }
+
+    #[test]
+    fn powers() {
+        for part in -8..=0 {
+            assert_eq!(power(256.0, f64::from(part), 8.0), libm::exp2(f64::from(part)));
+            assert_close(
+                power(10_000.0, f64::from(part), 8.0),
+                libm::pow(10.0, f64::from(part) / 2.0),
+            );
         }
     }
 

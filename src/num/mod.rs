@@ -4,6 +4,7 @@
 //! crate can implement it, and only the crate can call them.
 
 mod arithmetic;
+mod binary;
 mod cells;
 mod convert;
 pub(crate) mod curve;
@@ -19,6 +20,7 @@ mod total;
 mod window_sum;
 
 pub(crate) use arithmetic::Arithmetic;
+pub(crate) use binary::Binary;
 pub(crate) use cells::Cells;
 pub(crate) use convert::{
     below_from_f64, floor_from_f64, from_f64, largest_step, one, to_f64, units, word,

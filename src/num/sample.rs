@@ -9,7 +9,7 @@ use fixed::{
     types::extra::{LeEqU16, LeEqU32},
 };
 
-use super::{Arithmetic, Rated, SampleKind, Spaced, Summed, Totalled, Windowed, convert};
+use super::{Arithmetic, Binary, Rated, SampleKind, Spaced, Summed, Totalled, Windowed, convert};
 
 /// A number that comes from a sensor: `f32`, raw `i16` counts, or, with the feature `fixed`,
 /// `FixedI16` and `FixedI32` with any fraction.
@@ -34,6 +34,7 @@ pub trait Sample:
     + Debug
     + Pod
     + Arithmetic
+    + Binary
     + Windowed
     + Rated
     + Spaced

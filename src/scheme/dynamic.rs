@@ -1,4 +1,4 @@
-//! Schemes whose filter length, window or number of neurons is chosen at run time.
+//! Schemes whose filter length, window, number of neurons or of slots is chosen at run time.
 //!
 //! For tools on a computer, as taps, centres and states are on the heap. With the same parameters they give the
 //! results of the schemes in [`rate`](crate::rate), [`temporal`](crate::temporal) and
@@ -25,3 +25,4 @@ pub use super::rate::dynamic::{
     ThresholdHough,
 };
 pub use super::temporal::dynamic::{MovingWindow, MovingWindowState, WIDEST};
+pub use super::timing::dynamic::{Burst, FirstSpike, LatencyPhase, WeightedPhase};

@@ -6,12 +6,14 @@ mod code;
 mod codec;
 #[cfg(feature = "alloc")]
 pub mod dynamic;
+mod held;
 mod histogram;
 mod moments;
 pub mod population;
 pub mod rate;
 mod survey;
 pub mod temporal;
+pub mod timing;
 
 pub use calibrate::{Calibration, Differences};
 pub use code::{Code, Firing, Output, Polarity, Spike};

@@ -18,6 +18,7 @@ mod filter;
 mod finite;
 mod histogram;
 mod hough;
+mod line;
 mod moving_window;
 mod position;
 mod probabilistic;
@@ -27,6 +28,7 @@ mod slots;
 mod step_decoder;
 mod step_forward;
 mod threshold_hough;
+mod timing;
 #[cfg(test)]
 mod worked;
 
@@ -38,6 +40,7 @@ pub use filter::{gaussian, hann, scaled_to_peak, scaled_to_sum, triangular};
 pub use finite::{Finite, split_finite};
 pub use histogram::{even_cell, histogram, quantile_centres};
 pub use hough::hough;
+pub use line::{Exact, Line, edge, even, points};
 pub use moving_window::moving_window;
 pub use position::{nearest, nearest_even};
 pub use probabilistic::{probabilistic, probabilistic_from_levels};
@@ -50,3 +53,7 @@ pub use slots::{
 pub use step_decoder::{step_decode, step_decode_from_first, step_decode_within};
 pub use step_forward::step_forward;
 pub use threshold_hough::threshold_hough;
+pub use timing::{
+    Bursts, Cell, Oscillation, Spikes, first_spike_above, first_spike_linear, latency_phase,
+    latency_phase_decode, log_thresholds, weighted_phase,
+};

@@ -3,6 +3,7 @@
 
 pub(crate) mod fields;
 pub(crate) mod rate;
+pub(crate) mod timing;
 
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::flight;

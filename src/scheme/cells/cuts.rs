@@ -4,7 +4,7 @@ use core::ops::RangeInclusive;
 
 use super::Partition;
 use crate::error;
-use crate::num::{below_from_f64, floor_from_f64, from_f64, to_f64};
+use crate::num::{below_from_f64, floor_from_f64, from_f64, one, to_f64};
 use crate::{ConfigError, Sample, SampleKind};
 
 /// To which of two cells a sample on the edge between them belongs.
@@ -22,7 +22,10 @@ pub(in crate::scheme) enum Side {
 /// a fraction of the range is exact.
 #[derive(Clone, Copy)]
 pub(in crate::scheme) struct Cuts<S, const C: usize> {
+    /// The smallest sample of the first cell.
     min: S,
+    /// The lower end of the first cell.
+    start: f64,
     max: S,
     /// The largest sample of each cell: of the last one, the maximum.
     lasts: [S; C],
@@ -48,7 +51,18 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
             return Err(error);
         }
         let count = if count < C { count } else { C };
-        Ok(Self { min, max, lasts: [max; C], ends: [to_f64(max); C], count })
+        Ok(Self { min, start: to_f64(min), max, lasts: [max; C], ends: [to_f64(max); C], count })
+    }
+
+    /// Cells of the samples above an edge alone.
+    pub(in crate::scheme) const fn above(mut self, start: f64) -> Self {
+        let below = to_f64::<S>(floor_from_f64(start));
+        self.min = match S::KIND {
+            SampleKind::F32 => from_f64((below as f32).next_up() as f64),
+            _ => from_f64(below + one::<S>()),
+        };
+        self.start = start;
+        self
     }
 
     /// Cells of one width: edges at `min + cR/count`, each of which belongs to the upper cell.
@@ -92,9 +106,12 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
         Ok(cuts)
     }
 
-    /// `min + part * R / parts`.
+    /// `min + part * R / parts`; the maximum itself, where the sum may be rounded.
     pub(in crate::scheme) const fn at(&self, part: usize, parts: usize) -> f64 {
-        to_f64(self.min) + part as f64 * (to_f64(self.max) - to_f64(self.min)) / parts as f64
+        if part == parts {
+            return to_f64(self.max);
+        }
+        self.start + part as f64 * (to_f64(self.max) - self.start) / parts as f64
     }
 
     /// Ends a cell at an edge.
@@ -118,27 +135,43 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
 
     /// What a cell decodes to: the middle of its samples, in `f32` of its ends, rounded.
     pub(in crate::scheme) const fn middle(&self, cell: usize) -> S {
-        let (below, last) = match cell.checked_sub(1) {
-            Some(lower) if lower < C => (self.ends[lower], self.last(cell)),
-            _ => (to_f64(self.min), self.last(cell)),
-        };
         if matches!(S::KIND, SampleKind::F32) {
             let end = if cell < C { self.ends[cell] } else { to_f64(self.max) };
-            return from_f64(f64::midpoint(below, end));
+            return from_f64(f64::midpoint(self.start_of(cell), end));
         }
-        floor_from_f64(f64::midpoint(to_f64(self.first(cell)), to_f64(last)))
+        floor_from_f64(f64::midpoint(to_f64(self.first(cell)), to_f64(self.last(cell))))
+    }
+
+    /// So many of the cells.
+    pub(in crate::scheme) const fn counted(self, count: usize) -> Self {
+        Self { count: if count < C { count } else { C }, ..self }
+    }
+
+    /// The smallest sample of each cell; in `f32` its lower end, rounded.
+    pub(in crate::scheme) const fn firsts(&self) -> [S; C] {
+        let mut firsts = [S::ZERO; C];
+        let mut cell = 0;
+        while cell < self.count {
+            firsts[cell] = self.first(cell);
+            cell += 1;
+        }
+        firsts
     }
 
     /// The smallest sample of a cell; in `f32` its lower end, rounded.
-    pub(in crate::scheme) const fn first(&self, cell: usize) -> S {
-        match cell.checked_sub(1) {
-            Some(lower) if lower < C => match S::KIND {
-                SampleKind::F32 => from_f64(self.ends[lower]),
-                SampleKind::Fixed16 { fraction } | SampleKind::Fixed32 { fraction } => {
-                    from_f64(to_f64(self.lasts[lower]) + 1.0 / (1_u64 << fraction) as f64)
-                }
-            },
+    const fn first(&self, cell: usize) -> S {
+        match (S::KIND, cell.checked_sub(1)) {
+            (SampleKind::F32, _) => from_f64(self.start_of(cell)),
+            (_, Some(lower)) if lower < C => from_f64(to_f64(self.lasts[lower]) + one::<S>()),
             _ => self.min,
+        }
+    }
+
+    /// The lower end of a cell.
+    const fn start_of(&self, cell: usize) -> f64 {
+        match cell.checked_sub(1) {
+            Some(lower) if lower < C => self.ends[lower],
+            _ => self.start,
         }
     }
 
@@ -190,6 +223,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
 }
 
 #[cfg(test)]
+#[allow(clippy::indexing_slicing, clippy::unwrap_used)]
 mod tests {
     use super::{Cuts, Side};
     use crate::ConfigError;

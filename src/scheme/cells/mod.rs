@@ -1,11 +1,9 @@
 //! Cells: intervals side by side on the line of values. Many codes number a value's cell and spell the number.
 
-#[allow(dead_code)] // until its first code
 mod cuts;
 mod partition;
 mod search;
 
-#[allow(unused_imports)] // until its first code
 pub(super) use cuts::{Cuts, Side};
 pub(super) use partition::Partition;
 #[cfg(feature = "alloc")]

@@ -43,46 +43,45 @@ pub(in crate::scheme) fn number_by_search<S: Sample>(edges: &[S], value: S) -> u
 // Constants have no iterators, and every index is compared first.
 #[allow(clippy::indexing_slicing)]
 impl<S: Sample, const C: usize> Partition<S, C> {
-    /// The first `count` of the cells; strictly rising edges, the last of which is not used. Fewer than `C` are
-    /// looked up by binary search.
-    pub(in crate::scheme) const fn new(values: [S; C], edges: [S; C], count: usize) -> Self {
+    /// The first `count` of the cells, with strictly rising edges, the last of which is not used.
+    pub(in crate::scheme) const fn new(values: [S; C], mut edges: [S; C], count: usize) -> Self {
         const { assert!(C >= 2 && C <= 1024, "there are 2 to 1024 cells") };
-        if count < C {
-            Self::searched(values, edges, count)
-        } else {
-            Self::with_bins(values, edges)
-        }
-    }
-
-    /// With edges that no value exceeds in the place of those that there are not.
-    const fn searched(values: [S; C], mut edges: [S; C], count: usize) -> Self {
         let mut i = count.saturating_sub(1);
-        while i < C {
+        // No value exceeds the edges of cells that there are not.
+        while i < C && count < C {
             edges[i] = from_f64(f64::INFINITY);
             i += 1;
         }
-        Self { values, edges, bins: Cells::ONE, starts: [[1; 2]; C] }
+        let bins = Self::bins(&edges, count);
+        let (starts, is_unique) = Self::starts(&edges, count, bins);
+        let bins = if is_unique { bins } else { Cells::ONE };
+        Self { values, edges, bins, starts }
     }
 
-    /// Builds the table of bins; a single bin if two edges share one.
-    const fn with_bins(values: [S; C], edges: [S; C]) -> Self {
+    /// Twice as many bins as there may be cells. The first edge lies in the first, the last edge in the last.
+    const fn bins(edges: &[S; C], count: usize) -> Cells {
+        if count < 2 || count > C {
+            return Cells::ONE;
+        }
         let lowest = units(edges[0]);
-        let count = 2 * C;
-        let width = (units(edges[C - 2]) - lowest) / (count - 1) as f64;
-        let bins = cells::<S>(lowest - width / 16.0, width, count);
+        let width = (units(edges[count - 2]) - lowest) / (2 * C - 1) as f64;
+        cells::<S>(lowest - width / 16.0, width, 2 * C)
+    }
+
+    /// The table of bins, and whether no two edges share one.
+    const fn starts(edges: &[S; C], count: usize, bins: Cells) -> ([[u8; 2]; C], bool) {
         let mut starts = [[1; 2]; C];
         let mut edge = 0;
         let mut i = 0;
-        while i < count && edge < u8::MAX as usize {
+        while i < 2 * C && edge < u8::MAX as usize {
             starts[i / 2][i % 2] = edge as u8 + 1;
-            if edge < C - 1 && cell(bins, edges[edge]) == i {
+            if edge + 1 < count && cell(bins, edges[edge]) == i {
                 edge += 1;
             }
             i += 1;
         }
         // Otherwise two edges share a bin, or there are more cells than a byte of the table can number.
-        let bins = if edge == C - 1 && i == count { bins } else { Cells::ONE };
-        Self { values, edges, bins, starts }
+        (starts, edge + 1 == count && i == 2 * C)
     }
 
     /// The number (from 1) of the cell that a finite value belongs to.
@@ -100,8 +99,8 @@ impl<S: Sample, const C: usize> Partition<S, C> {
     /// [`number`](Self::number) by the table of bins; 1 for NaN.
     #[inline]
     pub(in crate::scheme) fn by_bin(&self, value: S) -> usize {
-        let bin = value.cell(self.bins);
-        // A value above all bins belongs to the last cell.
+        // A value above all bins lies above the last edge, as do values of the last bin.
+        let bin = value.cell(self.bins).min(2 * C - 1);
         let lowest = self.starts.as_flattened().get(bin).copied().map_or(C, usize::from);
         let is_beyond = self.edges().get(lowest.wrapping_sub(1)).is_some_and(|&edge| value > edge);
         if is_beyond { lowest.wrapping_add(1) } else { lowest }

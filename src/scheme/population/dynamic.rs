@@ -7,11 +7,11 @@ use alloc::vec::Vec;
 
 use super::centres::{even, gaussian_spaced, halfway_edges};
 use super::fields::tables;
-use super::held::Held;
 use super::{Neuron, PositionState, SlotSpikes, SlotsState};
 use crate::error::{positive, within};
 use crate::num::{Cells, Distance, reach};
 use crate::scheme::cells::{count_preceding, number_by_search};
+use crate::scheme::held::Held;
 use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
 
 /// The most neurons of a population.

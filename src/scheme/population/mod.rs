@@ -7,7 +7,6 @@ mod fields;
 #[cfg(feature = "rand")]
 mod fired_neurons;
 mod gaussian;
-mod held;
 mod neuron;
 mod position;
 #[cfg(feature = "rand")]
@@ -15,10 +14,10 @@ mod probabilistic;
 mod slot_spikes;
 mod slots;
 
+pub use super::held::Held;
 #[cfg(feature = "rand")]
 pub use fired_neurons::FiredNeurons;
 pub use gaussian::Gaussian;
-pub use held::Held;
 pub use neuron::Neuron;
 pub use position::{Position, PositionState};
 #[cfg(feature = "rand")]

@@ -4,9 +4,9 @@ use core::ops::RangeInclusive;
 
 use super::Neuron;
 use super::centres::Centres;
-use super::held::Held;
 use crate::error::unwrap;
 use crate::num::Tally;
+use crate::scheme::held::Held;
 use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 
 /// Position coding: every sample fires the one neuron whose centre is nearest.

@@ -8,9 +8,9 @@ use rand_core::Rng;
 
 use super::FiredNeurons;
 use super::fields::ReceptiveFields;
-use super::held::Held;
 use crate::error::unwrap;
 use crate::num::{Distance, Tally};
+use crate::scheme::held::Held;
 use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
 
 /// Gaussian receptive fields in which a neuron fires with a probability equal to its response, drawn from the

@@ -4,9 +4,9 @@ use core::ops::RangeInclusive;
 
 use super::SlotSpikes;
 use super::fields::ReceptiveFields;
-use super::held::Held;
 use crate::error::{unwrap, within};
 use crate::num::{Distance, Tally};
+use crate::scheme::held::Held;
 use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 
 /// Gaussian receptive fields whose neurons fire in one of `N` sub-timesteps of a sample, its slots.

@@ -1,7 +1,7 @@
-//! The state of the population codes' decoders: the value decoded last.
+//! The state of decoders whose codes stand for themselves: the value decoded last.
 
-/// The state of a population code's decoder: the value decoded last, which holds while no neuron fires. It starts as
-/// the middle centre. 4 bytes in `f32`.
+/// The state of a decoder that adds up nothing: the value decoded last, which holds while there is no spike. It starts as
+/// the middle centre or cell. 4 bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
 pub struct Held<S> {
     value: S,

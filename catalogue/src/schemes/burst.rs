@@ -1,0 +1,131 @@
+//! Burst coding.
+
+#![allow(clippy::needless_range_loop)] // index by index, as the definition
+
+use spikewire::Start;
+use spikewire::timing::{Burst, BurstSpikes};
+
+use crate::plain::Plain;
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
+
+#[cfg(feature = "run")]
+use {
+    crate::run::{Build, Given, Visit},
+    anyhow::Result,
+    spikewire::{Sample, dynamic},
+};
+
+/// Burst coding.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme;
+
+/// Slots enough for five spikes at intervals from 2 to 10.
+const SLOTS: usize = 19;
+
+impl Entry for Scheme {
+    const INFO: Info = Info {
+        name: "burst",
+        title: "Burst",
+        words: "burst coding",
+        good_for: "a value by the count and the interval of its spikes",
+        is_signed: false,
+        has_first_value: false,
+        climbs_by: None,
+        is_drawn: false,
+        colour: [0x9a, 0xa1, 0xab],
+        parameters: &[
+            Parameter::new("slots", Kind::Count, Unit::None, "sub-timesteps a sample, 2 to 256")
+                .with_default("19"),
+            Parameter::new("spikes", Kind::Count, Unit::None, "most spikes a sample, 1 to 255")
+                .with_default("5"),
+            Parameter::new(
+                "shortest",
+                Kind::Count,
+                Unit::None,
+                "shortest interval in slots, from 1 on",
+            )
+            .with_default("2"),
+            Parameter::new(
+                "longest",
+                Kind::Count,
+                Unit::None,
+                "longest interval in slots, up to 255",
+            )
+            .with_default("10"),
+            Parameter::MIN,
+            Parameter::MAX,
+        ],
+    };
+
+    fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let scheme = Burst::<_, SLOTS>::try_new(channel.min..=channel.max, 5, 2..=10)?;
+        visitor.visit("burst", Self::INFO.words, &scheme, Burst::<V::Sample, SLOTS>::START)
+    }
+
+    fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let (min, max) = (signal.min, signal.max);
+        let scheme = Burst::<_, SLOTS>::try_new(min..=max, 5, 2..=10)?;
+        let mut bursts = [(0, V::Sample::default()); SLOTS + 1];
+        for (entry, (burst, value)) in bursts.iter_mut().zip(scheme.bursts()) {
+            *entry = (byte_of(burst), value);
+        }
+        visitor.coded(
+            "burst-5",
+            &scheme,
+            byte_of,
+            burst_of,
+            |signal, bursts| transcribed(signal, min, max, bursts),
+            |codes, values| transcribed_decoder(codes, &bursts, values),
+        )
+    }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        let slots = given.count("slots", 2..=dynamic::LEVELS)?;
+        let byte = |name| given.count(name, 1..=255).map(|count| count as u8);
+        let intervals = byte("shortest")?..=byte("longest")?;
+        let scheme =
+            dynamic::Burst::<S>::try_of(slots, &given.range()?, byte("spikes")?, &intervals)?;
+        visitor.visit(scheme, dynamic::Burst::<S>::START)
+    }
+}
+
+/// A burst as the transcription writes it: 16 times the count and the interval.
+fn byte_of<const N: usize>(burst: BurstSpikes<N>) -> i8 {
+    (burst.count() * 16 + burst.interval()) as i8
+}
+
+/// A burst as the transcription reads it.
+fn burst_of<const N: usize>(byte: i8) -> BurstSpikes<N> {
+    BurstSpikes::new(byte as u8 / 16, byte as u8 % 16).unwrap_or_default()
+}
+
+/// Up to five spikes, at an interval from 10 down to 2.
+#[inline(never)]
+pub fn transcribed<S: Plain>(input: &[S], min: S, max: S, bursts: &mut [i8]) {
+    let range: S::Wide = max.into() - min.into();
+    for i in 0..input.len() {
+        let above = input[i].into() - min.into();
+        let mut count = 0;
+        while count < 5 && above * S::count(5) > range * S::count(count) {
+            count += 1;
+        }
+        let steps = above * S::count(8) / range;
+        let interval = if count > 1 { 10 - S::narrow(steps).to_f64() as i16 } else { 0 };
+        bursts[i] = (count * 16 + interval) as i8;
+    }
+}
+
+/// What each burst stands for, by a list of them.
+#[inline(never)]
+pub fn transcribed_decoder<S: Plain>(codes: &[i8], bursts: &[(i8, S)], values: &mut [S]) {
+    for i in 0..codes.len() {
+        let mut j = 0;
+        while bursts[j].0 != codes[i] {
+            j += 1;
+        }
+        values[i] = bursts[j].1;
+    }
+}

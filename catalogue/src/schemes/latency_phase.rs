@@ -1,0 +1,162 @@
+//! Latency-phase.
+
+#![allow(clippy::needless_range_loop)] // index by index, as the definition
+
+use spikewire::Start;
+use spikewire::timing::{LatencyPhase, PhaseSpikes};
+
+use crate::plain::Plain;
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
+
+#[cfg(feature = "run")]
+use {
+    crate::run::{Build, Given, Shape, Visit},
+    anyhow::Result,
+    spikewire::{Sample, dynamic},
+};
+
+/// Latency-phase.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme;
+
+/// Four neurons, 32 latencies and a period of four slots.
+type Four<S> = LatencyPhase<S, 4, 32, 4>;
+
+impl Entry for Scheme {
+    const INFO: Info = Info {
+        name: "latency-phase",
+        title: "LPC",
+        words: "latency-phase",
+        good_for: "channels that share one line, told apart by the phase of their spikes",
+        is_signed: false,
+        has_first_value: false,
+        climbs_by: None,
+        is_drawn: false,
+        colour: [0x9a, 0xa1, 0xab],
+        parameters: &[
+            Parameter::new(
+                "neurons",
+                Kind::Count,
+                Unit::None,
+                "how many carry each sample, from 1 on",
+            )
+            .with_default("4"),
+            Parameter::new(
+                "latencies",
+                Kind::Count,
+                Unit::None,
+                "how many a sample may have, 2 to 255; with the period at most 257",
+            )
+            .with_default("32"),
+            Parameter::new(
+                "period",
+                Kind::Count,
+                Unit::None,
+                "of the oscillation in slots, a power of 2",
+            )
+            .with_default("4"),
+            Parameter::new(
+                "spacing",
+                Kind::Count,
+                Unit::None,
+                "from one neuron's peaks to the next's, in slots",
+            )
+            .with_default("1"),
+            Parameter::MIN,
+            Parameter::MAX,
+        ],
+    };
+
+    fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let scheme = Four::try_new(channel.min..=channel.max, 1)?;
+        visitor.visit("latency-phase", Self::INFO.words, &scheme, Four::<V::Sample>::START)
+    }
+
+    fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let (min, max) = (signal.min, signal.max);
+        let scheme = Four::try_new(min..=max, 1)?;
+        visitor.neurons::<_, 4>(
+            "latency-phase-4x32",
+            &scheme,
+            &|| Four::<V::Sample>::START,
+            spikes_of,
+            |signal, slots| transcribed(signal, 32, 4, min, max, slots),
+            |slots, _, values| transcribed_decoder(slots, 4, scheme.starts(), max, values),
+        )
+    }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    fn shape(given: &Given) -> Result<Shape> {
+        let slots = given.count("latencies", 2..=255)? + given.count("period", 1..=255)? - 1;
+        Ok(Shape { neurons: given.count("neurons", 1..=255)?, slots })
+    }
+
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        let count = |name| given.count(name, 1..=255);
+        let (latencies, period) = (count("latencies")?, count("period")?);
+        let (neurons, spacing) = (count("neurons")?, count("spacing")? as u16);
+        let scheme = dynamic::LatencyPhase::<S>::try_of(
+            neurons,
+            latencies,
+            period,
+            &given.range()?,
+            spacing,
+        )?;
+        visitor.visit(scheme, dynamic::LatencyPhase::<S>::START)
+    }
+}
+
+/// The code that the transcription writes: the slot of each neuron.
+fn spikes_of<const W: usize, const P: usize>(slots: &[i8]) -> PhaseSpikes<4, W, P> {
+    let slots = core::array::from_fn(|i| slots.get(i).map(|&slot| slot as u16));
+    PhaseSpikes::new(slots).unwrap_or(PhaseSpikes::SILENT)
+}
+
+/// The first peak of each neuron from the latency on, slot by slot; one sample after the other.
+#[inline(never)]
+pub fn transcribed<S: Plain>(
+    input: &[S],
+    latencies: i16,
+    neurons: usize,
+    min: S,
+    max: S,
+    slots: &mut [i8],
+) {
+    let range: S::Wide = max.into() - min.into();
+    for i in 0..input.len() {
+        let cell = (input[i].into() - min.into()) * S::count(latencies) / range;
+        let cell = (S::narrow(cell).to_f64() as i16).min(latencies - 1);
+        for j in 0..neurons {
+            let mut slot = latencies - 1 - cell;
+            while slot as usize % neurons != j {
+                slot += 1;
+            }
+            slots[i * neurons + j] = slot as i8;
+        }
+    }
+}
+
+/// The middle of the cells whose latencies agree with every spike; `starts` are the lower ends of all.
+#[inline(never)]
+pub fn transcribed_decoder<S: Plain>(
+    slots: &[i8],
+    neurons: usize,
+    starts: &[S],
+    max: S,
+    values: &mut [S],
+) {
+    let unit = S::wide(S::MEAN); // of the last place; 0 in floating point
+    for i in 0..values.len() {
+        let (mut least, mut most) = (0, starts.len() - 1);
+        for j in 0..neurons {
+            let slot = slots[i * neurons + j] as usize;
+            least = least.max((slot + 1).saturating_sub(neurons));
+            most = most.min(slot);
+        }
+        let first = starts[starts.len() - 1 - most].into();
+        let end = if least > 0 { starts[starts.len() - least].into() - unit } else { max.into() };
+        values[i] = S::narrow((first + end) / S::count(2));
+    }
+}

@@ -1,0 +1,184 @@
+//! Time to first spike.
+
+#![allow(clippy::needless_range_loop)] // index by index, as the definition
+
+use spikewire::{Scheme as _, Start};
+use spikewire::timing::{FirstSpike, Slot};
+
+use crate::plain::Plain;
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
+
+#[cfg(feature = "run")]
+use {
+    crate::run::{Asked, Build, Given, Settings, Shape, Visit, is_list},
+    anyhow::{Result, bail},
+    spikewire::{Sample, dynamic},
+};
+
+/// Time to first spike.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme;
+
+impl Entry for Scheme {
+    const INFO: Info = Info {
+        name: "ttfs",
+        title: "TTFS",
+        words: "time to first spike",
+        good_for: "a value by one spike's time, the larger the earlier",
+        is_signed: false,
+        has_first_value: false,
+        climbs_by: None,
+        is_drawn: false,
+        colour: [0x9a, 0xa1, 0xab],
+        parameters: &[
+            Parameter::new(
+                "thresholds",
+                Kind::Text,
+                Unit::Signal,
+                "`linear`, `log`, or a rising list such as `0.1,0.3,1`, each of which is a slot",
+            )
+            .with_default("linear"),
+            Parameter::new("slots", Kind::Count, Unit::None, "sub-timesteps a sample, 2 to 256")
+                .with_default("16"),
+            Parameter::new(
+                "ratio",
+                Kind::Number,
+                Unit::None,
+                "of `log`, the range over the part of it that has no spike, above 1",
+            )
+            .with_default("256"),
+            Parameter::MIN,
+            Parameter::MAX,
+        ],
+    };
+
+    fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let scheme = FirstSpike::<_, 16>::try_linear(channel.min..=channel.max)?;
+        visitor.visit("ttfs", Self::INFO.words, &scheme, FirstSpike::<V::Sample, 16>::START)?;
+        let scheme = FirstSpike::<_, 16>::try_logarithmic(channel.min..=channel.max, 256.0)?;
+        visitor.visit(
+            "ttfs-log",
+            "time to first spike, logarithmic",
+            &scheme,
+            FirstSpike::<V::Sample, 16>::START,
+        )
+    }
+
+    fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let (min, max) = (signal.min, signal.max);
+        let scheme = FirstSpike::<_, 16>::try_linear(min..=max)?;
+        visitor.coded(
+            "ttfs-16",
+            &scheme,
+            index_of,
+            slot_of,
+            |signal, slots| transcribed(signal, 16, min, max, slots),
+            |slots, values| transcribed_decoder(slots, scheme.values(), min, values),
+        )?;
+        let scheme = FirstSpike::<_, 16>::try_logarithmic(min..=max, 256.0)?;
+        let silence = scheme.decoder().held().unwrap_or_default();
+        visitor.coded(
+            "ttfs-log-16",
+            &scheme,
+            index_of,
+            slot_of,
+            |signal, slots| transcribed_log(signal, 16, 256.0, min, max, slots),
+            |slots, values| transcribed_decoder(slots, scheme.values(), silence, values),
+        )
+    }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    /// A list of thresholds says how many slots there are.
+    fn resolve(asked: &Asked) -> Result<Settings> {
+        let thresholds = asked.text("thresholds").unwrap_or_default();
+        if !is_list(&thresholds) {
+            return asked.all();
+        }
+        if let Some(option) = ["slots", "ratio"].iter().find(|name| asked.user(name).is_some()) {
+            bail!("--thresholds {thresholds} says it all; --{option} contradicts it");
+        }
+        let mut settings = Settings::default();
+        for name in ["thresholds", "min", "max"] {
+            asked.settle(name, &mut settings)?;
+        }
+        Ok(settings)
+    }
+
+    fn shape(given: &Given) -> Result<Shape> {
+        let slots = match given.word("thresholds")? {
+            thresholds if is_list(thresholds) => given.numbers("thresholds")?.len(),
+            _ => given.count("slots", 2..=dynamic::LEVELS)?,
+        };
+        Ok(Shape { neurons: 1, slots })
+    }
+
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        let (range, slots) = (given.range()?, Self::shape(given)?.slots);
+        let scheme = match given.word("thresholds")? {
+            "linear" => dynamic::FirstSpike::<S>::try_linear_of(slots, &range)?,
+            "log" => {
+                let ratio = given.number("ratio")? as f32;
+                dynamic::FirstSpike::try_logarithmic_of(slots, &range, ratio)?
+            }
+            list if is_list(list) => {
+                dynamic::FirstSpike::try_new_of(&given.signals("thresholds")?, &range)?
+            }
+            word => bail!("thresholds {word}: there are linear, log, and lists of numbers"),
+        };
+        visitor.visit(scheme, dynamic::FirstSpike::<S>::START)
+    }
+}
+
+/// A slot as the transcription writes it.
+pub fn index_of<const N: usize>(slot: Option<Slot<N>>) -> i8 {
+    slot.map_or(-1, |slot| slot.index() as i8)
+}
+
+/// A slot as the transcription reads it.
+pub fn slot_of<const N: usize>(index: i8) -> Option<Slot<N>> {
+    Slot::new(index as u16)
+}
+
+/// A threshold that falls slot by slot, from half a step below the maximum to half a step above the minimum.
+#[inline(never)]
+pub fn transcribed<S: Plain>(input: &[S], count: i16, min: S, max: S, slots: &mut [i8]) {
+    let range: S::Wide = max.into() - min.into();
+    for i in 0..input.len() {
+        let doubled = (input[i].into() - min.into()) * S::count(2 * (count - 1));
+        let mut slot = 0;
+        while slot < count - 1 && doubled <= range * S::count(2 * (count - 1 - slot) - 1) {
+            slot += 1;
+        }
+        slots[i] = slot as i8;
+    }
+}
+
+/// A threshold that decays from the maximum, solved for the time, in `f32` for every sample type; -1 where it is never
+/// crossed.
+#[inline(never)]
+pub fn transcribed_log<S: Plain>(
+    input: &[S],
+    count: i16,
+    ratio: f32,
+    min: S,
+    max: S,
+    slots: &mut [i8],
+) {
+    let (min, max) = (min.to_f64() as f32, max.to_f64() as f32);
+    for i in 0..input.len() {
+        let part = (input[i].to_f64() as f32 - min) / (max - min);
+        let time = -f32::from(count) * libm::logf(part) / libm::logf(ratio);
+        slots[i] = if time < f32::from(count) { time as i8 } else { -1 };
+    }
+}
+
+/// What the slots stand for, the last first; where there is none, the silence.
+#[inline(never)]
+pub fn transcribed_decoder<S: Plain>(slots: &[i8], table: &[S], silence: S, values: &mut [S]) {
+    for i in 0..slots.len() {
+        values[i] =
+            if slots[i] >= 0 { table[table.len() - 1 - slots[i] as usize] } else { silence };
+    }
+}

@@ -1,0 +1,116 @@
+//! Weighted phase.
+
+#![allow(clippy::needless_range_loop)] // index by index, as the definition
+
+use spikewire::Start;
+use spikewire::timing::{PhaseBits, WeightedPhase};
+
+use crate::plain::Plain;
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
+
+#[cfg(feature = "run")]
+use {
+    crate::run::{Build, Given, Shape, Visit},
+    anyhow::Result,
+    spikewire::{Sample, dynamic},
+};
+
+/// Weighted phase.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme;
+
+impl Entry for Scheme {
+    const INFO: Info = Info {
+        name: "weighted-phase",
+        title: "Phase",
+        words: "weighted phase",
+        good_for: "a value in binary digits: the finest in few sub-timesteps",
+        is_signed: false,
+        has_first_value: false,
+        climbs_by: None,
+        is_drawn: false,
+        colour: [0x9a, 0xa1, 0xab],
+        parameters: &[
+            Parameter::new("slots", Kind::Count, Unit::None, "digits a sample, 2 to 16")
+                .with_default("8"),
+            Parameter::MIN,
+            Parameter::MAX,
+        ],
+    };
+
+    fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let scheme = WeightedPhase::<_, 8>::try_new(channel.min..=channel.max)?;
+        visitor.visit(
+            "weighted-phase",
+            Self::INFO.words,
+            &scheme,
+            WeightedPhase::<V::Sample, 8>::START,
+        )
+    }
+
+    fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let (min, max) = (signal.min, signal.max);
+        let scheme = WeightedPhase::<_, 8>::try_new(min..=max)?;
+        visitor.coded(
+            "weighted-phase-8",
+            &scheme,
+            |bits| bits.digits() as i8,
+            |digits| PhaseBits::new(digits as u16),
+            |signal, digits| transcribed(signal, min, max, digits),
+            |digits, values| transcribed_decoder(digits, min, max, values),
+        )
+    }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    fn shape(given: &Given) -> Result<Shape> {
+        Ok(Shape { neurons: 1, slots: given.count("slots", 2..=16)? })
+    }
+
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        let slots = Self::shape(given)?.slots as u8;
+        let scheme = dynamic::WeightedPhase::<S>::try_new(given.range()?)?;
+        visitor.visit(scheme.try_with_slots(slots)?, dynamic::WeightedPhase::<S>::START)
+    }
+}
+
+/// A place in the range, doubled digit by digit.
+#[inline(never)]
+pub fn transcribed<S: Plain>(input: &[S], min: S, max: S, digits: &mut [i8]) {
+    let range: S::Wide = max.into() - min.into();
+    for i in 0..input.len() {
+        let mut rest = input[i].into() - min.into();
+        let mut code = 0_u8;
+        for _ in 0..8 {
+            rest += rest;
+            code <<= 1;
+            if input[i] >= max {
+                code |= 1;
+            } else if rest >= range {
+                rest -= range;
+                code |= 1;
+            }
+        }
+        digits[i] = code as i8;
+    }
+}
+
+/// The middle of the values with these digits.
+#[inline(never)]
+pub fn transcribed_decoder<S: Plain>(digits: &[i8], min: S, max: S, values: &mut [S]) {
+    let range: S::Wide = max.into() - min.into();
+    let unit = S::wide(S::MEAN); // of the last place; 0 in floating point
+    for i in 0..digits.len() {
+        let code = i16::from(digits[i] as u8);
+        let above = if unit > S::Wide::default() {
+            let start = |code| (range * S::count(code) + unit * S::count(255)) / S::count(256);
+            let last = if code == 255 { range } else { start(code + 1) - unit };
+            // Halves, rounded down.
+            start(code) + (last - start(code)) / S::count(2)
+        } else {
+            range * S::count(2 * code + 1) / S::count(512)
+        };
+        values[i] = S::narrow(min.into() + above);
+    }
+}

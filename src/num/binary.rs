@@ -1,0 +1,130 @@
+//! Arithmetic of the weighted phase code: a value's place in its range, in binary digits.
+
+use super::arithmetic::for_each_integer;
+
+/// Fractions of a range in binary.
+pub(crate) trait Binary: Sized {
+    /// The first `count` binary digits of `(self - min) / (max - min)`, up to 16; all ones from `max` on.
+    fn digits(self, min: Self, max: Self, count: u32) -> u32;
+
+    /// The middle of the values with these digits.
+    fn of_digits(digits: u32, count: u32, min: Self, max: Self) -> Self;
+
+    /// The middle of two values, rounded down in fixed point.
+    fn middle(self, other: Self) -> Self;
+
+    /// The largest value below the start of a cell: in `f32` the start itself.
+    fn before(self) -> Self;
+}
+
+/// Ones in the last `count` places, up to 16.
+#[inline]
+const fn ones(count: u32) -> u32 {
+    0xffff >> (16_u32.saturating_sub(count) & 31)
+}
+
+impl Binary for f32 {
+    /// Rounds `self - min` and `max - min` once each; the rest is exact.
+    #[inline]
+    fn digits(self, min: f32, max: f32, count: u32) -> u32 {
+        if self >= max {
+            return ones(count);
+        }
+        let range = max - min;
+        let mut rest = if self > min { self - min } else { 0.0 };
+        let mut digits = 0;
+        for _ in 0..count {
+            rest += rest;
+            digits <<= 1;
+            if rest >= range {
+                rest -= range;
+                digits |= 1;
+            }
+        }
+        digits
+    }
+
+    /// `min + (max - min) (2 digits + 1) / 2^(count + 1)`: the quotient is exact, the rest rounded once each.
+    #[inline]
+    fn of_digits(digits: u32, count: u32, min: f32, max: f32) -> f32 {
+        let half = f32::from_bits((126_u32.wrapping_sub(count) & 0xff) << 23);
+        min + (max - min) * ((2 * digits + 1) as f32 * half)
+    }
+
+    #[inline]
+    fn middle(self, other: f32) -> f32 {
+        self * 0.5 + other * 0.5
+    }
+
+    #[inline]
+    fn before(self) -> f32 {
+        self
+    }
+}
+
+macro_rules! integer {
+    // 16 digits of a range of 16 bits fit 32.
+    ([$($generics:tt)*] $sample:ty, i16, $to_bits:path, $from_bits:path) => {
+        integer!(@ [$($generics)*] $sample, i16, u32, $to_bits, $from_bits);
+    };
+    ([$($generics:tt)*] $sample:ty, i32, $to_bits:path, $from_bits:path) => {
+        integer!(@ [$($generics)*] $sample, i32, u64, $to_bits, $from_bits);
+    };
+    (@ [$($generics:tt)*] $sample:ty, $bits:ty, $wide:ty, $to_bits:path, $from_bits:path) => {
+        impl<$($generics)*> Binary for $sample {
+            #[inline]
+            fn digits(self, min: Self, max: Self, count: u32) -> u32 {
+                if self >= max {
+                    return ones(count);
+                }
+                let [value, min, max] = [self.max(min), min, max].map(|x| i32::from($to_bits(x)));
+                let range = max.wrapping_sub(min).cast_unsigned();
+                let mut rest = value.wrapping_sub(min).cast_unsigned();
+                let mut digits = 0;
+                for _ in 0..count {
+                    // Doubled, the rest may leave 32 bits: it is compared with what it lacks to the range.
+                    let lacking = range.wrapping_sub(rest);
+                    digits <<= 1;
+                    if rest >= lacking {
+                        rest = rest.wrapping_sub(lacking);
+                        digits |= 1;
+                    } else {
+                        rest = rest.wrapping_add(rest);
+                    }
+                }
+                digits
+            }
+
+            #[inline]
+            fn of_digits(digits: u32, count: u32, min: Self, max: Self) -> Self {
+                let [low, high] = [min, max].map(|x| i32::from($to_bits(x)));
+                let range = <$wide>::from(high.wrapping_sub(low).cast_unsigned());
+                let first_with = |digits: u32| {
+                    let above = range.wrapping_mul(<$wide>::from(digits));
+                    low.wrapping_add((above.wrapping_add(ones(count).into()) >> (count & 31)) as i32)
+                };
+                let first = first_with(digits);
+                let last = if digits == ones(count) {
+                    high
+                } else {
+                    first_with(digits.wrapping_add(1)).wrapping_sub(1)
+                };
+                $from_bits(first.wrapping_add(last.wrapping_sub(first) >> 1) as $bits)
+            }
+
+            #[inline]
+            fn middle(self, other: Self) -> Self {
+                let [low, high] = [self, other].map(|x| i32::from($to_bits(x)));
+                // Both halves, and 1 where neither lost a half.
+                let halves = (low >> 1).wrapping_add(high >> 1);
+                $from_bits(halves.wrapping_add(low & high & 1) as $bits)
+            }
+
+            #[inline]
+            fn before(self) -> Self {
+                $from_bits($to_bits(self).wrapping_sub(1))
+            }
+        }
+    };
+}
+for_each_integer!(integer);

@@ -1,0 +1,243 @@
+//! Burst coding: the larger the value, the more spikes, and the closer together.
+
+use core::ops::RangeInclusive;
+
+use super::{BurstSpikes, TimingState};
+use crate::error::{unwrap, within};
+use crate::num::to_f64;
+use crate::scheme::cells::{Cuts, Partition, Side, count_preceding};
+use crate::scheme::held::Held;
+use crate::{ConfigError, Recovery, Sample, Scheme, Start};
+
+/// Burst coding: every sample is a burst whose spike count and interval tell the value.
+///
+/// With `p = x - min` and `R = max - min`, a burst has `⌈pS/R⌉` spikes, up to `S`, in the slots `0, T, 2T, …`, where
+/// `T = longest - ⌊(longest - shortest) p/R⌋`.
+///
+/// - **N:** 2 to 256 slots a sample, enough for all bursts. **S:** 1 to `N`, at most 255. **Intervals:** 1 slot or
+///   more.
+/// - **Latency:** 0 samples. **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes `12 N + 20` bytes
+///   of flash in `f32`.
+/// - **Work:** one multiplication and two comparisons; `log2 N` comparisons to decode.
+/// - **Exactness:** fixed point compares with exact edges; `f32` with edges computed in double precision and rounded
+///   once.
+/// - **Decoder:** the middle of the values with this count and interval. No spike is the minimum; a burst that no
+///   value has changes nothing.
+/// - **Error:** half a cell, so at most `R/2S` within the range; in fixed point up to 1 unit of the last place more.
+/// - **Silence** is a value: the minimum. A sample that is not finite has no spike, either.
+///
+/// Source: Guo et al., *Neural coding in spiking neural networks*, 2021.
+///
+/// ```
+/// use spikewire::{Code, Scheme, timing::Burst};
+///
+/// const LIGHT: Burst<i16, 19> = Burst::new(0..=255, 5, 2..=10);
+///
+/// let burst = LIGHT.encoder().encode(100);
+/// assert_eq!((burst.count(), burst.interval()), (2, 7));
+/// assert_eq!(LIGHT.decoder().decode(burst), 99);
+/// ```
+///
+/// Too few slots do not compile:
+///
+/// ```compile_fail
+/// # use spikewire::timing::Burst;
+/// const SHORT: Burst<i16, 16> = Burst::new(0..=255, 5, 2..=10);
+/// # let _ = SHORT;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(bound = "S: serde::Serialize"))]
+pub struct Burst<S: Sample, const N: usize> {
+    /// The cells above the minimum.
+    cells: Partition<S, N>,
+    /// Count and interval of each cell.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array"))]
+    bursts: [[u8; 2]; N],
+    /// How many cells there are.
+    count: u16,
+    min: S,
+}
+
+// Constants have no iterators, and every index is compared first.
+#[allow(clippy::indexing_slicing)]
+impl<S: Sample, const N: usize> Burst<S, N> {
+    const SHAPE: () = assert!(N >= 2 && N <= 256, "a sample has 2 to 256 slots");
+
+    /// Bursts of up to so many spikes, at intervals in slots from the shortest to the longest. For constants, where
+    /// bad parameters fail the build.
+    ///
+    /// # Panics
+    /// As [`try_new`](Self::try_new) fails.
+    pub const fn new(range: RangeInclusive<S>, spikes: u8, intervals: RangeInclusive<u8>) -> Self {
+        unwrap(Self::of(&range, spikes, [*intervals.start(), *intervals.end()], N))
+    }
+
+    /// Bursts of up to so many spikes, at intervals in slots from the shortest to the longest.
+    ///
+    /// # Errors
+    /// The ends are not finite or do not rise; the number of spikes or an interval is 0, or the shortest interval
+    /// exceeds the longest; a burst takes more than `N` slots; or the sample type is too coarse for so many spikes.
+    pub const fn try_new(
+        range: RangeInclusive<S>,
+        spikes: u8,
+        intervals: RangeInclusive<u8>,
+    ) -> Result<Self, ConfigError> {
+        Self::of(&range, spikes, [*intervals.start(), *intervals.end()], N)
+    }
+
+    /// With so many slots, of which there is room for `N`.
+    pub(super) const fn of(
+        range: &RangeInclusive<S>,
+        spikes: u8,
+        [shortest, longest]: [u8; 2],
+        slots: usize,
+    ) -> Result<Self, ConfigError> {
+        const { Self::SHAPE };
+        if let Err(error) = within("spikes", spikes as f64, 1.0, 255.0) {
+            return Err(error);
+        }
+        if let Err(error) = within("shortest interval", shortest as f64, 1.0, longest as f32) {
+            return Err(error);
+        }
+        let min = *range.start();
+        let whole = match Cuts::<S, N>::new(range, N) {
+            Ok(cuts) => cuts,
+            Err(error) => return Err(error),
+        };
+        let (counts, steps) = (spikes as usize, (longest - shortest) as usize);
+        let mut cuts = whole.above(to_f64(min));
+        let mut bursts = [[1, 0]; N];
+        // The largest sample below the cell, and how many edges of counts and of intervals lie there.
+        let (mut below, mut passed, mut shorter) = (to_f64(min), 1, steps / counts);
+        let (mut cell, mut most) = (0, 1);
+        loop {
+            let by_count = whole.set(0, whole.at(passed, counts), Side::Low);
+            let by_interval = whole.set(0, whole.at(shorter + 1, max(steps, 1)), Side::Up);
+            let (at_count, at_interval) = (to_f64(by_count.last(0)), to_f64(by_interval.last(0)));
+            let (has_count, has_interval) = (passed < counts, shorter < steps);
+            if has_count && at_count <= below {
+                passed += 1;
+                continue;
+            }
+            if has_interval && at_interval <= below {
+                shorter += 1;
+                continue;
+            }
+            let interval = longest - shorter as u8;
+            if cell < N {
+                bursts[cell] = if passed > 1 { [passed as u8, interval] } else { [1, 0] };
+            }
+            most = max(most, (passed - 1) * interval as usize + 1);
+            if has_count && !(has_interval && at_interval < at_count) {
+                cuts = cuts.set(cell, whole.at(passed, counts), Side::Low);
+                below = at_count;
+            } else if has_interval {
+                cuts = cuts.set(cell, whole.at(shorter + 1, steps), Side::Up);
+                below = at_interval;
+            } else {
+                break;
+            }
+            cell += 1;
+        }
+        // Bursts that fit have no more cells than slots.
+        let most = if cell < N { most } else { max(most, N + 1) };
+        if let Err(error) = within("slots of the longest burst", most as f64, 1.0, 256.0) {
+            return Err(error);
+        }
+        if let Err(error) = within("slots", slots as f64, most as f32, 256.0) {
+            return Err(error);
+        }
+        match cuts.counted(cell + 1).partition() {
+            Ok(cells) => Ok(Self { cells, bursts, count: cell as u16 + 1, min }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The bursts that values have, the lowest first, and what each decodes to.
+    pub fn bursts(&self) -> impl Iterator<Item = (BurstSpikes<N>, S)> {
+        let spiking = self.bursts.iter().zip(self.cells.as_array()).take(self.count.into());
+        let spiking = spiking.map(|(&burst, &value)| (BurstSpikes::of(burst), value));
+        core::iter::once((BurstSpikes::SILENT, self.min)).chain(spiking)
+    }
+
+    #[inline]
+    fn burst(&self, sample: S) -> BurstSpikes<N> {
+        if sample <= self.min {
+            return BurstSpikes::SILENT;
+        }
+        let cell = self.cells.number(sample).wrapping_sub(1);
+        self.bursts.get(cell).map_or(BurstSpikes::SILENT, |&burst| BurstSpikes::of(burst))
+    }
+
+    #[inline]
+    fn value(&self, burst: BurstSpikes<N>) -> Option<S> {
+        if burst.count() == 0 {
+            return Some(self.min);
+        }
+        let at = |cell: usize| self.bursts.get(cell).map(|&burst| BurstSpikes::<N>::of(burst));
+        let cell = count_preceding(self.count.into(), |cell| {
+            at(cell).is_some_and(|known| known.rank() < burst.rank())
+        });
+        at(cell).filter(|&known| known == burst).and_then(|_| self.cells.get(cell))
+    }
+}
+
+const fn max(a: usize, b: usize) -> usize {
+    if a > b { a } else { b }
+}
+
+impl<S: Sample, const N: usize> Start for Burst<S, N> {
+    const START: TimingState = TimingState::START;
+}
+
+impl<S: Sample, const N: usize> Scheme for Burst<S, N> {
+    type Sample = S;
+    type Code = BurstSpikes<N>;
+    type Output = BurstSpikes<N>;
+    type EncoderState = TimingState;
+    type DecoderState = Held<S>;
+
+    const LATENCY: usize = 0;
+    /// A sample stands for itself, also one without a spike.
+    const RECOVERY: Recovery = Recovery::Samples(1);
+
+    #[inline]
+    fn encode(&self, state: &mut TimingState, sample: S) -> BurstSpikes<N> {
+        state.accept(sample).map_or(BurstSpikes::SILENT, |sample| self.burst(sample))
+    }
+
+    fn encode_slice(
+        &self,
+        state: &mut TimingState,
+        samples: &[S],
+        outputs: &mut [BurstSpikes<N>],
+    ) -> usize {
+        for (output, &sample) in outputs.iter_mut().zip(samples) {
+            *output = self.encode(state, sample);
+        }
+        samples.len().min(outputs.len())
+    }
+
+    fn rejected(state: &TimingState) -> u32 {
+        state.rejected()
+    }
+
+    /// The minimum.
+    fn decoder_state(&self) -> Held<S> {
+        Held::at(self.min)
+    }
+
+    #[inline]
+    fn decode(&self, state: &mut Held<S>, burst: BurstSpikes<N>) -> S {
+        state.or_hold(self.value(burst))
+    }
+
+    fn held(&self, state: &Held<S>) -> Option<S> {
+        Some(state.value())
+    }
+
+    fn resync(&self, state: &mut Held<S>, value: S) {
+        *state = Held::at(value);
+    }
+}

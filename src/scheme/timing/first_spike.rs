@@ -1,0 +1,328 @@
+//! Time to first spike: the larger the value, the earlier its spike.
+
+use core::ops::RangeInclusive;
+
+use super::{Slot, TimingState};
+use crate::error::{not_rising, range as check_range, unwrap, within};
+use crate::num::curve::power;
+use crate::num::{from_f64, to_f64};
+use crate::scheme::cells::{Cuts, Partition, Side};
+use crate::scheme::held::Held;
+use crate::{ConfigError, Recovery, Sample, Scheme, Start};
+
+/// Time to first spike: one spike a sample, in the slot that tells the cell of the value, the highest cell first.
+///
+/// - **Cells:** [even points](Self::linear), [logarithmic](Self::logarithmic), or above the
+///   [user's thresholds](Self::new). Below all thresholds there is no spike.
+/// - **N:** 2 to 256 slots a sample, each as long as the caller makes it.
+/// - **Latency:** 0 samples. **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes `10 N + 24` bytes
+///   of flash in `f32`.
+/// - **Work:** one multiplication and two comparisons; where cells are not even, `log2 N` comparisons. No
+///   exponential, logarithm or division.
+/// - **Exactness:** fixed point compares with exact edges; `f32` with edges computed in double precision and rounded
+///   once.
+/// - **Decoder:** the middle of the cell. No spike decodes to the middle of the values below all thresholds; where
+///   there are none, the value before holds. A sample that is not finite has no spike, either.
+/// - **Error:** half a cell within the range: `R/(2(N-1))` if linear, with `R = max - min`;
+///   `(x - min)(D^(1/N) - 1)/2` if logarithmic, above the lowest edge; in fixed point up to 1 unit of the last place
+///   more.
+///
+/// Source: Thorpe 1990; the linear slots are those of `SpikingJelly` and of snnTorch, the logarithmic ones those of a
+/// threshold that decays (Guo et al., *Neural coding in spiking neural networks*, 2021).
+///
+/// ```
+/// use spikewire::{Scheme, timing::FirstSpike};
+///
+/// const LIGHT: FirstSpike<i16, 8> = FirstSpike::logarithmic(0..=25_500, 256.0);
+///
+/// let spike = LIGHT.encoder().encode(20_000);
+/// assert_eq!(spike.map(|slot| slot.index()), Some(0)); // above half the range
+/// assert_eq!(LIGHT.decoder().decode(spike), 19_125);
+/// ```
+///
+/// A single slot does not compile:
+///
+/// ```compile_fail
+/// # use spikewire::timing::FirstSpike;
+/// const NONE: FirstSpike<f32, 1> = FirstSpike::linear(-1.0..=1.0);
+/// # let _ = NONE;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(bound = "S: serde::Serialize"))]
+pub struct FirstSpike<S: Sample, const N: usize> {
+    cells: Partition<S, N>,
+    silence: Option<Silence<S>>,
+    slots: u16,
+}
+
+/// The values that have no spike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+struct Silence<S> {
+    /// The largest of them.
+    last: S,
+    /// What they decode to.
+    value: S,
+}
+
+// Constants have no iterators, and every index is compared first.
+#[allow(clippy::indexing_slicing)]
+impl<S: Sample, const N: usize> FirstSpike<S, N> {
+    const SHAPE: () = assert!(N >= 2 && N <= 256, "a sample has 2 to 256 slots");
+
+    /// The user's thresholds, strictly rising, within a range: the slot is the number of thresholds that the value
+    /// does not exceed. For constants, where bad thresholds fail the build.
+    ///
+    /// Those of a leaky integrate-and-fire neuron at a constant input are `θ/(1 - e^(-(t+1)/τ))`, `t` from `N-1`
+    /// down to 0.
+    ///
+    /// # Panics
+    /// As [`try_new`](Self::try_new) fails.
+    pub const fn new(range: RangeInclusive<S>, thresholds: [S; N]) -> Self {
+        unwrap(Self::of_thresholds(&range, &thresholds))
+    }
+
+    /// The user's thresholds, strictly rising, within a range: the slot is the number of thresholds that the value
+    /// does not exceed.
+    ///
+    /// # Errors
+    /// The ends or a threshold are not finite or do not rise; or no sample lies between two of them.
+    pub const fn try_new(
+        range: RangeInclusive<S>,
+        thresholds: [S; N],
+    ) -> Result<Self, ConfigError> {
+        Self::of_thresholds(&range, &thresholds)
+    }
+
+    /// Even points: slot `t` stands for `max - tR/(N-1)`, and each value fires in the slot of the nearest point,
+    /// halfway between two in the later. For constants, where a bad range fails the build.
+    ///
+    /// # Panics
+    /// As [`try_linear`](Self::try_linear) fails.
+    pub const fn linear(range: RangeInclusive<S>) -> Self {
+        unwrap(Self::of_points(&range, N))
+    }
+
+    /// Even points: slot `t` stands for `max - tR/(N-1)`, and each value fires in the slot of the nearest point,
+    /// halfway between two in the later.
+    ///
+    /// # Errors
+    /// The ends are not finite or do not rise; or the sample type is too coarse for so many slots.
+    pub const fn try_linear(range: RangeInclusive<S>) -> Result<Self, ConfigError> {
+        Self::of_points(&range, N)
+    }
+
+    /// Logarithmic thresholds `min + R D^(c/N - 1)`, `c` from 0 to `N-1`: each slot spans the same ratio. Values up
+    /// to the lowest threshold have no spike. For constants, where bad parameters fail the build.
+    ///
+    /// `D` is the dynamic range, from the maximum to the lowest threshold. A threshold `θ e^(-t/τ)` that decays over
+    /// `N` slots has `D = e^(N/τ)`.
+    ///
+    /// # Panics
+    /// As [`try_logarithmic`](Self::try_logarithmic) fails.
+    pub const fn logarithmic(range: RangeInclusive<S>, dynamic_range: f32) -> Self {
+        unwrap(Self::of_logarithms(&range, dynamic_range, N))
+    }
+
+    /// Logarithmic thresholds `min + R D^(c/N - 1)`, `c` from 0 to `N-1`: each slot spans the same ratio. Values up
+    /// to the lowest threshold have no spike.
+    ///
+    /// # Errors
+    /// The ends are not finite or do not rise; the dynamic range is not above 1 and finite; or the sample type is
+    /// too coarse for so many slots.
+    pub const fn try_logarithmic(
+        range: RangeInclusive<S>,
+        dynamic_range: f32,
+    ) -> Result<Self, ConfigError> {
+        Self::of_logarithms(&range, dynamic_range, N)
+    }
+
+    pub(super) const fn of_points(
+        range: &RangeInclusive<S>,
+        slots: usize,
+    ) -> Result<Self, ConfigError> {
+        const { Self::SHAPE };
+        let cells = match Cuts::points(range, slots) {
+            Ok(cuts) => cuts.partition(),
+            Err(error) => return Err(error),
+        };
+        match cells {
+            Ok(cells) => Ok(Self { cells, silence: None, slots: slots as u16 }),
+            Err(error) => Err(error),
+        }
+    }
+
+    pub(super) const fn of_logarithms(
+        range: &RangeInclusive<S>,
+        dynamic_range: f32,
+        slots: usize,
+    ) -> Result<Self, ConfigError> {
+        let least = 1.0_f32.next_up();
+        let (min, max) = (to_f64(*range.start()), to_f64(*range.end()));
+        match (
+            check_range(min, max),
+            within("dynamic range", dynamic_range as f64, least, f32::MAX),
+        ) {
+            (Err(error), _) | (_, Err(error)) => return Err(error),
+            _ => {}
+        }
+        let mut edges = [0.0; N];
+        let mut c = 0;
+        while c < slots && c < N {
+            let part = c as f64 - slots as f64;
+            edges[c] =
+                min + whole::<S>((max - min) * power(dynamic_range as f64, part, slots as f64));
+            c += 1;
+        }
+        Self::of_edges(range, &edges, slots)
+    }
+
+    const fn of_thresholds(
+        range: &RangeInclusive<S>,
+        thresholds: &[S; N],
+    ) -> Result<Self, ConfigError> {
+        Self::of_some_thresholds(range, thresholds)
+    }
+
+    /// Up to `N` thresholds.
+    pub(super) const fn of_some_thresholds(
+        range: &RangeInclusive<S>,
+        thresholds: &[S],
+    ) -> Result<Self, ConfigError> {
+        let mut edges = [0.0; N];
+        let mut i = 0;
+        while i < thresholds.len() && i < N {
+            edges[i] = to_f64(thresholds[i]);
+            if let Err(error) = crate::error::finite("threshold", edges[i]) {
+                return Err(error);
+            }
+            if i > 0 && edges[i] <= edges[i - 1] {
+                return Err(not_rising("thresholds", i, edges[i], edges[i - 1]));
+            }
+            i += 1;
+        }
+        Self::of_edges(range, &edges, i)
+    }
+
+    /// Cells above the first edge, and silence below.
+    const fn of_edges(
+        range: &RangeInclusive<S>,
+        edges: &[f64; N],
+        slots: usize,
+    ) -> Result<Self, ConfigError> {
+        const { Self::SHAPE };
+        let mut cuts = match Cuts::<S, N>::new(range, slots) {
+            Ok(cuts) => cuts,
+            Err(error) => return Err(error),
+        };
+        let below = cuts.set(0, edges[0], Side::Low);
+        let silence = Silence { last: below.last(0), value: below.middle(0) };
+        if to_f64(silence.last) < to_f64(*range.start()) {
+            return Err(ConfigError::EmptyCell { cell: 0, cells: slots + 1 });
+        }
+        cuts = cuts.above(edges[0]);
+        let mut c = 1;
+        while c < slots && c < N {
+            cuts = cuts.set(c - 1, edges[c], Side::Low);
+            c += 1;
+        }
+        match cuts.partition() {
+            Ok(cells) => Ok(Self { cells, silence: Some(silence), slots: slots as u16 }),
+            Err(ConfigError::EmptyCell { cell, cells }) => {
+                Err(ConfigError::EmptyCell { cell: cell + 1, cells: cells + 1 })
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// What each slot decodes to, the last slot first.
+    pub const fn values(&self) -> &[S; N] {
+        self.cells.as_array()
+    }
+
+    #[inline]
+    fn slot(&self, sample: S) -> Option<Slot<N>> {
+        if self.silence.is_some_and(|silence| sample <= silence.last) {
+            return None;
+        }
+        let number = self.cells.number(sample) as u16;
+        Slot::counted(self.slots.wrapping_add(1).wrapping_sub(number))
+    }
+
+    #[inline]
+    fn value(&self, slot: Option<Slot<N>>) -> Option<S> {
+        match slot {
+            Some(slot) => {
+                let cell = usize::from(self.slots).checked_sub(usize::from(slot.index()) + 1)?;
+                self.cells.get(cell)
+            }
+            None => self.silence.map(|silence| silence.value),
+        }
+    }
+}
+
+/// A part of the range, or the sample that it misses by no more than its rounding.
+const fn whole<S: Sample>(part: f64) -> f64 {
+    const ROUNDING: f64 = 1e-13;
+    let nearest = to_f64::<S>(from_f64(part));
+    let missed = nearest - part;
+    if missed <= ROUNDING * part && -missed <= ROUNDING * part { nearest } else { part }
+}
+
+impl<S: Sample, const N: usize> Start for FirstSpike<S, N> {
+    const START: TimingState = TimingState::START;
+}
+
+impl<S: Sample, const N: usize> Scheme for FirstSpike<S, N> {
+    type Sample = S;
+    type Code = Option<Slot<N>>;
+    type Output = Option<Slot<N>>;
+    type EncoderState = TimingState;
+    type DecoderState = Held<S>;
+
+    const LATENCY: usize = 0;
+    /// A sample stands for itself, also one without a spike.
+    const RECOVERY: Recovery = Recovery::Samples(1);
+
+    #[inline]
+    fn encode(&self, state: &mut TimingState, sample: S) -> Option<Slot<N>> {
+        state.accept(sample).and_then(|sample| self.slot(sample))
+    }
+
+    fn encode_slice(
+        &self,
+        state: &mut TimingState,
+        samples: &[S],
+        outputs: &mut [Option<Slot<N>>],
+    ) -> usize {
+        for (output, &sample) in outputs.iter_mut().zip(samples) {
+            *output = self.encode(state, sample);
+        }
+        samples.len().min(outputs.len())
+    }
+
+    fn rejected(state: &TimingState) -> u32 {
+        state.rejected()
+    }
+
+    /// The value of no spike, or of the middle cell.
+    fn decoder_state(&self) -> Held<S> {
+        let middle = || self.cells.get(usize::from(self.slots / 2));
+        Held::at(self.value(None).or_else(middle).unwrap_or(S::ZERO))
+    }
+
+    #[inline]
+    fn decode(&self, state: &mut Held<S>, slot: Option<Slot<N>>) -> S {
+        state.or_hold(self.value(slot))
+    }
+
+    fn held(&self, state: &Held<S>) -> Option<S> {
+        Some(state.value())
+    }
+
+    fn resync(&self, state: &mut Held<S>, value: S) {
+        *state = Held::at(value);
+    }
+}

@@ -1,0 +1,81 @@
+//! The spikes of neurons that share an oscillation, as the code of a sample.
+
+use crate::{Code, Firing, Output, Polarity};
+
+/// The spikes of one sample: one of each of `M` neurons, in slots below `W + P - 1`.
+///
+/// `2 M` bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct PhaseSpikes<const M: usize, const W: usize, const P: usize> {
+    /// The number of each neuron's slot, from 1; 0 is none.
+    numbers: [u16; M],
+}
+
+impl<const M: usize, const W: usize, const P: usize> PhaseSpikes<M, W, P> {
+    /// No spike.
+    pub const SILENT: Self = Self { numbers: [0; M] };
+
+    /// How many slots there are.
+    const SLOTS: usize = W + P - 1;
+
+    /// Each neuron in its slot, or silent. `None` if there is no such slot.
+    pub fn new(slots: [Option<u16>; M]) -> Option<Self> {
+        let exist = slots.iter().flatten().all(|&slot| usize::from(slot) < Self::SLOTS);
+        exist.then(|| Self { numbers: slots.map(|slot| slot.map_or(0, |slot| slot + 1)) })
+    }
+
+    /// Each neuron in the slot that a function gives.
+    #[inline]
+    pub(super) fn of(slots: impl Iterator<Item = u16>) -> Self {
+        let mut spikes = Self::SILENT;
+        for (number, slot) in spikes.numbers.iter_mut().zip(slots) {
+            *number = slot.wrapping_add(1);
+        }
+        spikes
+    }
+
+    /// The neurons that fire, by rising index, each with its slot.
+    pub fn iter(&self) -> impl Iterator<Item = (u16, u16)> {
+        let slots = (0..).zip(self.numbers);
+        slots.filter_map(|(neuron, number): (u16, u16)| Some((neuron, number.checked_sub(1)?)))
+    }
+}
+
+impl<const M: usize, const W: usize, const P: usize> Code for PhaseSpikes<M, W, P> {
+    const NEURONS: usize = M;
+    const SLOTS: usize = Self::SLOTS;
+
+    fn firings(&self) -> impl Iterator<Item = Firing> {
+        self.iter().map(|(neuron, slot)| Firing { neuron, slot, polarity: Polarity::Up })
+    }
+
+    /// Each neuron in the slot of its first spike.
+    fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
+        let mut spikes = Self::SILENT;
+        for Firing { neuron, slot, .. } in firings {
+            let number = spikes.numbers.get_mut(usize::from(neuron));
+            if let Some(number) = number.filter(|_| usize::from(slot) < Self::SLOTS) {
+                let earlier = number.checked_sub(1).map_or(slot, |known| known.min(slot));
+                *number = earlier.wrapping_add(1);
+            }
+        }
+        spikes
+    }
+}
+
+impl<const M: usize, const W: usize, const P: usize> Output for PhaseSpikes<M, W, P> {
+    type Code = Self;
+
+    fn code(self) -> Option<Self> {
+        Some(self)
+    }
+}
+
+/// The firing neurons, each with its slot: `[[0, 12], [1, 9]]`.
+#[cfg(feature = "serde")]
+impl<const M: usize, const W: usize, const P: usize> serde::Serialize for PhaseSpikes<M, W, P> {
+    fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        crate::serial::sequence(|| self.iter(), serializer)
+    }
+}

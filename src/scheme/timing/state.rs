@@ -1,0 +1,29 @@
+//! The state of the timing codes' encoders.
+
+use crate::Sample;
+use crate::num::Tally;
+
+/// The state of a timing code's encoder: the count of rejected samples. 4 bytes.
+#[derive(Clone, Copy, Debug)]
+pub struct TimingState {
+    tally: Tally,
+}
+
+impl TimingState {
+    pub(super) const START: Self = Self { tally: Tally::NONE };
+
+    /// A sample that is finite; another is counted.
+    #[inline]
+    pub(super) fn accept<S: Sample>(&mut self, sample: S) -> Option<S> {
+        if sample.is_finite() {
+            Some(sample)
+        } else {
+            self.tally.reject();
+            None
+        }
+    }
+
+    pub(super) const fn rejected(self) -> u32 {
+        self.tally.rejected()
+    }
+}
