@@ -2,8 +2,8 @@
 
 #![allow(clippy::needless_range_loop)] // index by index, as the definition
 
-use spikewire::{Scheme as _, Start};
 use spikewire::timing::{FirstSpike, Slot};
+use spikewire::{Scheme as _, Start};
 
 use crate::plain::Plain;
 use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
