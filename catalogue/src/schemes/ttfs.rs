@@ -46,7 +46,7 @@ impl Entry for Scheme {
                 Unit::None,
                 "of `log`, the range over the part of it that has no spike, above 1",
             )
-            .with_default("256"),
+            .with_default("32"),
             Parameter::MIN,
             Parameter::MAX,
         ],
@@ -55,7 +55,7 @@ impl Entry for Scheme {
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = FirstSpike::<_, 16>::try_linear(channel.min..=channel.max)?;
         visitor.visit("ttfs", Self::INFO.words, &scheme, FirstSpike::<V::Sample, 16>::START)?;
-        let scheme = FirstSpike::<_, 16>::try_logarithmic(channel.min..=channel.max, 256.0)?;
+        let scheme = FirstSpike::<_, 16>::try_logarithmic(channel.min..=channel.max, 32.0)?;
         visitor.visit(
             "ttfs-log",
             "time to first spike, logarithmic",
@@ -75,14 +75,14 @@ impl Entry for Scheme {
             |signal, slots| transcribed(signal, 16, min, max, slots),
             |slots, values| transcribed_decoder(slots, scheme.values(), min, values),
         )?;
-        let scheme = FirstSpike::<_, 16>::try_logarithmic(min..=max, 256.0)?;
+        let scheme = FirstSpike::<_, 16>::try_logarithmic(min..=max, 32.0)?;
         let silence = scheme.decoder().held().unwrap_or_default();
         visitor.coded(
             "ttfs-log-16",
             &scheme,
             index_of,
             slot_of,
-            |signal, slots| transcribed_log(signal, 16, 256.0, min, max, slots),
+            |signal, slots| transcribed_log(signal, 16, 32.0, min, max, slots),
             |slots, values| transcribed_decoder(slots, scheme.values(), silence, values),
         )
     }
