@@ -9,6 +9,7 @@ mod fit;
 mod input;
 mod live;
 mod look;
+mod network;
 mod options;
 mod output;
 mod params;
@@ -48,6 +49,7 @@ enum Command {
     Score(score::Score),
     Bench(commands::bench::Bench),
     Plot(commands::plot::Plot),
+    Network(commands::network::Network),
     Info(info::Info),
     Signal(signal::Signal),
     Tune(commands::tune::Tune),
@@ -66,6 +68,7 @@ fn main() -> ExitCode {
         Command::Score(options) => score::run(&options),
         Command::Bench(options) => commands::bench::run(&options),
         Command::Plot(options) => commands::plot::run(&options),
+        Command::Network(options) => commands::network::run(&options),
         Command::Info(options) => info::run(&options),
         Command::Signal(options) => signal::run(&options),
         Command::Tune(options) => commands::tune::run(&options),

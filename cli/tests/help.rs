@@ -4,8 +4,10 @@ mod common;
 
 use common::good;
 
-const COMMANDS: [&str; 10] =
-    ["encode", "decode", "listen", "convert", "score", "bench", "plot", "info", "signal", "tune"];
+const COMMANDS: [&str; 11] = [
+    "encode", "decode", "listen", "convert", "score", "bench", "plot", "network", "info", "signal",
+    "tune",
+];
 
 #[test]
 fn every_command_has_an_example_that_its_options_allow() {

@@ -28,6 +28,7 @@ mod peers;
 mod picture;
 mod progress;
 mod qemu;
+mod rate_loop;
 mod recipe;
 mod schemes;
 mod setup;

@@ -17,5 +17,6 @@ pub fn peers() -> Result<()> {
     let install =
         ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"];
     run(command(&python).args(install).arg("host-tests/peers/requirements.txt"))?;
-    run(tests("--test all formats_peers -- --ignored")?.env("PEERS_PYTHON", &python))
+    run(tests("--test all formats_peers -- --ignored")?.env("PEERS_PYTHON", &python))?;
+    run(tests("--test network -- --ignored")?.env("PEERS_PYTHON", &python))
 }

@@ -1,6 +1,8 @@
 //! `cargo verify`: every check, in order, each with its time. A failure does not hide the next one.
 
-use crate::{checks, cpu, link, logging, long, needs, package, parts, recipe, storm, usage::usage};
+use crate::{
+    checks, cpu, link, logging, long, needs, package, parts, rate_loop, recipe, storm, usage::usage,
+};
 use anyhow::{Result, bail};
 use std::time::Instant;
 
@@ -41,6 +43,7 @@ const STEPS: &[Step] = &[
     step("storm", "more events than main takes, on emulated boards and host", storm::storm),
     step("logging", "defmt out of emulated boards, decoded on the host", logging::logging),
     step("link", "a flight over a serial line, board against host", link::link),
+    step("loop", "a flight through a chip's model, board against host", rate_loop::rate_loop),
     step("laptop", "the laptop program on a flight, and the paper's tables", checks::laptop),
     step("bench", "instruction counts against the baseline", checks::bench),
 ];

@@ -7,6 +7,7 @@ pub(crate) mod decode;
 pub(crate) mod encode;
 pub(crate) mod info;
 pub(crate) mod listen;
+pub(crate) mod network;
 pub(crate) mod plot;
 pub(crate) mod score;
 pub(crate) mod signal;

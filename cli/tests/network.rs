@@ -1,0 +1,163 @@
+//! Networks onto tinyODIN: from NIR and JSON to the constant, what it costs, and what is refused.
+
+mod common;
+
+use common::{file, flight, good, refused, spikewire};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// How `roll.nir` was trained, if it had been.
+const CODE: &str = "--scheme position --neurons 20 --min -2 --max 2 --column gyro_x";
+
+fn peers(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers").join(name)
+}
+
+fn network(file: &str) -> String {
+    format!("network {file} {CODE} {}", flight("hexarotor.csv"))
+}
+
+/// The figures of a line of the report.
+fn figures(told: &str, start: &str) -> Vec<f64> {
+    let line = told.lines().find_map(|line| line.strip_prefix(start)).expect(start);
+    let numbers = line.split([' ', ',', ';', '%', ':']);
+    numbers.filter_map(|number| number.parse().ok()).collect()
+}
+
+/// The firmware `rate-loop` compiles it for every core, and flies it in QEMU.
+#[test]
+fn a_nir_graph_becomes_the_constant_of_the_firmware() {
+    let ran = good(&network(&peers("roll.nir").display().to_string()), "");
+    let firmware = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/rate-loop/src/roll.rs");
+    assert_eq!(ran.output, fs::read_to_string(firmware).unwrap());
+    let [neurons, _, spikes, on_chip, distance] = figures(&ran.told, "node `lif1`: ")[..] else {
+        panic!("{}", ran.told)
+    };
+    assert_eq!(neurons, 12.0);
+    assert!(spikes > 2_000.0 && (spikes - on_chip).abs() < 0.05 * spikes, "{}", ran.told);
+    assert!(distance < 0.1 * spikes, "{}", ran.told);
+    let winners = figures(&ran.told, "the output that fires most is the same in ");
+    assert!(winners[0] > 80.0, "{}", ran.told);
+}
+
+/// A network of the chip's own numbers: with a threshold between whole numbers nothing is rounded. One spike a sample
+/// reaches one neuron after the other, so that neither order nor sums within a step play a part.
+#[test]
+fn a_network_that_the_chip_can_hold_costs_nothing() {
+    let json = r#"{"layers": [
+        {"name": "one", "weights": [[3, 0], [0, 5]], "threshold": 11.5},
+        {"name": "two", "weights": [[7, -4]], "threshold": [12.5]},
+        {"weights": [[2]], "threshold": 3.5}
+    ]}"#;
+    let (_directory, path) = file("whole.json", json);
+    let sf = format!("--scheme sf --threshold 0.05 --column gyro_x {}", flight("hexarotor.csv"));
+    let ran = good(&format!("network {path} {sf}"), "");
+    assert!(ran.told.contains("\noutputs agree in 100.0 % of 3627 steps"), "{}", ran.told);
+    for layer in ["one", "two", "layer 3"] {
+        let figures = figures(&ran.told, &format!("{layer}: "));
+        let [_, clipped, spikes, on_chip, distance] = figures[..] else { panic!("{}", ran.told) };
+        assert!(spikes > 10.0, "{}", ran.told);
+        assert_eq!((clipped, distance, on_chip), (0.0, 0.0, spikes), "{}", ran.told);
+    }
+    assert!(ran.output.contains("    outputs: [3],\n"), "{}", ran.output);
+    assert!(ran.output.contains("TinyOdinNetwork<2, 4, 1>"), "{}", ran.output);
+    assert!(!ran.output.contains("BIAS"));
+}
+
+#[test]
+fn a_bias_becomes_an_input() {
+    let json = r#"{"layers": [{"weights": [[0, 0]], "bias": [0.25], "threshold": 1.1}]}"#;
+    let (_directory, path) = file("bias.json", json);
+    let sf = format!("--scheme sf --threshold 0.1 --column gyro_x {}", flight("hexarotor.csv"));
+    let ran = good(&format!("network {path} {sf}"), "");
+    assert!(ran.output.contains("pub const BIAS: u16 = 2;"), "{}", ran.output);
+    assert!(ran.told.contains("outputs agree in 100.0 % of 3627 steps"), "{}", ran.told);
+}
+
+#[test]
+fn what_is_no_network_or_does_not_fit_is_refused_by_name() {
+    let json = |layers: &str, words: &[&str]| {
+        let (_directory, path) = file("net.json", format!("{{\"layers\": [{layers}]}}"));
+        let sf = format!("--scheme sf --threshold 1 --column gyro_x {}", flight("hexarotor.csv"));
+        refused(&format!("network {path} {sf}"), "", words);
+    };
+    let ones = |rows: usize, columns: usize| {
+        let row = format!("[{}]", vec!["1"; columns].join(","));
+        format!("{{\"weights\": [{}], \"threshold\": 1}}", vec![row; rows].join(","))
+    };
+    json("", &["net.json", "no layer"]);
+    json(&[ones(2, 2), ones(2, 2), ones(2, 2), ones(2, 2)].join(","), &["4 layers", "3 at most"]);
+    json(&ones(257, 2), &["layer 1: the chip has 256 neurons"]);
+    json(&[ones(255, 2), ones(1, 255)].join(","), &["2 inputs with 256 neurons", "need 258"]);
+    json(&[ones(3, 2), ones(2, 4)].join(","), &["layer 2: weights for 4 inputs", "3 neurons"]);
+    json(&ones(2, 3), &["layer 1 has 3 inputs, but sf gives 2, of 1 column, each up and down"]);
+    json(r#"{"weights": [[1, 2], [1]], "threshold": 1}"#, &["neuron 1 has 1 weights"]);
+    json(r#"{"weights": [[1, 1e999]], "threshold": 1}"#, &["number out of range"]);
+    json(r#"{"weights": [[1, 1]], "threshold": 0}"#, &["layer 1: neuron 0 fires at 0 above rest"]);
+    json(r#"{"weights": [[1, 1]], "threshold": [1, 2]}"#, &["2 values of `threshold` for 1"]);
+    json(r#"{"weights": [[1, 1]], "threshold": 1, "keep": 1.5}"#, &["keeps 1.5"]);
+    json(r#"{"weights": [[1, 1]], "threshold": 1, "leek": 1}"#, &["unknown field `leek`"]);
+    json(r#"{"weights": [], "threshold": 1}"#, &["layer 1: no weights"]);
+
+    let hexarotor = flight("hexarotor.csv");
+    refused(&network(&hexarotor), "", &["hexarotor.csv: neither a NIR graph", "JSON"]);
+    refused(&network("nowhere.nir"), "", &["nowhere.nir: cannot be opened"]);
+    let roll = peers("roll.nir").display().to_string();
+    let dt = format!("{} --dt 0.1", network(&roll));
+    refused(&dt, "", &["roll.nir: node `lif1`", "0.03 s is shorter than a step of 0.1 s", "--dt"]);
+    let other =
+        format!("network {roll} --scheme position --neurons 10 --column gyro_x {hexarotor}");
+    refused(&other, "", &["node `lif1` has 20 inputs, but position gives 10"]);
+}
+
+/// A damaged file is refused, or is another network; the program never breaks down.
+#[test]
+fn damaged_files_are_refused() {
+    let whole = fs::read(peers("roll.nir")).unwrap();
+    let (_directory, table) = file("short.csv", "x\n1\n2\n3\n1\n");
+    let code = format!("--scheme position --neurons 20 --dt 0.005 --column x {table}");
+    let mut refusals = 0;
+    for at in (8..whole.len()).step_by(whole.len() / 60) {
+        let mut flipped = whole.clone();
+        flipped[at] ^= 0x55;
+        for bytes in [&whole[..at], &flipped] {
+            let (_directory, path) = file("damaged.nir", bytes);
+            let ran = spikewire(&format!("network {path} {code}"), "");
+            assert!([0, 2].contains(&ran.status), "{at}: {} {}", ran.status, ran.told);
+            refusals += usize::from(ran.status == 2);
+        }
+    }
+    assert!(refusals >= 60, "{refusals}");
+}
+
+/// `cargo verify peers` runs this with the Python package `nir`.
+#[test]
+#[ignore = "needs PEERS_PYTHON with nir"]
+fn files_of_pypis_nir_are_read_and_what_is_wrong_is_named() {
+    let python = std::env::var("PEERS_PYTHON").unwrap();
+    let directory = tempfile::tempdir().unwrap();
+    let written = |name: &str, fault: &[&str]| {
+        let path = directory.path().join(name);
+        let mut script = Command::new(&python);
+        let status = script.arg(peers("roll.py")).arg(&path).args(fault).status().unwrap();
+        assert!(status.success(), "{fault:?}");
+        path.display().to_string()
+    };
+    let kept = good(&network(&peers("roll.nir").display().to_string()), "");
+    let fresh = good(&network(&written("roll.nir", &[])), "");
+    assert_eq!(fresh.output, kept.output);
+    for (fault, words) in [
+        ("cuba", "node `lif2` (CubaLIF): tinyODIN has nothing like it"),
+        ("recurrent", "node `lif1` leads back to `lif1`: recurrent networks are not taken"),
+        ("nested", "node `lif2` (NIRGraph): tinyODIN has nothing like it"),
+        ("deep", "4 layers, of which 3 at most"),
+        ("nan", "node `lif2`: neuron 1 has a weight of NaN"),
+        ("narrow", "node `lif2`: weights for 11 inputs, but node `lif1` has 12 neurons"),
+        ("unweighted", "node `lif1` (LIF): no weights lead to it"),
+        ("reset", "node `lif1`: neuron 0 returns to -0.5"),
+        ("wide", "node `lif1`: the chip has 256 neurons"),
+    ] {
+        refused(&network(&written("bad.nir", &[fault])), "", &["bad.nir", words]);
+    }
+}

@@ -1,0 +1,33 @@
+//! A recorded flight around a whole loop: turn rates, spikes, tinyODIN's driver, the chip, spikes, commands.
+//!
+//! The chip is its model, clock by clock, behind the pins of a port. All lines but those of instructions are the same
+//! on a board and on the host.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+extern crate alloc;
+
+mod command;
+mod digest;
+mod flight;
+#[cfg(target_os = "none")]
+mod heap;
+mod network;
+mod rig;
+mod roll;
+mod tape;
+mod trained;
+
+use core::fmt::{self, Write};
+
+fn run(out: &mut impl Write) -> fmt::Result {
+    command::fly(out)?;
+    trained::fly(out)
+}
+
+#[cfg_attr(target_os = "none", board::entry)]
+fn main() -> ! {
+    #[cfg(target_os = "none")]
+    heap::init();
+    board::finish(run(&mut board::console()))
+}
