@@ -92,7 +92,7 @@ pub fn firmware() -> Result<()> {
     crate::firmware::firmware(&[])
 }
 
-/// The laptop program on the recorded flight, and the paper's tables in full.
+/// The laptop program on the recorded flight, its hardest second, and the paper's tables in full.
 pub fn laptop() -> Result<()> {
     let spikewire = |args: &str| output(&mut spikewire(args)?);
     let flight = "--column gyro_x data/hexarotor.csv";
@@ -116,6 +116,7 @@ pub fn laptop() -> Result<()> {
     );
     print!("{}", spikewire(&format!("score {flight}"))?);
     crate::schemes::ensure_written()?;
+    crate::jumps::jumps(&[])?;
     spikewire(&format!("plot --all {flight} -o {}", picture.display()))?;
     let tables = spikewire("bench")?;
     print!("{tables}");

@@ -12,6 +12,7 @@ mod firmware;
 mod flown;
 mod host;
 mod image;
+mod jumps;
 mod link;
 mod logging;
 mod long;
@@ -50,6 +51,7 @@ cargo xtask <command>
   setup                 compiler targets, QEMU and binutils for Cortex-M; does only what is missing
   firmware [PROGRAM]... runs the example programs on every emulated board and compares with the host
   schemes [--write]     what each scheme makes of a flight and of the paper's signal; --write puts it into README.md
+  jumps [--write]       draws the flight's hardest second in three step codes; --write puts it into docs/jumps.svg
   firmware --write      puts the spike counts of flight-log, and which bits agree, into docs/bits.md
   demo                  real flight data through encoder, emulated flight controller and decoder
   bench-target          what every codec costs on every emulated board, in instructions and bytes
@@ -79,6 +81,7 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "firmware" => firmware::firmware(args),
         "bench-target" => bench::bench(args),
         "schemes" => schemes::schemes(args),
+        "jumps" => jumps::jumps(args),
         "demo" => demo::demo(args),
         "verify" => verify::verify(args),
         "" | "help" | "-h" | "--help" => {
