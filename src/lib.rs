@@ -26,6 +26,7 @@
 //! | family | scheme | for |
 //! |---|---|---|
 //! | [`temporal`] | [`TemporalContrast`](temporal::TemporalContrast) (TBR) | changes, as an event camera sees them |
+//! | | [`AdaptiveContrast`](temporal::AdaptiveContrast) | changes, with a threshold that follows them |
 //! | | [`StepForward`](temporal::StepForward) (SF) | following a signal closely with few spikes |
 //! | | [`SendOnDelta`](temporal::SendOnDelta) | following a signal that jumps |
 //! | | [`AdaptiveStepForward`](temporal::AdaptiveStepForward) | following a signal that jumps, one spike a sample |

@@ -86,6 +86,7 @@ macro_rules! schemes {
 
 schemes![
     tbr,
+    atbr,
     mw,
     sf,
     sod,

@@ -261,6 +261,20 @@ mod tests {
             }
         }
 
+        /// A sample that is not finite counts as a silent one at both ends.
+        #[test]
+        fn lost_samples_leave_both_ends_alike(
+            x in proptest::collection::vec(prop_oneof![4 => -40.0_f32..40.0, 1 => Just(f32::NAN)], 1..100),
+        ) {
+            let scheme = AdaptiveStepForward::<f32>::new(0.5, 5);
+            let (mut encoder, mut decoder) = (scheme.encoder(), scheme.decoder());
+            encoder.encode(0.0);
+            for x in x {
+                let value = decoder.decode(encoder.encode(x));
+                prop_assert!(encoder.keyframe().is_none_or(|keyframe| keyframe == value));
+            }
+        }
+
         /// A decoder that lost spikes is right again, to the bit, from the next keyframe on, and there is one within
         /// as many samples of rest as there are doublings, and one.
         #[test]

@@ -200,7 +200,9 @@ impl<S: Measured, W: Write> Count for Counter<'_, S, W> {
         }
         let decoding = instructions(|| plain::position_decode(neurons, scheme.centres(), signal));
         let index = |neuron: Option<Neuron<M>>| neuron.map_or(-1, |neuron| neuron.index() as i8);
-        self.agree(name, scheme, &|| Position::<S, M>::START, index, |index| Neuron::new(index as u16))?;
+        self.agree(name, scheme, &|| Position::<S, M>::START, index, |index| {
+            Neuron::new(index as u16)
+        })?;
         self.finish(name, scheme, &|| Position::<S, M>::START, (encoding, decoding))
     }
 

@@ -13,6 +13,7 @@
 use core::fmt;
 
 use flight_log::{Recorded, channel};
+use spikewire::temporal::{AdaptiveContrast, AdaptiveStepForward};
 use spikewire::{Conditions, ConfigError, Sample, Spike, Start, Survey};
 
 /// Four seconds at 197 Hz.
@@ -20,6 +21,9 @@ const WATCHED: usize = 788;
 
 /// At most one spike in fifty samples on the ground.
 const SPIKES: f32 = 0.02;
+
+/// How often the adaptive schemes may double a threshold in flight.
+const DOUBLINGS: u8 = 5;
 
 const CHANNELS: [&str; 6] = ["gyro-x", "gyro-y", "gyro-z", "accel-x", "accel-y", "accel-z"];
 
@@ -57,13 +61,23 @@ fn fly<S: Recorded>(
         Ok(fit) => fit,
         Err(unfit) => return writeln!(out, "{name} {sample} unfit: {unfit}"),
     };
-    match fit.step_forward(SPIKES) {
-        Ok(scheme) => Flown::of(index, &scheme).write(out, name, sample, "sf", scheme.threshold()),
-        Err(error) => writeln!(out, "{name} {sample} sf: {error}"),
-    }?;
-    match fit.temporal_contrast(SPIKES) {
-        Ok(scheme) => Flown::of(index, &scheme).write(out, name, sample, "tbr", scheme.threshold()),
-        Err(error) => writeln!(out, "{name} {sample} tbr: {error}"),
+    let schemes = || {
+        let (sf, tbr) = (fit.step_forward(SPIKES)?, fit.temporal_contrast(SPIKES)?);
+        let asf = AdaptiveStepForward::try_new(sf.threshold(), DOUBLINGS)?;
+        let atbr = AdaptiveContrast::try_new(tbr.threshold(), DOUBLINGS)?;
+        Ok((sf, asf, tbr, atbr))
+    };
+    match schemes() {
+        Ok((sf, asf, tbr, atbr)) => {
+            Flown::of(index, &sf).write(out, name, sample, "sf", sf.threshold())?;
+            Flown::of(index, &asf).write(out, name, sample, "asf", asf.threshold())?;
+            Flown::of(index, &tbr).write(out, name, sample, "tbr", tbr.threshold())?;
+            Flown::of(index, &atbr).write(out, name, sample, "atbr", atbr.threshold())
+        }
+        Err(error) => {
+            let error: ConfigError = error;
+            writeln!(out, "{name} {sample} {error}")
+        }
     }
 }
 

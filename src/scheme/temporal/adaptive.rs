@@ -120,13 +120,14 @@ impl<S: Sample> AdaptiveStepForward<S> {
         Band::around(base, self.threshold.doubled(pace.exponent))
     }
 
-    /// Takes a sample; `None` if it is not finite.
+    /// Takes a sample; `None` if it is not finite. The decoder counts that as a silent sample, and so does the pace.
     #[inline]
     fn follow(&self, base: &mut S, pace: &mut Pace, sample: S) -> Option<Spike> {
         let band = self.band(*base, *pace);
         let spike = if band.holds(sample) {
             Spike::None
         } else if !sample.is_finite() {
+            pace.take(Spike::None, self.run, self.doublings);
             return None;
         } else if sample > band.upper {
             *base = band.upper;

@@ -24,6 +24,7 @@
 //! ```
 
 mod adaptive;
+mod adaptive_contrast;
 mod band;
 mod contrast;
 #[cfg(feature = "alloc")]
@@ -34,6 +35,7 @@ mod step_forward;
 mod steps;
 
 pub use adaptive::{AdaptiveState, AdaptiveStepForward, AdaptiveStepState};
+pub use adaptive_contrast::{AdaptiveContrast, AdaptiveContrastState, AdaptiveContrastStep};
 pub use contrast::{ContrastState, TemporalContrast};
 pub use moving_window::{MovingWindow, MovingWindowState};
 pub use send_on_delta::{SendOnDelta, SendOnDeltaState, Steps};

@@ -1,0 +1,248 @@
+//! Adaptive temporal contrast: temporal contrast whose threshold doubles the more often it fires.
+
+use crate::error::{step, unwrap, within};
+use crate::num::{Tally, largest_step, to_f64};
+use crate::scheme::codec::{encode_each, encode_first};
+use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
+
+/// Adaptive temporal contrast: the threshold follows how much the signal changes, between two bounds.
+///
+/// As [`TemporalContrast`](super::TemporalContrast) with the threshold `threshold * 2^e`, where `e` is
+/// `n (doublings + 1) / 16`, rounded down and at most `doublings`, and `n` is how many of the last 16 samples had a
+/// spike. The decoder counts the same spikes, and steps by the same threshold.
+///
+/// - **Threshold:** above 0, in the samples' unit: the smallest, as at rest. The largest, `threshold * 2^doublings`, is
+///   one that the sample type holds; up to 10³¹ in `f32`. **Doublings:** 0 to 15; 0 is temporal contrast.
+/// - **Latency:** 0 samples. **Memory:** 12 bytes a channel in `f32`, 8 to decode.
+/// - **Work:** that of temporal contrast, a multiplication and some shifts.
+/// - **Exactness:** thresholds are exact; `f32` rounds the difference of two samples once, fixed point compares it
+///   exactly.
+/// - **Error:** the decoded value drifts without bound, since a difference within the threshold is never made up for.
+///   Resynchronise it.
+/// - **Keyframes:** only when the last 16 samples had no spike: then the last sample alone is all that a decoder must
+///   know. Where there is none now, ask again at the next sample.
+///
+/// Source: temporal contrast is algorithm 6 of the paper; the count of spikes is this crate's own.
+///
+/// ```
+/// use spikewire::{Scheme, temporal::AdaptiveContrast};
+///
+/// const ROLL: AdaptiveContrast<i16> = AdaptiveContrast::new(2, 3); // thresholds of 2, 4, 8 and 16
+/// let (mut encoder, mut decoder) = (ROLL.encoder(), ROLL.decoder());
+/// // A ramp of 5 a sample: after eight spikes the threshold is 8, until one of them is 16 samples old.
+/// let spikes = (0..12).filter(|i| encoder.encode(i * 5).is_fired()).count();
+/// assert_eq!(spikes, 8);
+/// ```
+///
+/// A threshold that the sample type cannot hold does not compile:
+///
+/// ```compile_fail
+/// # use spikewire::temporal::AdaptiveContrast;
+/// const ROLL: AdaptiveContrast<i16> = AdaptiveContrast::new(3000, 4);
+/// # let _ = ROLL;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct AdaptiveContrast<S> {
+    threshold: S,
+    doublings: u8,
+}
+
+/// How many samples are counted.
+const COUNTED: usize = 16;
+/// So that every number of spikes may have a threshold of its own.
+const MOST_DOUBLINGS: u8 = 15;
+
+impl<S: Sample> AdaptiveContrast<S> {
+    /// A scheme with this smallest threshold, which doubles so many times at most. For constants, where bad
+    /// parameters fail the build.
+    ///
+    /// # Panics
+    /// As [`try_new`](Self::try_new) fails.
+    pub const fn new(threshold: S, doublings: u8) -> Self {
+        unwrap(Self::try_new(threshold, doublings))
+    }
+
+    /// A scheme with this smallest threshold, which doubles so many times at most.
+    ///
+    /// # Errors
+    /// The threshold is not above 0, or not finite; there are more than 15 doublings; the largest threshold is more
+    /// than the sample type holds, or above 10³¹ in `f32`.
+    pub const fn try_new(threshold: S, doublings: u8) -> Result<Self, ConfigError> {
+        let smallest = to_f64(threshold);
+        match (
+            step("threshold", smallest),
+            within("doublings", doublings as f64, 0.0, MOST_DOUBLINGS as f32),
+        ) {
+            (Err(error), _) | (_, Err(error)) => return Err(error),
+            _ => {}
+        }
+        let (value, max) = (smallest * (1_u64 << doublings) as f64, largest_step::<S>());
+        if value > max {
+            let (value, min, max) = (value as f32, smallest as f32, max as f32);
+            return Err(ConfigError::OutOfRange {
+                parameter: "largest threshold",
+                value,
+                min,
+                max,
+            });
+        }
+        Ok(Self { threshold, doublings })
+    }
+
+    /// The smallest threshold, in the samples' unit.
+    pub const fn threshold(&self) -> S {
+        self.threshold
+    }
+
+    /// The threshold after these spikes.
+    #[inline]
+    fn after(&self, spikes: Recent) -> S {
+        let steps = u32::from(self.doublings).wrapping_add(1);
+        let exponent = spikes.count().wrapping_mul(steps) / COUNTED as u32;
+        self.threshold.doubled((exponent as u8).min(self.doublings))
+    }
+}
+
+/// Which of the last 16 samples had a spike, the newest in the lowest bit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Recent(u16);
+
+impl Recent {
+    const NONE: Self = Self(0);
+
+    #[inline]
+    fn take(&mut self, spike: Spike) {
+        self.0 = self.0 << 1 | u16::from(spike.is_fired());
+    }
+
+    #[inline]
+    fn count(self) -> u32 {
+        self.0.count_ones()
+    }
+}
+
+/// The state of an [`AdaptiveContrast`] encoder: the last sample, and which of the last 16 had a spike. 12 bytes in
+/// `f32`.
+#[derive(Clone, Copy, Debug)]
+pub struct AdaptiveContrastState<S> {
+    previous: S,
+    tally: Tally,
+    recent: Recent,
+}
+
+/// The state of an [`AdaptiveContrast`] decoder: the value, and which of the last 16 samples had a spike. 8 bytes in
+/// `f32`.
+#[derive(Clone, Copy, Debug)]
+pub struct AdaptiveContrastStep<S> {
+    value: S,
+    recent: Recent,
+}
+
+impl<S: Sample> Start for AdaptiveContrast<S> {
+    const START: AdaptiveContrastState<S> =
+        AdaptiveContrastState { previous: S::ZERO, tally: Tally::NONE, recent: Recent::NONE };
+}
+
+impl<S: Sample> Scheme for AdaptiveContrast<S> {
+    type Sample = S;
+    type Code = Spike;
+    type Output = Spike;
+    type EncoderState = AdaptiveContrastState<S>;
+    type DecoderState = AdaptiveContrastStep<S>;
+
+    const LATENCY: usize = 0;
+    /// After 16 silent samples the threshold is the smallest.
+    const RECOVERY: Recovery = Recovery::TimedKeyframe(COUNTED);
+
+    #[inline]
+    fn encode(&self, state: &mut AdaptiveContrastState<S>, sample: S) -> Spike {
+        if !state.tally.is_primed() || !sample.is_finite() {
+            self.prime(state, &[sample]);
+            state.recent.take(Spike::None); // as the decoder does
+            return Spike::None;
+        }
+        let previous = core::mem::replace(&mut state.previous, sample);
+        let spike = Spike::from_side(sample.step(previous, self.after(state.recent)));
+        state.recent.take(spike);
+        spike
+    }
+
+    /// The last sample stays in a register, and whether all were finite is asked once: if not, the slice is taken
+    /// again with care.
+    #[inline]
+    fn encode_slice(
+        &self,
+        state: &mut AdaptiveContrastState<S>,
+        samples: &[S],
+        spikes: &mut [Spike],
+    ) -> usize {
+        let first =
+            if state.tally.is_primed() { 0 } else { encode_first(self, state, samples, spikes) };
+        let samples = samples.get(first..).unwrap_or_default();
+        let spikes = spikes.get_mut(first..).unwrap_or_default();
+
+        let (mut previous, mut recent) = (state.previous, state.recent);
+        let mut threshold = self.after(recent);
+        let mut taint = S::ZERO;
+        for (spike, &sample) in spikes.iter_mut().zip(samples) {
+            taint = taint.taint(sample);
+            *spike = Spike::from_side(sample.step(previous, threshold));
+            previous = sample;
+            // Without a spike now and among those counted there is nothing to adapt to.
+            if recent != Recent::NONE || spike.is_fired() {
+                recent.take(*spike);
+                threshold = self.after(recent);
+            }
+        }
+        if taint.is_finite() {
+            (state.previous, state.recent) = (previous, recent);
+        } else {
+            encode_each(self, state, samples, spikes);
+        }
+        first + samples.len().min(spikes.len())
+    }
+
+    /// The last of the past becomes the predecessor of the next sample, without a spike counted.
+    fn prime(&self, state: &mut AdaptiveContrastState<S>, past: &[S]) {
+        if let Some(previous) = state.tally.last_of(past) {
+            state.previous = previous;
+            state.recent = Recent::NONE;
+        }
+    }
+
+    /// The last sample, if the last 16 had no spike.
+    fn keyframe(&self, state: &AdaptiveContrastState<S>) -> Option<S> {
+        (state.tally.is_primed() && state.recent == Recent::NONE).then_some(state.previous)
+    }
+
+    fn rejected(state: &AdaptiveContrastState<S>) -> u32 {
+        state.tally.rejected()
+    }
+
+    fn decoder_state(&self) -> AdaptiveContrastStep<S> {
+        AdaptiveContrastStep { value: S::ZERO, recent: Recent::NONE }
+    }
+
+    /// Adds the threshold, and adapts it as the encoder did.
+    #[inline]
+    fn decode(&self, state: &mut AdaptiveContrastStep<S>, spike: Spike) -> S {
+        let threshold = self.after(state.recent);
+        state.value = match spike {
+            Spike::Up => state.value.plus(threshold),
+            Spike::None => state.value,
+            Spike::Down => state.value.minus(threshold),
+        };
+        state.recent.take(spike);
+        state.value
+    }
+
+    fn held(&self, state: &AdaptiveContrastStep<S>) -> Option<S> {
+        Some(state.value)
+    }
+
+    fn resync(&self, state: &mut AdaptiveContrastStep<S>, value: S) {
+        *state = AdaptiveContrastStep { value, recent: Recent::NONE };
+    }
+}
