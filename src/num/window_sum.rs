@@ -2,6 +2,7 @@
 
 use core::cmp::Ordering;
 use core::fmt::Debug;
+use core::hint::black_box;
 
 use bytemuck::Pod;
 
@@ -47,6 +48,8 @@ pub(crate) trait Difference: Copy + Default + Debug {
     /// A margin that no difference exceeds.
     const WIDEST: Self::Margin;
 
+    const IS_ALWAYS_FINITE: bool;
+
     fn is_nan(self) -> bool;
 
     fn is_finite(self) -> bool;
@@ -91,6 +94,8 @@ impl Difference for f32 {
     const ZERO: f32 = 0.0;
 
     const WIDEST: u32 = magnitude(f32::INFINITY);
+
+    const IS_ALWAYS_FINITE: bool = false;
 
     #[inline]
     fn is_nan(self) -> bool {
@@ -147,9 +152,15 @@ impl Windowed for f32 {
     fn close_block(ring: &mut [f32], partial: &mut f32) {
         // Adding -0 changes no value; adding 0 would turn -0 into 0.
         let mut to_the_end = -0.0;
-        for slot in ring.iter_mut().rev() {
+        let mut close = |slot: &mut f32| {
             to_the_end += *slot;
             *slot = to_the_end;
+        };
+        let (rest, groups) = ring.as_rchunks_mut::<4>();
+        groups.as_flattened_mut().iter_mut().rev().for_each(&mut close);
+        for slot in rest.iter_mut().rev() {
+            close(slot);
+            black_box(()); // or the compiler would write out four turns
         }
         *partial = 0.0;
     }
@@ -164,6 +175,8 @@ macro_rules! integer_difference {
                 const ZERO: $sum = 0;
 
                 const WIDEST: $sum = <$sum>::MAX;
+
+                const IS_ALWAYS_FINITE: bool = true;
 
                 #[inline]
                 fn is_nan(self) -> bool {

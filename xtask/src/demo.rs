@@ -1,7 +1,7 @@
 //! `cargo demo`: real flight data through encoder, emulated flight controller and decoder.
 
 use crate::{
-    boards::{BOARDS, Board},
+    boards::BOARDS,
     firmware,
     flown::{self, Flown},
     image,
@@ -11,7 +11,6 @@ use crate::{
     usage::usage,
 };
 use anyhow::{Context, Result, bail};
-use std::path::PathBuf;
 
 /// The firmware program.
 const PROGRAM: &str = "demo";
@@ -22,14 +21,13 @@ pub fn demo(args: &[String]) -> Result<()> {
     }
     println!("=== What this needs");
     setup::setup()?;
-    fly(image::build_unlinted)
+    fly()
 }
 
-/// With an image of the program that `build` makes for a board.
-pub fn fly(build: fn(&str, &Board) -> Result<PathBuf>) -> Result<()> {
+pub fn fly() -> Result<()> {
     println!("\n=== The flight, in the firmware of an emulated flight controller");
     let board = BOARDS.iter().find(|board| board.core == "M4F").context("no Cortex-M4F")?;
-    let image = build(PROGRAM, board)?;
+    let image = image::build(PROGRAM, board)?;
     let flown = flown::parse(&qemu::run(board, &image)?)?;
     let here = flown::parse(&firmware::on_host(PROGRAM)?)?;
     let signal = Signal::read();

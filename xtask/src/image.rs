@@ -4,25 +4,35 @@ use crate::{boards::Board, paths, shell, toolchain};
 use anyhow::{Context, Result};
 use std::{fs, path::PathBuf, process::Command};
 
-/// Builds the program for the board, linted, and returns the image.
+/// Builds the program for the board, and returns the image.
 pub fn build(program: &str, board: &Board) -> Result<PathBuf> {
     Ok(build_all(program, &[program], board)?.join(program))
 }
 
-/// Builds the program for the board with the compiler alone, and returns the image: clippy may not be installed.
-pub fn build_unlinted(program: &str, board: &Board) -> Result<PathBuf> {
-    let mut cargo = building(program, board)?;
-    Ok(build_with(&mut cargo, program, &[program], board)?.join(program))
+/// Builds the package's programs for the board, and returns the directory where they are.
+pub fn build_all(package: &str, programs: &[&str], board: &Board) -> Result<PathBuf> {
+    let built = paths::thumb_target().join(board.target).join("release");
+    shell::run(&mut building("build", &format!("--package {package}"), board)?)
+        .with_context(|| format!("{package} for {}", board.machine))?;
+
+    let images = paths::thumb_target().join(board.machine);
+    fs::create_dir_all(&images)?;
+    for program in programs {
+        fs::copy(built.join(program), images.join(program)).context(program.to_string())?;
+    }
+    Ok(images)
 }
 
-/// Builds the package's programs for the board, linted, and returns the directory where they are.
-pub fn build_all(package: &str, programs: &[&str], board: &Board) -> Result<PathBuf> {
-    build_with(shell::lint(&mut building(package, board)?), package, programs, board)
+/// Lints all programs, as they are built for the board. Apart from building: clippy's compiler leaves out
+/// optimisations, and the code that it makes is not what a user gets.
+pub fn lint_all(board: &Board) -> Result<()> {
+    shell::run(shell::lint(&mut building("check", "--workspace", board)?))
+        .with_context(|| format!("lints of the firmware for {}", board.machine))
 }
 
 /// Links the program for the board with a panic for every integer that overflows, in a directory of its own.
 pub fn link_checked(program: &str, board: &Board) -> Result<()> {
-    let mut cargo = building(program, board)?;
+    let mut cargo = building("build", &format!("--package {program}"), board)?;
     cargo
         .env("CARGO_PROFILE_RELEASE_OVERFLOW_CHECKS", "true")
         .env("CARGO_TARGET_DIR", paths::thumb_target().join("checked"));
@@ -32,8 +42,8 @@ pub fn link_checked(program: &str, board: &Board) -> Result<()> {
 /// All boards and checks share one directory and one profile, so that each crate is compiled once for a core. What
 /// differs between two boards is in the compiler's flags, which cargo tells apart. The images have a place for each
 /// board, as two of them share a target.
-fn building(package: &str, board: &Board) -> Result<Command> {
-    let build = format!("build --release --package {package} --manifest-path examples/Cargo.toml");
+fn building(command: &str, packages: &str, board: &Board) -> Result<Command> {
+    let build = format!("{command} --release {packages} --manifest-path examples/Cargo.toml");
     let mut cargo = toolchain::cargo_for(board.target, &build)?;
     cargo
         .env("BOARD", board.machine)
@@ -41,21 +51,4 @@ fn building(package: &str, board: &Board) -> Result<Command> {
         // Names that tell Rust's functions from the runtime's, for `bench/code.rs`.
         .env("RUSTFLAGS", format!("-C target-cpu={} -C symbol-mangling-version=v0", board.cpu));
     Ok(cargo)
-}
-
-fn build_with(
-    cargo: &mut Command,
-    package: &str,
-    programs: &[&str],
-    board: &Board,
-) -> Result<PathBuf> {
-    let built = paths::thumb_target().join(board.target).join("release");
-    shell::run(cargo).with_context(|| format!("{package} for {}", board.machine))?;
-
-    let images = paths::thumb_target().join(board.machine);
-    fs::create_dir_all(&images)?;
-    for program in programs {
-        fs::copy(built.join(program), images.join(program)).context(program.to_string())?;
-    }
-    Ok(images)
 }

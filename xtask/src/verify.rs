@@ -27,7 +27,7 @@ struct Step {
 const STEPS: &[Step] = &[
     step(SETUP, "compiler targets, QEMU, binutils", checks::setup),
     step("fmt", "rustfmt", checks::fmt),
-    step("clippy", "clippy on the host's code, which builds the tests", checks::clippy),
+    step("clippy", "clippy on host code, which builds the tests, and on firmware", checks::clippy),
     step("test", "host tests and doctests", checks::test),
     step("peers", "event formats against other programs", checks::peers),
     step("readme", "the README's code runs", checks::readme),

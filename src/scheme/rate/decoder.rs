@@ -30,6 +30,7 @@ impl<S: Sample, const F: usize> RateDecoderState<S, F> {
     #[inline(always)]
     pub(super) fn decode(&mut self, filtered: &Filtered<S, F>, spike: Spike) -> S {
         let next = (self.next as usize).min(F - 1);
+        self.next = if next + 1 < F { next as u16 + 1 } else { 0 };
         if spike == Spike::Up {
             for (sum, tap) in self.pending.iter_mut().zip(filtered.taps.starting_at(next)) {
                 *sum = sum.plus(tap.widen());
@@ -39,7 +40,6 @@ impl<S: Sample, const F: usize> RateDecoderState<S, F> {
         if let Some(pending) = self.pending.get_mut(next) {
             core::mem::swap(&mut sum, pending);
         }
-        self.next = if next + 1 < F { next as u16 + 1 } else { 0 };
         filtered.shift.restore(sum)
     }
 }

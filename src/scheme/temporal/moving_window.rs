@@ -109,11 +109,17 @@ const GROUP: usize = 4;
 
 /// The state of a [`MovingWindow`] encoder: the window and its sum. `4 N + 12` bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub struct MovingWindowState<S: Sample, const N: usize> {
+    // In one instruction most cores reach a slot if the window comes first. A Cortex-M0, which alone has no atomic
+    // exchange, never does, and reaches the rest only near the beginning.
+    #[cfg(target_has_atomic = "32")]
     ring: [S; N],
     partial: S::Sum,
     next: u16,
     tally: Tally,
+    #[cfg(not(target_has_atomic = "32"))]
+    ring: [S; N],
 }
 
 impl<S: Sample, const N: usize> Start for MovingWindow<S, N> {
@@ -178,6 +184,30 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
         self.encode_groups(margin, groups, spikes)
     }
 
+    /// Takes a sample into the slot `next`, and the sum with it.
+    #[inline]
+    fn take(&mut self, next: usize, sample: S, partial: S::Fast) {
+        if let Some(slot) = self.ring.get_mut(next) {
+            *slot = sample;
+        }
+        self.partial = S::exact(partial);
+        self.next = next as u16 + 1;
+        if next + 1 == N {
+            self.close_block_once();
+        }
+    }
+
+    /// Sums in a function of its own, where there are any: one sample in `N` comes here.
+    #[inline]
+    fn close_block_once(&mut self) {
+        if S::Fast::IS_ALWAYS_FINITE { self.close_block() } else { self.close_block_apart() }
+    }
+
+    #[inline(never)]
+    fn close_block_apart(&mut self) {
+        self.close_block();
+    }
+
     #[inline]
     fn close_block(&mut self) {
         self.next = 0;
@@ -219,17 +249,18 @@ impl<S: Sample, const N: usize> MovingWindow<S, N> {
         };
         let difference = sample.excess(N, *slot, &mut state.partial);
         *slot = sample;
-        state.next = state.next.wrapping_add(1);
-        if next.wrapping_add(1) == N {
-            state.close_block();
-        }
-        if is_full && !difference.is_nan() {
+        let spike = if is_full && !difference.is_nan() {
             // Hides the scheme from the compiler, which would otherwise load the margin early, on the usual path,
             // and pass it here in a register that the usual path lacks.
             Spike::from_side(difference.beyond(black_box(self).margin))
         } else {
             Spike::None
+        };
+        state.next = state.next.wrapping_add(1);
+        if next.wrapping_add(1) == N {
+            state.close_block_once();
         }
+        spike
     }
 }
 
@@ -248,19 +279,24 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
         // The sample that ends a long block is left to `encode_carefully`, so that this path stays short.
         let usual = if N <= SHORT { N } else { N - 1 };
         let next = state.next as usize;
-        if let Some(slot) = state.ring.get_mut(..usual).and_then(|slots| slots.get_mut(next))
+        if let Some(&slot) = state.ring.get(..usual).and_then(|slots| slots.get(next))
             && let Some(mut partial) = S::fast(state.partial)
-            && S::are_small(N, &[sample], &[*slot])
+            && S::are_small(N, &[sample], &[slot])
         {
-            let difference = sample.excess(N, *slot, &mut partial);
-            if difference.is_finite() {
-                *slot = sample;
-                state.partial = S::exact(partial);
-                state.next = next as u16 + 1;
-                if next + 1 == N {
-                    state.close_block();
-                }
+            let difference = sample.excess(N, slot, &mut partial);
+            if S::Fast::IS_ALWAYS_FINITE {
+                state.take(next, sample, partial);
                 return Spike::from_side(difference.beyond(self.fast_margin));
+            }
+            // A difference within the margin is finite: only those beyond it are asked.
+            let side = difference.beyond(self.fast_margin);
+            if side.is_eq() {
+                state.take(next, sample, partial);
+                return Spike::None;
+            }
+            if difference.is_finite() {
+                state.take(next, sample, partial);
+                return Spike::from_side(side);
             }
         }
         self.encode_carefully(state, sample)

@@ -50,13 +50,13 @@ impl Evt2 {
 
     /// A decoder of words, from the start of a word on.
     pub const fn decoder() -> Evt2Decoder {
-        Evt2Decoder { state: State::Word { word: 0, bytes: 0 }, high: None, skipped: 0 }
+        Evt2Decoder::starting_at(Header::Over)
     }
 
     /// A decoder of a file. It skips the header, if there is one: lines that begin with `%`, up to `% end`. A file
     /// without a header may also begin with the byte `%`: the fourth byte of a word, with its type, is no text.
     pub const fn file_decoder() -> Evt2Decoder {
-        Evt2Decoder { state: State::LineStart, high: None, skipped: 0 }
+        Evt2Decoder::starting_at(Header::LineStart)
     }
 }
 
@@ -108,30 +108,77 @@ impl EventFormat for Evt2Encoder {
 /// from 32 on.
 #[derive(Clone, Copy, Debug)]
 pub struct Evt2Decoder {
-    state: State,
+    header: Header,
+    /// The bytes of the next word so far, in its highest bits, below them a 1 and else 0.
+    partial: u32,
     high: Option<u32>,
     skipped: u32,
 }
 
-#[derive(Clone, Copy, Debug)]
-enum State {
+/// Where a header is read that may be there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Header {
+    /// It is over, or there is none: words come.
+    Over,
     LineStart,
-    /// The bytes from a `%` on that begins a line of the header or a word.
-    Percent {
-        bytes: [u8; 4],
-        count: u8,
-    },
+    /// After a `%`, which begins a line of the header or a word: `partial` has the bytes from it on.
+    Percent,
     /// Within a line of the header, whose first `end` bytes are those of `% end`; `u8::MAX` if they are others.
     Line {
         end: u8,
     },
-    Word {
-        word: u32,
-        bytes: u8,
-    },
 }
 
+/// No byte of a word.
+const NO_BYTES: u32 = 1 << 31;
+
 impl Evt2Decoder {
+    const fn starting_at(header: Header) -> Self {
+        Self { header, partial: NO_BYTES, high: None, skipped: 0 }
+    }
+
+    /// Takes a byte of a word, and returns the word that it completes.
+    #[inline]
+    fn whole(&mut self, byte: u8) -> Option<u32> {
+        let word = self.partial >> 8 | u32::from(byte) << 24;
+        let is_whole = self.partial & 0x80 != 0;
+        self.partial = if is_whole { NO_BYTES } else { word };
+        is_whole.then_some(word)
+    }
+
+    /// Takes a byte before the header is over.
+    #[cold]
+    #[inline(never)]
+    fn header(&mut self, byte: u8) -> Option<Event> {
+        match self.header {
+            Header::LineStart if byte != b'%' => {
+                self.header = Header::Over;
+                return self.push(byte);
+            }
+            Header::LineStart => {
+                self.header = Header::Percent;
+                self.whole(byte);
+            }
+            Header::Percent => {
+                let word = self.whole(byte)?;
+                if !is_text(byte) {
+                    self.header = Header::Over;
+                    return self.word(word);
+                }
+                self.header = Header::Line { end: 1 };
+                // Fewer than four bytes make no word, and so no event.
+                let [_, rest @ ..] = word.to_le_bytes();
+                for byte in rest {
+                    self.push(byte);
+                }
+            }
+            Header::Line { end } => self.header = within_line(end, byte),
+            Header::Over => {}
+        }
+        None
+    }
+
+    #[inline]
     fn word(&mut self, word: u32) -> Option<Event> {
         let polarity = match word >> 28 {
             TIME_HIGH => {
@@ -157,14 +204,14 @@ impl Evt2Decoder {
 }
 
 /// The state after a byte of a line, which may end the header.
-fn within_line(end: u8, byte: u8) -> State {
+fn within_line(end: u8, byte: u8) -> Header {
     const END: &[u8; 6] = b"% end\n";
     let is_end = END.get(usize::from(end)) == Some(&byte);
     match (byte, is_end) {
-        (b'\n', true) => State::Word { word: 0, bytes: 0 },
-        (b'\n', false) => State::LineStart,
-        (_, true) => State::Line { end: end + 1 },
-        (_, false) => State::Line { end: u8::MAX },
+        (b'\n', true) => Header::Over,
+        (b'\n', false) => Header::LineStart,
+        (_, true) => Header::Line { end: end + 1 },
+        (_, false) => Header::Line { end: u8::MAX },
     }
 }
 
@@ -173,39 +220,13 @@ fn is_text(byte: u8) -> bool {
 }
 
 impl EventDecoder for Evt2Decoder {
+    #[inline]
     fn push(&mut self, byte: u8) -> Option<Event> {
-        self.state = match self.state {
-            State::LineStart if byte == b'%' => State::Percent { bytes: [byte, 0, 0, 0], count: 1 },
-            State::LineStart => State::Word { word: byte.into(), bytes: 1 },
-            State::Percent { bytes: [first, second, third, _], count: 3 } => {
-                if !is_text(byte) {
-                    self.state = State::Word { word: 0, bytes: 0 };
-                    return self.word(u32::from_le_bytes([first, second, third, byte]));
-                }
-                self.state = State::Line { end: 1 };
-                // Fewer than four bytes make no word, and so no event.
-                for byte in [second, third, byte] {
-                    self.push(byte);
-                }
-                return None;
-            }
-            State::Percent { mut bytes, count } => {
-                if let Some(place) = bytes.get_mut(usize::from(count)) {
-                    *place = byte;
-                }
-                State::Percent { bytes, count: count.wrapping_add(1) }
-            }
-            State::Line { end } => within_line(end, byte),
-            State::Word { word, bytes: 3 } => {
-                self.state = State::Word { word: 0, bytes: 0 };
-                return self.word(word | u32::from(byte) << 24);
-            }
-            State::Word { word, bytes } => State::Word {
-                word: word | u32::from(byte).wrapping_shl(8 * u32::from(bytes)),
-                bytes: bytes.wrapping_add(1),
-            },
-        };
-        None
+        if self.header != Header::Over {
+            return self.header(byte);
+        }
+        let word = self.whole(byte)?;
+        self.word(word)
     }
 
     fn skipped(&self) -> u32 {
@@ -213,6 +234,6 @@ impl EventDecoder for Evt2Decoder {
     }
 
     fn is_partial(&self) -> bool {
-        !matches!(self.state, State::LineStart | State::Word { bytes: 0, .. })
+        matches!(self.header, Header::Line { .. }) || self.partial != NO_BYTES
     }
 }
