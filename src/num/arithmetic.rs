@@ -6,6 +6,11 @@ use core::cmp::Ordering;
 pub(crate) trait Arithmetic: Sized {
     const ZERO: Self;
 
+    const IS_FLOAT: bool;
+
+    /// The baseline before the first sample. In `f32` NaN: every sample lies beyond it.
+    const NOWHERE: Self;
+
     fn is_finite(&self) -> bool;
 
     /// Adds a sample to a sum of a slice's samples. If that sum is finite, so was every sample: one check at the
@@ -27,6 +32,10 @@ pub(crate) trait Arithmetic: Sized {
 
 impl Arithmetic for f32 {
     const ZERO: Self = 0.0;
+
+    const IS_FLOAT: bool = true;
+
+    const NOWHERE: Self = f32::NAN;
 
     #[inline]
     fn is_finite(&self) -> bool {
@@ -97,6 +106,10 @@ macro_rules! integer_arithmetic {
     ([$($generics:tt)*] $sample:ty, $bits:ty, $to_bits:path, $from_bits:path) => {
         impl<$($generics)*> Arithmetic for $sample {
             const ZERO: Self = $from_bits(0);
+
+            const IS_FLOAT: bool = false;
+
+            const NOWHERE: Self = $from_bits(0);
 
             #[inline]
             fn is_finite(&self) -> bool {

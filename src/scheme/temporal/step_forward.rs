@@ -82,7 +82,7 @@ pub struct StepForwardState<S> {
 }
 
 impl<S: Sample> Start for StepForward<S> {
-    const START: StepForwardState<S> = StepForwardState { base: S::ZERO, tally: Tally::NONE };
+    const START: StepForwardState<S> = StepForwardState { base: S::NOWHERE, tally: Tally::NONE };
 }
 
 impl<S: Sample> Scheme for StepForward<S> {
@@ -102,8 +102,8 @@ impl<S: Sample> Scheme for StepForward<S> {
             (Spike::Up, band.upper)
         } else if band.is_above(sample) {
             (Spike::Down, band.lower)
-        } else if state.tally.is_primed() {
-            return Spike::None;
+        } else if S::IS_FLOAT || state.tally.is_primed() {
+            return Spike::None; // no float lies near a baseline that there is not yet
         } else {
             (Spike::None, sample)
         };
