@@ -273,7 +273,8 @@ impl QueueView {
         match (self.overflow, giver) {
             (Overflow::DropOldest, _) => {
                 count(&state.lost);
-                let dropped = self.remove(section).map_or(0, Slot::lost);
+                let dropped = self.oldest(section).map_or(0, Slot::lost);
+                self.remove_oldest(section);
                 self.append(section, slot);
                 // Losses before the dropped item come before the next one, which is the oldest now.
                 if let Some(Place(oldest)) = self.places.get(state.head.get()) {
@@ -302,38 +303,38 @@ impl QueueView {
     /// Takes the oldest item.
     #[inline]
     pub(super) fn take(&self) -> Option<Taken> {
-        let slot = critical_section::with(|section| self.remove(section));
-        if let Some(event) = slot.and_then(Slot::plain_event) {
-            return Some(Taken::whole(Item::Event(event)));
+        match critical_section::with(|section| self.remove_event(section)) {
+            Some(event) => Some(Taken::whole(Item::Event(event))),
+            None => self.take_apart(),
         }
-        let (tick, bits, rest) = slot.unwrap_or(Slot::EMPTY).words();
-        self.take_apart(slot.is_some(), tick, bits, rest)
     }
 
     /// Takes items up to and including the oldest event.
     #[inline]
     pub(super) fn take_event(&self) -> Option<Event> {
+        let event = critical_section::with(|section| self.remove_event(section));
+        if event.is_some() { event } else { self.take_event_apart() }
+    }
+
+    /// [`take_event`](Self::take_event) where the oldest item may be none.
+    #[cold]
+    #[inline(never)]
+    fn take_event_apart(&self) -> Option<Event> {
         loop {
-            let slot = critical_section::with(|section| self.remove(section));
-            if let Some(event) = slot.and_then(Slot::plain_event) {
-                return Some(event);
-            }
-            let (tick, bits, rest) = slot.unwrap_or(Slot::EMPTY).words();
-            if let Item::Event(event) = self.take_apart(slot.is_some(), tick, bits, rest)?.item {
+            if let Item::Event(event) = self.take_apart()?.item {
                 return Some(event);
             }
         }
     }
 
-    /// The item of a slot that is no plain event. Without a slot: an item pushed meanwhile, or a break if items were
-    /// lost after the last one.
+    /// The oldest item, of any kind; a break if there is none and items were lost after the last one.
     #[cold]
     #[inline(never)]
-    fn take_apart(&self, has_slot: bool, tick: Tick, bits: u32, rest: u32) -> Option<Taken> {
-        let slot = has_slot.then_some(Slot::from_words((tick, bits, rest)));
+    fn take_apart(&self) -> Option<Taken> {
         critical_section::with(|section| {
             let state = self.state.borrow(section);
-            if let Some(slot) = slot.or_else(|| self.remove(section)) {
+            if let Some(slot) = self.oldest(section) {
+                self.remove_oldest(section);
                 let excess = if slot.lost() == u8::MAX { state.excess.take() } else { 0 };
                 let lost = u32::from(slot.lost()).saturating_add(excess);
                 return Some(Taken { lost, item: slot.item() });
@@ -344,21 +345,31 @@ impl QueueView {
         })
     }
 
+    /// Removes the oldest item if it is an event with no loss before it, as nearly all are.
     #[inline]
-    fn remove(&self, section: CriticalSection<'_>) -> Option<Slot> {
+    fn remove_event(&self, section: CriticalSection<'_>) -> Option<Event> {
+        let event = self.oldest(section)?.plain_event()?;
+        self.remove_oldest(section);
+        Some(event)
+    }
+
+    #[inline]
+    fn oldest(&self, section: CriticalSection<'_>) -> Option<Slot> {
+        let state = self.state.borrow(section);
+        let Place(place) = self.places.get(state.head.get()).filter(|_| state.len() > 0)?;
+        Some(place.borrow(section).get())
+    }
+
+    /// Removes the oldest item, which there is.
+    #[inline]
+    fn remove_oldest(&self, section: CriticalSection<'_>) {
         let state = self.state.borrow(section);
         let len = state.len();
-        if len == 0 {
-            return None;
-        }
-        let head = state.head.get();
-        let Place(place) = self.places.get(head)?;
-        state.head.set(self.after(head));
+        state.head.set(self.after(state.head.get()));
         state.len.set(state.len.get().wrapping_sub(1));
         if len > state.peak.get() {
             state.peak.set(len);
         }
-        Some(place.borrow(section).get())
     }
 
     /// Allows another consumer.

@@ -3,7 +3,7 @@
 use core::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
 use super::slot::Slot;
-use crate::event::{Item, Put, Source, Taken, Tick};
+use crate::event::{Event, Item, Put, Source, Taken, Tick};
 
 /// A queue of `N - 1` items from one interrupt to main, without locks.
 ///
@@ -182,34 +182,63 @@ impl SpscConsumer<'_> {
         self.ring.lost.load(Ordering::Relaxed)
     }
 
-    /// A break, if items were lost after the last one taken.
+    /// The slot of the oldest item, and how many were lost before it.
+    #[inline]
+    fn take_slot(&mut self) -> Option<(u32, Slot)> {
+        let ring = self.ring;
+        let head = ring.head.load(Ordering::Relaxed);
+        let tail = ring.tail.load(Ordering::Acquire);
+        let entry = ring.entries.get(head).filter(|_| head != tail)?;
+        let tick = Tick::from(entry.tick.load(Ordering::Relaxed));
+        let words = (tick, entry.bits.load(Ordering::Relaxed), entry.rest.load(Ordering::Relaxed));
+        let count = entry.lost.load(Ordering::Relaxed);
+        ring.head.store(ring.after(head), Ordering::Release);
+        Some((self.newly(count), Slot::from_words(words)))
+    }
+
+    /// How many items were lost since this was asked last, when there were so many in all.
+    #[inline]
+    fn newly(&mut self, lost: u32) -> u32 {
+        lost.wrapping_sub(core::mem::replace(&mut self.known, lost))
+    }
+
+    /// What comes where the queue was empty: an item pushed meanwhile, or a break if items were lost after the last one.
     #[cold]
     #[inline(never)]
-    fn take_loss(&mut self, count: u32) -> Option<Taken> {
-        let lost = count.wrapping_sub(core::mem::replace(&mut self.known, count));
+    fn take_where_empty(&mut self) -> Option<Taken> {
+        // Read before the tail: if the queue is empty then, all items before these losses have been taken.
+        let count = self.ring.lost.load(Ordering::Acquire);
+        if let Some((lost, slot)) = self.take_slot() {
+            return Some(Taken { lost, item: slot.item() });
+        }
         let tick = self.ring.lost_tick.load(Ordering::Relaxed);
+        let lost = self.newly(count);
         (lost > 0).then(|| Taken { lost, item: Item::Break(Tick::from(tick)) })
+    }
+
+    /// The next event, after an item that was none, or none was there.
+    #[cold]
+    #[inline(never)]
+    fn take_event_apart(&mut self) -> Option<Event> {
+        loop {
+            if let Item::Event(event) = self.take()?.item {
+                return Some(event);
+            }
+        }
     }
 }
 
 impl Source for SpscConsumer<'_> {
     #[inline]
     fn take(&mut self) -> Option<Taken> {
-        let ring = self.ring;
-        // Read before the tail: if the queue is empty then, all items before these losses have been taken.
-        let count = ring.lost.load(Ordering::Acquire);
-        let head = ring.head.load(Ordering::Relaxed);
-        let entry = ring.entries.get(head);
-        let Some(entry) = entry.filter(|_| head != ring.tail.load(Ordering::Acquire)) else {
-            return self.take_loss(count);
-        };
-        let tick = Tick::from(entry.tick.load(Ordering::Relaxed));
-        let words = (tick, entry.bits.load(Ordering::Relaxed), entry.rest.load(Ordering::Relaxed));
-        let count = entry.lost.load(Ordering::Relaxed);
-        ring.head.store(ring.after(head), Ordering::Release);
-        let lost = count.wrapping_sub(core::mem::replace(&mut self.known, count));
-        let slot = Slot::from_words(words);
+        let Some((lost, slot)) = self.take_slot() else { return self.take_where_empty() };
         let item = slot.plain_event().map_or_else(|| slot.item(), Item::Event);
         Some(Taken { lost, item })
+    }
+
+    #[inline]
+    fn take_event(&mut self) -> Option<Event> {
+        let event = self.take_slot().and_then(|(_, slot)| slot.plain_event());
+        if event.is_some() { event } else { self.take_event_apart() }
     }
 }
