@@ -156,15 +156,6 @@ impl<S: Sample, const F: usize> Rule<S, F> for Bsa<S, F> {
         };
         S::Residual::is_nearer(bound, magnitude, pairs)
     }
-
-    #[inline(always)]
-    fn fits_by_slot(
-        &self,
-        magnitude: S::Residual,
-        pairs: impl Iterator<Item = (S::Residual, S::Residual)>,
-    ) -> Option<bool> {
-        Some(self.fits(magnitude, pairs, true))
-    }
 }
 
 rate_scheme!(Bsa);

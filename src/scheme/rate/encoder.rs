@@ -31,11 +31,14 @@ pub(super) trait Rule<S: Sample, const F: usize> {
 
     /// Whether the sample spikes, with the pairs of a whole window in the order of the slots; `None` if the result
     /// depends on the order.
+    #[inline(always)]
     fn fits_by_slot(
         &self,
         magnitude: S::Residual,
         pairs: impl Iterator<Item = (S::Residual, S::Residual)>,
-    ) -> Option<bool>;
+    ) -> Option<bool> {
+        Some(self.fits(magnitude, pairs, true))
+    }
 }
 
 /// The state of a rate code's encoder: what past spikes have left of the last `F` samples.

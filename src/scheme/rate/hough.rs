@@ -70,15 +70,6 @@ impl<S: Sample, const F: usize> Rule<S, F> for Hough<S, F> {
     ) -> bool {
         pairs.all(|(residual, tap)| residual >= tap) && is_whole
     }
-
-    #[inline(always)]
-    fn fits_by_slot(
-        &self,
-        magnitude: S::Residual,
-        pairs: impl Iterator<Item = (S::Residual, S::Residual)>,
-    ) -> Option<bool> {
-        Some(self.fits(magnitude, pairs, true))
-    }
 }
 
 rate_scheme!(Hough);
