@@ -151,6 +151,15 @@ mod tests {
         assert_eq!((encoder.rejected(), encoder.encode(0.75).sign()), (0, 0));
     }
 
+    /// The decoder sees no spike, so that the burst ends for both: of 10 that are left the next spikes tell 2 and 4.
+    #[test]
+    fn what_is_not_finite_ends_a_burst() {
+        let scheme = WeightedBurst::<f32, _>::new(0.0..=8.0, 2.0, 2, Average::new(3));
+        let mut encoder = scheme.encoder();
+        let x = [8.0, 8.0, f32::NAN, 0.0, 0.0];
+        assert_eq!(x.map(|x| encoder.encode(x).sign()), [1, 1, 0, 1, 1]);
+    }
+
     #[test]
     fn what_makes_no_sense_is_refused_by_name() {
         let parameter = |min, max, unit, doublings| match WeightedBurst::<f32, _>::try_new(

@@ -128,6 +128,7 @@ impl<S: Sample, A: Averaging> Scheme for WeightedBurst<S, A> {
     fn encode(&self, state: &mut WeightedBurstState<S>, sample: S) -> Spike {
         let Some(above) = self.range.above_min(sample) else {
             state.tally.reject();
+            state.gain.take(false, self.doublings); // as the decoder does
             return Spike::None;
         };
         let weight = self.unit.above(S::ZERO).doubled(state.gain.0);
