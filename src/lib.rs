@@ -43,6 +43,9 @@
 //! | | [`Gaussian`](population::Gaussian) (GRF) | a value over an even range |
 //! | | [`Slots`](population::Slots) | a value finer than the neurons, by spike time |
 //! | | `Probabilistic` | a value by chance (feature `rand`) |
+//! | | [`Gaussian::companded`](population::Gaussian::companded), [`with_widths`](population::Gaussian::with_widths) | a value, finer where it is most of the time |
+//! | | [`NonLinearSlots`](population::NonLinearSlots) | as those, finer by spike time |
+//! | | [`RankOrder`](population::RankOrder) | a value finer than the neurons, by who fires first |
 //! | [`timing`] | [`FirstSpike`](timing::FirstSpike) (TTFS) | a value by one spike's time, fine where it is small |
 //! | | [`LatencyPhase`](timing::LatencyPhase) | many channels on one line |
 //! | | [`WeightedPhase`](timing::WeightedPhase) | a value in binary: the finest in few slots |

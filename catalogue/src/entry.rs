@@ -98,7 +98,7 @@ pub trait Count {
         encode: impl FnOnce(&mut [Self::Sample], &mut [i8]),
     ) -> Result<(), Self::Error>;
 
-    /// The winner of `M` neurons by their exponentials, which rounding may decide between two centres.
+    /// The winner of `M` neurons by their exponentials, which rounding may decide between two neurons.
     ///
     /// # Errors
     /// The visitor's own.
@@ -107,7 +107,7 @@ pub trait Count {
         name: &'static str,
         scheme: &Position<Self::Sample, M>,
         means: &[f32; M],
-        sigma: f32,
+        sigmas: &[f32; M],
         encode: impl FnOnce(&[Self::Sample], &mut [i8]),
     ) -> Result<(), Self::Error>;
 

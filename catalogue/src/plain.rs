@@ -278,3 +278,11 @@ pub fn response(x: f32, centre: f32, sigma: f32) -> f32 {
     let u = (x - centre) / sigma;
     libm::expf(-u * u / 2.0)
 }
+
+/// The widths of fields as wide as the distance between their neighbours.
+pub fn spaced_widths<const M: usize>(centres: &[f32; M], beta: f32) -> [f32; M] {
+    core::array::from_fn(|i| {
+        let (lower, upper) = (i.saturating_sub(1), (i + 1).min(M - 1));
+        (centres[upper] - centres[lower]) / ((upper - lower) as f32 * beta)
+    })
+}

@@ -6,7 +6,10 @@ use rand_pcg::Pcg32;
 use spikewire::{
     Calibration, Conditions, ConfigError, Differences, Firing, Histogram, Polarity, Recovery,
     Sample, SampleKind, Spike, Unfit,
-    population::{FiredNeurons, Gaussian, Neuron, Position, Probabilistic, SlotSpikes, Slots},
+    population::{
+        FiredNeurons, Gaussian, Neuron, NeuronSlots, NonLinearSlots, Position, Probabilistic,
+        RankOrder, SlotSpikes, Slots,
+    },
     rate::{Bsa, BsaToolbox, Criterion, Hough, Scale, Shape, Taps, ThresholdHough},
     temporal::{MovingWindow, StepForward, TemporalContrast},
     timing::{
@@ -32,6 +35,8 @@ const fn is_format_in<S: Sample + Format>() {
     is_format::<Position<S, 4>>();
     is_format::<Gaussian<S, 4>>();
     is_format::<Slots<S, 4, 8>>();
+    is_format::<NonLinearSlots<S, 4, 8>>();
+    is_format::<RankOrder<S, 4, 2>>();
     is_format::<Probabilistic<S, Pcg32, 4, 8>>();
 
     is_format::<FirstSpike<S, 4>>();
@@ -46,7 +51,7 @@ const fn is_format_in<S: Sample + Format>() {
 
 const _: () = {
     is_format::<(Spike, Polarity, Firing, Recovery, SampleKind, Unfit)>();
-    is_format::<(Neuron<4>, SlotSpikes<4, 8>, FiredNeurons<4>)>();
+    is_format::<(Neuron<4>, SlotSpikes<4, 8>, NeuronSlots<4, 8>, FiredNeurons<4>)>();
     is_format::<(Slot<4>, PhaseSpikes<2, 16, 4>, PhaseBits<4>, BurstSpikes<19>)>();
     is_format::<(Shape, Differences, ConfigError)>();
     is_format_in::<f32>();

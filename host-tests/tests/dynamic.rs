@@ -181,6 +181,8 @@ fn populations<S: Sample, const M: usize>(one: f64) {
 
     slots::<S, M, 10>(one);
     slots::<S, M, 256>(one);
+    nonlinear::<S, M, 10>(one);
+    rank_order::<S, M, 3>(one);
 
     let scheme = population::Probabilistic::<S, Pcg32, M, 256>::try_new(range(), 1.5).unwrap();
     let other = AnyProbabilistic::<S>::try_new(M, &range(), 1.5).unwrap();
@@ -206,6 +208,53 @@ fn slots<S: Sample, const M: usize, const N: usize>(one: f64) {
         let any = said(&other, other.state(), &[], &signal);
         assert!(fixed == any, "{what}");
     }
+}
+
+fn nonlinear<S: Sample, const M: usize, const N: usize>(one: f64) {
+    let range = || S::from_f64(-1.7 * one)..=S::from_f64(1.6 * one);
+    let what = format!("{M} non-linear fields, {N} slots, {:?}", S::KIND);
+    let scheme = population::Position::<S, M>::try_companded(range(), 1.0);
+    let other = AnyPosition::try_companded(M, &range(), 1.0);
+    assert_eq!(scheme.as_ref().err(), other.as_ref().err(), "{what}");
+    let (Ok(scheme), Ok(other)) = (scheme, other) else { return };
+    compare(&what, &scheme, &other, || other.state(), 2.0 * one);
+    let (centres, widths) = (*scheme.centres(), [(0.3 * one) as f32; M]);
+    let scheme = population::Position::<S, M>::try_with_widths(centres, widths).unwrap();
+    let other = AnyPosition::try_with_widths(&centres, &widths).unwrap();
+    compare(&what, &scheme, &other, || other.state(), 2.0 * one);
+
+    let signal = signal::<S>(9, 2.0 * one);
+    let check = |scheme: population::NonLinearSlots<S, M, N>, other: dynamic::NonLinearSlots<S>| {
+        for floor in [1, N as u16 / 2] {
+            let scheme = scheme.try_with_floor(floor).unwrap();
+            let other = other.clone().try_with_floor(floor).unwrap();
+            let fixed = said(&scheme, population::NonLinearSlots::<S, M, N>::START, &[], &signal);
+            assert!(fixed == said(&other, other.state(), &[], &signal), "{what}, floor {floor}");
+            assert!(fixed.codes.iter().flatten().any(|code| code.len() > 1), "{what}");
+        }
+    };
+    check(
+        population::NonLinearSlots::try_companded(range(), 1.0, 1.5).unwrap(),
+        dynamic::NonLinearSlots::try_companded(M, N, &range(), 1.0, 1.5).unwrap(),
+    );
+    check(
+        population::NonLinearSlots::try_new(centres, widths).unwrap(),
+        dynamic::NonLinearSlots::try_new(N, &centres, &widths).unwrap(),
+    );
+    let error = dynamic::NonLinearSlots::<S>::try_new(N, &centres, &widths[1..]).unwrap_err();
+    assert!(error.to_string().starts_with("number of widths "), "{error}");
+}
+
+fn rank_order<S: Sample, const M: usize, const K: usize>(one: f64) {
+    let range = || S::from_f64(-1.7 * one)..=S::from_f64(1.6 * one);
+    let what = format!("{K} of {M} neurons in order, {:?}", S::KIND);
+    let scheme = population::RankOrder::<S, M, K>::try_linear(range()).unwrap();
+    let other = dynamic::RankOrder::<S>::try_linear(M, K, &range()).unwrap();
+    assert_eq!(scheme.centres(), other.centres());
+    compare(&what, &scheme, &other, || other.state(), 2.0 * one);
+    let scheme = population::RankOrder::<S, M, K>::try_new(*scheme.centres()).unwrap();
+    let other = dynamic::RankOrder::<S>::try_new(K, scheme.centres()).unwrap();
+    compare(&what, &scheme, &other, || other.state(), 2.0 * one);
 }
 
 /// What a 1 is in each sample type's unit, so that raw counts have some range.

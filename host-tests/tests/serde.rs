@@ -6,7 +6,10 @@ use serde::Serialize;
 use serde_json::json;
 use spikewire::{
     Calibration, ConfigError, Event, Firing, Histogram, Polarity, SampleKind, Scheme, Spike,
-    population::{FiredNeurons, Neuron, Position, Probabilistic, Slots},
+    population::{
+        FiredNeurons, Neuron, NeuronSlots, NonLinearSlots, Position, Probabilistic, RankOrder,
+        Slots,
+    },
     rate::{Bsa, BsaToolbox, Criterion, Hough, Scale, Shape, Taps, ThresholdHough},
     temporal::{MovingWindow, StepForward, TemporalContrast},
     timing::{
@@ -41,6 +44,7 @@ fn population_codes() {
     assert_eq!(pairs.len(), 4);
     assert_json(spikes, &json!(pairs));
     assert_json(FiredNeurons::<4>::EMPTY, &json!([]));
+    assert_json(NeuronSlots::<4, 9>::new([(0, 8), (3, 0)]), &json!([[0, 8], [3, 0]]));
 }
 
 #[test]
@@ -80,6 +84,10 @@ fn population_schemes_with_their_neurons() {
     let fields =
         json!({ "centres": [-0.25, 0.25, 0.75, 1.25], "min": 0.0, "max": 1.0, "beta": 1.5 });
     assert_json(SLOTS, &json!({ "fields": fields, "floor": 1 }));
+    let scheme = NonLinearSlots::<i16, 3, 8>::spaced([-9, 0, 20], 1.5).with_floor(2);
+    assert_json(scheme, &json!({ "centres": [-9, 0, 20], "floor": 2 }));
+    let scheme = RankOrder::<i16, 3, 2>::new([-9, 0, 20]);
+    assert_json(scheme, &json!({ "centres": [-9, 0, 20], "min": -9, "max": 20 }));
     let scheme = Probabilistic::<f32, Pcg32, 4, 128>::new(0.0..=1.0, 1.5);
     assert_json(scheme, &json!({ "fields": fields }));
 }

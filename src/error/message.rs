@@ -61,6 +61,14 @@ impl Message {
                 .text(" of the ")
                 .integer(cells as u64)
                 .text(" cells must hold a sample: a wider range, fewer cells"),
+            ConfigError::FieldTooWide { field, lower } => message
+                .text("field ")
+                .integer(field as u64)
+                .text(" is too wide: it wins where fields ")
+                .integer(lower as u64)
+                .text(" and ")
+                .integer(lower as u64 + 1)
+                .text(" meet"),
             ConfigError::TooFewSamples { needed, .. } => {
                 message.text("a calibration needs samples, at least ").integer(needed as u64)
             }
@@ -178,6 +186,10 @@ mod tests {
             (
                 ConfigError::EmptyCell { cell: 3, cells: 16 },
                 "number 3 of the 16 cells must hold a sample: a wider range, fewer cells",
+            ),
+            (
+                ConfigError::FieldTooWide { field: 3, lower: 0 },
+                "field 3 is too wide: it wins where fields 0 and 1 meet",
             ),
             (
                 ConfigError::TooFewSamples { seen: 2, needed: 3 },

@@ -69,6 +69,13 @@ pub enum ConfigError {
         /// How many cells there are.
         cells: usize,
     },
+    /// A receptive field must not win where two others meet.
+    FieldTooWide {
+        /// Which field, from 0, the lowest.
+        field: usize,
+        /// The lower of the two that meet; the other is the next one.
+        lower: usize,
+    },
     /// A calibration has seen too few samples.
     TooFewSamples {
         /// How many it has seen.
@@ -104,6 +111,12 @@ impl fmt::Display for ConfigError {
                 f,
                 "number {cell} of the {cells} cells must hold a sample: use a wider range or fewer cells, and \
                  edges within the range"
+            ),
+            Self::FieldTooWide { field, lower } => write!(
+                f,
+                "field {field} is so wide that it wins where fields {lower} and {} meet: use a narrower one there, or \
+                 equal widths",
+                lower.saturating_add(1)
             ),
             Self::TooFewSamples { seen, needed } => {
                 write!(f, "the calibration has seen {seen} samples and needs at least {needed}")

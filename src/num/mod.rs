@@ -9,6 +9,7 @@ mod cells;
 mod convert;
 pub(crate) mod curve;
 mod distance;
+mod field;
 mod kind;
 mod nearer;
 mod residual;
@@ -26,6 +27,7 @@ pub(crate) use convert::{
     below_from_f64, floor_from_f64, from_f64, largest_step, one, to_f64, units, word,
 };
 pub(crate) use distance::{Distance, Spaced, cell, cells, near, reach, top};
+pub(crate) use field::{Field, scale, widths, within_widths};
 pub use kind::SampleKind;
 pub(crate) use nearer::{Bound, Nearer};
 pub(crate) use residual::{Rated, Ratio, Residual};

@@ -9,7 +9,9 @@ use fixed::{
     types::extra::{LeEqU16, LeEqU32},
 };
 
-use super::{Arithmetic, Binary, Rated, SampleKind, Spaced, Summed, Totalled, Windowed, convert};
+use super::{
+    Arithmetic, Binary, Field, Rated, SampleKind, Spaced, Summed, Totalled, Windowed, convert,
+};
 
 /// A number that comes from a sensor: `f32`, raw `i16` counts, or, with the feature `fixed`,
 /// `FixedI16` and `FixedI32` with any fraction.
@@ -40,6 +42,7 @@ pub trait Sample:
     + Spaced
     + Summed
     + Totalled
+    + Field
 {
     /// The type, as a value.
     const KIND: SampleKind;

@@ -20,6 +20,8 @@
 #[cfg(feature = "rand")]
 pub use super::population::dynamic::Probabilistic;
 pub use super::population::dynamic::{LEVELS, NEURONS, Position, Slots};
+pub use super::population::dynamic_nonlinear::NonLinearSlots;
+pub use super::population::dynamic_rank_order::RankOrder;
 pub use super::rate::dynamic::{
     Bsa, BsaToolbox, BsaToolboxState, Hough, LONGEST, Rate, RateDecoderState, RateState, Taps,
     ThresholdHough,

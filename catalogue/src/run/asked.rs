@@ -178,6 +178,27 @@ impl<'a> Asked<'a> {
         Ok(settings.get(name).unwrap_or_default().to_owned())
     }
 
+    /// A list of finite numbers, as a file holds it; `None` if it is one of these words instead.
+    ///
+    /// # Errors
+    /// There is none, or it is neither.
+    pub fn list(&self, name: &str, words: &[&str]) -> Result<Option<String>> {
+        let list = self.text(name).ok_or_else(|| self.needs(name))?;
+        if words.contains(&list.as_str()) {
+            return Ok(None);
+        }
+        let numbers = list.split(',').map(|text| {
+            let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+            number.map(|number| number.to_string()).with_context(|| {
+                format!(
+                    "--{name} {list}: `{text}` is neither a finite number, nor is the whole {}",
+                    words.join(" or ")
+                )
+            })
+        });
+        Ok(Some(numbers.collect::<Result<Vec<_>>>()?.join(",")))
+    }
+
     /// What the user gave.
     pub fn user(&self, name: &str) -> Option<&str> {
         self.options.get(name)

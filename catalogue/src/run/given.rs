@@ -112,6 +112,14 @@ impl<'a> Given<'a> {
         Ok(self.read(name, self.numbers(name)?))
     }
 
+    /// Numbers in the signal's unit, in that of the sample type, but not rounded to it.
+    ///
+    /// # Errors
+    /// As for [`number`](Self::number).
+    pub fn reals(&self, name: &str) -> Result<Vec<f32>> {
+        Ok(self.numbers(name)?.into_iter().map(|number| (number * self.one) as f32).collect())
+    }
+
     /// From `min` to `max`.
     ///
     /// # Errors

@@ -41,7 +41,7 @@ impl Entry for Scheme {
     fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = Gaussian::<_, 20>::try_linear(signal.min..=signal.max)?;
         let (sigma, means) = ((signal.range / 18.0) as f32, signal.means::<20>());
-        visitor.winner("grf-20", &scheme, &means, sigma, |signal, neurons| {
+        visitor.winner("grf-20", &scheme, &means, &[sigma; 20], |signal, neurons| {
             transcribed(signal, &means, sigma, neurons);
         })
     }

@@ -14,7 +14,7 @@ use {
         Asked, Build, BuildPopulation, Constant, Counted, Given, Options, Rust, Settings, Shape,
         Visit, is_list, missing, state,
     },
-    anyhow::{Context, Result, bail},
+    anyhow::{Result, bail},
     spikewire::{Sample, dynamic},
 };
 
@@ -77,26 +77,16 @@ impl Entry for Scheme {
 impl Build for Scheme {
     /// A list of centres says it all.
     fn resolve(asked: &Asked) -> Result<Settings> {
-        let centres = asked.text("centres").unwrap_or_default();
-        if !is_list(&centres) {
+        let Some(centres) = asked.list("centres", &["linear", "gaussian"])? else {
             return asked.all();
-        }
+        };
         if let Some(option) =
             ["neurons", "min", "max"].iter().find(|name| asked.user(name).is_some())
         {
             bail!("--centres {centres} says it all; --{option} contradicts it");
         }
-        let list = centres.split(',').map(|centre| {
-            let number = centre.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-            let number = number.with_context(|| {
-                format!(
-                    "--centres {centres}: `{centre}` is neither a finite number, nor is the whole linear or gaussian"
-                )
-            });
-            number.map(|number| number.to_string())
-        });
         let mut settings = Settings::default();
-        settings.set("centres", list.collect::<Result<Vec<_>>>()?.join(","));
+        settings.set("centres", centres);
         Ok(settings)
     }
 

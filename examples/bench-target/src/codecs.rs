@@ -184,7 +184,7 @@ impl<S: Measured, W: Write> Count for Counter<'_, S, W> {
         name: &'static str,
         scheme: &Position<S, M>,
         means: &[f32; M],
-        sigma: f32,
+        sigmas: &[f32; M],
         encode: impl FnOnce(&[S], &mut [i8]),
     ) -> Result<(), Failure> {
         let (signal, neurons) = self.slices();
@@ -192,7 +192,7 @@ impl<S: Measured, W: Write> Count for Counter<'_, S, W> {
         let mut state = Position::<S, M>::START;
         for (&sample, neuron) in signal.iter().zip(neurons.iter_mut()) {
             let Some(nearest) = encode_sample(scheme, &mut state, sample) else { continue };
-            let response = |i: usize| response(sample.to_f64() as f32, means[i], sigma);
+            let response = |i: usize| response(sample.to_f64() as f32, means[i], sigmas[i]);
             let (ours, plain) = (response(nearest.index().into()), response(*neuron as usize));
             if (ours - plain).abs() <= 2.0 * f32::EPSILON {
                 *neuron = nearest.index() as i8;

@@ -20,8 +20,10 @@ mod histogram;
 mod hough;
 mod line;
 mod moving_window;
+mod nonlinear;
 mod position;
 mod probabilistic;
+mod rank_order;
 mod rate_decoder;
 mod real;
 mod slots;
@@ -42,8 +44,13 @@ pub use histogram::{even_cell, histogram, quantile_centres};
 pub use hough::hough;
 pub use line::{Exact, Line, edge, even, points};
 pub use moving_window::moving_window;
+pub use nonlinear::{
+    companded_centres, field_edges, fields_are_regions, float_levels, integer_levels,
+    integer_weighted_mean, level_radii, spacing_widths, strongest,
+};
 pub use position::{nearest, nearest_even};
 pub use probabilistic::{probabilistic, probabilistic_from_levels};
+pub use rank_order::{nearest_first, rank_order_value};
 pub use rate_decoder::rate_decode;
 pub use real::{Real, rounded};
 pub use slots::{

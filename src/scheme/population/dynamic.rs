@@ -7,6 +7,7 @@ use alloc::vec::Vec;
 
 use super::centres::{even, gaussian_spaced, halfway_edges};
 use super::fields::tables;
+use super::nonlinear::{companded, crossings, own_widths, spacings};
 use super::{Neuron, PositionState, SlotSpikes, SlotsState};
 use crate::error::{positive, within};
 use crate::num::{Cells, Distance, reach};
@@ -20,8 +21,14 @@ pub const NEURONS: usize = 1024;
 /// The most levels of a response, which is also the most slots of a sample.
 pub const LEVELS: usize = 256;
 
-fn check_neurons(neurons: usize, most: usize) -> Result<(), ConfigError> {
+pub(super) fn check_neurons(neurons: usize, most: usize) -> Result<(), ConfigError> {
     within("neurons", neurons as f64, 3.0, most.min(NEURONS) as f32)
+}
+
+/// That there is a width for each neuron.
+pub(super) fn check_widths(neurons: usize, widths: &[f32]) -> Result<(), ConfigError> {
+    let neurons = neurons as f32;
+    within("number of widths", widths.len() as f64, neurons, neurons)
 }
 
 /// [`population::Position`](crate::population::Position) with any number of neurons, up to `M`.
@@ -68,6 +75,53 @@ impl<S: Sample, const M: usize> Position<S, M> {
         let mut centres = vec![S::ZERO; neurons];
         gaussian_spaced(range, &mut centres)?;
         Self::try_new(&centres)
+    }
+
+    /// Receptive fields with these centres and widths `sigma`, of which the strongest response fires.
+    ///
+    /// # Errors
+    /// There are not 3 to `M` centres and as many widths; otherwise as for
+    /// [`population::Position`](crate::population::Position::try_with_widths).
+    pub fn try_with_widths(centres: &[S], widths: &[f32]) -> Result<Self, ConfigError> {
+        check_neurons(centres.len(), M)?;
+        check_widths(centres.len(), widths)?;
+        let mut sigmas = vec![0.0; widths.len()];
+        own_widths(widths, &mut sigmas)?;
+        Self::of_fields(centres, &sigmas)
+    }
+
+    /// Receptive fields with these centres, each as wide as the distance between its neighbours.
+    ///
+    /// # Errors
+    /// There are not 3 to `M` centres; otherwise as for
+    /// [`population::Position`](crate::population::Position::try_spaced).
+    pub fn try_spaced(centres: &[S]) -> Result<Self, ConfigError> {
+        check_neurons(centres.len(), M)?;
+        let mut sigmas = vec![0.0; centres.len()];
+        spacings(centres, &mut sigmas);
+        Self::of_fields(centres, &sigmas)
+    }
+
+    /// Companded centres, dense in the middle of the range, with fields as wide as their spacing.
+    ///
+    /// # Errors
+    /// There are not 3 to `M` neurons; otherwise as for
+    /// [`population::Position`](crate::population::Position::try_companded).
+    pub fn try_companded(
+        neurons: usize,
+        range: &RangeInclusive<S>,
+        companding: f32,
+    ) -> Result<Self, ConfigError> {
+        check_neurons(neurons, M)?;
+        let mut centres = vec![S::ZERO; neurons];
+        companded(range, companding, &mut centres)?;
+        Self::try_spaced(&centres)
+    }
+
+    fn of_fields(centres: &[S], widths: &[f64]) -> Result<Self, ConfigError> {
+        let mut edges = centres.to_vec();
+        crossings(centres, widths, &mut edges)?;
+        Ok(Self::of(centres.to_vec(), edges))
     }
 
     fn of(centres: Vec<S>, mut edges: Vec<S>) -> Self {
@@ -137,7 +191,7 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
     }
 }
 
-fn middle<S: Sample>(centres: &[S]) -> Held<S> {
+pub(super) fn middle<S: Sample>(centres: &[S]) -> Held<S> {
     Held::at(centres.get(centres.len() / 2).copied().unwrap_or(S::ZERO))
 }
 

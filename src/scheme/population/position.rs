@@ -13,7 +13,8 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 ///
 /// - **Centres:** `M`, 3 to 1024: [linear](Self::linear), [Gaussian-spaced](Self::gaussian_spaced) or the
 ///   [user's own](Self::new). A value halfway between two fires the lower; a value outside the range fires the
-///   neuron at that end.
+///   neuron at that end. With receptive fields of [unequal width](Self::with_widths) it is the strongest response
+///   that fires, not the nearest centre.
 /// - **Latency:** 0 samples. **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes
 ///   `10 M + 8` bytes of flash in `f32`.
 /// - **Work:** one multiplication finds the cell of a value, a table gives the lowest neuron of that cell, and one
@@ -109,6 +110,10 @@ impl<S: Sample, const M: usize> Position<S, M> {
             Ok(centres) => Ok(Self { centres }),
             Err(error) => Err(error),
         }
+    }
+
+    pub(super) const fn of_edges(centres: [S; M], edges: [S; M]) -> Self {
+        Self { centres: Centres::new(centres, edges, M) }
     }
 
     /// The centres, lowest first, rounded to the sample type.

@@ -1,0 +1,145 @@
+//! Non-linear Gaussian receptive fields with sub-timesteps.
+
+use spikewire::population::{NeuronSlots, NonLinearSlots};
+use spikewire::{Sample, Start};
+
+use super::grf_nonlinear::{CENTRES, COMPANDING, WIDTHS};
+use super::grf_slots::transcribed_decoder;
+use crate::plain::{Plain, response, spaced_widths};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+
+#[cfg(feature = "run")]
+use {
+    super::grf_nonlinear,
+    crate::run::{Asked, Build, BuildPopulation, Given, Options, Settings, Shape, Visit},
+    anyhow::Result,
+    spikewire::dynamic,
+};
+
+/// Non-linear Gaussian receptive fields with sub-timesteps.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme;
+
+impl Entry for Scheme {
+    const INFO: Info = Info {
+        name: "grf-nonlinear-slots",
+        title: "GRF, non-linear, slots",
+        words: "non-linear GRF with sub-timesteps",
+        good_for: "a value finer than the neurons, by spike time, and finest where it is most of the time",
+        is_signed: false,
+        has_first_value: false,
+        climbs_by: None,
+        is_drawn: false,
+        colour: [0x9a, 0xa1, 0xab],
+        parameters: &[
+            CENTRES,
+            WIDTHS,
+            COMPANDING,
+            Parameter::neurons("15"),
+            Parameter::MIN,
+            Parameter::MAX,
+            Parameter::new("slots", Kind::Count, Unit::None, "sub-timesteps a sample, 2 to 256")
+                .with_paper(Paper::Text("10"))
+                .with_example("10"),
+            Parameter::BETA,
+            Parameter::new(
+                "floor",
+                Kind::Count,
+                Unit::None,
+                "neurons below this level of --slots are silent",
+            )
+            .with_default("1"),
+        ],
+    };
+
+    fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let range = channel.min..=channel.max;
+        let scheme = NonLinearSlots::<_, 15, 10>::try_companded(range, 5.0, 1.5)?;
+        let start = NonLinearSlots::<V::Sample, 15, 10>::START;
+        visitor.visit(Self::INFO.name, Self::INFO.words, &scheme, start)
+    }
+
+    fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let range = signal.min..=signal.max;
+        let scheme = NonLinearSlots::<_, 15, 10>::try_companded(range, 20.0, 1.5)?;
+        let means = scheme.centres().map(|centre| centre.to_f64() as f32);
+        let sigmas = spaced_widths(&means, 1.5);
+        visitor.neurons::<_, 15>(
+            "grf-nonlinear-slots-15x10",
+            &scheme,
+            &|| NonLinearSlots::<V::Sample, 15, 10>::START,
+            spikes_of,
+            |signal, slots| transcribed(signal, &means, &sigmas, 10, slots),
+            |slots, before, values| {
+                transcribed_decoder(slots, scheme.centres(), 10, before, values);
+            },
+        )
+    }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    fn resolve(asked: &Asked) -> Result<Settings> {
+        grf_nonlinear::resolve(asked, &Self::INFO)
+    }
+
+    fn needs_signal(options: &Options) -> Option<String> {
+        grf_nonlinear::needs_signal(options, &Self::INFO)
+    }
+
+    fn shape(given: &Given) -> Result<Shape> {
+        let slots = given.count("slots", 2..=dynamic::LEVELS)?;
+        Ok(Shape { neurons: grf_nonlinear::neurons(given)?, slots })
+    }
+
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        Self::build_population(given, visitor)
+    }
+}
+
+#[cfg(feature = "run")]
+impl BuildPopulation for Scheme {
+    fn build_within<S: Sample, V: Visit<S>, const M: usize>(
+        given: &Given,
+        visitor: V,
+    ) -> Result<V::Output> {
+        let slots = given.count("slots", 2..=dynamic::LEVELS)?;
+        let centres = grf_nonlinear::centres::<S, M>(given)?;
+        let scheme = match grf_nonlinear::widths(given, centres.len())? {
+            Some(widths) => dynamic::NonLinearSlots::<S, M>::try_new(slots, &centres, &widths)?,
+            None => {
+                let beta = given.number("beta")? as f32;
+                dynamic::NonLinearSlots::try_spaced(slots, &centres, beta)?
+            }
+        };
+        let scheme = scheme.try_with_floor(given.count("floor", 1..=slots)? as u16)?;
+        let start = scheme.state();
+        visitor.visit(scheme, start)
+    }
+}
+
+/// The code that the transcription writes: the slot of each neuron, or -1.
+fn spikes_of(slots: &[i8]) -> NeuronSlots<15, 10> {
+    let fired = (0..).zip(slots).filter(|&(_, &slot)| slot >= 0);
+    NeuronSlots::new(fired.map(|(neuron, &slot)| (neuron, slot as u16))).unwrap_or(NeuronSlots::EMPTY)
+}
+
+/// The responses with their exponentials, in `f32` for every sample type: the slot of each neuron, or -1, one sample
+/// after the other.
+#[allow(clippy::needless_range_loop)] // index by index, as the definition
+#[inline(never)]
+pub fn transcribed<S: Plain>(
+    input: &[S],
+    centres: &[f32],
+    sigmas: &[f32],
+    levels: usize,
+    slots: &mut [i8],
+) {
+    for i in 0..input.len() {
+        let x = input[i].to_f64() as f32;
+        for j in 0..centres.len() {
+            let level = (levels as f32 * response(x, centres[j], sigmas[j]) + 0.5) as usize;
+            slots[i * centres.len() + j] = if level > 0 { (levels - level) as i8 } else { -1 };
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! Rank order coding.
+
+#![allow(clippy::needless_range_loop)] // index by index, as the definition
+
+use spikewire::Start;
+use spikewire::population::{RankOrder, SlotSpikes};
+
+use crate::plain::{Plain, magnitude};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+
+#[cfg(feature = "run")]
+use {
+    crate::run::{Asked, Build, BuildPopulation, Given, Options, Settings, Shape, Visit, missing},
+    anyhow::{Result, bail},
+    spikewire::{Sample, dynamic},
+};
+
+/// Rank order coding.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme;
+
+impl Entry for Scheme {
+    const INFO: Info = Info {
+        name: "rank-order",
+        title: "Rank order",
+        words: "rank order",
+        good_for: "a value finer than the neurons, by who fires first",
+        is_signed: false,
+        has_first_value: false,
+        climbs_by: None,
+        is_drawn: false,
+        colour: [0x9a, 0xa1, 0xab],
+        parameters: &[
+            Parameter::new(
+                "centres",
+                Kind::Text,
+                Unit::Signal,
+                "`linear`, or a rising list such as `-1,-0.2,0,0.2,1`",
+            )
+            .with_default("linear"),
+            Parameter::neurons("15"),
+            Parameter::MIN,
+            Parameter::MAX,
+            Parameter::new(
+                "spikes",
+                Kind::Count,
+                Unit::None,
+                "how many neurons fire for a sample, 1 to all, at most 256",
+            )
+            .with_example("3")
+            .with_paper(Paper::Text("3")),
+        ],
+    };
+
+    fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let scheme = RankOrder::<_, 15, 3>::try_linear(channel.min..=channel.max)?;
+        let start = RankOrder::<V::Sample, 15, 3>::START;
+        visitor.visit(Self::INFO.name, Self::INFO.words, &scheme, start)
+    }
+
+    fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
+        let (min, max) = (signal.min, signal.max);
+        let scheme = RankOrder::<_, 15, 3>::try_linear(min..=max)?;
+        visitor.neurons::<_, 15>(
+            "rank-order-15x3",
+            &scheme,
+            &|| RankOrder::<V::Sample, 15, 3>::START,
+            spikes_of,
+            |signal, ranks| transcribed(signal, scheme.centres(), 3, ranks),
+            |ranks, _, values| transcribed_decoder(ranks, scheme.centres(), min, max, values),
+        )
+    }
+}
+
+#[cfg(feature = "run")]
+impl Build for Scheme {
+    /// A list of centres says which neurons there are.
+    fn resolve(asked: &Asked) -> Result<Settings> {
+        let Some(centres) = asked.list("centres", &["linear"])? else {
+            return asked.all();
+        };
+        if let Some(option) =
+            ["neurons", "min", "max"].iter().find(|name| asked.user(name).is_some())
+        {
+            bail!("--centres {centres} says it all; --{option} contradicts it");
+        }
+        let mut settings = Settings::default();
+        settings.set("centres", centres);
+        asked.settle("spikes", &mut settings)?;
+        Ok(settings)
+    }
+
+    fn needs_signal(options: &Options) -> Option<String> {
+        if options.get("centres").is_some_and(|centres| centres != "linear") {
+            None
+        } else {
+            missing(&Self::INFO, options)
+        }
+    }
+
+    fn shape(given: &Given) -> Result<Shape> {
+        let neurons = match given.word("centres")? {
+            "linear" => given.neurons()?,
+            _ => given.numbers("centres")?.len(),
+        };
+        Ok(Shape { neurons, slots: given.count("spikes", 1..=dynamic::LEVELS)? })
+    }
+
+    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+        Self::build_population(given, visitor)
+    }
+}
+
+#[cfg(feature = "run")]
+impl BuildPopulation for Scheme {
+    fn build_within<S: Sample, V: Visit<S>, const M: usize>(
+        given: &Given,
+        visitor: V,
+    ) -> Result<V::Output> {
+        let spikes = given.count("spikes", 1..=dynamic::LEVELS)?;
+        let scheme = match given.word("centres")? {
+            "linear" => {
+                let (neurons, range) = (given.neurons()?, given.range()?);
+                dynamic::RankOrder::<S, M>::try_linear(neurons, spikes, &range)?
+            }
+            _ => dynamic::RankOrder::try_new(spikes, &given.signals("centres")?)?,
+        };
+        let start = scheme.state();
+        visitor.visit(scheme, start)
+    }
+}
+
+/// The code that the transcription writes: the rank of each neuron, or -1.
+fn spikes_of(ranks: &[i8]) -> SlotSpikes<15, 3> {
+    let mut fired = [0; 15];
+    let mut length = 0;
+    for (fired, &rank) in fired.iter_mut().zip(ranks.iter().filter(|&&rank| rank >= 0)) {
+        *fired = rank as u8;
+        length += 1;
+    }
+    let first = ranks.iter().take_while(|&&rank| rank < 0).count();
+    let fired = fired.get(..length).unwrap_or_default();
+    SlotSpikes::new(first as u16, fired).unwrap_or(SlotSpikes::EMPTY)
+}
+
+/// The nearest centre that has not fired, again and again, of two alike the lower: the rank of each neuron, or -1, one
+/// sample after the other.
+#[inline(never)]
+pub fn transcribed<S: Plain>(input: &[S], centres: &[S], spikes: usize, ranks: &mut [i8]) {
+    for i in 0..input.len() {
+        let ranks = &mut ranks[i * centres.len()..(i + 1) * centres.len()];
+        ranks.fill(-1);
+        for rank in 0..spikes {
+            let (mut winner, mut least) = (centres.len(), S::Wide::default());
+            for j in 0..centres.len() {
+                let distance = magnitude(input[i].into() - centres[j].into());
+                if ranks[j] < 0 && (winner == centres.len() || distance < least) {
+                    (winner, least) = (j, distance);
+                }
+            }
+            ranks[winner] = rank as i8;
+        }
+    }
+}
+
+/// The middle of the values nearer to each neuron than to all that fire after it, or not at all.
+#[inline(never)]
+pub fn transcribed_decoder<S: Plain>(
+    ranks: &[i8],
+    centres: &[S],
+    min: S,
+    max: S,
+    values: &mut [S],
+) {
+    for i in 0..values.len() {
+        let ranks = &ranks[i * centres.len()..(i + 1) * centres.len()];
+        // Twice the ends.
+        let (mut low, mut high) = (min.into() + min.into(), max.into() + max.into());
+        for l in 0..centres.len() {
+            for r in l + 1..centres.len() {
+                let middle = centres[l].into() + centres[r].into();
+                let is_lower = ranks[l] >= 0 && (ranks[r] < 0 || ranks[l] < ranks[r]);
+                let is_upper = ranks[r] >= 0 && (ranks[l] < 0 || ranks[r] < ranks[l]);
+                if is_lower && middle < high {
+                    high = middle;
+                }
+                if is_upper && middle > low {
+                    low = middle;
+                }
+            }
+        }
+        values[i] = S::narrow((low + high) / S::count(4));
+    }
+}
