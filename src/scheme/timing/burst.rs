@@ -16,9 +16,10 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 ///
 /// - **N:** 2 to 256 slots a sample, enough for all bursts. **S:** 1 to `N`, at most 255. **Intervals:** 1 slot or
 ///   more.
-/// - **Latency:** 0 samples. **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes `12 N + 20` bytes
+/// - **Latency:** 0 samples. **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes `13 N + 20` bytes
 ///   of flash in `f32`.
-/// - **Work:** one multiplication and two comparisons; `log2 N` comparisons to decode.
+/// - **Work:** one multiplication and two comparisons; three table look-ups to decode, or where the sample
+///   type is coarse `log2 N` comparisons.
 /// - **Exactness:** fixed point compares with exact edges; `f32` with edges computed in double precision and rounded
 ///   once.
 /// - **Decoder:** the middle of the values with this count and interval. No spike is the minimum; a burst that no
@@ -54,6 +55,9 @@ pub struct Burst<S: Sample, const N: usize> {
     /// Count and interval of each cell.
     #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array"))]
     bursts: [[u8; 2]; N],
+    /// The first cell of each count, from 1.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    firsts: [u8; N],
     /// How many cells there are.
     count: u16,
     min: S,
@@ -107,7 +111,7 @@ impl<S: Sample, const N: usize> Burst<S, N> {
         };
         let (counts, steps) = (spikes as usize, (longest - shortest) as usize);
         let mut cuts = whole.above(to_f64(min));
-        let mut bursts = [[1, 0]; N];
+        let (mut bursts, mut firsts) = ([[1, 0]; N], [0; N]);
         // The largest sample below the cell, and how many edges of counts and of intervals lie there.
         let (mut below, mut passed, mut shorter) = (to_f64(min), 1, steps / counts);
         let (mut cell, mut most) = (0, 1);
@@ -126,6 +130,9 @@ impl<S: Sample, const N: usize> Burst<S, N> {
             }
             let interval = longest - shorter as u8;
             if cell < N {
+                if passed <= N && (cell == 0 || bursts[cell - 1][0] as usize != passed) {
+                    firsts[passed - 1] = cell as u8;
+                }
                 bursts[cell] = if passed > 1 { [passed as u8, interval] } else { [1, 0] };
             }
             most = max(most, (passed - 1) * interval as usize + 1);
@@ -149,7 +156,7 @@ impl<S: Sample, const N: usize> Burst<S, N> {
             return Err(error);
         }
         match cuts.counted(cell + 1).partition() {
-            Ok(cells) => Ok(Self { cells, bursts, count: cell as u16 + 1, min }),
+            Ok(cells) => Ok(Self { cells, bursts, firsts, count: cell as u16 + 1, min }),
             Err(error) => Err(error),
         }
     }
@@ -175,11 +182,26 @@ impl<S: Sample, const N: usize> Burst<S, N> {
         if burst.count() == 0 {
             return Some(self.min);
         }
-        let at = |cell: usize| self.bursts.get(cell).map(|&burst| BurstSpikes::<N>::of(burst));
+        // From cell to cell of a count the interval falls by 1, unless cells are coarse.
+        let first = usize::from(*self.firsts.get(usize::from(burst.count()).wrapping_sub(1))?);
+        let longest = self.known(first)?.interval();
+        let cell = first.wrapping_add(longest.wrapping_sub(burst.interval()).into());
+        if self.known(cell) == Some(burst) { self.cells.get(cell) } else { self.searched(burst) }
+    }
+
+    #[inline]
+    fn known(&self, cell: usize) -> Option<BurstSpikes<N>> {
+        let known = self.bursts.get(cell).filter(|_| cell < usize::from(self.count));
+        known.map(|&burst| BurstSpikes::of(burst))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn searched(&self, burst: BurstSpikes<N>) -> Option<S> {
         let cell = count_preceding(self.count.into(), |cell| {
-            at(cell).is_some_and(|known| known.rank() < burst.rank())
+            self.known(cell).is_some_and(|known| known.rank() < burst.rank())
         });
-        at(cell).filter(|&known| known == burst).and_then(|_| self.cells.get(cell))
+        self.known(cell).filter(|&known| known == burst).and_then(|_| self.cells.get(cell))
     }
 }
 

@@ -165,20 +165,15 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
     /// The middle of the cells that all spikes leave.
     #[inline]
     fn value(&self, spikes: &PhaseSpikes<M, W, P>) -> Option<S> {
-        let longest = usize::from(self.width.wrapping_sub(1));
-        let (mut least, mut most) = (0, longest);
-        let mut is_silent = true;
-        for (_, slot) in spikes.iter() {
-            let slot = usize::from(slot);
-            least = least.max((slot + 1).saturating_sub(usize::from(self.period)));
-            most = most.min(slot);
-            is_silent = false;
-        }
-        if is_silent || least > most {
+        let (earliest, latest) = spikes.ends()?;
+        let longest = self.width.wrapping_sub(1);
+        let (least, most) = (latest.saturating_sub(self.period), earliest.min(longest));
+        if least > most {
             return None;
         }
-        let first = self.cells.get(longest.wrapping_sub(most))?;
-        let above = if least > 0 { self.cells.get(longest.wrapping_sub(least) + 1) } else { None };
+        let cell = |latency: u16| usize::from(longest.wrapping_sub(latency));
+        let first = self.cells.get(cell(most))?;
+        let above = if least > 0 { self.cells.get(cell(least) + 1) } else { None };
         Some(first.middle(above.map_or(self.max, S::before)))
     }
 }

@@ -35,6 +35,18 @@ impl<const M: usize, const W: usize, const P: usize> PhaseSpikes<M, W, P> {
         spikes
     }
 
+    /// The earliest slot, and the number, from 1, of the latest; `None` without spikes.
+    #[inline]
+    pub(super) fn ends(&self) -> Option<(u16, u16)> {
+        let (mut earliest, mut latest) = (u16::MAX, 0);
+        for number in self.numbers {
+            // None is later than every slot, and earlier than the first.
+            earliest = earliest.min(number.wrapping_sub(1));
+            latest = latest.max(number);
+        }
+        (latest > 0).then_some((earliest, latest))
+    }
+
     /// The neurons that fire, by rising index, each with its slot.
     pub fn iter(&self) -> impl Iterator<Item = (u16, u16)> {
         let slots = (0..).zip(self.numbers);

@@ -131,8 +131,9 @@ impl<S: Sample, const K: usize> Scheme for WeightedPhase<S, K> {
     #[inline]
     fn encode(&self, state: &mut TimingState, sample: S) -> PhaseBits<K> {
         let Some(sample) = state.accept(sample) else { return PhaseBits::SILENT };
-        let digits = sample.digits(self.min, self.max, self.slots.into());
-        PhaseBits::new((digits << self.unused()) as u16)
+        // All digits that there is room for: a loop of constant length.
+        let digits = sample.digits(self.min, self.max, K as u32);
+        PhaseBits::new((digits >> self.unused() << self.unused()) as u16)
     }
 
     fn encode_slice(
