@@ -46,7 +46,10 @@ impl Entry for Scheme {
     };
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = Bernoulli::<_, Pcg32, _>::try_new(channel.min..=channel.max, Average::new(4))?;
+        let scheme = Bernoulli::<_, Pcg32, _>::try_new(
+            channel.min..=channel.max,
+            const { Average::new(4) },
+        )?;
         let generator = Pcg32::new(2026, channel.index as u64);
         let start = Bernoulli::<V::Sample, Pcg32, Average>::state(generator);
         visitor.visit("bernoulli", Self::INFO.words, &scheme, start)
@@ -113,8 +116,8 @@ mod tests {
     use proptest::prelude::*;
     use rand_pcg::Pcg32;
     use rand_pcg::rand_core::{Rng, TryRng};
-    use spikewire::rate::{Average, Bernoulli};
     use spikewire::Sample;
+    use spikewire::rate::{Average, Bernoulli};
 
     use super::{Plain, transcribed};
     use crate::schemes::sigma_delta::tests::{Check, drawn, in_every_type, values_of};

@@ -56,7 +56,7 @@ impl Entry for Scheme {
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let (range, unit) = (channel.min..=channel.max, channel.fraction(0.14));
-        let scheme = WeightedBurst::try_new(range, unit, 3, Average::new(4))?;
+        let scheme = WeightedBurst::try_new(range, unit, 3, const { Average::new(4) })?;
         let start = WeightedBurst::<V::Sample, Average>::START;
         visitor.visit("burst-weighted", Self::INFO.words, &scheme, start)
     }

@@ -35,11 +35,11 @@ impl Entry for Scheme {
     };
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let (range, average) = (channel.min..=channel.max, Average::new(4));
+        let (range, average) = (channel.min..=channel.max, const { Average::new(4) });
         let scheme = SigmaDelta::try_new(range.clone(), average)?;
         let start = SigmaDelta::<V::Sample, Average>::START;
         visitor.visit("sigma-delta", Self::INFO.words, &scheme, start)?;
-        let scheme = SigmaDelta::try_new(range, Window::<2>::new(6))?;
+        let scheme = SigmaDelta::try_new(range, const { Window::<2>::new(6) })?;
         let start = SigmaDelta::<V::Sample, Window<2>>::START;
         visitor.visit("sigma-delta-window", "sigma-delta over a window", &scheme, start)
     }

@@ -81,7 +81,7 @@ impl<S: Sample> AdaptiveStepForward<S> {
             (Err(error), _) | (_, Err(error)) => return Err(error),
             _ => {}
         }
-        let (value, max) = (smallest * (1_u64 << doublings) as f64, largest_step::<S>());
+        let (value, max) = (smallest * (1_u64 << (doublings & 31)) as f64, largest_step::<S>());
         if value > max {
             let (value, min, max) = (value as f32, smallest as f32, max as f32);
             return Err(ConfigError::OutOfRange { parameter: "largest step", value, min, max });
