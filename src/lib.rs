@@ -82,6 +82,7 @@ extern crate std;
 pub mod chip;
 mod error;
 mod event;
+pub mod frame;
 mod num;
 pub mod out;
 mod scheme;

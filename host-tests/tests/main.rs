@@ -23,6 +23,8 @@ mod dynamic;
 mod first_spike;
 mod formats_bytes;
 mod formats_peers;
+mod formats_pixels;
+mod frames;
 mod gaussian;
 mod histogram;
 mod hough;
@@ -62,6 +64,11 @@ mod weighted_phase;
 #[allow(clippy::pedantic, dead_code, unreachable_pub)]
 #[path = "../../examples/bench-target/src/signal.rs"]
 mod signal;
+
+/// What the firmware program `camera` prints.
+#[allow(clippy::pedantic, dead_code, unreachable_pub)]
+#[path = "../../examples/camera/src/lib.rs"]
+mod camera;
 
 /// A file that is not in the list above would be no test.
 #[test]

@@ -5,12 +5,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms from the lowest to the highest. Those of one line stand side by side, and none names the other.
-const ORDER: [&[&str]; 8] = [
+const ORDER: [&[&str]; 9] = [
     &["serial"], // what serde does not derive
     &["error"],
     &["num"],
     &["scheme"],
     &["event"],
+    &["frame"],
     &["wire"],
     &["out", "chip"],
     &["lib"],

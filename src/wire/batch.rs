@@ -76,7 +76,7 @@ impl<F: EventFormat> Batch for Formatted<F> {
                     written = written.wrapping_add(more);
                     break;
                 }
-                Err(FormatError::Address { .. }) => {
+                Err(FormatError::Address { .. } | FormatError::Pixel { .. }) => {
                     self.unencodable = self.unencodable.saturating_add(1);
                 }
             }

@@ -8,6 +8,7 @@ mod chips;
 mod flight;
 mod formats;
 mod framed;
+mod frames;
 mod meter;
 mod path;
 
@@ -20,6 +21,7 @@ pub fn measure(out: &mut impl Write) -> fmt::Result {
     framed::measure(out)?;
     formats::measure(out)?;
     chips::measure(out)?;
+    frames::measure(out)?;
     banks::measure::<f32>(out, "f32")?;
     path::measure::<f32>(out, "f32")?;
     banks::measure::<FixedI32<U16>>(out, "q16.16")?;

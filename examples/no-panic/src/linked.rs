@@ -11,6 +11,7 @@ use {cortex_m as _, panic_never as _};
 mod codecs;
 mod constants;
 mod exercise;
+mod frames;
 mod links;
 
 use fixed::{
@@ -25,6 +26,7 @@ fn link_all() {
     codecs::link::<i16>();
     constants::link();
     links::link();
+    frames::link();
 }
 
 /// Where the linker begins.

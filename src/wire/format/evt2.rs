@@ -31,7 +31,7 @@ pub struct Evt2;
 const TIME_BITS: u32 = 34;
 const LOW_BITS: u32 = 6;
 const X_BITS: u32 = 11;
-const X_MASK: u32 = (1 << X_BITS) - 1;
+pub(super) const X_MASK: u32 = (1 << X_BITS) - 1;
 /// Bits of y that no address of 16 bits has.
 const FAR_ROWS: u32 = X_MASK & !0x1F;
 const DOWN: u32 = 0;
@@ -70,22 +70,34 @@ pub struct Evt2Encoder {
     retimed: u32,
 }
 
-impl EventFormat for Evt2Encoder {
-    const LONGEST: usize = 4;
+/// What a word says: a time, a direction, and the bits of x and y.
+#[derive(Clone, Copy)]
+pub(super) struct Word {
+    pub(super) tick: Tick,
+    pub(super) polarity: Polarity,
+    pub(super) x: u32,
+    pub(super) y: u32,
+}
 
-    fn encode(&mut self, event: Event, bytes: &mut [u8]) -> Result<usize, FormatError> {
-        let last = self.time.unwrap_or(event.tick.micros().into());
-        let delta = event.tick.since(Tick::from_micros(last));
+impl Evt2Encoder {
+    /// Writes the word of an event, after a time word where one is due.
+    #[inline]
+    pub(super) fn word(
+        &mut self,
+        Word { tick, polarity, x, y }: Word,
+        bytes: &mut [u8],
+    ) -> Result<usize, FormatError> {
+        let last = self.time.unwrap_or(tick.micros().into());
+        let delta = tick.since(Tick::from_micros(last));
         let time = last.wrapping_add(delta.max(0) as u64) & ((1 << TIME_BITS) - 1);
         let high = (time >> LOW_BITS) as u32;
 
         let mut out = Cursor::new(bytes);
-        let address = u32::from(event.address);
-        let kind = if event.polarity == Polarity::Up { UP } else { DOWN };
+        let kind = if polarity == Polarity::Up { UP } else { DOWN };
         let word = kind << 28
             | (time as u32 & ((1 << LOW_BITS) - 1)) << 22
-            | (address & X_MASK) << X_BITS
-            | address >> X_BITS;
+            | (x & X_MASK) << X_BITS
+            | y & X_MASK;
         if self.high != Some(high) {
             out.put(&(TIME_HIGH << 28 | high).to_le_bytes())
                 .ok_or(FormatError::Full { written: 0 })?;
@@ -95,6 +107,16 @@ impl EventFormat for Evt2Encoder {
         self.time = Some(time);
         out.put(&word.to_le_bytes()).ok_or(FormatError::Full { written: out.written() })?;
         Ok(out.written())
+    }
+}
+
+impl EventFormat for Evt2Encoder {
+    const LONGEST: usize = 4;
+
+    fn encode(&mut self, event: Event, bytes: &mut [u8]) -> Result<usize, FormatError> {
+        let Event { tick, address, polarity } = event;
+        let (x, y) = (u32::from(address) & X_MASK, u32::from(address) >> X_BITS);
+        self.word(Word { tick, polarity, x, y }, bytes)
     }
 
     fn retimed(&self) -> u32 {
@@ -149,11 +171,11 @@ impl Evt2Decoder {
     /// Takes a byte before the header is over.
     #[cold]
     #[inline(never)]
-    fn header(&mut self, byte: u8) -> Option<Event> {
+    fn header(&mut self, byte: u8) -> Option<Word> {
         match self.header {
             Header::LineStart if byte != b'%' => {
                 self.header = Header::Over;
-                return self.push(byte);
+                return self.push_word(byte);
             }
             Header::LineStart => {
                 self.header = Header::Percent;
@@ -169,7 +191,7 @@ impl Evt2Decoder {
                 // Fewer than four bytes make no word, and so no event.
                 let [_, rest @ ..] = word.to_le_bytes();
                 for byte in rest {
-                    self.push(byte);
+                    self.push_word(byte);
                 }
             }
             Header::Line { end } => self.header = within_line(end, byte),
@@ -179,7 +201,7 @@ impl Evt2Decoder {
     }
 
     #[inline]
-    fn word(&mut self, word: u32) -> Option<Event> {
+    fn word(&mut self, word: u32) -> Option<Word> {
         let polarity = match word >> 28 {
             TIME_HIGH => {
                 self.high = Some(word & 0x0FFF_FFFF);
@@ -192,14 +214,29 @@ impl Evt2Decoder {
                 return None;
             }
         };
-        let Some(high) = self.high.filter(|_| word & FAR_ROWS == 0) else {
-            self.skipped = self.skipped.saturating_add(4);
+        let Some(high) = self.high else {
+            self.skip();
             return None;
         };
         let low = word >> 22 & ((1 << LOW_BITS) - 1);
         let (x, y) = (word >> X_BITS & X_MASK, word & X_MASK);
         let tick = Tick::from_micros((high << LOW_BITS | low).into());
-        Some(Event { tick, address: (y << X_BITS | x) as u16, polarity })
+        Some(Word { tick, polarity, x, y })
+    }
+
+    /// Counts a word that is no event here.
+    pub(super) fn skip(&mut self) {
+        self.skipped = self.skipped.saturating_add(4);
+    }
+
+    /// Takes a byte, and returns what the word of an event says that it completes.
+    #[inline]
+    pub(super) fn push_word(&mut self, byte: u8) -> Option<Word> {
+        if self.header != Header::Over {
+            return self.header(byte);
+        }
+        let word = self.whole(byte)?;
+        self.word(word)
     }
 }
 
@@ -222,11 +259,12 @@ fn is_text(byte: u8) -> bool {
 impl EventDecoder for Evt2Decoder {
     #[inline]
     fn push(&mut self, byte: u8) -> Option<Event> {
-        if self.header != Header::Over {
-            return self.header(byte);
+        let Word { tick, polarity, x, y } = self.push_word(byte)?;
+        if y & FAR_ROWS != 0 {
+            self.skip();
+            return None;
         }
-        let word = self.whole(byte)?;
-        self.word(word)
+        Some(Event { tick, address: (y << X_BITS | x) as u16, polarity })
     }
 
     fn skipped(&self) -> u32 {

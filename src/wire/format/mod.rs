@@ -5,6 +5,8 @@
 //! | [`Edvs`] | eDVS and mini-eDVS over UART | 14 bits | none, or 16 to 32 bits |
 //! | [`EventStream`] | `.es` files, the lossless log | 16 bits | any |
 //! | [`Evt2`] | Prophesee's tools | 16 of 22 bits | 34 bits |
+//! | [`Evt2Pixels`] | a [camera's events](crate::frame) in Prophesee's tools | x and y, 11 bits each | 34 bits |
+//! | [`Dvs`] | a camera's events in `.es` files | x and y, 16 bits each | any |
 //! | [`eieio`] | `SpiNNaker` boards, by UDP datagram | 32-bit keys | 32 bits a datagram |
 //!
 //! A format is plain data and makes its encoder and decoder. Encoders write whole events into the caller's buffer.
@@ -15,21 +17,26 @@
 //! before counts as earlier. Every event that will be read at another time is counted as
 //! [retimed](EventFormat::retimed).
 
+mod dvs;
 mod edvs;
 pub mod eieio;
 mod event_stream;
 mod evt2;
+mod evt2_pixels;
 
 use core::fmt;
 
 use crate::event::{Event, Tick};
 
+pub use dvs::{Dvs, DvsDecoder, DvsEncoder};
 pub use edvs::{Edvs, EdvsDecoder, EdvsEncoder, EdvsTime};
 pub use event_stream::{EventStream, EventStreamDecoder, EventStreamEncoder};
 pub use evt2::{Evt2, Evt2Decoder, Evt2Encoder};
+pub use evt2_pixels::{Evt2Pixels, Evt2PixelsDecoder, Evt2PixelsEncoder};
 
-/// Writes events, one after the other.
-pub trait EventFormat {
+/// Writes events, one after the other: [`Event`]s with an address, or the
+/// [`PixelEvent`](crate::frame::PixelEvent)s of a camera.
+pub trait EventFormat<E = Event> {
     /// The length of the longest piece that is written at once. A buffer of this length always has room for an event,
     /// or for part of the time before it.
     const LONGEST: usize;
@@ -38,16 +45,17 @@ pub trait EventFormat {
     ///
     /// # Errors
     /// The event does not fit, or the format has no word for its address.
-    fn encode(&mut self, event: Event, bytes: &mut [u8]) -> Result<usize, FormatError>;
+    fn encode(&mut self, event: E, bytes: &mut [u8]) -> Result<usize, FormatError>;
 
     /// How many events will be read at another time than their own.
     fn retimed(&self) -> u32;
 }
 
-/// Reads events, a byte at a time.
-pub trait EventDecoder {
+/// Reads events, a byte at a time: [`Event`]s with an address, or a camera's
+/// [`PixelEvent`](crate::frame::PixelEvent)s.
+pub trait EventDecoder<E = Event> {
     /// Takes a byte, and returns the event that it completes.
-    fn push(&mut self, byte: u8) -> Option<Event>;
+    fn push(&mut self, byte: u8) -> Option<E>;
 
     /// How many bytes were skipped, as they belonged to no event that could be read.
     fn skipped(&self) -> u32;
@@ -56,7 +64,7 @@ pub trait EventDecoder {
     fn is_partial(&self) -> bool;
 
     /// Takes bytes, cut anywhere, and returns the events that they complete. Take all of these.
-    fn decode(&mut self, bytes: &[u8]) -> impl Iterator<Item = Event> {
+    fn decode(&mut self, bytes: &[u8]) -> impl Iterator<Item = E> {
         bytes.iter().filter_map(|&byte| self.push(byte))
     }
 }
@@ -79,6 +87,13 @@ pub enum FormatError {
         /// The largest allowed.
         max: u16,
     },
+    /// The pixel lies outside the picture that the header tells.
+    Pixel {
+        /// Its column.
+        x: u16,
+        /// Its row.
+        y: u16,
+    },
 }
 
 impl fmt::Display for FormatError {
@@ -87,6 +102,9 @@ impl fmt::Display for FormatError {
             Self::Full { .. } => write!(f, "the event does not fit the buffer"),
             Self::Address { address, max } => {
                 write!(f, "address {address} is above {max}, the format's largest")
+            }
+            Self::Pixel { x, y } => {
+                write!(f, "pixel {x}, {y} lies outside the picture that the header tells")
             }
         }
     }

@@ -12,7 +12,7 @@ pub struct Event {
     kind: &'static str,
     subject: String,
     direction: String,
-    /// `event` or `sample set`.
+    /// `event`, `sample set` or `pixel`.
     per: String,
     /// Where one has a part in it.
     sample: Option<String>,
@@ -101,7 +101,7 @@ pub fn text(events: &[Event]) -> String {
 
 /// Those of docs/costs.md.
 pub fn markdown(events: &[Event]) -> Result<String> {
-    let tables = [each_event(events), banks(events)?, six_channels(events)?];
+    let tables = [each_event(events), frames(events), banks(events)?, six_channels(events)?];
     Ok(format!("\n{}\n", tables.join("\n")))
 }
 
@@ -156,6 +156,39 @@ const NAMES: [(&str, &str); 19] = [
     ("akd1500-convolution", "AKD1500, convolutional layer"),
     ("akd1500-dense", "AKD1500, dense layer"),
     ("xylo", "Xylo, counts of 10 ms"),
+];
+
+/// A pixel of a camera's row, on both cores.
+fn frames(events: &[Event]) -> String {
+    let [first, second] = figures::CORES;
+    let mut text = format!(
+        "| a pixel of a camera's row | RAM, bytes | {first}: nothing changes | an edge passes | all change | {second}: nothing changes | an edge passes | all change |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|\n"
+    );
+    for (subject, name, bytes) in PIXELS {
+        text += &format!("| {name} | {bytes} |");
+        for core in figures::CORES {
+            for scene in ["rest", "edge", "all"] {
+                let mean = events.iter().find(|event| {
+                    (event.core, event.subject.as_str(), event.direction.as_str())
+                        == (core, subject, scene)
+                });
+                let mean =
+                    mean.map_or("–".into(), |event| format!("{:.1}", event.instructions_mean));
+                text += &format!(" {mean} |");
+            }
+        }
+        text += "\n";
+    }
+    text
+}
+
+/// The codes of pixels: the subject, its name, and the bytes that a pixel takes.
+const PIXELS: [(&str, &str, u32); 4] = [
+    ("frame-intensity", "`Intensity`, threshold 10", 1),
+    ("frame-log-u8", "`LogIntensity<u8>`, 0.2", 1),
+    ("frame-log-u16", "`LogIntensity<u16>`, 0.2", 2),
+    ("frame-refractory", "`Refractory<Intensity>`, 1 frame", 2),
 ];
 
 /// Six samples into a bank, on both cores.
