@@ -6,6 +6,7 @@ mod brief;
 mod commands;
 mod events;
 mod fit;
+mod frames;
 mod input;
 mod live;
 mod look;
@@ -53,6 +54,7 @@ enum Command {
     Info(info::Info),
     Signal(signal::Signal),
     Tune(commands::tune::Tune),
+    Frames(commands::frames::Frames),
 }
 
 /// As for wrong options.
@@ -72,6 +74,7 @@ fn main() -> ExitCode {
         Command::Info(options) => info::run(&options),
         Command::Signal(options) => signal::run(&options),
         Command::Tune(options) => commands::tune::run(&options),
+        Command::Frames(options) => commands::frames::run(&options),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -4,9 +4,9 @@ mod common;
 
 use common::good;
 
-const COMMANDS: [&str; 11] = [
+const COMMANDS: [&str; 12] = [
     "encode", "decode", "listen", "convert", "score", "bench", "plot", "network", "info", "signal",
-    "tune",
+    "tune", "frames",
 ];
 
 #[test]

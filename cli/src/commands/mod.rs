@@ -5,6 +5,7 @@ pub(crate) mod capture;
 pub(crate) mod convert;
 pub(crate) mod decode;
 pub(crate) mod encode;
+pub(crate) mod frames;
 pub(crate) mod info;
 pub(crate) mod listen;
 pub(crate) mod network;
