@@ -151,7 +151,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
     pub(in crate::scheme) const fn firsts(&self) -> [S; C] {
         let mut firsts = [S::ZERO; C];
         let mut cell = 0;
-        while cell < self.count {
+        while cell < self.count && cell < C {
             firsts[cell] = self.first(cell);
             cell += 1;
         }
@@ -182,7 +182,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
     pub(in crate::scheme) const fn partition(&self) -> Result<Partition<S, C>, ConfigError> {
         let mut middles = [S::ZERO; C];
         let mut cell = 0;
-        while cell < self.count {
+        while cell < self.count && cell < C {
             middles[cell] = self.middle(cell);
             cell += 1;
         }
@@ -207,11 +207,11 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
     /// A cell holds no sample.
     const fn check(&self) -> Result<(), ConfigError> {
         let mut cell = 0;
-        while cell < self.count {
+        while cell < self.count && cell < C {
             let last = to_f64(if cell + 1 < self.count { self.lasts[cell] } else { self.max });
             let has_samples = match cell.checked_sub(1) {
                 None => last >= to_f64(self.min),
-                Some(lower) => last > to_f64(self.lasts[lower]),
+                Some(lower) => last > to_f64(self.last(lower)),
             };
             if !has_samples {
                 return Err(ConfigError::EmptyCell { cell, cells: self.count });

@@ -75,7 +75,7 @@ impl<S: Sample, const C: usize> Partition<S, C> {
         let mut i = 0;
         while i < 2 * C && edge < u8::MAX as usize {
             starts[i / 2][i % 2] = edge as u8 + 1;
-            if edge + 1 < count && cell(bins, edges[edge]) == i {
+            if edge + 1 < count && edge < C && cell(bins, edges[edge]) == i {
                 edge += 1;
             }
             i += 1;

@@ -113,7 +113,7 @@ impl<S: Sample, const N: usize> Burst<S, N> {
         let mut cuts = whole.above(to_f64(min));
         let (mut bursts, mut firsts) = ([[1, 0]; N], [0; N]);
         // The largest sample below the cell, and how many edges of counts and of intervals lie there.
-        let (mut below, mut passed, mut shorter) = (to_f64(min), 1, steps / counts);
+        let (mut below, mut passed, mut shorter) = (to_f64(min), 1, steps / max(counts, 1));
         let (mut cell, mut most) = (0, 1);
         loop {
             let by_count = whole.set(0, whole.at(passed, counts), Side::Low);
@@ -130,8 +130,10 @@ impl<S: Sample, const N: usize> Burst<S, N> {
             }
             let interval = longest - shorter as u8;
             if cell < N {
-                if passed <= N && (cell == 0 || bursts[cell - 1][0] as usize != passed) {
-                    firsts[passed - 1] = cell as u8;
+                let is_first = cell == 0 || bursts[cell - 1][0] as usize != passed;
+                let place = passed.wrapping_sub(1);
+                if is_first && place < N {
+                    firsts[place] = cell as u8;
                 }
                 bursts[cell] = if passed > 1 { [passed as u8, interval] } else { [1, 0] };
             }

@@ -71,9 +71,14 @@ impl<const N: usize> Code for BurstSpikes<N> {
         let Some(pause) = later.iter().position(|&fired| fired) else {
             return Self { count: 1, interval: 0 };
         };
-        let regular = fired.iter().step_by(pause + 1).take_while(|&&fired| fired);
-        let count = regular.count().min(u8::MAX.into()) as u8;
-        Self { count, interval: (pause + 1) as u8 }
+        let interval = pause.wrapping_add(1);
+        let mut count = 0_u8;
+        let mut slot = 0_usize;
+        while fired.get(slot) == Some(&true) && count < u8::MAX {
+            count = count.wrapping_add(1);
+            slot = slot.wrapping_add(interval);
+        }
+        Self { count, interval: interval as u8 }
     }
 }
 

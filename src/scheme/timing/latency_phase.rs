@@ -100,7 +100,7 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
         period: usize,
         spacing: u16,
     ) -> Result<Self, ConfigError> {
-        let most = (period / neurons) as f32;
+        let most = (period / if neurons > 0 { neurons } else { 1 }) as f32;
         if let Err(error) = within("spacing", spacing as f64, 1.0, most) {
             return Err(error);
         }
