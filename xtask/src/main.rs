@@ -40,6 +40,7 @@ mod storm;
 mod toolchain;
 mod usage;
 mod verify;
+mod video;
 
 use anyhow::Result;
 use std::{env, process::ExitCode};

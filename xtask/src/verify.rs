@@ -45,6 +45,7 @@ const STEPS: &[Step] = &[
     step("link", "a flight over a serial line, board against host", link::link),
     step("loop", "a flight through a chip's model, board against host", rate_loop::rate_loop),
     step("laptop", "the laptop program on a flight, and the paper's tables", checks::laptop),
+    step("video", "the paper's figure of a video, from a packaged clip", crate::video::video),
     step("bench", "instruction counts against the baseline", checks::bench),
 ];
 
