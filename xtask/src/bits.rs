@@ -1,8 +1,7 @@
 //! The page of bits that agree: spike counts, and a mark for each board.
 
-use crate::{markdown::between, names::full_name, paths};
-use anyhow::{Context, Result, ensure};
-use std::fs;
+use crate::{markdown, names::full_name};
+use anyhow::Result;
 
 /// The program whose lines it shows.
 pub const PROGRAM: &str = "flight-log";
@@ -35,28 +34,13 @@ pub fn table(host: &str, marks: impl Fn(&str) -> String) -> String {
 
 /// Puts the table into the page.
 pub fn write(table: &str) -> Result<()> {
-    let (page, path) = (page()?, paths::root().join(PAGE));
-    fs::write(path, with(&page, table)?)?;
-    println!("{PAGE} has the table.");
-    Ok(())
+    markdown::write(PAGE, MARKER, &format!("\n{table}\n"))
 }
 
 /// Fails if the page has another table.
 pub fn ensure_written(table: &str) -> Result<()> {
-    let page = page()?;
-    ensure!(
-        with(&page, table)? == page,
-        "{PAGE} has other counts; `cargo xtask firmware --write` puts these there:\n{table}"
-    );
-    Ok(())
-}
-
-fn page() -> Result<String> {
-    fs::read_to_string(paths::root().join(PAGE)).context(PAGE)
-}
-
-fn with(page: &str, table: &str) -> Result<String> {
-    between(page, MARKER, &format!("\n{table}\n"))
+    let command = "cargo xtask firmware --write";
+    markdown::ensure_written(PAGE, MARKER, &format!("\n{table}\n"), command)
 }
 
 /// The words at one place of the lines, each once.

@@ -1,9 +1,33 @@
 //! Tables in pages, between two comments.
 
-use anyhow::{Context, Result};
+use crate::paths;
+use anyhow::{Context, Result, ensure};
+use std::fs;
+
+/// Puts a table between its markers in a page.
+pub fn write(page: &str, marker: &str, table: &str) -> Result<()> {
+    let text = between(&read(page)?, marker, table)?;
+    fs::write(paths::root().join(page), text)?;
+    println!("{page} has the table `{marker}`.");
+    Ok(())
+}
+
+/// Fails if a page has another table, and says which command writes this one.
+pub fn ensure_written(page: &str, marker: &str, table: &str, command: &str) -> Result<()> {
+    let text = read(page)?;
+    ensure!(
+        between(&text, marker, table)? == text,
+        "{page} has other figures; `{command}` puts these there:\n{table}"
+    );
+    Ok(())
+}
+
+fn read(page: &str) -> Result<String> {
+    fs::read_to_string(paths::root().join(page)).with_context(|| page.to_owned())
+}
 
 /// The page with the table in the place of what stood between its markers.
-pub fn between(page: &str, marker: &str, table: &str) -> Result<String> {
+fn between(page: &str, marker: &str, table: &str) -> Result<String> {
     let (start, end) = (format!("<!-- {marker} -->\n"), format!("<!-- /{marker} -->"));
     let missing = || format!("no `{}` … `{end}`", start.trim_end());
     let (before, rest) = page.split_once(&start).with_context(missing)?;

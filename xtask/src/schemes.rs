@@ -1,9 +1,8 @@
 //! `cargo xtask schemes`: what each scheme makes of a flight and of the paper's signal, measured by the laptop program.
 
-use crate::{host::spikewire, markdown::between, paths, shell::output};
-use anyhow::{Context, Result, ensure};
+use crate::{host::spikewire, markdown, paths, shell::output};
+use anyhow::{Context, Result};
 use serde::Deserialize;
-use std::fs;
 
 const PAGE: &str = "README.md";
 const MARKER: &str = "schemes";
@@ -20,23 +19,15 @@ struct Figures {
 pub fn schemes(args: &[String]) -> Result<()> {
     let table = table()?;
     if args == ["--write"] {
-        let path = paths::root().join(PAGE);
-        fs::write(&path, with(&fs::read_to_string(&path)?, &table)?)?;
-        println!("{PAGE} has the table.");
-    } else {
-        print!("{table}");
+        return markdown::write(PAGE, MARKER, &table);
     }
+    print!("{table}");
     Ok(())
 }
 
 /// Fails if the README has other figures.
 pub fn ensure_written() -> Result<()> {
-    let (page, table) = (fs::read_to_string(paths::root().join(PAGE))?, table()?);
-    ensure!(
-        with(&page, &table)? == page,
-        "{PAGE} has other figures; `cargo xtask schemes --write` puts these there:\n{table}"
-    );
-    Ok(())
+    markdown::ensure_written(PAGE, MARKER, &table()?, "cargo xtask schemes --write")
 }
 
 fn table() -> Result<String> {
@@ -67,8 +58,4 @@ fn table() -> Result<String> {
 fn scored(what: &str) -> Result<Vec<Figures>> {
     let json = output(&mut spikewire(&format!("score --json {what}"))?)?;
     serde_json::from_str(&json).context("the figures of `spikewire score`")
-}
-
-fn with(page: &str, table: &str) -> Result<String> {
-    between(page, MARKER, table)
 }

@@ -5,9 +5,8 @@ use super::{
     figures::{CORES, Row},
     measured::Measured,
 };
-use crate::{markdown::between, paths};
-use anyhow::{Context, Result};
-use std::fs;
+use crate::markdown;
+use anyhow::Result;
 
 /// Where the tables stand: the file, and the comments between which they are.
 const CODECS: (&str, &str) = ("docs/costs.md", "bench-target");
@@ -212,11 +211,7 @@ fn name(codec: &str) -> &str {
 
 /// Puts the tables into their files.
 pub fn write(measured: &Measured) -> Result<()> {
-    for ((file, marker), table) in tables(measured)? {
-        let path = paths::root().join(file);
-        let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
-        fs::write(&path, between(&text, marker, &table)?)?;
-        println!("{file} has the tables of `{marker}`.");
-    }
-    Ok(())
+    tables(measured)?
+        .into_iter()
+        .try_for_each(|((file, marker), table)| markdown::write(file, marker, &table))
 }
