@@ -102,6 +102,35 @@ fn a_step_that_does_not_finish_times_out() {
 }
 
 #[test]
+fn a_step_under_way_takes_no_counts_and_no_second_trigger() {
+    let mut xylo = Xylo::new(Chip { busy: 8, ..Chip::default() }, XyloMap::AUDIO_3, 5);
+    assert_eq!(xylo.step(), Err(ChipError::Unfinished));
+    assert_eq!(xylo.set_input(InputBank::First, [1; 16]), Err(ChipError::Unfinished));
+    assert_eq!(xylo.clear_input(), Err(ChipError::Unfinished));
+    assert_eq!(xylo.step(), Ok(0x8000_0005));
+    assert_eq!(xylo.clear_input(), Ok(()));
+    let accesses = xylo.release().accesses;
+    let written: Vec<_> = accesses.into_iter().filter(|(kind, ..)| *kind == 'w').collect();
+    let cleared = (0x149..=0x14C).map(|register| ('w', register, 0));
+    let expected: Vec<_> = [('w', 0x10, 1 << 4)].into_iter().chain(cleared).collect();
+    assert_eq!(written, expected, "one trigger, and no counts while it ran");
+}
+
+/// Accesses 3 to 5 are the trigger, the status, the outputs.
+#[test]
+fn an_error_of_the_bus_loses_no_outputs() {
+    for (number, triggers) in [(3, 2), (4, 1), (5, 1)] {
+        let chip = Chip { fails_at: Some(number), ..Chip::default() };
+        let mut xylo = Xylo::new(chip, XyloMap::AUDIO_3, 5);
+        xylo.set_input(InputBank::First, [0; 16]).unwrap();
+        assert_eq!(xylo.step(), Err(ChipError::Bus(number)));
+        assert_eq!(xylo.step(), Ok(0x8000_0005));
+        let accesses = xylo.release().accesses;
+        assert_eq!(accesses.iter().filter(|(_, register, _)| *register == 0x10).count(), triggers);
+    }
+}
+
+#[test]
 fn an_error_at_every_access_comes_back_typed() {
     for number in 1..=5 {
         let chip = Chip { fails_at: Some(number), ..Chip::default() };

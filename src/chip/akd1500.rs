@@ -3,14 +3,21 @@
 use embedded_hal::spi::{Operation, SpiDevice};
 
 use super::ChipError;
-use super::error::at_most;
+use super::error::{at_most, in_range};
 
 /// AKD1500 over SPI: reads and writes memory. An inference also needs a program from the vendor's compiler, which is
 /// written with this.
 ///
 /// - **SPI:** mode 0, high bit first, 8 MHz; chip select low over header and data.
 /// - **Blocks:** 1, 4, 8, 16 or 32 words each; a longer run takes several.
-/// - **Addresses:** multiples of 4. The chip sees the low 26 bits, and a run must not cross a border of 64 MiB.
+/// - **Addresses:** multiples of 4 from `0xFC00_0000` on. The bus carries the low 26 bits, and the chip adds the rest: any
+///   other address would be one of these.
+/// - **Faults:** chip select begins every block anew, so that a clock lost or doubled spoils one block and no more. There
+///   is no checksum: [`program`](Self::program) reads all back. A block whose header was disturbed may lie elsewhere;
+///   after [`ReadBack`](ChipError::ReadBack) write all again that must be right. It is not noticed where the words
+///   were there already.
+///
+/// Checked against the vendor's sources, and a model of the transport written from them; never against a chip.
 ///
 /// Source: the vendor's Arduino library and engine, for the protocol; no code was taken.
 ///
@@ -38,6 +45,8 @@ const READ: u8 = 0x60;
 /// The number of words of a block, and its code; longest first.
 const BLOCKS: [(usize, u8); 5] = [(32, 4), (16, 3), (8, 2), (4, 1), (1, 0)];
 const WINDOW: u32 = 1 << 26;
+/// What the chip adds to the bits of the bus.
+const BASE: u32 = 0xFC00_0000;
 const MAX_BLOCK_BYTES: usize = 128;
 
 impl<D: SpiDevice> Akd1500<D> {
@@ -121,6 +130,7 @@ fn check<E>(address: u32, words: usize) -> Result<(), ChipError<E>> {
     let bytes =
         u32::try_from(words).ok().and_then(|words| words.checked_mul(4)).unwrap_or(u32::MAX);
     let room = WINDOW - (address & (WINDOW - 1));
+    in_range("address", address.into(), BASE.into(), u32::MAX.into())?;
     at_most("offset into a word", address & 3, 0)?;
     at_most("length in bytes", bytes, room)
 }

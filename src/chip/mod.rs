@@ -3,11 +3,11 @@
 //! | chip | spikes in | spikes out | how it was checked |
 //! |---|---|---|---|
 //! | [`TinyOdin`], [`Odin`] | parallel bus, 4-phase handshake | the same | bytes and words of the RTL in simulation; models of the chips, clock by clock |
-//! | [`Akd1500`] | a window onto memory, over SPI | the same | bytes of the vendor's library |
+//! | [`Akd1500`] | a window onto memory, over SPI | the same | bytes of the vendor's library, and a model of its transport: every byte lost, doubled, flipped |
 //! | [`Xylo`] | counts in registers | a status register | the registers in the vendor's sources |
 //!
-//! None of these drivers has run on hardware. No bus has a checksum: read back what can be read back, which every driver
-//! here can do.
+//! None of these drivers has run on hardware. No bus has a checksum. What can be read back is: all but the
+//! configuration registers of tinyODIN and ODIN, which a check of the bus follows, and the registers of Xylo.
 //!
 //! # A network on tinyODIN
 //!

@@ -102,24 +102,36 @@ impl XyloMap {
 /// Count the events of a time step with [`Bins<16>`](crate::Bins), with a limit of 15 so that events beyond it are
 /// counted as saturated.
 ///
+/// - **Order:** the counts, then the step. While a step is under way no counts are taken, and [`step`](Self::step) goes on
+///   waiting for that one, without a second trigger.
+/// - **Counts stay** in the chip: a step without new ones has those of the bank again, until they are
+///   [cleared](Self::clear_input), as the vendor's programs do.
+/// - **Faults:** the chip confirms nothing that is written, and the public sources do not say which registers can be read
+///   back. A write that is lost without an error of yours leaves old counts; a trigger that is lost, the outputs
+///   of the step before. [`Registers`] must bring a bus that tells.
+///
+/// Checked against the vendor's sources alone, never against a chip.
+///
 /// Source: register names and layouts of synsense/rockpool.
 #[derive(Debug)]
 pub struct Xylo<R> {
     registers: R,
     map: XyloMap,
     polls: u32,
+    is_under_way: bool,
 }
 
 impl<R: Registers> Xylo<R> {
     /// A chip with these registers. [`step`](Self::step) reads the status up to `polls` times.
     pub const fn new(registers: R, map: XyloMap, polls: u32) -> Self {
-        Self { registers, map, polls }
+        Self { registers, map, polls, is_under_way: false }
     }
 
     /// Sets the counts of a time step.
     ///
     /// # Errors
-    /// The bus failed.
+    /// The bus failed: then set them again. [`Unfinished`](ChipError::Unfinished): a step is under way, and nothing was
+    /// written.
     pub fn set_input(
         &mut self,
         bank: InputBank,
@@ -129,21 +141,39 @@ impl<R: Registers> Xylo<R> {
             InputBank::First => self.map.input,
             InputBank::Second => self.map.input.wrapping_add(2),
         };
+        if self.is_under_way {
+            return Err(ChipError::Unfinished);
+        }
         let [low, high] = pack_counts(counts);
         self.registers.write(first, low).map_err(ChipError::Bus)?;
         self.registers.write(first.wrapping_add(1), high).map_err(ChipError::Bus)
     }
 
+    /// Sets the counts of both banks to 0.
+    ///
+    /// # Errors
+    /// As [`set_input`](Self::set_input).
+    pub fn clear_input(&mut self) -> Result<(), ChipError<R::Error>> {
+        self.set_input(InputBank::First, [0; 16])?;
+        self.set_input(InputBank::Second, [0; 16])
+    }
+
     /// Runs a time step and returns the outputs that fired: bit `i` is output `i`.
     ///
     /// # Errors
-    /// The bus failed, or the time step did not finish.
+    /// [`Unfinished`](ChipError::Unfinished): the step is not done yet; call this again, which waits for it. The bus failed:
+    /// after the trigger call this again, which loses nothing; at the trigger itself it is not known whether the step
+    /// began, and another call triggers.
     pub fn step(&mut self) -> Result<u32, ChipError<R::Error>> {
         let XyloMap { control, trigger, status, done, outputs, output_bits, .. } = self.map;
-        self.registers.write(control, trigger).map_err(ChipError::Bus)?;
+        if !self.is_under_way {
+            self.registers.write(control, trigger).map_err(ChipError::Bus)?;
+            self.is_under_way = true;
+        }
         for _ in 0..self.polls {
             if self.registers.read(status).map_err(ChipError::Bus)? & done != 0 {
                 let fired = self.registers.read(outputs).map_err(ChipError::Bus)?;
+                self.is_under_way = false;
                 return Ok(fired & output_bits);
             }
         }

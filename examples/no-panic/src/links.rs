@@ -242,7 +242,7 @@ fn memory() {
     let mut chip = black_box(Akd1500::new(Bus));
     let words = black_box([1; 70]);
     let some = words.get(..black_box(70)).unwrap_or_default();
-    hide(chip.program(black_box(0x20), some).is_ok());
+    hide(chip.program(black_box(0xFC00_0020), some).is_ok());
     let event = black_box(ConvolutionEvent { x: 1, y: 2, feature: 3, activation: 4 });
     hide((event.words::<()>(), ConvolutionEvent::from_words(black_box([1, 2]))));
     let event = black_box(DenseEvent { feature: 3, activation: 4 });
@@ -259,6 +259,7 @@ fn counts() {
             hide((
                 xylo.set_input(black_box(InputBank::First), bins.take()).is_ok(),
                 xylo.step().is_ok(),
+                xylo.clear_input().is_ok(),
             ));
         }
     }
