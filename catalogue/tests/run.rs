@@ -150,8 +150,9 @@ fn a_file_without_one_of_the_entries_is_refused_by_its_name() {
             let mut keys: Vec<_> =
                 others.map(|(name, text)| ((*name).to_owned(), text.clone())).collect();
             let lacking = Settings::take(scheme.info(), &mut keys);
-            let error = scheme.codec(SampleType::F32, &lacking).err().unwrap().to_string();
-            assert!(error.contains(&format!("`# {name}=`")), "{name}={text}: {error}");
+            let what = format!("{} {name}={text}", scheme.info().name);
+            let error = scheme.codec(SampleType::F32, &lacking).err().expect(&what).to_string();
+            assert!(error.contains(&format!("`# {name}=`")), "{what}: {error}");
             // And one that makes no sense.
             let mut keys: Vec<_> = settings
                 .entries()

@@ -230,7 +230,7 @@ fn nonlinear<S: Sample, const M: usize, const N: usize>(one: f64) {
             let other = other.clone().try_with_floor(floor).unwrap();
             let fixed = said(&scheme, population::NonLinearSlots::<S, M, N>::START, &[], &signal);
             assert!(fixed == said(&other, other.state(), &[], &signal), "{what}, floor {floor}");
-            assert!(fixed.codes.iter().flatten().any(|code| code.len() > 1), "{what}");
+            assert!(fixed.codes.iter().flatten().any(|code| !code.is_empty()), "{what}");
         }
     };
     check(

@@ -5,7 +5,7 @@
 use spikewire::Start;
 use spikewire::population::{RankOrder, SlotSpikes};
 
-use crate::plain::{Plain, magnitude};
+use crate::plain::Plain;
 use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
 
 #[cfg(feature = "run")]
@@ -151,11 +151,15 @@ pub fn transcribed<S: Plain>(input: &[S], centres: &[S], spikes: usize, ranks: &
         let ranks = &mut ranks[i * centres.len()..(i + 1) * centres.len()];
         ranks.fill(-1);
         for rank in 0..spikes {
-            let (mut winner, mut least) = (centres.len(), S::Wide::default());
+            let mut winner = centres.len();
             for j in 0..centres.len() {
-                let distance = magnitude(input[i].into() - centres[j].into());
-                if ranks[j] < 0 && (winner == centres.len() || distance < least) {
-                    (winner, least) = (j, distance);
+                // Above the middle of the two, the upper is nearer.
+                if ranks[j] < 0
+                    && (winner == centres.len()
+                        || input[i].into() + input[i].into()
+                            > centres[winner].into() + centres[j].into())
+                {
+                    winner = j;
                 }
             }
             ranks[winner] = rank as i8;
