@@ -55,6 +55,7 @@ enum Command {
     Signal(signal::Signal),
     Tune(commands::tune::Tune),
     Frames(commands::frames::Frames),
+    Advise(commands::advise::Advise),
 }
 
 /// As for wrong options.
@@ -73,6 +74,7 @@ fn main() -> ExitCode {
         Command::Network(options) => commands::network::run(&options),
         Command::Info(options) => info::run(&options),
         Command::Signal(options) => signal::run(&options),
+        Command::Advise(options) => commands::advise::run(&options),
         Command::Tune(options) => commands::tune::run(&options),
         Command::Frames(options) => commands::frames::run(&options),
     };

@@ -4,9 +4,9 @@ mod common;
 
 use common::good;
 
-const COMMANDS: [&str; 12] = [
+const COMMANDS: [&str; 13] = [
     "encode", "decode", "listen", "convert", "score", "bench", "plot", "network", "info", "signal",
-    "tune", "frames",
+    "tune", "advise", "frames",
 ];
 
 #[test]

@@ -2,18 +2,32 @@
 
 use crate::{boards::Board, paths, shell, toolchain};
 use anyhow::{Context, Result};
-use std::{fs, path::PathBuf, process::Command};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
 
 /// Builds the program for the board, and returns the image.
 pub fn build(program: &str, board: &Board) -> Result<PathBuf> {
     Ok(build_all(program, &[program], board)?.join(program))
 }
 
+/// Builds the program for the board with this path in a variable of the environment, and returns the image.
+pub fn build_with(program: &str, board: &Board, name: &str, path: &Path) -> Result<PathBuf> {
+    let mut cargo = building("build", &format!("--package {program}"), board)?;
+    Ok(kept(cargo.env(name, path), program, &[program], board)?.join(program))
+}
+
 /// Builds the package's programs for the board, and returns the directory where they are.
 pub fn build_all(package: &str, programs: &[&str], board: &Board) -> Result<PathBuf> {
+    let mut cargo = building("build", &format!("--package {package}"), board)?;
+    kept(&mut cargo, package, programs, board)
+}
+
+fn kept(cargo: &mut Command, package: &str, programs: &[&str], board: &Board) -> Result<PathBuf> {
     let built = paths::thumb_target().join(board.target).join("release");
-    shell::run(&mut building("build", &format!("--package {package}"), board)?)
-        .with_context(|| format!("{package} for {}", board.machine))?;
+    shell::run(cargo).with_context(|| format!("{package} for {}", board.machine))?;
 
     let images = paths::thumb_target().join(board.machine);
     fs::create_dir_all(&images)?;

@@ -38,6 +38,7 @@ mod signal;
 mod size;
 mod storm;
 mod toolchain;
+mod tuned;
 mod usage;
 mod verify;
 mod video;

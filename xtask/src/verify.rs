@@ -1,7 +1,8 @@
 //! `cargo verify`: every check, in order, each with its time. A failure does not hide the next one.
 
 use crate::{
-    checks, cpu, link, logging, long, needs, package, parts, rate_loop, recipe, storm, usage::usage,
+    checks, cpu, link, logging, long, needs, package, parts, rate_loop, recipe, storm, tuned,
+    usage::usage,
 };
 use anyhow::{Result, bail};
 use std::time::Instant;
@@ -44,6 +45,7 @@ const STEPS: &[Step] = &[
     step("logging", "defmt out of emulated boards, decoded on the host", logging::logging),
     step("link", "a flight over a serial line, board against host", link::link),
     step("loop", "a flight through a chip's model, board against host", rate_loop::rate_loop),
+    step("tuned", "a constant from `spikewire tune`, in QEMU, spike by spike", tuned::tuned),
     step("laptop", "the laptop program on a flight, and the paper's tables", checks::laptop),
     step("video", "the paper's figure of a video, from a packaged clip", crate::video::video),
     step("bench", "instruction counts against the baseline", checks::bench),

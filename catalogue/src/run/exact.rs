@@ -45,7 +45,7 @@ impl Parabola {
 
 /// What is next to the upper end of an interval that does not hold it.
 pub fn below(low: f64, high: f64) -> f64 {
-    low + (high - low) * 0.999
+    low + (high - low) * 0.9999
 }
 
 /// The outcomes of a code that spikes where a sample's distance from its past is above the threshold, whatever it has

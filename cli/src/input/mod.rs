@@ -239,6 +239,18 @@ impl InputOptions {
         Some(Self { channel, ..self.clone() })
     }
 
+    /// The same of all columns of a table, unless some are asked for.
+    ///
+    /// # Errors
+    /// The file cannot be opened.
+    pub(crate) fn or_all(&self) -> Result<Self> {
+        let mut own = self.clone();
+        if self.columns().next().is_none() && (self.is_stdin() || !is_flight_log(&self.input)?) {
+            own.channel.columns = vec![ALL.to_owned()];
+        }
+        Ok(own)
+    }
+
     /// Whether it can be read only once.
     pub(crate) fn is_stdin(&self) -> bool {
         self.input == Path::new("-")

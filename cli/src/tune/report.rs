@@ -118,6 +118,16 @@ impl Row {
         /// Others may be better on held-out blocks by chance.
         const BY_CHANCE: f64 = 1.25;
         let mut flags = Vec::new();
+        let told = self.held_out.as_ref().unwrap_or(&self.tuned_on);
+        // Which of two nothings is nearer says nothing.
+        if told.spikes == 0 {
+            flags.push("never spikes: its value stays where it starts".to_owned());
+        } else if told.snr <= 0.0 {
+            flags.push(format!(
+                "no better than a constant: the error has {} of the signal's power",
+                short((10_f64.powf(-told.snr / 10.0) * 100.0).round() / 100.0)
+            ));
+        }
         let Some(held_out) = &self.held_out else {
             flags.push(
                 "nothing was held out: the figures are of the very blocks it was tuned on"

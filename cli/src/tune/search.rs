@@ -44,7 +44,13 @@ const GENERATION: i32 = 32;
 /// Generations without progress after which a run begins anew.
 const PATIENCE: usize = 40;
 /// Outcomes that are listed of a combination at most.
-const MOST_OUTCOMES: usize = 4000;
+const MOST_OUTCOMES: usize = 20_000;
+/// Samples passed over to list them all, at most: seconds.
+const PASSES: usize = 4_000_000_000;
+/// Settings that are tried around the best outcome: rounding moves the ends of an interval.
+const AROUND: usize = 400;
+/// Of the listed outcomes' front, what the codec scores at most.
+const MOST_SCORED: usize = 1000;
 /// Listed outcomes that are scored by the codec at most, besides their front.
 const CONTENDERS: usize = 400;
 
@@ -137,7 +143,7 @@ impl Run<'_> {
         let samples: usize = stretches.iter().map(|values| values.len()).sum();
         // Each outcome takes a pass over the samples.
         let combinations = space.combinations();
-        let most = (400_000_000 / samples.max(1) / combinations.len()).clamp(50, MOST_OUTCOMES);
+        let most = (PASSES / samples.max(1) / combinations.len()).clamp(50, MOST_OUTCOMES);
         let threshold = ((problem.extent.max - problem.extent.min) * 0.1).to_string();
         let list = |combination: &Options| -> Option<Vec<(f64, f64, Options)>> {
             if Instant::now() >= self.budget.deadline || (self.budget.is_stopped)() {
@@ -184,7 +190,7 @@ impl Run<'_> {
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         });
         // The front first: a budget that ends has seen the best.
-        let stride = chosen.len().div_ceil(MOST_OUTCOMES).max(1);
+        let stride = chosen.len().div_ceil(MOST_SCORED).max(1);
         let mut order: Vec<Options> = chosen.into_iter().step_by(stride).collect();
         order.extend(rest.into_iter().take(CONTENDERS).map(|(_, _, options)| options));
         for batch in order.chunks(GENERATION as usize * 2) {
@@ -192,6 +198,10 @@ impl Run<'_> {
                 break;
             }
             self.try_all(batch);
+        }
+        if let (Some(best), true) = (self.found.best.clone(), problem.goal != Goal::Front) {
+            let until = self.found.evaluated + AROUND;
+            self.refine(space, &space.point(&best.options), 1e-4, 1, until);
         }
         true
     }

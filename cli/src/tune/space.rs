@@ -190,10 +190,19 @@ impl Space {
                     number(axis.name).map(|value| value / sum)
                 }
                 Role::Whole => number(axis.name),
+                // Given in thresholds, or found as a number.
+                Role::Thresholds => {
+                    match options.get(axis.name).and_then(|text| text.strip_suffix('x')) {
+                        Some(times) => times.parse::<f64>().ok().map(f64::ln),
+                        None => number(axis.name)
+                            .zip(number("threshold"))
+                            .map(|(step, own)| (step / own).ln()),
+                    }
+                }
                 Role::Tap(unit) => next_tap.next().map(|tap| tap / unit),
                 Role::Length => Some(taps.len() as f64),
                 Role::Sum(unit) => Some((taps.iter().sum::<f64>() / unit).ln()),
-                Role::Thresholds | Role::Words(_) | Role::Shape | Role::Alpha => None,
+                Role::Words(_) | Role::Shape | Role::Alpha => None,
             };
             let value = value.filter(|value| value.is_finite());
             value.unwrap_or(f64::midpoint(axis.low, axis.high)).clamp(axis.low, axis.high)
