@@ -48,7 +48,7 @@ def bounds(axes):
 
 def options(axes, point, minimum, spread):
     """The options of `spikewire score` that a point means."""
-    point, words, total = list(point), [], 1.0
+    point, words, total = [float(value) for value in point], [], 1.0
     for name, kind, _, _ in axes:
         value = point.pop(0)
         if kind == "log":
