@@ -64,7 +64,11 @@ pub(super) fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, panel: &Pane
         .axis_desc_style((FONT, 13).into_font().color(&INK))
         .label_style((FONT, 13).into_font().color(&INK))
         .draw()?;
-    for (place, curve) in panel.curves.iter().enumerate() {
+    let (width, height) = area.dim_in_pixel();
+    // Many schemes share what height there is.
+    let row = ((height as i32 - TITLE as i32 - 20) / (panel.curves.len() as i32 + 1)).clamp(9, 17);
+    let small = (FONT, row.min(12)).into_font().color(&INK);
+    for (place, curve) in (1..).zip(&panel.curves) {
         let colour = palette::of(curve.scheme);
         let inside = |point: &&(f64, f64)| point.0 >= left && point.1 > 0.0;
         let points: Vec<(f64, f64)> = curve.points.iter().filter(inside).copied().collect();
@@ -73,18 +77,17 @@ pub(super) fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, panel: &Pane
             chart.draw_series([Circle::new(*paper, 5, colour.filled())])?;
             chart.draw_series([Circle::new(*paper, 5, INK)])?;
         }
-        let right = area.dim_in_pixel().0 as i32 - LEGEND + 6;
-        let top = TITLE as i32 + 4 + 17 * place as i32;
+        let right = width as i32 - LEGEND + 6;
+        let top = TITLE as i32 + row * place;
         area.draw(&PathElement::new(
             [(right, top + 6), (right + 18, top + 6)],
             colour.stroke_width(2),
         ))?;
         let name = curve.scheme.info().title;
-        area.draw(&Text::new(name, (right + 24, top), (FONT, 12).into_font().color(&INK)))?;
+        area.draw(&Text::new(name, (right + 24, top), small.clone()))?;
     }
-    let (right, bottom) =
-        (area.dim_in_pixel().0 as i32 - LEGEND + 6, area.dim_in_pixel().1 as i32 - 64);
-    area.draw(&Circle::new((right + 9, bottom + 6), 5, INK))?;
-    area.draw(&Text::new("the paper's", (right + 24, bottom), (FONT, 12).into_font().color(&INK)))?;
+    let (right, top) = (width as i32 - LEGEND + 6, TITLE as i32);
+    area.draw(&Circle::new((right + 9, top + row / 2), 4, INK))?;
+    area.draw(&Text::new("the paper's", (right + 24, top), small))?;
     Ok(())
 }
