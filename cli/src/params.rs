@@ -142,7 +142,7 @@ mod tests {
     fn what_is_none_is_told() {
         for (text, words) in [
             ("threshold = 1", "`scheme = "),
-            ("scheme = \"snf\"", "there are tbr, mw, sf"),
+            ("scheme = \"snf\"", "there are tbr, "),
             ("scheme = \"sf\"\nsample = \"f64\"", "no sample type `f64`"),
             ("scheme = \"sf\"\nwindow = 5", "sf takes no --window"),
             ("scheme = \"sf\"\nthreshold = [1]", "must be a number or a text"),

@@ -212,7 +212,7 @@ fn options_that_make_no_sense_are_refused() {
         ("--scheme all", "--scheme all needs one goal"),
         ("--scheme all --max-rmse 1 --threshold 2", "--scheme all searches all"),
         ("--scheme sf --window 5", "sf takes no --window"),
-        ("--scheme snf", "there are tbr, mw, sf"),
+        ("--scheme snf", "there are tbr, "),
         ("--scheme sf --core M55", "there are M0, M4F"),
         ("--scheme sf --min-efficiency 101", "must be 100 or less"),
         ("--scheme sf --hold-out 1", "below 1"),

@@ -47,6 +47,8 @@ const PATIENCE: usize = 40;
 const MOST_OUTCOMES: usize = 20_000;
 /// Samples passed over to list them all, at most: seconds.
 const PASSES: usize = 4_000_000_000;
+/// The same for each setting of the budget, so that a small budget is a short search.
+const PASSES_A_SETTING: usize = 200_000;
 /// Settings that are tried around the best outcome: rounding moves the ends of an interval.
 const AROUND: usize = 400;
 /// Of the listed outcomes' front, what the codec scores at most.
@@ -143,7 +145,8 @@ impl Run<'_> {
         let samples: usize = stretches.iter().map(|values| values.len()).sum();
         // Each outcome takes a pass over the samples.
         let combinations = space.combinations();
-        let most = (PASSES / samples.max(1) / combinations.len()).clamp(50, MOST_OUTCOMES);
+        let passes = self.budget.evaluations.saturating_mul(PASSES_A_SETTING).min(PASSES);
+        let most = (passes / samples.max(1) / combinations.len()).clamp(50, MOST_OUTCOMES);
         let threshold = ((problem.extent.max - problem.extent.min) * 0.1).to_string();
         let list = |combination: &Options| -> Option<Vec<(f64, f64, Options)>> {
             if Instant::now() >= self.budget.deadline || (self.budget.is_stopped)() {
