@@ -135,7 +135,9 @@ pub(super) fn centres<S: Sample, const M: usize>(given: &Given) -> Result<Vec<S>
         "companded" => {
             let companding = given.number("companding")? as f32;
             let (neurons, range) = (given.neurons()?, given.range()?);
-            dynamic::Position::<S, M>::try_companded(neurons, &range, companding)?.centres().to_vec()
+            dynamic::Position::<S, M>::try_companded(neurons, &range, companding)?
+                .centres()
+                .to_vec()
         }
         _ => given.signals("centres")?,
     })

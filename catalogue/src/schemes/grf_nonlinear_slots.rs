@@ -121,7 +121,8 @@ impl BuildPopulation for Scheme {
 /// The code that the transcription writes: the slot of each neuron, or -1.
 fn spikes_of(slots: &[i8]) -> NeuronSlots<15, 10> {
     let fired = (0..).zip(slots).filter(|&(_, &slot)| slot >= 0);
-    NeuronSlots::new(fired.map(|(neuron, &slot)| (neuron, slot as u16))).unwrap_or(NeuronSlots::EMPTY)
+    NeuronSlots::new(fired.map(|(neuron, &slot)| (neuron, slot as u16)))
+        .unwrap_or(NeuronSlots::EMPTY)
 }
 
 /// The responses with their exponentials, in `f32` for every sample type: the slot of each neuron, or -1, one sample
