@@ -41,13 +41,11 @@ const FAR: f64 = 17_179_869_184.0;
 
 /// `1 / sigma`, rounded half up in fixed point, where what would let no distance but 0 respond stays as it is.
 pub(crate) const fn scale<S: Sample>(sigma: f64) -> S::Scale {
-    match S::KIND {
-        SampleKind::F32 => word(((1.0 / sigma) as f32).to_bits() as u64),
-        _ => {
-            let scale = 4_294_967_296.0 / (sigma / one::<S>());
-            word(if scale < FAR { (scale + 0.5) as u64 } else { FAR as u64 })
-        }
+    if matches!(S::KIND, SampleKind::F32) {
+        return word(((1.0 / sigma) as f32).to_bits() as u64);
     }
+    let scale = 4_294_967_296.0 / (sigma / one::<S>());
+    word(if scale < FAR { (scale + 0.5) as u64 } else { FAR as u64 })
 }
 
 /// A number of widths, rounded down.
@@ -83,10 +81,12 @@ pub(crate) const fn within_widths<S: Sample>(widths: S::Widths, scale: S::Scale)
 const fn number<T: Pod>(value: T) -> u64 {
     let values = [value];
     let bytes: &[u8] = bytemuck::must_cast_slice(&values);
-    match *bytes {
-        [a, b, c, d] => u32::from_ne_bytes([a, b, c, d]) as u64,
-        [a, b, c, d, e, f, g, h] => u64::from_ne_bytes([a, b, c, d, e, f, g, h]),
-        _ => 0,
+    if let Some(words) = bytes.first_chunk() {
+        return u64::from_ne_bytes(*words);
+    }
+    match bytes.first_chunk() {
+        Some(word) => u32::from_ne_bytes(*word) as u64,
+        None => 0,
     }
 }
 
