@@ -105,12 +105,11 @@ impl BuildPopulation for Scheme {
     ) -> Result<V::Output> {
         let slots = given.count("slots", 2..=dynamic::LEVELS)?;
         let centres = grf_nonlinear::centres::<S, M>(given)?;
-        let scheme = match grf_nonlinear::widths(given, centres.len())? {
-            Some(widths) => dynamic::NonLinearSlots::<S, M>::try_new(slots, &centres, &widths)?,
-            None => {
-                let beta = given.number("beta")? as f32;
-                dynamic::NonLinearSlots::try_spaced(slots, &centres, beta)?
-            }
+        let scheme = if let Some(widths) = grf_nonlinear::widths(given, centres.len())? {
+            dynamic::NonLinearSlots::<S, M>::try_new(slots, &centres, &widths)?
+        } else {
+            let beta = given.number("beta")? as f32;
+            dynamic::NonLinearSlots::try_spaced(slots, &centres, beta)?
         };
         let scheme = scheme.try_with_floor(given.count("floor", 1..=slots)? as u16)?;
         let start = scheme.state();

@@ -139,17 +139,28 @@ pub(super) const fn own_widths(widths: &[f32], sigmas: &mut [f64]) -> Result<(),
     Ok(())
 }
 
+/// The value at an index, or 0 beyond the end.
+#[allow(clippy::indexing_slicing)] // constants have no iterators
+const fn real<S: Sample>(values: &[S], index: usize) -> f64 {
+    if index < values.len() { to_f64(values[index]) } else { 0.0 }
+}
+
+/// The width at an index, or 0 beyond the end.
+#[allow(clippy::indexing_slicing)] // constants have no iterators
+const fn width(widths: &[f64], index: usize) -> f64 {
+    if index < widths.len() { widths[index] } else { 0.0 }
+}
+
 /// `2 beta sigma` of fields as wide as their spacing: the distance between the neighbours of each, and twice the
 /// one spacing at either end.
 #[allow(clippy::indexing_slicing)] // constants have no iterators
 pub(super) const fn spacings<S: Sample>(centres: &[S], widths: &mut [f64]) {
-    let last = centres.len().saturating_sub(1);
     let mut i = 0;
     while i < centres.len() && i < widths.len() {
-        let lower = if i > 0 { i - 1 } else { 0 };
-        let upper = if i < last { i + 1 } else { last };
-        let distance = to_f64(centres[upper]) - to_f64(centres[lower]);
-        widths[i] = if i > 0 && i < last { distance } else { 2.0 * distance };
+        let lower = if i > 0 { i - 1 } else { i };
+        let upper = if i + 1 < centres.len() { i + 1 } else { i };
+        let distance = real(centres, upper) - real(centres, lower);
+        widths[i] = if lower < i && i < upper { distance } else { 2.0 * distance };
         i += 1;
     }
 }
@@ -167,18 +178,17 @@ pub(super) const fn crossings<S: Sample>(
     if let Err(error) = halfway_edges(centres, edges) {
         return Err(error);
     }
-    let last = centres.len().saturating_sub(1);
     let mut i = 0;
-    while i < last {
-        let (low, high) = (to_f64(centres[i]), to_f64(centres[i + 1]));
-        let (narrow, wide) = (widths[i], widths[i + 1]);
+    while i + 1 < centres.len() && i < edges.len() {
+        let (low, high) = (real(centres, i), real(centres, i + 1));
+        let (narrow, wide) = (width(widths, i), width(widths, i + 1));
         // The edge times the sum of the two widths.
         let (edge, sum) = (wide * low + narrow * high, narrow + wide);
         let mut j = 0;
-        while j <= last {
-            let distance = edge - to_f64(centres[j]) * sum;
+        while j < centres.len() {
+            let distance = edge - real(centres, j) * sum;
             let distance = if distance < 0.0 { -distance } else { distance };
-            if j != i && j != i + 1 && distance < widths[j] * (high - low) {
+            if j != i && j != i + 1 && distance < width(widths, j) * (high - low) {
                 return Err(ConfigError::FieldTooWide { field: j, lower: i });
             }
             j += 1;
@@ -186,8 +196,8 @@ pub(super) const fn crossings<S: Sample>(
         let floor: S = floor_from_f64(edge / sum);
         // An edge of -0, which total order places below 0, becomes 0.
         edges[i] = from_f64(to_f64(floor) + 0.0);
-        if i > 0 && to_f64(edges[i]) <= to_f64(edges[i - 1]) {
-            return Err(ConfigError::EmptyCell { cell: i, cells: last + 1 });
+        if i > 0 && real(edges, i) <= real(edges, i - 1) {
+            return Err(ConfigError::EmptyCell { cell: i, cells: centres.len() });
         }
         i += 1;
     }
