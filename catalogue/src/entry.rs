@@ -46,6 +46,11 @@ pub trait Flight {
 
 /// Takes schemes with their plain transcriptions, which write a number of spikes, a neuron or a slot as one `i8`.
 pub trait Count {
+    /// How many parts the catalogue is taken in, where a program of all does not fit a small core's flash.
+    const PARTS: usize = 1;
+    /// Which of the parts it wants, from 0.
+    const PART: usize = 0;
+
     /// The sample type that it wants.
     type Sample: Plain;
     /// Why it stops.

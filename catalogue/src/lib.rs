@@ -51,13 +51,23 @@ macro_rules! schemes {
             Ok(())
         }
 
-        /// Hands every counted instance of every scheme, with its plain transcription, to a visitor.
+        /// Hands every counted instance of every scheme of a part, with its plain transcription, to a visitor.
         ///
         /// # Errors
         /// Those of the visitor, and parameters that the signal makes bad.
         pub fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-            $(apart(|| <schemes::$module::Scheme as Entry>::count(signal, visitor))?;)*
+            $(
+                if Number::$module as usize * V::PARTS / INFO.len() == V::PART {
+                    apart(|| <schemes::$module::Scheme as Entry>::count(signal, visitor))?;
+                }
+            )*
             Ok(())
+        }
+
+        /// Where a scheme stands in the catalogue.
+        #[allow(non_camel_case_types)]
+        enum Number {
+            $($module),*
         }
 
         /// Every scheme, to be chosen at run time.

@@ -30,8 +30,9 @@ cargo bench-target [events] [CORE]... [--json | --markdown | --write | --baselin
   --write       puts those tables into docs/costs.md, and the short one into README.md
   --baseline    makes these counts the ones that `cargo verify` compares with";
 
-/// The programs that count codecs, and the one that counts events.
-const SAMPLES: [&str; 4] = ["f32", "q16_16", "q8_8", "i16"];
+/// The programs that count codecs, two for each sample type, and the one that counts events.
+const CODECS: [&str; 8] =
+    ["f32_1", "f32_2", "q16_16_1", "q16_16_2", "q8_8_1", "q8_8_2", "i16_1", "i16_2"];
 const EVENTS: &str = "events";
 
 /// A line that the firmware prints.
@@ -101,7 +102,7 @@ fn json(Measured { rows, events, .. }: &Measured) -> Result<String> {
 fn measure(programs: &[&str], cores: &[&str]) -> Result<Measured> {
     let boards = boards(cores)?;
     let wanted = |program: &&str| programs.is_empty() || programs.contains(program);
-    let programs: Vec<&str> = SAMPLES.into_iter().chain([EVENTS]).filter(wanted).collect();
+    let programs: Vec<&str> = CODECS.into_iter().chain([EVENTS]).filter(wanted).collect();
     thread::scope(|scope| {
         let mut runs = Vec::new();
         for board in boards {
@@ -122,6 +123,7 @@ fn measure(programs: &[&str], cores: &[&str]) -> Result<Measured> {
             measured.events.extend(one.events);
             measured.rustc = one.rustc;
         }
+        measured.group();
         Ok(measured)
     })
 }
