@@ -16,7 +16,9 @@ pub fn histogram(x: &[f64], min: f64, max: f64, cells: usize, limit: u32) -> Vec
     for &x in x {
         counts[even_cell(x, min, max, cells)] += 1;
         if counts.iter().sum::<u32>() == limit {
-            counts.iter_mut().for_each(|count| *count >>= 1);
+            for count in &mut counts {
+                *count >>= 1;
+            }
         }
     }
     counts
