@@ -14,7 +14,7 @@ fn check_linear<S: Lined, const N: usize>([min, max]: [S; 2], x: &[S]) {
     match FirstSpike::<S, N>::try_linear(min..=max) {
         Ok(scheme) => check(&scheme, x, None, |x| reference(x).spikes(), |x| reference(x).value()),
         Err(error) => {
-            assert!(matches!(error, ConfigError::EmptyCell { cells, .. } if cells == N), "{error}")
+            assert!(matches!(error, ConfigError::EmptyCell { cells, .. } if cells == N), "{error}");
         }
     }
 }

@@ -46,7 +46,7 @@ fn golden_bytes_of_an_event_stream() {
     bytes.extend(write(&mut CAMERA.encoder(), &events));
     let golden =
         "4576656e742053747265616d02000001 4001f000 ff0705000000 020600ef00 fd01000100 ff0002000100";
-    let hex: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+    let hex = bytes.iter().fold(String::new(), |hex, byte| format!("{hex}{byte:02x}"));
     assert_eq!(hex, golden.replace(' ', ""));
     let mut decoder = Dvs::decoder();
     assert!(decoder.decode(&bytes).eq(events));

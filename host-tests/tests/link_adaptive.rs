@@ -27,9 +27,10 @@ fn fly(
     let mut reader = Reader::<MAX_FRAME>::new();
     let mut receiver = Receiver::<_, CHANNELS>::new(&GYRO);
     let [mut exact, mut all, mut is_missing] = [0, 0, 0];
+    let samples_at = |i: usize| -> [f32; CHANNELS] { std::array::from_fn(|n| flight[n][i]) };
     for i in 0..flight[0].len() {
         let tick = Tick::from(i as u32 * u32::from(PERIOD) + jitter(i));
-        let samples: [f32; CHANNELS] = std::array::from_fn(|channel| flight[channel][i]);
+        let samples = samples_at(i);
         bank.encode_into(tick, samples, &events);
         for channel in 0..CHANNELS {
             if i == 0 {
@@ -53,11 +54,11 @@ fn fly(
         }
         if is_missing == 0 {
             receiver.advance(tick + u32::from(PERIOD), |_, _, _| ());
-            for channel in 0..CHANNELS {
+            for (channel, beside) in beside.iter().enumerate() {
                 all += 1;
                 if let Some(value) = receiver.exact(channel as u16) {
                     exact += 1;
-                    assert_eq!(Some(value), beside[channel].held(), "channel {channel} at {i}");
+                    assert_eq!(Some(value), beside.held(), "channel {channel} at {i}");
                 }
             }
         }

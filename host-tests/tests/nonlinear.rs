@@ -8,7 +8,7 @@ use host_tests::reference::{
     integer_weighted_mean, level_radii, slots_decode, slots_of_levels, spacing_widths, strongest,
 };
 use proptest::prelude::*;
-use spikewire::population::{Gaussian, NeuronSlots, NonLinearSlots, Position};
+use spikewire::population::{Gaussian, Neuron, NeuronSlots, NonLinearSlots, Position};
 use spikewire::{Code, ConfigError, Histogram, Sample, Scheme};
 
 /// A sample type and what its receptive fields are in the reference.
@@ -189,7 +189,7 @@ fn the_printed_check_values() {
     let scheme = Gaussian::try_spaced([0_i16, 10, 30, 70, 150]).unwrap();
     let table = [(-9, 0), (4, 0), (5, 1), (16, 1), (17, 2), (43, 2), (44, 3), (104, 3), (105, 4)];
     for (x, neuron) in table {
-        assert_eq!(scheme.encoder().encode(x).map(|neuron| neuron.index()), Some(neuron), "{x}");
+        assert_eq!(scheme.encoder().encode(x).map(Neuron::index), Some(neuron), "{x}");
     }
     let slots = NonLinearSlots::<i16, 5, 10>::try_spaced([0, 10, 30, 70, 150], 1.5).unwrap();
     assert!(slots.encoder().encode(100).iter().eq([(3, 2), (4, 4)]));

@@ -17,7 +17,7 @@ fn order_of<const M: usize, const K: usize>(spikes: SlotSpikes<M, K>) -> Vec<usi
 
 fn whole<S: Sample>(value: S) -> i64 {
     match size_of::<S>() {
-        2 => i64::from(value.to_bits32() as u16 as i16),
+        2 => i64::from((value.to_bits32() as u16).cast_signed()),
         _ => i64::from(value.to_bits32().cast_signed()),
     }
 }
@@ -70,7 +70,7 @@ fn the_printed_check_values() {
 #[test]
 fn spikes_that_no_value_explains_end_it() {
     let scheme = RankOrder::<i16, 5, 4>::new([0, 10, 30, 70, 150]);
-    let decoded = |first, ranks: &[u8]| {
+    let value_of = |first, ranks: &[u8]| {
         let mut decoder = scheme.decoder();
         decoder.resync(-7);
         decoder.decode(SlotSpikes::new(first, ranks).unwrap())
@@ -85,7 +85,7 @@ fn spikes_that_no_value_explains_end_it() {
         (0, &[], -7),
     ];
     for (first, ranks, value) in table {
-        assert_eq!(decoded(first, ranks), value, "{ranks:?} from {first}");
+        assert_eq!(value_of(first, ranks), value, "{ranks:?} from {first}");
     }
     // Even centres: the last is nearest to no value of the range.
     let scheme = RankOrder::<i16, 5, 2>::linear(-300..=300);
@@ -168,6 +168,12 @@ fn drawn_floats() {
     });
 }
 
+fn check_centres<S: host_tests::compare::Wire, const K: usize>(centres: [S; 7], x: &[S]) {
+    if let Ok(scheme) = RankOrder::<S, 7, K>::try_new(centres) {
+        check(&scheme, centres[0], centres[6], x);
+    }
+}
+
 fn drawn<S: host_tests::compare::Wire + Drawn + Ord>() {
     let list = proptest::collection::btree_set(S::value(), 7);
     proptest!(cases(96), |(set in list, x in S::recordings(), a in S::value(), b in S::value())| {
@@ -175,14 +181,9 @@ fn drawn<S: host_tests::compare::Wire + Drawn + Ord>() {
         let centres: [S; 7] = list.try_into().unwrap();
         let mut x = x;
         x.extend(centres);
-        fn own<S: host_tests::compare::Wire, const K: usize>(centres: [S; 7], x: &[S]) {
-            if let Ok(scheme) = RankOrder::<S, 7, K>::try_new(centres) {
-                check(&scheme, centres[0], centres[6], x);
-            }
-        }
-        own::<S, 1>(centres, &x);
-        own::<S, 4>(centres, &x);
-        own::<S, 7>(centres, &x);
+        check_centres::<S, 1>(centres, &x);
+        check_centres::<S, 4>(centres, &x);
+        check_centres::<S, 7>(centres, &x);
         let (min, max) = (a.min(b), a.max(b));
         if let Ok(scheme) = RankOrder::<S, 15, 3>::try_linear(min..=max) {
             check(&scheme, min, max, &x);

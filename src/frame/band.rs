@@ -81,6 +81,11 @@ pub(super) fn quiet<P: Copy>(
 mod tests {
     use super::{Band, lanes_of_bytes, lanes_of_pairs};
 
+    /// One value in its lane, the other in the rest.
+    fn in_lane<T: Copy>(lane: usize, one: T, other: T) -> [T; 4] {
+        core::array::from_fn(|at| if at == lane { one } else { other })
+    }
+
     /// Every difference in every lane, beside every kind of neighbour.
     #[test]
     fn four_at_once_see_what_one_sees() {
@@ -92,10 +97,8 @@ mod tests {
                         let is_in = |base: u8, x: u8| base.abs_diff(x) <= threshold;
                         let expected = is_in(base, sample) && is_in(other_base, other);
                         for lane in 0..4 {
-                            let mut bases = [other_base; 4];
-                            let mut samples = [other; 4];
-                            bases[lane] = base;
-                            samples[lane] = sample;
+                            let bases = in_lane(lane, base, other_base);
+                            let samples = in_lane(lane, sample, other);
                             let holds = band.holds(lanes_of_bytes(bases), lanes_of_bytes(samples));
                             assert_eq!(holds, expected);
                         }
@@ -119,10 +122,8 @@ mod tests {
                     let expected = value <= base + up && base <= value + down;
                     for (other_base, other) in [(0, 0), (8191, 8191)] {
                         for lane in 0..4 {
-                            let mut bases = [other_base; 4];
-                            let mut values = [other; 4];
-                            bases[lane] = base;
-                            values[lane] = value;
+                            let bases = in_lane(lane, base, other_base);
+                            let values = in_lane(lane, value, other);
                             let holds = band.holds(lanes_of_pairs(bases), lanes_of_pairs(values));
                             assert_eq!(holds, expected, "{down} {up} {base} {value}");
                         }

@@ -134,12 +134,12 @@ mod tests {
         // Changes of 3 until four of them spiked; then 4 is no spike, 5 is one.
         let changes = [0, 3, -3, 3, -3, 4, 5, -8, 9, 8];
         let fired = [0, 1, -1, 1, -1, 0, 1, -1, 1, 1];
-        let decoded = [0, 2, 0, 2, 0, 0, 4, 0, 4, 8];
+        let values = [0, 2, 0, 2, 0, 0, 4, 0, 4, 8];
         let mut x = 0;
-        for ((change, fired), decoded) in changes.into_iter().zip(fired).zip(decoded) {
+        for ((change, fired), value) in changes.into_iter().zip(fired).zip(values) {
             x += change;
             let spike = encoder.encode(x);
-            assert_eq!((spike.sign(), decoder.decode(spike)), (fired, decoded), "{change}");
+            assert_eq!((spike.sign(), decoder.decode(spike)), (fired, value), "{change}");
         }
         // Eight spikes: the threshold is 8, until the oldest is 17 samples old.
         assert!(!encoder.encode(x + 8).is_fired());

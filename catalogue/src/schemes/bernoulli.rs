@@ -175,14 +175,14 @@ mod tests {
         fn fired<S: Sample>(min: S, max: S, x: S) -> u32 {
             let scheme = Bernoulli::<S, Same, _>::new(min..=max, Average::new(1));
             // The draws that fire are the lowest: a search finds how many.
-            let (mut low, mut high) = (0, 1 << 16);
+            let (mut low, mut high) = (0_u32, 1 << 16);
             while low < high {
-                let middle = (low + high) / 2;
+                let middle = low.midpoint(high);
                 let draw = middle << 16 | 0xffff;
                 if scheme.encoder(Same(draw)).encode(x).is_fired() {
-                    low = middle + 1
+                    low = middle + 1;
                 } else {
-                    high = middle
+                    high = middle;
                 }
             }
             low

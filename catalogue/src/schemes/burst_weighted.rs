@@ -219,11 +219,11 @@ mod tests {
             let spikes = spikes_of(&one, &x);
             let mut gain = 0;
             let told: Vec<i64> = spikes.iter().map(|&spike| {
-                let weight = i64::from(spike) * i64::from(unit) << gain;
+                let weight = (i64::from(spike) * i64::from(unit)) << gain;
                 gain = if spike == 1 { doublings.min(gain + 1) } else { 0 };
                 weight
             }).collect();
-            let most = i64::from(doublings + 1) * i64::from(unit) << doublings;
+            let most = (i64::from(doublings + 1) * i64::from(unit)) << doublings;
             let mut left = 0;
             for (told, x) in told.iter().zip(x) {
                 left += i64::from(x.clamp(-1000, 3000)) + 1000 - told;

@@ -194,14 +194,14 @@ pub(crate) mod tests {
 
     /// How far each decoded value is from the same leaky mean of the samples.
     pub(crate) fn mean_error<const K: usize>(
-        scheme: &IntegrateAndFire<i16, K>,
+        scheme: IntegrateAndFire<i16, K>,
         x: &[i16],
         reference: i16,
         power: u8,
     ) -> Vec<f64> {
         let mut decoder = scheme.decoder();
         let mut mean = 0_i32;
-        let errors = counts_of(scheme, x).into_iter().zip(x).map(|(count, &x)| {
+        let errors = counts_of(&scheme, x).into_iter().zip(x).map(|(count, &x)| {
             let value = decoder.decode(Steps::new(count));
             mean -= mean.signum() * (mean.abs() >> power);
             mean += i32::from(x) - i32::from(reference);
@@ -291,7 +291,7 @@ pub(crate) mod tests {
         fn the_value_is_near_the_leaky_mean(x in drawn(), threshold in 500_i16..4000, power in 1_u8..10) {
             let scheme = Neuron::<i16, 8>::new(threshold, power);
             let bound = 2.0 * f64::from(threshold) / f64::from(1_u32 << power) + 3.0;
-            for error in mean_error(&scheme, &x, 0, power) {
+            for error in mean_error(scheme, &x, 0, power) {
                 prop_assert!(error < bound, "{} of {}", error, bound);
             }
         }

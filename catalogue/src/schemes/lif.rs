@@ -101,7 +101,7 @@ mod tests {
         fn the_value_is_near_the_leaky_mean(x in drawn(), threshold in 512_i16..4000, power in 1_u8..10, reference in -90_i16..90) {
             let scheme = Neuron::<i16, 8>::new(threshold, power).leaky().with_reference(reference);
             let bound = f64::from(threshold) / f64::from(1_u32 << power) + 3.0;
-            for error in mean_error(&scheme, &x, reference, power) {
+            for error in mean_error(scheme, &x, reference, power) {
                 prop_assert!(error < bound, "{} of {}", error, bound);
             }
         }

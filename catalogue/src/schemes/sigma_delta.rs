@@ -185,12 +185,12 @@ pub(crate) mod tests {
         let x = [i16::MAX, i16::MIN, 0, 0, i16::MAX, i16::MAX];
         let scheme = SigmaDelta::new(i16::MIN..=i16::MAX, Average::new(15));
         assert_eq!(spikes_of(&scheme, &x), [1, 0, 0, 1, 1, 1]);
-        assert_eq!(values_of(&scheme, &[1; 500_000]).last(), Some(&i16::MAX));
+        assert_eq!(values_of(&scheme, &vec![1; 500_000]).last(), Some(&i16::MAX));
         let scheme = SigmaDelta::new(I16F16::MIN..=I16F16::MAX, Average::new(15));
         let [min, max] = [I16F16::MIN, I16F16::MAX];
         let x = [max, min, I16F16::ZERO, I16F16::ZERO, max, max];
         assert_eq!(spikes_of(&scheme, &x), [1, 0, 0, 1, 1, 1]);
-        assert_eq!(values_of(&scheme, &[1; 1_000_000]).last(), Some(&I16F16::MAX));
+        assert_eq!(values_of(&scheme, &vec![1; 1_000_000]).last(), Some(&I16F16::MAX));
     }
 
     #[test]
