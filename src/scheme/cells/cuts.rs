@@ -100,7 +100,9 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
         };
         let mut c = 1;
         while c < cuts.count {
-            cuts = cuts.set(c - 1, cuts.at(2 * c - 1, 2 * (cuts.count - 1)), Side::Low);
+            let (part, parts) = (c.saturating_mul(2), cuts.count.saturating_mul(2));
+            let edge = cuts.at(part.saturating_sub(1), parts.saturating_sub(2));
+            cuts = cuts.set(c - 1, edge, Side::Low);
             c += 1;
         }
         Ok(cuts)

@@ -31,7 +31,7 @@ impl<const M: usize, const N: usize> NeuronSlots<M, N> {
 
     /// The neurons that fire, by rising index, each with its slot.
     pub fn iter(&self) -> impl Iterator<Item = (u16, u16)> {
-        let slots = (0..).zip(&self.slots).filter(|&(_, &slot)| slot > 0);
+        let slots = (0..M as u16).zip(&self.slots).filter(|&(_, &slot)| slot > 0);
         slots.map(|(neuron, &slot)| (neuron, slot.wrapping_sub(1)))
     }
 

@@ -224,7 +224,7 @@ pub(super) const fn companded<S: Sample>(
     let (companding, middle) = (companding as f64, f64::midpoint(min, max));
     let last = centres.len().saturating_sub(1);
     let mut i = 0;
-    while i <= last {
+    while i < centres.len() {
         let part = 2.0 * i as f64 / last as f64 - 1.0;
         let magnitude = if part < 0.0 { -part } else { part };
         let power = exp(magnitude * ln(1.0 + companding));

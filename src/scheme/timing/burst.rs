@@ -109,7 +109,7 @@ impl<S: Sample, const N: usize> Burst<S, N> {
             Ok(cuts) => cuts,
             Err(error) => return Err(error),
         };
-        let (counts, steps) = (spikes as usize, (longest - shortest) as usize);
+        let (counts, steps) = (spikes as usize, longest.saturating_sub(shortest) as usize);
         let mut cuts = whole.above(to_f64(min));
         let (mut bursts, mut firsts) = ([[1, 0]; N], [0; N]);
         // The largest sample below the cell, and how many edges of counts and of intervals lie there.
@@ -117,18 +117,19 @@ impl<S: Sample, const N: usize> Burst<S, N> {
         let (mut cell, mut most) = (0, 1);
         loop {
             let by_count = whole.set(0, whole.at(passed, counts), Side::Low);
-            let by_interval = whole.set(0, whole.at(shorter + 1, max(steps, 1)), Side::Up);
+            let by_interval =
+                whole.set(0, whole.at(shorter.saturating_add(1), max(steps, 1)), Side::Up);
             let (at_count, at_interval) = (to_f64(by_count.last(0)), to_f64(by_interval.last(0)));
             let (has_count, has_interval) = (passed < counts, shorter < steps);
             if has_count && at_count <= below {
-                passed += 1;
+                passed = passed.saturating_add(1);
                 continue;
             }
             if has_interval && at_interval <= below {
-                shorter += 1;
+                shorter = shorter.saturating_add(1);
                 continue;
             }
-            let interval = longest - shorter as u8;
+            let interval = longest.saturating_sub(shorter as u8);
             if cell < N {
                 let is_first = cell == 0 || bursts[cell - 1][0] as usize != passed;
                 let place = passed.wrapping_sub(1);
@@ -137,17 +138,18 @@ impl<S: Sample, const N: usize> Burst<S, N> {
                 }
                 bursts[cell] = if passed > 1 { [passed as u8, interval] } else { [1, 0] };
             }
-            most = max(most, (passed - 1) * interval as usize + 1);
+            let last = passed.saturating_sub(1).saturating_mul(interval as usize);
+            most = max(most, last.saturating_add(1));
             if has_count && !(has_interval && at_interval < at_count) {
                 cuts = cuts.set(cell, whole.at(passed, counts), Side::Low);
                 below = at_count;
             } else if has_interval {
-                cuts = cuts.set(cell, whole.at(shorter + 1, steps), Side::Up);
+                cuts = cuts.set(cell, whole.at(shorter.saturating_add(1), steps), Side::Up);
                 below = at_interval;
             } else {
                 break;
             }
-            cell += 1;
+            cell = cell.saturating_add(1);
         }
         // Bursts that fit have no more cells than slots.
         let most = if cell < N { most } else { max(most, N + 1) };
@@ -157,8 +159,10 @@ impl<S: Sample, const N: usize> Burst<S, N> {
         if let Err(error) = within("slots", slots as f64, most as f32, 256.0) {
             return Err(error);
         }
-        match cuts.counted(cell + 1).partition() {
-            Ok(cells) => Ok(Self { cells, bursts, firsts, count: cell as u16 + 1, min }),
+        match cuts.counted(cell.saturating_add(1)).partition() {
+            Ok(cells) => {
+                Ok(Self { cells, bursts, firsts, count: (cell as u16).saturating_add(1), min })
+            }
             Err(error) => Err(error),
         }
     }

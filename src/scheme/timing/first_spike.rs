@@ -220,7 +220,7 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
         let below = cuts.set(0, edges[0], Side::Low);
         let silence = Silence { last: below.last(0), value: below.middle(0) };
         if to_f64(silence.last) < to_f64(*range.start()) {
-            return Err(ConfigError::EmptyCell { cell: 0, cells: slots + 1 });
+            return Err(ConfigError::EmptyCell { cell: 0, cells: slots.saturating_add(1) });
         }
         cuts = cuts.above(edges[0]);
         let mut c = 1;
@@ -231,7 +231,8 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
         match cuts.partition() {
             Ok(cells) => Ok(Self { cells, silence: Some(silence), slots: slots as u16 }),
             Err(ConfigError::EmptyCell { cell, cells }) => {
-                Err(ConfigError::EmptyCell { cell: cell + 1, cells: cells + 1 })
+                let (cell, cells) = (cell.saturating_add(1), cells.saturating_add(1));
+                Err(ConfigError::EmptyCell { cell, cells })
             }
             Err(error) => Err(error),
         }
@@ -255,7 +256,8 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
     fn value(&self, slot: Option<Slot<N>>) -> Option<S> {
         match slot {
             Some(slot) => {
-                let cell = usize::from(self.slots).checked_sub(usize::from(slot.index()) + 1)?;
+                let cell = usize::from(self.slots)
+                    .checked_sub(usize::from(slot.index()).saturating_add(1))?;
                 self.cells.get(cell)
             }
             None => self.silence.map(|silence| silence.value),

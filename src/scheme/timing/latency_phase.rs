@@ -131,7 +131,7 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
     /// # Errors
     /// The phase is not below the period.
     pub const fn try_with_phase(self, phase: u16) -> Result<Self, ConfigError> {
-        match within("phase", phase as f64, 0.0, (self.period - 1) as f32) {
+        match within("phase", phase as f64, 0.0, self.period.saturating_sub(1) as f32) {
             Ok(()) => Ok(Self { phase, ..self }),
             Err(error) => Err(error),
         }
@@ -173,7 +173,7 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
         }
         let cell = |latency: u16| usize::from(longest.wrapping_sub(latency));
         let first = self.cells.get(cell(most))?;
-        let above = if least > 0 { self.cells.get(cell(least) + 1) } else { None };
+        let above = if least > 0 { self.cells.get(cell(least).saturating_add(1)) } else { None };
         Some(first.middle(above.map_or(self.max, S::before)))
     }
 }

@@ -22,7 +22,9 @@ impl<const M: usize, const W: usize, const P: usize> PhaseSpikes<M, W, P> {
     /// Each neuron in its slot, or silent. `None` if there is no such slot.
     pub fn new(slots: [Option<u16>; M]) -> Option<Self> {
         let exist = slots.iter().flatten().all(|&slot| usize::from(slot) < Self::SLOTS);
-        exist.then(|| Self { numbers: slots.map(|slot| slot.map_or(0, |slot| slot + 1)) })
+        exist.then(|| Self {
+            numbers: slots.map(|slot| slot.map_or(0, |slot| slot.saturating_add(1))),
+        })
     }
 
     /// Each neuron in the slot that a function gives.
@@ -49,7 +51,7 @@ impl<const M: usize, const W: usize, const P: usize> PhaseSpikes<M, W, P> {
 
     /// The neurons that fire, by rising index, each with its slot.
     pub fn iter(&self) -> impl Iterator<Item = (u16, u16)> {
-        let slots = (0..).zip(self.numbers);
+        let slots = (0..M as u16).zip(self.numbers);
         slots.filter_map(|(neuron, number): (u16, u16)| Some((neuron, number.checked_sub(1)?)))
     }
 }

@@ -13,7 +13,7 @@ pub struct Slot<const N: usize>(NonZeroU16);
 impl<const N: usize> Slot<N> {
     /// The slot with this index, if there is one.
     pub const fn new(index: u16) -> Option<Self> {
-        if (index as usize) < N { Self::counted(index + 1) } else { None }
+        if (index as usize) < N { Self::counted(index.wrapping_add(1)) } else { None }
     }
 
     /// Its index, 0 to `N - 1`.
