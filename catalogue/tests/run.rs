@@ -194,6 +194,10 @@ fn what_is_wanted_of_a_signal_is_said() {
                 options.set(parameter.name, parameter.default.unwrap_or(parameter.example));
             }
         }
+        // Its ratio goes with logarithmic edges.
+        if info.name == "ttfs" {
+            options.set("edges", "log");
+        }
         assert_eq!(scheme.needs_signal(&options), None, "{}", info.name);
         // With all given it needs none.
         let known = Known { calibrated: None, first: &[0.25], can_calibrate: false };

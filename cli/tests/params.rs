@@ -54,7 +54,7 @@ fn what_does_not_fit_is_refused() {
         &["is of hsa", "says sf"],
     );
     refused("score --params nowhere.toml -", "", &["nowhere.toml: cannot be opened"]);
-    refused(&format!("listen --params {params} -"), "", &["adds up steps, which hsa does not"]);
+    refused(&format!("listen --params {params} --scheme sf -"), "", &["is of hsa", "says sf"]);
     refused(
         &format!("plot {flight} -o a.svg"),
         "",

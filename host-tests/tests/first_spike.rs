@@ -101,7 +101,7 @@ fn refusals() {
     assert_eq!(told(FirstSpike::try_new(0..=9, [-1, 2, 3, 4])), empty(0, 5));
     assert_eq!(told(FirstSpike::try_new(0..=9, [1, 2, 3, 9])), empty(4, 5));
     assert_eq!(told(FirstSpike::try_logarithmic(0..=100, 1000.0)), empty(1, 5));
-    assert_eq!(names(FirstSpike::try_new(0..=9, [1, 2, 2, 4])), "thresholds");
+    assert_eq!(names(FirstSpike::try_new(0..=9, [1, 2, 2, 4])), "edges");
     assert_eq!(names(FirstSpike::try_linear(3..=3)), "min");
     for ratio in [1.0, 0.0, -2.0, f32::NAN, f32::INFINITY] {
         assert_eq!(names(FirstSpike::try_logarithmic(0..=9999, ratio)), "dynamic");

@@ -35,7 +35,7 @@ impl Entry for Scheme {
             Parameter::MIN,
             Parameter::MAX,
             Parameter::new(
-                "unit",
+                "weight",
                 Kind::Number,
                 Unit::Signal,
                 "what the first spike of a burst weighs, above 0; after DOUBLINGS, max - min at least",
@@ -79,13 +79,13 @@ impl Entry for Scheme {
 #[cfg(feature = "run")]
 impl Build for Scheme {
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let (range, unit) = (given.range()?, given.signal("unit")?);
+        let (range, weight) = (given.range()?, given.signal("weight")?);
         let doublings = given.count("doublings", 0..=14)? as u8;
         if given.takes_window()? {
-            let scheme = WeightedBurst::<S, _>::try_new(range, unit, doublings, given.window()?)?;
+            let scheme = WeightedBurst::<S, _>::try_new(range, weight, doublings, given.window()?)?;
             return visitor.visit(scheme, WeightedBurst::<S, Window<128>>::START);
         }
-        let scheme = WeightedBurst::<S, _>::try_new(range, unit, doublings, given.average()?)?;
+        let scheme = WeightedBurst::<S, _>::try_new(range, weight, doublings, given.average()?)?;
         visitor.visit(scheme, WeightedBurst::<S, Average>::START)
     }
 }
@@ -177,8 +177,8 @@ mod tests {
             other => panic!("{other:?}"),
         };
         assert_eq!(parameter(1.0, 0.0, 1.0, 0), "min and max");
-        assert_eq!(parameter(0.0, 1.0, 0.0, 0), "unit");
-        assert_eq!(parameter(0.0, 1.0, f32::NAN, 0), "unit");
+        assert_eq!(parameter(0.0, 1.0, 0.0, 0), "weight");
+        assert_eq!(parameter(0.0, 1.0, f32::NAN, 0), "weight");
         assert_eq!(parameter(0.0, 1.0, 1.0, 15), "doublings");
         assert_eq!(parameter(0.0, 1.0, 0.49, 1), "largest weight");
         assert_eq!(parameter(0.0, 1.0, 1e31, 1), "largest weight");

@@ -32,7 +32,7 @@ impl Entry for Scheme {
         colour: [0x9a, 0xa1, 0xab],
         parameters: &[
             Parameter::new(
-                "thresholds",
+                "edges",
                 Kind::Text,
                 Unit::Signal,
                 "`linear`, `log`, or a rising list such as `0.1,0.3,1`, each of which is a slot",
@@ -90,25 +90,29 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    /// A list of thresholds says how many slots there are.
+    /// A list of edges says how many slots there are; a ratio goes with logarithmic edges.
     fn resolve(asked: &Asked) -> Result<Settings> {
-        let thresholds = asked.text("thresholds").unwrap_or_default();
-        if !is_list(&thresholds) {
-            return asked.all();
-        }
-        if let Some(option) = ["slots", "ratio"].iter().find(|name| asked.user(name).is_some()) {
-            bail!("--thresholds {thresholds} says it all; --{option} contradicts it");
+        let edges = asked.text("edges").unwrap_or_default();
+        let unused: &[&str] = match edges.as_str() {
+            "log" => &[],
+            list if is_list(list) => &["slots", "ratio"],
+            _ => &["ratio"],
+        };
+        if let Some(option) = unused.iter().find(|name| asked.user(name).is_some()) {
+            bail!("--edges {edges} takes no --{option}");
         }
         let mut settings = Settings::default();
-        for name in ["thresholds", "min", "max"] {
-            asked.settle(name, &mut settings)?;
+        for name in ["edges", "slots", "ratio", "min", "max"] {
+            if !unused.contains(&name) {
+                asked.settle(name, &mut settings)?;
+            }
         }
         Ok(settings)
     }
 
     fn shape(given: &Given) -> Result<Shape> {
-        let slots = match given.word("thresholds")? {
-            thresholds if is_list(thresholds) => given.numbers("thresholds")?.len(),
+        let slots = match given.word("edges")? {
+            edges if is_list(edges) => given.numbers("edges")?.len(),
             _ => given.count("slots", 2..=dynamic::LEVELS)?,
         };
         Ok(Shape { neurons: 1, slots })
@@ -116,16 +120,16 @@ impl Build for Scheme {
 
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
         let (range, slots) = (given.range()?, Self::shape(given)?.slots);
-        let scheme = match given.word("thresholds")? {
+        let scheme = match given.word("edges")? {
             "linear" => dynamic::FirstSpike::<S>::try_linear_of(slots, &range)?,
             "log" => {
                 let ratio = given.number("ratio")? as f32;
                 dynamic::FirstSpike::try_logarithmic_of(slots, &range, ratio)?
             }
             list if is_list(list) => {
-                dynamic::FirstSpike::try_new_of(&given.signals("thresholds")?, &range)?
+                dynamic::FirstSpike::try_new_of(&given.signals("edges")?, &range)?
             }
-            word => bail!("thresholds {word}: there are linear, log, and lists of numbers"),
+            word => bail!("edges {word}: there are linear, log, and lists of numbers"),
         };
         visitor.visit(scheme, dynamic::FirstSpike::<S>::START)
     }

@@ -45,13 +45,13 @@ impl<S: Sample> FirstSpike<S> {
         Self::of_logarithms(range, dynamic_range, slots)
     }
 
-    /// [`try_new`](Self::try_new) with a slot for each threshold.
+    /// [`try_new`](Self::try_new) with a slot for each edge.
     ///
     /// # Errors
-    /// There are not 2 to 256 thresholds, or as for [`try_new`](Self::try_new).
-    pub fn try_new_of(thresholds: &[S], range: &RangeInclusive<S>) -> Result<Self, ConfigError> {
-        check("thresholds", thresholds.len(), 2, SLOTS)?;
-        Self::of_some_thresholds(range, thresholds)
+    /// There are not 2 to 256 edges, or as for [`try_new`](Self::try_new).
+    pub fn try_new_of(edges: &[S], range: &RangeInclusive<S>) -> Result<Self, ConfigError> {
+        check("edges", edges.len(), 2, SLOTS)?;
+        Self::of_own(range, edges)
     }
 }
 

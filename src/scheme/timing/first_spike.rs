@@ -13,7 +13,7 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 /// Time to first spike: one spike a sample, in the slot that tells the cell of the value, the highest cell first.
 ///
 /// - **Cells:** [even points](Self::linear), [logarithmic](Self::logarithmic), or above the
-///   [user's thresholds](Self::new). Below all thresholds there is no spike.
+///   [user's edges](Self::new). Below all edges there is no spike.
 /// - **N:** 2 to 256 slots a sample, each as long as the caller makes it.
 /// - **Latency:** 0 samples. **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes `10 N + 24` bytes
 ///   of flash in `f32`.
@@ -21,7 +21,7 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 ///   exponential, logarithm or division.
 /// - **Exactness:** fixed point compares with exact edges; `f32` with edges computed in double precision and rounded
 ///   once.
-/// - **Decoder:** the middle of the cell. No spike decodes to the middle of the values below all thresholds; where
+/// - **Decoder:** the middle of the cell. No spike decodes to the middle of the values below all edges; where
 ///   there are none, the value before holds. A sample that is not finite has no spike, either.
 /// - **Error:** half a cell within the range: `R/(2(N-1))` if linear, with `R = max - min`;
 ///   `(x - min)(D^(1/N) - 1)/2` if logarithmic, above the lowest edge; in fixed point up to 1 unit of the last place
@@ -72,28 +72,25 @@ struct Silence<S> {
 impl<S: Sample, const N: usize> FirstSpike<S, N> {
     const SHAPE: () = assert!(N >= 2 && N <= 256, "a sample has 2 to 256 slots");
 
-    /// The user's thresholds, strictly rising, within a range: the slot is the number of thresholds that the value
-    /// does not exceed. For constants, where bad thresholds fail the build.
+    /// The user's edges of cells, strictly rising, within a range: the slot is the number of edges that the value does
+    /// not exceed. For constants, where bad edges fail the build.
     ///
-    /// Those of a leaky integrate-and-fire neuron at a constant input are `θ/(1 - e^(-(t+1)/τ))`, `t` from `N-1`
-    /// down to 0.
+    /// Those of a leaky integrate-and-fire neuron of threshold `θ` at a constant input are `θ/(1 - e^(-(t+1)/τ))`, `t`
+    /// from `N-1` down to 0.
     ///
     /// # Panics
     /// As [`try_new`](Self::try_new) fails.
-    pub const fn new(range: RangeInclusive<S>, thresholds: [S; N]) -> Self {
-        unwrap(Self::of_thresholds(&range, &thresholds))
+    pub const fn new(range: RangeInclusive<S>, edges: [S; N]) -> Self {
+        unwrap(Self::of_own(&range, &edges))
     }
 
-    /// The user's thresholds, strictly rising, within a range: the slot is the number of thresholds that the value
-    /// does not exceed.
+    /// The user's edges of cells, strictly rising, within a range: the slot is the number of edges that the value does
+    /// not exceed.
     ///
     /// # Errors
-    /// The ends or a threshold are not finite or do not rise; or no sample lies between two of them.
-    pub const fn try_new(
-        range: RangeInclusive<S>,
-        thresholds: [S; N],
-    ) -> Result<Self, ConfigError> {
-        Self::of_thresholds(&range, &thresholds)
+    /// The ends or an edge are not finite or do not rise; or no sample lies between two of them.
+    pub const fn try_new(range: RangeInclusive<S>, edges: [S; N]) -> Result<Self, ConfigError> {
+        Self::of_own(&range, &edges)
     }
 
     /// Even points: slot `t` stands for `max - tR/(N-1)`, and each value fires in the slot of the nearest point,
@@ -179,27 +176,17 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
         Self::of_edges(range, &edges, slots)
     }
 
-    const fn of_thresholds(
-        range: &RangeInclusive<S>,
-        thresholds: &[S; N],
-    ) -> Result<Self, ConfigError> {
-        Self::of_some_thresholds(range, thresholds)
-    }
-
-    /// Up to `N` thresholds.
-    pub(super) const fn of_some_thresholds(
-        range: &RangeInclusive<S>,
-        thresholds: &[S],
-    ) -> Result<Self, ConfigError> {
+    /// Up to `N` edges of the user's.
+    pub(super) const fn of_own(range: &RangeInclusive<S>, own: &[S]) -> Result<Self, ConfigError> {
         let mut edges = [0.0; N];
         let mut i = 0;
-        while i < thresholds.len() && i < N {
-            edges[i] = to_f64(thresholds[i]);
-            if let Err(error) = crate::error::finite("threshold", edges[i]) {
+        while i < own.len() && i < N {
+            edges[i] = to_f64(own[i]);
+            if let Err(error) = crate::error::finite("edge", edges[i]) {
                 return Err(error);
             }
             if i > 0 && edges[i] <= edges[i - 1] {
-                return Err(not_rising("thresholds", i, edges[i], edges[i - 1]));
+                return Err(not_rising("edges", i, edges[i], edges[i - 1]));
             }
             i += 1;
         }

@@ -39,7 +39,7 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct WeightedBurst<S, A> {
     range: Range<S>,
-    unit: S,
+    weight: S,
     doublings: u8,
     averaging: A,
 }
@@ -48,39 +48,39 @@ pub struct WeightedBurst<S, A> {
 const MOST_DOUBLINGS: u8 = 14;
 
 impl<S: Sample, A: Averaging> WeightedBurst<S, A> {
-    /// A scheme for a range, whose spikes weigh the unit at first and double so many times at most. For constants, where
+    /// A scheme for a range, whose spikes weigh `weight` at first and double so many times at most. For constants, where
     /// bad parameters fail the build.
     ///
     /// # Panics
     /// As [`try_new`](Self::try_new) fails.
-    pub const fn new(range: RangeInclusive<S>, unit: S, doublings: u8, averaging: A) -> Self {
-        let range = unwrap(Self::checked(*range.start(), *range.end(), unit, doublings));
-        Self { range, unit, doublings, averaging }
+    pub const fn new(range: RangeInclusive<S>, weight: S, doublings: u8, averaging: A) -> Self {
+        let range = unwrap(Self::checked(*range.start(), *range.end(), weight, doublings));
+        Self { range, weight, doublings, averaging }
     }
 
-    /// A scheme for a range, whose spikes weigh the unit at first and double so many times at most.
+    /// A scheme for a range, whose spikes weigh `weight` at first and double so many times at most.
     ///
     /// # Errors
-    /// The ends are not finite, or do not rise, or are more than 10³¹ from 0; the unit is not above 0; there are more
+    /// The ends are not finite, or do not rise, or are more than 10³¹ from 0; the weight is not above 0; there are more
     /// than 14 doublings; the largest weight is less than the range, or above 10³¹.
     pub const fn try_new(
         range: RangeInclusive<S>,
-        unit: S,
+        weight: S,
         doublings: u8,
         averaging: A,
     ) -> Result<Self, ConfigError> {
-        match Self::checked(*range.start(), *range.end(), unit, doublings) {
-            Ok(range) => Ok(Self { range, unit, doublings, averaging }),
+        match Self::checked(*range.start(), *range.end(), weight, doublings) {
+            Ok(range) => Ok(Self { range, weight, doublings, averaging }),
             Err(error) => Err(error),
         }
     }
 
-    const fn checked(min: S, max: S, unit: S, doublings: u8) -> Result<Range<S>, ConfigError> {
+    const fn checked(min: S, max: S, weight: S, doublings: u8) -> Result<Range<S>, ConfigError> {
         let width = to_f64(max) - to_f64(min);
-        let largest = to_f64(unit) * (1_u64 << (doublings & 31)) as f64;
+        let largest = to_f64(weight) * (1_u64 << (doublings & 31)) as f64;
         match (
             Range::try_new(min, max),
-            step("unit", to_f64(unit)),
+            step("weight", to_f64(weight)),
             within("doublings", doublings as f64, 0.0, MOST_DOUBLINGS as f32),
         ) {
             (Err(error), _, _) | (_, Err(error), _) | (_, _, Err(error)) => Err(error),
@@ -94,7 +94,7 @@ impl<S: Sample, A: Averaging> WeightedBurst<S, A> {
 
     #[inline]
     fn weight(&self) -> Weight<S::Total> {
-        let unit = self.unit.above(S::ZERO);
+        let unit = self.weight.above(S::ZERO);
         Weight { unit, doublings: self.doublings, range: self.range.width() }
     }
 }
@@ -131,7 +131,7 @@ impl<S: Sample, A: Averaging> Scheme for WeightedBurst<S, A> {
             state.gain.take(false, self.doublings); // as the decoder does
             return Spike::None;
         };
-        let weight = self.unit.above(S::ZERO).doubled(state.gain.0);
+        let weight = self.weight.above(S::ZERO).doubled(state.gain.0);
         let sum = state.sum.plus(above);
         let is_spike = sum >= weight;
         state.gain.take(is_spike, self.doublings);
