@@ -1,0 +1,8 @@
+//! Counts the instructions of the codecs of the catalogue's first half in `f32`.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg_attr(target_os = "none", board::entry)]
+fn main() -> ! {
+    board::finish(bench_target::run::<f32, 0>(&mut board::console(), "f32"))
+}

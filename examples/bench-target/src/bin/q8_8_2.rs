@@ -1,0 +1,10 @@
+//! Counts the instructions of the codecs of the catalogue's second half in `FixedI16<U8>`.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+use fixed::{FixedI16, types::extra::U8};
+
+#[cfg_attr(target_os = "none", board::entry)]
+fn main() -> ! {
+    board::finish(bench_target::run::<FixedI16<U8>, 1>(&mut board::console(), "q8.8"))
+}
