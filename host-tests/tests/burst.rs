@@ -91,6 +91,7 @@ fn flights_and_hostile_recordings() {
     for x in hostile_recordings() {
         check_bursts::<f32, 19>([-1.0, 1.0], 5, [2, 10], &x);
         check_bursts::<f32, 64>([f32::MIN, f32::MAX], 7, [1, 13], &x);
+        check_bursts::<f32, 19>([-0.0, 1.0], 5, [2, 10], &x);
     }
 }
 

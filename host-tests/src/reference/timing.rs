@@ -159,12 +159,14 @@ impl Bursts {
     /// The middle of the values that have the burst of this one.
     pub fn middle<T: Line>(&self, x: T, min: T, max: T) -> T {
         let (count, interval) = self.burst(x, min, max);
+        // Also where it is -0.
+        if count == 0 {
+            return min;
+        }
         let steps = self.intervals.end() - self.intervals.start();
         let by_count = |count: u32| edge(min, max, count, self.spikes);
-        let (mut low, mut high) = (by_count(count.saturating_sub(1)), by_count(count));
-        if count == 0 {
-            high = low;
-        } else if count > 1 && steps > 0 {
+        let (mut low, mut high) = (by_count(count - 1), by_count(count));
+        if count > 1 && steps > 0 {
             let passed = self.intervals.end() - interval;
             low = low.max(edge(min, max, passed, steps));
             if passed < steps {
