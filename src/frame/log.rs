@@ -121,7 +121,7 @@ const fn narrowed(wide: &[u16; 256]) -> [u8; 256] {
 /// ```
 /// use spikewire::frame::{LogIntensity, PixelCode};
 ///
-/// const DVS: LogIntensity<u16> = LogIntensity::new(205, 205).with_most(4);
+/// const DVS: LogIntensity<u16> = LogIntensity::<u16>::new(205, 205).with_most(4);
 /// let base = DVS.base(100);
 /// assert_eq!(DVS.steps(base, 150), 2);
 /// assert_eq!(DVS.value(DVS.moved(base, 2)), 149);

@@ -36,7 +36,7 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 /// const ROLL: IntegrateAndFire<i16, 4> = IntegrateAndFire::new(10, 3);
 /// let mut encoder = ROLL.encoder();
 /// let spikes = [12, 12, -30, 45].map(|x| encoder.encode(x).count());
-/// assert_eq!(spikes, [1, 1, -2, 4]); // 39 in 4 samples: 4 spikes up in sum, less one for what is left
+/// assert_eq!(spikes, [1, 1, -2, 3]); // 39 in 4 samples: 3 spikes up in sum, and 9 are left
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
