@@ -49,11 +49,15 @@ impl Log for Line {
 impl Line {
     /// `scheme sample spikes=<n> efficiency=<percent> rmse=<f32 bits> hash=<FNV-1a, 64 bits>`
     pub fn write(&self, out: &mut impl fmt::Write, scheme: &str, sample: &str) -> fmt::Result {
-        let efficiency = 100.0 - 100.0 * self.spikes as f32 / self.samples as f32;
+        // Hundredths of a percent, as the text of a float takes more flash than the smallest core has left.
+        let firing = (u64::from(self.spikes) * 10_000).div_ceil(u64::from(self.samples.max(1)));
+        let efficiency = 10_000 - firing as i32;
+        let sign = if efficiency < 0 { "-" } else { "" };
+        let (percent, hundredths) = (efficiency.abs() / 100, efficiency.abs() % 100);
         let rmse = libm::sqrt(self.squares / f64::from(self.decoded)) as f32;
         writeln!(
             out,
-            "{scheme} {sample} spikes={} efficiency={efficiency:.2} rmse={:08x} hash={:016x}",
+            "{scheme} {sample} spikes={} efficiency={sign}{percent}.{hundredths:02} rmse={:08x} hash={:016x}",
             self.spikes,
             rmse.to_bits(),
             self.hash,
