@@ -104,6 +104,9 @@ fn flights_and_hostile_recordings() {
     for x in hostile_recordings() {
         check_phases::<f32, 1, 16, 4>([-1.0, 1.0], 1, 2, &x);
         check_phases::<f32, 3, 7, 8>([f32::MIN, f32::MAX], 2, 1, &x);
+        // Cells whose ends are subnormal.
+        check_phases::<f32, 2, 7, 8>([f32::from_bits(5), f32::from_bits(106)], 2, 1, &x);
+        check_phases::<f32, 3, 20, 16>([-f32::MIN_POSITIVE, 1e-40], 5, 1, &x);
     }
 }
 

@@ -1,5 +1,6 @@
 //! Arithmetic of the weighted phase code: a value's place in its range, in binary digits.
 
+use super::Field;
 use super::arithmetic::for_each_integer;
 
 /// Fractions of a range in binary.
@@ -10,7 +11,7 @@ pub(crate) trait Binary: Sized {
     /// The middle of the values with these digits.
     fn of_digits(digits: u32, count: u32, min: Self, max: Self) -> Self;
 
-    /// The middle of two values, rounded down in fixed point.
+    /// The middle of two values, rounded down in fixed point and once in `f32`.
     fn middle(self, other: Self) -> Self;
 
     /// The largest value below the start of a cell: in `f32` the start itself.
@@ -51,9 +52,11 @@ impl Binary for f32 {
         min + (max - min) * ((2 * digits + 1) as f32 * half)
     }
 
+    /// Halves of subnormal values would be rounded before their sum; a sum that is too large has exact halves.
     #[inline]
     fn middle(self, other: f32) -> f32 {
-        self * 0.5 + other * 0.5
+        let sum = self + other;
+        if sum.is_finite() { sum * 0.5 } else { self * 0.5 + other * 0.5 }
     }
 
     #[inline]
@@ -114,10 +117,7 @@ macro_rules! integer {
 
             #[inline]
             fn middle(self, other: Self) -> Self {
-                let [low, high] = [self, other].map(|x| i32::from($to_bits(x)));
-                // Both halves, and 1 where neither lost a half.
-                let halves = (low >> 1).wrapping_add(high >> 1);
-                $from_bits(halves.wrapping_add(low & high & 1) as $bits)
+                self.midway(other)
             }
 
             #[inline]
