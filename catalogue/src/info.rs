@@ -5,6 +5,9 @@
 pub struct Info {
     /// What options and files call it.
     pub name: &'static str,
+    /// What its class is called in bindings to other languages: the name of its type in the crate, where it has one
+    /// of its own.
+    pub type_name: &'static str,
     /// What the paper's tables call it.
     pub title: &'static str,
     /// Its name in words.

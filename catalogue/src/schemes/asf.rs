@@ -23,6 +23,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "asf",
+        type_name: "AdaptiveStepForward",
         title: "Adaptive SF",
         words: "adaptive step forward",
         good_for: "following a signal that jumps, with one spike a sample at most",

@@ -23,6 +23,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "atbr",
+        type_name: "AdaptiveContrast",
         title: "Adaptive TBR",
         words: "adaptive temporal contrast",
         good_for: "changes whose size differs much between rest and flight; drifts",

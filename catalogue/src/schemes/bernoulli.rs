@@ -27,6 +27,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "bernoulli",
+        type_name: "Bernoulli",
         title: "Bernoulli",
         words: "Bernoulli (random rate)",
         good_for: "a mean by chance, from your generator, as networks are trained with",

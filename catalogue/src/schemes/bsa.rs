@@ -25,6 +25,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "bsa",
+        type_name: "Bsa",
         title: "BSA",
         words: "Ben's spiker (BSA)",
         good_for: "a rate code of either sign of taps; with the toolbox's indices the paper's tables",

@@ -25,6 +25,7 @@ const SLOTS: usize = 19;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "burst",
+        type_name: "Burst",
         title: "Burst",
         words: "burst coding",
         good_for: "a value by the count and the interval of its spikes",

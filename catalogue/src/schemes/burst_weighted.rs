@@ -23,6 +23,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "burst-weighted",
+        type_name: "WeightedBurst",
         title: "Weighted burst",
         words: "bursts of doubling weight",
         good_for: "a mean from one neuron, where few spikes may tell little and many in a row much",

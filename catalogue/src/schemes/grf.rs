@@ -22,6 +22,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "grf",
+        type_name: "Gaussian",
         title: "GRF",
         words: "Gaussian receptive fields (GRF)",
         good_for: "a value over an even range",

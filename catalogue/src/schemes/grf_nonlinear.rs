@@ -49,6 +49,7 @@ pub(super) const COMPANDING: Parameter = Parameter::new(
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "grf-nonlinear",
+        type_name: "NonLinearGaussian",
         title: "GRF, non-linear",
         words: "non-linear Gaussian receptive fields (GRF)",
         good_for: "a value, finer where it is most of the time",

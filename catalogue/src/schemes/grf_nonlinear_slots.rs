@@ -23,6 +23,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "grf-nonlinear-slots",
+        type_name: "NonLinearSlots",
         title: "GRF, non-linear, slots",
         words: "non-linear GRF with sub-timesteps",
         good_for: "a value finer than the neurons, by spike time, and finest where it is most of the time",

@@ -25,6 +25,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "grf-prob",
+        type_name: "Probabilistic",
         title: "GRF, probabilistic",
         words: "GRF with probabilistic spiking",
         good_for: "a value by chance, from your generator",

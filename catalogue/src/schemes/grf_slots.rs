@@ -22,6 +22,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "grf-slots",
+        type_name: "Slots",
         title: "GRF, slots",
         words: "GRF with sub-timesteps",
         good_for: "a value finer than the neurons, by spike time",

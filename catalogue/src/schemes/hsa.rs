@@ -22,6 +22,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "hsa",
+        type_name: "Hough",
         title: "HSA",
         words: "Hough spiker (HSA)",
         good_for: "a value that is never above the signal",

@@ -45,6 +45,7 @@ pub(super) const PARAMETERS: &[Parameter] = &[
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "if",
+        type_name: "IntegrateAndFire",
         title: "IF",
         words: "integrate and fire (IF)",
         good_for: "a mean, and an integral that never drifts: a gyroscope's angle",

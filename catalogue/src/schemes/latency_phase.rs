@@ -25,6 +25,7 @@ type Four<S> = LatencyPhase<S, 4, 32, 4>;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "latency-phase",
+        type_name: "LatencyPhase",
         title: "LPC",
         words: "latency-phase",
         good_for: "channels that share one line, told apart by the phase of their spikes",

@@ -21,6 +21,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "lif",
+        type_name: "LeakyIntegrateAndFire",
         title: "LIF",
         words: "leaky integrate and fire (LIF)",
         good_for: "a mean that forgets, silent for what stays small",

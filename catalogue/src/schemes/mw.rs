@@ -24,6 +24,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "mw",
+        type_name: "MovingWindow",
         title: "MW",
         words: "moving window (MW)",
         good_for: "changes against a short past; drifts",

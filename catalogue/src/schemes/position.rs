@@ -25,6 +25,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "position",
+        type_name: "Position",
         title: "Position",
         words: "position",
         good_for: "a value, dense where it matters",

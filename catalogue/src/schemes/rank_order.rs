@@ -22,6 +22,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "rank-order",
+        type_name: "RankOrder",
         title: "Rank order",
         words: "rank order",
         good_for: "a value finer than the neurons, by who fires first",

@@ -22,6 +22,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "sf",
+        type_name: "StepForward",
         title: "SF",
         words: "step forward (SF)",
         good_for: "following a signal closely with few spikes, while it changes by a threshold a sample at most",

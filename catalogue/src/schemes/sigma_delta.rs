@@ -23,6 +23,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "sigma-delta",
+        type_name: "SigmaDelta",
         title: "Sigma-delta",
         words: "sigma-delta (regular rate)",
         good_for: "a mean from one neuron, the more exact the longer it is taken",

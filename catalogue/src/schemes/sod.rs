@@ -24,6 +24,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "sod",
+        type_name: "SendOnDelta",
         title: "SoD",
         words: "send-on-delta",
         good_for: "following a signal that jumps by several thresholds a sample",

@@ -22,6 +22,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "t-hsa",
+        type_name: "ThresholdHough",
         title: "T-HSA",
         words: "threshold Hough spiker (T-HSA)",
         good_for: "the nearest reconstruction of the rate codes at the paper's settings",

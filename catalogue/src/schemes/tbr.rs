@@ -25,6 +25,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "tbr",
+        type_name: "TemporalContrast",
         title: "TBR",
         words: "temporal contrast (TBR)",
         good_for: "changes, as an event camera sees them; drifts",

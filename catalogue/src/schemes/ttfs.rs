@@ -22,6 +22,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "ttfs",
+        type_name: "FirstSpike",
         title: "TTFS",
         words: "time to first spike",
         good_for: "a value by one spike's time, the larger the earlier",

@@ -22,6 +22,7 @@ pub struct Scheme;
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "weighted-phase",
+        type_name: "WeightedPhase",
         title: "Phase",
         words: "weighted phase",
         good_for: "a value in binary digits: the finest in few sub-timesteps",

@@ -1,0 +1,95 @@
+//! What the laptop program does, for the program itself and for bindings to other languages.
+
+mod bank;
+mod bench;
+mod brief;
+mod commands;
+mod events;
+mod fit;
+mod frames;
+mod input;
+mod live;
+mod look;
+mod network;
+mod options;
+mod output;
+mod params;
+mod plot;
+mod port;
+#[cfg(any(test, feature = "capture"))]
+mod rtt;
+mod scheme;
+mod spikes;
+mod steep;
+mod stop;
+mod timeline;
+mod trial;
+mod tune;
+mod values;
+
+use clap::{Parser, Subcommand};
+use commands::{capture, convert, decode, encode, info, listen, score, signal};
+use std::io;
+use std::process::ExitCode;
+
+/// Spikes from recordings and back, with the code that flies.
+#[derive(Parser)]
+#[command(name = "spikewire", version)]
+struct Program {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Encode(encode::Encode),
+    Decode(decode::Decode),
+    Listen(listen::Listen),
+    Convert(convert::Convert),
+    Capture(capture::Capture),
+    Score(score::Score),
+    Bench(commands::bench::Bench),
+    Plot(commands::plot::Plot),
+    Network(commands::network::Network),
+    Info(info::Info),
+    Signal(signal::Signal),
+    Tune(commands::tune::Tune),
+    Frames(commands::frames::Frames),
+    Advise(commands::advise::Advise),
+}
+
+/// As for wrong options.
+const FAILURE: u8 = 2;
+
+/// Runs the program with the arguments that it was started with.
+pub fn run() -> ExitCode {
+    let done = match Program::parse().command {
+        Command::Encode(options) => encode::run(&options),
+        Command::Decode(options) => decode::run(&options),
+        Command::Listen(options) => listen::run(&options),
+        Command::Convert(options) => convert::run(&options),
+        Command::Capture(options) => capture::run(&options),
+        Command::Score(options) => score::run(&options),
+        Command::Bench(options) => commands::bench::run(&options),
+        Command::Plot(options) => commands::plot::run(&options),
+        Command::Network(options) => commands::network::run(&options),
+        Command::Info(options) => info::run(&options),
+        Command::Signal(options) => signal::run(&options),
+        Command::Advise(options) => commands::advise::run(&options),
+        Command::Tune(options) => commands::tune::run(&options),
+        Command::Frames(options) => commands::frames::run(&options),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        // Whoever reads has read enough.
+        Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(FAILURE)
+        }
+    }
+}
+
+fn is_closed_pipe(error: &anyhow::Error) -> bool {
+    error.downcast_ref::<io::Error>().is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
+}
