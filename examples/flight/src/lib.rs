@@ -1,0 +1,27 @@
+//! What a flying example does about its sensor, without a HAL.
+//!
+//! An SPI master cannot notice that nobody answers: it reads zeros, and calls them samples. A sensor that lost its supply
+//! for a moment no longer says that it has any, and no events look like no rotation. So
+//!
+//! - [`Device`] gives the sensor the pauses that it needs between two accesses, and chip select its guard times;
+//! - [`bmi323`] starts the sensor, and reads back what it was told;
+//! - [`Sampler`] stands between sensor and queue: it counts samples, finds those that are missing, notices a sensor that is
+//!   silent or stuck, and tells the far end by a break;
+//! - [`clock`] checks a crystal and its dividers while the firmware is compiled.
+//!
+//! One text is both: futures over `embedded-hal-async`, or with the feature `blocking` plain functions over `embedded-hal`.
+
+#![cfg_attr(not(test), no_std)]
+
+#[cfg(feature = "bmi323")]
+pub mod bmi323;
+pub mod clock;
+mod counters;
+mod device;
+mod sampler;
+#[cfg(feature = "simulated")]
+pub mod simulated;
+
+pub use counters::Counters;
+pub use device::{Device, Timing};
+pub use sampler::{Plan, Sampler, Why};
