@@ -254,7 +254,8 @@ impl Parameter {
         Unit::None,
         "how the decoder takes the mean of spikes: an `average` that forgets, or a `window`",
     )
-    .with_default("average");
+    .with_default("average")
+    .searched(Search::Words(&["average", "window"]));
 
     /// Over how many samples the mean of spikes is taken.
     pub const POWER: Self = Self::new(
@@ -263,7 +264,8 @@ impl Parameter {
         Unit::None,
         "the mean is over about 2^POWER samples: 1 to 15, of a window 0 to 12",
     )
-    .with_default("4");
+    .with_default("4")
+    .searched(Search::Whole(1, 8));
 
     /// Most spikes a sample.
     pub const SPIKES: Self =

@@ -64,6 +64,18 @@ fn there_and_back(
     (events, values)
 }
 
+/// Names and colours tell schemes apart.
+#[test]
+fn schemes_differ() {
+    for (place, info) in catalogue::INFO.iter().enumerate() {
+        for other in &catalogue::INFO[..place] {
+            assert_ne!(info.name, other.name);
+            assert_ne!(info.title, other.title);
+            assert_ne!(info.colour, other.colour, "{} and {}", info.name, other.name);
+        }
+    }
+}
+
 #[test]
 fn parameters_say_what_they_take() {
     let names: Vec<&str> = ALL.iter().map(|scheme| scheme.info().name).collect();

@@ -6,7 +6,7 @@ faster by the clock.
 
     python3 cli/python/tune_bench.py target/release/spikewire data/hexarotor.csv gyro_x
 
-Needs SciPy. Prints a row a scheme and seed, and ends with status 1 if `tune` was worse anywhere.
+Names of schemes after the channel choose among them. Needs SciPy. Prints a row a scheme and seed, and ends with status 1 if `tune` was worse anywhere.
 """
 
 import json
@@ -73,7 +73,7 @@ def options(axes, point, minimum, spread):
 
 def main():
     """Runs all problems and seeds."""
-    program, log, channel = sys.argv[1:4]
+    program, log, channel, *schemes = sys.argv[1:]
     with open(log) as table:
         names = table.readline().strip().split(",")
         place = names.index(channel)
@@ -83,6 +83,8 @@ def main():
     print("|---|--:|--:|--:|--:|--:|--:|--:|")
     worse = 0
     for scheme, efficiency, axes in PROBLEMS:
+        if schemes and scheme not in schemes:
+            continue
         box, whole = bounds(axes)
         for seed in SEEDS:
             best, count = [math.inf], [0]

@@ -20,7 +20,7 @@ pub use codec::{Codec, Event};
 pub use exact::{Outcome, Parabola, below, outcomes};
 pub use filter::taps;
 pub use given::{Given, Ran};
-pub use rust::{Constant, Counted, Rust, lengthened, state};
+pub use rust::{Constant, Counted, Mean, Rust, lengthened, state};
 pub use sample_type::{Fixed32, SampleType};
 pub use settings::{Settings, is_list, number};
 

@@ -46,6 +46,37 @@ pub const fn lengthened([at_8, at_16]: [usize; 2], length: usize) -> usize {
     (at_8 + (at_16 - at_8) * length / 8).saturating_sub(at_16 - at_8)
 }
 
+/// How the mean of spikes is taken, in Rust.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mean {
+    /// Its type, with its path.
+    pub scheme: String,
+    /// Its value.
+    pub value: String,
+}
+
+impl Mean {
+    /// As settings say.
+    ///
+    /// # Errors
+    /// They lack it, or it makes no sense.
+    pub fn of(given: &Given) -> Result<Self> {
+        let power = given.count("power", 0..=15)?;
+        Ok(if given.takes_window()? {
+            let words = given.window()?.samples().div_ceil(32);
+            Self {
+                scheme: format!("spikewire::rate::Window<{words}>"),
+                value: format!("spikewire::rate::Window::new({power})"),
+            }
+        } else {
+            Self {
+                scheme: "spikewire::rate::Average".to_owned(),
+                value: format!("spikewire::rate::Average::new({power})"),
+            }
+        })
+    }
+}
+
 /// Writes settings in a sample type.
 #[derive(Clone, Copy, Debug)]
 pub struct Rust {
@@ -88,6 +119,14 @@ impl Rust {
     /// There is none of this name, or it is no finite number.
     pub fn signal(self, given: &Given, name: &str) -> Result<String> {
         Ok(self.number(given.number(name)?))
+    }
+
+    /// From `min` to `max`, as they run.
+    ///
+    /// # Errors
+    /// As for [`signal`](Self::signal).
+    pub fn range(self, given: &Given) -> Result<String> {
+        Ok(format!("{}..={}", self.signal(given, "min")?, self.signal(given, "max")?))
     }
 
     /// Numbers in the signal's unit, as an array.

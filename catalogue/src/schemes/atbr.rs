@@ -7,11 +7,11 @@ use spikewire::{Spike, Start};
 
 use crate::entry::spike_of;
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Given, Visit},
+    crate::run::{Build, Constant, Counted, Given, Rust, Visit, state},
     anyhow::Result,
     spikewire::Sample,
 };
@@ -44,7 +44,8 @@ impl Entry for Scheme {
                 "how often the threshold doubles at most, 0 to 15",
             )
             .with_example("4")
-            .with_paper(Paper::Text("4")),
+            .with_paper(Paper::Text("4"))
+            .searched(Search::Whole(0, 8)),
             Parameter::START,
         ],
     };
@@ -70,6 +71,20 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<AdaptiveContrast<S>>())
+    }
+
+    fn counted(_: &Given) -> Result<Counted> {
+        Ok(Counted::exact("atbr"))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let threshold = rust.signal(given, "threshold")?;
+        let value = format!("new({threshold}, {})", given.count("doublings", 0..=15)?);
+        rust.constant("temporal::AdaptiveContrast", "", &value)
+    }
+
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
         let doublings = given.count("doublings", 0..=15)? as u8;
         let scheme = AdaptiveContrast::try_new(given.signal("threshold")?, doublings)?;

@@ -6,11 +6,11 @@ use spikewire::Start;
 use spikewire::timing::{Burst, BurstSpikes};
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Search, Unit};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Given, Visit},
+    crate::run::{Build, Constant, Counted, Given, Rust, Visit, state},
     anyhow::Result,
     spikewire::{Sample, dynamic},
 };
@@ -33,26 +33,30 @@ impl Entry for Scheme {
         has_first_value: false,
         climbs_by: None,
         is_drawn: false,
-        colour: [0x9a, 0xa1, 0xab],
+        colour: [0x74, 0x7a, 0x3c],
         parameters: &[
             Parameter::new("slots", Kind::Count, Unit::None, "sub-timesteps a sample, 2 to 256")
-                .with_default("19"),
+                .with_default("19")
+                .searched(Search::Whole(2, 64)),
             Parameter::new("spikes", Kind::Count, Unit::None, "most spikes a sample, 1 to 255")
-                .with_default("5"),
+                .with_default("5")
+                .searched(Search::Whole(1, 16)),
             Parameter::new(
                 "shortest",
                 Kind::Count,
                 Unit::None,
                 "shortest interval in slots, from 1 on",
             )
-            .with_default("2"),
+            .with_default("2")
+            .searched(Search::Whole(1, 8)),
             Parameter::new(
                 "longest",
                 Kind::Count,
                 Unit::None,
                 "longest interval in slots, up to 255",
             )
-            .with_default("10"),
+            .with_default("10")
+            .searched(Search::Whole(1, 16)),
             Parameter::MIN,
             Parameter::MAX,
         ],
@@ -83,6 +87,23 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<Burst<S, 19>>())
+    }
+
+    fn counted(_: &Given) -> Result<Counted> {
+        Ok(Counted::exact("burst-5"))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let range = rust.range(given)?;
+        let slots = given.count("slots", 2..=dynamic::LEVELS)?.to_string();
+        let [spikes, shortest, longest] =
+            ["spikes", "shortest", "longest"].map(|name| given.count(name, 1..=255));
+        let value = format!("new({range}, {}, {}..={})", spikes?, shortest?, longest?);
+        rust.constant("timing::Burst", &slots, &value)
+    }
+
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
         let slots = given.count("slots", 2..=dynamic::LEVELS)?;
         let byte = |name| given.count(name, 1..=255).map(|count| count as u8);

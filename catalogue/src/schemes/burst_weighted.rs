@@ -7,11 +7,11 @@ use spikewire::{Spike, Start};
 
 use crate::entry::spike_of;
 use crate::plain::{self, Plain};
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Given, Visit},
+    crate::run::{Build, Constant, Counted, Given, Mean, Rust, Visit, state},
     anyhow::Result,
     spikewire::{Sample, rate::Window},
 };
@@ -42,14 +42,16 @@ impl Entry for Scheme {
                 "what the first spike of a burst weighs, above 0; after DOUBLINGS, max - min at least",
             )
             .with_paper(Paper::Signal(0.8))
-            .with_example("1"),
+            .with_example("1")
+            .searched(Search::Log(0.02, 1.0)),
             Parameter::new(
                 "doublings",
                 Kind::Count,
                 Unit::None,
                 "how often the weight doubles at most, 0 to 14",
             )
-            .with_default("3"),
+            .with_default("3")
+            .searched(Search::Whole(0, 6)),
             Parameter::MEAN,
             Parameter::POWER,
         ],
@@ -79,6 +81,21 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<WeightedBurst<S, Average>>())
+    }
+
+    fn counted(_: &Given) -> Result<Counted> {
+        Ok(Counted::exact("burst-weighted"))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let (range, weight) = (rust.range(given)?, rust.signal(given, "weight")?);
+        let (doublings, mean) = (given.count("doublings", 0..=14)?, Mean::of(given)?);
+        let value = format!("new({range}, {weight}, {doublings}, {})", mean.value);
+        rust.constant("rate::WeightedBurst", &mean.scheme, &value)
+    }
+
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
         let (range, weight) = (given.range()?, given.signal("weight")?);
         let doublings = given.count("doublings", 0..=14)? as u8;

@@ -30,7 +30,7 @@ impl Entry for Scheme {
         has_first_value: false,
         climbs_by: None,
         is_drawn: true,
-        colour: [0x9a, 0xa1, 0xab],
+        colour: [0xd9, 0x88, 0x80],
         parameters: &[Parameter::neurons("20"), Parameter::MIN, Parameter::MAX],
     };
 
@@ -60,9 +60,8 @@ impl Build for Scheme {
     }
 
     fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let (min, max) = (rust.signal(given, "min")?, rust.signal(given, "max")?);
-        let neurons = format!("{}", given.neurons()?);
-        rust.constant("population::Gaussian", &neurons, &format!("linear({min}..={max})"))
+        let neurons = given.neurons()?.to_string();
+        rust.constant("population::Gaussian", &neurons, &format!("linear({})", rust.range(given)?))
     }
 
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {

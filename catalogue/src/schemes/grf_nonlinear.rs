@@ -6,11 +6,14 @@ use spikewire::population::Gaussian;
 use spikewire::{Sample, Start};
 
 use crate::plain::{Plain, response, spaced_widths};
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Search, Unit};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Asked, Build, BuildPopulation, Given, Options, Settings, Shape, Visit, missing},
+    crate::run::{
+        Asked, Build, BuildPopulation, Constant, Counted, Given, Options, Rust, Settings, Shape,
+        Visit, missing, state,
+    },
     anyhow::{Result, bail},
     spikewire::dynamic,
 };
@@ -44,7 +47,8 @@ pub(super) const COMPANDING: Parameter = Parameter::new(
     Unit::None,
     "how much denser companded centres are in the middle, above 0",
 )
-.with_default("255");
+.with_default("255")
+.searched(Search::Log(0.1, 1000.0));
 
 impl Entry for Scheme {
     const INFO: Info = Info {
@@ -57,7 +61,7 @@ impl Entry for Scheme {
         has_first_value: false,
         climbs_by: None,
         is_drawn: false,
-        colour: [0x9a, 0xa1, 0xab],
+        colour: [0xe0, 0x7a, 0x5f],
         parameters: &[
             CENTRES,
             WIDTHS,
@@ -150,11 +154,34 @@ pub(super) fn widths(given: &Given, neurons: usize) -> Result<Option<Vec<f32>>> 
     if given.word("widths")? == "spacing" {
         return Ok(None);
     }
-    let widths = given.reals("widths")?;
-    Ok(Some(match widths[..] {
+    Ok(Some(repeated(given.reals("widths")?, neurons)))
+}
+
+/// One width for all fields, or one each.
+#[cfg(feature = "run")]
+fn repeated(widths: Vec<f32>, neurons: usize) -> Vec<f32> {
+    match widths[..] {
         [one] => vec![one; neurons],
         _ => widths,
-    }))
+    }
+}
+
+/// The constructor of companded centres, with what it takes besides.
+#[cfg(feature = "run")]
+pub(super) fn companded(given: &Given, rust: Rust, besides: &str) -> Result<String> {
+    let companding = given.number("companding")? as f32;
+    Ok(format!("companded({}, {companding:?}{besides})", rust.range(given)?))
+}
+
+/// The constructor of fields with widths of their own.
+#[cfg(feature = "run")]
+pub(super) fn with_widths(given: &Given, rust: Rust, constructor: &str) -> Result<String> {
+    if given.word("centres")? == "companded" {
+        bail!("companded centres with widths of their own have no constant; list the centres");
+    }
+    let widths = given.numbers("widths")?.into_iter().map(|width| width as f32);
+    let widths: Vec<f32> = repeated(widths.collect(), neurons(given)?);
+    Ok(format!("{constructor}({}, {widths:?})", rust.signals(given, "centres")?))
 }
 
 #[cfg(feature = "run")]
@@ -169,6 +196,23 @@ impl Build for Scheme {
 
     fn shape(given: &Given) -> Result<Shape> {
         Ok(Shape { neurons: neurons(given)?, slots: 1 })
+    }
+
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<Gaussian<S, 20>>())
+    }
+
+    fn counted(given: &Given) -> Result<Counted> {
+        Ok(Counted::at_most("grf-nonlinear-20", neurons(given)? as f64 / 20.0))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let value = match (given.word("centres")?, given.word("widths")?) {
+            ("companded", "spacing") => companded(given, *rust, "")?,
+            (_, "spacing") => format!("spaced({})", rust.signals(given, "centres")?),
+            _ => with_widths(given, *rust, "with_widths")?,
+        };
+        rust.constant("population::Gaussian", &neurons(given)?.to_string(), &value)
     }
 
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {

@@ -6,12 +6,15 @@ use spikewire::{Sample, Start};
 use super::grf_nonlinear::{CENTRES, COMPANDING, WIDTHS};
 use super::grf_slots::transcribed_decoder;
 use crate::plain::{Plain, response, spaced_widths};
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
 
 #[cfg(feature = "run")]
 use {
     super::grf_nonlinear,
-    crate::run::{Asked, Build, BuildPopulation, Given, Options, Settings, Shape, Visit},
+    crate::run::{
+        Asked, Build, BuildPopulation, Constant, Counted, Given, Options, Rust, Settings, Shape,
+        Visit, state,
+    },
     anyhow::Result,
     spikewire::dynamic,
 };
@@ -31,7 +34,7 @@ impl Entry for Scheme {
         has_first_value: false,
         climbs_by: None,
         is_drawn: false,
-        colour: [0x9a, 0xa1, 0xab],
+        colour: [0x9c, 0x66, 0x44],
         parameters: &[
             CENTRES,
             WIDTHS,
@@ -41,7 +44,8 @@ impl Entry for Scheme {
             Parameter::MAX,
             Parameter::new("slots", Kind::Count, Unit::None, "sub-timesteps a sample, 2 to 256")
                 .with_paper(Paper::Text("10"))
-                .with_example("10"),
+                .with_example("10")
+                .searched(Search::Whole(2, 32)),
             Parameter::BETA,
             Parameter::new(
                 "floor",
@@ -49,7 +53,8 @@ impl Entry for Scheme {
                 Unit::None,
                 "neurons below this level of --slots are silent",
             )
-            .with_default("1"),
+            .with_default("1")
+            .searched(Search::Whole(1, 2)),
         ],
     };
 
@@ -91,6 +96,30 @@ impl Build for Scheme {
     fn shape(given: &Given) -> Result<Shape> {
         let slots = given.count("slots", 2..=dynamic::LEVELS)?;
         Ok(Shape { neurons: grf_nonlinear::neurons(given)?, slots })
+    }
+
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<NonLinearSlots<S, 15, 10>>())
+    }
+
+    fn counted(given: &Given) -> Result<Counted> {
+        let neurons = grf_nonlinear::neurons(given)?;
+        Ok(Counted::at_most("grf-nonlinear-slots-15x10", neurons as f64 / 15.0))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let Shape { neurons, slots } = Self::shape(given)?;
+        let value = if given.word("widths")? == "spacing" {
+            let beta = format!(", {:?}", given.number("beta")? as f32);
+            match given.word("centres")? {
+                "companded" => grf_nonlinear::companded(given, *rust, &beta)?,
+                _ => format!("spaced({}{beta})", rust.signals(given, "centres")?),
+            }
+        } else {
+            grf_nonlinear::with_widths(given, *rust, "new")?
+        };
+        let value = format!("{value}.with_floor({})", given.count("floor", 1..=slots)?);
+        rust.constant("population::NonLinearSlots", &format!("{neurons}, {slots}"), &value)
     }
 
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {

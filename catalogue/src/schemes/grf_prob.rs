@@ -33,7 +33,7 @@ impl Entry for Scheme {
         has_first_value: false,
         climbs_by: None,
         is_drawn: false,
-        colour: [0x9a, 0xa1, 0xab],
+        colour: [0xb5, 0x83, 0x8d],
         parameters: &[
             Parameter::neurons("15"),
             Parameter::MIN,

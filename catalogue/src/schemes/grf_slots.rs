@@ -30,7 +30,7 @@ impl Entry for Scheme {
         has_first_value: false,
         climbs_by: None,
         is_drawn: false,
-        colour: [0x9a, 0xa1, 0xab],
+        colour: [0x8e, 0x3b, 0x46],
         parameters: &[
             Parameter::neurons("15"),
             Parameter::MIN,
@@ -83,12 +83,11 @@ impl Build for Scheme {
     }
 
     fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let (min, max) = (rust.signal(given, "min")?, rust.signal(given, "max")?);
         let (slots, beta) =
             (given.count("slots", 2..=dynamic::LEVELS)?, given.number("beta")? as f32);
         let shape = format!("{}, {slots}", given.neurons()?);
         let floor = given.count("floor", 1..=slots)?;
-        let value = format!("new({min}..={max}, {beta:?}).with_floor({floor})");
+        let value = format!("new({}, {beta:?}).with_floor({floor})", rust.range(given)?);
         rust.constant("population::Slots", &shape, &value)
     }
 

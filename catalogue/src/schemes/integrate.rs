@@ -7,11 +7,11 @@ use spikewire::rate::IntegrateAndFire;
 use spikewire::temporal::Steps;
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Given, Shape, Visit},
+    crate::run::{Build, Constant, Counted, Given, Rust, Shape, Visit, state},
     anyhow::Result,
     spikewire::Sample,
 };
@@ -29,16 +29,19 @@ pub(super) const PARAMETERS: &[Parameter] = &[
         "what the samples add up to at a spike, above 0",
     )
     .with_paper(Paper::Signal(1.0))
-    .with_example("0.5"),
+    .with_example("0.5")
+    .searched(Search::Log(0.02, 8.0)),
     Parameter::new("reference", Kind::Number, Unit::Signal, "the value without spikes")
-        .with_default("0"),
+        .with_default("0")
+        .searched(Search::Around(0.0, 1.0)),
     Parameter::new(
         "power",
         Kind::Count,
         Unit::None,
         "the decoder's mean is over about 2^POWER samples, and so long a leak lasts: 1 to 15",
     )
-    .with_default("4"),
+    .with_default("4")
+    .searched(Search::Whole(1, 8)),
     Parameter::SPIKES,
 ];
 
@@ -77,8 +80,31 @@ impl Entry for Scheme {
     }
 }
 
+/// The neuron, by its leak, as a constant.
+#[cfg(feature = "run")]
+pub(super) fn constant(given: &Given, rust: Rust, leak: &str) -> Result<Constant> {
+    let (threshold, reference) =
+        (rust.signal(given, "threshold")?, rust.signal(given, "reference")?);
+    let (power, most) =
+        (given.count("power", 1..=15)?, given.count("spikes", 1..=127)?.to_string());
+    let value = format!("new({threshold}, {power}){leak}.with_reference({reference})");
+    rust.constant("rate::IntegrateAndFire", &most, &value)
+}
+
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<IntegrateAndFire<S, 127>>())
+    }
+
+    fn counted(_: &Given) -> Result<Counted> {
+        Ok(Counted::exact("if"))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        constant(given, *rust, "")
+    }
+
     fn shape(given: &Given) -> Result<Shape> {
         Ok(Shape { neurons: 1, slots: given.count("spikes", 1..=127)? })
     }

@@ -6,11 +6,11 @@ use spikewire::Start;
 use spikewire::timing::{LatencyPhase, PhaseSpikes};
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Search, Unit};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Given, Shape, Visit},
+    crate::run::{Build, Constant, Counted, Given, Rust, Shape, Visit, state},
     anyhow::Result,
     spikewire::{Sample, dynamic},
 };
@@ -33,7 +33,7 @@ impl Entry for Scheme {
         has_first_value: false,
         climbs_by: None,
         is_drawn: false,
-        colour: [0x9a, 0xa1, 0xab],
+        colour: [0x5c, 0x67, 0x7d],
         parameters: &[
             Parameter::new(
                 "neurons",
@@ -41,14 +41,16 @@ impl Entry for Scheme {
                 Unit::None,
                 "how many carry each sample, from 1 on",
             )
-            .with_default("4"),
+            .with_default("4")
+            .searched(Search::Whole(1, 4)),
             Parameter::new(
                 "latencies",
                 Kind::Count,
                 Unit::None,
                 "how many a sample may have, 2 to 255; with the period at most 257",
             )
-            .with_default("32"),
+            .with_default("32")
+            .searched(Search::Whole(2, 128)),
             Parameter::new(
                 "period",
                 Kind::Count,
@@ -89,6 +91,21 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<LatencyPhase<S, 4, 32, 4>>())
+    }
+
+    fn counted(given: &Given) -> Result<Counted> {
+        Ok(Counted::at_most("latency-phase-4x32", given.count("neurons", 1..=255)? as f64 / 4.0))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let count = |name| given.count(name, 1..=255);
+        let shape = format!("{}, {}, {}", count("neurons")?, count("latencies")?, count("period")?);
+        let value = format!("new({}, {})", rust.range(given)?, count("spacing")?);
+        rust.constant("timing::LatencyPhase", &shape, &value)
+    }
+
     fn shape(given: &Given) -> Result<Shape> {
         let slots = given.count("latencies", 2..=255)? + given.count("period", 1..=255)? - 1;
         Ok(Shape { neurons: given.count("neurons", 1..=255)?, slots })

@@ -9,7 +9,8 @@ use crate::{Channel, Count, Entry, Flight, Info, Scaled};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Given, Shape, Visit},
+    super::integrate,
+    crate::run::{Build, Constant, Counted, Given, Rust, Shape, Visit, state},
     anyhow::Result,
     spikewire::Sample,
 };
@@ -55,6 +56,18 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<IntegrateAndFire<S, 127>>())
+    }
+
+    fn counted(_: &Given) -> Result<Counted> {
+        Ok(Counted::exact("lif"))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        integrate::constant(given, *rust, ".leaky()")
+    }
+
     fn shape(given: &Given) -> Result<Shape> {
         Ok(Shape { neurons: 1, slots: given.count("spikes", 1..=127)? })
     }

@@ -33,7 +33,7 @@ impl Entry for Scheme {
         has_first_value: false,
         climbs_by: None,
         is_drawn: false,
-        colour: [0x9a, 0xa1, 0xab],
+        colour: [0xc0, 0x50, 0x4d],
         parameters: &[
             Parameter::new(
                 "centres",
@@ -123,9 +123,8 @@ impl Build for Scheme {
             let value = format!("new({})", rust.signals(given, "centres")?);
             return rust.constant(name, &neurons, &value);
         }
-        let (min, max) = (rust.signal(given, "min")?, rust.signal(given, "max")?);
         let spaced = if centres == "gaussian" { "gaussian_spaced" } else { "linear" };
-        rust.constant(name, &neurons, &format!("{spaced}({min}..={max})"))
+        rust.constant(name, &neurons, &format!("{spaced}({})", rust.range(given)?))
     }
 
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {

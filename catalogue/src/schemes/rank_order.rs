@@ -6,11 +6,14 @@ use spikewire::Start;
 use spikewire::population::{RankOrder, SlotSpikes};
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Asked, Build, BuildPopulation, Given, Options, Settings, Shape, Visit, missing},
+    crate::run::{
+        Asked, Build, BuildPopulation, Constant, Counted, Given, Options, Rust, Settings, Shape,
+        Visit, missing, state,
+    },
     anyhow::{Result, bail},
     spikewire::{Sample, dynamic},
 };
@@ -30,7 +33,7 @@ impl Entry for Scheme {
         has_first_value: false,
         climbs_by: None,
         is_drawn: false,
-        colour: [0x9a, 0xa1, 0xab],
+        colour: [0x6d, 0x4c, 0x41],
         parameters: &[
             Parameter::new(
                 "centres",
@@ -49,7 +52,8 @@ impl Entry for Scheme {
                 "how many neurons fire for a sample, 1 to all, at most 256",
             )
             .with_example("3")
-            .with_paper(Paper::Text("3")),
+            .with_paper(Paper::Text("3"))
+            .searched(Search::Whole(1, 16)),
         ],
     };
 
@@ -105,6 +109,25 @@ impl Build for Scheme {
             _ => given.numbers("centres")?.len(),
         };
         Ok(Shape { neurons, slots: given.count("spikes", 1..=dynamic::LEVELS)? })
+    }
+
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<RankOrder<S, 15, 3>>())
+    }
+
+    fn counted(given: &Given) -> Result<Counted> {
+        let Shape { neurons, slots } = Self::shape(given)?;
+        let longer = (neurons as f64 / 15.0).max(slots as f64 / 3.0);
+        Ok(Counted::at_most("rank-order-15x3", longer))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let Shape { neurons, slots } = Self::shape(given)?;
+        let value = match given.word("centres")? {
+            "linear" => format!("linear({})", rust.range(given)?),
+            _ => format!("new({})", rust.signals(given, "centres")?),
+        };
+        rust.constant("population::RankOrder", &format!("{neurons}, {slots}"), &value)
     }
 
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {

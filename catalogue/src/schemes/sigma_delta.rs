@@ -11,7 +11,7 @@ use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Given, Visit},
+    crate::run::{Build, Constant, Counted, Given, Mean, Rust, Visit, state},
     anyhow::Result,
     spikewire::Sample,
 };
@@ -71,6 +71,19 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<SigmaDelta<S, Average>>())
+    }
+
+    fn counted(_: &Given) -> Result<Counted> {
+        Ok(Counted::exact("sigma-delta"))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let (range, mean) = (rust.range(given)?, Mean::of(given)?);
+        rust.constant("rate::SigmaDelta", &mean.scheme, &format!("new({range}, {})", mean.value))
+    }
+
     fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
         let range = given.range()?;
         if given.takes_window()? {

@@ -6,11 +6,13 @@ use spikewire::timing::{FirstSpike, Slot};
 use spikewire::{Scheme as _, Start};
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Search, Unit};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Asked, Build, Given, Settings, Shape, Visit, is_list},
+    crate::run::{
+        Asked, Build, Constant, Counted, Given, Rust, Settings, Shape, Visit, is_list, state,
+    },
     anyhow::{Result, bail},
     spikewire::{Sample, dynamic},
 };
@@ -30,7 +32,7 @@ impl Entry for Scheme {
         has_first_value: false,
         climbs_by: None,
         is_drawn: false,
-        colour: [0x9a, 0xa1, 0xab],
+        colour: [0x2b, 0x2d, 0x42],
         parameters: &[
             Parameter::new(
                 "edges",
@@ -38,16 +40,19 @@ impl Entry for Scheme {
                 Unit::Signal,
                 "`linear`, `log`, or a rising list such as `0.1,0.3,1`, each of which is a slot",
             )
-            .with_default("linear"),
+            .with_default("linear")
+            .searched(Search::Words(&["linear", "log"])),
             Parameter::new("slots", Kind::Count, Unit::None, "sub-timesteps a sample, 2 to 256")
-                .with_default("16"),
+                .with_default("16")
+                .searched(Search::Whole(2, 64)),
             Parameter::new(
                 "ratio",
                 Kind::Number,
                 Unit::None,
                 "of `log`, the range over the part of it that has no spike, above 1",
             )
-            .with_default("32"),
+            .with_default("32")
+            .searched(Search::Log(2.0, 1000.0)),
             Parameter::MIN,
             Parameter::MAX,
         ],
@@ -91,6 +96,26 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<FirstSpike<S, 16>>())
+    }
+
+    /// Slots are found by bisection.
+    fn counted(given: &Given) -> Result<Counted> {
+        let codec = if given.word("edges")? == "linear" { "ttfs-16" } else { "ttfs-log-16" };
+        Ok(Counted::at_most(codec, Self::shape(given)?.slots as f64 / 16.0))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let (range, slots) = (rust.range(given)?, Self::shape(given)?.slots.to_string());
+        let value = match given.word("edges")? {
+            "linear" => format!("linear({range})"),
+            "log" => format!("logarithmic({range}, {:?})", given.number("ratio")? as f32),
+            _ => format!("new({range}, {})", rust.signals(given, "edges")?),
+        };
+        rust.constant("timing::FirstSpike", &slots, &value)
+    }
+
     /// A list of edges says how many slots there are; a ratio goes with logarithmic edges.
     fn resolve(asked: &Asked) -> Result<Settings> {
         let edges = asked.text("edges").unwrap_or_default();

@@ -6,11 +6,11 @@ use spikewire::Start;
 use spikewire::timing::{PhaseBits, WeightedPhase};
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Search, Unit};
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Given, Shape, Visit},
+    crate::run::{Build, Constant, Counted, Given, Rust, Shape, Visit, state},
     anyhow::Result,
     spikewire::{Sample, dynamic},
 };
@@ -30,10 +30,11 @@ impl Entry for Scheme {
         has_first_value: false,
         climbs_by: None,
         is_drawn: false,
-        colour: [0x9a, 0xa1, 0xab],
+        colour: [0x8d, 0x99, 0xae],
         parameters: &[
             Parameter::new("slots", Kind::Count, Unit::None, "digits a sample, 2 to 16")
-                .with_default("8"),
+                .with_default("8")
+                .searched(Search::Whole(2, 12)),
             Parameter::MIN,
             Parameter::MAX,
         ],
@@ -65,6 +66,19 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+        Ok(state::<WeightedPhase<S, 8>>())
+    }
+
+    fn counted(given: &Given) -> Result<Counted> {
+        Ok(Counted::at_most("weighted-phase-8", given.count("slots", 2..=16)? as f64 / 8.0))
+    }
+
+    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+        let slots = given.count("slots", 2..=16)?.to_string();
+        rust.constant("timing::WeightedPhase", &slots, &format!("new({})", rust.range(given)?))
+    }
+
     fn shape(given: &Given) -> Result<Shape> {
         Ok(Shape { neurons: 1, slots: given.count("slots", 2..=16)? })
     }
