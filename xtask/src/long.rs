@@ -1,7 +1,7 @@
 //! The checks of `cargo verify --long`, which take too long for every change.
 
 use crate::{
-    bench, paths,
+    bench, fifo, paths,
     shell::{cargo, run},
     toolchain::cargo_for,
 };
@@ -54,5 +54,6 @@ pub fn capture() -> Result<()> {
 
 /// The counts of the cores that `cargo verify` leaves out are shown; there is no baseline of them.
 pub fn cores() -> Result<()> {
-    bench::bench(&[])
+    bench::bench(&[])?;
+    fifo::count("M7")
 }

@@ -8,6 +8,7 @@ mod core_library;
 mod cpu;
 mod demo;
 mod distribution;
+mod fifo;
 mod firmware;
 mod flown;
 mod host;

@@ -1,7 +1,7 @@
 //! `cargo verify`: every check, in order, each with its time. A failure does not hide the next one.
 
 use crate::{
-    checks, cpu, link, logging, long, needs, package, parts, rate_loop, recipe, storm, tuned,
+    checks, cpu, fifo, link, logging, long, needs, package, parts, rate_loop, recipe, storm, tuned,
     usage::usage,
 };
 use anyhow::{Result, bail};
@@ -39,6 +39,7 @@ const STEPS: &[Step] = &[
     step("no-panic", "every codec links without a panic handler", checks::no_panic),
     step("recipe", "the guide's firmware, outside this workspace, in QEMU", recipe::recipe),
     step("parts", "the examples for real parts", parts::parts),
+    step("fifo", "a sensor at 8 kHz: driver, and instructions", fifo::fifo),
     step("demo", "the demo's table and picture", checks::demo),
     step("firmware", "emulated boards against the host", checks::firmware),
     step("storm", "more events than main takes, on emulated boards and host", storm::storm),

@@ -109,7 +109,7 @@ where
         };
         self.failed = 0;
         let bits = sample.map(S::to_bits32);
-        self.alike = if bits == self.bits { self.alike.saturating_add(1) } else { 0 };
+        self.alike = if bits.iter().eq(&self.bits) { self.alike.saturating_add(1) } else { 0 };
         self.bits = bits;
         if self.alike >= self.plan.most_alike {
             return self.end(Why::Stuck, edge, queue);
