@@ -9,7 +9,7 @@ use super::{Cells, Sample, SampleKind, word};
 pub(crate) trait Spaced: Sized {
     /// A distance from a centre, as tables store it: the bits of an `f32`, which sort as the distances do, or a
     /// count of [`parts`] of a unit in the last place.
-    type Reach: Distance<Self> + Pod + core::fmt::Debug;
+    type Reach: Distance<Self> + Pod + core::fmt::Debug + Send + Sync;
     /// A distance of a value that [is near](Self::is_near) the range.
     type Short: Distance<Self>;
     /// A sum of centres, each times the level of its neuron.

@@ -11,9 +11,9 @@ use super::{Sample, SampleKind, word};
 /// What a sample type computes of a field.
 pub(crate) trait Field: Sized {
     /// `1 / sigma`: the bits of an `f32`; or 2³² times, in units of the last place.
-    type Scale: Pod + PartialEq + Debug;
+    type Scale: Pod + PartialEq + Debug + Send + Sync;
     /// `|x - mu| / sigma`: the bits of an `f32`, which have its order; or 2³² times.
-    type Widths: Pod + Ord + Debug;
+    type Widths: Pod + Ord + Debug + Send + Sync;
     /// Distances of centres from the lowest, or the centres, times levels, summed.
     type Centroid: Copy + Default;
 

@@ -8,7 +8,7 @@ use super::Ratio;
 /// Compares `e1 = sum |residual - tap|` with `e2 = sum |residual|` over pairs of a residual and its tap.
 pub(crate) trait Nearer: Sized {
     /// A sum of magnitudes.
-    type Sum: Copy + core::fmt::Debug;
+    type Sum: Copy + core::fmt::Debug + Send + Sync;
 
     const EMPTY: Self::Sum;
 

@@ -22,7 +22,7 @@ pub(crate) trait Rated: Sized {
 
 /// Residuals: `f32`, or exact 32-bit integers.
 pub(crate) trait Residual:
-    Copy + PartialOrd + Pod + core::fmt::Debug + Shortfall + Nearer
+    Copy + PartialOrd + Pod + Send + Sync + core::fmt::Debug + Shortfall + Nearer
 {
     const ZERO: Self;
 

@@ -35,6 +35,8 @@ pub trait Sample:
     + Default
     + Debug
     + Pod
+    + Send
+    + Sync
     + Arithmetic
     + Binary
     + Windowed
@@ -90,7 +92,7 @@ impl Sample for i16 {
 }
 
 #[cfg(feature = "fixed")]
-impl<Frac: LeEqU16 + 'static> Sample for FixedI16<Frac> {
+impl<Frac: LeEqU16 + 'static + Send + Sync> Sample for FixedI16<Frac> {
     const KIND: SampleKind = SampleKind::Fixed16 { fraction: Self::FRAC_NBITS as u8 };
 
     fn to_bits32(self) -> u32 {
@@ -103,7 +105,7 @@ impl<Frac: LeEqU16 + 'static> Sample for FixedI16<Frac> {
 }
 
 #[cfg(feature = "fixed")]
-impl<Frac: LeEqU32 + 'static> Sample for FixedI32<Frac> {
+impl<Frac: LeEqU32 + 'static + Send + Sync> Sample for FixedI32<Frac> {
     const KIND: SampleKind = SampleKind::Fixed32 { fraction: Self::FRAC_NBITS as u8 };
 
     fn to_bits32(self) -> u32 {

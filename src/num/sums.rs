@@ -11,7 +11,7 @@ pub(crate) trait Summed: Sized {
 }
 
 /// Sums over samples. Quantities are in units of the type's last place; in `f32` as they are.
-pub(crate) trait Sums<S>: Copy + Debug {
+pub(crate) trait Sums<S>: Copy + Debug + Send + Sync {
     const ZERO: Self;
 
     /// Takes a finite sample, which is number `seen`, from 1.

@@ -17,7 +17,7 @@ pub(crate) trait Totalled: Sized {
 
 /// A sum. In `f32` every operation rounds once. Integers are exact; those of 32 bits saturate, those of 64 bits have
 /// room for all that a code adds up, once it caps what it adds up without end.
-pub trait Total: Copy + PartialOrd + Debug {
+pub trait Total: Copy + PartialOrd + Debug + Send + Sync {
     const ZERO: Self;
 
     fn is_finite(&self) -> bool;

@@ -39,9 +39,9 @@ pub(crate) trait SummedIn<T>: Sized {
 }
 
 /// The sum over a window, or `N` times a sample minus that sum.
-pub(crate) trait Difference: Copy + Default + Debug {
+pub(crate) trait Difference: Copy + Default + Debug + Send + Sync {
     /// What a difference is compared with: `N` times the threshold.
-    type Margin: Pod + PartialEq + Debug;
+    type Margin: Pod + PartialEq + Debug + Send + Sync;
 
     const ZERO: Self;
 

@@ -50,22 +50,23 @@ pub trait Visit<S: Sample> {
     ///
     /// # Errors
     /// The visitor's own.
-    fn visit<P: Scheme<Sample = S> + 'static>(
-        self,
-        scheme: P,
-        start: P::EncoderState,
-    ) -> Result<Self::Output>;
+    fn visit<P>(self, scheme: P, start: P::EncoderState) -> Result<Self::Output>
+    where
+        P: Scheme<Sample = S, EncoderState: Send + Sync, DecoderState: Send + Sync, Code: Send + Sync>
+            + Send
+            + Sync
+            + 'static;
 
     /// Takes a scheme whose decoder adds up steps.
     ///
     /// # Errors
     /// The visitor's own.
-    fn visit_steps<P: Scheme<Sample = S, Code = Spike> + 'static>(
-        self,
-        scheme: P,
-        start: P::EncoderState,
-    ) -> Result<Self::Output>
+    fn visit_steps<P>(self, scheme: P, start: P::EncoderState) -> Result<Self::Output>
     where
+        P: Scheme<Sample = S, Code = Spike, EncoderState: Send + Sync, DecoderState: Send + Sync>
+            + Send
+            + Sync
+            + 'static,
         Self: Sized,
     {
         self.visit(scheme, start)

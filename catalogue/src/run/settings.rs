@@ -2,7 +2,8 @@
 
 use anyhow::{Result, bail};
 
-use crate::{Found, Info};
+use super::Options;
+use crate::{Found, Info, Kind};
 
 /// Parameters in the signal's unit, as a file of spikes lists them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -62,8 +63,21 @@ impl Settings {
     }
 
     /// Whether the decoder's first value is that of the first sample, whose spike then changes nothing.
-    pub(super) fn starts_at_first(&self) -> bool {
+    pub fn starts_at_first(&self) -> bool {
         self.get(FIRST).is_some()
+    }
+
+    /// These as options that bring them about again.
+    pub fn to_options(&self, info: &Info) -> Options {
+        let mut options = Options::default();
+        for parameter in info.parameters.iter().filter(|parameter| parameter.is_recorded) {
+            if let Some(text) = self.get(parameter.key()) {
+                // A comma at the end, or one tap alone would be the name of a file.
+                let end = if parameter.kind == Kind::Filter { "," } else { "" };
+                options.set(parameter.name, &format!("{text}{end}"));
+            }
+        }
+        options
     }
 
     /// The entries of a scheme among the keys of a file, which are taken from these.

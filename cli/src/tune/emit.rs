@@ -3,7 +3,6 @@
 use crate::params;
 use crate::scheme::Scheme;
 use anyhow::Result;
-use catalogue::Kind;
 use catalogue::run::{Constant, Options, SampleType, Settings};
 
 /// A constant in Rust, below these comments, that compiles where the crate is a dependency.
@@ -36,15 +35,7 @@ pub(crate) fn toml(
 
 /// Settings as options that bring them about again.
 pub(crate) fn options(scheme: Scheme, settings: &Settings) -> Options {
-    let mut options = Options::default();
-    for parameter in scheme.info().parameters.iter().filter(|parameter| parameter.is_recorded) {
-        if let Some(text) = settings.get(parameter.key()) {
-            // A comma at the end, or one tap alone would be the name of a file.
-            let end = if parameter.kind == Kind::Filter { "," } else { "" };
-            options.set(parameter.name, &format!("{text}{end}"));
-        }
-    }
-    options
+    settings.to_options(scheme.info())
 }
 
 /// The name of a constant: `gyro_rad[0]` gives `GYRO_RAD_0`.

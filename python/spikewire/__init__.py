@@ -1,0 +1,22 @@
+"""Sensor samples to spikes and back, with the code that flies.
+
+Every scheme of the catalogue is a class here, made from it when the package is imported. Its keywords are the scheme's
+parameters; :data:`schemes` has all classes by their short names.
+
+>>> import numpy as np, spikewire as sw
+>>> x = np.sin(np.linspace(0, 6, 200), dtype=np.float32)
+>>> spikes = sw.StepForward(threshold=0.1).encode(x)
+>>> spikes
+Spikes of StepForward: (200,), 33 spikes of 200 samples
+>>> bool(np.abs(spikes.decode() - x).max() < 0.11)
+True
+"""
+
+from ._bank import EVENTS, Bank
+from ._scheme import Scheme
+from ._schemes import *  # noqa: F403: the classes, by the catalogue
+from ._schemes import NAMES, schemes
+from ._spikes import Spikes
+from ._stream import Decoder, Encoder
+
+__all__ = ["EVENTS", "Bank", "Decoder", "Encoder", "Scheme", "Spikes", "schemes", *NAMES]

@@ -1,0 +1,70 @@
+"""The classes of the schemes, made from the catalogue."""
+
+import inspect
+import textwrap
+
+from . import _native
+from ._scheme import Scheme
+
+KINDS = {
+    "number": "a number",
+    "count": "a whole number",
+    "flag": "True or False",
+    "text": "a text, a number or numbers",
+    "filter": "a text, or the taps",
+}
+
+
+def _told(own):
+    kind = " or ".join(f'"{word}"' for word in own["words"]) or KINDS[own["kind"]]
+    unit = f", in {own['unit']}" if own["unit"] else ""
+    text = f"{own['help']} ({kind}{unit}"
+    if own["example"]:
+        text += f", such as {own['example']}"
+    if own["default"] is not None:
+        text += f"; {own['default']} unless given"
+    elif own["found"]:
+        text += f"; {own['found']} unless given"
+    lines = textwrap.wrap(text + ")", 110)
+    return f"{own['name']}:\n" + textwrap.indent("\n".join(lines), "    ")
+
+
+def _class(info):
+    parameters = "\n".join(_told(own) for own in info["parameters"])
+    document = f"""{info["words"][0].upper()}{info["words"][1:]}, `{info["name"]}`: good for {info["good_for"]}.
+
+{parameters}
+sample:
+    the type that it computes in: "f32", "i16", "i32", or fixed point such as "q8.8" and "q16.16"; samples are
+    rounded to it
+paper:
+    the settings of the paper, scaled to the signal's range, for what is not given
+"""
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    names = [inspect.Parameter(own["name"], keyword, default=None) for own in info["parameters"]]
+    common = [
+        inspect.Parameter("sample", keyword, default="f32"),
+        inspect.Parameter("paper", keyword, default=False),
+    ]
+    own_names = [own["name"] for own in info["parameters"]]
+
+    def __init__(self, *args, **keywords):
+        if args:
+            raise TypeError(f"{info['type_name']} takes keywords only, as {own_names[0]}={args[0]!r}")
+        unknown = [name for name in keywords if name not in own_names and name not in ("sample", "paper")]
+        if unknown:
+            raise TypeError(f"{info['type_name']} takes no {unknown[0]}; it takes {', '.join(own_names)}")
+        Scheme.__init__(self, **keywords)
+
+    __init__.__signature__ = inspect.Signature(
+        [inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY), *names, *common]
+    )
+    body = {"__doc__": document, "__init__": __init__, "_info": info, "__module__": "spikewire"}
+    return type(info["type_name"], (Scheme,), body)
+
+
+#: The classes by their short names, in the order of the catalogue.
+schemes = {info["name"]: _class(info) for info in _native.schemes()}
+NAMES = [own.__name__ for own in schemes.values()]
+globals().update({own.__name__: own for own in schemes.values()})
+__all__ = NAMES

@@ -1,0 +1,115 @@
+//! Samples of NumPy arrays as they lie in memory, and decoded values.
+
+use std::ops::Range;
+
+use numpy::ndarray::{ArrayView1, ArrayViewD, Axis, Ix1, Slice};
+use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+/// Samples; time runs along the last axis, and what is before it are channels.
+#[derive(FromPyObject)]
+pub(crate) enum Samples<'py> {
+    /// `float32`.
+    F32(PyReadonlyArrayDyn<'py, f32>),
+    /// `float64`.
+    F64(PyReadonlyArrayDyn<'py, f64>),
+    /// `int16`.
+    I16(PyReadonlyArrayDyn<'py, i16>),
+}
+
+/// The samples of one channel, perhaps with others between them.
+#[derive(Clone, Copy)]
+pub(crate) enum Lane<'a> {
+    /// `float32`.
+    F32(ArrayView1<'a, f32>),
+    /// `float64`.
+    F64(ArrayView1<'a, f64>),
+    /// `int16`.
+    I16(ArrayView1<'a, i16>),
+}
+
+impl Lane<'_> {
+    /// How many samples there are.
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::F32(lane) => lane.len(),
+            Self::F64(lane) => lane.len(),
+            Self::I16(lane) => lane.len(),
+        }
+    }
+
+    /// Some of the samples.
+    pub(crate) fn part(&self, range: Range<usize>) -> Lane<'_> {
+        let part = Slice::from(range);
+        match self {
+            Self::F32(lane) => Lane::F32(lane.slice_axis(Axis(0), part)),
+            Self::F64(lane) => Lane::F64(lane.slice_axis(Axis(0), part)),
+            Self::I16(lane) => Lane::I16(lane.slice_axis(Axis(0), part)),
+        }
+    }
+
+    /// The samples as doubles, exactly.
+    pub(crate) fn to_vec(self) -> Vec<f64> {
+        match self {
+            Self::F32(lane) => lane.iter().copied().map(f64::from).collect(),
+            Self::F64(lane) => lane.to_vec(),
+            Self::I16(lane) => lane.iter().copied().map(f64::from).collect(),
+        }
+    }
+
+    /// The first sample that is not finite, and its place.
+    pub(crate) fn not_finite(&self) -> Option<(usize, f64)> {
+        match self {
+            Self::F32(lane) => {
+                let place = lane.iter().position(|value| !value.is_finite())?;
+                Some((place, lane[place].into()))
+            }
+            Self::F64(lane) => {
+                let place = lane.iter().position(|value| !value.is_finite())?;
+                Some((place, lane[place]))
+            }
+            Self::I16(_) => None,
+        }
+    }
+}
+
+impl Samples<'_> {
+    /// The lengths of its axes.
+    pub(crate) fn shape(&self) -> &[usize] {
+        match self {
+            Self::F32(array) => array.shape(),
+            Self::F64(array) => array.shape(),
+            Self::I16(array) => array.shape(),
+        }
+    }
+
+    /// The channels, in the order of a C array. There is an axis at least.
+    pub(crate) fn lanes(&self) -> Vec<Lane<'_>> {
+        match self {
+            Self::F32(array) => split(array.as_array()).into_iter().map(Lane::F32).collect(),
+            Self::F64(array) => split(array.as_array()).into_iter().map(Lane::F64).collect(),
+            Self::I16(array) => split(array.as_array()).into_iter().map(Lane::I16).collect(),
+        }
+    }
+}
+
+/// The rows along the last axis.
+fn split<T>(view: ArrayViewD<'_, T>) -> Vec<ArrayView1<'_, T>> {
+    let rows = view.len_of(Axis(0));
+    match view.clone().into_dimensionality::<Ix1>() {
+        Ok(row) => vec![row],
+        Err(_) => {
+            (0..rows).flat_map(|row| split(view.clone().index_axis_move(Axis(0), row))).collect()
+        }
+    }
+}
+
+/// Room for the decoded values of one channel.
+pub(crate) enum Values<'a> {
+    /// `float32`, of samples in `f32`.
+    F32(&'a mut [f32]),
+    /// `float64`, of samples in fixed point.
+    F64(&'a mut [f64]),
+    /// `int16`, of samples in `i16`.
+    I16(&'a mut [i16]),
+}

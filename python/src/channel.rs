@@ -1,0 +1,244 @@
+//! One channel of any scheme: samples to cells and back.
+//!
+//! The code of a sample is a row of cells, one for each neuron of each sub-timestep. A cell holds how many spikes went
+//! up less how many went down: -1, 0 or 1, or more where a code sends several spikes a sample.
+
+use anyhow::Result;
+use catalogue::for_sample_type;
+use catalogue::run::{Given, RunTime, SampleType, Settings, Visit};
+use spikewire::{Code, Firing, Output, Polarity, Sample, SampleKind, Scheme};
+
+use crate::array::{Lane, Values};
+
+/// What was wrong with which sample, counted from the first of the call.
+pub(crate) struct Bad {
+    /// The sample.
+    pub sample: usize,
+    /// What is wrong.
+    pub what: String,
+}
+
+/// An encoder or a decoder, or both, in the signal's unit.
+pub(crate) trait Channel: Send + Sync {
+    /// How many samples after its own the code of a sample comes out.
+    fn latency(&self) -> usize;
+
+    /// Encodes samples into rows of cells, which are all 0, and returns how many rows that made.
+    ///
+    /// # Errors
+    /// A sample is not finite.
+    fn encode(&mut self, samples: Lane, cells: &mut [i8]) -> Result<usize, Bad>;
+
+    /// The rows of the samples that still wait for later ones.
+    fn finish(&mut self, cells: &mut [i8]) -> usize;
+
+    /// Decodes as many rows of cells as there is room for values.
+    ///
+    /// # Errors
+    /// No encoder makes such a row.
+    fn decode(&mut self, cells: &[i8], values: &mut Values) -> Result<(), Bad>;
+}
+
+/// A channel as it starts on these settings, which are complete.
+///
+/// # Errors
+/// A parameter makes no sense.
+pub(crate) fn start(
+    scheme: &'static dyn RunTime,
+    sample: SampleType,
+    settings: &Settings,
+) -> Result<Box<dyn Channel>> {
+    let shape = scheme.shape(settings)?;
+    let one = sample.one();
+    let given = Given::new(settings, one);
+    let start = Start { settings, one, neurons: shape.neurons, slots: shape.slots };
+    for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.info().name, &given, start))
+}
+
+struct Start<'a> {
+    settings: &'a Settings,
+    one: f64,
+    neurons: usize,
+    slots: usize,
+}
+
+impl<S: Sample> Visit<S> for Start<'_> {
+    type Output = Box<dyn Channel>;
+
+    fn visit<P>(self, scheme: P, mut encoder: P::EncoderState) -> Result<Box<dyn Channel>>
+    where
+        P: Scheme<
+                Sample = S,
+                EncoderState: Send + Sync,
+                DecoderState: Send + Sync,
+                Code: Send + Sync,
+            > + Send
+            + Sync
+            + 'static,
+    {
+        let Self { settings, one, neurons, slots } = self;
+        let sample = |value: f64| S::from_f64(value * one);
+        let past: Vec<S> = settings.first.iter().copied().map(sample).collect();
+        scheme.prime(&mut encoder, &past);
+        let mut decoder = scheme.decoder_state();
+        if let Some(first) = settings.first_value() {
+            scheme.resync(&mut decoder, sample(first));
+        }
+        Ok(Box::new(Running {
+            encoder,
+            decoder,
+            silent: P::Code::assemble(std::iter::empty()),
+            is_first_held: settings.starts_at_first(),
+            one,
+            neurons,
+            slots,
+            seen: vec![0; neurons * slots],
+            scheme,
+        }))
+    }
+}
+
+/// A scheme with the states of one channel.
+struct Running<P: Scheme> {
+    scheme: P,
+    encoder: P::EncoderState,
+    decoder: P::DecoderState,
+    /// The code without spikes.
+    silent: P::Code,
+    /// Whether the decoder holds the value of the sample that comes next, whose spike then changes nothing.
+    is_first_held: bool,
+    /// What a 1 of the signal is in the unit of the sample type.
+    one: f64,
+    neurons: usize,
+    slots: usize,
+    /// A row of cells, to compare.
+    seen: Vec<i8>,
+}
+
+impl<P: Scheme> Running<P> {
+    fn put(&self, code: P::Code, row: &mut [i8]) {
+        for Firing { neuron, slot, polarity } in code.firings() {
+            let cell = usize::from(slot) * self.neurons + usize::from(neuron);
+            if let Some(cell) = row.get_mut(cell) {
+                *cell = cell.saturating_add(if polarity == Polarity::Up { 1 } else { -1 });
+            }
+        }
+    }
+
+    fn encode_all(&mut self, samples: impl Iterator<Item = P::Sample>, cells: &mut [i8]) -> usize {
+        let mut rows = cells.chunks_exact_mut(self.neurons * self.slots);
+        let mut made = 0;
+        for sample in samples {
+            if let Some(code) = self.scheme.encode(&mut self.encoder, sample).code()
+                && let Some(row) = rows.next()
+            {
+                self.put(code, row);
+                made += 1;
+            }
+        }
+        made
+    }
+
+    /// The code of a row, unless there is none.
+    fn code(&mut self, row: &[i8]) -> Option<P::Code> {
+        if row.iter().all(|cell| *cell == 0) {
+            return Some(self.silent);
+        }
+        let neurons = self.neurons;
+        let firings = row.iter().enumerate().flat_map(|(place, cell)| {
+            let polarity = if *cell > 0 { Polarity::Up } else { Polarity::Down };
+            let (neuron, slot) = ((place % neurons) as u16, (place / neurons) as u16);
+            let firing = Firing { neuron, slot, polarity };
+            std::iter::repeat_n(firing, cell.unsigned_abs().into())
+        });
+        let code = P::Code::assemble(firings);
+        let mut seen = std::mem::take(&mut self.seen);
+        seen.fill(0);
+        self.put(code, &mut seen);
+        let is_same = seen == row;
+        self.seen = seen;
+        is_same.then_some(code)
+    }
+
+    fn decode_next(&mut self, row: &[i8]) -> Option<P::Sample> {
+        let code = self.code(row)?;
+        if std::mem::take(&mut self.is_first_held)
+            && let Some(held) = self.scheme.held(&self.decoder)
+        {
+            return Some(held);
+        }
+        Some(self.scheme.decode(&mut self.decoder, code))
+    }
+
+    fn decode_each<T>(
+        &mut self,
+        cells: &[i8],
+        values: &mut [T],
+        of: impl Fn(P::Sample) -> T,
+    ) -> Result<(), Bad> {
+        let rows = cells.chunks_exact(self.neurons * self.slots);
+        for (place, (row, value)) in rows.zip(values).enumerate() {
+            let decoded = self.decode_next(row).ok_or_else(|| Bad {
+                sample: place,
+                what: format!("{row:?} is no code of a sample"),
+            })?;
+            *value = of(decoded);
+        }
+        Ok(())
+    }
+}
+
+impl<P> Channel for Running<P>
+where
+    P: Scheme<EncoderState: Send + Sync, DecoderState: Send + Sync, Code: Send + Sync>
+        + Send
+        + Sync,
+{
+    fn latency(&self) -> usize {
+        self.scheme.latency()
+    }
+
+    fn encode(&mut self, samples: Lane, cells: &mut [i8]) -> Result<usize, Bad> {
+        if let Some((sample, value)) = samples.not_finite() {
+            return Err(Bad { sample, what: format!("{value} is not finite") });
+        }
+        let one = self.one;
+        let sample = |value: f64| P::Sample::from_f64(value * one);
+        Ok(match samples {
+            Lane::F32(lane) if P::Sample::KIND == SampleKind::F32 => {
+                let as_is = lane.iter().map(|value| P::Sample::from_bits32(value.to_bits()));
+                self.encode_all(as_is, cells)
+            }
+            Lane::F32(lane) => {
+                self.encode_all(lane.iter().map(|value| sample((*value).into())), cells)
+            }
+            Lane::F64(lane) => self.encode_all(lane.iter().map(|value| sample(*value)), cells),
+            Lane::I16(lane) => {
+                self.encode_all(lane.iter().map(|value| sample((*value).into())), cells)
+            }
+        })
+    }
+
+    fn finish(&mut self, cells: &mut [i8]) -> usize {
+        let mut made = 0;
+        for row in cells.chunks_exact_mut(self.neurons * self.slots) {
+            let Some(code) = self.scheme.finish_next(&mut self.encoder) else { break };
+            self.put(code, row);
+            made += 1;
+        }
+        made
+    }
+
+    fn decode(&mut self, cells: &[i8], values: &mut Values) -> Result<(), Bad> {
+        let one = self.one;
+        match values {
+            Values::F32(values) => {
+                self.decode_each(cells, values, |value| (value.to_f64() / one) as f32)
+            }
+            Values::F64(values) => self.decode_each(cells, values, |value| value.to_f64() / one),
+            Values::I16(values) => {
+                self.decode_each(cells, values, |value| (value.to_f64() / one) as i16)
+            }
+        }
+    }
+}

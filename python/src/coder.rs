@@ -1,0 +1,329 @@
+//! A scheme with what was given of its parameters, and with all of them.
+
+use anyhow::{Result, anyhow, bail};
+use catalogue::run::{Calibrated, Known, Options, RunTime, SampleType, Settings, missing};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+use crate::array::{Lane, Samples, Values};
+use crate::channel::{self, Bad, Channel};
+use crate::error::value;
+use crate::stream::{Decoder, Encoder};
+use crate::work::{self, Meter};
+
+/// What was given of a scheme's parameters; a signal may tell the rest.
+#[derive(Clone)]
+#[pyclass(frozen, from_py_object, module = "spikewire._native")]
+pub(crate) struct Coder {
+    pub(crate) scheme: &'static dyn RunTime,
+    pub(crate) sample: SampleType,
+    pub(crate) options: Options,
+}
+
+impl Coder {
+    /// Complete settings for one channel, as they run.
+    ///
+    /// # Errors
+    /// A parameter is missing or makes no sense.
+    pub(crate) fn settle(
+        &self,
+        first: &[f64],
+        calibrated: Option<&Calibrated>,
+    ) -> Result<Settings> {
+        if calibrated.is_none()
+            && let Some(what) = self.scheme.needs_signal(&self.options)
+        {
+            bail!("{} needs {what} before it has seen a signal; fit(x) finds it", self.name());
+        }
+        let known = Known { calibrated, first, can_calibrate: calibrated.is_some() };
+        let settings = self.scheme.resolve(&self.options, &known)?;
+        Ok(self.scheme.rounded(self.sample, &settings)?.0)
+    }
+
+    /// How many samples an encoder takes to start from.
+    pub(crate) fn looks_back(&self) -> usize {
+        self.scheme.looks_back(&self.options)
+    }
+
+    /// Refuses what makes no sense whatever the signal is.
+    fn check(&self) -> Result<()> {
+        let past = vec![0.0; self.looks_back()];
+        let Some(what) = self.scheme.needs_signal(&self.options) else {
+            let settings = self.settle(&past, None)?;
+            return channel::start(self.scheme, self.sample, &settings).map(drop);
+        };
+        let is_end_given = ["min", "max"].iter().any(|name| self.options.get(name).is_some());
+        if missing(self.scheme.info(), &self.options) == Some(what) && !is_end_given {
+            // Any range will do, in a type that rounds none of it.
+            let mut calibrated = Calibrated::new(SampleType::F32);
+            calibrated.observe(&[0.0, 1.0]);
+            let plain = Self { sample: SampleType::F32, ..self.clone() };
+            let settings = plain.settle(&past, Some(&calibrated))?;
+            channel::start(self.scheme, SampleType::F32, &settings)?;
+        }
+        Ok(())
+    }
+
+    fn name(&self) -> &'static str {
+        self.scheme.info().name
+    }
+
+    fn fitted(&self, lanes: &[Lane], is_shared: bool) -> Result<Fitted> {
+        for (channel, lane) in lanes.iter().enumerate() {
+            if lane.len() == 0 {
+                bail!("channel {channel} has no samples");
+            }
+            if let Some((sample, value)) = lane.not_finite() {
+                bail!("channel {channel}, sample {sample}: {value} is not finite");
+            }
+        }
+        let groups: Vec<&[Lane]> =
+            if is_shared { vec![lanes] } else { lanes.iter().map(std::slice::from_ref).collect() };
+        let settle = |group: &&[Lane]| {
+            let calibrated = self.scheme.needs_signal(&self.options).map(|_| {
+                let mut calibrated = Calibrated::new(self.sample);
+                group.iter().for_each(|lane| calibrated.observe(&lane.to_vec()));
+                calibrated
+            });
+            let lane = group.first().ok_or_else(|| anyhow!("there is no channel"))?;
+            let first = lane.part(0..lane.len().min(self.looks_back())).to_vec();
+            self.settle(&first, calibrated.as_ref())
+        };
+        let channels = groups.par_iter().map(settle).collect::<Result<Vec<_>>>()?;
+        Ok(Fitted { scheme: self.scheme, sample: self.sample, channels })
+    }
+}
+
+#[pymethods]
+impl Coder {
+    #[new]
+    fn new(
+        scheme: &str,
+        sample: &str,
+        options: BTreeMap<String, String>,
+        paper: bool,
+    ) -> PyResult<Self> {
+        let named = catalogue::ALL.iter().find(|own| own.info().name == scheme);
+        let Some(scheme) = named else {
+            return Err(PyValueError::new_err(format!("there is no scheme {scheme:?}")));
+        };
+        let mut given = Options::default();
+        given.paper = paper;
+        for (name, text) in &options {
+            given.set(name, text);
+        }
+        given.check(scheme.info()).map_err(|error| value(&error))?;
+        let sample = sample.parse().map_err(|error| value(&error))?;
+        let coder = Self { scheme: *scheme, sample, options: given };
+        coder.check().map_err(|error| value(&error))?;
+        Ok(coder)
+    }
+
+    /// How many neurons and sub-timesteps a channel has.
+    fn shape(&self) -> PyResult<(usize, usize)> {
+        // They do not depend on what a signal tells.
+        let ramp = [0.0, 1.0, 0.5];
+        let mut calibrated = Calibrated::new(self.sample);
+        calibrated.observe(&ramp);
+        let settings = self.settle(&ramp, Some(&calibrated)).map_err(|error| value(&error))?;
+        let shape = self.scheme.shape(&settings).map_err(|error| value(&error))?;
+        Ok((shape.neurons, shape.slots))
+    }
+
+    /// What a signal must tell, if anything.
+    fn needs_signal(&self) -> Option<String> {
+        self.scheme.needs_signal(&self.options).map(|text| crate::error::keywords(&text))
+    }
+
+    /// With what these samples tell: each channel by itself, or one scheme for all.
+    fn fit(&self, py: Python, samples: Samples, is_shared: bool) -> PyResult<Fitted> {
+        let lanes = samples.lanes();
+        py.detach(|| self.fitted(&lanes, is_shared)).map_err(|error| value(&error))
+    }
+
+    /// An encoder of this many channels that keeps its state.
+    fn encoder(&self, channels: usize) -> PyResult<Encoder> {
+        if let Some(what) = self.scheme.needs_signal(&self.options) {
+            let error = anyhow!("{} needs {what} to begin a stream; fit(x) finds it", self.name());
+            return Err(value(&error));
+        }
+        Ok(Encoder::new(self.clone(), channels, self.shape()?))
+    }
+
+    /// A decoder of as many channels as there are first values.
+    fn decoder(&self, first: Vec<f64>) -> PyResult<Decoder> {
+        let channels = first.iter().map(|first| {
+            let past = vec![*first; self.looks_back()];
+            channel::start(self.scheme, self.sample, &self.settle(&past, None)?)
+        });
+        let channels = channels.collect::<Result<Vec<_>>>();
+        Ok(Decoder::new(channels.map_err(|error| value(&error))?, self.sample))
+    }
+}
+
+/// A scheme with all parameters of each channel.
+#[derive(Clone)]
+#[pyclass(frozen, from_py_object, module = "spikewire._native")]
+pub(crate) struct Fitted {
+    scheme: &'static dyn RunTime,
+    sample: SampleType,
+    /// Those of one stand for all.
+    channels: Vec<Settings>,
+}
+
+impl Fitted {
+    fn settings(&self, channel: usize) -> Result<&Settings> {
+        let own = self.channels.get(channel).or(self.channels.first());
+        own.ok_or_else(|| anyhow!("there is no channel"))
+    }
+
+    fn start(&self, channel: usize) -> Result<Box<dyn Channel>> {
+        channel::start(self.scheme, self.sample, self.settings(channel)?)
+    }
+
+    /// How many cells a row has.
+    fn width(&self) -> Result<usize> {
+        let shape = self.scheme.shape(self.settings(0)?)?;
+        Ok(shape.neurons * shape.slots)
+    }
+}
+
+/// So many samples are coded before anybody asks whether to stop.
+const PIECE: usize = 1 << 16;
+
+#[pymethods]
+impl Fitted {
+    /// How many neurons and sub-timesteps a channel has.
+    fn shape(&self) -> PyResult<(usize, usize)> {
+        let shape = self.settings(0).and_then(|settings| self.scheme.shape(settings));
+        shape.map(|shape| (shape.neurons, shape.slots)).map_err(|error| value(&error))
+    }
+
+    /// How many samples after its own the code of a sample comes out.
+    fn latency(&self) -> PyResult<usize> {
+        self.start(0).map(|channel| channel.latency()).map_err(|error| value(&error))
+    }
+
+    /// The parameters of each channel, as a file lists them.
+    fn parameters(&self) -> Vec<Vec<(&'static str, String)>> {
+        self.channels.iter().map(|settings| settings.entries().to_vec()).collect()
+    }
+
+    /// The parameters of a channel as options that bring them about again.
+    fn options(&self, channel: usize) -> PyResult<Vec<(String, String)>> {
+        let settings = self.settings(channel).map_err(|error| value(&error))?;
+        let options = settings.to_options(self.scheme.info());
+        Ok(options.iter().map(|(name, text)| (name.to_owned(), text.to_owned())).collect())
+    }
+
+    /// The cells of all samples, and of those that wait for later ones at the end.
+    fn encode<'py>(
+        &self,
+        py: Python<'py>,
+        samples: Samples,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<i8>>> {
+        let lanes = samples.lanes();
+        let length = samples.shape().last().copied().unwrap_or_default();
+        let width = self.width().map_err(|error| value(&error))?;
+        let total = length * lanes.len();
+        let output = PyArray1::zeros(py, total * width, false);
+        let mut access = output.readwrite();
+        let cells = access.as_slice_mut()?;
+        let done = work::run(py, total, progress.as_ref(), |meter| {
+            let rooms = cells.par_chunks_mut((length * width).max(1));
+            lanes.par_iter().zip(rooms).enumerate().try_for_each(|(place, (lane, room))| {
+                self.encode_lane(place, *lane, room, width, meter)
+            })
+        })?;
+        done.map_err(|error| value(&error))?;
+        drop(access);
+        Ok(output)
+    }
+
+    /// The values of rows of cells, of this many channels.
+    fn decode<'py>(
+        &self,
+        py: Python<'py>,
+        cells: PyReadonlyArray1<i8>,
+        channels: usize,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let cells = cells.as_slice()?;
+        let width = self.width().map_err(|error| value(&error))?;
+        let total = cells.len() / width;
+        let progress = progress.as_ref();
+        macro_rules! decoded {
+            ($type:ty, $kind:ident) => {{
+                let output = PyArray1::<$type>::zeros(py, total, false);
+                let mut access = output.readwrite();
+                let values = access.as_slice_mut()?;
+                let done = work::run(py, total, progress, |meter| {
+                    let length = (total / channels.max(1)).max(1);
+                    let rooms = values.par_chunks_mut(length);
+                    let rows = cells.par_chunks(length * width);
+                    rows.zip(rooms).enumerate().try_for_each(|(place, (rows, room))| {
+                        let mut channel = self.start(place)?;
+                        let pieces = rows.chunks(PIECE * width).zip(room.chunks_mut(PIECE));
+                        for (piece, (rows, room)) in pieces.enumerate() {
+                            if meter.is_stopped() {
+                                break;
+                            }
+                            let done = channel.decode(rows, &mut Values::$kind(room));
+                            done.map_err(|bad| told(place, piece * PIECE, &bad))?;
+                            meter.add(room.len());
+                        }
+                        Ok(())
+                    })
+                })?;
+                done.map_err(|error: anyhow::Error| value(&error))?;
+                drop(access);
+                Ok(output.into_any())
+            }};
+        }
+        match self.sample {
+            SampleType::F32 => decoded!(f32, F32),
+            SampleType::Fixed16 { fraction: 0 } => decoded!(i16, I16),
+            _ => decoded!(f64, F64),
+        }
+    }
+
+    /// A decoder that keeps its state, as it starts on the signal.
+    fn decoder(&self, channels: usize) -> PyResult<Decoder> {
+        let channels = (0..channels).map(|channel| self.start(channel)).collect::<Result<Vec<_>>>();
+        Ok(Decoder::new(channels.map_err(|error| value(&error))?, self.sample))
+    }
+}
+
+impl Fitted {
+    fn encode_lane(
+        &self,
+        place: usize,
+        lane: Lane,
+        room: &mut [i8],
+        width: usize,
+        meter: &Meter,
+    ) -> Result<()> {
+        let mut channel = self.start(place)?;
+        let mut made = 0;
+        for start in (0..lane.len()).step_by(PIECE) {
+            if meter.is_stopped() {
+                return Ok(());
+            }
+            let part = lane.part(start..lane.len().min(start + PIECE));
+            let coded = channel.encode(part, &mut room[made * width..]);
+            made += coded.map_err(|bad| told(place, start, &bad))?;
+            meter.add(part.len());
+        }
+        channel.finish(&mut room[made * width..]);
+        Ok(())
+    }
+}
+
+/// What is bad, of which sample of which channel.
+pub(crate) fn told(channel: usize, start: usize, bad: &Bad) -> anyhow::Error {
+    anyhow!("channel {channel}, sample {}: {}", start + bad.sample, bad.what)
+}

@@ -1,0 +1,173 @@
+//! Encoders and decoders that keep their state from one call to the next.
+
+use anyhow::Result;
+use catalogue::run::SampleType;
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+use crate::array::{Lane, Samples, Values};
+use crate::channel::{self, Channel};
+use crate::coder::{Coder, told};
+use crate::error::value;
+
+/// Encoders of several channels.
+#[pyclass(module = "spikewire._native")]
+pub(crate) struct Encoder {
+    coder: Coder,
+    /// None before as many samples have come as the encoder starts from.
+    running: Vec<Box<dyn Channel>>,
+    /// The samples that have come before that, by channel.
+    waiting: Vec<Vec<f64>>,
+    /// How many neurons and sub-timesteps a channel has.
+    shape: (usize, usize),
+}
+
+impl Encoder {
+    pub(crate) fn new(coder: Coder, channels: usize, shape: (usize, usize)) -> Self {
+        Self { coder, running: Vec::new(), waiting: vec![Vec::new(); channels], shape }
+    }
+
+    /// How many cells a row has.
+    fn width(&self) -> usize {
+        self.shape.0 * self.shape.1
+    }
+
+    /// Starts on the samples that wait, and encodes them.
+    fn begin(&mut self) -> Result<Vec<Vec<i8>>> {
+        let Coder { scheme, sample, .. } = self.coder;
+        let looks_back = self.coder.looks_back();
+        let mut running = Vec::new();
+        for waiting in &self.waiting {
+            let first = &waiting[..waiting.len().min(looks_back)];
+            let settings = self.coder.settle(first, None)?;
+            running.push(channel::start(scheme, sample, &settings)?);
+        }
+        self.running = running;
+        let waiting: Vec<Vec<f64>> = self.waiting.iter_mut().map(std::mem::take).collect();
+        let lanes: Vec<Lane> = waiting.iter().map(|own| Lane::F64(own.as_slice().into())).collect();
+        self.push(&lanes)
+    }
+
+    fn push(&mut self, lanes: &[Lane]) -> Result<Vec<Vec<i8>>> {
+        let width = self.width();
+        let code = |(place, (channel, lane)): (usize, (&mut Box<dyn Channel>, &Lane))| {
+            let mut cells = vec![0; lane.len() * width];
+            let made = channel.encode(*lane, &mut cells).map_err(|bad| told(place, 0, &bad))?;
+            cells.truncate(made * width);
+            Ok(cells)
+        };
+        self.running.par_iter_mut().zip(lanes).enumerate().map(code).collect()
+    }
+
+    fn encode_all(&mut self, lanes: &[Lane]) -> Result<Vec<Vec<i8>>> {
+        for (channel, lane) in lanes.iter().enumerate() {
+            if let Some((sample, value)) = lane.not_finite() {
+                anyhow::bail!("channel {channel}, sample {sample}: {value} is not finite");
+            }
+        }
+        if !self.running.is_empty() {
+            return self.push(lanes);
+        }
+        for (waiting, lane) in self.waiting.iter_mut().zip(lanes) {
+            waiting.extend(lane.to_vec());
+        }
+        if self.waiting.iter().any(|waiting| waiting.len() < self.coder.looks_back().max(1)) {
+            return Ok(vec![Vec::new(); lanes.len()]);
+        }
+        self.begin()
+    }
+
+    fn finish_all(&mut self) -> Result<Vec<Vec<i8>>> {
+        let width = self.width();
+        let mut cells = vec![Vec::new(); self.waiting.len()];
+        if self.running.is_empty() && self.waiting.iter().all(|waiting| !waiting.is_empty()) {
+            cells = self.begin()?;
+        }
+        for (cells, mut channel) in cells.iter_mut().zip(self.running.drain(..)) {
+            let start = cells.len();
+            cells.resize(start + channel.latency() * width, 0);
+            let made = channel.finish(&mut cells[start..]);
+            cells.truncate(start + made * width);
+        }
+        self.waiting.iter_mut().for_each(Vec::clear);
+        Ok(cells)
+    }
+}
+
+#[pymethods]
+impl Encoder {
+    /// How many neurons and sub-timesteps a channel has.
+    fn shape(&self) -> (usize, usize) {
+        self.shape
+    }
+
+    /// Takes the next samples of all channels; the cells that are complete, one channel after the other.
+    fn encode<'py>(
+        &mut self,
+        py: Python<'py>,
+        samples: Samples,
+    ) -> PyResult<Bound<'py, PyArray1<i8>>> {
+        let lanes = samples.lanes();
+        if lanes.len() != self.waiting.len() {
+            return Err(PyValueError::new_err(format!(
+                "there are {} channels, not {}",
+                self.waiting.len(),
+                lanes.len()
+            )));
+        }
+        let cells = py.detach(|| self.encode_all(&lanes)).map_err(|error| value(&error))?;
+        Ok(cells.concat().into_pyarray(py))
+    }
+
+    /// The cells of the samples that wait for later ones; the encoder is as at its start then.
+    fn finish<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i8>>> {
+        let cells = self.finish_all().map_err(|error| value(&error))?;
+        Ok(cells.concat().into_pyarray(py))
+    }
+}
+
+/// Decoders of several channels.
+#[pyclass(module = "spikewire._native")]
+pub(crate) struct Decoder {
+    channels: Vec<Box<dyn Channel>>,
+    sample: SampleType,
+}
+
+impl Decoder {
+    pub(crate) fn new(channels: Vec<Box<dyn Channel>>, sample: SampleType) -> Self {
+        Self { channels, sample }
+    }
+}
+
+#[pymethods]
+impl Decoder {
+    /// The values of the next rows of cells, this many of each channel, one channel after the other.
+    fn decode<'py>(
+        &mut self,
+        py: Python<'py>,
+        cells: PyReadonlyArray1<i8>,
+        rows: usize,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let cells = cells.as_slice()?;
+        let own = cells.len() / self.channels.len().max(1);
+        macro_rules! decoded {
+            ($type:ty, $kind:ident) => {{
+                let mut values = vec![<$type>::default(); rows * self.channels.len()];
+                let rooms = values.chunks_mut(rows.max(1));
+                let all = self.channels.iter_mut().zip(cells.chunks(own.max(1))).zip(rooms);
+                for (place, ((channel, cells), room)) in all.enumerate() {
+                    let done = channel.decode(cells, &mut Values::$kind(room));
+                    done.map_err(|bad| value(&told(place, 0, &bad)))?;
+                }
+                Ok(values.into_pyarray(py).into_any())
+            }};
+        }
+        match self.sample {
+            SampleType::F32 => decoded!(f32, F32),
+            SampleType::Fixed16 { fraction: 0 } => decoded!(i16, I16),
+            _ => decoded!(f64, F64),
+        }
+    }
+}
