@@ -72,7 +72,7 @@ impl Wire for i16 {
     }
 }
 
-impl<Frac: LeEqU16 + 'static> Wire for FixedI16<Frac> {
+impl<Frac: LeEqU16 + Send + Sync + 'static> Wire for FixedI16<Frac> {
     type Real = f64;
 
     fn real(self) -> f64 {
@@ -88,7 +88,7 @@ impl<Frac: LeEqU16 + 'static> Wire for FixedI16<Frac> {
     }
 }
 
-impl<Frac: LeEqU32 + 'static> Wire for FixedI32<Frac> {
+impl<Frac: LeEqU32 + Send + Sync + 'static> Wire for FixedI32<Frac> {
     type Real = f64;
 
     fn real(self) -> f64 {

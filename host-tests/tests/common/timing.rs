@@ -35,7 +35,7 @@ impl Lined for i16 {
     }
 }
 
-impl<F: LeEqU16 + 'static> Lined for FixedI16<F> {
+impl<F: LeEqU16 + Send + Sync + 'static> Lined for FixedI16<F> {
     type Line = i64;
     fn line(self) -> i64 {
         self.to_bits().into()
@@ -45,7 +45,7 @@ impl<F: LeEqU16 + 'static> Lined for FixedI16<F> {
     }
 }
 
-impl<F: LeEqU32 + 'static> Lined for FixedI32<F> {
+impl<F: LeEqU32 + Send + Sync + 'static> Lined for FixedI32<F> {
     type Line = i64;
     fn line(self) -> i64 {
         self.to_bits().into()
