@@ -128,3 +128,9 @@ where
     }
     Ok(counts)
 }
+
+/// Counts as °/s and g.
+pub fn in_units(counts: [i16; 6]) -> [f32; 6] {
+    let [rx, ry, rz, ax, ay, az] = counts.map(|count| f32::from(count) / 32_768.0);
+    [rx * 2000.0, ry * 2000.0, rz * 2000.0, ax * 16.0, ay * 16.0, az * 16.0]
+}

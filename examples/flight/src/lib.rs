@@ -7,6 +7,7 @@
 //! - [`bmi323`] starts the sensor, and reads back what it was told;
 //! - [`Sampler`] stands between sensor and queue: it counts samples, finds those that are missing, notices a sensor that is
 //!   silent or stuck, and tells the far end by a break;
+//! - [`code`] is the code of the channels, and why;
 //! - [`clock`] checks a crystal and its dividers while the firmware is compiled.
 //!
 //! One text is both: futures over `embedded-hal-async`, or with the feature `blocking` plain functions over `embedded-hal`.
@@ -16,6 +17,7 @@
 #[cfg(feature = "bmi323")]
 pub mod bmi323;
 pub mod clock;
+pub mod code;
 mod counters;
 mod device;
 mod sampler;
@@ -24,4 +26,6 @@ pub mod simulated;
 
 pub use counters::Counters;
 pub use device::{Device, Timing};
+/// What goes wrong in a [`Device`].
+pub use embedded_hal_bus::spi::DeviceError as SpiError;
 pub use sampler::{Plan, Sampler, Why};

@@ -1,7 +1,7 @@
-//! From the IMU's interrupt to link frames over SPI, on an STM32F405 with embassy; all bytes move by DMA.
+//! From the IMU's interrupt to link frames, on an STM32F405 with embassy; all bytes move by DMA.
 //!
 //! ```text
-//! BMI323 --INT1--> task: SPI1, bank of step encoders --> queue --> main: frames --> SPI2 --> bridge
+//! IMU --data-ready--> task: bus, bank of encoders --> queue --> main: frames --> bridge or companion
 //! ```
 //!
 //! Wiring and clocks: `examples/README.md`.
@@ -10,80 +10,100 @@
 #![no_main]
 
 mod board;
-mod imu;
+mod clock;
+mod edge;
 
+use core::{
+    cell::Cell,
+    sync::atomic::{AtomicU32, Ordering::Relaxed},
+};
+
+use critical_section::Mutex;
 use defmt_rtt as _;
 use embassy_executor::Spawner;
 use embassy_stm32::{exti::ExtiInput, mode::Async};
-use embassy_time::{Delay, Duration, Instant, TimeoutError, Timer, with_timeout};
+use embassy_time::{Duration, Instant, TimeoutError, Timer, with_timeout};
+use flight::{Counters, Sampler, code::SCHEMES};
 use panic_probe as _;
 use spikewire::{
-    Bank, EventQueue, Overflow, Tick,
-    link::{Coding, MAX_FRAME, Transmitter},
-    out::AsyncSpiSink,
+    Bank, EventQueue, Overflow,
+    link::{Coding, Transmitter},
 };
 
-const CHANNELS: usize = imu::SCHEMES.len();
-/// Samples from one keyframe to the next: a second.
-const KEYFRAME_EVERY: u16 = imu::SAMPLE_RATE;
+use crate::edge::now;
+
+const CHANNELS: usize = SCHEMES.len();
 /// How long events gather for a frame.
 const GATHER: Duration = Duration::from_millis(5);
 /// A full frame takes 1.7 ms at the bridge's 1.3125 MHz.
 const SEND_LIMIT: Duration = Duration::from_millis(4);
 const REPORT_EVERY: Duration = Duration::from_secs(1);
+/// A sensor that does not answer within this is tried again after it.
+const START_LIMIT: Duration = Duration::from_millis(100);
+/// Fed while both tasks go on.
+const WATCHDOG_US: u32 = 1_000_000;
 
 /// What the sampling task has for main.
 static EVENTS: EventQueue<256> = EventQueue::new(Overflow::DropOldest);
+/// What happened to the samples.
+static COUNTERS: Mutex<Cell<Option<Counters>>> = Mutex::new(Cell::new(None));
+/// The sampling task's rounds.
+static ROUNDS: AtomicU32 = AtomicU32::new(0);
 
-fn now() -> Tick {
-    Tick::from_micros(Instant::now().as_micros())
-}
-
-defmt::timestamp!("{=u32:us}", now().micros());
-
-/// Waits for a sample, reads it, encodes it.
+/// Starts the sensor whenever it has to be, waits for a sample, reads it, encodes it.
 #[embassy_executor::task]
-async fn sample(mut imu: imu::Imu<board::SpiDevice>, mut data_ready: ExtiInput<'static, Async>) {
-    let mut bank = Bank::per_channel(imu::SCHEMES);
+async fn sample(mut imu: board::Imu, mut data_ready: ExtiInput<'static, Async>) {
+    let mut sampler = Sampler::new(Bank::per_channel(SCHEMES), board::PLAN);
+    let patience = Duration::from_micros(board::PLAN.patience.into());
+    let read_limit = Duration::from_micros(board::PLAN.period.into());
     loop {
-        for _ in 0..KEYFRAME_EVERY {
-            data_ready.wait_for_rising_edge().await;
-            let tick = now();
-            match imu::read(&mut imu).await {
-                Ok(sample) => bank.encode_into(tick, sample, &EVENTS),
-                Err(_) => defmt::warn!("a sample could not be read"),
+        ROUNDS.fetch_add(1, Relaxed);
+        critical_section::with(|cs| COUNTERS.borrow(cs).set(Some(sampler.counters())));
+        if let Some(why) = sampler.look(now(), &EVENTS) {
+            defmt::warn!("the sensor is to be started: {}", why);
+            match with_timeout(START_LIMIT, imu.start()).await {
+                Ok(Ok(())) => sampler.started(now()),
+                failed => {
+                    defmt::error!("it does not start: {}", defmt::Debug2Format(&failed));
+                    sampler.failed_to_start(now(), &EVENTS);
+                    Timer::after(START_LIMIT).await;
+                }
             }
         }
-        // No sample has come since the last one, so now is as good a tick as its own.
-        bank.keyframe_into(now(), &EVENTS);
+        if with_timeout(patience, data_ready.wait_for_rising_edge()).await.is_ok() {
+            let edge = edge::last();
+            let read = with_timeout(read_limit, imu.read()).await;
+            sampler.take(edge, read.map_err(|_| ()).and_then(|read| read.map_err(|_| ())), &EVENTS);
+        }
     }
 }
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    let board::Board { imu, data_ready, bridge, bridge_ready, session } = board::start();
-    let imu = imu::start(imu, &mut Delay).await.expect("no BMI323 on SPI1");
+    let board::Board { imu, data_ready, link, mut watchdog, session } = board::start();
     spawner.spawn(sample(imu, data_ready).expect("spawned once"));
 
     // The sensor's clock is not ours: its samples come a few µs early or late.
-    let coding = Coding::for_channels(CHANNELS as u16, imu::PERIOD_US).with_jitter_bits(4);
-    let transmitter = Transmitter::new(coding, session);
-    let mut link =
-        AsyncSpiSink::<_, _, MAX_FRAME, _>::with_ready(bridge, transmitter, bridge_ready);
+    let coding = Coding::for_channels(CHANNELS as u16, board::PLAN.period).with_jitter_bits(4);
+    let mut link = link.link(Transmitter::new(coding, session));
 
     let (mut bytes, mut failures, mut late) = (0_u32, 0_u32, 0_u32);
+    let (mut before, mut rounds) = (Counters::default(), 0);
     let mut events = EVENTS.consumer().expect("taken once");
     let mut next_report = Instant::now() + REPORT_EVERY;
     let mut is_all_sent = true;
     loop {
+        let done = ROUNDS.load(Relaxed);
+        if core::mem::replace(&mut rounds, done) != done {
+            watchdog.pet();
+        }
         if is_all_sent {
-            // The report comes without items too.
-            let _ = with_timeout(REPORT_EVERY, events.wait()).await;
+            // The report and the watchdog come without items too.
+            let _ = with_timeout(START_LIMIT, events.wait()).await;
         }
         Timer::after(GATHER).await;
-        // A frame that was not sent, for whatever reason, is kept for the next time. One that was too late
-        // leaves chip select low until then: the bridge sees its beginning and then all of it in one
-        // piece, in which the link's reader finds the frame.
+        // A frame that was not sent, for whatever reason, is kept for the next time, and sent whole. Of one that was
+        // too late the bridge sees the beginning, and then all of it.
         let sent = with_timeout(SEND_LIMIT, link.send(&mut events)).await;
         is_all_sent = matches!(sent, Ok(Ok(0)));
         match sent {
@@ -93,14 +113,18 @@ async fn main(spawner: Spawner) {
         }
         if Instant::now() >= next_report {
             next_report += REPORT_EVERY;
+            let counters = critical_section::with(|cs| COUNTERS.borrow(cs).get());
+            let counters = counters.unwrap_or_default();
             defmt::info!(
-                "{} bytes sent, {} times not, {} times too late; {} items lost, peak {}",
+                "{}; {} bytes sent, {} times not, {} times too late; {} items lost, peak {}",
+                counters.since(&before),
                 bytes,
                 failures,
                 late,
                 EVENTS.lost(),
                 EVENTS.peak(),
             );
+            before = counters;
         }
     }
 }

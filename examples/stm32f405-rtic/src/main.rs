@@ -1,7 +1,7 @@
 //! From the IMU's interrupt to tinyODIN, on an STM32F405 with RTIC.
 //!
 //! ```text
-//! BMI323 --INT1--> EXTI3: SPI1, bank of step encoders --> queue --> idle: AER port --> tinyODIN
+//! BMI323 --INT1--> EXTI3: SPI1, bank of encoders --> queue --> idle: AER port --> tinyODIN
 //! ```
 //!
 //! Wiring and clocks: `examples/README.md`.
@@ -9,39 +9,30 @@
 #![no_std]
 #![no_main]
 
-mod imu;
 mod network;
 mod port;
+mod time;
 
-use core::sync::atomic::AtomicU32;
 use defmt_rtt as _;
 use panic_probe as _;
-use rtic_time::Monotonic;
-use spikewire::{EventQueue, Overflow, Tick};
-use stm32f4xx_hal::{pac, timer::MonoTimerUs};
+use spikewire::{EventQueue, Overflow};
 
 /// What the interrupt has for idle. A chip that falls behind is better fed with what is new.
 static EVENTS: EventQueue<256> = EventQueue::new(Overflow::DropOldest);
 
-/// Samples that the sensor did not give.
-static FAILED_READS: AtomicU32 = AtomicU32::new(0);
-
-/// Microseconds since the start.
-type Clock = MonoTimerUs<pac::TIM5>;
-
-fn now() -> Tick {
-    Tick::from_micros(Clock::now().duration_since_epoch().to_micros())
-}
-
-defmt::timestamp!("{=u32:us}", now().micros());
-
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
-    use core::{num::NonZeroU32, sync::atomic::Ordering::Relaxed};
-    use embedded_hal::{delay::DelayNs, spi::MODE_0};
-    use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
+    use bmi323_driver::{Bmi323, SpiTransport};
+    use core::num::NonZeroU32;
+    use embedded_hal::spi::MODE_0;
+    use flight::{
+        Counters, Device, Sampler, Timing,
+        bmi323::{self, in_units},
+        clock::{Stm32F405, exact_spi},
+        code::{MOST, SCHEMES, Schemes},
+    };
     use spikewire::{
-        Bank,
+        Bank, Tick,
         chip::{Describe as _, Input as _, TinyOdin, TinyOdinInput},
     };
     use stm32f4xx_hal::{
@@ -51,26 +42,30 @@ mod app {
         rcc::Config,
         spi::Spi,
         time::Hertz,
-        timer::{MonoTimerExt, SysDelay},
+        timer::MonoTimerExt,
+        watchdog::IndependentWatchdog,
     };
 
     use crate::{
-        EVENTS, FAILED_READS,
-        imu::{self, Imu},
+        EVENTS,
         network::{self, NETWORK},
-        now,
         port::Port,
+        time::{Spin, now},
     };
 
-    // Neither asks for pauses within a transaction.
-    type ImuDevice = ExclusiveDevice<Spi<SPI1>, PA4<Output>, NoDelay>;
-    type ChipDevice = ExclusiveDevice<Spi<SPI2>, PB12<Output>, NoDelay>;
+    type ImuDevice = Device<Spi<SPI1>, PA4<Output>, Spin>;
+    type ChipDevice = Device<Spi<SPI2>, PB12<Output>, Spin>;
 
+    /// The crystal of most flight controllers. Another one is another constant here, and one that the part cannot take
+    /// fails the build.
+    const CLOCK: Stm32F405 = Stm32F405::at_168_mhz(8_000_000);
     /// SPI1's 84 MHz by 16. Of the powers of two the HAL takes the nearest, which for the sensor's limit
     /// of 10 MHz is 10.5.
-    const IMU_CLOCK: Hertz = Hertz::kHz(5_250);
+    const IMU_CLOCK: Hertz = Hertz::Hz(exact_spi(84_000_000, 5_250_000));
     /// SPI2's 42 MHz by 64: SCK may have a quarter of the chip's clock.
-    const CHIP_CLOCK: Hertz = Hertz::Hz(656_250);
+    const CHIP_CLOCK: Hertz = Hertz::Hz(exact_spi(42_000_000, 656_250));
+    /// The chip has no chip select: half a period of its clock between two transfers.
+    const CHIP_TIMING: Timing = Timing { guard: 0, pause: 800 };
     /// How often a wait looks at the chip's pins: as often as the chip may have clocks to work, and a look
     /// takes longer than a clock from 10 MHz on. Well below a millisecond.
     const POLLS: u32 = TinyOdinInput::MAX_CLOCKS;
@@ -78,40 +73,44 @@ mod app {
     const TIME_STEP: NonZeroU32 = NonZeroU32::new(1_000).unwrap();
     /// How often the counters are logged, in µs.
     const REPORT: i32 = 1_000_000;
+    /// How long to wait, in µs, before a sensor or a chip that did not start is tried again.
+    const AGAIN: i32 = 100_000;
+    /// A start of sensor and chip take a few ms each, and idle is else never away for so long.
+    const WATCHDOG_MS: u32 = 500;
+
+    /// The sensor, and who judges its samples.
+    pub struct Sensor {
+        imu: Bmi323<SpiTransport<ImuDevice>>,
+        sampler: Sampler<Schemes, { SCHEMES.len() }>,
+    }
 
     #[shared]
-    struct Shared {}
+    struct Shared {
+        sensor: Sensor,
+    }
 
     #[local]
     struct Local {
         data_ready: PA3<Input>,
-        imu: Imu<ImuDevice>,
-        bank: Bank<imu::Schemes, { imu::SCHEMES.len() }>,
         chip: TinyOdin<ChipDevice, Port>,
-        delay: SysDelay,
+        watchdog: IndependentWatchdog,
     }
 
     #[init]
     fn init(mut cx: init::Context) -> (Shared, Local) {
-        // The crystal of most flight controllers; 168 MHz is the part's limit.
-        let clocks = Config::hse(8.MHz()).sysclk(168.MHz());
-        let mut rcc = cx.device.RCC.freeze(clocks);
-        let mut delay = cx.core.SYST.delay(&rcc.clocks);
-        cx.device.TIM5.monotonic_us(&mut cx.core.NVIC, &mut rcc);
+        // First of all: a crystal that does not start, or a fault, then ends in a reset, and the log says so.
+        let mut watchdog = IndependentWatchdog::new(cx.device.IWDG);
+        watchdog.stop_on_debug(&cx.device.DBGMCU, true);
+        watchdog.start(WATCHDOG_MS.millis());
+        let reset = cx.device.RCC.csr().read();
+        cx.device.RCC.csr().modify(|_, w| w.rmvf().set_bit());
 
+        // Pins next, so that outputs are safe whatever the clocks do. The HAL leaves them at low speed, where SPI loses the
+        // last bit of a byte (STM32F405's errata, "corrupted last bit of data and/or CRC").
+        let mut rcc = cx.device.RCC.constrain();
         let a = cx.device.GPIOA.split(&mut rcc);
         let b = cx.device.GPIOB.split(&mut rcc);
         let c = cx.device.GPIOC.split(&mut rcc);
-
-        let pins = (Some(a.pa5), Some(a.pa6), Some(a.pa7));
-        let bus = Spi::new(cx.device.SPI1, pins, MODE_0, IMU_CLOCK, &mut rcc);
-        let device = ExclusiveDevice::new_no_delay(bus, a.pa4.into_push_pull_output()).unwrap();
-        let imu = imu::start(device, &mut delay).expect("no BMI323 on SPI1");
-
-        // tinyODIN knows no chip select: PB12 stays unconnected, the bus is the chip's alone.
-        let pins = (Some(b.pb13), Some(b.pb14), Some(b.pb15));
-        let bus = Spi::new(cx.device.SPI2, pins, MODE_0, CHIP_CLOCK, &mut rcc);
-        let device = ExclusiveDevice::new_no_delay(bus, b.pb12.into_push_pull_output()).unwrap();
         let port = Port {
             input: [
                 c.pc0.into_push_pull_output().speed(Speed::High).erase_number(),
@@ -142,6 +141,43 @@ mod app {
             output_acknowledge: b.pb9.into_push_pull_output(),
             reset: c.pc12.into_push_pull_output(),
         };
+        let imu_pins = (
+            a.pa5.into_alternate().speed(Speed::VeryHigh),
+            a.pa6.into_alternate(),
+            a.pa7.into_alternate().speed(Speed::VeryHigh),
+        );
+        let chip_pins = (
+            b.pb13.into_alternate().speed(Speed::VeryHigh),
+            b.pb14.into_alternate(),
+            b.pb15.into_alternate().speed(Speed::VeryHigh),
+        );
+        let imu_select = a.pa4.into_push_pull_output().speed(Speed::VeryHigh);
+        let chip_select = b.pb12.into_push_pull_output();
+
+        let clocks = Config::hse(CLOCK.crystal.Hz()).sysclk(CLOCK.sysclk().Hz());
+        let mut rcc = rcc.freeze(clocks);
+        cx.device.TIM5.monotonic_us(&mut cx.core.NVIC, &mut rcc);
+        defmt::info!(
+            "reset by: watchdog {}, software {}, power {}, brown-out {}, pin {}",
+            reset.wdgrstf().bit(),
+            reset.sftrstf().bit(),
+            reset.porrstf().bit(),
+            reset.borrstf().bit(),
+            reset.padrstf().bit(),
+        );
+
+        let (sck, miso, mosi) = imu_pins;
+        let pins = (Some(sck), Some(miso), Some(mosi));
+        let bus = Spi::new(cx.device.SPI1, pins, MODE_0, IMU_CLOCK, &mut rcc);
+        let Ok(device) = Device::new(bus, imu_select, Spin, bmi323::TIMING);
+        let sampler = Sampler::new(Bank::per_channel(SCHEMES), bmi323::plan(MOST as u8));
+        let sensor = Sensor { imu: Bmi323::new_spi(device), sampler };
+
+        // tinyODIN knows no chip select: PB12 stays unconnected, the bus is the chip's alone.
+        let (sck, miso, mosi) = chip_pins;
+        let pins = (Some(sck), Some(miso), Some(mosi));
+        let bus = Spi::new(cx.device.SPI2, pins, MODE_0, CHIP_CLOCK, &mut rcc);
+        let Ok(device) = Device::new(bus, chip_select, Spin, CHIP_TIMING);
         let chip = TinyOdin::new(device, port, POLLS).with_time_step(TIME_STEP);
 
         let mut data_ready = a.pa3.into_pull_down_input();
@@ -149,69 +185,106 @@ mod app {
         data_ready.trigger_on_edge(&mut cx.device.EXTI, Edge::Rising);
         data_ready.enable_interrupt(&mut cx.device.EXTI);
 
-        let bank = Bank::per_channel(imu::SCHEMES);
-        (Shared {}, Local { data_ready, imu, bank, chip, delay })
+        (Shared { sensor }, Local { data_ready, chip, watchdog })
     }
 
-    /// A sample is ready: 22 µs on the bus, then six encoders. Never waits for the chip.
-    #[task(binds = EXTI3, priority = 2, local = [data_ready, imu, bank])]
-    fn sample(cx: sample::Context) {
-        let tick = now();
+    /// A sample is ready: 24 µs on the bus, then six encoders. Never waits for the chip.
+    #[task(binds = EXTI3, priority = 2, local = [data_ready], shared = [sensor])]
+    fn sample(mut cx: sample::Context) {
+        let edge = now();
         cx.local.data_ready.clear_interrupt_pending_bit();
-        match imu::read(cx.local.imu) {
-            Ok(sample) => cx.local.bank.encode_into(tick, sample, &EVENTS),
-            Err(_) => _ = FAILED_READS.fetch_add(1, Relaxed),
-        }
+        cx.shared.sensor.lock(|Sensor { imu, sampler }| {
+            sampler.take(edge, bmi323::read(imu).map(in_units), &EVENTS);
+        });
     }
 
-    /// Feeds the chip, serves its outputs, and logs what was lost on the way.
-    #[idle(local = [chip, delay])]
-    fn idle(cx: idle::Context) -> ! {
-        let (chip, delay) = (cx.local.chip, cx.local.delay);
+    /// Looks after the sensor, feeds the chip, serves its outputs, and logs what was lost on the way.
+    #[idle(local = [chip, watchdog], shared = [sensor])]
+    fn idle(mut cx: idle::Context) -> ! {
+        let (chip, watchdog) = (cx.local.chip, cx.local.watchdog);
         let (mut sent, mut fired, mut failures) = (0_u32, [0_u32; network::NEURONS], 0_u32);
-        let mut last_report = now();
+        let mut is_set_up = false;
+        let (mut next_sensor, mut next_chip, mut next_report) = (now(), now(), now());
+        let mut before = Counters::default();
         let mut events = EVENTS.consumer().expect("taken once");
 
-        while let Err(error) = network::start(chip, delay) {
-            defmt::error!("tinyODIN is not set up: {}", defmt::Debug2Format(&error));
-            delay.delay_ms(500);
-        }
         loop {
-            let fed = chip.running().and_then(|mut chip| {
-                let mut on_output = NETWORK.answers(now(), |output| {
-                    if let Some(count) = fired.get_mut(usize::from(output.address)) {
-                        *count += 1;
+            watchdog.feed();
+            // While it is dead no events come: the chip's neurons leak, and fall silent.
+            let is_alive = cx.shared.sensor.lock(|sensor| look_after(sensor, &mut next_sensor));
+
+            if !is_set_up && is_over(next_chip) {
+                match network::start(chip, &mut Spin) {
+                    Ok(()) => is_set_up = true,
+                    Err(error) => {
+                        failures = failures.wrapping_add(1);
+                        next_chip = now().shifted(AGAIN);
+                        defmt::error!("tinyODIN: {}; once more", defmt::Debug2Format(&error));
                     }
+                }
+            }
+            if is_set_up {
+                let fed = chip.running().and_then(|mut chip| {
+                    let mut on_output = NETWORK.answers(now(), |output| {
+                        // What acts on the network's answers acts on these alone: none is of a dead sensor.
+                        if let (true, Some(count)) =
+                            (is_alive, fired.get_mut(usize::from(output.address)))
+                        {
+                            *count += 1;
+                        }
+                    });
+                    let count = chip.feed(events.waiting(), network::input, &mut on_output)?;
+                    chip.advance(now(), &mut on_output)?;
+                    chip.poll(&mut on_output).map(|()| count)
                 });
-                let count = chip.feed(events.waiting(), network::input, &mut on_output)?;
-                chip.advance(now(), &mut on_output)?;
-                chip.poll(&mut on_output).map(|()| count)
-            });
-            match fed {
-                Ok(count) => sent = sent.wrapping_add(count),
-                Err(error) => {
-                    failures = failures.wrapping_add(1);
-                    defmt::warn!("tinyODIN: {}; starting it again", defmt::Debug2Format(&error));
-                    // The event that it did not take is held and comes first.
-                    if network::start(chip, delay).is_err() {
-                        delay.delay_ms(10);
+                match fed {
+                    Ok(count) => sent = sent.wrapping_add(count),
+                    Err(error) => {
+                        // The event that it did not take is held and comes first.
+                        failures = failures.wrapping_add(1);
+                        is_set_up = false;
+                        defmt::warn!("tinyODIN: {}; once more", defmt::Debug2Format(&error));
                     }
                 }
             }
 
-            if now().since(last_report) >= REPORT {
-                last_report = last_report.shifted(REPORT);
+            if is_over(next_report) {
+                next_report = next_report.shifted(REPORT);
+                let counters = cx.shared.sensor.lock(|sensor| sensor.sampler.counters());
+                let second = counters.since(&before);
+                before = counters;
                 defmt::info!(
-                    "{} events sent, {} lost, peak {}; {} reads and {} handshakes failed; {}; fired {}",
+                    "{}; {} events sent, {} lost, peak {}; {} failures of the chip; {}; fired {}",
+                    second,
                     sent,
                     EVENTS.lost(),
                     EVENTS.peak(),
-                    FAILED_READS.load(Relaxed),
                     failures,
                     chip.counters(),
                     fired,
                 );
             }
         }
+    }
+
+    /// Starts the sensor, where it has to be. Whether it lives.
+    fn look_after(Sensor { imu, sampler }: &mut Sensor, next: &mut Tick) -> bool {
+        let Some(why) = sampler.look(now(), &EVENTS) else { return true };
+        if is_over(*next) {
+            defmt::warn!("the sensor is to be started: {}", why);
+            match bmi323::start(imu, &mut Spin) {
+                Ok(()) => sampler.started(now()),
+                Err(error) => {
+                    defmt::error!("it does not start: {}", defmt::Debug2Format(&error));
+                    sampler.failed_to_start(now(), &EVENTS);
+                    *next = now().shifted(AGAIN);
+                }
+            }
+        }
+        false
+    }
+
+    fn is_over(time: Tick) -> bool {
+        now().since(time) >= 0
     }
 }

@@ -2,6 +2,7 @@
 //! a bus and a supply can.
 
 mod bmi323;
+mod code;
 mod device;
 mod sampler;
 
