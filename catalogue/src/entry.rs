@@ -4,12 +4,15 @@ use spikewire::population::Position;
 use spikewire::{ConfigError, Sample, Scheme, Spike, Start};
 
 use crate::plain::{self, Plain};
-use crate::{Channel, Info, Scaled};
+use crate::{Channel, InC, Info, Scaled};
 
 /// A scheme of the catalogue.
 pub trait Entry {
     /// What is known of it without running it.
     const INFO: Info;
+
+    /// What programs in C get of it; nothing if its encoders need a generator.
+    const IN_C: &'static [InC];
 
     /// Hands the instances that fly the recorded flight to a visitor.
     ///

@@ -11,6 +11,7 @@
 
 mod channel;
 mod entry;
+mod in_c;
 mod info;
 pub mod plain;
 #[cfg(feature = "run")]
@@ -19,6 +20,7 @@ mod signal;
 
 pub use channel::Channel;
 pub use entry::{Count, Entry, Flight};
+pub use in_c::{Argument, Flown, InC, Made};
 pub use info::{Found, Info, Kind, Paper, Parameter, Search, Unit};
 pub use signal::Scaled;
 
@@ -38,6 +40,10 @@ macro_rules! schemes {
 
         /// What is known of every scheme, in the order of the catalogue.
         pub const INFO: &[Info] = &[$(<schemes::$module::Scheme as Entry>::INFO),*];
+
+        /// What programs in C get of every scheme, in the order of the catalogue.
+        pub const IN_C: &[(&Info, &[InC])] =
+            &[$((&<schemes::$module::Scheme as Entry>::INFO, <schemes::$module::Scheme as Entry>::IN_C)),*];
 
         /// Hands every flown instance of every scheme to a visitor.
         ///

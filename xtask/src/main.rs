@@ -3,6 +3,7 @@
 mod bench;
 mod bits;
 mod boards;
+mod c_library;
 mod checks;
 mod core_library;
 mod cpu;
@@ -56,6 +57,8 @@ cargo xtask <command>
   schemes [--write]     what each scheme makes of a flight and of the paper's signal; --write puts it into README.md
   jumps [--write]       draws the flight's hardest second in three step codes; --write puts it into docs/jumps.svg
   firmware --write      puts the spike counts of flight-log, and which bits agree, into docs/bits.md
+  c-library [--target]  the library for C: archive, header, CMake package and pkg-config file for each core
+  c-library --write     writes its header and declarations from the catalogue
   demo                  real flight data through encoder, emulated flight controller and decoder
   bench-target          what every codec costs on every emulated board, in instructions and bytes
   verify [STEP]...      every check, or the named ones; `cargo verify --help` lists them
@@ -85,6 +88,7 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "bench-target" => bench::bench(args),
         "schemes" => schemes::schemes(args),
         "jumps" => jumps::jumps(args),
+        "c-library" => c_library::library(args),
         "demo" => demo::demo(args),
         "verify" => verify::verify(args),
         "" | "help" | "-h" | "--help" => {

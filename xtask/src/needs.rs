@@ -10,13 +10,19 @@ pub struct Tool {
     pub why: &'static str,
 }
 
-pub const TOOLS: [Tool; 2] = [
+pub const TOOLS: [Tool; 4] = [
     Tool { package: "qemu-system-arm", program: "qemu-system-arm", why: "emulates the boards" },
     Tool {
         package: "binutils-arm-none-eabi",
         program: "arm-none-eabi-nm",
         why: "reads the firmware's size and symbols",
     },
+    Tool {
+        package: "gcc-arm-none-eabi",
+        program: "arm-none-eabi-gcc",
+        why: "compiles the tests of the library for C",
+    },
+    Tool { package: "g++", program: "g++", why: "compiles its header as C++" },
 ];
 
 /// What is not there.

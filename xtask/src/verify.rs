@@ -37,6 +37,7 @@ const STEPS: &[Step] = &[
     step("features", "every feature alone, on the host", checks::each_feature),
     step("targets", "the crate for every Cortex-M", checks::targets),
     step("no-panic", "every codec links without a panic handler", checks::no_panic),
+    step("c", "the library for C, on the host and on a Cortex-M4F", crate::c_library::verify),
     step("recipe", "the guide's firmware, outside this workspace, in QEMU", recipe::recipe),
     step("parts", "the examples for real parts", parts::parts),
     step("fifo", "a sensor at 8 kHz: driver, and instructions", fifo::fifo),
@@ -58,6 +59,7 @@ const LONG: &[Step] = &[
     step("sweeps", "all tests, optimised, with twenty times as many cases", long::sweeps),
     step("lints", "clippy on all at once: every feature, firmware on host and core", long::lints),
     step("capture", "the laptop program with a debug probe's driver", long::capture),
+    step("c-cores", "the library for C on the other four cores", crate::c_library::cores),
     step("cores", "instruction counts on all five cores", long::cores),
 ];
 

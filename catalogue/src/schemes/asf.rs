@@ -7,7 +7,10 @@ use spikewire::temporal::AdaptiveStepForward;
 
 use crate::entry::spike_of;
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Kind, Made, Paper, Parameter,
+    Scaled, Search, Unit,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -57,6 +60,22 @@ impl Entry for Scheme {
             Parameter::START,
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "adaptive_step_forward",
+        scheme: "temporal::AdaptiveStepForward<S>",
+        shapes: &[&[]],
+        made: &[Made {
+            name: "init",
+            words: "`threshold`: the smallest, above 0; `doublings`: how often it doubles at most, 0 to 30.",
+            arguments: &[
+                Argument::sample("threshold", Flown::Fraction(0.02)),
+                Argument::number("doublings", "u8", 4.0),
+            ],
+            value: "temporal::AdaptiveStepForward::try_new(threshold, doublings)",
+            flies: Some("asf"),
+        }],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = AdaptiveStepForward::try_new(channel.fraction(0.02), 4)?;

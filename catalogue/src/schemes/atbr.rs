@@ -7,7 +7,10 @@ use spikewire::{Spike, Start};
 
 use crate::entry::spike_of;
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Kind, Made, Paper, Parameter,
+    Scaled, Search, Unit,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -49,6 +52,22 @@ impl Entry for Scheme {
             Parameter::START,
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "adaptive_contrast",
+        scheme: "temporal::AdaptiveContrast<S>",
+        shapes: &[&[]],
+        made: &[Made {
+            name: "init",
+            words: "`threshold`: the smallest, above 0; `doublings`: how often it doubles at most, 0 to 15.",
+            arguments: &[
+                Argument::sample("threshold", Flown::Fraction(0.001)),
+                Argument::number("doublings", "u8", 5.0),
+            ],
+            value: "temporal::AdaptiveContrast::try_new(threshold, doublings)",
+            flies: Some("atbr"),
+        }],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = AdaptiveContrast::try_new(channel.fraction(0.001), 5)?;

@@ -9,7 +9,7 @@ use spikewire::rate::{Average, Bernoulli};
 
 use crate::entry::spike_of;
 use crate::plain::{self, Plain};
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, InC, Info, Kind, Parameter, Scaled, Unit};
 
 #[cfg(feature = "run")]
 use {
@@ -45,6 +45,8 @@ impl Entry for Scheme {
                 .with_default("0"),
         ],
     };
+
+    const IN_C: &'static [InC] = &[];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = Bernoulli::<_, Pcg32, _>::try_new(

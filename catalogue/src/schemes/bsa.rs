@@ -6,7 +6,10 @@ use spikewire::rate::{Bsa, BsaToolbox, Scale, Shape, Taps};
 use spikewire::{Sample, Start};
 
 use crate::plain::{Plain, magnitude};
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Kind, Made, Paper, Parameter,
+    Scaled, Search, Unit,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -63,6 +66,73 @@ impl Entry for Scheme {
             .of_encoder(),
         ],
     };
+
+    const IN_C: &'static [InC] = &[
+        InC {
+            name: "bsa",
+            scheme: "rate::Bsa<S, {0}>",
+            shapes: &[&[24]],
+            made: &[
+                Made {
+                    name: "init",
+                    words: "`taps`: of the filter; `threshold`: subtractive, 0 or more; `shift`: what is taken off the samples, at most their minimum.",
+                    arguments: &[Argument::TAPS, Argument::new("threshold", "S"), Argument::SHIFT],
+                    value: "rate::Bsa::try_subtractive(rate::Taps::try_new(taps)?, threshold)?.try_with_shift(shift)",
+                    flies: None,
+                },
+                Made {
+                    name: "init_sum",
+                    words: "`shape`: SW_TRIANGULAR, SW_HANN or SW_GAUSSIAN; `sum`: of its taps; `threshold`: subtractive, 0 or more; `shift`: what is taken off the samples, at most their minimum.",
+                    arguments: &[
+                        Argument::HANN,
+                        Argument::sample("sum", Flown::Fraction(1.0)),
+                        Argument::sample("threshold", Flown::Fraction(0.955)),
+                        Argument::SHIFT,
+                    ],
+                    value: "rate::Bsa::try_subtractive(rate::Taps::try_shaped(shape, rate::Scale::Sum(sum))?, threshold)?.try_with_shift(shift)",
+                    flies: Some("bsa"),
+                },
+                Made {
+                    name: "init_factor",
+                    words: "`shape`: SW_TRIANGULAR, SW_HANN or SW_GAUSSIAN; `sum`: of its taps; `factor`: multiplicative, above 0 and below 4; `shift`: what is taken off the samples, at most their minimum.",
+                    arguments: &[
+                        Argument::HANN,
+                        Argument::sample("sum", Flown::Fraction(2.0)),
+                        Argument::number("factor", "f32", 0.92),
+                        Argument::SHIFT,
+                    ],
+                    value: "rate::Bsa::try_multiplicative(rate::Taps::try_shaped(shape, rate::Scale::Sum(sum))?, factor)?.try_with_shift(shift)",
+                    flies: Some("bsa-mul"),
+                },
+            ],
+        },
+        InC {
+            name: "bsa_toolbox",
+            scheme: "rate::BsaToolbox<S, {0}>",
+            shapes: &[&[9]],
+            made: &[
+                Made {
+                    name: "init",
+                    words: "`taps`: of the filter; `factor`: above 0 and below 4; `shift`: what is taken off the samples, at most their minimum.",
+                    arguments: &[Argument::TAPS, Argument::new("factor", "f32"), Argument::SHIFT],
+                    value: "rate::BsaToolbox::try_new(rate::Taps::try_new(taps)?, factor)?.try_with_shift(shift)",
+                    flies: None,
+                },
+                Made {
+                    name: "init_peak",
+                    words: "`shape`: SW_TRIANGULAR, SW_HANN or SW_GAUSSIAN; `peak`: its largest tap; `factor`: above 0 and below 4; `shift`: what is taken off the samples, at most their minimum.",
+                    arguments: &[
+                        Argument::TRIANGULAR,
+                        Argument::sample("peak", Flown::Fraction(0.2)),
+                        Argument::number("factor", "f32", 1.15),
+                        Argument::SHIFT,
+                    ],
+                    value: "rate::BsaToolbox::try_new(rate::Taps::try_shaped(shape, rate::Scale::Peak(peak))?, factor)?.try_with_shift(shift)",
+                    flies: Some("bsa-toolbox"),
+                },
+            ],
+        },
+    ];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         published(channel, visitor)?;

@@ -6,7 +6,9 @@ use spikewire::Start;
 use spikewire::timing::{Burst, BurstSpikes};
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Search, Unit};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Parameter, Scaled, Search, Unit,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -61,6 +63,25 @@ impl Entry for Scheme {
             Parameter::MAX,
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "burst",
+        scheme: "timing::Burst<S, {0}>",
+        shapes: &[&[19]],
+        made: &[Made {
+            name: "init",
+            words: "`min`, `max`: the range, which must rise. `spikes`: most of a sample, above 0; `shortest`, `longest`: their intervals in slots.",
+            arguments: &[
+                Argument::MIN,
+                Argument::MAX,
+                Argument::number("spikes", "u8", 5.0),
+                Argument::number("shortest", "u8", 2.0),
+                Argument::number("longest", "u8", 10.0),
+            ],
+            value: "timing::Burst::try_new(min..=max, spikes, shortest..=longest)",
+            flies: Some("burst"),
+        }],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = Burst::<_, SLOTS>::try_new(channel.min..=channel.max, 5, 2..=10)?;

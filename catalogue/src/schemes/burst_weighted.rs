@@ -7,7 +7,10 @@ use spikewire::{Spike, Start};
 
 use crate::entry::spike_of;
 use crate::plain::{self, Plain};
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Kind, Made, Paper, Parameter,
+    Scaled, Search, Unit,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -56,6 +59,25 @@ impl Entry for Scheme {
             Parameter::POWER,
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "weighted_burst",
+        scheme: "rate::WeightedBurst<S, rate::Average>",
+        shapes: &[&[]],
+        made: &[Made {
+            name: "init",
+            words: "`min`, `max`: the range, which must rise. `weight`: of a burst's first spike; `doublings`: of the weight, 0 to 14; `power`: the decoder's average is over about 2^power samples, 1 to 15.",
+            arguments: &[
+                Argument::MIN,
+                Argument::MAX,
+                Argument::sample("weight", Flown::Fraction(0.14)),
+                Argument::number("doublings", "u8", 3.0),
+                Argument::number("power", "u8", 4.0),
+            ],
+            value: "rate::WeightedBurst::try_new(min..=max, weight, doublings, rate::Average::try_new(power)?)",
+            flies: Some("burst-weighted"),
+        }],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let (range, unit) = (channel.min..=channel.max, channel.fraction(0.14));

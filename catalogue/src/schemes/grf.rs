@@ -6,7 +6,7 @@ use spikewire::Start;
 use spikewire::population::Gaussian;
 
 use crate::plain::{Plain, response};
-use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
+use crate::{Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {
@@ -33,6 +33,19 @@ impl Entry for Scheme {
         colour: [0xd9, 0x88, 0x80],
         parameters: &[Parameter::neurons("20"), Parameter::MIN, Parameter::MAX],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "gaussian",
+        scheme: "population::Gaussian<S, {0}>",
+        shapes: &[&[20]],
+        made: &[Made {
+            name: "init",
+            words: "`min`, `max`: the range, which must rise.",
+            arguments: &[Argument::MIN, Argument::MAX],
+            value: "population::Gaussian::try_linear(min..=max)",
+            flies: Some("grf"),
+        }],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = Gaussian::<_, 20>::try_linear(channel.min..=channel.max)?;

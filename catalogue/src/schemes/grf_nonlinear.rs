@@ -6,7 +6,9 @@ use spikewire::population::Gaussian;
 use spikewire::{Sample, Start};
 
 use crate::plain::{Plain, response, spaced_widths};
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Search, Unit};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Parameter, Scaled, Search, Unit,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -71,6 +73,32 @@ impl Entry for Scheme {
             Parameter::MAX,
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "non_linear_gaussian",
+        scheme: "population::Gaussian<S, {0}>",
+        shapes: &[&[20]],
+        made: &[
+            Made {
+                name: "init",
+                words: "`centres`: of the neurons, rising; `widths`: of their fields, in the samples' unit, above 0.",
+                arguments: &[Argument::CENTRES, Argument::new("widths", "[f32; {0}]")],
+                value: "population::Gaussian::try_with_widths(centres, widths)",
+                flies: None,
+            },
+            Made {
+                name: "init_companded",
+                words: "`min`, `max`: the range, which must rise. `companding`: how much denser the centres are in the middle, above 0.",
+                arguments: &[
+                    Argument::MIN,
+                    Argument::MAX,
+                    Argument::number("companding", "f32", 5.0),
+                ],
+                value: "population::Gaussian::try_companded(min..=max, companding)",
+                flies: Some("grf-nonlinear"),
+            },
+        ],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = Gaussian::<_, 20>::try_companded(channel.min..=channel.max, 5.0)?;

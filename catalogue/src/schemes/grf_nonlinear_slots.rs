@@ -6,7 +6,10 @@ use spikewire::{Sample, Start};
 use super::grf_nonlinear::{CENTRES, COMPANDING, WIDTHS};
 use super::grf_slots::transcribed_decoder;
 use crate::plain::{Plain, response, spaced_widths};
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Paper, Parameter, Scaled,
+    Search, Unit,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -57,6 +60,38 @@ impl Entry for Scheme {
             .searched(Search::Whole(1, 2)),
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "non_linear_slots",
+        scheme: "population::NonLinearSlots<S, {0}, {1}>",
+        shapes: &[&[15, 10]],
+        made: &[
+            Made {
+                name: "init",
+                words: "`centres`: of the neurons, rising; `widths`: of their fields, in the samples' unit, above 0; `floor`: neurons below this level of the slots are silent, 1 or more.",
+                arguments: &[
+                    Argument::CENTRES,
+                    Argument::new("widths", "[f32; {0}]"),
+                    Argument::new("floor", "u16"),
+                ],
+                value: "population::NonLinearSlots::try_new(centres, widths)?.try_with_floor(floor)",
+                flies: None,
+            },
+            Made {
+                name: "init_companded",
+                words: "`min`, `max`: the range, which must rise. `companding`: how much denser the centres are in the middle, above 0; `beta`: the fields' width is their distance divided by it; `floor`: neurons below this level of the slots are silent, 1 or more.",
+                arguments: &[
+                    Argument::MIN,
+                    Argument::MAX,
+                    Argument::number("companding", "f32", 5.0),
+                    Argument::number("beta", "f32", 1.5),
+                    Argument::number("floor", "u16", 1.0),
+                ],
+                value: "population::NonLinearSlots::try_companded(min..=max, companding, beta)?.try_with_floor(floor)",
+                flies: Some("grf-nonlinear-slots"),
+            },
+        ],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let range = channel.min..=channel.max;

@@ -7,7 +7,7 @@ use rand_pcg::rand_core::Rng;
 use spikewire::population::{FiredNeurons, Probabilistic};
 
 use crate::plain::{Plain, response};
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, InC, Info, Kind, Parameter, Scaled, Unit};
 
 #[cfg(feature = "run")]
 use {
@@ -43,6 +43,8 @@ impl Entry for Scheme {
                 .with_default("0"),
         ],
     };
+
+    const IN_C: &'static [InC] = &[];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = Probabilistic::<_, Pcg32, 15, 64>::try_new(channel.min..=channel.max, 1.5)?;

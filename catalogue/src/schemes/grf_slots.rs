@@ -6,7 +6,10 @@ use spikewire::Start;
 use spikewire::population::{SlotSpikes, Slots};
 
 use crate::plain::{Plain, response};
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Paper, Parameter, Scaled,
+    Search, Unit,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -50,6 +53,24 @@ impl Entry for Scheme {
             .searched(Search::Whole(1, 2)),
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "slots",
+        scheme: "population::Slots<S, {0}, {1}>",
+        shapes: &[&[15, 10]],
+        made: &[Made {
+            name: "init",
+            words: "`min`, `max`: the range, which must rise. `beta`: the fields' width is their distance divided by it, above 0; `floor`: neurons below this level of the slots are silent, 1 or more.",
+            arguments: &[
+                Argument::MIN,
+                Argument::MAX,
+                Argument::number("beta", "f32", 1.5),
+                Argument::number("floor", "u16", 1.0),
+            ],
+            value: "population::Slots::try_new(min..=max, beta)?.try_with_floor(floor)",
+            flies: Some("grf-slots"),
+        }],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = Slots::<_, 15, 10>::try_new(channel.min..=channel.max, 1.5)?;

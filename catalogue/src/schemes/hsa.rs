@@ -6,7 +6,7 @@ use spikewire::Start;
 use spikewire::rate::{Hough, Scale, Shape, Taps};
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
+use crate::{Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {
@@ -33,6 +33,32 @@ impl Entry for Scheme {
         colour: [0x5b, 0xa8, 0x5a],
         parameters: &[Parameter::filter("triang:15"), Parameter::SHIFT],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "hough",
+        scheme: "rate::Hough<S, {0}>",
+        shapes: &[&[15]],
+        made: &[
+            Made {
+                name: "init",
+                words: "`taps`: of the filter; `shift`: what is taken off the samples, at most their minimum.",
+                arguments: &[Argument::TAPS, Argument::SHIFT],
+                value: "rate::Hough::new(rate::Taps::try_new(taps)?).try_with_shift(shift)",
+                flies: None,
+            },
+            Made {
+                name: "init_peak",
+                words: "`shape`: SW_TRIANGULAR, SW_HANN or SW_GAUSSIAN; `peak`: its largest tap; `shift`: what is taken off the samples, at most their minimum.",
+                arguments: &[
+                    Argument::TRIANGULAR,
+                    Argument::sample("peak", Flown::Fraction(0.1)),
+                    Argument::SHIFT,
+                ],
+                value: "rate::Hough::new(rate::Taps::try_shaped(shape, rate::Scale::Peak(peak))?).try_with_shift(shift)",
+                flies: Some("hsa"),
+            },
+        ],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scale = Scale::Peak(channel.fraction(0.1));

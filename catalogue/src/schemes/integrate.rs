@@ -7,7 +7,10 @@ use spikewire::rate::IntegrateAndFire;
 use spikewire::temporal::Steps;
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Kind, Made, Paper, Parameter,
+    Scaled, Search, Unit,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -59,6 +62,23 @@ impl Entry for Scheme {
         colour: [0x2f, 0x9e, 0x8f],
         parameters: PARAMETERS,
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "integrate_and_fire",
+        scheme: "rate::IntegrateAndFire<S, {0}>",
+        shapes: &[&[8]],
+        made: &[Made {
+            name: "init",
+            words: "`threshold`: what samples add up to at a spike, above 0; `power`: the decoder's mean is over 2^power samples, 1 to 15; `reference`: the value without spikes.",
+            arguments: &[
+                Argument::sample("threshold", Flown::Fraction(0.2)),
+                Argument::number("power", "u8", 3.0),
+                Argument::sample("reference", Flown::Number(0.0)),
+            ],
+            value: "rate::IntegrateAndFire::try_new(threshold, power)?.try_with_reference(reference)",
+            flies: Some("if"),
+        }],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = IntegrateAndFire::<_, 8>::try_new(channel.fraction(0.2), 3)?;

@@ -6,7 +6,9 @@ use spikewire::Start;
 use spikewire::timing::{LatencyPhase, PhaseSpikes};
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Search, Unit};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Parameter, Scaled, Search, Unit,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -69,6 +71,19 @@ impl Entry for Scheme {
             Parameter::MAX,
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "latency_phase",
+        scheme: "timing::LatencyPhase<S, {0}, {1}, {2}>",
+        shapes: &[&[4, 32, 4]],
+        made: &[Made {
+            name: "init",
+            words: "`min`, `max`: the range, which must rise. `spacing`: from one neuron's peaks to the next's, in slots.",
+            arguments: &[Argument::MIN, Argument::MAX, Argument::number("spacing", "u16", 1.0)],
+            value: "timing::LatencyPhase::try_new(min..=max, spacing)",
+            flies: Some("latency-phase"),
+        }],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = Four::try_new(channel.min..=channel.max, 1)?;

@@ -5,7 +5,7 @@ use spikewire::rate::IntegrateAndFire;
 use spikewire::temporal::Steps;
 
 use super::integrate::{PARAMETERS, transcribed, transcribed_decoder};
-use crate::{Channel, Count, Entry, Flight, Info, Scaled};
+use crate::{Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Scaled};
 
 #[cfg(feature = "run")]
 use {
@@ -33,6 +33,23 @@ impl Entry for Scheme {
         colour: [0x3f, 0x7f, 0x93],
         parameters: PARAMETERS,
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "leaky_integrate_and_fire",
+        scheme: "rate::IntegrateAndFire<S, {0}>",
+        shapes: &[&[8]],
+        made: &[Made {
+            name: "init",
+            words: "`threshold`: what samples add up to at a spike, above 0; `power`: mean and leak are over 2^power samples, 1 to 15; `reference`: the value without spikes.",
+            arguments: &[
+                Argument::sample("threshold", Flown::Fraction(0.2)),
+                Argument::number("power", "u8", 3.0),
+                Argument::sample("reference", Flown::Number(0.0)),
+            ],
+            value: "Ok(rate::IntegrateAndFire::try_new(threshold, power)?.try_with_reference(reference)?.leaky())",
+            flies: Some("lif"),
+        }],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = IntegrateAndFire::<_, 8>::try_new(channel.fraction(0.2), 3)?.leaky();

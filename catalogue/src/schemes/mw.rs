@@ -6,7 +6,10 @@ use spikewire::Start;
 use spikewire::temporal::MovingWindow;
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Kind, Made, Paper, Parameter,
+    Scaled, Search, Unit,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -48,6 +51,19 @@ impl Entry for Scheme {
             Parameter::START,
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "moving_window",
+        scheme: "temporal::MovingWindow<S, {0}>",
+        shapes: &[&[6]],
+        made: &[Made {
+            name: "init",
+            words: "`threshold`: what the distance from the window's mean must exceed, above 0.",
+            arguments: &[Argument::sample("threshold", Flown::Fraction(0.02))],
+            value: "temporal::MovingWindow::try_new(threshold)",
+            flies: Some("mw"),
+        }],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = MovingWindow::<_, 6>::try_new(channel.fraction(0.02))?;

@@ -6,7 +6,9 @@ use spikewire::Start;
 use spikewire::population::{Neuron, Position};
 
 use crate::plain::{self, Plain, magnitude};
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Search, Unit};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Parameter, Scaled, Search, Unit,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -48,6 +50,35 @@ impl Entry for Scheme {
             Parameter::MAX,
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "position",
+        scheme: "population::Position<S, {0}>",
+        shapes: &[&[20]],
+        made: &[
+            Made {
+                name: "init",
+                words: "`centres`: of the neurons, rising.",
+                arguments: &[Argument::CENTRES],
+                value: "population::Position::try_new(centres)",
+                flies: None,
+            },
+            Made {
+                name: "init_linear",
+                words: "`min`, `max`: the range, which must rise. The centres are evenly spaced.",
+                arguments: &[Argument::MIN, Argument::MAX],
+                value: "population::Position::try_linear(min..=max)",
+                flies: Some("position"),
+            },
+            Made {
+                name: "init_gaussian",
+                words: "`min`, `max`: the range, which must rise. The centres are dense in the middle.",
+                arguments: &[Argument::MIN, Argument::MAX],
+                value: "population::Position::try_gaussian_spaced(min..=max)",
+                flies: Some("position-gauss"),
+            },
+        ],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         linear(channel, visitor)?;

@@ -6,7 +6,10 @@ use spikewire::Start;
 use spikewire::population::{RankOrder, SlotSpikes};
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Paper, Parameter, Scaled,
+    Search, Unit,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -56,6 +59,28 @@ impl Entry for Scheme {
             .searched(Search::Whole(1, 16)),
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "rank_order",
+        scheme: "population::RankOrder<S, {0}, {1}>",
+        shapes: &[&[15, 3]],
+        made: &[
+            Made {
+                name: "init",
+                words: "`centres`: of the neurons, rising.",
+                arguments: &[Argument::CENTRES],
+                value: "population::RankOrder::try_new(centres)",
+                flies: None,
+            },
+            Made {
+                name: "init_linear",
+                words: "`min`, `max`: the range, which must rise. The centres are evenly spaced.",
+                arguments: &[Argument::MIN, Argument::MAX],
+                value: "population::RankOrder::try_linear(min..=max)",
+                flies: Some("rank-order"),
+            },
+        ],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = RankOrder::<_, 15, 3>::try_linear(channel.min..=channel.max)?;

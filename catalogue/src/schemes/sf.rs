@@ -6,7 +6,7 @@ use spikewire::Start;
 use spikewire::temporal::StepForward;
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
+use crate::{Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {
@@ -39,6 +39,19 @@ impl Entry for Scheme {
             Parameter::START,
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "step_forward",
+        scheme: "temporal::StepForward<S>",
+        shapes: &[&[]],
+        made: &[Made {
+            name: "init",
+            words: "`threshold`: what the distance from the baseline must exceed, above 0.",
+            arguments: &[Argument::sample("threshold", Flown::Fraction(0.02))],
+            value: "temporal::StepForward::try_new(threshold)",
+            flies: Some("sf"),
+        }],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = StepForward::try_new(channel.fraction(0.02))?;

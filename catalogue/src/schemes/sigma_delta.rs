@@ -7,7 +7,7 @@ use spikewire::{Spike, Start};
 
 use crate::entry::spike_of;
 use crate::plain::{self, Plain};
-use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
+use crate::{Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {
@@ -34,6 +34,33 @@ impl Entry for Scheme {
         colour: [0x6d, 0x6a, 0xb5],
         parameters: &[Parameter::MIN, Parameter::MAX, Parameter::MEAN, Parameter::POWER],
     };
+
+    const IN_C: &'static [InC] = &[
+        InC {
+            name: "sigma_delta",
+            scheme: "rate::SigmaDelta<S, rate::Average>",
+            shapes: &[&[]],
+            made: &[Made {
+                name: "init",
+                words: "`min`, `max`: the range, which must rise. `power`: the decoder's average is over about 2^power samples, 1 to 15.",
+                arguments: &[Argument::MIN, Argument::MAX, Argument::number("power", "u8", 4.0)],
+                value: "rate::SigmaDelta::try_new(min..=max, rate::Average::try_new(power)?)",
+                flies: Some("sigma-delta"),
+            }],
+        },
+        InC {
+            name: "sigma_delta_window",
+            scheme: "rate::SigmaDelta<S, rate::Window<{0}>>",
+            shapes: &[&[2]],
+            made: &[Made {
+                name: "init",
+                words: "`min`, `max`: the range, which must rise. `power`: the decoder's mean is over 2^power samples, at most 32 a word.",
+                arguments: &[Argument::MIN, Argument::MAX, Argument::number("power", "u8", 6.0)],
+                value: "rate::SigmaDelta::try_new(min..=max, rate::Window::try_new(power)?)",
+                flies: Some("sigma-delta-window"),
+            }],
+        },
+    ];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let (range, average) = (channel.min..=channel.max, const { Average::new(4) });

@@ -6,7 +6,7 @@ use spikewire::Start;
 use spikewire::temporal::{SendOnDelta, Steps};
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled};
+use crate::{Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {
@@ -42,6 +42,19 @@ impl Entry for Scheme {
             Parameter::START,
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "send_on_delta",
+        scheme: "temporal::SendOnDelta<S, {0}>",
+        shapes: &[&[4]],
+        made: &[Made {
+            name: "init",
+            words: "`threshold`: of a spike, above 0.",
+            arguments: &[Argument::sample("threshold", Flown::Fraction(0.02))],
+            value: "temporal::SendOnDelta::try_new(threshold)",
+            flies: Some("sod"),
+        }],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = SendOnDelta::<_, 4>::try_new(channel.fraction(0.02))?;

@@ -6,7 +6,9 @@ use spikewire::Start;
 use spikewire::rate::{Scale, Shape, Taps, ThresholdHough};
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Parameter, Scaled, Search};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Parameter, Scaled, Search,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -42,6 +44,33 @@ impl Entry for Scheme {
             .of_encoder(),
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "threshold_hough",
+        scheme: "rate::ThresholdHough<S, {0}>",
+        shapes: &[&[15]],
+        made: &[
+            Made {
+                name: "init",
+                words: "`taps`: of the filter; `threshold`: by how much the signal may fall short of it in all, 0 or more; `shift`: what is taken off the samples, at most their minimum.",
+                arguments: &[Argument::TAPS, Argument::new("threshold", "S"), Argument::SHIFT],
+                value: "rate::ThresholdHough::try_new(rate::Taps::try_new(taps)?, threshold)?.try_with_shift(shift)",
+                flies: None,
+            },
+            Made {
+                name: "init_peak",
+                words: "`shape`: SW_TRIANGULAR, SW_HANN or SW_GAUSSIAN; `peak`: its largest tap; `threshold`: by how much the signal may fall short of it in all; `shift`: what is taken off the samples, at most their minimum.",
+                arguments: &[
+                    Argument::TRIANGULAR,
+                    Argument::sample("peak", Flown::Fraction(0.1)),
+                    Argument::sample("threshold", Flown::Fraction(0.085)),
+                    Argument::SHIFT,
+                ],
+                value: "rate::ThresholdHough::try_new(rate::Taps::try_shaped(shape, rate::Scale::Peak(peak))?, threshold)?.try_with_shift(shift)",
+                flies: Some("t-hsa"),
+            },
+        ],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scale = Scale::Peak(channel.fraction(0.1));

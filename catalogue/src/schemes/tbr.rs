@@ -6,7 +6,10 @@ use spikewire::Start;
 use spikewire::temporal::TemporalContrast;
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Paper, Parameter, Scaled, Search, Unit};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Kind, Made, Paper, Parameter,
+    Scaled, Search, Unit,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -71,6 +74,35 @@ impl Entry for Scheme {
             Parameter::START,
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "temporal_contrast",
+        scheme: "temporal::TemporalContrast<S>",
+        shapes: &[&[]],
+        made: &[
+            Made {
+                name: "init",
+                words: "`threshold`: what the difference from the sample before must exceed; `step`: what the decoder adds for a spike; both above 0.",
+                arguments: &[Argument::new("threshold", "S"), Argument::new("step", "S")],
+                value: "temporal::TemporalContrast::try_new(threshold)?.try_with_step(step)",
+                flies: None,
+            },
+            Made {
+                name: "init_calibrated",
+                words: "The threshold is the mean of the differences' magnitudes and `factor` of their standard deviations, and the decoder's step.",
+                arguments: &[
+                    Argument {
+                        name: "calibration",
+                        kind: "Calibration<S>",
+                        flown: Flown::Calibration,
+                    },
+                    Argument::number("factor", "f32", 0.5),
+                ],
+                value: "temporal::TemporalContrast::from_magnitudes(&calibration, factor)",
+                flies: Some("tbr"),
+            },
+        ],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = TemporalContrast::from_magnitudes(&channel.calibration, 0.5)?;

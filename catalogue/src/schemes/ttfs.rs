@@ -6,7 +6,9 @@ use spikewire::timing::{FirstSpike, Slot};
 use spikewire::{Scheme as _, Start};
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Search, Unit};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Parameter, Scaled, Search, Unit,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -57,6 +59,35 @@ impl Entry for Scheme {
             Parameter::MAX,
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "first_spike",
+        scheme: "timing::FirstSpike<S, {0}>",
+        shapes: &[&[16]],
+        made: &[
+            Made {
+                name: "init",
+                words: "`min`, `max`: the range, which must rise. `edges`: the lower ends of the slots' values, rising; values below the first have no spike.",
+                arguments: &[Argument::MIN, Argument::MAX, Argument::new("edges", "[S; {0}]")],
+                value: "timing::FirstSpike::try_new(min..=max, edges)",
+                flies: None,
+            },
+            Made {
+                name: "init_linear",
+                words: "`min`, `max`: the range, which must rise. All slots stand for as much of it.",
+                arguments: &[Argument::MIN, Argument::MAX],
+                value: "timing::FirstSpike::try_linear(min..=max)",
+                flies: Some("ttfs"),
+            },
+            Made {
+                name: "init_logarithmic",
+                words: "`min`, `max`: the range, which must rise. `ratio`: of the largest value that has a spike to the smallest, above 1.",
+                arguments: &[Argument::MIN, Argument::MAX, Argument::number("ratio", "f32", 32.0)],
+                value: "timing::FirstSpike::try_logarithmic(min..=max, ratio)",
+                flies: Some("ttfs-log"),
+            },
+        ],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = FirstSpike::<_, 16>::try_linear(channel.min..=channel.max)?;

@@ -6,7 +6,9 @@ use spikewire::Start;
 use spikewire::timing::{PhaseBits, WeightedPhase};
 
 use crate::plain::Plain;
-use crate::{Channel, Count, Entry, Flight, Info, Kind, Parameter, Scaled, Search, Unit};
+use crate::{
+    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Parameter, Scaled, Search, Unit,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -39,6 +41,19 @@ impl Entry for Scheme {
             Parameter::MAX,
         ],
     };
+
+    const IN_C: &'static [InC] = &[InC {
+        name: "weighted_phase",
+        scheme: "timing::WeightedPhase<S, {0}>",
+        shapes: &[&[8]],
+        made: &[Made {
+            name: "init",
+            words: "`min`, `max`: the range, which must rise.",
+            arguments: &[Argument::MIN, Argument::MAX],
+            value: "timing::WeightedPhase::try_new(min..=max)",
+            flies: Some("weighted-phase"),
+        }],
+    }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = WeightedPhase::<_, 8>::try_new(channel.min..=channel.max)?;

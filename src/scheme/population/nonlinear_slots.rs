@@ -268,7 +268,8 @@ pub(super) const fn reach<S: Sample>(
     reaches: &mut [u32],
 ) {
     let mut i = 0;
-    while i < scales.len() && i < reaches.len() && level <= radii.len() {
+    // Levels count from 1; the compiler cannot tell that a floor does.
+    while i < scales.len() && i < reaches.len() && level >= 1 && level <= radii.len() {
         reaches[i] = within_widths::<S>(radii[radii.len() - level], scales[i]);
         i += 1;
     }

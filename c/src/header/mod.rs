@@ -1,0 +1,205 @@
+//! Writes the header. Not by cbindgen: the functions come out of a macro, which it does not expand without a nightly
+//! compiler, and sizes it does not know at all.
+
+use std::fmt::Write;
+
+use spikewire::link::{MAX_FRAME, Transmitter};
+
+use crate::argument::{CSample, Declared, Number};
+use crate::calibration::Calibrating;
+use crate::describe::{Constructor, Description, Layout};
+use crate::link::CReader;
+use crate::{Kept, Queue, Status};
+
+/// Bytes of a reader's storage on any machine.
+const READER: usize = 400;
+const _: () = assert!(size_of::<Kept<CReader>>() <= READER);
+const _: () = assert!(size_of::<Kept<Queue>>() == 6 * size_of::<usize>());
+
+/// What all codecs share: `spikewire.h`.
+pub fn core() -> String {
+    let writer = Layout::of::<Kept<Transmitter>>();
+    let calibrations = [
+        calibration::<f32>(),
+        calibration::<i16>(),
+        calibration::<fixed::types::I8F8>(),
+        calibration::<fixed::types::I16F16>(),
+    ];
+    include_str!("core.h")
+        .replace("@STATUSES@", &statuses())
+        .replace("@MAX_FRAME@", &MAX_FRAME.to_string())
+        .replace("@WRITER_SIZE@", &writer.size.to_string())
+        .replace("@WRITER_ALIGN@", &writer.align.to_string())
+        .replace("@WRITER_BITS@", &(8 * writer.align).to_string())
+        .replace("@READER_SIZE@", &READER.to_string())
+        .replace("@CALIBRATIONS@", &calibrations.concat())
+}
+
+fn statuses() -> String {
+    let line = |(name, number, text): &(&str, i32, &std::ffi::CStr)| {
+        format!("#define SW_{name} ((sw_status){number}) /* {} */\n", text.to_string_lossy())
+    };
+    Status::ALL.iter().map(line).collect()
+}
+
+fn calibration<S: CSample>() -> String {
+    let (suffix, sample) = (S::SUFFIX, <S as Number>::TYPE);
+    let Layout { size, align } = Layout::of::<Calibrating<S>>();
+    let (bits, upper) = (8 * align, suffix.to_uppercase());
+    format!(
+        "#define SW_CALIBRATION_{upper}_SIZE {size}u\n\
+         typedef struct sw_calibration_{suffix} {{\n    \
+             uint{bits}_t storage[SW_CALIBRATION_{upper}_SIZE / {align}u];\n\
+         }} sw_calibration_{suffix};\n\
+         sw_status sw_calibration_{suffix}_init(sw_calibration_{suffix} *calibration);\n\
+         sw_status sw_calibration_{suffix}_observe(sw_calibration_{suffix} *calibration, const {sample} *samples, size_t count);\n\
+         sw_status sw_calibration_{suffix}_range(const sw_calibration_{suffix} *calibration, {sample} *min, {sample} *max);\n\
+         sw_status sw_calibration_{suffix}_threshold(const sw_calibration_{suffix} *calibration, float factor, uint8_t of_magnitudes, {sample} *threshold);\n\
+         sw_status sw_calibration_{suffix}_counts(const sw_calibration_{suffix} *calibration, sw_calibration_counts *counts);\n\n"
+    )
+}
+
+/// A header of codecs, by its name without the ending.
+pub fn file(name: &str, codecs: &[Description]) -> String {
+    let guard = format!("SPIKEWIRE_{}_H", name.to_uppercase());
+    let codecs: String = codecs.iter().map(codec).collect();
+    format!(
+        "/* Written from the catalogue of spikewire; spikewire.h says what the functions do. */\n\
+         #ifndef {guard}\n#define {guard}\n\n#include \"spikewire.h\"\n\n\
+         #if defined(__cplusplus)\nextern \"C\" {{\n#endif\n\n\
+         {codecs}\
+         #if defined(__cplusplus)\n}}\n#endif\n\n#endif\n"
+    )
+}
+
+/// A header that includes others of its directory.
+pub fn all<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let includes: String = names.map(|name| format!("#include \"{name}.h\"\n")).collect();
+    format!(
+        "/* Every codec. */\n#ifndef SPIKEWIRE_ALL_H\n#define SPIKEWIRE_ALL_H\n\n{includes}\n#endif\n"
+    )
+}
+
+/// A struct that holds storage of this layout, and the macro of its size.
+fn storage(name: &str, pointer: &str, size: &str, layout: Layout) -> String {
+    let Layout { size: bytes, align } = layout;
+    let bits = 8 * align;
+    format!(
+        "#define {size} {bytes}u\n\
+         typedef struct {name} {{\n{pointer}    uint{bits}_t storage[{size} / {align}u];\n}} {name};\n"
+    )
+}
+
+/// The declarations of a codec.
+fn codec(codec: &Description) -> String {
+    let Description { name, sample, latency, neurons, slots, .. } = codec;
+    let upper = name.to_uppercase();
+    let mut text = format!("/* {}\n", codec.words.join("\n *").trim());
+    let _ = write!(
+        text,
+        " *\n * Latency: {latency} samples. Neurons of a channel: {neurons}. Sub-timesteps of a sample: {slots}. */\n\
+         #define SW_{upper}_LATENCY {latency}u\n\
+         #define SW_{upper}_NEURONS {neurons}u\n\
+         #define SW_{upper}_SLOTS {slots}u\n"
+    );
+    let pointer = format!("    const struct sw_{name} *codec;\n");
+    text += &storage(&format!("sw_{name}"), "", &format!("SW_{upper}_SIZE"), codec.codec);
+    for (part, layout) in [("encoder", codec.encoder), ("decoder", codec.decoder)] {
+        let size = format!("SW_{upper}_{}_STATE_SIZE", part.to_uppercase());
+        text += &storage(&format!("sw_{name}_{part}"), &pointer, &size, layout);
+    }
+    let code = format!("sw_{name}_code");
+    if codec.is_byte {
+        let _ = writeln!(text, "typedef int8_t {code};");
+    } else {
+        text += &storage(&code, "", &format!("SW_{upper}_CODE_SIZE"), codec.code);
+    }
+    let _ = writeln!(
+        text,
+        "SW_STATIC_ASSERT({name}, sizeof(sw_{name}) == SW_{upper}_SIZE);\n\
+         SW_STATIC_ASSERT({name}_code, sizeof({code}) == {}u);",
+        codec.code.size
+    );
+    if codec.constructors.is_empty() {
+        let _ = writeln!(
+            text,
+            "/* Its parameters, in flash. */\nextern const sw_{name} sw_{name}_codec;"
+        );
+    }
+    for init in codec.constructors {
+        text += &constructor(name, init);
+    }
+    let functions = [
+        format!("encoder_start(sw_{name}_encoder *encoder, const sw_{name} *codec)"),
+        format!("encode(sw_{name}_encoder *encoder, {sample} sample, {code} *code)"),
+        format!(
+            "encode_slice(sw_{name}_encoder *encoder, const {sample} *samples, {code} *codes, size_t count)"
+        ),
+        format!("finish(sw_{name}_encoder *encoder, {code} *code)"),
+        format!("prime(sw_{name}_encoder *encoder, const {sample} *past, size_t count)"),
+        format!("keyframe(const sw_{name}_encoder *encoder, {sample} *value)"),
+        format!("rejected(const sw_{name}_encoder *encoder, uint32_t *count)"),
+        format!("decoder_start(sw_{name}_decoder *decoder, const sw_{name} *codec)"),
+        format!("decode(sw_{name}_decoder *decoder, const {code} *code, {sample} *value)"),
+        format!(
+            "decode_slice(sw_{name}_decoder *decoder, const {code} *codes, {sample} *values, size_t count)"
+        ),
+        format!("held(const sw_{name}_decoder *decoder, {sample} *value)"),
+        format!("resync(sw_{name}_decoder *decoder, {sample} value)"),
+        format!("firings(const {code} *code, sw_firing *firings, size_t capacity, size_t *count)"),
+        format!("assemble(const sw_firing *firings, size_t count, {code} *code)"),
+        format!(
+            "bank(sw_{name}_encoder *encoders, const {sample} *samples, {code} *codes, size_t channels, const sw_stamp *stamp, sw_queue *queue)"
+        ),
+        format!(
+            "keyframes(sw_{name}_encoder *encoders, size_t channels, const sw_stamp *stamp, sw_queue *queue)"
+        ),
+    ];
+    for function in functions {
+        let _ = writeln!(text, "sw_status sw_{name}_{function};");
+    }
+    text + "\n"
+}
+
+fn constructor(name: &str, init: &Constructor) -> String {
+    let mut text = String::new();
+    if !init.words.is_empty() {
+        let _ = writeln!(text, "/* {} */", init.words.join("\n *").trim());
+    }
+    let _ = write!(text, "sw_status sw_{name}_{}(sw_{name} *codec", init.name);
+    for (argument, declared) in init.arguments {
+        let _ = match declared {
+            Declared::Number(kind) => write!(text, ", {kind} {argument}"),
+            Declared::List(kind, length) => write!(text, ", const {kind} {argument}[{length}]"),
+            Declared::Calibration(suffix) => {
+                write!(text, ", const sw_calibration_{suffix} *{argument}")
+            }
+        };
+    }
+    text + ", sw_error *error);\n"
+}
+
+/// Rust that fails to compile for a target on which a size differs from the header's.
+pub fn sizes(codecs: &[Description]) -> String {
+    let mut text = String::from(
+        "//! The header's sizes, checked on each target as it is compiled. Written with the header.\n\n\
+         use crate::codec::Codec;\n\
+         use crate::describe::Layout;\n\
+         use fixed::types::{I8F8, I16F16};\n\
+         use spikewire::{Scheme, population, rate, temporal, timing};\n\n\
+         const fn is<T>(size: usize, align: usize) -> bool {\n    \
+             let own = Layout::of::<T>();\n    own.size == size && own.align == align\n}\n\n\
+         /// Parameters, what an encoder and a decoder keep, and a code.\n\
+         macro_rules! sized {\n    ($($scheme:ty: $codec:tt $encoder:tt $decoder:tt $code:tt;)*) => {\n        $(const _: () = assert!(\n            \
+             is::<Codec<$scheme>> $codec\n                && is::<<$scheme as Scheme>::EncoderState> $encoder\n                && is::<<$scheme as Scheme>::DecoderState> $decoder\n                && is::<<$scheme as Scheme>::Code> $code,\n            \
+             \"the header has another size: cargo xtask c-library --write\"\n        );)*\n    };\n}\n\nsized! {\n",
+    );
+    for codec in codecs {
+        let _ = write!(text, "    {}:", codec.rust);
+        for Layout { size, align } in [codec.codec, codec.encoder, codec.decoder, codec.code] {
+            let _ = write!(text, " ({size}, {align})");
+        }
+        text += ";\n";
+    }
+    text + "}\n"
+}

@@ -1,0 +1,80 @@
+//! C compilers: the host's with its sanitizers, and the distribution's for Cortex-M.
+
+use super::{room, work};
+use crate::{boards::Board, paths, shell};
+use anyhow::{Context, Result};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+/// A warning is an error.
+const STRICT: [&str; 6] = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"];
+
+/// For the host, in one of the languages: the first error of address or of undefined behaviour ends the program.
+pub fn on_host(name: &str, language: &str, archive: &Path, defined: &[&str]) -> Result<PathBuf> {
+    let program = work().join(format!("{name}-{}", language.replace("+", "p")));
+    let mut gcc = shell::command(if language.starts_with("c++") { "g++" } else { "gcc" });
+    gcc.args(["-x", if language.starts_with("c++") { "c++" } else { "c" }]);
+    gcc.arg(format!("-std={language}")).args(STRICT).args(["-O1", "-g"]);
+    gcc.args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]);
+    sources(&mut gcc, name, "host.c", defined);
+    gcc.args(["-x", "none"]).arg(archive).args(["-lpthread", "-ldl", "-lm"]);
+    shell::run(gcc.arg("-o").arg(&program))?;
+    Ok(program)
+}
+
+/// For a board, without any library but this one.
+pub fn for_board(name: &str, board: &Board, archive: &Path, defined: &[&str]) -> Result<PathBuf> {
+    let place = work().join(board.machine);
+    fs::create_dir_all(&place)?;
+    fs::copy(board.map(), place.join("memory.x")).with_context(|| board.machine.to_owned())?;
+    let program = place.join([&[name], defined].concat().join("-"));
+    let mut gcc = shell::command("arm-none-eabi-gcc");
+    gcc.arg(format!("-mcpu={}", board.cpu)).args(["-mthumb", "-std=c99"]).args(STRICT);
+    if board.target.ends_with("hf") {
+        gcc.args(["-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"]);
+    }
+    // Jump tables of the smallest core are calls of the compiler's library.
+    gcc.args([
+        "-Os",
+        "-ffreestanding",
+        "-ffunction-sections",
+        "-fdata-sections",
+        "-fno-jump-tables",
+    ]);
+    gcc.args(["-nostdlib", "-Wl,--gc-sections", "-Wl,--fatal-warnings", "-Wl,-z,noexecstack"]);
+    gcc.arg("-L").arg(&place).arg("-T").arg(room().join("tests/link.ld"));
+    sources(&mut gcc, name, "cortex_m.c", defined);
+    shell::run(gcc.args(["-x", "none"]).arg(archive).arg("-o").arg(&program))?;
+    Ok(program)
+}
+
+/// The test, what it runs on, the header, and the recorded flight.
+fn sources(gcc: &mut Command, name: &str, board: &str, defined: &[&str]) {
+    let tests = room().join("tests");
+    gcc.arg("-I").arg(room().join("include")).arg("-I").arg(&tests);
+    gcc.args(defined.iter().map(|name| format!("-D{name}")));
+    gcc.arg(tests.join(name).with_extension("c")).arg(tests.join(board));
+    if name == "flight" {
+        gcc.arg(format!("-Wa,-I{}", work().display()));
+        gcc.args(["-x", "assembler-with-cpp"]).arg(tests.join("recording.S"));
+    }
+}
+
+/// Puts the recorded flight where the assembler finds it.
+pub fn record() -> Result<()> {
+    fs::create_dir_all(work())?;
+    fs::write(work().join("flight.bin"), flight_data::HEXAROTOR).context("flight.bin")
+}
+
+impl Board {
+    /// Its memory map.
+    fn map(&self) -> PathBuf {
+        match self.machine {
+            "netduinoplus2" => paths::root().join("memory.x"),
+            other => paths::examples().join(format!("board/memory/{other}.x")),
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! The library's tests: C programs on the host and on emulated boards, against what the crate does there.
+
+use super::{archive, compiler, ensure_written, host_archive};
+use crate::{
+    boards::{BOARDS, Board},
+    firmware, qemu, shell,
+};
+use anyhow::{Context, Result, ensure};
+use std::process::Command;
+
+/// The sample types of `flight.c`.
+const SAMPLES: [&str; 4] = ["FLY_f32", "FLY_i16", "FLY_q8_8", "FLY_q16_16"];
+
+/// What is written is what the catalogue says; the host under sanitizers, and one core, do what the crate does.
+pub fn verify() -> Result<()> {
+    let archive = host_archive()?;
+    ensure_written()?;
+    compiler::record()?;
+    for language in ["c99", "c++11"] {
+        let misuse = compiler::on_host("misuse", language, &archive, &[])?;
+        print!("{}", shell::output(&mut Command::new(misuse))?);
+    }
+    let rust = in_rust()?;
+    let flight = compiler::on_host("flight", "c99", &archive, &SAMPLES)?;
+    compare("host", &shell::output(&mut Command::new(flight))?, &rust)?;
+    fly("M4F", &rust)
+}
+
+/// The other cores.
+pub fn cores() -> Result<()> {
+    compiler::record()?;
+    let rust = in_rust()?;
+    BOARDS.iter().filter(|board| board.core != "M4F").try_for_each(|board| fly(board.core, &rust))
+}
+
+/// The flight on an emulated board: a program for each sample type, as the smallest flash has no room for all.
+fn fly(core: &str, rust: &[String]) -> Result<()> {
+    let board: &Board = BOARDS.iter().find(|board| board.core == core).context("no such core")?;
+    let archive = archive(board)?;
+    let misuse = compiler::for_board("misuse", board, &archive, &[])?;
+    print!("{core}: {}", qemu::run(board, &misuse)?);
+    let mut flown = String::new();
+    for sample in SAMPLES {
+        flown += &qemu::run(board, &compiler::for_board("flight", board, &archive, &[sample])?)?;
+    }
+    compare(core, &flown, rust)
+}
+
+/// `sf f32 spikes=2074 hash=…`: what the crate makes of the flight on the host, as C prints it.
+fn in_rust() -> Result<Vec<String>> {
+    let printed = firmware::on_host("flight-log")?;
+    let lines = printed.lines().map(|line| {
+        let is_kept = |word: &&str| !word.starts_with("efficiency=") && !word.starts_with("rmse=");
+        line.split(' ').filter(is_kept).collect::<Vec<_>>().join(" ")
+    });
+    // What draws from a generator is not in C.
+    let is_drawn = |line: &String| line.starts_with("bernoulli ") || line.starts_with("grf-prob ");
+    Ok(lines.filter(|line| !is_drawn(line)).collect())
+}
+
+/// Fails unless both have the very same lines, in any order.
+fn compare(place: &str, flown: &str, rust: &[String]) -> Result<()> {
+    let flown: Vec<&str> = flown.lines().collect();
+    let differing: Vec<String> = rust
+        .iter()
+        .filter(|line| !flown.contains(&line.as_str()))
+        .map(|line| {
+            let label = line.split(" spikes=").next().unwrap_or(line);
+            let own = flown.iter().find(|own| own.starts_with(&format!("{label} ")));
+            format!("Rust: {line}\n  C: {}", own.unwrap_or(&"nothing"))
+        })
+        .collect();
+    ensure!(differing.is_empty(), "{place}: C differs from Rust\n{}", differing.join("\n"));
+    ensure!(
+        flown.len() == rust.len(),
+        "{place}: C flies {} codecs, Rust {}",
+        flown.len(),
+        rust.len()
+    );
+    println!("{place}: C and Rust agree on every bit of {} codecs", rust.len());
+    Ok(())
+}
