@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, bail};
 use same_file::Handle;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
@@ -65,6 +65,20 @@ impl Output {
     /// How many bytes were written.
     pub(crate) fn bytes(&self) -> u64 {
         self.bytes
+    }
+
+    /// Writes again what stands at a place of the file.
+    ///
+    /// # Errors
+    /// It cannot be written, or it went to standard output or a device.
+    pub(crate) fn overwrite(&mut self, place: u64, bytes: &[u8]) -> Result<()> {
+        let Place::Beside(output, _) = &mut self.place else {
+            bail!("its start is written last, so it goes to a file only");
+        };
+        output.seek(SeekFrom::Start(place))?;
+        output.write_all(bytes)?;
+        output.seek(SeekFrom::End(0))?;
+        Ok(())
     }
 
     /// Writes what is left and puts the file in its place.

@@ -23,6 +23,11 @@ impl Timeline {
         }
     }
 
+    /// How many times are known of samples that were not asked for.
+    pub(crate) fn ahead(&self) -> usize {
+        self.ahead.len()
+    }
+
     /// When a sample was, asked for in order.
     pub(crate) fn at(&mut self, sample: u64) -> i64 {
         while let Some(&known) = self.ahead.front().filter(|(known, _)| *known <= sample) {

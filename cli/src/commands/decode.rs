@@ -1,18 +1,18 @@
 //! `spikewire decode`: spikes back to values, in constant memory.
 
 use crate::bank::Bank;
-use crate::input::text;
+use crate::input::{LogKind, log_kind, text};
 use crate::output::Output;
-use crate::spikes::{Header, Item, Reader};
+use crate::spikes::{Header, Item, Messages, Reader, Spikes};
 use crate::timeline::Timeline;
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, bail};
 use catalogue::run::{Event, SampleType};
 use clap::Args;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read, Write};
+use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// Decode a file of spikes, as `encode` writes it, from that file alone.
+/// Decode a file of spikes, as `encode` writes it, from that file alone, or a log of the toolbox's messages.
 ///
 /// Writes `index,value`, with several channels a column for each by its name, and with recorded times
 /// `time_us`: exact where there are events and at gaps, between them evenly spaced.
@@ -22,22 +22,36 @@ Example:
   spikewire encode --scheme sf --threshold 0.1 --column gyro_x flight.csv -o spikes.csv
   spikewire decode spikes.csv -o decoded.csv")]
 pub(crate) struct Decode {
-    /// File of spikes; `-` is standard input
+    /// File of spikes, or ROS bag or MCAP file of them; `-` is a file of spikes on standard input
     #[arg(default_value = "-")]
     spikes: PathBuf,
+    /// Take the whole messages of a log that is cut short or damaged
+    #[arg(long)]
+    accept_cut: bool,
     /// CSV file `index,value` and perhaps `time_us`; standard output unless given
     #[arg(short, long)]
     output: Option<PathBuf>,
 }
+
+const BUFFER: usize = 1 << 18;
 
 /// Runs the command.
 ///
 /// # Errors
 /// The file of spikes or the output are not good.
 pub(crate) fn run(options: &Decode) -> Result<()> {
-    const BUFFER: usize = 1 << 18;
-    let Decode { spikes, output } = options;
-    let (input, name): (Box<dyn Read>, _) = if spikes == Path::new("-") {
+    let Decode { spikes, output, accept_cut } = options;
+    let is_stdin = spikes == Path::new("-");
+    let kind = if is_stdin { None } else { log_kind(spikes)? };
+    let open = || Output::open(output.as_deref(), spikes);
+    if let Some(LogKind::Messages(kind)) = kind {
+        let (log, header) = Messages::open(spikes, kind, *accept_cut)?;
+        return decode(log, &header, &spikes.display().to_string(), open);
+    }
+    if *accept_cut {
+        bail!("{}: a file of spikes takes no --accept-cut", spikes.display());
+    }
+    let (input, name): (Box<dyn Read>, _) = if is_stdin {
         (Box::new(io::stdin()), "standard input".to_owned())
     } else {
         let name = spikes.display().to_string();
@@ -45,16 +59,21 @@ pub(crate) fn run(options: &Decode) -> Result<()> {
         (Box::new(file), name)
     };
     let input = BufReader::with_capacity(BUFFER, text(input, &name)?);
-    decode(input, &name, || Output::open(output.as_deref(), spikes))
+    let (reader, header) = Reader::open(input, &name)?;
+    decode(reader, &header, &name, open)
 }
 
-fn decode(input: impl BufRead, file: &str, open: impl FnOnce() -> Result<Output>) -> Result<()> {
-    /// How many events are taken together.
+fn decode(
+    mut reader: impl Spikes,
+    header: &Header,
+    file: &str,
+    open: impl FnOnce() -> Result<Output>,
+) -> Result<()> {
+    /// How many events or times are taken together.
     const BATCH: usize = 4096;
-    let (mut reader, header) = Reader::open(input, file)?;
     let bank = Bank::new(header.scheme, header.sample, &header.channels)
         .with_context(|| file.to_owned())?;
-    let mut decoding = Decoding::new(bank, &header, reader.is_timed(), open()?)?;
+    let mut decoding = Decoding::new(bank, header, reader.is_timed(), open()?)?;
     let mut events: Vec<Event> = Vec::new();
     loop {
         let decoded = match reader.next()? {
@@ -74,7 +93,11 @@ fn decode(input: impl BufRead, file: &str, open: impl FnOnce() -> Result<Output>
             }
             Item::Time { sample, time } => {
                 decoding.timeline.learn(sample, time);
-                Ok(())
+                if decoding.timeline.ahead() > BATCH {
+                    decoding.advance(sample, &mut events)
+                } else {
+                    Ok(())
+                }
             }
             Item::Rejected { first, count } => {
                 decoding.advance(first, &mut events).and_then(|()| decoding.skip(count))

@@ -5,7 +5,7 @@ use crate::fit::{Fit, rounded};
 use crate::input::{Chunk, Clock, InputOptions, Source};
 use crate::options::Coding;
 use crate::output::Output;
-use crate::spikes::{Header, Summary, Writer, unrecorded};
+use crate::spikes::{Format, Header, Record, Recorder, Summary, Writer, unrecorded};
 use anyhow::{Result, bail};
 use catalogue::run::{Calibrated, Event, Known, SampleType, Settings};
 use clap::Args;
@@ -27,7 +27,7 @@ pub(crate) struct Encode {
     coding: Coding,
     #[command(flatten)]
     input: InputOptions,
-    /// File of spikes; standard output unless given
+    /// File of spikes, of the toolbox's messages if it is called `.bag` (ROS 1) or `.mcap` (ROS 2); standard output unless given
     #[arg(short, long)]
     output: Option<PathBuf>,
 }
@@ -40,6 +40,10 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
     let Encode { coding, input, output } = options;
     let (scheme, sample, parameters) = coding.one()?;
     parameters.check(scheme.info())?;
+    let format = output.as_deref().and_then(Format::of);
+    if format.is_some() && input.is_stdin() {
+        bail!("messages tell the signal's range, which standard input gives only at its end");
+    }
     let calibrated = match scheme.needs_signal(&parameters) {
         None => None,
         Some(what) if input.is_stdin() => bail!(
@@ -82,7 +86,14 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
     let header = Header { scheme, sample, channels, rate, notes };
     let is_timed = !chunk.times.is_empty();
     let output = Output::open(output.as_deref(), &input.input)?;
-    let mut writer = Writer::new(output, &header, is_timed)?;
+    let mut writer: Box<dyn Record> = match format {
+        None => Box::new(Writer::new(output, &header, is_timed)?),
+        Some(format) => {
+            let calibrated = calibrated.map_or_else(|| calibrate(input, sample), Ok)?;
+            let ranges: Vec<_> = calibrated.iter().filter_map(Calibrated::range).collect();
+            Box::new(Recorder::new(output, format, &header, is_timed, &ranges)?)
+        }
+    };
 
     let mut events = Vec::new();
     let mut spikes = vec![0; header.channels.len()];
@@ -95,7 +106,7 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
     let mut finite: u64 = 0;
     while !chunk.is_empty() {
         let steps = clock.observe(&chunk.times);
-        writer.observe(&mut chunk, &steps);
+        writer.observe(&mut chunk, &steps)?;
         for (fit, column) in fits.iter_mut().zip(&chunk.columns) {
             fit.observe(column);
         }

@@ -1,18 +1,22 @@
-//! `spikewire info`: what a flight log holds.
+//! `spikewire info`: what a log holds.
 
-use crate::input::{Clock, Log, above_zero, is_flight_log};
+use crate::input::messages::{Overview, overview};
+use crate::input::{Clock, Log, LogKind, Topic, above_zero, log_kind};
 use anyhow::{Result, bail};
 use clap::Args;
 use std::io::{Write, stdout};
 use std::path::PathBuf;
 
-/// List a flight log's topics with their fields, rates and gaps, and the logger's dropouts.
+/// What is read.
+const KINDS: &str = "there are PX4's ULog, ROS bags and MCAP files";
+
+/// List a log's topics with their fields, rates and gaps, and what its logger missed.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
   spikewire info flight.ulg")]
 pub(crate) struct Info {
-    /// PX4 flight log (`ULog`), also compressed by gzip
+    /// PX4's `ULog`, a ROS bag or an MCAP file, also compressed by gzip
     log: PathBuf,
     /// Report steps in time above this many usual steps
     #[arg(long, default_value_t = 1.5, value_parser = above_zero)]
@@ -27,45 +31,85 @@ pub(crate) struct Info {
 /// # Errors
 /// The log cannot be read.
 pub(crate) fn run(options: &Info) -> Result<()> {
-    if !is_flight_log(&options.log)? {
-        bail!("{}: not a flight log; ULog files start with `ULog`", options.log.display());
-    }
-    let log = Log::read(&options.log, options.accept_cut)?;
-    let topics = log.topics()?;
+    let Info { log, gap, accept_cut } = options;
+    let (topics, notes) = match log_kind(log)? {
+        Some(LogKind::Ulog) => of_ulog(options)?,
+        Some(LogKind::Messages(kind)) => overview(log, kind, *accept_cut, *gap)?,
+        None => bail!("{}: not a log that is known; {KINDS}", log.display()),
+    };
     let mut output = stdout().lock();
-    write!(output, "{}", log.findings)?;
-    for (name, topic) in topics {
-        let (count, times) = (topic.times.len(), &topic.times);
+    for note in notes {
+        writeln!(output, "{note}")?;
+    }
+    for topic in &topics {
+        write(topic, &mut output)?;
+    }
+    Ok(())
+}
+
+/// A PX4 log, which is read as a whole.
+fn of_ulog(options: &Info) -> Result<(Vec<Overview>, Vec<String>)> {
+    let log = Log::read(&options.log, options.accept_cut)?;
+    let overview = |(name, topic): (String, Topic)| {
+        let times = &topic.times;
         let mut clock = Clock::new(times, None, options.gap);
         clock.observe(times);
-        let seconds = times
-            .last()
-            .zip(times.first())
-            .map_or(0.0, |(last, first)| last.saturating_sub(*first) as f64 * 1e-6);
-        match clock.rate() {
-            Some(rate) => writeln!(
+        let end = |time: Option<&i64>| time.copied().unwrap_or_default();
+        Overview {
+            name,
+            kind: String::new(),
+            fields: joined(&topic.fields),
+            texts: topic.texts,
+            unread: None,
+            count: times.len() as u64,
+            span: (end(times.first()), end(times.last())),
+            clock,
+            missing: 0,
+        }
+    };
+    let topics = log.topics()?.into_iter().map(overview).collect();
+    Ok((topics, log.findings.to_string().lines().map(str::to_owned).collect()))
+}
+
+fn write(topic: &Overview, output: &mut impl Write) -> Result<()> {
+    let Overview { name, kind, count, clock, span: (first, last), .. } = topic;
+    let of = if kind.is_empty() { String::new() } else { format!(" of {kind}") };
+    match clock.rate() {
+        Some(rate) => {
+            let seconds = last.saturating_sub(*first) as f64 * 1e-6;
+            writeln!(
                 output,
-                "{name}: {count} samples, {seconds:.3} s, {rate:.2} Hz\n  {clock}"
-            )?,
-            None => writeln!(output, "{name}: {count} samples")?,
+                "{name}: {count} samples{of}, {seconds:.3} s, {rate:.2} Hz\n  {clock}"
+            )?;
         }
-        writeln!(output, "  {}", fields(&topic.fields))?;
-        if !topic.texts.is_empty() {
-            writeln!(output, "  text: {}", topic.texts.join(", "))?;
-        }
+        None => writeln!(output, "{name}: {count} samples{of}")?,
+    }
+    if topic.missing > 0 {
+        writeln!(
+            output,
+            "  {} messages are missing, by the numbers of those there",
+            topic.missing
+        )?;
+    }
+    match &topic.unread {
+        Some(why) => writeln!(output, "  not read: {why}")?,
+        None => writeln!(output, "  {}", topic.fields.join(", "))?,
+    }
+    if !topic.texts.is_empty() {
+        writeln!(output, "  text: {}", topic.texts.join(", "))?;
     }
     Ok(())
 }
 
 /// The fields with arrays joined: `gyro_rad[0..3]`.
-fn fields(names: &[String]) -> String {
+fn joined(names: &[String]) -> Vec<String> {
     let runs = names.chunk_by(|a, b| a.contains('[') && array(a) == array(b));
     let joined = runs.map(|run| match run {
         [one] => one.clone(),
         [first, ..] => format!("{}[0..{}]", array(first), run.len()),
         [] => String::new(),
     });
-    joined.collect::<Vec<_>>().join(", ")
+    joined.collect()
 }
 
 fn array(name: &str) -> &str {

@@ -1,7 +1,8 @@
-//! Recordings: channels of a CSV table or of a flight log, a chunk at a time.
+//! Recordings: channels of a CSV table or of a log, a chunk at a time.
 
 mod clock;
 mod csv;
+pub(crate) mod messages;
 mod names;
 mod text;
 mod time;
@@ -10,7 +11,7 @@ mod ulog;
 pub(crate) use clock::{Clock, Kind, Step};
 pub(crate) use names::near;
 pub(crate) use text::text;
-pub(crate) use ulog::Log;
+pub(crate) use ulog::{Log, Topic};
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -31,7 +32,7 @@ pub(crate) const CHUNK: usize = 8192;
 /// Where samples come from.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InputOptions {
-    /// CSV table with a header, or PX4 flight log (`ULog`), also compressed by gzip; `-` is a CSV table on
+    /// CSV table with a header, also compressed by gzip, or log: PX4's `ULog`, ROS bag, MCAP; `-` is a CSV table on
     /// standard input
     pub input: PathBuf,
     #[command(flatten)]
@@ -52,7 +53,7 @@ pub(crate) struct ChannelOptions {
     /// Column of a CSV table, by name or by number from 1; `encode` takes several
     #[arg(long, help_heading = "Input")]
     pub column: Vec<String>,
-    /// Several columns at once: `gyro_x,gyro_y,gyro_z`, or `all`; of a flight log `TOPIC.FIELD`
+    /// Several columns at once: `gyro_x,gyro_y,gyro_z`, or `all`; of a log `TOPIC.FIELD`
     #[arg(
         long,
         visible_alias = "channel",
@@ -62,7 +63,7 @@ pub(crate) struct ChannelOptions {
     )]
     columns: Vec<String>,
     /// Column that holds the time; found by its name, as Betaflight, `ArduPilot`, PX4, ROS and pandas
-    /// write it, unless given
+    /// write it, unless given. In a ROS log a field such as `header.stamp`; when a message was recorded unless given
     #[arg(long, value_name = "COLUMN", help_heading = "Input")]
     pub time: Option<String>,
     /// Unit of that column; told by its name, such as `time (us)` or `stamp_ns`, or by its values,
@@ -72,10 +73,10 @@ pub(crate) struct ChannelOptions {
     /// What stands between columns: `,` `;` `|` `tab` `space`; found in the header unless given
     #[arg(long, help_heading = "Input")]
     pub delimiter: Option<Delimiter>,
-    /// Topic of a flight log, `:1` after it for its second instance
+    /// Topic of a log; in a PX4 log with `:1` after it for its second instance
     #[arg(long, help_heading = "Input")]
     pub topic: Option<String>,
-    /// Field of that topic, such as `gyro_rad[0]`; `encode` takes several
+    /// Field of that topic, such as `gyro_rad[0]` or `angular_velocity.x`; `encode` takes several
     #[arg(long, help_heading = "Input")]
     pub field: Vec<String>,
     /// Several fields at once: `gyro_rad[0],gyro_rad[1]`
@@ -91,7 +92,7 @@ pub(crate) struct ChannelOptions {
     /// are counted
     #[arg(long, help_heading = "Input")]
     pub skip_non_finite: bool,
-    /// Take the whole messages of a flight log that is cut short or damaged
+    /// Take the whole messages of a log that is cut short or damaged
     #[arg(long, help_heading = "Input")]
     pub accept_cut: bool,
 }
@@ -199,24 +200,29 @@ impl InputOptions {
         let of_tables = [
             ("--column", !self.column.is_empty()),
             ("--columns", !self.columns.is_empty()),
-            ("--time", self.time.is_some()),
-            ("--time-unit", self.time_unit.is_some()),
             ("--delimiter", self.delimiter.is_some()),
             ("--rate", self.rate.is_some()),
         ];
+        let of_times = [("--time", self.time.is_some()), ("--time-unit", self.time_unit.is_some())];
         if self.is_stdin() {
             self.refuse(&of_logs, "a CSV table")?;
             return Ok(Box::new(csv::Table::open(io::stdin(), "standard input", self)?));
         }
-        let name = self.input.display().to_string();
-        let file = File::open(&self.input).with_context(|| format!("{name}: cannot be opened"))?;
-        if is_flight_log(&self.input)? {
+        if let Some(kind) = log_kind(&self.input)? {
             if let Some(named) = self.named_by_topic() {
                 return named.open();
             }
-            self.refuse(&of_tables, "a flight log")?;
-            return Ok(Box::new(ulog::Channel::open(self)?));
+            self.refuse(&of_tables, "a log")?;
+            return Ok(match kind {
+                LogKind::Ulog => {
+                    self.refuse(&of_times, "a flight log")?;
+                    Box::new(ulog::Channel::open(self)?)
+                }
+                LogKind::Messages(kind) => Box::new(messages::Channel::open(self, kind)?),
+            });
         }
+        let name = self.input.display().to_string();
+        let file = File::open(&self.input).with_context(|| format!("{name}: cannot be opened"))?;
         self.refuse(&of_logs, "a CSV table")?;
         Ok(Box::new(csv::Table::open(file, &name, self)?))
     }
@@ -245,7 +251,8 @@ impl InputOptions {
     /// The file cannot be opened.
     pub(crate) fn or_all(&self) -> Result<Self> {
         let mut own = self.clone();
-        if self.columns().next().is_none() && (self.is_stdin() || !is_flight_log(&self.input)?) {
+        if self.columns().next().is_none() && (self.is_stdin() || log_kind(&self.input)?.is_none())
+        {
             own.channel.columns = vec![ALL.to_owned()];
         }
         Ok(own)
@@ -301,11 +308,23 @@ pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Whether a file starts as flight logs do, whatever its name, also when compressed.
-pub(crate) fn is_flight_log(path: &Path) -> Result<bool> {
+/// What kinds of logs there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LogKind {
+    /// PX4's.
+    Ulog,
+    /// Those that are read message by message.
+    Messages(messages::Kind),
+}
+
+/// What kind of log a file is by how it starts, also when compressed; none if it may be a table.
+///
+/// # Errors
+/// It cannot be opened.
+pub(crate) fn log_kind(path: &Path) -> Result<Option<LogKind>> {
     let start = |input: &mut dyn Read| {
         let mut start = Vec::new();
-        input.take(4).read_to_end(&mut start).map(|_| start)
+        input.take(messages::START).read_to_end(&mut start).map(|_| start)
     };
     let mut file =
         File::open(path).with_context(|| format!("{}: cannot be opened", path.display()))?;
@@ -314,5 +333,6 @@ pub(crate) fn is_flight_log(path: &Path) -> Result<bool> {
         let all = Cursor::new(found).chain(file);
         found = start(&mut MultiGzDecoder::new(all)).unwrap_or_default();
     }
-    Ok(found == b"ULog" || path.extension().is_some_and(|extension| extension == "ulg"))
+    let is_ulog = found.starts_with(b"ULog") || path.extension().is_some_and(|own| own == "ulg");
+    Ok(if is_ulog { Some(LogKind::Ulog) } else { messages::kind(&found).map(LogKind::Messages) })
 }

@@ -5,10 +5,58 @@
 //! not finite and gaps in time are told where they occur, and so are the times there, at the first and at
 //! the last sample. The neurons of a second channel are numbered on from those of the first.
 
+mod bag;
 mod header;
+mod mcap;
+mod messages;
 mod reader;
+mod recorder;
+mod spyke;
 mod writer;
 
 pub(crate) use header::{Header, unrecorded};
+pub(crate) use messages::Messages;
 pub(crate) use reader::{Item, Reader};
+pub(crate) use recorder::{Format, Recorder};
 pub(crate) use writer::{Summary, Writer};
+
+use crate::input::{Chunk, Step};
+use crate::output::Output;
+use anyhow::Result;
+use catalogue::run::Event;
+
+/// What comes of spikes and samples, in a file of one kind or another.
+pub(crate) trait Record {
+    /// Takes note of the next samples and keeps the rows that are finite, for the encoder.
+    ///
+    /// # Errors
+    /// The file cannot hold them.
+    fn observe(&mut self, chunk: &mut Chunk, steps: &[Step]) -> Result<()>;
+
+    /// Writes events. The encoder's next ones are of the finite sample `decided` or later.
+    ///
+    /// # Errors
+    /// They cannot be written.
+    fn write(&mut self, events: &mut Vec<Event>, decided: u64) -> Result<()>;
+
+    /// Writes the end and gives back the output.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    fn finish(self: Box<Self>, events: &mut Vec<Event>) -> Result<(Output, Summary)>;
+}
+
+/// Where spikes come from, in the order of samples.
+pub(crate) trait Spikes {
+    /// Whether its events have times.
+    fn is_timed(&self) -> bool;
+
+    /// The next item; the last is [`Item::End`].
+    ///
+    /// # Errors
+    /// What is there makes no sense, or the end is missing.
+    fn next(&mut self) -> Result<Item>;
+
+    /// Where the last item is, for an error.
+    fn place(&self) -> String;
+}

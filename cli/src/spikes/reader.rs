@@ -1,6 +1,6 @@
 //! Reads a file of spikes line by line.
 
-use super::Header;
+use super::{Header, Spikes};
 use anyhow::{Context, Result, anyhow, bail};
 use catalogue::run::Event;
 use spikewire::Polarity;
@@ -121,73 +121,6 @@ impl<R: BufRead> Reader<R> {
         Ok((reader, header))
     }
 
-    /// Whether its events have times.
-    pub(crate) fn is_timed(&self) -> bool {
-        self.columns == 4
-    }
-
-    /// The next item; the last is [`Item::End`].
-    ///
-    /// # Errors
-    /// A line makes no sense, or the end is missing.
-    pub(crate) fn next(&mut self) -> Result<Item> {
-        while self.next_line()? {
-            if self.line.first() != Some(&b'#') {
-                return self.event();
-            }
-            let text = self.text();
-            let note = text.trim_start_matches('#').trim();
-            let (key, value) = note.split_once('=').unwrap_or((note, ""));
-            match key {
-                "samples" => self.samples = Some(self.count(value)?),
-                "events" => self.told_events = Some(self.count(value)?),
-                "time" => {
-                    let (sample, time) = self.pair(value)?;
-                    self.noted = Some((sample, time));
-                    return Ok(Item::Time { sample, time });
-                }
-                "gap" | "backward" => {
-                    let (after, step) = self.pair(value)?;
-                    if let Some((_, time)) = self.noted.filter(|&(sample, _)| sample == after) {
-                        let time = time.saturating_add(step);
-                        return Ok(Item::Time { sample: after.saturating_add(1), time });
-                    }
-                }
-                "rejected" => {
-                    let (first, count) = value.split_once(',').unwrap_or((value, ""));
-                    let (first, count) = (self.count(first)?, self.count(count)?);
-                    self.rises(first)?;
-                    self.previous = first.saturating_add(count);
-                    return Ok(Item::Rejected { first, count });
-                }
-                _ => bail!("{}: `# {key}=` has no meaning among the events", self.place()),
-            }
-        }
-        let (Some(samples), Some(events)) = (self.samples, self.told_events) else {
-            bail!(
-                "{}: ends after line {} without `# samples=` and `# events=`; is it cut short?",
-                self.file,
-                self.number
-            );
-        };
-        if events != self.events {
-            bail!("{}: holds {} events where its end says {events}", self.file, self.events);
-        }
-        if self.events > 0 && self.previous >= samples {
-            bail!(
-                "{}: has an event at sample {} where its end says {samples} samples",
-                self.file,
-                self.previous
-            );
-        }
-        Ok(Item::End { samples })
-    }
-
-    /// The line of the last item, for an error.
-    pub(crate) fn place(&self) -> String {
-        format!("{}: line {}", self.file, self.number)
-    }
-
     /// A sample and a number.
     fn pair(&self, value: &str) -> Result<(u64, i64)> {
         let (sample, number) = value.split_once(',').unwrap_or((value, ""));
@@ -281,6 +214,69 @@ impl<R: BufRead> Reader<R> {
 
     fn text(&self) -> String {
         String::from_utf8_lossy(&self.line).into_owned()
+    }
+}
+
+impl<R: BufRead> Spikes for Reader<R> {
+    fn is_timed(&self) -> bool {
+        self.columns == 4
+    }
+
+    fn next(&mut self) -> Result<Item> {
+        while self.next_line()? {
+            if self.line.first() != Some(&b'#') {
+                return self.event();
+            }
+            let text = self.text();
+            let note = text.trim_start_matches('#').trim();
+            let (key, value) = note.split_once('=').unwrap_or((note, ""));
+            match key {
+                "samples" => self.samples = Some(self.count(value)?),
+                "events" => self.told_events = Some(self.count(value)?),
+                "time" => {
+                    let (sample, time) = self.pair(value)?;
+                    self.noted = Some((sample, time));
+                    return Ok(Item::Time { sample, time });
+                }
+                "gap" | "backward" => {
+                    let (after, step) = self.pair(value)?;
+                    if let Some((_, time)) = self.noted.filter(|&(sample, _)| sample == after) {
+                        let time = time.saturating_add(step);
+                        return Ok(Item::Time { sample: after.saturating_add(1), time });
+                    }
+                }
+                "rejected" => {
+                    let (first, count) = value.split_once(',').unwrap_or((value, ""));
+                    let (first, count) = (self.count(first)?, self.count(count)?);
+                    self.rises(first)?;
+                    self.previous = first.saturating_add(count);
+                    return Ok(Item::Rejected { first, count });
+                }
+                _ => bail!("{}: `# {key}=` has no meaning among the events", self.place()),
+            }
+        }
+        let (Some(samples), Some(events)) = (self.samples, self.told_events) else {
+            bail!(
+                "{}: ends after line {} without `# samples=` and `# events=`; is it cut short?",
+                self.file,
+                self.number
+            );
+        };
+        if events != self.events {
+            bail!("{}: holds {} events where its end says {events}", self.file, self.events);
+        }
+        if self.events > 0 && self.previous >= samples {
+            bail!(
+                "{}: has an event at sample {} where its end says {samples} samples",
+                self.file,
+                self.previous
+            );
+        }
+        Ok(Item::End { samples })
+    }
+
+    fn place(&self) -> String {
+        format!("{}: line {}", self.file, self.number)
     }
 }
 

@@ -1,7 +1,8 @@
 //! Writes a file of spikes while the samples come in.
 
-use super::Header;
+use super::{Header, Record};
 use crate::input::{Chunk, Kind, Step};
+use crate::output::Output;
 use anyhow::Result;
 use catalogue::run::Event;
 use spikewire::Polarity;
@@ -12,8 +13,8 @@ use std::io::Write;
 ///
 /// Encoders see finite samples only and count those; the file counts all. Where an encoder looks ahead
 /// its events come late, and what there is to note of later samples waits for them.
-pub(crate) struct Writer<W> {
-    output: W,
+pub(crate) struct Writer {
+    output: Output,
     slots: u64,
     /// From sample to sample, in µs, as far as it is known.
     period: u64,
@@ -43,12 +44,12 @@ pub(crate) struct Summary {
     pub events: u64,
 }
 
-impl<W: Write> Writer<W> {
+impl Writer {
     /// Writes the header.
     ///
     /// # Errors
     /// It cannot be written.
-    pub(crate) fn new(mut output: W, header: &Header, is_timed: bool) -> Result<Self> {
+    pub(crate) fn new(mut output: Output, header: &Header, is_timed: bool) -> Result<Self> {
         let slots = match header.channels.first() {
             Some(settings) => header.scheme.shape(settings)?.slots,
             None => 1,
@@ -72,8 +73,37 @@ impl<W: Write> Writer<W> {
         })
     }
 
-    /// Takes note of the next samples and keeps the rows that are finite, for the encoder.
-    pub(crate) fn observe(&mut self, chunk: &mut Chunk, steps: &[Step]) {
+    fn note(&mut self, sample: u64, note: String) {
+        self.notes.push_back((sample, note));
+    }
+
+    fn note_time(&mut self, sample: u64, time: i64) {
+        if self.is_timed {
+            self.note(sample, format!("# time={sample},{time}"));
+        }
+    }
+
+    fn end_run(&mut self) {
+        if let Some((first, length)) = self.rejected_run.take() {
+            let last = first + length - 1;
+            self.note_time(last, self.last_time);
+            self.note(last, format!("# rejected={first},{length}"));
+        }
+    }
+
+    /// Adds the notes that belong before this sample.
+    fn write_notes(&mut self, sample: u64) {
+        while self.notes.front().is_some_and(|&(at, _)| at < sample) {
+            if let Some((_, note)) = self.notes.pop_front() {
+                self.line.extend(note.as_bytes());
+                self.line.push(b'\n');
+            }
+        }
+    }
+}
+
+impl Record for Writer {
+    fn observe(&mut self, chunk: &mut Chunk, steps: &[Step]) -> Result<()> {
         let rows = chunk.finite_rows();
         let mut steps = steps.iter().peekable();
         for (place, &is_finite) in rows.iter().enumerate() {
@@ -108,31 +138,10 @@ impl<W: Write> Writer<W> {
         if rows.contains(&false) {
             chunk.columns = chunk.kept(&rows);
         }
+        Ok(())
     }
 
-    fn note(&mut self, sample: u64, note: String) {
-        self.notes.push_back((sample, note));
-    }
-
-    fn note_time(&mut self, sample: u64, time: i64) {
-        if self.is_timed {
-            self.note(sample, format!("# time={sample},{time}"));
-        }
-    }
-
-    fn end_run(&mut self) {
-        if let Some((first, length)) = self.rejected_run.take() {
-            let last = first + length - 1;
-            self.note_time(last, self.last_time);
-            self.note(last, format!("# rejected={first},{length}"));
-        }
-    }
-
-    /// Writes events. The encoder's next ones are of the finite sample `decided` or later.
-    ///
-    /// # Errors
-    /// They cannot be written.
-    pub(crate) fn write(&mut self, events: &mut Vec<Event>, decided: u64) -> Result<()> {
+    fn write(&mut self, events: &mut Vec<Event>, decided: u64) -> Result<()> {
         if self.slots > 1 {
             events.sort_by_key(|event| (event.sample, event.slot));
         }
@@ -164,21 +173,7 @@ impl<W: Write> Writer<W> {
         Ok(())
     }
 
-    /// Adds the notes that belong before this sample.
-    fn write_notes(&mut self, sample: u64) {
-        while self.notes.front().is_some_and(|&(at, _)| at < sample) {
-            if let Some((_, note)) = self.notes.pop_front() {
-                self.line.extend(note.as_bytes());
-                self.line.push(b'\n');
-            }
-        }
-    }
-
-    /// Writes the end and gives back the output.
-    ///
-    /// # Errors
-    /// It cannot be written.
-    pub(crate) fn finish(mut self, events: &mut Vec<Event>) -> Result<(W, Summary)> {
+    fn finish(mut self: Box<Self>, events: &mut Vec<Event>) -> Result<(Output, Summary)> {
         self.end_run();
         let decided = self.first_pending + self.pending.len() as u64;
         if let Some(last) = self.summary.samples.checked_sub(1) {

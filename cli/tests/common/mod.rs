@@ -1,6 +1,8 @@
 //! Running the program.
 #![allow(dead_code, unreachable_pub)]
 
+pub mod logs;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 

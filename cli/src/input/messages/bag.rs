@@ -1,0 +1,308 @@
+//! ROS 1 bags, version 2.0: records of named fields and data, messages in chunks that may be compressed.
+//!
+//! The index is not needed, so bags that were never closed or indexed are read as any other.
+
+use super::bytes::{Bytes, take, u32_from, u64_from, unpack};
+use super::definition::Dialect;
+use super::faults::Faults;
+use super::topic::Topic;
+use super::{Entry, Log};
+use anyhow::{Context, Result, bail};
+use std::collections::HashMap;
+use std::path::Path;
+
+/// What bags of all versions start with.
+pub(super) const START: &[u8] = b"#ROSBAG V";
+/// What those start with that are read.
+const VERSION: &[u8] = b"#ROSBAG V2.0\n";
+
+/// Kinds of records.
+mod op {
+    pub(super) const MESSAGE: u8 = 2;
+    pub(super) const BAG: u8 = 3;
+    pub(super) const INDEX: u8 = 4;
+    pub(super) const CHUNK: u8 = 5;
+    pub(super) const CHUNK_INFO: u8 = 6;
+    pub(super) const CONNECTION: u8 = 7;
+}
+
+/// A bag that is read from its start to its end.
+pub(super) struct Bag {
+    bytes: Bytes,
+    faults: Faults,
+    topics: Vec<Topic>,
+    /// The topic of each connection.
+    connections: HashMap<u32, usize>,
+    /// The chunk that is being read, how far, and where it is in the file.
+    chunk: Vec<u8>,
+    taken: usize,
+    chunk_at: u64,
+    header: Vec<u8>,
+    data: Vec<u8>,
+    /// The message that came last is here, in the chunk or else in the data.
+    message: Message,
+    /// The chunk ends before it should, which was told.
+    is_cut: bool,
+    is_over: bool,
+}
+
+/// Where a message's bytes are.
+enum Message {
+    InChunk(std::ops::Range<usize>),
+    Alone,
+}
+
+/// The fields of a record's header.
+struct Fields<'a>(&'a [u8]);
+
+impl<'a> Fields<'a> {
+    fn get(&self, name: &str) -> Option<&'a [u8]> {
+        let mut left = self.0;
+        while let Some(length) = u32_from(&mut left) {
+            let field = take(&mut left, length.into())?;
+            let equals = field.iter().position(|&byte| byte == b'=')?;
+            if &field[..equals] == name.as_bytes() {
+                return Some(&field[equals + 1..]);
+            }
+        }
+        None
+    }
+
+    fn op(&self) -> Option<u8> {
+        self.get("op")?.first().copied()
+    }
+
+    fn u32(&self, name: &str) -> Option<u32> {
+        u32_from(&mut self.get(name)?)
+    }
+
+    fn u64(&self, name: &str) -> Option<u64> {
+        u64_from(&mut self.get(name)?)
+    }
+
+    fn text(&self, name: &str) -> Option<String> {
+        Some(String::from_utf8_lossy(self.get(name)?).into_owned())
+    }
+
+    /// Seconds and nanoseconds, in ns.
+    fn time(&self, name: &str) -> Option<i64> {
+        let mut field = self.get(name)?;
+        let (seconds, nanoseconds) = (u32_from(&mut field)?, u32_from(&mut field)?);
+        Some(i64::from(seconds) * 1_000_000_000 + i64::from(nanoseconds))
+    }
+}
+
+impl Bag {
+    pub(super) fn open(path: &Path, faults: Faults) -> Result<Self> {
+        let mut bytes = Bytes::open(path)?;
+        let mut start = Vec::new();
+        bytes.take(VERSION.len() as u64, &mut start).with_context(|| faults.file().to_owned())?;
+        if start != VERSION {
+            bail!(
+                "{}: a ROS bag of another version than 2.0; `rosbag fix` or `rosbag migrate` converts it",
+                faults.file()
+            );
+        }
+        Ok(Self {
+            bytes,
+            topics: Vec::new(),
+            connections: HashMap::new(),
+            chunk: Vec::new(),
+            taken: 0,
+            chunk_at: 0,
+            header: Vec::new(),
+            data: Vec::new(),
+            message: Message::Alone,
+            is_cut: false,
+            is_over: false,
+            faults,
+        })
+    }
+
+    /// Reads the next record outside of chunks into `header` and `data`; `None` at the end.
+    fn record(&mut self) -> Result<Option<u64>> {
+        let at = self.bytes.at();
+        self.data.clear();
+        let read = part(&mut self.bytes, &mut self.header)
+            .and_then(|()| part(&mut self.bytes, &mut self.data));
+        let Err(what) = read else { return Ok(Some(at)) };
+        if self.bytes.at() == at {
+            return Ok(None);
+        }
+        self.faults.end(at, what)?;
+        self.is_over = true;
+        // Of a chunk, what is there may hold messages.
+        let is_chunk = Fields(&self.header).op() == Some(op::CHUNK);
+        Ok(is_chunk.then_some(at))
+    }
+
+    /// Takes a record outside of chunks; gives the entry of a message.
+    fn outside(&mut self, at: u64) -> Result<Option<Entry>> {
+        let fields = Fields(&self.header);
+        match fields.op() {
+            Some(op::CHUNK) => {
+                let compression = fields.text("compression").unwrap_or_default();
+                let size = fields.u32("size").unwrap_or_default();
+                let (chunk, fault) = unpack(&compression, &self.data, size.into());
+                (self.chunk, self.taken, self.chunk_at) = (chunk, 0, at);
+                self.is_cut = self.is_over || fault.is_some();
+                if let Some(what) = fault.filter(|_| !self.is_over) {
+                    self.faults.skip(at, what)?;
+                }
+            }
+            Some(op::MESSAGE) => {
+                let (connection, time) = (fields.u32("conn"), fields.time("time"));
+                self.message = Message::Alone;
+                return self.entry(connection, time, at);
+            }
+            Some(op::CONNECTION) => {
+                let connection = connection(&fields, &self.data);
+                self.add(connection, at)?;
+            }
+            Some(op::BAG) => {
+                if fields.u64("index_pos") == Some(0) {
+                    self.faults
+                        .note("the bag has no index: its recorder did not close it".to_owned());
+                }
+            }
+            Some(op::INDEX | op::CHUNK_INFO) => {}
+            Some(other) => self.faults.skip(at, format!("a record of unknown kind {other}"))?,
+            None => self.faults.skip(at, "a record without a kind")?,
+        }
+        Ok(None)
+    }
+
+    /// Goes to the next message of the chunk; `None` at its end.
+    fn inside(&mut self) -> Result<Option<Entry>> {
+        while self.taken < self.chunk.len() {
+            let entry = self.of_chunk()?;
+            if entry.is_some() {
+                return Ok(entry);
+            }
+        }
+        Ok(None)
+    }
+
+    /// Takes the next record of the chunk; gives the entry of a message.
+    fn of_chunk(&mut self) -> Result<Option<Entry>> {
+        let mut left = &self.chunk[self.taken..];
+        let at = self.chunk_at;
+        let record = (|| {
+            let length = u32_from(&mut left)?;
+            let header = take(&mut left, length.into())?;
+            let length = u32_from(&mut left)?;
+            Some((Fields(header), take(&mut left, length.into())?))
+        })();
+        let Some((fields, data)) = record else {
+            let what = format!("the chunk is damaged at its byte {}", self.taken);
+            self.taken = self.chunk.len();
+            if !self.is_cut {
+                self.faults.skip(at, what)?;
+            }
+            return Ok(None);
+        };
+        let end = self.chunk.len() - left.len();
+        match fields.op() {
+            Some(op::MESSAGE) => {
+                let (connection, time) = (fields.u32("conn"), fields.time("time"));
+                self.message = Message::InChunk(end - data.len()..end);
+                self.taken = end;
+                self.entry(connection, time, at)
+            }
+            Some(op::CONNECTION) => {
+                let connection = connection(&fields, data);
+                self.taken = end;
+                self.add(connection, at)?;
+                Ok(None)
+            }
+            _ => {
+                let what = format!("the chunk has no message at its byte {}", self.taken);
+                self.taken = end;
+                self.faults.skip(at, what)?;
+                Ok(None)
+            }
+        }
+    }
+
+    fn entry(
+        &mut self,
+        connection: Option<u32>,
+        time: Option<i64>,
+        at: u64,
+    ) -> Result<Option<Entry>> {
+        let topic = connection.and_then(|connection| self.connections.get(&connection));
+        if let (Some(&topic), Some(time)) = (topic, time) {
+            return Ok(Some(Entry { topic, time, at, sequence: None }));
+        }
+        self.faults.skip(at, "a message without a time or a connection that is known")?;
+        Ok(None)
+    }
+
+    fn add(&mut self, connection: Option<(u32, Topic)>, at: u64) -> Result<()> {
+        let Some((id, topic)) = connection else {
+            return self.faults.skip(at, "a connection without a number or a type");
+        };
+        if !self.connections.contains_key(&id) {
+            let place = topic.place_in(&mut self.topics);
+            self.connections.insert(id, place);
+        }
+        Ok(())
+    }
+}
+
+/// Reads the header or the data of a record, behind its length.
+fn part(bytes: &mut Bytes, part: &mut Vec<u8>) -> Result<(), String> {
+    const CUT: &str = "the bag ends within the record";
+    let mut take = |count| match bytes.take(count, part) {
+        Ok(true) => Ok(u32_from(&mut part.as_slice())),
+        Ok(false) => Err(CUT.to_owned()),
+        Err(error) => Err(error.to_string()),
+    };
+    let length = take(4)?.unwrap_or_default();
+    take(length.into()).map(drop)
+}
+
+/// The number of a connection and its topic.
+fn connection(fields: &Fields<'_>, data: &[u8]) -> Option<(u32, Topic)> {
+    let own = Fields(data);
+    let (id, name, kind) = (fields.u32("conn")?, fields.text("topic")?, own.text("type")?);
+    let text = own.text("message_definition").unwrap_or_default();
+    Some((id, Topic::new(name, kind, Dialect::Ros1, &text)))
+}
+
+impl Log for Bag {
+    fn next(&mut self) -> Result<Option<Entry>> {
+        loop {
+            if let Some(entry) = self.inside()? {
+                return Ok(Some(entry));
+            }
+            if self.is_over {
+                return Ok(None);
+            }
+            match self.record()? {
+                Some(at) => {
+                    let entry = self.outside(at)?;
+                    if entry.is_some() {
+                        return Ok(entry);
+                    }
+                }
+                None => self.is_over = true,
+            }
+        }
+    }
+
+    fn topics(&self) -> &[Topic] {
+        &self.topics
+    }
+
+    fn message(&self) -> &[u8] {
+        match &self.message {
+            Message::InChunk(range) => &self.chunk[range.clone()],
+            Message::Alone => &self.data,
+        }
+    }
+
+    fn faults(&mut self) -> &mut Faults {
+        &mut self.faults
+    }
+}

@@ -1,0 +1,129 @@
+//! The bytes of a log from its start to its end, and where one is among them.
+
+use anyhow::{Context, Result};
+use flate2::read::MultiGzDecoder;
+use ruzstd::decoding::StreamingDecoder;
+use std::fs::File;
+use std::io::{self, BufReader, Cursor, Read};
+use std::path::Path;
+
+/// What files packed by Zstandard start with.
+pub(super) const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
+
+/// The bytes of a file, unpacked if it is packed as a whole.
+pub(super) struct Bytes {
+    input: Box<dyn Read>,
+    at: u64,
+}
+
+impl Bytes {
+    /// # Errors
+    /// There is no such file, or it cannot be unpacked.
+    pub(super) fn open(path: &Path) -> Result<Self> {
+        let file =
+            File::open(path).with_context(|| format!("{}: cannot be opened", path.display()))?;
+        Ok(Self { input: unpacked(file).with_context(|| path.display().to_string())?, at: 0 })
+    }
+
+    /// How many bytes were taken.
+    pub(super) fn at(&self) -> u64 {
+        self.at
+    }
+
+    /// So many bytes, or fewer at the end. What is said to be long takes no memory before it is there.
+    ///
+    /// # Errors
+    /// They cannot be read or unpacked.
+    pub(super) fn take(&mut self, count: u64, bytes: &mut Vec<u8>) -> io::Result<bool> {
+        bytes.clear();
+        let taken = self.input.by_ref().take(count).read_to_end(bytes)?;
+        self.at += taken as u64;
+        Ok(taken as u64 == count)
+    }
+
+    /// Passes over so many bytes; whether they were there.
+    ///
+    /// # Errors
+    /// They cannot be read or unpacked.
+    pub(super) fn pass(&mut self, count: u64) -> io::Result<bool> {
+        let passed = io::copy(&mut self.input.by_ref().take(count), &mut io::sink())?;
+        self.at += passed;
+        Ok(passed == count)
+    }
+}
+
+/// The content of a file, whether packed or not.
+fn unpacked(file: File) -> io::Result<Box<dyn Read>> {
+    const BUFFER: usize = 1 << 18;
+    let mut head = Vec::new();
+    let mut input = BufReader::with_capacity(BUFFER, file);
+    input.by_ref().take(4).read_to_end(&mut head)?;
+    let is_gzip = head.starts_with(&super::super::text::GZIP);
+    let is_zstd = head.starts_with(&ZSTD);
+    let all = Cursor::new(head).chain(input);
+    Ok(if is_gzip {
+        Box::new(BufReader::with_capacity(BUFFER, MultiGzDecoder::new(all)))
+    } else if is_zstd {
+        let decoder = StreamingDecoder::new(all).map_err(io::Error::other)?;
+        Box::new(BufReader::with_capacity(BUFFER, decoder))
+    } else {
+        Box::new(all)
+    })
+}
+
+/// What a compressed part of a log holds: all of it, or else as much as can be unpacked and what is wrong.
+pub(super) fn unpack(how: &str, packed: &[u8], size: u64) -> (Vec<u8>, Option<String>) {
+    let mut bytes = Vec::new();
+    let mut limited =
+        |input: &mut dyn Read| input.take(size.saturating_add(1)).read_to_end(&mut bytes);
+    let read = match how {
+        "" | "none" => limited(&mut &*packed),
+        "lz4" => limited(&mut lz4_flex::frame::FrameDecoder::new(packed)),
+        "bz2" => limited(&mut bzip2::read::BzDecoder::new(packed)),
+        "zstd" => match StreamingDecoder::new(packed) {
+            Ok(mut decoder) => limited(&mut decoder),
+            Err(error) => Err(io::Error::other(error)),
+        },
+        _ => {
+            let what =
+                format!("compression `{how}` is not known; there are none, lz4, bz2 and zstd");
+            return (Vec::new(), Some(what));
+        }
+    };
+    let unpacked = bytes.len() as u64;
+    let fault = match read {
+        Err(error) => Some(format!("{how} cannot be unpacked: {error}")),
+        Ok(_) if unpacked < size => Some(format!("a chunk of {size} bytes unpacks to {unpacked}")),
+        Ok(_) if unpacked > size => Some(format!("a chunk of {size} bytes unpacks to more")),
+        Ok(_) => None,
+    };
+    (bytes, fault)
+}
+
+/// A number of two bytes from the front.
+pub(super) fn u16_from(bytes: &mut &[u8]) -> Option<u16> {
+    let (first, rest) = bytes.split_first_chunk()?;
+    *bytes = rest;
+    Some(u16::from_le_bytes(*first))
+}
+
+/// A number of four bytes from the front.
+pub(super) fn u32_from(bytes: &mut &[u8]) -> Option<u32> {
+    let (first, rest) = bytes.split_first_chunk()?;
+    *bytes = rest;
+    Some(u32::from_le_bytes(*first))
+}
+
+/// A number of eight bytes from the front.
+pub(super) fn u64_from(bytes: &mut &[u8]) -> Option<u64> {
+    let (first, rest) = bytes.split_first_chunk()?;
+    *bytes = rest;
+    Some(u64::from_le_bytes(*first))
+}
+
+/// So many bytes from the front.
+pub(super) fn take<'a>(bytes: &mut &'a [u8], count: u64) -> Option<&'a [u8]> {
+    let (first, rest) = bytes.split_at_checked(usize::try_from(count).ok()?)?;
+    *bytes = rest;
+    Some(first)
+}

@@ -1,0 +1,63 @@
+//! What is wrong with a log, and what is said of it.
+
+use anyhow::{Result, bail};
+use std::fmt::Display;
+
+/// Refuses what is damaged, or counts it if that was accepted.
+#[derive(Debug)]
+pub(super) struct Faults {
+    file: String,
+    is_accepted: bool,
+    skipped: u64,
+    notes: Vec<String>,
+}
+
+impl Faults {
+    pub(super) fn new(file: &str, is_accepted: bool) -> Self {
+        Self { file: file.to_owned(), is_accepted, skipped: 0, notes: Vec::new() }
+    }
+
+    pub(super) fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Something that reading can go on behind.
+    ///
+    /// # Errors
+    /// It was not accepted.
+    pub(super) fn skip(&mut self, at: u64, what: impl Display) -> Result<()> {
+        if !self.is_accepted {
+            bail!("{}: byte {at}: {what}; --accept-cut goes on behind it", self.file);
+        }
+        self.skipped += 1;
+        if self.skipped == 1 {
+            self.notes.push(format!("skipped at byte {at}: {what}"));
+        }
+        Ok(())
+    }
+
+    /// Something that nothing can be read behind.
+    ///
+    /// # Errors
+    /// It was not accepted.
+    pub(super) fn end(&mut self, at: u64, what: impl Display) -> Result<()> {
+        if !self.is_accepted {
+            bail!("{}: byte {at}: {what}; --accept-cut takes what is before", self.file);
+        }
+        self.note(format!("nothing is read from byte {at} on: {what}"));
+        Ok(())
+    }
+
+    /// Something to know.
+    pub(super) fn note(&mut self, note: String) {
+        self.notes.push(note);
+    }
+
+    pub(super) fn notes(&self) -> Vec<String> {
+        let mut notes = self.notes.clone();
+        if self.skipped > 1 {
+            notes.push(format!("{} damaged places were skipped in all", self.skipped));
+        }
+        notes
+    }
+}

@@ -1,0 +1,98 @@
+//! Logs of messages on topics: ROS bags, MCAP files, Betaflight's blackbox.
+//!
+//! Each kind of log gives its messages one after the other, in the order of the file, so that memory does not grow.
+
+mod bag;
+mod bytes;
+mod channel;
+mod definition;
+mod faults;
+#[cfg(test)]
+#[path = "../../../tests/common/logs.rs"]
+mod made;
+mod mcap;
+#[cfg(test)]
+mod mutated;
+mod reading;
+mod topic;
+mod wire;
+
+pub(crate) use channel::Channel;
+pub(crate) use reading::Reading;
+pub(crate) use topic::{Overview, overview};
+
+use anyhow::Result;
+use faults::Faults;
+use std::path::Path;
+use topic::Topic;
+
+/// Which message came, of those of a log.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    /// Its topic's place among the log's.
+    topic: usize,
+    /// When it was recorded, in ns.
+    pub time: i64,
+    /// Where in the file it is, or its chunk.
+    pub at: u64,
+    /// Its number on its topic, where the log counts them.
+    pub sequence: Option<u32>,
+}
+
+/// A log that is read from its start to its end.
+trait Log {
+    /// Goes to the next message.
+    ///
+    /// # Errors
+    /// The log is damaged, and that was not accepted.
+    fn next(&mut self) -> Result<Option<Entry>>;
+
+    /// The topics that came up until now; entries say their places.
+    fn topics(&self) -> &[Topic];
+
+    /// The bytes of the message that came last.
+    fn message(&self) -> &[u8];
+
+    /// What is wrong with it, to add to and to tell; complete at the end.
+    fn faults(&mut self) -> &mut Faults;
+}
+
+/// What kinds of logs there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// A ROS 1 bag.
+    Bag,
+    /// An MCAP file.
+    Mcap,
+}
+
+impl Kind {
+    /// The topic that is meant unless another is named.
+    fn usual_topic(self) -> Option<&'static str> {
+        match self {
+            Self::Bag | Self::Mcap => None,
+        }
+    }
+}
+
+/// So much of a log tells its kind.
+pub(crate) const START: u64 = 32;
+
+/// What kind of log starts like this.
+pub(crate) fn kind(start: &[u8]) -> Option<Kind> {
+    let kinds = [(bag::START, Kind::Bag), (mcap::START, Kind::Mcap)];
+    kinds.into_iter().find(|(own, _)| start.starts_with(own)).map(|(_, kind)| kind)
+}
+
+/// Opens a log.
+///
+/// # Errors
+/// It cannot be opened, or its start is damaged.
+fn open(path: &Path, kind: Kind, accept_cut: bool) -> Result<Box<dyn Log>> {
+    let file = path.display().to_string();
+    let faults = Faults::new(&file, accept_cut);
+    Ok(match kind {
+        Kind::Bag => Box::new(bag::Bag::open(path, faults)?),
+        Kind::Mcap => Box::new(mcap::Mcap::open(path, faults)?),
+    })
+}

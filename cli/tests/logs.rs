@@ -1,0 +1,207 @@
+//! ROS bags and MCAP files, read and written, whole and with faults.
+
+mod common;
+
+use common::logs::{KINDS, Kind, record, wave};
+use common::{file, flight, good, refused, values};
+
+const SCHEME: &str = "encode --scheme sf --threshold 0.1 --topic imu --field rate";
+
+#[test]
+fn every_packing_reads_the_same() {
+    for kind in KINDS {
+        let mut all = kind.packings().iter().map(|how| {
+            let (_directory, path) = file(kind.name(), kind.log(how));
+            let told = good(&format!("info {path}"), "").output;
+            assert!(told.contains("/imu: 100 samples of t/"), "{told}");
+            assert!(told.contains("0.495 s, 200.00 Hz\n  0 gaps above 7.500 ms"), "{told}");
+            assert!(told.contains("rate, few[]\n  text: header.frame_id\n"), "{told}");
+            let spikes = good(&format!("{SCHEME} {path}"), "").output;
+            assert!(spikes.contains("# time=99,1700000000495000\n# samples=100\n"), "{spikes}");
+            spikes
+        });
+        let first = all.next().unwrap();
+        assert!(all.all(|other| other == first), "{kind:?}");
+        // The values came through: decoded, they are within two steps.
+        let decoded = values(&good("decode", &first).output);
+        for (sample, value) in (0..).zip(decoded) {
+            assert!((value - wave(sample)).abs() < 0.2, "{kind:?}: sample {sample}: {value}");
+        }
+    }
+}
+
+#[test]
+fn times_within_messages_are_taken_where_asked_for() {
+    for kind in KINDS {
+        let (_directory, path) = file(kind.name(), kind.log("none"));
+        let spikes = good(&format!("{SCHEME} --time header.stamp {path}"), "").output;
+        assert!(spikes.contains("# time=0,1699999999000000\n"), "{kind:?}: {spikes}");
+        refused(&format!("{SCHEME} --time header.frame_id {path}"), "", &["is text"]);
+    }
+}
+
+#[test]
+fn what_is_not_there_is_said_with_its_place() {
+    for kind in KINDS {
+        let (_directory, path) = file(kind.name(), kind.log("none"));
+        let scheme = "encode --scheme sf --threshold 0.05";
+        for (options, said) in [
+            ("--topic gps --field rate", "no topic `gps`; there are /imu"),
+            ("--topic imu --field rates", "topic /imu has no field `rates`; there are header."),
+            ("--topic imu --field header.frame_id", "is text, not a signal"),
+            (
+                "--topic imu --field header.stamp",
+                "not one number but several; there are header.stamp.sec",
+            ),
+            (
+                "--topic imu --field few[0]",
+                "field few[0]: NaN at 1700000000000000 µs (sample 0) is missing",
+            ),
+            ("--topic imu", "a log needs --topic and --field"),
+            ("--topic imu --field rate --delimiter ;", "a log takes no --delimiter"),
+        ] {
+            refused(&format!("{scheme} {options} {path}"), "", &[said]);
+        }
+        let ran =
+            good(&format!("{scheme} --topic imu --field few[0] --skip-non-finite {path}"), "");
+        assert!(ran.told.contains("50 samples were not finite or missing"), "{}", ran.told);
+    }
+}
+
+#[test]
+fn a_log_that_is_cut_gives_what_is_before_where_that_is_accepted() {
+    for kind in KINDS {
+        for how in kind.packings() {
+            let log = kind.log(how);
+            // Within the third chunk from the end, and not at its start.
+            let chunk = (log.len() - kind.start().len()) / 10;
+            let (_directory, path) = file(kind.name(), &log[..log.len() - 2 * chunk - chunk / 2]);
+            refused(&format!("info {path}"), "", &["byte", "ends within the record; --accept-cut"]);
+            let told = good(&format!("info --accept-cut {path}"), "").output;
+            let count = told.split("/imu: ").nth(1).unwrap().split(' ').next().unwrap();
+            let count: u32 = count.parse().unwrap();
+            assert!((69..80).contains(&count), "{kind:?} {how}: {told}");
+            assert!(told.starts_with("nothing is read from byte"), "{told}");
+            let ran = good(&format!("{SCHEME} --accept-cut {path}"), "");
+            assert!(ran.told.contains("nothing is read from byte"), "{}", ran.told);
+        }
+    }
+}
+
+#[test]
+fn a_damaged_chunk_is_refused_or_passed_over() {
+    for kind in KINDS {
+        for how in kind.packings().iter().filter(|how| !(kind == Kind::Bag && **how == "none")) {
+            let mut log = kind.start();
+            let records: Vec<u8> = (0..10).flat_map(|sample| kind.record(sample)).collect();
+            log.extend(kind.chunk(how, &records));
+            let place = log.len();
+            let mut damaged = kind.chunk(how, &records);
+            let middle = damaged.len() - 40;
+            damaged[middle..middle + 20].fill(0x55);
+            log.extend(damaged);
+            log.extend(kind.chunk(how, &records));
+            log.extend(kind.end());
+            let (_directory, path) = file(kind.name(), &log);
+            refused(&format!("info {path}"), "", &[&format!("byte {place}: ")]);
+            let told = good(&format!("info --accept-cut {path}"), "").output;
+            assert!(
+                told.starts_with(&format!("skipped at byte {place}: ")),
+                "{kind:?} {how}: {told}"
+            );
+        }
+    }
+}
+
+#[test]
+fn logs_without_an_end_or_an_index_are_read() {
+    let mut bag = Kind::Bag.log("none");
+    let place = bag.windows(10).position(|window| window == b"index_pos=").unwrap() + 10;
+    bag[place..place + 8].fill(0);
+    let mut mcap = Kind::Mcap.log("none");
+    mcap.truncate(mcap.len() - Kind::Mcap.end().len());
+    for (kind, log, said) in [(Kind::Bag, bag, "has no index"), (Kind::Mcap, mcap, "has no end")] {
+        let (_directory, path) = file(kind.name(), &log);
+        let told = good(&format!("info {path}"), "").output;
+        assert!(told.contains(said) && told.contains("/imu: 100 samples"), "{told}");
+    }
+}
+
+#[test]
+fn encodings_that_are_not_known_are_named() {
+    let mut log = Kind::Mcap.log("none");
+    let place = log.windows(3).position(|window| window == b"cdr").unwrap();
+    log[place..place + 3].copy_from_slice(b"foo");
+    let (_directory, path) = file("log.mcap", &log);
+    let told = good(&format!("info {path}"), "").output;
+    assert!(told.contains("not read: encoding `foo` with a schema of `ros2msg`"), "{told}");
+    refused(&format!("{SCHEME} {path}"), "", &["encoding `foo` with a schema of `ros2msg`"]);
+    let chunk = record(&[("op", &[5]), ("compression", b"zip"), ("size", &[0; 4])], &[]);
+    let (_directory, path) = file("log.bag", [Kind::Bag.start(), chunk].concat());
+    refused(&format!("info {path}"), "", &["compression `zip` is not known; there are none, lz4"]);
+    let (_directory, path) = file("old.bag", b"#ROSBAG V1.2\nand so on");
+    refused(&format!("info {path}"), "", &["of another version than 2.0"]);
+}
+
+#[test]
+fn gaps_and_missing_messages_are_told() {
+    let mut log = Kind::Bag.start();
+    let samples = (0..50).chain(60..100);
+    log.extend(
+        Kind::Bag.chunk("none", &samples.flat_map(|own| Kind::Bag.record(own)).collect::<Vec<_>>()),
+    );
+    let (_directory, path) = file("log.bag", &log);
+    let told = good(&format!("info {path}"), "").output;
+    assert!(
+        told.contains("1 gaps above 7.500 ms where 5.000 ms are usual: 55.000 ms after sample 49"),
+        "{told}"
+    );
+    assert!(told.contains("  10 messages are missing, by the numbers of those there\n"), "{told}");
+}
+
+#[test]
+fn all_commands_take_logs() {
+    let (directory, path) = file("log.mcap", Kind::Mcap.log("zstd"));
+    let channel = format!("--topic /imu --field rate {path}");
+    let plot = directory.path().join("plot.svg").display().to_string();
+    for command in [
+        format!("score --scheme sf --threshold 0.05 {channel}"),
+        format!("plot --scheme sf --threshold 0.05 {channel} -o {plot}"),
+    ] {
+        good(&command, "");
+    }
+    good(&format!("score --scheme sf --threshold 0.05 --channel /imu.rate {path}"), "");
+}
+
+/// What is decoded from a log is what is decoded from a table of spikes, for one neuron and several, with a sign and
+/// without, with sub-timesteps and with several spikes a sample, for one channel and two.
+#[test]
+fn spikes_as_messages_decode_as_those_of_a_table() {
+    let flight = flight("hexarotor.csv");
+    let directory = tempfile::tempdir().unwrap();
+    let path = |name: &str| directory.path().join(name).display().to_string();
+    for scheme in [
+        "sf --threshold 0.1",
+        "bsa --filter triang:15,peak=2 --threshold 1",
+        "burst",
+        "grf --neurons 5",
+        "grf-slots --neurons 4 --slots 5",
+    ] {
+        for columns in ["gyro_x", "gyro_x,gyro_y"] {
+            let encode = format!("encode --scheme {scheme} --columns {columns} {flight}");
+            let table = good(&encode, "").output;
+            let without_times = |decoded: String| {
+                let lines = decoded.lines().map(|line| line.rsplit_once(',').unwrap().0.to_owned());
+                lines.collect::<Vec<_>>()
+            };
+            let expected = without_times(good("decode", &table).output);
+            for name in ["spikes.bag", "spikes.mcap"] {
+                good(&format!("{encode} -o {}", path(name)), "");
+                let decoded = good(&format!("decode {}", path(name)), "").output;
+                assert!(without_times(decoded) == expected, "{scheme} of {columns} by {name}");
+            }
+        }
+    }
+    let told = good(&format!("info {}", path("spikes.mcap")), "").output;
+    assert!(told.contains("event_1: 3627 samples of spyke_msgs/msg/SpykeArray"), "{told}");
+}
