@@ -28,7 +28,11 @@ struct Way {
 
 /// Sends two channels through a scheme, and compares every value that is called exact with those of decoders
 /// beside the encoders. Says how many were.
-fn run<P>(scheme: &'static P, signal: impl Fn(u32, usize) -> P::Sample, way: Way) -> usize
+fn run<P, const EVENTS: usize>(
+    scheme: &'static P,
+    signal: impl Fn(u32, usize) -> P::Sample,
+    way: Way,
+) -> usize
 where
     P: Start,
     P::Sample: PartialEq,
@@ -40,7 +44,7 @@ where
     let mut bank = Bank::<_, CHANNELS>::new(scheme).with_slot_ticks(way.slot_ticks);
     let mut transmitter = Transmitter::new(Coding::for_channels(8, PERIOD as u16), 1);
     let mut reader = Reader::<MAX_FRAME>::new();
-    let mut receiver = Receiver::<_, CHANNELS>::new(scheme);
+    let mut receiver = Receiver::<_, CHANNELS, EVENTS>::new(scheme);
     if way.slot_ticks > 0 {
         receiver = receiver.with_slot_ticks(way.slot_ticks, start);
     }
@@ -99,7 +103,7 @@ fn wave(sample: u32, channel: usize) -> f32 {
 
 fn check<P: Start<Sample = f32>>(scheme: &'static P, slot_ticks: u32, jitter: u32) {
     for seed in 0..10 {
-        let at = |loss| run(scheme, wave, Way { seed, jitter, loss, slot_ticks });
+        let at = |loss| run::<_, 32>(scheme, wave, Way { seed, jitter, loss, slot_ticks });
         assert!(at(0) > 20, "nearly always exact without losses");
         assert!(at(10) > 5, "and often with them");
     }
@@ -124,6 +128,19 @@ fn population_codes_are_exact_again_at_their_next_spike() {
     check(&POSITION, 0, 0);
     check(&POSITION, 0, 200);
     check(&SLOTS, PERIOD / 50, 0);
+}
+
+/// An event without room belongs to a channel that is not exact until it has recovered.
+#[test]
+fn a_sample_with_more_events_than_there_is_room_for_is_not_exact() {
+    static HOUGH: Hough<f32, 7> = Hough::new(Taps::triangular(0.5));
+    static SLOTS: Slots<f32, 8, 50> = Slots::new(0.0..=2.0, 1.5);
+    for seed in 0..10 {
+        let way = Way { seed, jitter: 0, loss: 0, slot_ticks: 0 };
+        assert!(run::<_, 1>(&HOUGH, wave, way) > 20);
+        let slots = Way { slot_ticks: PERIOD / 50, ..way };
+        assert!(run::<_, 8>(&SLOTS, wave, slots) > 0);
+    }
 }
 
 /// What `advance` does for a value that nothing follows.

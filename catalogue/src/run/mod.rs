@@ -52,8 +52,12 @@ pub trait Visit<S: Sample> {
     /// The visitor's own.
     fn visit<P>(self, scheme: P, start: P::EncoderState) -> Result<Self::Output>
     where
-        P: Scheme<Sample = S, EncoderState: Send + Sync, DecoderState: Send + Sync, Code: Send + Sync>
-            + Send
+        P: Scheme<
+                Sample = S,
+                EncoderState: Send + Sync,
+                DecoderState: Send + Sync,
+                Code: Send + Sync,
+            > + Send
             + Sync
             + 'static;
 

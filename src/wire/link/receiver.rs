@@ -56,6 +56,13 @@ struct Channel<D, S> {
     whole: usize,
 }
 
+impl<D, S> Channel<D, S> {
+    fn mark_stale(&mut self) {
+        self.is_exact = false;
+        self.whole = 0;
+    }
+}
+
 /// The sample that is being received, of codes that take all events of a sample at once.
 #[derive(Clone, Copy, Debug)]
 struct Sampled<const EVENTS: usize> {
@@ -171,10 +178,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
 
     /// Marks every channel as not exact, after a loss that the link cannot see.
     pub fn mark_stale(&mut self) {
-        for channel in &mut self.channels {
-            channel.is_exact = false;
-            channel.whole = 0;
-        }
+        self.channels.iter_mut().for_each(Channel::mark_stale);
         self.sample.is_whole = false;
         self.sample.is_next_whole = false;
     }
@@ -259,6 +263,11 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             } else {
                 self.misfits = self.misfits.saturating_add(1);
                 self.sample.is_whole = false;
+                if let Some(known) =
+                    self.channels.get_mut(address.checked_div(neurons).unwrap_or(0))
+                {
+                    known.mark_stale();
+                }
             }
         }
     }
