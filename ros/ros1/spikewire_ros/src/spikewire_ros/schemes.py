@@ -1,0 +1,23 @@
+"""What schemes are called: by the toolbox, and by spikewire's catalogue."""
+
+# The schemes of the toolbox, by the names that its launch files and messages have.
+_OF_TOOLBOX = {
+    "temporal_contrast": "tbr",
+    "step_forward": "sf",
+    "moving_window": "mw",
+    "bsa": "bsa",
+    "hsa": "hsa",
+    "threshold_hsa": "t-hsa",
+    "gaussian_fields": "grf",
+}
+_BY_TOOLBOX = {name: word for word, name in _OF_TOOLBOX.items()}
+
+
+def of_catalogue(name: str) -> str:
+    """The catalogue's name of a scheme that is called by either name, or by the catalogue's with underscores."""
+    return _OF_TOOLBOX.get(name, name.replace("_", "-"))
+
+
+def published(name: str) -> str:
+    """What messages call a scheme of the catalogue: as the toolbox does where it has the scheme."""
+    return _BY_TOOLBOX.get(name, name)

@@ -1,0 +1,149 @@
+"""What the nodes must make of a recorded flight: the firmware's own spikes and values, and the laptop program's.
+
+The program `demo` is the firmware of `cargo demo`, here built for the host: every scheme of the catalogue as a
+constant, in `f32`, without the catalogue's options and without Python. `cargo verify` compares it with emulated boards.
+"""
+
+import csv
+import struct
+import subprocess
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Dict, List, Tuple
+
+# Neuron, sub-timestep, sign.
+Firing = Tuple[int, int, int]
+
+
+@dataclass
+class Flown:
+    """What became of each sample."""
+
+    firings: List[List[Firing]] = field(default_factory=list)
+    # The bits of an f32.
+    values: List[int] = field(default_factory=list)
+
+
+def f32(value: float) -> float:
+    """The nearest number of 32 bits."""
+    return struct.unpack("f", struct.pack("f", value))[0]
+
+
+def bits(value: float) -> int:
+    """Its bits as an f32."""
+    return struct.unpack("I", struct.pack("f", value))[0]
+
+
+def flight(table: Path) -> Tuple[List[int], List[float]]:
+    """Times in µs and yaw rates in rad/s."""
+    with open(table) as rows:
+        read = [(int(row["time_us"]), f32(float(row["gyro_z"]))) for row in csv.DictReader(rows)]
+    return [time for time, _ in read], [rate for _, rate in read]
+
+
+def schemes(rates: List[float]) -> Dict[str, Dict[str, Any]]:
+    """The nodes' parameters by the names that the firmware has: parts of the signal's range, as its constants are."""
+    low, high = min(rates), max(rates)
+
+    def part(of_range: float) -> float:
+        return f32((high - low) * of_range)
+
+    def ranged(scheme: str, **more: Any) -> Dict[str, Any]:
+        return {"encoding_scheme": scheme, "min": low, "max": high, **more}
+
+    def triangle(taps: int, peak: float) -> str:
+        return f"triang:{taps},peak={part(peak)!r}"
+
+    shift = {"shift": low}
+    all_samples = {"calibrate": len(rates)}
+    return {
+        "tbr": {"encoding_scheme": "temporal_contrast", "factor": 0.5, "magnitudes": True, **all_samples},
+        "atbr": {"encoding_scheme": "atbr", "threshold": part(0.001), "doublings": 5},
+        "mw": {"encoding_scheme": "moving_window", "threshold": part(0.02), "window": 5},
+        "sf": {"encoding_scheme": "step_forward", "threshold": part(0.02)},
+        "sod": {"encoding_scheme": "sod", "threshold": part(0.02), "spikes": 4},
+        "asf": {"encoding_scheme": "asf", "threshold": part(0.02), "doublings": 4},
+        "bsa": {"encoding_scheme": "bsa", "filter": f"hann:24,sum={part(1.0)!r}", "threshold": part(0.955), **shift},
+        "bsa-mul": {
+            "encoding_scheme": "bsa",
+            "filter": f"hann:24,sum={part(2.0)!r}",
+            "criterion": "mul",
+            "threshold": 0.92,
+            **shift,
+        },
+        "bsa-toolbox": {
+            "encoding_scheme": "bsa",
+            "form": "toolbox",
+            "filter": triangle(9, 0.2),
+            "threshold": 1.15,
+            **shift,
+        },
+        "hsa": {"encoding_scheme": "hsa", "filter": triangle(15, 0.1), **shift},
+        "t-hsa": {
+            "encoding_scheme": "threshold_hsa",
+            "filter": triangle(15, 0.1),
+            "threshold": part(0.085),
+            **shift,
+        },
+        "if": {"encoding_scheme": "if", "threshold": part(0.2), "spikes": 8, "power": 3},
+        "lif": {"encoding_scheme": "lif", "threshold": part(0.2), "spikes": 8, "power": 3},
+        "sigma-delta": ranged("sigma-delta"),
+        "sigma-delta-window": ranged("sigma-delta", mean="window", power=6),
+        "bernoulli": ranged("bernoulli", seed=1),
+        "burst-weighted": ranged("burst-weighted", weight=part(0.14)),
+        "position": ranged("position", neurons=20),
+        "position-gauss": ranged("position", neurons=20, centres="gaussian"),
+        "grf": ranged("gaussian_fields", neurons=20),
+        "grf-slots": ranged("grf-slots", neurons=15, slots=10),
+        "grf-prob": ranged("grf-prob", neurons=15, seed=1),
+        "grf-nonlinear": ranged("grf-nonlinear", neurons=20, companding=5),
+        "grf-nonlinear-slots": ranged("grf-nonlinear-slots", neurons=15, slots=10, companding=5),
+        "rank-order": ranged("rank-order", neurons=15, spikes=3),
+        "ttfs": ranged("ttfs"),
+        "ttfs-log": ranged("ttfs", edges="log"),
+        "latency-phase": ranged("latency-phase"),
+        "weighted-phase": ranged("weighted-phase"),
+        "burst": ranged("burst"),
+    }
+
+
+# Those that the firmware starts in another way: with another generator, or a window that is still empty.
+BY_PROGRAM = ("mw", "bernoulli", "grf-prob")
+
+
+def by_firmware(program: Path) -> Dict[str, Flown]:
+    """What the firmware prints: a scheme's name and latency, then a line a sample."""
+    printed = subprocess.run([program], check=True, capture_output=True, text=True).stdout
+    flown: Dict[str, Flown] = {}
+    for line in printed.splitlines():
+        left, right = line.split(" ")
+        if left[:1].isalpha():
+            own = flown[left] = Flown()
+        else:
+            own.firings.append(_firings(left))
+            own.values.append(int(right, 16))
+    return flown
+
+
+def _firings(text: str) -> List[Firing]:
+    """`+3.0-4.1`"""
+    spaced = text.replace("+", " +").replace("-", " -").split()
+    places = [(one[0], *one[1:].split(".")) for one in spaced]
+    return [(int(neuron), int(slot), 1 if sign == "+" else -1) for sign, neuron, slot in places]
+
+
+def by_program(program: Path, table: Path, parameters: Dict[str, Any], slots: int, samples: int) -> Flown:
+    """What the laptop program makes of it."""
+    options = {**parameters, "scheme": {"moving_window": "mw"}.get(parameters["encoding_scheme"], parameters["encoding_scheme"])}
+    del options["encoding_scheme"]
+    given = [f"--{name}={value}" for name, value in options.items()]
+    command = [program, "encode", *given, "--column=gyro_z", table]
+    spikes = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    decoded = subprocess.run([program, "decode"], input=spikes, check=True, capture_output=True, text=True).stdout
+    flown = Flown([[] for _ in range(samples)])
+    rows = csv.DictReader(line for line in spikes.splitlines() if not line.startswith("#"))
+    for row in rows:
+        sample, slot = divmod(int(row["index"]), slots)
+        flown.firings[sample].append((int(row["address"]), slot, int(row["polarity"])))
+    flown.values = [bits(float(row["value"])) for row in csv.DictReader(decoded.splitlines())]
+    return flown
