@@ -230,8 +230,7 @@ class Coding(unittest.TestCase):
     def test_a_signal_too_short_to_start_is_told(self) -> None:
         self.assertEqual(encoded(CONFIGS["gaussian_fields"], self.samples[:99], self.told), [])
         self.assertEqual(self.told.counts, {"samples that came too few to start": 99})
-        self.told.counts.clear()
-        self.assertEqual(encoded(CONFIGS["moving_window"], self.samples[:3], self.told), [])
+        self.assertEqual(len(encoded(CONFIGS["moving_window"], self.samples[:3], self.told)), 3)
 
     def test_messages_of_another_scheme_are_refused_and_counted(self) -> None:
         events = [message(event) for event in encoded(CONFIGS["step_forward"], self.samples, self.told)]

@@ -11,6 +11,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
+import spikewire
+from spikewire_ros.schemes import of_catalogue
+
 # Neuron, sub-timestep, sign.
 Firing = Tuple[int, int, int]
 
@@ -55,9 +58,9 @@ def schemes(rates: List[float]) -> Dict[str, Dict[str, Any]]:
         return f"triang:{taps},peak={part(peak)!r}"
 
     shift = {"shift": low}
-    all_samples = {"calibrate": len(rates)}
+    contrast = spikewire.TemporalContrast(factor=0.5, magnitudes=True).fit(rates).parameters["threshold"]
     return {
-        "tbr": {"encoding_scheme": "temporal_contrast", "factor": 0.5, "magnitudes": True, **all_samples},
+        "tbr": {"encoding_scheme": "temporal_contrast", "threshold": contrast},
         "atbr": {"encoding_scheme": "atbr", "threshold": part(0.001), "doublings": 5},
         "mw": {"encoding_scheme": "moving_window", "threshold": part(0.02), "window": 5},
         "sf": {"encoding_scheme": "step_forward", "threshold": part(0.02)},
@@ -109,6 +112,10 @@ def schemes(rates: List[float]) -> Dict[str, Dict[str, Any]]:
 
 # Those that the firmware starts in another way: with another generator, or a window that is still empty.
 BY_PROGRAM = ("mw", "bernoulli", "grf-prob")
+# Those whose means it starts from the first sample, which neither the program nor the node knows of.
+MEANS_BY_PROGRAM = ("if", "lif", "sigma-delta", "burst-weighted")
+# In samples, where it is not 0.
+LOOK_AHEAD = {"bsa": 23, "bsa-mul": 23, "bsa-toolbox": 9, "hsa": 14, "t-hsa": 14}
 
 
 def by_firmware(program: Path) -> Dict[str, Flown]:
@@ -132,9 +139,10 @@ def _firings(text: str) -> List[Firing]:
     return [(int(neuron), int(slot), 1 if sign == "+" else -1) for sign, neuron, slot in places]
 
 
-def by_program(program: Path, table: Path, parameters: Dict[str, Any], slots: int, samples: int) -> Flown:
-    """What the laptop program makes of it."""
-    options = {**parameters, "scheme": {"moving_window": "mw"}.get(parameters["encoding_scheme"], parameters["encoding_scheme"])}
+def by_program(program: Path, table: Path, parameters: Dict[str, Any], samples: int) -> Flown:
+    """What the laptop program makes of it, of schemes with one spike at a time."""
+    slots = parameters.get("spikes", 1)
+    options = {**parameters, "scheme": of_catalogue(parameters["encoding_scheme"])}
     del options["encoding_scheme"]
     given = [f"--{name}={value}" for name, value in options.items()]
     command = [program, "encode", *given, "--column=gyro_z", table]

@@ -21,12 +21,15 @@ class Ros:
 
     def __init__(self, directory: Path) -> None:
         self.directory = directory
+        for old in directory.glob("*.bag*"):
+            old.unlink()
         port = _free_port()
         # This process talks to the core as well.
         os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{port}"
         os.environ["ROS_IP"] = "127.0.0.1"
         os.environ["ROS_HOME"] = str(directory)
         os.environ["ROS_LOG_DIR"] = str(directory / "log")
+        os.environ["PYTHONUNBUFFERED"] = "1"  # what they say is read while they run
         self._port = port
         self._all: List[subprocess.Popen] = []
 

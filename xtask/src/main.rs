@@ -33,6 +33,8 @@ mod progress;
 mod qemu;
 mod rate_loop;
 mod recipe;
+mod ros;
+mod ros_figure;
 mod schemes;
 mod setup;
 mod shell;
@@ -56,6 +58,7 @@ cargo xtask <command>
   firmware [PROGRAM]... runs the example programs on every emulated board and compares with the host
   schemes [--write]     what each scheme makes of a flight and of the paper's signal; --write puts it into README.md
   jumps [--write]       draws the flight's hardest second in three step codes; --write puts it into docs/jumps.svg
+  ros-figure [--write]  draws what a ROS node records of the paper's signal; --write puts it into docs/ros.svg
   firmware --write      puts the spike counts of flight-log, and which bits agree, into docs/bits.md
   c-library [--target]  the library for C: archive, header, CMake package and pkg-config file for each core
   c-library --write     writes its header and declarations from the catalogue
@@ -89,6 +92,7 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "schemes" => schemes::schemes(args),
         "jumps" => jumps::jumps(args),
         "c-library" => c_library::library(args),
+        "ros-figure" => ros::figure(args),
         "demo" => demo::demo(args),
         "verify" => verify::verify(args),
         "" | "help" | "-h" | "--help" => {

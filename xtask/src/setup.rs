@@ -27,6 +27,16 @@ pub fn setup() -> Result<()> {
     Ok(())
 }
 
+/// Installs what a check alone needs, where it is missing, and says so first.
+pub fn packages(what: &str, wanted: &[&str]) -> Result<()> {
+    let missing = packages::missing(wanted);
+    if !missing.is_empty() {
+        println!("Missing: {what}\nTo do:\n  as root: apt-get install {}", missing.join(" "));
+        packages::install(&missing)?;
+    }
+    Ok(())
+}
+
 /// With `RUSTUP_AUTO_INSTALL=0` a machine says that rustup must fetch nothing.
 fn rustup_may_fetch() -> bool {
     shell::has("rustup") && env::var("RUSTUP_AUTO_INSTALL").as_deref() != Ok("0")

@@ -60,6 +60,11 @@ const LONG: &[Step] = &[
     step("lints", "clippy on all at once: every feature, firmware on host and core", long::lints),
     step("capture", "the laptop program with a debug probe's driver", long::capture),
     step("c-cores", "the library for C on the other four cores", crate::c_library::cores),
+    step(
+        "ros",
+        "ROS nodes in the distribution's ROS, a flight through every scheme",
+        crate::ros::ros,
+    ),
     step("cores", "instruction counts on all five cores", long::cores),
 ];
 

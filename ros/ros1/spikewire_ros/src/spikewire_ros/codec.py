@@ -76,7 +76,9 @@ class Request:
         """How its spikes stand in messages. `ValueError`: a parameter is missing or not good."""
         scheme = self._made(self._settings.options)
         if not self._settings.calibrate:
-            scheme.encoder()  # which says what is missing
+            # These say what is missing, and what is not good.
+            scheme.encoder()
+            scheme.decoder(first=0.0)
         return _layout(scheme)
 
     def start(self, values: Sequence[float]) -> Codec:
