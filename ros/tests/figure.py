@@ -2,7 +2,7 @@
 
     figure.py DIRECTORY
 
-SF with a threshold of 0.35 on 4 s of three sines with noise, 100 samples a second, at that rate.
+SF with a threshold of 0.35 on 4 s of three sines of 1, 2 and 5 Hz with noise, 100 samples a second, at that rate.
 """
 
 import sys
@@ -16,8 +16,8 @@ def main() -> None:
     directory = Path(sys.argv[1])
     bag = directory / "encoding.bag"
     with Ros(directory) as ros:
-        launch = ("roslaunch", "spikewire_ros", "encode_step_forward.launch", "T_max:=4", f"bag:={bag}")
-        launched = ros.start("launch", *launch)
+        arguments = ("T_max:=4", "hertz:=[1.0, 2.0, 5.0]", f"bag:={bag}")
+        launched = ros.start("launch", "roslaunch", "spikewire_ros", "encode_step_forward.launch", *arguments)
         until(lambda: "[signal-" in ros.said("launch") and "finished cleanly" in ros.said("launch"), "the signal")
         stop(launched)
         until(bag.exists, "the bag's end")

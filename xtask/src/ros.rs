@@ -2,7 +2,7 @@
 
 use crate::{
     host, paths, ros_figure, setup,
-    shell::{command, run},
+    shell::{command, output, run},
     usage::usage,
 };
 use anyhow::Result;
@@ -73,8 +73,8 @@ impl Ros {
         for space in ["build", "devel", "install-space"] {
             catkin.arg(format!("--{space}")).arg(ros.top.join(space));
         }
-        // Quiet: what it says fills pages.
-        crate::shell::output(catkin.arg("--install").env("PATH", PATH))?;
+        // Quiet: what it says fills pages. It leaves a mark where it is started.
+        output(catkin.arg("--install").current_dir(&ros.top).env("PATH", PATH))?;
         Ok(ros)
     }
 

@@ -17,7 +17,7 @@ from .decoding import Decoding, Received
 from .encoding import Encoding, Event
 from .fields import Field
 from .settings import Settings
-from .wave import wave
+from .wave import HERTZ, wave
 
 # Of publishers: nothing is dropped when a subscriber is slow.
 _NO_LIMIT = 0
@@ -187,7 +187,7 @@ class Signal(Node):
     def __init__(self) -> None:
         super().__init__("signal")
         dt, t_max = rospy.get_param("dt", 0.01), rospy.get_param("T_max", 5.0)
-        self._samples = wave(dt, t_max, rospy.get_param("~seed", 0))
+        self._samples = wave(dt, t_max, rospy.get_param("~seed", 0), rospy.get_param("~hertz", HERTZ))
         self._subscribers = rospy.get_param("~subscribers", 1)
         self._rate = rospy.Rate(1.0 / dt)
         self._publisher = rospy.Publisher("signal", Float64, queue_size=_NO_LIMIT)

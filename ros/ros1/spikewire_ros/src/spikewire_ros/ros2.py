@@ -25,7 +25,7 @@ from .decoding import Decoding, Received
 from .encoding import Encoding, Event
 from .fields import Field
 from .settings import Settings
-from .wave import wave
+from .wave import HERTZ, wave
 
 # What ROS itself sets.
 _OF_ROS = ("use_sim_time", "start_type_description_service")
@@ -161,7 +161,7 @@ class Signal(Node):
         super().__init__("signal")
         given = self.all_given()
         dt, t_max = given.get("dt", 0.01), given.get("T_max", 5.0)
-        self._samples = wave(dt, t_max, given.get("seed", 0))
+        self._samples = wave(dt, t_max, given.get("seed", 0), given.get("hertz", HERTZ))
         self._publisher = self.create_publisher(Float64, "signal", _RELIABLE)
         self._every_sample = self.create_timer(dt, self._play)
 
