@@ -3,14 +3,11 @@
 use crate::{
     package, paths,
     shell::{output, run},
+    temporary::Temporary,
     toolchain::cargo_for,
 };
 use anyhow::{Context, Result, ensure};
-use std::{
-    env, fs,
-    path::{Path, PathBuf},
-    process::{self, Command},
-};
+use std::{fs, process::Command};
 
 const GUIDE: &str = "docs/firmware.md";
 const TARGET: &str = "thumbv7em-none-eabihf";
@@ -24,9 +21,9 @@ pub fn recipe() -> Result<()> {
     let expected = blocks.iter().find(|(name, _)| *name == OUTPUT);
     let (_, expected) = expected.with_context(|| format!("{GUIDE} has no block `{OUTPUT}`"))?;
 
-    let project = Temporary::new()?;
+    let project = Temporary::new("recipe")?;
     for (name, text) in blocks.iter().filter(|(name, _)| *name != OUTPUT) {
-        let path = project.0.join(name);
+        let path = project.path().join(name);
         fs::create_dir_all(path.parent().context("a file lies in a directory")?)?;
         fs::write(&path, text)?;
         println!("{name}: {} lines", text.lines().count());
@@ -36,7 +33,7 @@ pub fn recipe() -> Result<()> {
     // There, cargo does not see this repository's settings.
     let cargo = |args| -> Result<Command> {
         let mut cargo = cargo_for(TARGET, args)?;
-        cargo.current_dir(&project.0).arg("--config").arg(&patch);
+        cargo.current_dir(project.path()).arg("--config").arg(&patch);
         cargo.env("CARGO_TARGET_DIR", paths::thumb_target().join("recipe"));
         Ok(cargo)
     };
@@ -66,24 +63,6 @@ fn blocks(guide: &str) -> Vec<(&str, String)> {
         }
     }
     blocks
-}
-
-/// A directory that goes when this is dropped.
-struct Temporary(PathBuf);
-
-impl Temporary {
-    fn new() -> Result<Self> {
-        let path = env::temp_dir().join(format!("spikewire-recipe-{}", process::id()));
-        fs::create_dir(&path).with_context(|| path.display().to_string())?;
-        Ok(Self(path))
-    }
-}
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        // What stays behind is a few kilobytes in a directory for such things.
-        let _ = fs::remove_dir_all(Path::new(&self.0));
-    }
 }
 
 #[cfg(test)]

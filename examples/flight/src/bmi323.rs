@@ -12,9 +12,9 @@ use embedded_hal_async::delay::DelayNs;
 
 use crate::{Plan, Timing};
 
-/// The vendor's driver waits 2 µs after every access (`bmi3_get_regs` and `bmi3_set_regs` of BMI323_SensorAPI). 100 ns of
-/// guard are twice what the data sheet asks of chip select.
-pub const TIMING: Timing = Timing { guard: 100, pause: 2_000 };
+/// The vendor's driver waits 2 µs after every access (`bmi3_get_regs` and `bmi3_set_regs` of BMI323_SensorAPI). The guard
+/// is longer than half a period from 2.5 MHz on.
+pub const TIMING: Timing = Timing { guard: 200, pause: 2_000 };
 
 /// A second's samples.
 pub const SAMPLE_RATE: u16 = 800;

@@ -18,6 +18,20 @@ pub struct Timing {
     pub pause: u32,
 }
 
+impl Timing {
+    /// The same for a bus of this clock in Hz. For constants. Not every HAL waits for the last half of a clock before it
+    /// says that a transfer is done (stm32f4xx-hal does not): chip select rises behind it by the guard time alone.
+    ///
+    /// # Panics
+    /// The guard time is shorter than half a period of the clock.
+    #[must_use]
+    pub const fn at(self, clock: u32) -> Self {
+        let half_periods = 2 * self.guard as u64 * clock as u64;
+        assert!(half_periods >= 1_000_000_000, "the guard time is half a period at least");
+        self
+    }
+}
+
 /// A device that has its bus for itself, as `ExclusiveDevice` of `embedded-hal-bus`, with guard times and a pause.
 ///
 /// - **Waiting:** spins, as the times are short; `W` may wait longer than it is asked for.

@@ -4,7 +4,7 @@
 //! for a moment no longer says that it has any, and no events look like no rotation. So
 //!
 //! - [`Device`] gives the sensor the pauses that it needs between two accesses, and chip select its guard times;
-//! - [`bmi323`] starts the sensor, and reads back what it was told;
+//! - [`bmi323`] and [`bmi088`] start the sensor, and read back what it was told;
 //! - [`Sampler`] stands between sensor and queue: it counts samples, finds those that are missing, notices a sensor that is
 //!   silent or stuck, and tells the far end by a break;
 //! - [`code`] is the code of the channels, and why;
@@ -14,6 +14,7 @@
 
 #![cfg_attr(not(test), no_std)]
 
+pub mod bmi088;
 #[cfg(feature = "bmi323")]
 pub mod bmi323;
 pub mod clock;

@@ -41,7 +41,6 @@ mod app {
         prelude::*,
         rcc::Config,
         spi::Spi,
-        time::Hertz,
         timer::MonoTimerExt,
         watchdog::IndependentWatchdog,
     };
@@ -61,11 +60,12 @@ mod app {
     const CLOCK: Stm32F405 = Stm32F405::at_168_mhz(8_000_000);
     /// SPI1's 84 MHz by 16. Of the powers of two the HAL takes the nearest, which for the sensor's limit
     /// of 10 MHz is 10.5.
-    const IMU_CLOCK: Hertz = Hertz::Hz(exact_spi(84_000_000, 5_250_000));
+    const IMU_HZ: u32 = exact_spi(84_000_000, 5_250_000);
     /// SPI2's 42 MHz by 64: SCK may have a quarter of the chip's clock.
-    const CHIP_CLOCK: Hertz = Hertz::Hz(exact_spi(42_000_000, 656_250));
-    /// The chip has no chip select: half a period of its clock between two transfers.
-    const CHIP_TIMING: Timing = Timing { guard: 0, pause: 800 };
+    const CHIP_HZ: u32 = exact_spi(42_000_000, 656_250);
+    const IMU_TIMING: Timing = bmi323::TIMING.at(IMU_HZ);
+    /// The chip has no chip select: its time is what parts two transfers.
+    const CHIP_TIMING: Timing = Timing { guard: 800, pause: 800 }.at(CHIP_HZ);
     /// How often a wait looks at the chip's pins: as often as the chip may have clocks to work, and a look
     /// takes longer than a clock from 10 MHz on. Well below a millisecond.
     const POLLS: u32 = TinyOdinInput::MAX_CLOCKS;
@@ -168,15 +168,15 @@ mod app {
 
         let (sck, miso, mosi) = imu_pins;
         let pins = (Some(sck), Some(miso), Some(mosi));
-        let bus = Spi::new(cx.device.SPI1, pins, MODE_0, IMU_CLOCK, &mut rcc);
-        let Ok(device) = Device::new(bus, imu_select, Spin, bmi323::TIMING);
+        let bus = Spi::new(cx.device.SPI1, pins, MODE_0, IMU_HZ.Hz(), &mut rcc);
+        let Ok(device) = Device::new(bus, imu_select, Spin, IMU_TIMING);
         let sampler = Sampler::new(Bank::per_channel(SCHEMES), bmi323::plan(MOST as u8));
         let sensor = Sensor { imu: Bmi323::new_spi(device), sampler };
 
         // tinyODIN knows no chip select: PB12 stays unconnected, the bus is the chip's alone.
         let (sck, miso, mosi) = chip_pins;
         let pins = (Some(sck), Some(miso), Some(mosi));
-        let bus = Spi::new(cx.device.SPI2, pins, MODE_0, CHIP_CLOCK, &mut rcc);
+        let bus = Spi::new(cx.device.SPI2, pins, MODE_0, CHIP_HZ.Hz(), &mut rcc);
         let Ok(device) = Device::new(bus, chip_select, Spin, CHIP_TIMING);
         let chip = TinyOdin::new(device, port, POLLS).with_time_step(TIME_STEP);
 

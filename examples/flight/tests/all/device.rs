@@ -117,6 +117,14 @@ fn guard_times_are_within_chip_select_and_the_pause_behind_it() {
     assert_eq!(did[1..9], wanted);
 }
 
+#[test]
+fn a_guard_time_shorter_than_half_a_clock_does_not_build() {
+    let timing = Timing { guard: 100, pause: 0 };
+    for (clock, is_good) in [(10_000_000, true), (5_000_000, true), (4_999_999, false)] {
+        assert_eq!(std::panic::catch_unwind(|| timing.at(clock)).is_ok(), is_good, "{clock} Hz");
+    }
+}
+
 /// At every index: the error is told, chip select ends high, and the pause is kept where the bus was used.
 #[test]
 fn chip_select_rises_whatever_fails() {

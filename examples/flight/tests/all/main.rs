@@ -1,6 +1,7 @@
 //! The bodies of the examples on the host: against exact bus transactions, and against a sensor that fails in every way that
 //! a bus and a supply can.
 
+mod bmi088;
 mod bmi323;
 mod code;
 mod device;

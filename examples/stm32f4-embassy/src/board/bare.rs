@@ -47,8 +47,8 @@ pub const CRYSTAL: u32 = 8_000_000;
 const IMU_HZ: u32 = exact_spi(84_000_000, 5_250_000);
 /// SPI2's 42 MHz by 32.
 const BRIDGE_HZ: u32 = exact_spi(42_000_000, 1_312_500);
-/// Half a period of its clock.
-const BRIDGE_TIMING: Timing = Timing { guard: 400, pause: 400 };
+const IMU_TIMING: Timing = bmi323::TIMING.at(IMU_HZ);
+const BRIDGE_TIMING: Timing = Timing { guard: 400, pause: 400 }.at(BRIDGE_HZ);
 
 /// What the sensor promises.
 pub const PLAN: Plan = bmi323::plan(MOST as u8);
@@ -96,7 +96,7 @@ pub fn start() -> Board {
 
     let bus = Spi::new(p.SPI1, p.PA5, p.PA7, p.PA6, p.DMA2_CH3, p.DMA2_CH0, Interrupts, at(IMU_HZ));
     let select = Output::new(p.PA4, Level::High, Speed::VeryHigh);
-    let Ok(imu) = Device::new(bus, select, Delay, bmi323::TIMING);
+    let Ok(imu) = Device::new(bus, select, Delay, IMU_TIMING);
 
     let bus =
         Spi::new(p.SPI2, p.PB13, p.PB15, p.PB14, p.DMA1_CH4, p.DMA1_CH3, Interrupts, at(BRIDGE_HZ));
