@@ -59,11 +59,12 @@ pub fn parts() -> Result<()> {
             lint(&mut cargo); // the example alone
             Ok(cargo)
         };
-        run(&mut cargo("build --release")?)?;
+        let image = paths::thumb_target().join("parts").join(target).join("release").join(name);
         for board in boards {
             run(&mut cargo(&format!("build --release --features {board}"))?)?;
+            stack_ends_the_memory(&image)?;
         }
-        let image = paths::thumb_target().join("parts").join(target).join("release").join(name);
+        run(&mut cargo("build --release")?)?;
         stack_ends_the_memory(&image)?;
         if name == "stm32f405-rtic" {
             speed::spi_pins_are_fast(&image)?;

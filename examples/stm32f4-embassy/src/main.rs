@@ -42,8 +42,10 @@ const GATHER: Duration = Duration::from_millis(5);
 /// A full frame takes 1.7 ms at the bridge's 1.3125 MHz, and 3 ms out of a UART at 921 600 baud.
 const SEND_LIMIT: Duration = Duration::from_millis(4);
 const REPORT_EVERY: Duration = Duration::from_secs(1);
-/// A sensor that does not answer within this is tried again after it.
-const START_LIMIT: Duration = Duration::from_millis(100);
+/// A start takes 3 ms (BMI323) or 0.1 s (BMI088).
+const START_LIMIT: Duration = Duration::from_millis(300);
+/// How long to wait before a sensor that did not start is tried again, and how often main wakes without items.
+const AGAIN: Duration = Duration::from_millis(100);
 /// Fed while both tasks go on.
 const WATCHDOG_US: u32 = 1_000_000;
 
@@ -70,7 +72,7 @@ async fn sample(mut imu: board::Imu, mut data_ready: ExtiInput<'static, Async>) 
                 failed => {
                     defmt::error!("it does not start: {}", defmt::Debug2Format(&failed));
                     sampler.failed_to_start(now(), &EVENTS);
-                    Timer::after(START_LIMIT).await;
+                    Timer::after(AGAIN).await;
                 }
             }
         }
@@ -103,7 +105,7 @@ async fn main(spawner: Spawner) {
         }
         if is_all_sent {
             // The report and the watchdog come without items too.
-            let _ = with_timeout(START_LIMIT, events.wait()).await;
+            let _ = with_timeout(AGAIN, events.wait()).await;
         }
         Timer::after(GATHER).await;
         // A frame that was not sent, for whatever reason, is kept for the next time, and sent whole. Of one that was
