@@ -19,8 +19,8 @@ pub const TIMING: Timing = Timing { guard: 200, pause: 2_000 };
 /// A second's samples.
 pub const SAMPLE_RATE: u16 = 800;
 
-/// 100 ms to settle: the gyroscope's start takes less than half of that. Ten periods of silence, or twenty equal samples,
-/// are no accident.
+/// 100 ms to settle, for starts of any kind: the data sheet's fastest takes 2.5 ms. Ten periods of silence, or twenty equal
+/// samples, are no accident.
 pub const fn plan(most_spikes: u8) -> Plan {
     Plan {
         period: (1_000_000 / SAMPLE_RATE as u32) as u16,
