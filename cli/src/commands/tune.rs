@@ -84,7 +84,7 @@ pub(crate) struct Tune {
     #[arg(long, default_value_t = 25.0, value_parser = crate::input::above_zero, help_heading = "Search")]
     seconds: f64,
     /// Settings of each scheme and channel to score at most
-    #[arg(long, default_value_t = 20_000, help_heading = "Search")]
+    #[arg(long, default_value_t = 40_000, help_heading = "Search")]
     evaluations: usize,
     /// Where the search's chance starts; the same seed and budget of evaluations give the same settings
     #[arg(long, default_value_t = 1, help_heading = "Search")]

@@ -217,7 +217,8 @@ impl Run<'_> {
         for round in 0.. {
             let (low, high) = space.bounds();
             let parameters = DeParams {
-                popsize: GENERATION,
+                // A larger population finds what a smaller one passed by.
+                popsize: GENERATION << round.min(3),
                 max_evaluations: u64::MAX,
                 seed: seed.wrapping_add(round * 7919),
                 ..DeParams::default()

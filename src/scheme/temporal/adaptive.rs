@@ -1,8 +1,9 @@
 //! Adaptive step forward: step forward whose step doubles while it has to go on in one direction.
 
 use super::band::Band;
-use crate::error::{step, unwrap, within};
-use crate::num::{Tally, largest_step, to_f64};
+use super::doublings;
+use crate::error::{unwrap, within};
+use crate::num::Tally;
 use crate::scheme::codec::encode_first;
 use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 
@@ -73,20 +74,10 @@ impl<S: Sample> AdaptiveStepForward<S> {
     /// The threshold is not above 0, or not finite; there are more than 30 doublings; the largest step is more than the
     /// sample type holds, or above 10³¹ in `f32`.
     pub const fn try_new(threshold: S, doublings: u8) -> Result<Self, ConfigError> {
-        let smallest = to_f64(threshold);
-        match (
-            step("threshold", smallest),
-            within("doublings", doublings as f64, 0.0, MOST_DOUBLINGS as f32),
-        ) {
-            (Err(error), _) | (_, Err(error)) => return Err(error),
-            _ => {}
+        match doublings::check(threshold, doublings, MOST_DOUBLINGS, "largest step") {
+            Ok(()) => Ok(Self { threshold, doublings, run: 2 }),
+            Err(error) => Err(error),
         }
-        let (value, max) = (smallest * (1_u64 << (doublings & 31)) as f64, largest_step::<S>());
-        if value > max {
-            let (value, min, max) = (value as f32, smallest as f32, max as f32);
-            return Err(ConfigError::OutOfRange { parameter: "largest step", value, min, max });
-        }
-        Ok(Self { threshold, doublings, run: 2 })
     }
 
     /// The step grows after so many spikes in one direction, one a sample; 2 unless told. For constants, where a bad

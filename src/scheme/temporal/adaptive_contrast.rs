@@ -1,7 +1,8 @@
 //! Adaptive temporal contrast: temporal contrast whose threshold doubles the more often it fires.
 
-use crate::error::{step, unwrap, within};
-use crate::num::{Tally, largest_step, to_f64};
+use super::doublings;
+use crate::error::unwrap;
+use crate::num::Tally;
 use crate::scheme::codec::{encode_each, encode_first};
 use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 
@@ -70,25 +71,10 @@ impl<S: Sample> AdaptiveContrast<S> {
     /// The threshold is not above 0, or not finite; there are more than 15 doublings; the largest threshold is more
     /// than the sample type holds, or above 10³¹ in `f32`.
     pub const fn try_new(threshold: S, doublings: u8) -> Result<Self, ConfigError> {
-        let smallest = to_f64(threshold);
-        match (
-            step("threshold", smallest),
-            within("doublings", doublings as f64, 0.0, MOST_DOUBLINGS as f32),
-        ) {
-            (Err(error), _) | (_, Err(error)) => return Err(error),
-            _ => {}
+        match doublings::check(threshold, doublings, MOST_DOUBLINGS, "largest threshold") {
+            Ok(()) => Ok(Self { threshold, doublings }),
+            Err(error) => Err(error),
         }
-        let (value, max) = (smallest * (1_u64 << doublings) as f64, largest_step::<S>());
-        if value > max {
-            let (value, min, max) = (value as f32, smallest as f32, max as f32);
-            return Err(ConfigError::OutOfRange {
-                parameter: "largest threshold",
-                value,
-                min,
-                max,
-            });
-        }
-        Ok(Self { threshold, doublings })
     }
 
     /// The smallest threshold, in the samples' unit.

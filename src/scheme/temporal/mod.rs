@@ -27,6 +27,7 @@ mod adaptive;
 mod adaptive_contrast;
 mod band;
 mod contrast;
+mod doublings;
 #[cfg(feature = "alloc")]
 pub(super) mod dynamic;
 mod moving_window;

@@ -1,0 +1,29 @@
+//! What adaptive schemes ask of a step that doubles.
+
+use crate::error::{step, within};
+use crate::num::{largest_step, to_f64};
+use crate::{ConfigError, Sample};
+
+/// Checks a threshold and how often it doubles, at most `most` times.
+///
+/// # Errors
+/// The threshold is not above 0, or not finite; there are more doublings; what they lead to, called `largest`, is more
+/// than the sample type holds, or above 10³¹ in `f32`.
+pub(super) const fn check<S: Sample>(
+    threshold: S,
+    doublings: u8,
+    most: u8,
+    largest: &'static str,
+) -> Result<(), ConfigError> {
+    let smallest = to_f64(threshold);
+    match (step("threshold", smallest), within("doublings", doublings as f64, 0.0, most as f32)) {
+        (Err(error), _) | (_, Err(error)) => return Err(error),
+        _ => {}
+    }
+    let (value, max) = (smallest * (1_u64 << (doublings & 31)) as f64, largest_step::<S>());
+    if value > max {
+        let (value, min, max) = (value as f32, smallest as f32, max as f32);
+        return Err(ConfigError::OutOfRange { parameter: largest, value, min, max });
+    }
+    Ok(())
+}
