@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::logs::{KINDS, Kind, record, wave};
+use common::logs::{CHUNKED, KINDS, Kind, PAGE, record, wave};
 use common::{file, flight, good, refused, values};
 
 const SCHEME: &str = "encode --scheme sf --threshold 0.1 --topic imu --field rate";
@@ -70,7 +70,7 @@ fn what_is_not_there_is_said_with_its_place() {
 
 #[test]
 fn a_log_that_is_cut_gives_what_is_before_where_that_is_accepted() {
-    for kind in KINDS {
+    for kind in CHUNKED {
         for how in kind.packings() {
             let log = kind.log(how);
             // Within the third chunk from the end, and not at its start.
@@ -90,7 +90,7 @@ fn a_log_that_is_cut_gives_what_is_before_where_that_is_accepted() {
 
 #[test]
 fn a_damaged_chunk_is_refused_or_passed_over() {
-    for kind in KINDS {
+    for kind in CHUNKED {
         for how in kind.packings().iter().filter(|how| !(kind == Kind::Bag && **how == "none")) {
             let mut log = kind.start();
             let records: Vec<u8> = (0..10).flat_map(|sample| kind.record(sample)).collect();
@@ -111,6 +111,57 @@ fn a_damaged_chunk_is_refused_or_passed_over() {
             );
         }
     }
+}
+
+#[test]
+fn a_database_that_is_cut_or_damaged_gives_the_pages_that_are_whole() {
+    let log = Kind::Db3.log("none");
+    let (_directory, path) = file("log.db3", &log[..log.len() - PAGE / 2]);
+    let place = log.len() - PAGE;
+    let words = format!("byte {place}: the file ends within its page {}", log.len() / PAGE);
+    refused(&format!("info {path}"), "", &[&words, "--accept-cut"]);
+    let told = good(&format!("info --accept-cut {path}"), "").output;
+    assert!(told.contains("/imu: 90 samples of t/msg/Imu"), "{told}");
+    let mut damaged = log.clone();
+    damaged[log.len() - 3 * PAGE] = 10;
+    let (_directory, path) = file("log.db3", &damaged);
+    refused(
+        &format!("info {path}"),
+        "",
+        &["it is no page of a table; --accept-cut goes on behind it"],
+    );
+    let told = good(&format!("info --accept-cut {path}"), "").output;
+    assert!(told.contains("/imu: 90 samples of t/msg/Imu") && told.contains("1 gaps"), "{told}");
+    let (directory, path) = file("log.db3", &log);
+    std::fs::write(directory.path().join("log.db3-wal"), b"more").unwrap();
+    refused(
+        &format!("info {path}"),
+        "",
+        &["log.db3-wal holds messages that are not in the file yet"],
+    );
+}
+
+#[test]
+fn the_files_of_a_directory_are_read_one_after_the_other() {
+    let directory = tempfile::tempdir().unwrap();
+    let write = |name: &str, content: &[u8]| {
+        std::fs::write(directory.path().join(name), content).unwrap();
+    };
+    let metadata =
+        "rosbag2_bagfile_information:\n  relative_file_paths:\n    - b.db3\n    - a.mcap\n";
+    write("metadata.yaml", metadata.as_bytes());
+    write("b.db3", &Kind::Db3.log("none"));
+    write("a.mcap", &Kind::Mcap.log("none"));
+    let path = directory.path().display();
+    for path in [path.to_string(), format!("{path}/metadata.yaml")] {
+        let told = good(&format!("info {path}"), "").output;
+        assert!(told.contains("/imu: 200 samples of t/msg/Imu"), "{told}");
+        assert!(told.contains("1 steps back in time: -495.000 ms after sample 99"), "{told}");
+    }
+    std::fs::remove_file(directory.path().join("b.db3")).unwrap();
+    refused(&format!("info {path}"), "", &["b.db3: cannot be opened"]);
+    let empty = tempfile::tempdir().unwrap();
+    refused(&format!("info {}", empty.path().display()), "", &["metadata.yaml: cannot be read"]);
 }
 
 #[test]

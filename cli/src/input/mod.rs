@@ -32,7 +32,8 @@ pub(crate) const CHUNK: usize = 8192;
 /// Where samples come from.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InputOptions {
-    /// CSV table with a header, also compressed by gzip, or log: PX4's `ULog`, ROS bag, MCAP; `-` is a CSV table on
+    /// CSV table with a header, also compressed by gzip, or log: PX4's `ULog`, bag of ROS 1 or
+    /// 2, MCAP; `-` is a CSV table on
     /// standard input
     pub input: PathBuf,
     #[command(flatten)]
@@ -322,9 +323,12 @@ pub(crate) enum LogKind {
 /// # Errors
 /// It cannot be opened.
 pub(crate) fn log_kind(path: &Path) -> Result<Option<LogKind>> {
+    if path.is_dir() {
+        return Ok(messages::kind_of(path)?.map(LogKind::Messages));
+    }
     let start = |input: &mut dyn Read| {
         let mut start = Vec::new();
-        input.take(messages::START).read_to_end(&mut start).map(|_| start)
+        input.take(4).read_to_end(&mut start).map(|_| start)
     };
     let mut file =
         File::open(path).with_context(|| format!("{}: cannot be opened", path.display()))?;
@@ -333,6 +337,12 @@ pub(crate) fn log_kind(path: &Path) -> Result<Option<LogKind>> {
         let all = Cursor::new(found).chain(file);
         found = start(&mut MultiGzDecoder::new(all)).unwrap_or_default();
     }
-    let is_ulog = found.starts_with(b"ULog") || path.extension().is_some_and(|own| own == "ulg");
-    Ok(if is_ulog { Some(LogKind::Ulog) } else { messages::kind(&found).map(LogKind::Messages) })
+    if found == b"ULog" || path.extension().is_some_and(|own| own == "ulg") {
+        return Ok(Some(LogKind::Ulog));
+    }
+    // What can be read only once is no log.
+    if !path.is_file() {
+        return Ok(None);
+    }
+    Ok(messages::kind_of(path)?.map(LogKind::Messages))
 }

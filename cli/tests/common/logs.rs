@@ -1,4 +1,4 @@
-//! ROS bags and MCAP files, made byte by byte.
+//! Bags of ROS 1 and 2 and MCAP files, made byte by byte.
 #![allow(dead_code, unreachable_pub)]
 
 use std::io::Write;
@@ -8,9 +8,13 @@ use std::io::Write;
 pub enum Kind {
     Bag,
     Mcap,
+    Db3,
 }
 
-pub const KINDS: [Kind; 2] = [Kind::Bag, Kind::Mcap];
+pub const KINDS: [Kind; 3] = [Kind::Bag, Kind::Mcap, Kind::Db3];
+
+/// Those of chunks.
+pub const CHUNKED: [Kind; 2] = [Kind::Bag, Kind::Mcap];
 
 const ROS1: &str = "Header header\nfloat64 rate\nfloat32[] few\n\
     ====\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n";
@@ -42,6 +46,7 @@ impl Kind {
         match self {
             Self::Bag => "log.bag",
             Self::Mcap => "log.mcap",
+            Self::Db3 => "log.db3",
         }
     }
 
@@ -54,7 +59,7 @@ impl Kind {
         match self {
             Self::Bag => [&sample.to_le_bytes()[..], &stamp, &long(b"body"), &rate, &few].concat(),
             // The text ends with a zero; the number of eight bytes is aligned to eight.
-            Self::Mcap => {
+            Self::Mcap | Self::Db3 => {
                 [&[0, 1, 0, 0][..], &stamp, &long(b"body\0"), &[0; 7], &rate, &few].concat()
             }
         }
@@ -70,6 +75,9 @@ impl Kind {
             Self::Mcap => {
                 let time = time(sample).to_le_bytes();
                 entry(5, &[&[0, 0][..], &[0; 4], &time, &time, &message].concat())
+            }
+            Self::Db3 => {
+                row(&[Cell::Null, Cell::Whole(1), Cell::Whole(time(sample)), Cell::Blob(&message)])
             }
         }
     }
@@ -100,6 +108,7 @@ impl Kind {
                 ]
                 .concat()
             }
+            Self::Db3 => unreachable!("it has no chunks"),
         }
     }
 
@@ -137,6 +146,7 @@ impl Kind {
                     [&[0; 16][..], &size, &checksum, &long(how.as_bytes()), &stated, &packed];
                 entry(6, &parts.concat())
             }
+            Self::Db3 => unreachable!("it has no chunks"),
         }
     }
 
@@ -146,11 +156,21 @@ impl Kind {
             Self::Mcap => {
                 [entry(15, &[0; 4]), entry(2, &[0; 20]), b"\x89MCAP0\r\n".to_vec()].concat()
             }
+            Self::Db3 => unreachable!("it has no chunks"),
         }
     }
 
     /// A log of 100 messages in chunks of ten.
     pub fn log(self, how: &str) -> Vec<u8> {
+        if self == Self::Db3 {
+            let bag = database(&(0..100).map(|sample| self.record(sample)).collect::<Vec<_>>());
+            let level = ruzstd::encoding::CompressionLevel::Fastest;
+            return if how == "none" {
+                bag
+            } else {
+                ruzstd::encoding::compress_to_vec(bag.as_slice(), level)
+            };
+        }
         let mut log = self.start();
         for chunk in 0..10 {
             let records: Vec<u8> =
@@ -166,6 +186,7 @@ impl Kind {
         match self {
             Self::Bag => &["none", "bz2", "lz4"],
             Self::Mcap => &["none", "lz4", "zstd"],
+            Self::Db3 => &["none", "zstd"],
         }
     }
 }
@@ -181,4 +202,141 @@ pub fn record(header: &[(&str, &[u8])], data: &[u8]) -> Vec<u8> {
 
 pub fn entry(kind: u8, content: &[u8]) -> Vec<u8> {
     [&[kind][..], &(content.len() as u64).to_le_bytes(), content].concat()
+}
+
+/// Bytes of a page of a database.
+pub const PAGE: usize = 1024;
+
+/// A value of a row.
+pub enum Cell<'a> {
+    Null,
+    Whole(u64),
+    Text(&'a str),
+    Blob(&'a [u8]),
+}
+
+pub fn varint(number: u64) -> Vec<u8> {
+    let mut bytes = vec![(number & 0x7f) as u8];
+    let mut left = number >> 7;
+    while left > 0 {
+        bytes.insert(0, (left & 0x7f) as u8 | 0x80);
+        left >>= 7;
+    }
+    bytes
+}
+
+pub fn row(cells: &[Cell<'_>]) -> Vec<u8> {
+    let (mut kinds, mut content) = (Vec::new(), Vec::new());
+    for cell in cells {
+        match cell {
+            Cell::Null => kinds.extend(varint(0)),
+            Cell::Whole(number) => {
+                kinds.extend(varint(6));
+                content.extend(number.to_be_bytes());
+            }
+            Cell::Text(text) => {
+                kinds.extend(varint(13 + 2 * text.len() as u64));
+                content.extend(text.as_bytes());
+            }
+            Cell::Blob(bytes) => {
+                kinds.extend(varint(12 + 2 * bytes.len() as u64));
+                content.extend(*bytes);
+            }
+        }
+    }
+    [varint(kinds.len() as u64 + 1), kinds, content].concat()
+}
+
+/// A page of cells, behind the head of the file on the first.
+pub fn page(kind: u8, cells: &[Vec<u8>], right: u32, head: &[u8]) -> Vec<u8> {
+    let mut page = head.to_vec();
+    page.extend([kind, 0, 0]);
+    page.extend((cells.len() as u16).to_be_bytes());
+    page.extend([0; 3]);
+    if kind == 5 {
+        page.extend(right.to_be_bytes());
+    }
+    let mut end = PAGE;
+    let mut bytes = vec![0; PAGE];
+    for cell in cells {
+        end -= cell.len();
+        bytes[end..end + cell.len()].copy_from_slice(cell);
+        page.extend((end as u16).to_be_bytes());
+    }
+    bytes[..page.len()].copy_from_slice(&page);
+    bytes
+}
+
+/// The cell of a row, and the pages behind it that hold what is too long for it; pages are numbered from the next on.
+pub fn cell(number: u64, row: &[u8], next: u32) -> (Vec<u8>, Vec<Vec<u8>>) {
+    let head = [varint(row.len() as u64), varint(number)].concat();
+    let (most, least) = (PAGE - 35, (PAGE - 12) * 32 / 255 - 23);
+    if row.len() <= most {
+        return ([head, row.to_vec()].concat(), Vec::new());
+    }
+    let here = least + (row.len() - least) % (PAGE - 4);
+    let (here, rest) = row.split_at(if here <= most { here } else { least });
+    let parts: Vec<&[u8]> = rest.chunks(PAGE - 4).collect();
+    let count = parts.len() as u32;
+    let pages = (1..).zip(parts).map(|(place, part)| {
+        let following = if place == count { 0 } else { next + place };
+        let mut page = [&following.to_be_bytes()[..], part].concat();
+        page.resize(PAGE, 0);
+        page
+    });
+    ([head, here.to_vec(), next.to_be_bytes().to_vec()].concat(), pages.collect())
+}
+
+/// A bag of ROS 2 with a topic `/imu`: tables on pages of leaves, that of the messages below an inner page.
+pub fn database(messages: &[Vec<u8>]) -> Vec<u8> {
+    let sql = |name: &str, columns: &str, root: u64| {
+        let statement = format!("CREATE TABLE {name}({columns})");
+        let kind = Cell::Text("table");
+        row(&[kind, Cell::Text(name), Cell::Text(name), Cell::Whole(root), Cell::Text(&statement)])
+    };
+    let definitions =
+        "id INTEGER PRIMARY KEY, topic_type TEXT, encoding TEXT, encoded_message_definition TEXT";
+    let topics = "id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT, offered_qos_profiles TEXT";
+    let columns = "id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB";
+    let tables = [
+        sql("message_definitions", definitions, 2),
+        sql("topics", topics, 3),
+        sql("messages", columns, 4),
+    ];
+    let first: Vec<Vec<u8>> = (1..).zip(&tables).map(|(id, row)| cell(id, row, 0).0).collect();
+    let mut head = b"SQLite format 3\0".to_vec();
+    head.extend((PAGE as u16).to_be_bytes());
+    head.resize(100, 0);
+    let definition =
+        row(&[Cell::Null, Cell::Text("t/msg/Imu"), Cell::Text("ros2msg"), Cell::Text(ROS2)]);
+    let long = "- history: 3\n".repeat(250);
+    let topic = row(&[
+        Cell::Null,
+        Cell::Text("/imu"),
+        Cell::Text("t/msg/Imu"),
+        Cell::Text("cdr"),
+        Cell::Text(&long),
+    ]);
+    let (topic, further) = cell(1, &topic, 5);
+    let mut pages = vec![
+        page(13, &first, 0, &head),
+        page(13, &[cell(1, &definition, 0).0], 0, &[]),
+        page(13, &[topic], 0, &[]),
+        Vec::new(),
+    ];
+    pages.extend(further);
+    let mut leaves = Vec::new();
+    for (place, rows) in messages.chunks(10).enumerate() {
+        let cells: Vec<Vec<u8>> =
+            (place as u64 * 10 + 1..).zip(rows).map(|(id, row)| cell(id, row, 0).0).collect();
+        pages.push(page(13, &cells, 0, &[]));
+        leaves.push((pages.len() as u32, place as u64 * 10 + 10));
+    }
+    let (right, _) = leaves.pop().unwrap();
+    let cells: Vec<Vec<u8>> = leaves
+        .iter()
+        .map(|(leaf, last)| [leaf.to_be_bytes().to_vec(), varint(*last)].concat())
+        .collect();
+    pages[3] = page(5, &cells, right, &[]);
+    pages.concat()
 }

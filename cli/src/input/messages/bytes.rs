@@ -1,5 +1,6 @@
 //! The bytes of a log from its start to its end, and where one is among them.
 
+use crate::input::text::GZIP;
 use anyhow::{Context, Result};
 use flate2::read::MultiGzDecoder;
 use ruzstd::decoding::StreamingDecoder;
@@ -23,6 +24,14 @@ impl Bytes {
         let file =
             File::open(path).with_context(|| format!("{}: cannot be opened", path.display()))?;
         Ok(Self { input: unpacked(file).with_context(|| path.display().to_string())?, at: 0 })
+    }
+
+    /// Copies all bytes.
+    ///
+    /// # Errors
+    /// They cannot be unpacked or written.
+    pub(super) fn copy(mut self, output: &mut File) -> io::Result<u64> {
+        io::copy(&mut self.input, output)
     }
 
     /// How many bytes were taken.
@@ -52,13 +61,24 @@ impl Bytes {
     }
 }
 
+/// Whether a file is packed as a whole.
+///
+/// # Errors
+/// It cannot be read.
+pub(super) fn is_packed(path: &Path) -> Result<bool> {
+    let mut start = Vec::new();
+    let file = File::open(path).with_context(|| format!("{}: cannot be opened", path.display()))?;
+    file.take(4).read_to_end(&mut start).with_context(|| path.display().to_string())?;
+    Ok(start.starts_with(&GZIP) || start.starts_with(&ZSTD))
+}
+
 /// The content of a file, whether packed or not.
 fn unpacked(file: File) -> io::Result<Box<dyn Read>> {
     const BUFFER: usize = 1 << 18;
     let mut head = Vec::new();
     let mut input = BufReader::with_capacity(BUFFER, file);
     input.by_ref().take(4).read_to_end(&mut head)?;
-    let is_gzip = head.starts_with(&super::super::text::GZIP);
+    let is_gzip = head.starts_with(&GZIP);
     let is_zstd = head.starts_with(&ZSTD);
     let all = Cursor::new(head).chain(input);
     Ok(if is_gzip {

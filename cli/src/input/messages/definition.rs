@@ -1,21 +1,22 @@
 //! Definitions of ROS messages: `type name` lines, and those of the messages within after `MSG: package/Type`.
 
+use super::known::known;
 use std::collections::HashMap;
 
 /// A message's layout, with those of the messages in it.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Definition {
     /// The message itself comes first.
     structs: Vec<Struct>,
 }
 
 /// The fields of a message in order.
-#[derive(Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Struct {
     pub fields: Vec<Field>,
 }
 
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Field {
     pub name: String,
     pub kind: Kind,
@@ -221,7 +222,7 @@ impl Definition {
 }
 
 /// `package/Type`, also of `package/msg/Type`.
-fn short(name: &str) -> String {
+pub(super) fn short(name: &str) -> String {
     name.replacen("/msg/", "/", 1)
 }
 
@@ -249,8 +250,9 @@ impl Parser {
         let text = match self.texts.get(name) {
             Some(text) => text.clone(),
             None => built_in(name, self.dialect)
-                .ok_or_else(|| format!("there is no definition of {name}"))?
-                .to_owned(),
+                .map(str::to_owned)
+                .or_else(|| known(name).filter(|_| self.dialect == Dialect::Ros2))
+                .ok_or_else(|| format!("there is no definition of {name}"))?,
         };
         self.places.insert(name.to_owned(), usize::MAX);
         let place = self.structs.len();

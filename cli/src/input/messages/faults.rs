@@ -21,6 +21,11 @@ impl Faults {
         &self.file
     }
 
+    /// Whether what is damaged is left out.
+    pub(super) fn is_accepted(&self) -> bool {
+        self.is_accepted
+    }
+
     /// Something that reading can go on behind.
     ///
     /// # Errors

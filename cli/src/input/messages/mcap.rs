@@ -29,7 +29,7 @@ mod op {
 }
 
 /// Messages of ROS 2 are packed one by one where a recorder was told so; unpacked none is larger.
-const LARGEST_MESSAGE: u64 = 1 << 30;
+pub(super) const LARGEST_MESSAGE: u64 = 1 << 30;
 
 /// A file that is read from its start to its end.
 pub(super) struct Mcap {

@@ -7,6 +7,7 @@ mod bytes;
 mod channel;
 mod definition;
 mod faults;
+mod known;
 #[cfg(test)]
 #[path = "../../../tests/common/logs.rs"]
 mod made;
@@ -14,6 +15,8 @@ mod mcap;
 #[cfg(test)]
 mod mutated;
 mod reading;
+mod rosbag2;
+mod sqlite;
 mod topic;
 mod wire;
 
@@ -22,6 +25,7 @@ pub(crate) use reading::Reading;
 pub(crate) use topic::{Overview, overview};
 
 use anyhow::Result;
+use bytes::Bytes;
 use faults::Faults;
 use std::path::Path;
 use topic::Topic;
@@ -64,23 +68,41 @@ pub(crate) enum Kind {
     Bag,
     /// An MCAP file.
     Mcap,
+    /// A ROS 2 bag of one file.
+    Sqlite,
+    /// A ROS 2 bag of several files.
+    Directory,
 }
 
 impl Kind {
     /// The topic that is meant unless another is named.
     fn usual_topic(self) -> Option<&'static str> {
         match self {
-            Self::Bag | Self::Mcap => None,
+            Self::Bag | Self::Mcap | Self::Sqlite | Self::Directory => None,
         }
     }
 }
 
-/// So much of a log tells its kind.
-pub(crate) const START: u64 = 32;
+/// What kind of log this is, by how it starts, also when it is packed.
+///
+/// # Errors
+/// It cannot be opened or read.
+pub(crate) fn kind_of(path: &Path) -> Result<Option<Kind>> {
+    const START: u64 = 32;
+    if path.is_dir() || path.file_name().is_some_and(|name| name == rosbag2::METADATA) {
+        return Ok(Some(Kind::Directory));
+    }
+    let mut start = Vec::new();
+    // What cannot be unpacked is no log.
+    if Bytes::open(path)?.take(START, &mut start).is_err() {
+        return Ok(None);
+    }
+    Ok(kind(&start))
+}
 
 /// What kind of log starts like this.
-pub(crate) fn kind(start: &[u8]) -> Option<Kind> {
-    let kinds = [(bag::START, Kind::Bag), (mcap::START, Kind::Mcap)];
+fn kind(start: &[u8]) -> Option<Kind> {
+    let kinds = [(bag::START, Kind::Bag), (mcap::START, Kind::Mcap), (sqlite::START, Kind::Sqlite)];
     kinds.into_iter().find(|(own, _)| start.starts_with(own)).map(|(_, kind)| kind)
 }
 
@@ -94,5 +116,7 @@ fn open(path: &Path, kind: Kind, accept_cut: bool) -> Result<Box<dyn Log>> {
     Ok(match kind {
         Kind::Bag => Box::new(bag::Bag::open(path, faults)?),
         Kind::Mcap => Box::new(mcap::Mcap::open(path, faults)?),
+        Kind::Sqlite => Box::new(rosbag2::Sqlite::open(path, faults)?),
+        Kind::Directory => Box::new(rosbag2::Directory::open(path, faults)?),
     })
 }

@@ -1,7 +1,7 @@
 //! Damaged logs: a thousand of each kind are read or refused, and none makes the program panic.
 
-use super::made::{KINDS, Kind as Made};
-use super::{Reading, kind, overview};
+use super::made::KINDS;
+use super::{Reading, kind_of, overview};
 use std::fs;
 
 /// A generator with a fixed start.
@@ -41,9 +41,9 @@ fn a_thousand_damaged_logs_of_each_kind_panic_nowhere() {
         for round in 0..1000 {
             let mut log = logs[round % logs.len()].clone();
             random.damage(&mut log);
-            let Some(kind) = kind(&log) else { continue };
             let path = directory.path().join(made.name());
             fs::write(&path, &log).unwrap();
+            let Some(kind) = kind_of(&path).unwrap() else { continue };
             // Both as it is, and with what is whole of it.
             refused += u32::from(overview(&path, kind, false, 1.5).is_err());
             let Ok(mut log) = Reading::open(&path, kind, true) else { continue };
@@ -56,5 +56,4 @@ fn a_thousand_damaged_logs_of_each_kind_panic_nowhere() {
         }
         assert!(read > 10_000 && refused > 100, "{made:?}: {read} numbers, {refused} refused");
     }
-    assert_eq!(KINDS, [Made::Bag, Made::Mcap]);
 }

@@ -7,7 +7,7 @@ use crate::input::{CHUNK, Clock};
 use anyhow::Result;
 
 /// A topic, and how its messages are read.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Topic {
     pub name: String,
     /// The type of its messages.
