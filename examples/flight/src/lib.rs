@@ -5,6 +5,7 @@
 //!
 //! - [`Device`] gives the sensor the pauses that it needs between two accesses, and chip select its guard times;
 //! - [`bmi323`] and [`bmi088`] start the sensor, and read back what it was told;
+//! - [`free_bus`] frees an I2C bus that a sensor holds since the controller was reset;
 //! - [`Sampler`] stands between sensor and queue: it counts samples, finds those that are missing, notices a sensor that is
 //!   silent or stuck, and tells the far end by a break;
 //! - [`code`] is the code of the channels, and why;
@@ -21,6 +22,7 @@ pub mod clock;
 pub mod code;
 mod counters;
 mod device;
+mod i2c;
 mod sampler;
 #[cfg(feature = "simulated")]
 pub mod simulated;
@@ -29,4 +31,5 @@ pub use counters::Counters;
 pub use device::{Device, Timing};
 /// What goes wrong in a [`Device`].
 pub use embedded_hal_bus::spi::DeviceError as SpiError;
+pub use i2c::free_bus;
 pub use sampler::{Plan, Sampler, Why};

@@ -5,6 +5,7 @@ mod bmi088;
 mod bmi323;
 mod code;
 mod device;
+mod i2c;
 mod sampler;
 
 /// The result of what is a future without the feature `blocking`. Nothing here ever waits.

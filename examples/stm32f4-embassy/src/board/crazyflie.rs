@@ -7,7 +7,7 @@
 use embassy_stm32::{
     Peri, bind_interrupts, dma,
     exti::{self, ExtiInput},
-    gpio::{AnyPin, Level, Output, Pull, Speed},
+    gpio::{AnyPin, Level, Output, OutputOpenDrain, Pull, Speed},
     i2c::{self, I2c, Master},
     interrupt::typelevel,
     mode::Async,
@@ -22,6 +22,7 @@ use flight::{
     Plan,
     bmi088::{self, Bmi088, StartError},
     code::MOST,
+    free_bus,
 };
 use spikewire::link::Transmitter;
 
@@ -80,7 +81,7 @@ impl Wires {
 }
 
 pub fn start() -> Board {
-    let p = embassy_stm32::init(clock::config::<CRYSTAL>());
+    let mut p = embassy_stm32::init(clock::config::<CRYSTAL>());
     // The motors stand still. PA15 has a pull-up after a reset, as a debugger's line.
     let motors: [Peri<'static, AnyPin>; 4] =
         [p.PA15.into(), p.PA1.into(), p.PB11.into(), p.PB9.into()];
@@ -90,6 +91,13 @@ pub fn start() -> Board {
     let mut watchdog = IndependentWatchdog::new(p.IWDG, crate::WATCHDOG_US);
     watchdog.unleash();
 
+    fn open(pin: Peri<'_, AnyPin>) -> OutputOpenDrain<'_> {
+        OutputOpenDrain::new(pin, Level::High, Speed::Low)
+    }
+    let (scl, sda) = (p.PA8.reborrow().into(), p.PC9.reborrow().into());
+    if !free_bus(&mut open(scl), &mut open(sda), &mut Delay) {
+        defmt::error!("the sensor's bus is held low");
+    }
     let mut at = i2c::Config::default();
     at.frequency = Hertz(IMU_HZ);
     let bus = I2c::new(p.I2C3, p.PA8, p.PC9, p.DMA1_CH4, p.DMA1_CH2, Interrupts, at);
