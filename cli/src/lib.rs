@@ -8,6 +8,7 @@ mod events;
 mod fit;
 mod frames;
 mod input;
+pub mod library;
 mod live;
 mod look;
 mod network;

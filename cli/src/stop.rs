@@ -3,6 +3,7 @@
 use anyhow::{Context, Result};
 use spikewire::Tick;
 use std::process;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -12,6 +13,8 @@ static IS_WANTED: AtomicBool = AtomicBool::new(false);
 pub(crate) struct Stop {
     start: Instant,
     after: Option<Duration>,
+    /// Another's word that it is time.
+    word: Option<Arc<AtomicBool>>,
 }
 
 impl Stop {
@@ -22,26 +25,27 @@ impl Stop {
     pub(crate) fn new(seconds: Option<f64>) -> Result<Self> {
         /// As a shell tells of a program that Ctrl-C ended.
         const INTERRUPTED: i32 = 130;
-        let after = match seconds {
-            None => None,
-            Some(seconds) => Some(
-                Duration::try_from_secs_f64(seconds)
-                    .ok()
-                    .filter(|after| !after.is_zero())
-                    .with_context(|| format!("--seconds {seconds} must be above 0"))?,
-            ),
-        };
+        let after = seconds.map(duration).transpose()?;
         ctrlc::set_handler(|| {
             if IS_WANTED.swap(true, Ordering::Relaxed) {
                 process::exit(INTERRUPTED);
             }
         })?;
-        Ok(Self { start: Instant::now(), after })
+        Ok(Self { start: Instant::now(), after, word: None })
+    }
+
+    /// After this many seconds, or when somebody else says so.
+    ///
+    /// # Errors
+    /// The number is not above 0.
+    pub(crate) fn at_word(word: Arc<AtomicBool>, seconds: f64) -> Result<Self> {
+        Ok(Self { start: Instant::now(), after: Some(duration(seconds)?), word: Some(word) })
     }
 
     /// Whether it is time.
     pub(crate) fn is_due(&self) -> bool {
         IS_WANTED.load(Ordering::Relaxed)
+            || self.word.as_ref().is_some_and(|word| word.load(Ordering::Relaxed))
             || self.after.is_some_and(|after| self.start.elapsed() >= after)
     }
 
@@ -49,4 +53,9 @@ impl Stop {
     pub(crate) fn tick(&self) -> Tick {
         Tick::from_micros(self.start.elapsed().as_micros() as u64)
     }
+}
+
+fn duration(seconds: f64) -> Result<Duration> {
+    let duration = Duration::try_from_secs_f64(seconds).ok().filter(|after| !after.is_zero());
+    duration.with_context(|| format!("--seconds {seconds} must be above 0"))
 }

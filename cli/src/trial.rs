@@ -26,6 +26,14 @@ pub(crate) struct Recording {
 }
 
 impl Recording {
+    /// Of samples in memory, all finite, evenly spaced.
+    pub(crate) fn of(name: String, values: Vec<f64>, rate: Option<f64>) -> Self {
+        /// No step is longer than another.
+        const STEPS: f64 = 1.5;
+        let clock = Clock::new(&[], rate, STEPS);
+        Self { values, times: Vec::new(), rate, name, rejected: 0, clock, notes: Vec::new() }
+    }
+
     /// Reads all of its one channel.
     ///
     /// # Errors

@@ -13,10 +13,33 @@ True
 """
 
 from ._bank import EVENTS, Bank
+from ._files import Log, read, read_events, read_ulog, write_events
+from ._laptop import Advice, Picture, Tuned, advise, plot, score, tune
 from ._scheme import Scheme
 from ._schemes import *  # noqa: F403: the classes, by the catalogue
 from ._schemes import NAMES, schemes
 from ._spikes import Spikes
 from ._stream import Decoder, Encoder
 
-__all__ = ["EVENTS", "Bank", "Decoder", "Encoder", "Scheme", "Spikes", "schemes", *NAMES]
+__all__ = [
+    "EVENTS",
+    "Advice",
+    "Bank",
+    "Decoder",
+    "Encoder",
+    "Log",
+    "Picture",
+    "Scheme",
+    "Spikes",
+    "Tuned",
+    "advise",
+    "plot",
+    "read",
+    "read_events",
+    "read_ulog",
+    "schemes",
+    "score",
+    "tune",
+    "write_events",
+    *NAMES,
+]

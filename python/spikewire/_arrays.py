@@ -1,12 +1,15 @@
 """What arrays become before the compiled half takes them."""
 
+from __future__ import annotations
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 #: Those that are taken as they lie in memory.
 TAKEN = (np.float32, np.float64, np.int16)
 
 
-def samples(x):
+def samples(x: ArrayLike) -> NDArray:
     """An array of samples whose last axis is time; copied only where its type or byte order must change."""
     x = np.asarray(x)
     if x.ndim == 0:
@@ -20,7 +23,7 @@ def samples(x):
     return x.astype(x.dtype.newbyteorder("=") if x.dtype.newbyteorder("=") in TAKEN else np.float64)
 
 
-def cells(codes, shape, rows_of):
+def cells(codes: ArrayLike, shape: tuple[int, int], rows_of: str) -> tuple[NDArray[np.int8], tuple[int, ...]]:
     """Codes as one row of cells a sample: the array, flat, and the shape of what they decode to."""
     codes = np.ascontiguousarray(codes)
     if codes.dtype != np.int8:
@@ -36,7 +39,7 @@ def cells(codes, shape, rows_of):
     return codes.reshape(-1), outer
 
 
-def row(shape):
+def row(shape: tuple[int, int]) -> tuple[int, ...]:
     """The axes of a sample's code: none, neurons, or sub-timesteps and neurons."""
     neurons, slots = shape
     if slots > 1:

@@ -1,6 +1,14 @@
 """Several channels as one stream of events."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from ._scheme import Scheme
 
 #: An event: its time ``t`` in µs, its address ``x`` and its polarity ``p``, 1 up and 0 down. Names and order are those
 #: of the field, so that ``tonic`` and others take such arrays; ``y`` is left out, as there is no second axis.
@@ -17,22 +25,22 @@ class Bank:
           dtype=[('t', '<i8'), ('x', '<i8'), ('p', '<i8')])
     """
 
-    def __init__(self, scheme, channels):
+    def __init__(self, scheme: Scheme, channels: int):
         self._encoder = scheme.encoder(channels)
         self.scheme, self.channels = scheme, channels
         self._done = 0
 
-    def encode(self, x, period):
+    def encode(self, x: ArrayLike, period: float) -> NDArray:
         """The events of the next samples, (channels, samples), one every `period` µs; the bank goes on from there."""
         return self._events(self._encoder.encode(x), period)
 
-    def finish(self, period):
+    def finish(self, period: float) -> NDArray:
         """The events of the samples that wait for later ones. The bank is as at its start then."""
         events = self._events(self._encoder.finish(), period)
         self._done = 0
         return events
 
-    def _events(self, codes, period):
+    def _events(self, codes: NDArray[np.int8], period: float) -> NDArray:
         neurons, slots = self._encoder._native.shape()
         codes = codes.reshape(self.channels, -1, slots, neurons)
         found = events(codes, period, None, self._done)
@@ -40,7 +48,7 @@ class Bank:
         return found
 
 
-def events(codes, period, times=None, first=0):
+def events(codes: NDArray, period: float, times: ArrayLike | None = None, first: int = 0) -> NDArray:
     """The events of codes (channels, samples, sub-timesteps, neurons), from the sample of this number on."""
     channels, length, slots, neurons = codes.shape
     if channels * neurons > 1 << 16:

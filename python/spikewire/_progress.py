@@ -1,7 +1,10 @@
 """Progress on work of some seconds."""
 
+from __future__ import annotations
+
 import sys
 import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 #: Work that is shorter shows no bar.
@@ -9,7 +12,7 @@ PATIENCE = 1.0
 
 
 @contextmanager
-def bar(wanted, what):
+def bar(wanted: bool | Callable[[int, int], object] | None, what: str) -> Iterator[Callable[[int, int], object] | None]:
     """A function of what is done and of the total, or none."""
     if callable(wanted):
         yield wanted
@@ -18,7 +21,7 @@ def bar(wanted, what):
     else:
         start, shown = time.monotonic(), False
 
-        def tell(done, total):
+        def tell(done: int, total: int) -> None:
             nonlocal shown
             if time.monotonic() - start >= PATIENCE and total:
                 shown = True

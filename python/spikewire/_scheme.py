@@ -1,11 +1,19 @@
 """What all schemes have in common."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _native, _progress
 from ._arrays import row, samples
 from ._spikes import Spikes
 from ._stream import Decoder, Encoder
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 class Scheme:
@@ -15,30 +23,30 @@ class Scheme:
     """
 
     #: What the catalogue says of it.
-    _info = None
+    _info: dict
 
-    def __init__(self, sample="f32", paper=False, **parameters):
+    def __init__(self, sample: str = "f32", paper: bool = False, **parameters: Any):
         given = {name: value for name, value in parameters.items() if value is not None and value is not False}
         self._sample, self._paper, self._given = str(sample), bool(paper), given
         options = {name: _text(value) for name, value in given.items()}
         self._coder = _native.Coder(self._info["name"], self._sample, options, self._paper)
 
     @property
-    def name(self):
+    def name(self) -> str:
         """Its short name, as the laptop program and files have it."""
         return self._info["name"]
 
     @property
-    def sample(self):
+    def sample(self) -> str:
         """The sample type that it runs in: ``"f32"``, ``"i16"``, ``"q8.8"``, ``"q16.16"`` …"""
         return self._sample
 
     @property
-    def parameters(self):
+    def parameters(self) -> dict[str, Any]:
         """What was given, by name."""
         return dict(self._given)
 
-    def fit(self, x):
+    def fit(self, x: ArrayLike) -> Scheme:
         """This scheme with the parameters that `x`, all channels together, tells: the one that flies.
 
         >>> import spikewire as sw
@@ -46,12 +54,33 @@ class Scheme:
         -2.0
         """
         options = dict(self._coder.fit(samples(x), True).options(0))
-        of_signal = {own["name"] for own in self._info["parameters"] if own["found"] == "the first sample"}
-        own = {name: self._value(name, text) for name, text in options.items() if name not in of_signal}
-        own.update((name, value) for name, value in self._given.items() if name in of_signal)
-        return type(self)(sample=self._sample, **own)
+        return self._of(options, self._sample, {name: self._given[name] for name in ("start",) if name in self._given})
 
-    def encode(self, x, progress=None):
+    @classmethod
+    def _of(cls, options: dict, sample: str, given: dict | None = None) -> Scheme:
+        """Of the catalogue's texts; where a signal begins is no parameter of what flies."""
+        named = {own["name"]: own for own in cls._info["parameters"]}
+        own = {
+            name: _value(named[name]["kind"], text)
+            for name, text in options.items()
+            if named[name]["found"] != "the first sample"
+        }
+        return cls(sample=sample, **own, **(given or {}))
+
+    def to_rust(self, name: str = "CHANNEL") -> str:
+        """It as a constant in Rust for the firmware; what a signal tells must be given or :meth:`fit`.
+
+        >>> import spikewire as sw
+        >>> print(sw.StepForward(threshold=0.35).to_rust("ROLL"), end="")
+        pub static ROLL: spikewire::temporal::StepForward<f32> = spikewire::temporal::StepForward::new(0.35);
+        """
+        return _native.to_rust(self._coder, name, [])
+
+    def to_toml(self) -> str:
+        """It as a file of parameters, for ``--params`` of the laptop program."""
+        return _native.to_toml(self._coder, [])
+
+    def encode(self, x: ArrayLike, progress: bool | Callable[[int, int], object] | None = None) -> Spikes:
         """The spikes of `x`, an array (samples,) or (channels, samples) or (…, samples) of floats or integers.
 
         `progress`: a function of what is done and of the total, ``True`` for a bar, ``False`` for none; unless given, a
@@ -64,27 +93,34 @@ class Scheme:
             flat = fitted.encode(x, tell)
         return Spikes(self, fitted, flat, x.shape, shape)
 
-    def decode(self, spikes, first=None, progress=None):
+    def decode(self, spikes: Spikes | ArrayLike, first: ArrayLike | None = None) -> NDArray:
         """The values of `spikes`: of :class:`Spikes`, or of an array as their ``array`` is.
 
         An array does not say where a signal began. So a code of steps needs its `first` sample, one for each channel
-        or one for all; and what a signal else tells must be given or :meth:`fit`.
+        or one for all; and what a signal else tells must be given, or found by :meth:`fit`.
         """
         if isinstance(spikes, Spikes):
-            return spikes.decode(progress=progress)
-        x = np.asarray(spikes)
-        decoder = self.decoder(first=first, channels=_channels(x, self._coder.shape()))
-        return decoder.decode(x)
+            return spikes.decode()
+        codes = np.asarray(spikes)
+        inner = row(self._coder.shape())
+        outer = codes.shape[: codes.ndim - len(inner)]
+        if len(outer) <= 1:
+            return self.decoder(first).decode(codes)
+        channels = int(np.prod(outer[:-1]))
+        first = np.ravel(first) if np.ndim(first) > 1 else first
+        return self.decoder(first, channels).decode(codes.reshape(channels, outer[-1], *inner)).reshape(outer)
 
-    def encoder(self, channels=None):
+    def encoder(self, channels: int | None = None, picklable: bool = False) -> Encoder:
         """An encoder that keeps its state between chunks (samples,), or (channels, samples) of so many channels."""
-        return Encoder(self, channels)
+        return Encoder(self, channels, picklable)
 
-    def decoder(self, first=None, channels=None):
+    def decoder(
+        self, first: ArrayLike | None = None, channels: int | None = None, picklable: bool = False
+    ) -> Decoder:
         """A decoder that keeps its state between chunks; a code of steps starts from the `first` sample."""
-        return Decoder(self, first, channels)
+        return Decoder(self, first, channels, picklable)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         given = dict(self._given)
         if self._sample != "f32":
             given["sample"] = self._sample
@@ -93,26 +129,17 @@ class Scheme:
         told = ", ".join(f"{name}={value!r}" for name, value in given.items())
         return f"{type(self).__name__}({told})"
 
-    def _value(self, name, text):
-        """What a text of the catalogue is in Python."""
-        kind = next(own["kind"] for own in self._info["parameters"] if own["name"] == name)
-        if kind == "flag":
-            return True
-        if kind in ("number", "count"):
-            return float(text) if kind == "number" else int(text)
-        return [float(tap) for tap in text.split(",") if tap] if kind == "filter" else text
-
-    def _key(self):
+    def _key(self) -> tuple:
         given = {name: _text(value) for name, value in self._given.items()}
         return self.name, self._sample, self._paper, tuple(sorted(given.items()))
 
-    def __eq__(self, other):
+    def __eq__(self, other: object) -> bool:
         return isinstance(other, Scheme) and self._key() == other._key()
 
-    def __hash__(self):
+    def __hash__(self) -> int:
         return hash(self._key())
 
-    def __reduce__(self):
+    def __reduce__(self) -> Any:
         return _again, (self.name, {"sample": self._sample, "paper": self._paper, **self._given})
 
 
@@ -120,12 +147,6 @@ def _again(name, keywords):
     from ._schemes import schemes
 
     return schemes[name](**keywords)
-
-
-def _channels(codes, shape):
-    """How many channels an array of codes has; none if it has no axis of them."""
-    outer = codes.shape[: codes.ndim - len(row(shape))]
-    return None if len(outer) <= 1 else int(np.prod(outer[:-1]))
 
 
 def _text(value):
@@ -144,3 +165,11 @@ def _number(value):
     number = float(value)
     return str(int(number)) if number.is_integer() and abs(number) < 2**53 else repr(number)
 
+
+def _value(kind, text):
+    """What a text of the catalogue is in Python."""
+    if kind == "flag":
+        return True
+    if kind in ("number", "count"):
+        return float(text) if kind == "number" else int(text)
+    return [float(tap) for tap in text.split(",") if tap] if kind == "filter" else text

@@ -1,12 +1,43 @@
 """Encoders and decoders that keep their state between chunks."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import cells, row, samples
+
+if TYPE_CHECKING:
+    from ._scheme import Scheme
+
+
+class _Past:
+    """The chunks that a stream has taken, from which it is made again."""
+
+    def __init__(self, is_kept: bool):
+        self._chunks, self._is_kept, self._is_fresh = [], is_kept, True
+
+    def take(self, chunk: NDArray) -> None:
+        self._is_fresh = False
+        if self._is_kept:
+            self._chunks.append(chunk.copy())
+
+    def clear(self) -> None:
+        self._chunks, self._is_fresh = [], True
+
+    def chunks(self) -> tuple[bool, list]:
+        if not (self._is_fresh or self._is_kept):
+            raise TypeError("a stream that has begun pickles where it keeps its past: give picklable=True")
+        return self._is_kept, list(self._chunks)
 
 
 class Encoder:
     """Encodes chunk after chunk; the codes of all chunks and of :meth:`finish` are those of the whole.
+
+    It pickles before its first sample, and later if `picklable`: it keeps all samples that it takes then, and is made
+    again by encoding them.
 
     >>> import numpy as np, spikewire as sw
     >>> x = np.sin(np.linspace(0, 6, 200))
@@ -19,37 +50,44 @@ class Encoder:
     True
     """
 
-    def __init__(self, scheme, channels=None):
-        self._scheme, self._channels = scheme, channels
+    def __init__(self, scheme: Scheme, channels: int | None = None, picklable: bool = False):
+        if channels is not None and channels < 1:
+            raise ValueError(f"channels {channels} must be 1 or more")
+        self._scheme, self._channels, self._past = scheme, channels, _Past(picklable)
         self._native = scheme._coder.encoder(channels or 1)
-        self._shape = None
 
-    def encode(self, x):
-        """The codes that the next samples, (samples,) or (channels, samples), complete: `int8`, as ``Spikes.array``.
+    def encode(self, x: ArrayLike) -> NDArray[np.int8]:
+        """The codes that the next samples, (samples,) or (channels, samples), complete: ``int8``, as ``Spikes.array``.
 
-        Those of a rate code are as many samples late as it looks ahead. What is not finite is an error, and taken is
-        nothing then.
+        Those of a rate code are as many samples late as it looks ahead. Where one is not finite it is an error, and
+        none is taken.
         """
         x = samples(x)
         if x.ndim != (1 if self._channels is None else 2):
             told = "(samples,)" if self._channels is None else f"({self._channels}, samples)"
             raise ValueError(f"a chunk is an array {told}, not {x.shape}")
-        return self._rows(self._native.encode(x))
+        codes = self._rows(self._native.encode(x))
+        self._past.take(x)
+        return codes
 
-    def finish(self):
+    def finish(self) -> NDArray[np.int8]:
         """The codes of the samples that wait for later ones. The encoder is as at its start then."""
+        self._past.clear()
         return self._rows(self._native.finish())
 
-    def _rows(self, flat):
+    def _rows(self, flat: NDArray[np.int8]) -> NDArray[np.int8]:
         inner = row(self._native.shape())
-        outer = (-1,) if self._channels is None else (self._channels, -1)
-        if flat.size == 0:
-            outer = outer[:-1] + (0,)
-        return flat.reshape(*outer, *inner)
+        outer = () if self._channels is None else (self._channels,)
+        return flat.reshape(*outer, flat.size // (int(np.prod(inner)) * (self._channels or 1)), *inner)
+
+    def __reduce__(self) -> Any:
+        return _encoder, (self._scheme, self._channels, *self._past.chunks())
 
 
 class Decoder:
-    """Decodes chunk after chunk.
+    """Decodes chunk after chunk; pickles as :class:`Encoder` does.
+
+    A code of steps needs the `first` value; a code of a mean may have it, and starts from its own middle otherwise.
 
     >>> import spikewire as sw
     >>> decoder = sw.StepForward(threshold=0.5).decoder(first=1.0)
@@ -57,31 +95,47 @@ class Decoder:
     (array([1. , 1.5, 2. , 1.5], dtype=float32), array([2.], dtype=float32))
     """
 
-    def __init__(self, scheme, first=None, channels=None):
+    def __init__(
+        self,
+        scheme: Scheme,
+        first: ArrayLike | None = None,
+        channels: int | None = None,
+        picklable: bool = False,
+    ):
         has_first = scheme._info["has_first_value"] and "start" not in scheme.parameters
         if first is None and has_first:
             raise ValueError(
                 f"{scheme.name} decodes from a first value: first=, the first sample of each channel, or start="
             )
-        first = np.asarray(0.0 if first is None else first, dtype=float)
-        if channels is None and first.ndim == 1:
+        if channels is None and np.ndim(first) == 1:
             channels = len(first)
-        firsts = np.broadcast_to(first, (channels or 1,))
-        self._set(scheme, scheme._coder.decoder(list(firsts)), scheme._coder.shape(), channels)
+        self._scheme, self._channels, self._first, self._past = scheme, channels, first, _Past(picklable)
+        firsts = [None if first is None else float(own) for own in np.broadcast_to(first, (channels or 1,))]
+        self._native = scheme._coder.decoder(firsts)
+        self._shape = scheme._coder.shape()
 
-    @classmethod
-    def _of(cls, scheme, native, shape, channels):
-        own = cls.__new__(cls)
-        own._set(scheme, native, shape, channels)
-        return own
-
-    def _set(self, scheme, native, shape, channels):
-        self._scheme, self._native, self._shape, self._channels = scheme, native, shape, channels
-
-    def decode(self, codes):
+    def decode(self, codes: ArrayLike) -> NDArray:
         """The values of the next codes, an array as :meth:`Encoder.encode` returns it."""
         flat, outer = cells(codes, self._shape, type(self._scheme).__name__)
-        channels = int(np.prod(outer[:-1]))
-        if channels != (self._channels or 1):
-            raise ValueError(f"there are {self._channels or 1} channels, not {channels}")
-        return self._native.decode(flat, outer[-1]).reshape(outer)
+        if outer[:-1] != (() if self._channels is None else (self._channels,)):
+            raise ValueError(f"there are {self._channels or 1} channels, not codes of the shape {np.shape(codes)}")
+        values = self._native.decode(flat, outer[-1]).reshape(outer)
+        self._past.take(np.asarray(codes))
+        return values
+
+    def __reduce__(self) -> Any:
+        return _decoder, (self._scheme, self._first, self._channels, *self._past.chunks())
+
+
+def _encoder(scheme: Scheme, channels: int | None, picklable: bool, chunks: list) -> Encoder:
+    encoder = Encoder(scheme, channels, picklable)
+    for chunk in chunks:
+        encoder.encode(chunk)
+    return encoder
+
+
+def _decoder(scheme: Scheme, first: Any, channels: int | None, picklable: bool, chunks: list) -> Decoder:
+    decoder = Decoder(scheme, first, channels, picklable)
+    for codes in chunks:
+        decoder.decode(codes)
+    return decoder

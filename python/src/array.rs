@@ -1,4 +1,4 @@
-//! Samples of NumPy arrays as they lie in memory, and decoded values.
+//! Samples of `NumPy` arrays as they lie in memory, and decoded values.
 
 use std::ops::Range;
 

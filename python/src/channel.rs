@@ -39,7 +39,7 @@ pub(crate) trait Channel: Send + Sync {
     fn decode(&mut self, cells: &[i8], values: &mut Values) -> Result<(), Bad>;
 }
 
-/// A channel as it starts on these settings, which are complete.
+/// A channel as it starts on these settings, which are complete; its decoder from a value, if there is one.
 ///
 /// # Errors
 /// A parameter makes no sense.
@@ -47,17 +47,19 @@ pub(crate) fn start(
     scheme: &'static dyn RunTime,
     sample: SampleType,
     settings: &Settings,
+    first: Option<f64>,
 ) -> Result<Box<dyn Channel>> {
     let shape = scheme.shape(settings)?;
     let one = sample.one();
     let given = Given::new(settings, one);
-    let start = Start { settings, one, neurons: shape.neurons, slots: shape.slots };
+    let start = Start { settings, one, first, neurons: shape.neurons, slots: shape.slots };
     for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.info().name, &given, start))
 }
 
 struct Start<'a> {
     settings: &'a Settings,
     one: f64,
+    first: Option<f64>,
     neurons: usize,
     slots: usize,
 }
@@ -76,12 +78,12 @@ impl<S: Sample> Visit<S> for Start<'_> {
             + Sync
             + 'static,
     {
-        let Self { settings, one, neurons, slots } = self;
+        let Self { settings, one, first, neurons, slots } = self;
         let sample = |value: f64| S::from_f64(value * one);
         let past: Vec<S> = settings.first.iter().copied().map(sample).collect();
         scheme.prime(&mut encoder, &past);
         let mut decoder = scheme.decoder_state();
-        if let Some(first) = settings.first_value() {
+        if let Some(first) = settings.first_value().or(first) {
             scheme.resync(&mut decoder, sample(first));
         }
         Ok(Box::new(Running {
@@ -125,18 +127,37 @@ impl<P: Scheme> Running<P> {
         }
     }
 
-    fn encode_all(&mut self, samples: impl Iterator<Item = P::Sample>, cells: &mut [i8]) -> usize {
+    /// Encodes in blocks, which schemes have faster code for.
+    fn encode_all(
+        &mut self,
+        mut samples: impl Iterator<Item = P::Sample>,
+        cells: &mut [i8],
+    ) -> usize {
+        const BLOCK: usize = 512;
         let mut rows = cells.chunks_exact_mut(self.neurons * self.slots);
         let mut made = 0;
-        for sample in samples {
-            if let Some(code) = self.scheme.encode(&mut self.encoder, sample).code()
+        let mut put = |own: &Self, output: P::Output| {
+            if let Some(code) = output.code()
                 && let Some(row) = rows.next()
             {
-                self.put(code, row);
+                own.put(code, row);
                 made += 1;
             }
+        };
+        let Some(first) = samples.next() else { return 0 };
+        // It also stands in the room for the others.
+        let first = self.scheme.encode(&mut self.encoder, first);
+        put(self, first);
+        let (mut block, mut outputs) = (Vec::with_capacity(BLOCK), vec![first; BLOCK]);
+        loop {
+            block.clear();
+            block.extend(samples.by_ref().take(BLOCK));
+            let count = self.scheme.encode_slice(&mut self.encoder, &block, &mut outputs);
+            if count == 0 {
+                return made;
+            }
+            outputs.iter().take(count).for_each(|output| put(self, *output));
         }
-        made
     }
 
     /// The code of a row, unless there is none.

@@ -53,7 +53,7 @@ impl Coder {
         let past = vec![0.0; self.looks_back()];
         let Some(what) = self.scheme.needs_signal(&self.options) else {
             let settings = self.settle(&past, None)?;
-            return channel::start(self.scheme, self.sample, &settings).map(drop);
+            return channel::start(self.scheme, self.sample, &settings, None).map(drop);
         };
         let is_end_given = ["min", "max"].iter().any(|name| self.options.get(name).is_some());
         if missing(self.scheme.info(), &self.options) == Some(what) && !is_end_given {
@@ -62,7 +62,7 @@ impl Coder {
             calibrated.observe(&[0.0, 1.0]);
             let plain = Self { sample: SampleType::F32, ..self.clone() };
             let settings = plain.settle(&past, Some(&calibrated))?;
-            channel::start(self.scheme, SampleType::F32, &settings)?;
+            channel::start(self.scheme, SampleType::F32, &settings, None)?;
         }
         Ok(())
     }
@@ -106,10 +106,7 @@ impl Coder {
         options: BTreeMap<String, String>,
         paper: bool,
     ) -> PyResult<Self> {
-        let named = catalogue::ALL.iter().find(|own| own.info().name == scheme);
-        let Some(scheme) = named else {
-            return Err(PyValueError::new_err(format!("there is no scheme {scheme:?}")));
-        };
+        let scheme = named(scheme)?;
         let mut given = Options::default();
         given.paper = paper;
         for (name, text) in &options {
@@ -117,7 +114,7 @@ impl Coder {
         }
         given.check(scheme.info()).map_err(|error| value(&error))?;
         let sample = sample.parse().map_err(|error| value(&error))?;
-        let coder = Self { scheme: *scheme, sample, options: given };
+        let coder = Self { scheme, sample, options: given };
         coder.check().map_err(|error| value(&error))?;
         Ok(coder)
     }
@@ -153,11 +150,11 @@ impl Coder {
         Ok(Encoder::new(self.clone(), channels, self.shape()?))
     }
 
-    /// A decoder of as many channels as there are first values.
-    fn decoder(&self, first: Vec<f64>) -> PyResult<Decoder> {
+    /// A decoder that keeps its state, of as many channels as there are first values or none of these.
+    fn decoder(&self, first: Vec<Option<f64>>) -> PyResult<Decoder> {
         let channels = first.iter().map(|first| {
-            let past = vec![*first; self.looks_back()];
-            channel::start(self.scheme, self.sample, &self.settle(&past, None)?)
+            let past = vec![first.unwrap_or_default(); self.looks_back()];
+            channel::start(self.scheme, self.sample, &self.settle(&past, None)?, *first)
         });
         let channels = channels.collect::<Result<Vec<_>>>();
         Ok(Decoder::new(channels.map_err(|error| value(&error))?, self.sample))
@@ -181,7 +178,7 @@ impl Fitted {
     }
 
     fn start(&self, channel: usize) -> Result<Box<dyn Channel>> {
-        channel::start(self.scheme, self.sample, self.settings(channel)?)
+        channel::start(self.scheme, self.sample, self.settings(channel)?, None)
     }
 
     /// How many cells a row has.
@@ -189,6 +186,16 @@ impl Fitted {
         let shape = self.scheme.shape(self.settings(0)?)?;
         Ok(shape.neurons * shape.slots)
     }
+}
+
+/// A channel's parameters by name, and its first samples.
+type Parts = (Vec<(String, String)>, Vec<f64>);
+
+/// The scheme of a short name.
+fn named(name: &str) -> PyResult<&'static dyn RunTime> {
+    let named = catalogue::ALL.iter().find(|own| own.info().name == name);
+    let unknown = || PyValueError::new_err(format!("there is no scheme {name:?}"));
+    named.copied().ok_or_else(unknown)
 }
 
 /// So many samples are coded before anybody asks whether to stop.
@@ -291,10 +298,28 @@ impl Fitted {
         }
     }
 
-    /// A decoder that keeps its state, as it starts on the signal.
-    fn decoder(&self, channels: usize) -> PyResult<Decoder> {
-        let channels = (0..channels).map(|channel| self.start(channel)).collect::<Result<Vec<_>>>();
-        Ok(Decoder::new(channels.map_err(|error| value(&error))?, self.sample))
+    /// The scheme, the sample type, and each channel's parameters and first samples, from which it is made again.
+    fn parts(&self) -> (&'static str, String, Vec<Parts>) {
+        let parts = |settings: &Settings| {
+            let entries = settings.entries().iter();
+            let texts = entries.map(|(name, text)| ((*name).to_owned(), text.clone())).collect();
+            (texts, settings.first.clone())
+        };
+        let channels = self.channels.iter().map(parts).collect();
+        (self.scheme.info().name, self.sample.to_string(), channels)
+    }
+
+    /// Made of what [`parts`](Self::parts) gives.
+    #[staticmethod]
+    fn of_parts(scheme: &str, sample: &str, channels: Vec<Parts>) -> PyResult<Self> {
+        let scheme = named(scheme)?;
+        let settings = |(mut texts, first): Parts| {
+            let mut settings = Settings::take(scheme.info(), &mut texts);
+            settings.first = first;
+            settings
+        };
+        let sample = sample.parse().map_err(|error| value(&error))?;
+        Ok(Self { scheme, sample, channels: channels.into_iter().map(settings).collect() })
     }
 }
 

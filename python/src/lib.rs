@@ -1,4 +1,4 @@
-//! The compiled half of the Python package `spikewire`: a visitor of the catalogue that works on NumPy arrays.
+//! The compiled half of the Python package `spikewire`: a visitor of the catalogue that works on `NumPy` arrays.
 //!
 //! It knows no scheme by name. What Python calls things, and how arrays are shaped, is in the package's Python half.
 
@@ -6,6 +6,8 @@ mod array;
 mod channel;
 mod coder;
 mod error;
+mod fingerprint;
+mod library;
 mod stream;
 mod work;
 
@@ -17,7 +19,13 @@ mod _native {
     #[pymodule_export]
     use super::coder::{Coder, Fitted};
     #[pymodule_export]
+    use super::fingerprint::fingerprint;
+    #[pymodule_export]
     use super::info::schemes;
+    #[pymodule_export]
+    use super::library::{
+        advise, plot, read, read_events, score, to_rust, to_toml, tune, write_events,
+    };
     #[pymodule_export]
     use super::stream::{Decoder, Encoder};
 }

@@ -42,7 +42,7 @@ impl Encoder {
         for waiting in &self.waiting {
             let first = &waiting[..waiting.len().min(looks_back)];
             let settings = self.coder.settle(first, None)?;
-            running.push(channel::start(scheme, sample, &settings)?);
+            running.push(channel::start(scheme, sample, &settings, None)?);
         }
         self.running = running;
         let waiting: Vec<Vec<f64>> = self.waiting.iter_mut().map(std::mem::take).collect();

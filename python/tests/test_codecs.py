@@ -12,7 +12,7 @@ SAMPLES = ["f32", "i16", "q8.8", "q16.16"]
 
 @pytest.fixture(scope="module")
 def x():
-    walk = np.cumsum(np.random.default_rng(1).normal(size=(2, 1200)), axis=1)
+    walk = np.cumsum(np.random.default_rng(1).normal(size=(2, 500)), axis=1)
     # Wide enough for centres in whole numbers.
     return (walk * 90 / np.abs(walk).max(axis=1, keepdims=True)).astype(np.float32)
 
@@ -46,13 +46,14 @@ def test_chunks_are_coded_as_the_whole(scheme, sample, x):
     own = own.fit(x)
     whole = own.encode(x)
     encoder = own.encoder(channels=2)
-    cuts = [1, 2, 5, 300, 301, 900]
+    cuts = [1, 2, 5, 100, 101, 300]
     chunks = [encoder.encode(chunk) for chunk in np.split(x, cuts, axis=1)] + [encoder.finish()]
     assert np.array_equal(np.concatenate(chunks, axis=1), whole.array)
-    decoder = own.decoder(first=x[:, 0], channels=2)
+    first = x[:, 0] if scheme._info["has_first_value"] else None
+    decoder = own.decoder(first=first, channels=2)
     values = [decoder.decode(codes) for codes in np.split(whole.array, cuts, axis=1)]
     assert np.array_equal(np.concatenate(values, axis=1), whole.decode())
-    assert np.array_equal(own.decode(whole.array, first=x[:, 0]), whole.decode())
+    assert np.array_equal(own.decode(whole.array, first=first), whole.decode())
 
 
 @pytest.mark.parametrize("scheme", sw.schemes.values())
@@ -119,3 +120,49 @@ def test_events_are_in_the_order_of_time():
     assert np.array_equal(events, whole.events(period=1000))
     assert np.array_equal(events, whole.events(times=[0, 1000, 2000, 3000]))
     assert whole.count == len(events)
+
+
+@pytest.mark.parametrize("scheme", sw.schemes.values())
+def test_streams_survive_pickling(scheme, x):
+    own = scheme(paper=True).fit(x)
+    again = pickle.loads(pickle.dumps(own.encoder(channels=2)))
+    assert np.array_equal(again.encode(x), own.encoder(channels=2).encode(x))
+    spikes = own.encode(x)
+    first = x[:, 0] if scheme._info["has_first_value"] else None
+    encoder, decoder = own.encoder(2, picklable=True), own.decoder(first, 2, picklable=True)
+    encoder.encode(x[:, :200]), decoder.decode(spikes.array[:, :200])
+    encoder, decoder = pickle.loads(pickle.dumps((encoder, decoder)))
+    rest = np.concatenate([encoder.encode(x[:, 200:]), encoder.finish()], axis=1)
+    assert np.array_equal(rest, spikes.array[:, -rest.shape[1] :])
+    assert np.array_equal(decoder.decode(spikes.array[:, 200:]), spikes.decode()[:, 200:])
+    assert np.array_equal(pickle.loads(pickle.dumps(spikes)).decode(), spikes.decode())
+
+
+def test_a_stream_without_its_past_does_not_pickle():
+    encoder = sw.StepForward(threshold=1).encoder()
+    encoder.encode([1.0])
+    with pytest.raises(TypeError, match="picklable=True"):
+        pickle.dumps(encoder)
+
+
+def test_threads_share_what_is_encoded(x):
+    from concurrent.futures import ThreadPoolExecutor
+
+    encoders = [sw.StepForward(threshold=1).encoder() for _ in range(8)]
+    with ThreadPoolExecutor(4) as pool:
+        for _ in range(3):
+            codes = list(pool.map(lambda encoder: encoder.encode(x[0]), encoders))
+    assert all(np.array_equal(own, codes[0]) for own in codes)
+
+
+def test_progress_and_an_end_to_long_work():
+    told = []
+    long = np.zeros(1 << 23, np.float32)
+    sw.Gaussian(neurons=20, min=-1, max=1).encode(long, progress=lambda *done: told.append(done))
+    assert told[-1] == (len(long), len(long)) and sorted(told) == told
+
+    def stop(done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        sw.Gaussian(neurons=20, min=-1, max=1).encode(long, progress=stop)

@@ -30,6 +30,7 @@ mod paths;
 mod peers;
 mod picture;
 mod progress;
+mod python;
 mod qemu;
 mod rate_loop;
 mod recipe;

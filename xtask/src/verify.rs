@@ -1,8 +1,8 @@
 //! `cargo verify`: every check, in order, each with its time. A failure does not hide the next one.
 
 use crate::{
-    checks, cpu, fifo, link, logging, long, needs, package, parts, rate_loop, recipe, storm, tuned,
-    usage::usage,
+    checks, cpu, fifo, link, logging, long, needs, package, parts, python, rate_loop, recipe,
+    storm, tuned, usage::usage,
 };
 use anyhow::{Result, bail};
 use std::time::Instant;
@@ -49,6 +49,7 @@ const STEPS: &[Step] = &[
     step("loop", "a flight through a chip's model, board against host", rate_loop::rate_loop),
     step("tuned", "a constant from `spikewire tune`, in QEMU, spike by spike", tuned::tuned),
     step("laptop", "the laptop program on a flight, and the paper's tables", checks::laptop),
+    step("python", "the Python package: tests, hashes, README, example", python::python),
     step("video", "the paper's figure of a video, from a packaged clip", crate::video::video),
     step("bench", "instruction counts against the baseline", checks::bench),
 ];
@@ -65,6 +66,7 @@ const LONG: &[Step] = &[
         "ROS nodes in the distribution's ROS, a flight through every scheme",
         crate::ros::ros,
     ),
+    step("py-speed", "the Python package from its source package, and its speed", python::speed),
     step("cores", "instruction counts on all five cores", long::cores),
 ];
 

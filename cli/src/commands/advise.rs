@@ -39,7 +39,7 @@ pub(crate) struct Advise {
     input: InputOptions,
     /// Sample type of the codecs: f32, i16, i32, or fixed point such as q16.16
     #[arg(long, default_value_t)]
-    sample: SampleType,
+    pub(crate) sample: SampleType,
     /// The RMSE that the control loop bears, in the signal's unit; a fifth of the signal's deviation unless given
     #[arg(long, value_name = "RMSE", value_parser = crate::input::above_zero)]
     max_rmse: Option<f64>,
@@ -48,10 +48,10 @@ pub(crate) struct Advise {
     max_latency: Option<f64>,
     /// Core of the measured table: M0 or M4F
     #[arg(long, default_value = "M4F", value_parser = core)]
-    core: String,
+    pub(crate) core: String,
     /// Stop after so many seconds in all; Ctrl-C stops as well
     #[arg(long, default_value_t = 20.0, value_parser = crate::input::above_zero)]
-    seconds: f64,
+    pub(crate) seconds: f64,
     /// Settings of each scheme and channel to score at most
     #[arg(long, default_value_t = 1500)]
     evaluations: usize,
@@ -72,7 +72,7 @@ fn core(name: &str) -> Result<String> {
 
 /// What is said of a channel.
 #[derive(Debug, Serialize)]
-struct Advice {
+pub(crate) struct Advice {
     look: Look,
     /// Why nothing is advised, if so.
     objection: Option<String>,
@@ -108,26 +108,13 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
         eprint!("{}", first.notes());
     }
     let stop = Stop::new(Some(options.seconds))?;
-    let end = Instant::now() + Duration::from_secs_f64(options.seconds);
-    let schemes: Vec<Scheme> = Scheme::all().collect();
-    let mut left = schemes.len() * recordings.len();
-    let bar = ProgressBar::new(left as u64)
+    let bar = ProgressBar::no_length()
         .with_style(ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}")?);
-    let mut all = Vec::new();
-    for recording in &recordings {
-        let mut advice = Advice::new(options, recording);
-        for scheme in &schemes {
-            bar.set_message(format!("{} {}", recording.name, scheme.name()));
-            let deadline = share(end, left);
-            left -= 1;
-            if advice.objection.is_none() {
-                advice.consider(options, *scheme, recording, deadline, &stop)?;
-            }
-            bar.inc(1);
-        }
-        advice.rank();
-        all.push(advice);
-    }
+    let all = advise(options, &recordings, &stop, &|done, total, words| {
+        bar.set_length(total as u64);
+        bar.set_position(done as u64);
+        bar.set_message(words.to_owned());
+    })?;
     bar.finish_and_clear();
     if options.json {
         writeln!(stdout(), "{}", serde_json::to_string_pretty(&all)?)?;
@@ -148,7 +135,44 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
     Ok(())
 }
 
+/// Looks at each recording and tunes all schemes on it; `tell` is told how many are done, of how many, and which is next.
+///
+/// # Errors
+/// A recording is too short to hold something out.
+pub(crate) fn advise(
+    options: &Advise,
+    recordings: &[Recording],
+    stop: &Stop,
+    tell: &dyn Fn(usize, usize, &str),
+) -> Result<Vec<Advice>> {
+    let end = Instant::now() + Duration::from_secs_f64(options.seconds);
+    let schemes: Vec<Scheme> = Scheme::all().collect();
+    let total = schemes.len() * recordings.len();
+    let mut done = 0;
+    let mut all = Vec::new();
+    for recording in recordings {
+        let mut advice = Advice::new(options, recording);
+        for scheme in &schemes {
+            tell(done, total, &format!("{} {}", recording.name, scheme.name()));
+            let deadline = share(end, total - done);
+            if advice.objection.is_none() {
+                advice.consider(options, *scheme, recording, deadline, stop)?;
+            }
+            done += 1;
+        }
+        advice.rank();
+        all.push(advice);
+    }
+    Ok(all)
+}
+
 impl Advice {
+    /// The scheme advised and its settings, if there is one.
+    pub(crate) fn best(&self) -> Option<(Scheme, &Row)> {
+        let best = self.reaching.first()?;
+        Some((best.scheme?, &best.row))
+    }
+
     fn new(options: &Advise, recording: &Recording) -> Self {
         /// 14 dB.
         const PART: f64 = 0.2;
@@ -247,7 +271,7 @@ impl Advice {
     }
 
     /// What a person reads.
-    fn page(&self, core: &str, sample: SampleType) -> String {
+    pub(crate) fn page(&self, core: &str, sample: SampleType) -> String {
         let Look { name, samples, seconds, rate, jitter_ms, gaps, rejected, .. } = &self.look;
         let unit = known_unit(name).map_or(String::new(), |unit| format!(" {unit}"));
         let round = |value: f64| short((value * 1000.0).round() / 1000.0);

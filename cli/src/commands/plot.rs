@@ -81,7 +81,7 @@ fn shown(range: Option<&str>, samples: usize) -> Result<Range<usize>> {
 }
 
 /// The unit that a field's name in PX4 logs tells.
-pub(super) fn known_unit(name: &str) -> Option<&'static str> {
+pub(crate) fn known_unit(name: &str) -> Option<&'static str> {
     let units = [("gyro_rad", "rad/s"), ("_m_s2", "m/s²"), ("_rad_s", "rad/s"), ("_m_s", "m/s")];
     units.into_iter().find(|(part, _)| name.contains(part)).map(|(_, unit)| unit)
 }

@@ -35,7 +35,7 @@ pub(crate) struct Score {
 
 /// The figures of one scheme.
 #[derive(Debug, Serialize)]
-struct Figures {
+pub(crate) struct Figures {
     scheme: String,
     samples: usize,
     spikes: usize,
@@ -106,7 +106,8 @@ pub(crate) fn chosen(coding: &Coding) -> Result<(Vec<Scheme>, SampleType, Scheme
     }
 }
 
-fn figures(recording: &Recording, trial: &Trial) -> Figures {
+/// What a trial comes to.
+pub(crate) fn figures(recording: &Recording, trial: &Trial) -> Figures {
     let samples = recording.values.len();
     let mean = recording.values.iter().sum::<f64>() / samples as f64;
     let mean_square = |differences: &mut dyn Iterator<Item = f64>| {

@@ -82,10 +82,10 @@ pub(crate) struct Tune {
     blocks: usize,
     /// Stop after so many seconds in all; Ctrl-C stops as well, and the best is kept
     #[arg(long, default_value_t = 25.0, value_parser = crate::input::above_zero, help_heading = "Search")]
-    seconds: f64,
+    pub(crate) seconds: f64,
     /// Settings of each scheme and channel to score at most
     #[arg(long, default_value_t = 40_000, help_heading = "Search")]
-    evaluations: usize,
+    pub(crate) evaluations: usize,
     /// Where the search's chance starts; the same seed and budget of evaluations give the same settings
     #[arg(long, default_value_t = 1, help_heading = "Search")]
     seed: u64,
@@ -179,20 +179,27 @@ impl FromArgMatches for Kept {
 pub(crate) fn run(options: &Tune) -> Result<()> {
     options.check()?;
     let cuts = options.cuts()?;
-    let schemes: Vec<Scheme> = match options.scheme {
-        Which::One(scheme) => vec![scheme],
-        Which::All => Scheme::all().collect(),
-    };
+    let schemes = options.schemes();
     let stop = Stop::new(Some(options.seconds))?;
     let end = Instant::now() + Duration::from_secs_f64(options.seconds);
     let mut left = cuts.len() * schemes.len();
+    let bar =
+        ProgressBar::new(options.evaluations as u64).with_style(ProgressStyle::with_template(
+            "{bar:40} {percent:>3} %  {human_pos} of {human_len} settings, {msg}",
+        )?);
     let (mut panels, mut emitted, mut told) = (Vec::new(), String::new(), Vec::new());
     for cut in &cuts {
         let (mut rows, mut curves, mut missing) = (Vec::new(), Vec::new(), Vec::new());
         for scheme in &schemes {
             let deadline = share(end, left);
             left -= 1;
-            match options.tuned(*scheme, cut, deadline, &stop)? {
+            let tick = |evaluated: usize, best: Option<&Scored>| {
+                bar.set_position(evaluated as u64);
+                if let Some(best) = best {
+                    bar.set_message(so_far(&cut.name, *scheme, best));
+                }
+            };
+            match options.tuned(*scheme, cut, deadline, &stop, &tick)? {
                 Outcome::Row(row) => rows.push((*scheme, *row)),
                 Outcome::Curve(curve) => curves.push(curve),
                 Outcome::Missed(words) => missing.push(words),
@@ -213,6 +220,7 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
         }
         told.push((cut, rows));
     }
+    bar.finish_and_clear();
     if let Some(picture) = &options.front {
         draw_fronts(picture, &options.inputs[0], &panels)?;
         return Ok(());
@@ -226,15 +234,34 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
     Ok(())
 }
 
+/// The best settings so far, in words.
+fn so_far(channel: &str, scheme: Scheme, best: &Scored) -> String {
+    let state = if best.is_allowed() { "best" } else { "nearest" };
+    let (efficiency, rmse) = (best.tally.efficiency(), best.tally.rmse());
+    format!("{channel} {}: {state} {efficiency:.2} %, RMSE {rmse:.4}", scheme.name())
+}
+
 /// What became of a scheme on a channel.
-enum Outcome {
+pub(crate) enum Outcome {
     Row(Box<Row>),
     Curve(Curve),
     Missed(String),
 }
 
 impl Tune {
-    fn check(&self) -> Result<()> {
+    /// The schemes that are tuned.
+    pub(crate) fn schemes(&self) -> Vec<Scheme> {
+        match self.scheme {
+            Which::One(scheme) => vec![scheme],
+            Which::All => Scheme::all().collect(),
+        }
+    }
+
+    /// Refuses what makes no sense together.
+    ///
+    /// # Errors
+    /// What it is.
+    pub(crate) fn check(&self) -> Result<()> {
         let Self { hold_out, blocks, evaluations, .. } = self;
         if !(0.0..1.0).contains(hold_out) {
             bail!("--hold-out {hold_out} must be 0 or more and below 1");
@@ -264,6 +291,30 @@ impl Tune {
         Ok(())
     }
 
+    /// Refuses a recording that says little, unless it is to be tuned on anyway.
+    ///
+    /// # Errors
+    /// What speaks against it.
+    pub(crate) fn look_at(&self, recording: &Recording, name: &str) -> Result<()> {
+        match Look::at(recording).objection() {
+            Some(words) if self.anyway && recording.values.len() > 1 => eprintln!("{words}"),
+            Some(words) => bail!("{name}: {words} (--anyway searches all the same)"),
+            None => {}
+        }
+        Ok(())
+    }
+
+    /// A recording in stretches to tune on, and those held out.
+    ///
+    /// # Errors
+    /// It is too short for that.
+    pub(crate) fn cut(&self, recording: &Recording) -> Result<Cut> {
+        let hold_out = HoldOut { blocks: self.blocks, part: self.hold_out };
+        let (train, kept_back) = cut(recording, hold_out)?;
+        let whole = vec![Stretch::whole(recording)];
+        Ok(Cut { name: recording.name.clone(), train, held_out: kept_back, whole })
+    }
+
     /// The channels of all logs, cut.
     fn cuts(&self) -> Result<Vec<Cut>> {
         let mut cuts: Vec<Cut> = Vec::new();
@@ -271,37 +322,21 @@ impl Tune {
             let input = InputOptions { input: input.clone(), channel: self.channel.clone() };
             let recordings = Recording::read_all(&input)?;
             for (place, recording) in recordings.iter().enumerate() {
-                let look = Look::at(recording);
-                match look.objection() {
-                    Some(words) if self.anyway && recording.values.len() > 1 => {
-                        eprintln!("{words}");
-                    }
-                    Some(words) => {
-                        bail!("{}: {words} (--anyway searches all the same)", input.name())
-                    }
-                    None => {}
-                }
+                self.look_at(recording, &input.name())?;
                 if place == 0 {
                     eprint!("{}", recording.notes());
                 }
-                let hold_out = HoldOut { blocks: self.blocks, part: self.hold_out };
-                let (train, kept_back) = cut(recording, hold_out)?;
-                let whole = Stretch::whole(recording);
+                let own = self.cut(recording)?;
                 match cuts.get_mut(place) {
                     Some(known) if known.name == recording.name => {
-                        known.train.extend(train);
-                        known.held_out.extend(kept_back);
-                        known.whole.push(whole);
+                        known.train.extend(own.train);
+                        known.held_out.extend(own.held_out);
+                        known.whole.extend(own.whole);
                     }
                     Some(known) => {
                         bail!("the logs have other channels: {}, {}", known.name, recording.name)
                     }
-                    None => cuts.push(Cut {
-                        name: recording.name.clone(),
-                        train,
-                        held_out: kept_back,
-                        whole: vec![whole],
-                    }),
+                    None => cuts.push(own),
                 }
             }
         }
@@ -312,7 +347,14 @@ impl Tune {
     }
 
     /// Searches one scheme on one channel.
-    fn tuned(&self, scheme: Scheme, cut: &Cut, deadline: Instant, stop: &Stop) -> Result<Outcome> {
+    pub(crate) fn tuned(
+        &self,
+        scheme: Scheme,
+        cut: &Cut,
+        deadline: Instant,
+        stop: &Stop,
+        tick: &(dyn Fn(usize, Option<&Scored>) + Sync),
+    ) -> Result<Outcome> {
         let mut kept = self.parameters.0.clone();
         let free_taps = free(&mut kept);
         let limits = Limits {
@@ -340,32 +382,9 @@ impl Tune {
                 Goal::LeastError(paper.tally.efficiency())
             }
         };
-        let bar =
-            ProgressBar::new(self.evaluations as u64).with_style(ProgressStyle::with_template(
-                "{bar:40} {percent:>3} %  {human_pos} of {human_len} settings, {msg}",
-            )?);
-        let tick = |evaluated: usize, best: Option<&Scored>| {
-            bar.set_position(evaluated as u64);
-            if let Some(best) = best {
-                let Scored { tally, .. } = best;
-                let state = if best.is_allowed() { "best" } else { "nearest" };
-                bar.set_message(format!(
-                    "{} {}: {state} {:.2} %, RMSE {:.4}",
-                    cut.name,
-                    scheme.name(),
-                    tally.efficiency(),
-                    tally.rmse()
-                ));
-            }
-        };
-        let budget = Budget {
-            evaluations: self.evaluations,
-            deadline,
-            is_stopped: &|| stop.is_due(),
-            tick: &tick,
-        };
+        let budget =
+            Budget { evaluations: self.evaluations, deadline, is_stopped: &|| stop.is_due(), tick };
         let found = search(&problem, Method { seed: self.seed, free_taps }, &budget);
-        bar.finish_and_clear();
         let Some(best) = &found.best else {
             return Ok(Outcome::Missed(format!("{} cannot be built", scheme.name())));
         };
@@ -382,7 +401,7 @@ impl Tune {
     }
 
     /// The best first, by what the goal is.
-    fn sort(&self, rows: &mut [(Scheme, Row)]) {
+    pub(crate) fn sort(&self, rows: &mut [(Scheme, Row)]) {
         rows.sort_by(|(_, a), (_, b)| match self.max_rmse {
             Some(_) => b.tuned_on.efficiency.total_cmp(&a.tuned_on.efficiency),
             None => a.tuned_on.rmse.total_cmp(&b.tuned_on.rmse),

@@ -60,23 +60,37 @@ enum Drawing<'a> {
 }
 
 fn write(path: &Path, input: &Path, size: (u32, u32), drawing: Drawing) -> Result<()> {
+    let ending = path.extension().and_then(|extension| extension.to_str());
+    let bytes = drawn(ending.unwrap_or_default(), size, drawing)
+        .with_context(|| path.display().to_string())?;
+    let mut output = Output::open(Some(path), input)?;
+    output.write_all(&bytes)?;
+    output.finish()
+}
+
+/// A picture as the bytes of a file with this ending.
+///
+/// # Errors
+/// The ending is neither `svg` nor `png`.
+pub(crate) fn bytes(ending: &str, picture: &Picture) -> Result<Vec<u8>> {
+    drawn(ending, layout::size(picture), Drawing::Trials(picture))
+}
+
+fn drawn(ending: &str, size: (u32, u32), drawing: Drawing) -> Result<Vec<u8>> {
     for style in [FontStyle::Normal, FontStyle::Bold] {
         register_font(FONT, style, epaint_default_fonts::UBUNTU_LIGHT)
             .map_err(|_| anyhow!("the font does not load"))?;
     }
-    let bytes = match path.extension().and_then(|extension| extension.to_str()) {
-        Some("svg") => {
+    match ending {
+        "svg" => {
             let mut text = String::new();
             fill(&SVGBackend::with_string(&mut text, size).into_drawing_area(), drawing)?;
             // As in PNG: a bend does not stick out beyond the data.
-            text.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1).into_bytes()
+            Ok(text.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1).into_bytes())
         }
-        Some("png") => png(size, drawing)?,
-        _ => bail!("{}: a picture ends in .svg or .png", path.display()),
-    };
-    let mut output = Output::open(Some(path), input)?;
-    output.write_all(&bytes)?;
-    output.finish()
+        "png" => png(size, drawing),
+        _ => bail!("a picture ends in .svg or .png"),
+    }
 }
 
 fn png((width, height): (u32, u32), drawing: Drawing) -> Result<Vec<u8>> {

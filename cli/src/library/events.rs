@@ -1,0 +1,51 @@
+//! Events from and to the bytes of every format.
+
+use crate::events::{Format, Item};
+use anyhow::{Result, bail};
+use spikewire::Event;
+
+/// Events of a stream.
+#[derive(Clone, Debug, Default)]
+pub struct Events {
+    /// The events, in their order.
+    pub events: Vec<Event>,
+    /// What else there was, and what was lost, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// The events in bytes of a format, as `spikewire convert --from` names it: `es`, `evt2`, `link`, `edvs:e2`…
+///
+/// # Errors
+/// There is no such format, or the bytes are of another.
+pub fn read_events(bytes: &[u8], format: &str) -> Result<Events> {
+    let format: Format = format.parse()?;
+    let mut reader = format.reader("the bytes");
+    let mut items = Vec::new();
+    reader.read(bytes, &mut items)?;
+    reader.finish(&mut items)?;
+    let tally = reader.tally();
+    let is_heard = tally.link.is_some_and(|link| link.frames > 0) || !items.is_empty();
+    if tally.skipped > 0 && !is_heard {
+        bail!("no {format} event in {} bytes; are they of another format?", bytes.len());
+    }
+    let event = |item: &Item| match item {
+        Item::Event(event) => Some(*event),
+        _ => None,
+    };
+    let notes = tally.to_string().lines().map(str::to_owned).collect();
+    Ok(Events { events: items.iter().filter_map(event).collect(), notes })
+}
+
+/// Events as bytes of a format, as `spikewire convert --to` names it, and what it could not hold.
+///
+/// # Errors
+/// There is no such format, or it has no word for an event.
+pub fn write_events(events: &[Event], format: &str) -> Result<(Vec<u8>, Vec<String>)> {
+    let mut writer = format.parse::<Format>()?.writer(false);
+    let mut bytes: Vec<u8> = Vec::new();
+    for event in events {
+        writer.write(&Item::Event(*event), &mut bytes)?;
+    }
+    writer.finish(&mut bytes)?;
+    Ok((bytes, writer.notes()))
+}

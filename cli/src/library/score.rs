@@ -1,0 +1,18 @@
+//! How few spikes, and how near to the signal.
+
+use super::{Coding, Signal};
+use crate::commands::score::figures;
+use crate::options::SchemeOptions;
+use crate::trial::Trial;
+use anyhow::Result;
+
+/// The figures of a coding on a signal, as `spikewire score --json` has those of one scheme.
+///
+/// # Errors
+/// The signal or the parameters are not good.
+pub fn score(signal: &Signal, coding: &Coding) -> Result<String> {
+    let recording = signal.recording()?;
+    let options = SchemeOptions(coding.options.clone());
+    let trial = Trial::new(coding.scheme()?, &options, coding.sample, &recording)?;
+    Ok(serde_json::to_string(&figures(&recording, &trial))?)
+}

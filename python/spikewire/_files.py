@@ -1,0 +1,91 @@
+"""Recordings and events from and to files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, NamedTuple, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _native
+from ._bank import EVENTS
+from ._laptop import _given
+
+
+class Log(NamedTuple):
+    """Channels of a recording."""
+
+    #: The samples, ``float64`` (channels, samples), perhaps not finite.
+    x: np.ndarray
+    #: Their times in µs, ``int64``; none where a table has no time.
+    t: Optional[np.ndarray]
+    #: What the channels are called.
+    names: list[str]
+    #: How it was read, in sentences.
+    notes: list[str]
+
+    @property
+    def rate(self) -> float | None:
+        """Samples a second, by the usual step in time; none where there are no times."""
+        if self.t is None or len(self.t) < 2:
+            return None
+        return 1e6 / float(np.median(np.diff(self.t)))
+
+    def __getitem__(self, place: Any) -> Any:
+        return self.x[self.names.index(place)] if isinstance(place, str) else tuple.__getitem__(self, place)
+
+
+def read(path: str | Path, *channels: str | int, **options: Any) -> Log:
+    """Channels of a flight log or table, by name; all of a table unless some are named: :class:`Log`.
+
+    `options` are those of the laptop program's input, such as ``topic``, ``field``, ``time``, ``rate``, ``accept_cut``.
+    """
+    given = [("columns", name) for name in map(str, channels)]
+    for name, value in options.items():
+        many = value if isinstance(value, (list, tuple)) else [value]
+        given += [pair for own in many for pair in _given({name: own})]
+    names, columns, times, notes = _native.read(str(Path(path)), given)
+    return Log(np.array(columns), times if len(times) else None, names, notes)
+
+
+def read_ulog(path: str | Path, topic: str, *fields: str, accept_cut: bool = False) -> Log:
+    """Fields of a topic of a PX4 flight log: :class:`Log`.
+
+    ``read_ulog("flight.ulg", "sensor_combined", "gyro_rad[0]")``; ``topic`` with ``:1`` is its second instance.
+    """
+    return read(path, topic=topic, field=list(fields), accept_cut=accept_cut)
+
+
+def read_events(source: str | Path | bytes, format: str) -> NDArray:
+    """The events of a file, or of ``bytes``, as a structured array; see :data:`~spikewire.EVENTS`.
+
+    `format` is one of the laptop program's: ``"es"``, ``"evt2"``, ``"link"``, ``"edvs:e0"`` to ``"edvs:e4"``,
+    ``"eieio"`` or ``"csv"``. Times of 32 bits that wrapped, after 71.6 minutes, go on.
+    """
+    data = bytes(source) if isinstance(source, (bytes, bytearray, memoryview)) else Path(source).read_bytes()
+    ticks, addresses, are_up, _ = _native.read_events(data, format)
+    events = np.empty(len(ticks), dtype=EVENTS)
+    steps = np.diff(ticks, prepend=ticks[:1]).view(np.int32).astype(np.int64)
+    events["t"] = np.cumsum(steps) + (int(ticks[0]) if len(ticks) else 0)
+    events["x"], events["p"] = addresses, are_up
+    return events
+
+
+def write_events(events: NDArray, format: str, path: str | Path | None = None) -> bytes:
+    """Events, a structured array with ``t``, ``x`` and ``p``, as ``bytes`` of a format, and in a file if `path` is given.
+
+    >>> import numpy as np, spikewire as sw
+    >>> events = np.array([(0, 3, 1), (1000, 0, 0)], dtype=sw.EVENTS)
+    >>> data = sw.write_events(events, "es")
+    >>> bool((sw.read_events(data, "es") == events).all())
+    True
+    """
+    addresses = np.asarray(events["x"])
+    if len(addresses) and not (0 <= addresses.min() and addresses.max() < 1 << 16):
+        raise ValueError(f"addresses must be 0 to 65535, but are {addresses.min()} to {addresses.max()}")
+    ticks = (np.asarray(events["t"]).astype(np.int64) & 0xFFFF_FFFF).astype(np.uint32)
+    data, _ = _native.write_events(ticks, addresses.astype(np.uint16), np.asarray(events["p"]) > 0, format)
+    if path is not None:
+        Path(path).write_bytes(data)
+    return data

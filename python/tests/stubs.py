@@ -1,0 +1,51 @@
+"""Writes the type stub of the schemes' classes: python python/tests/stubs.py > python/spikewire/_schemes.pyi"""
+
+import spikewire as sw
+
+HEAD = '''"""The classes of the schemes. Generated from the catalogue; a test says how when it has changed."""
+
+from collections.abc import Sequence
+from typing import Literal
+
+from ._scheme import Scheme
+
+'''
+
+TYPES = {
+    "number": "float",
+    "count": "int",
+    "flag": "bool",
+    "text": "str | float | Sequence[float]",
+    "filter": "str | Sequence[float]",
+}
+
+
+def argument(own):
+    words = ", ".join(f'"{word}"' for word in own["words"])
+    kind = f"Literal[{words}]" if words else TYPES[own["kind"]]
+    return f"        {own['name']}: {kind} | None = None,"
+
+
+def stub():
+    classes = []
+    for scheme in sw.schemes.values():
+        document = "\n".join(f"    {line}".rstrip() for line in scheme.__doc__.splitlines()).strip()
+        arguments = "\n".join(argument(own) for own in scheme._info["parameters"])
+        classes.append(f'''class {scheme.__name__}(Scheme):
+    """{document}
+    """
+
+    def __init__(
+        self,
+        *,
+{arguments}
+        sample: str = "f32",
+        paper: bool = False,
+    ) -> None: ...
+''')
+    tail = "schemes: dict[str, type[Scheme]]\nNAMES: list[str]\n"
+    return HEAD + "\n".join(classes) + "\n" + tail
+
+
+if __name__ == "__main__":
+    print(stub(), end="")

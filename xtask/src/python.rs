@@ -1,0 +1,98 @@
+//! The Python package, installed as its user installs it.
+
+use crate::{
+    host, paths,
+    shell::{command, lint, output, run},
+};
+use anyhow::{Result, ensure};
+use std::{env, fs, path::PathBuf, process::Command};
+
+/// The package's version, as in `python/Cargo.toml`.
+const VERSION: &str = "0.1.0";
+
+/// Installs the package in an environment of its own and runs its tests, its doctests, its README and its example.
+///
+/// It is compiled as the other tests are, so that they share the dependencies.
+pub fn python() -> Result<()> {
+    let python = environment("python")?;
+    install(&python, &["--requirement", "python/requirements.txt"])?;
+    package(&python, "dev")?;
+
+    let (flight, printed) = (paths::target().join("flight-log.txt"), host::example("flight-log")?);
+    fs::write(&flight, output(&mut command(printed))?)?;
+    let pytest =
+        "-m pytest --quiet -rP --no-header --doctest-modules python/tests --pyargs spikewire";
+    run(command(&python).args(pytest.split_whitespace()).env("FLIGHT_LOG", &flight))?;
+    run(command(&python).arg("python/examples/flight.py").env("FLIGHT_LOG", &flight))?;
+    source_package(&python).map(drop)
+}
+
+/// The package built from its source package, optimised, and its speed beside plain Python and other libraries.
+pub fn speed() -> Result<()> {
+    let python = environment("python-speed")?;
+    install(&python, &["--requirement", "python/requirements.txt"])?;
+    let packed = source_package(&python)?;
+    let mut pip = pip(&python);
+    // A build of its own, as a user has it.
+    pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall"]).arg(packed);
+    run(&mut pip)?;
+    run(command(&python).args(["python/examples/speed.py", "--check"]))
+}
+
+/// An environment of this name, below the target directory.
+fn environment(name: &str) -> Result<PathBuf> {
+    let place = paths::target().join(name);
+    let python = place.join("bin/python");
+    if !python.is_file() {
+        run(command("python3").args(["-m", "venv"]).arg(&place))?;
+    }
+    Ok(python)
+}
+
+fn pip(python: &PathBuf) -> Command {
+    let mut pip = command(python);
+    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
+    // The builder is a program of the environment.
+    let own = python.parent().map(PathBuf::from).into_iter();
+    let others = env::var_os("PATH").unwrap_or_default();
+    let all: Vec<PathBuf> = own.chain(env::split_paths(&others)).collect();
+    if let Ok(path) = env::join_paths(all) {
+        pip.env("PATH", path);
+    }
+    pip
+}
+
+fn install(python: &PathBuf, what: &[&str]) -> Result<()> {
+    run(pip(python).args(what))
+}
+
+/// Compiles the package in a profile of cargo, linted as the other crates are, and installs it.
+fn package(python: &PathBuf, profile: &str) -> Result<()> {
+    let mut pip = pip(python);
+    pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall", "./python"]);
+    pip.env("MATURIN_PEP517_ARGS", format!("--profile {profile}")).env("CARGO_INCREMENTAL", "0");
+    run(lint(&mut pip))
+}
+
+/// The source package, which has all that the package is built from.
+fn source_package(python: &PathBuf) -> Result<PathBuf> {
+    let place = paths::target().join("python-source");
+    let maturin = python.with_file_name("maturin");
+    let manifest = "python/Cargo.toml";
+    run(command(maturin)
+        .args(["sdist", "--quiet", "--manifest-path", manifest, "--out"])
+        .arg(&place))?;
+    let packed = place.join(format!("spikewire-{}.tar.gz", VERSION));
+    let listed = output(command("tar").arg("--list").arg("--file").arg(&packed))?;
+    for file in [
+        "LICENSE-MIT",
+        "LICENSE-APACHE",
+        "README.md",
+        "baseline.json",
+        "py.typed",
+        "catalogue/src/lib.rs",
+    ] {
+        ensure!(listed.contains(file), "the source package lacks {file}");
+    }
+    Ok(packed)
+}
