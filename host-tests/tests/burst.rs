@@ -1,8 +1,8 @@
 //! Burst coding: the larger the value, the more spikes, and the closer together.
 
 use crate::common::timing::{Lined, assert_law, beside, check, code_of, rising};
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use fixed::types::I16F16;
 use host_tests::reference::{Bursts, edge};
 use proptest::prelude::*;
 use spikewire::timing::{Burst, BurstSpikes};
@@ -111,12 +111,7 @@ fn drawn<S: Lined + Drawn>() {
 
 #[test]
 fn drawn_recordings() {
-    drawn::<f32>();
-    drawn::<i16>();
-    drawn::<I8F8>();
-    drawn::<I1F15>();
-    drawn::<I16F16>();
-    drawn::<I32F0>();
+    in_every_type!(drawn);
 }
 
 /// Ranges of few samples, where edges fall together: no shape takes more cells than slots.

@@ -4,8 +4,8 @@
 //! keep a recording; the reference takes two. Where all squares are exact, so is the comparison's
 //! bound: the variance may differ by the rounding of the two sums, a few 2⁻⁵³ of the mean square.
 
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use fixed::types::{I8F8, I16F16};
 use host_tests::compare::{Wire, finite};
 use host_tests::reference::{Moments, calibrate};
 use proptest::prelude::*;
@@ -126,10 +126,5 @@ fn drawn<S: Wire + Drawn>() {
 
 #[test]
 fn drawn_recordings() {
-    drawn::<f32>();
-    drawn::<i16>();
-    drawn::<I8F8>();
-    drawn::<I1F15>();
-    drawn::<I16F16>();
-    drawn::<I32F0>();
+    in_every_type!(drawn);
 }

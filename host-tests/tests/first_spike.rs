@@ -1,8 +1,8 @@
 //! Time to first spike: slot `N - 1 - cell`, of even points, or of what lies above thresholds.
 
 use crate::common::timing::{Lined, assert_law, beside, check, rising};
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use fixed::types::{I16F16, I32F0};
 use host_tests::reference::{edge, first_spike_above, first_spike_linear, log_thresholds};
 use proptest::prelude::*;
 use spikewire::timing::{FirstSpike, Slot};
@@ -148,12 +148,7 @@ fn drawn<S: Lined + Drawn>() {
 
 #[test]
 fn drawn_recordings() {
-    drawn::<f32>();
-    drawn::<i16>();
-    drawn::<I8F8>();
-    drawn::<I1F15>();
-    drawn::<I16F16>();
-    drawn::<I32F0>();
+    in_every_type!(drawn);
 }
 
 /// `f32` next to every edge.

@@ -1,8 +1,8 @@
 //! GRF with one spike: the neuron with the largest response fires, which is the one with the nearest
 //! of `M` even centres.
 
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use fixed::types::{I1F15, I8F8, I16F16};
 use host_tests::compare::{Wire, check_position, encode};
 use host_tests::reference::{even_centres, nearest_even, receptive_field_width};
 use proptest::prelude::*;
@@ -83,12 +83,7 @@ fn drawn<S: Wire + Drawn>() {
 
 #[test]
 fn drawn_recordings() {
-    drawn::<f32>();
-    drawn::<i16>();
-    drawn::<I8F8>();
-    drawn::<I1F15>();
-    drawn::<I16F16>();
-    drawn::<I32F0>();
+    in_every_type!(drawn);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Histogram and quantiles.
 
-use crate::common::{Drawn, HOSTILE, cases, flight_channels};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use crate::common::{Drawn, HOSTILE, cases, flight_channels, in_every_type};
+use fixed::types::{I8F8, I16F16};
 use host_tests::compare::{Wire, finite};
 use host_tests::reference::{even_cell, histogram, quantile_centres};
 use proptest::prelude::*;
@@ -132,12 +132,7 @@ fn drawn<S: Wire + Drawn>() {
 
 #[test]
 fn drawn_recordings() {
-    drawn::<f32>();
-    drawn::<i16>();
-    drawn::<I8F8>();
-    drawn::<I1F15>();
-    drawn::<I16F16>();
-    drawn::<I32F0>();
+    in_every_type!(drawn);
     check::<f32, 9>(-1e-45, 1e-45, 9, &HOSTILE);
     check::<f32, 9>(f32::MIN, f32::MAX, 9, &HOSTILE);
 }

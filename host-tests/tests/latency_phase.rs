@@ -1,8 +1,8 @@
 //! Latency-phase: neurons fire at the first peak of their oscillation from the latency on.
 
 use crate::common::timing::{Lined, assert_law, beside, check, code_of, rising, spikes_of};
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use fixed::types::I16F16;
 use host_tests::reference::{Oscillation, edge, latency_phase, latency_phase_decode};
 use proptest::prelude::*;
 use spikewire::timing::{LatencyPhase, PhaseSpikes};
@@ -124,12 +124,7 @@ fn drawn<S: Lined + Drawn>() {
 
 #[test]
 fn drawn_recordings() {
-    drawn::<f32>();
-    drawn::<i16>();
-    drawn::<I8F8>();
-    drawn::<I1F15>();
-    drawn::<I16F16>();
-    drawn::<I32F0>();
+    in_every_type!(drawn);
 }
 
 /// `f32` next to every edge.

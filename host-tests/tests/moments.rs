@@ -1,7 +1,7 @@
 //! Mean and deviation: exact in fixed point, within rounding in `f32`.
 
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use fixed::types::{I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, finite};
 use proptest::prelude::*;
 use spikewire::{ConfigError, Moments};
@@ -98,10 +98,5 @@ fn drawn<S: Wire + Drawn>() {
 
 #[test]
 fn drawn_recordings() {
-    drawn::<f32>();
-    drawn::<i16>();
-    drawn::<I8F8>();
-    drawn::<I1F15>();
-    drawn::<I16F16>();
-    drawn::<I32F0>();
+    in_every_type!(drawn);
 }

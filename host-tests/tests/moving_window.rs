@@ -1,7 +1,7 @@
 //! MW, moving window: a spike when the sample leaves the band around the mean of the `N` before.
 
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use fixed::types::{I8F8, I16F16, I32F0};
 use host_tests::compare::{
     Wire, assert_same_values, assert_step_spikes, check_step_decoder, decode, encode, finite,
     reals, run, saturated, signs_of,
@@ -250,12 +250,7 @@ fn drawn<S: Wire + Drawn>() {
 
 #[test]
 fn drawn_recordings() {
-    drawn::<f32>();
-    drawn::<i16>();
-    drawn::<I8F8>();
-    drawn::<I1F15>();
-    drawn::<I16F16>();
-    drawn::<I32F0>();
+    in_every_type!(drawn);
 }
 
 /// All sums of a window of two within 8 bits, with all samples, in the middle and at both ends of

@@ -1,6 +1,6 @@
 //! Non-linear receptive fields: the strongest response, and its spikes in slots.
 
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, assert_same_values, check_position, decode, encode, finite};
 use host_tests::reference::{
@@ -359,12 +359,7 @@ fn drawn<S: Fields + Drawn + PartialOrd>() {
 
 #[test]
 fn drawn_recordings() {
-    drawn::<f32>();
-    drawn::<i16>();
-    drawn::<I8F8>();
-    drawn::<I1F15>();
-    drawn::<I16F16>();
-    drawn::<I32F0>();
+    in_every_type!(drawn);
 }
 
 /// The winner of every value is the least `|x - mu| / sigma`, by whole numbers; the lower of two alike.

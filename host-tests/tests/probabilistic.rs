@@ -4,8 +4,8 @@
 use std::convert::Infallible;
 
 use crate::common::fields::Fields;
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use fixed::types::{I1F15, I8F8, I16F16};
 use host_tests::compare::{assert_same_values, decode, finite, run};
 use host_tests::reference::probabilistic_from_levels;
 use proptest::prelude::*;
@@ -173,12 +173,7 @@ fn drawn<S: Fields + Drawn>() {
 
 #[test]
 fn drawn_recordings() {
-    drawn::<f32>();
-    drawn::<i16>();
-    drawn::<I8F8>();
-    drawn::<I1F15>();
-    drawn::<I16F16>();
-    drawn::<I32F0>();
+    in_every_type!(drawn);
 }
 
 /// All inputs, with a script that comes by every number a draw can be, and its neighbours.

@@ -1,7 +1,7 @@
 //! GRF with sub-timesteps: a response of level `k` of `N` fires in slot `N - k`.
 
 use crate::common::fields::Fields;
-use crate::common::{Drawn, cases, flight_channels, float, hostile_recordings};
+use crate::common::{Drawn, cases, flight_channels, float, hostile_recordings, in_every_type};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{assert_same_values, decode, encode, finite, reals};
 use host_tests::reference::slots_of_levels;
@@ -147,12 +147,7 @@ fn drawn<S: Fields + Drawn>() {
 
 #[test]
 fn drawn_recordings() {
-    drawn::<f32>();
-    drawn::<i16>();
-    drawn::<I8F8>();
-    drawn::<I1F15>();
-    drawn::<I16F16>();
-    drawn::<I32F0>();
+    in_every_type!(drawn);
 }
 
 /// Samples within the range, and next to the edges between neurons.

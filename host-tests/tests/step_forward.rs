@@ -1,8 +1,8 @@
 //! SF, step forward: a spike when the sample leaves `base ± threshold`, and the base follows by one
 //! threshold.
 
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use fixed::types::{I8F8, I16F16};
 use host_tests::compare::{
     Wire, assert_step_spikes, check_step_decoder, encode, finite, run, saturated, signs_of,
 };
@@ -167,12 +167,7 @@ fn drawn<S: Wire + Drawn>() {
 
 #[test]
 fn drawn_recordings() {
-    drawn::<f32>();
-    drawn::<i16>();
-    drawn::<I8F8>();
-    drawn::<I1F15>();
-    drawn::<I16F16>();
-    drawn::<I32F0>();
+    in_every_type!(drawn);
 }
 
 /// While no sample moves by more than the threshold, the decoded value stays within it.

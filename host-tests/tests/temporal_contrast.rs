@@ -1,7 +1,7 @@
 //! TBR, temporal contrast: `d = x[i] - x[i-1]`; up if `d > threshold`, down if `d < -threshold`.
 
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use fixed::types::{I8F8, I16F16};
 use host_tests::compare::{
     Wire, assert_step_spikes, check_step_decoder, encode, finite, run, signs_of,
 };
@@ -134,12 +134,7 @@ fn drawn<S: Wire + Drawn>() {
 
 #[test]
 fn drawn_recordings() {
-    drawn::<f32>();
-    drawn::<i16>();
-    drawn::<I8F8>();
-    drawn::<I1F15>();
-    drawn::<I16F16>();
-    drawn::<I32F0>();
+    in_every_type!(drawn);
 }
 
 /// All pairs of predecessor and sample within 8 bits, in the middle and at both ends of the type.

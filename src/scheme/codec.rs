@@ -44,7 +44,10 @@ pub trait Scheme: Sized {
         samples: &[Self::Sample],
         outputs: &mut [Self::Output],
     ) -> usize {
-        encode_each(self, state, samples, outputs)
+        for (output, &sample) in outputs.iter_mut().zip(samples) {
+            *output = self.encode(state, sample);
+        }
+        samples.len().min(outputs.len())
     }
 
     /// At the end of a recording, the next code that still waits for later samples; see [`Encoder::finish`].

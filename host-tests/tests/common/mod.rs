@@ -10,6 +10,19 @@ use host_tests::flight;
 use proptest::collection::vec;
 use proptest::prelude::*;
 
+/// Runs a check in every sample type.
+macro_rules! in_every_type {
+    ($check:ident) => {
+        $check::<f32>();
+        $check::<i16>();
+        $check::<fixed::types::I8F8>();
+        $check::<fixed::types::I1F15>();
+        $check::<fixed::types::I16F16>();
+        $check::<fixed::types::I32F0>();
+    };
+}
+pub(crate) use in_every_type;
+
 /// How many cases a property is tried with: times `CASES_TIMES`, which `cargo verify sweeps` sets.
 pub(crate) fn cases(count: u32) -> ProptestConfig {
     let times = std::env::var("CASES_TIMES").map_or(1, |times| times.parse().unwrap());

@@ -235,18 +235,6 @@ impl<S: Sample, const N: usize> Scheme for Burst<S, N> {
         state.accept(sample).map_or(BurstSpikes::SILENT, |sample| self.burst(sample))
     }
 
-    fn encode_slice(
-        &self,
-        state: &mut TimingState,
-        samples: &[S],
-        outputs: &mut [BurstSpikes<N>],
-    ) -> usize {
-        for (output, &sample) in outputs.iter_mut().zip(samples) {
-            *output = self.encode(state, sample);
-        }
-        samples.len().min(outputs.len())
-    }
-
     fn rejected(state: &TimingState) -> u32 {
         state.rejected()
     }

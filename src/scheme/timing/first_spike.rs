@@ -280,18 +280,6 @@ impl<S: Sample, const N: usize> Scheme for FirstSpike<S, N> {
         state.accept(sample).and_then(|sample| self.slot(sample))
     }
 
-    fn encode_slice(
-        &self,
-        state: &mut TimingState,
-        samples: &[S],
-        outputs: &mut [Option<Slot<N>>],
-    ) -> usize {
-        for (output, &sample) in outputs.iter_mut().zip(samples) {
-            *output = self.encode(state, sample);
-        }
-        samples.len().min(outputs.len())
-    }
-
     fn rejected(state: &TimingState) -> u32 {
         state.rejected()
     }

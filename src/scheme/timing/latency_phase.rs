@@ -202,18 +202,6 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> Scheme
         }
     }
 
-    fn encode_slice(
-        &self,
-        state: &mut TimingState,
-        samples: &[S],
-        outputs: &mut [PhaseSpikes<M, W, P>],
-    ) -> usize {
-        for (output, &sample) in outputs.iter_mut().zip(samples) {
-            *output = self.encode(state, sample);
-        }
-        samples.len().min(outputs.len())
-    }
-
     fn rejected(state: &TimingState) -> u32 {
         state.rejected()
     }

@@ -136,18 +136,6 @@ impl<S: Sample, const K: usize> Scheme for WeightedPhase<S, K> {
         PhaseBits::new((digits >> self.unused() << self.unused()) as u16)
     }
 
-    fn encode_slice(
-        &self,
-        state: &mut TimingState,
-        samples: &[S],
-        outputs: &mut [PhaseBits<K>],
-    ) -> usize {
-        for (output, &sample) in outputs.iter_mut().zip(samples) {
-            *output = self.encode(state, sample);
-        }
-        samples.len().min(outputs.len())
-    }
-
     fn rejected(state: &TimingState) -> u32 {
         state.rejected()
     }

@@ -217,18 +217,6 @@ impl<S: Sample, const K: usize> Scheme for IntegrateAndFire<S, K> {
         }
     }
 
-    fn encode_slice(
-        &self,
-        state: &mut IntegrateAndFireState<S>,
-        samples: &[S],
-        outputs: &mut [Steps<K>],
-    ) -> usize {
-        for (output, &sample) in outputs.iter_mut().zip(samples) {
-            *output = self.encode(state, sample);
-        }
-        samples.len().min(outputs.len())
-    }
-
     fn rejected(state: &IntegrateAndFireState<S>) -> u32 {
         state.tally.rejected()
     }
