@@ -18,7 +18,9 @@ def x():
 
 
 def cases():
-    return [pytest.param(scheme, sample, id=f"{name}-{sample}") for name, scheme in sw.schemes.items() for sample in SAMPLES]
+    return [
+        pytest.param(scheme, sample, id=f"{name}-{sample}") for name, scheme in sw.schemes.items() for sample in SAMPLES
+    ]
 
 
 def of(scheme, sample, x):
