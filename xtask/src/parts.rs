@@ -24,6 +24,13 @@ const PARTS: [Part; 4] = [
     Part { name: "stm32f4-embassy", target: F4, boards: &["crazyflie"] },
 ];
 
+/// Further cores, whose HALs take minutes: `cargo verify more-parts`.
+const MORE: [Part; 3] = [
+    Part { name: "nrf52840", target: F4, boards: &[] },
+    Part { name: "rp2350", target: "thumbv8m.main-none-eabihf", boards: &[] },
+    Part { name: "stm32h743", target: F4, boards: &[] },
+];
+
 const F4: &str = "thumbv7em-none-eabihf";
 
 /// What is copied beside an example.
@@ -32,15 +39,25 @@ const SHARED: [&str; 2] = ["flight", "icm42688p"];
 /// What every manifest says of the checkout, and a copy does without.
 const PATCH: &str = "[patch.crates-io]\nspikewire = { path = \"../..\" }\n";
 
-/// Builds each for its part, with the crate as it would be published. The linker tells if it does not fit.
+/// The usual parts, and what all of them share.
 pub fn parts() -> Result<()> {
     bodies()?;
+    build(&PARTS)
+}
+
+/// The further cores.
+pub fn more() -> Result<()> {
+    build(&MORE)
+}
+
+/// Builds each for its part, with the crate as it would be published. The linker tells if it does not fit.
+fn build(parts: &[Part]) -> Result<()> {
     let crate_ = package::unpacked()?;
     let elsewhere = Temporary::new("parts")?;
     for name in SHARED {
         copy(&paths::examples().join(name), &elsewhere.path().join(name))?;
     }
-    for part in &PARTS {
+    for part in parts {
         let Part { name, target, boards } = *part;
         println!("a copy of examples/{name}:");
         let original = paths::examples().join(name);
@@ -71,6 +88,17 @@ pub fn parts() -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// A copy of an example and of what is copied beside it, and what tells cargo of the crate as it would be published.
+pub fn copied(name: &str, shared: &[&str]) -> Result<(Temporary, String)> {
+    let elsewhere = Temporary::new(name)?;
+    for name in shared.iter().chain([&name]) {
+        copy(&paths::examples().join(name), &elsewhere.path().join(name))?;
+    }
+    without_patch(&elsewhere.path().join(name).join("Cargo.toml"))?;
+    let crate_ = package::unpacked()?;
+    Ok((elsewhere, format!("patch.crates-io.spikewire.path={:?}", crate_.display().to_string())))
 }
 
 /// What the examples share, on the host: futures, and plain functions.
@@ -132,7 +160,7 @@ mod tests {
     /// A log that waits for a debug probe stops the firmware when somebody pulls the probe.
     #[test]
     fn no_log_waits_for_a_probe() {
-        for part in &PARTS {
+        for part in PARTS.iter().chain(&MORE) {
             let manifest = paths::examples().join(part.name).join("Cargo.toml");
             let text = fs::read_to_string(manifest).unwrap();
             let log = text.lines().find(|line| line.starts_with("defmt-rtt = ")).unwrap();

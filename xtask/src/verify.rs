@@ -67,6 +67,7 @@ const LONG: &[Step] = &[
         crate::ros::ros,
     ),
     step("py-speed", "the Python package from its source package, and its speed", python::speed),
+    step("more-parts", "the examples for further cores", parts::more),
     step("cores", "instruction counts on all five cores", long::cores),
 ];
 
