@@ -65,12 +65,7 @@ def others(x, long):
         from snntorch import spikegen
 
         data = torch.from_numpy(long)
-        rows.append(
-            (
-                "snntorch.spikegen.delta",
-                len(long) / seconds(lambda: spikegen.delta(data, threshold=0.3, off_spike=True)),
-            )
-        )
+        rows.append(("snntorch.spikegen.delta", len(long) / seconds(lambda: spikegen.delta(data, threshold=0.3, off_spike=True))))
     except ImportError:
         rows.append(("snntorch.spikegen.delta", None))
     try:
@@ -78,9 +73,7 @@ def others(x, long):
         from spikingjelly.activation_based import encoding
 
         data = torch.from_numpy(x)
-        rows.append(
-            ("SpikingJelly WeightedPhaseEncoder", len(x) / seconds(lambda: encoding.WeightedPhaseEncoder(8)(data)))
-        )
+        rows.append(("SpikingJelly WeightedPhaseEncoder", len(x) / seconds(lambda: encoding.WeightedPhaseEncoder(8)(data))))
     except ImportError:
         rows.append(("SpikingJelly WeightedPhaseEncoder", None))
     return rows
@@ -100,12 +93,7 @@ def main():
         ("TBR", 10, sw.TemporalContrast(threshold=0.3), lambda: bench.contrast(x, 0.5)),
         ("MW", 10, sw.MovingWindow(threshold=0.25, window=5), lambda: bench.moving_window(x, 0.25, 5)),
         ("SF", 10, sw.StepForward(threshold=0.5), lambda: bench.step_forward(x, 0.5)),
-        (
-            "BSA",
-            100,
-            sw.Bsa(form="toolbox", filter="triang:9", threshold=1.15, **low),
-            lambda: bench.ben(x, nine, 1.15),
-        ),
+        ("BSA", 100, sw.Bsa(form="toolbox", filter="triang:9", threshold=1.15, **low), lambda: bench.ben(x, nine, 1.15)),
         ("HSA", 100, sw.Hough(filter="triang:15", **low), lambda: bench.hough(x, fifteen)),
         (
             "T-HSA",

@@ -57,7 +57,8 @@ def events(codes: NDArray, period: float, times: ArrayLike | None = None, first:
     sample, slot, channel, neuron = np.nonzero(by_time)
     counts = by_time[sample, slot, channel, neuron]
     if times is None:
-        start, step = (first + sample) * period, np.full(len(sample), period)
+        start = (first + sample) * period
+        step = period
     else:
         times = np.asarray(times)
         if times.shape != (length,):

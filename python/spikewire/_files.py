@@ -41,7 +41,7 @@ def read(path: str | Path, *channels: str | int, **options: Any) -> Log:
 
     `options` are those of the laptop program's input, such as ``topic``, ``field``, ``time``, ``rate``, ``accept_cut``.
     """
-    given: list[tuple[str, str | None]] = [("columns", name) for name in map(str, channels)]
+    given = [("columns", name) for name in map(str, channels)]
     for name, value in options.items():
         many = value if isinstance(value, (list, tuple)) else [value]
         given += [pair for own in many for pair in _given({name: own})]

@@ -208,7 +208,7 @@ def plot(
     return Picture(drawn)
 
 
-def _one(x: Any) -> NDArray[np.float64]:
+def _one(x: ArrayLike) -> NDArray[np.float64]:
     x = np.asarray(x, dtype=np.float64)
     if x.ndim != 1:
         raise ValueError(f"a signal is an array (samples,), not {x.shape}")

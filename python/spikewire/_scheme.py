@@ -107,16 +107,16 @@ class Scheme:
         if len(outer) <= 1:
             return self.decoder(first).decode(codes)
         channels = int(np.prod(outer[:-1]))
-        if first is not None:
-            first = np.asarray(first)
-            first = first.ravel() if first.ndim > 1 else first
+        first = np.ravel(first) if np.ndim(first) > 1 else first
         return self.decoder(first, channels).decode(codes.reshape(channels, outer[-1], *inner)).reshape(outer)
 
     def encoder(self, channels: int | None = None, picklable: bool = False) -> Encoder:
         """An encoder that keeps its state between chunks (samples,), or (channels, samples) of so many channels."""
         return Encoder(self, channels, picklable)
 
-    def decoder(self, first: ArrayLike | None = None, channels: int | None = None, picklable: bool = False) -> Decoder:
+    def decoder(
+        self, first: ArrayLike | None = None, channels: int | None = None, picklable: bool = False
+    ) -> Decoder:
         """A decoder that keeps its state between chunks; a code of steps starts from the `first` sample."""
         return Decoder(self, first, channels, picklable)
 

@@ -17,8 +17,7 @@ class _Past:
     """The chunks that a stream has taken, from which it is made again."""
 
     def __init__(self, is_kept: bool):
-        self._chunks: list[NDArray] = []
-        self._is_kept, self._is_fresh = is_kept, True
+        self._chunks, self._is_kept, self._is_fresh = [], is_kept, True
 
     def take(self, chunk: NDArray) -> None:
         self._is_fresh = False
@@ -108,12 +107,10 @@ class Decoder:
             raise ValueError(
                 f"{scheme.name} decodes from a first value: first=, the first sample of each channel, or start="
             )
-        self._first = None if first is None else np.asarray(first, dtype=float)
-        if channels is None and self._first is not None and self._first.ndim == 1:
-            channels = len(self._first)
-        self._scheme, self._channels, self._past = scheme, channels, _Past(picklable)
-        shape = (channels or 1,)
-        firsts = [None] * shape[0] if self._first is None else np.broadcast_to(self._first, shape).tolist()
+        if channels is None and np.ndim(first) == 1:
+            channels = len(first)
+        self._scheme, self._channels, self._first, self._past = scheme, channels, first, _Past(picklable)
+        firsts = [None if first is None else float(own) for own in np.broadcast_to(first, (channels or 1,))]
         self._native = scheme._coder.decoder(firsts)
         self._shape = scheme._coder.shape()
 

@@ -18,9 +18,7 @@ def x():
 
 
 def cases():
-    return [
-        pytest.param(scheme, sample, id=f"{name}-{sample}") for name, scheme in sw.schemes.items() for sample in SAMPLES
-    ]
+    return [pytest.param(scheme, sample, id=f"{name}-{sample}") for name, scheme in sw.schemes.items() for sample in SAMPLES]
 
 
 def of(scheme, sample, x):
@@ -168,13 +166,3 @@ def test_progress_and_an_end_to_long_work():
 
     with pytest.raises(KeyboardInterrupt):
         sw.Gaussian(neurons=20, min=-1, max=1).encode(long, progress=stop)
-
-
-def test_events_go_into_tonic():
-    transforms = pytest.importorskip("tonic.transforms", exc_type=ImportError)
-    x = np.sin(np.linspace(0, 20, 2000)).reshape(2, 1000)
-    events = sw.Bank(sw.StepForward(threshold=0.1), channels=2).encode(x, period=1000)
-    frames = transforms.ToFrame(sensor_size=(2, 1, 2), n_event_bins=7)(events)
-    assert frames.shape == (7, 2, 2)
-    later = transforms.TimeJitter(std=10, sort_timestamps=True)(events)
-    assert len(later) == len(events) and later.dtype == sw.EVENTS

@@ -4,6 +4,7 @@ import os
 from pathlib import Path
 
 import pytest
+
 from flown import table
 
 FLIGHT = Path(__file__).parents[2] / "data" / "hexarotor.csv"

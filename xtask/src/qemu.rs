@@ -3,6 +3,7 @@
 use crate::{boards::Board, progress, shell};
 use anyhow::{Context, Result, bail, ensure};
 use std::{
+    fs::File,
     io::Read,
     path::Path,
     process::{Child, Command, ExitStatus, Stdio},
@@ -45,9 +46,18 @@ pub fn run_capturing(board: &Board, image: &Path, serial: &Path) -> Result<Strin
     run_for(PATIENCE, board, emulator, image)
 }
 
+/// The same in real time, and the board's first serial port hears the file. What goes out of the second one is kept.
+pub fn run_hearing(board: &Board, image: &Path, heard: &Path, said: &Path) -> Result<String> {
+    let mut emulator = emulator(board);
+    emulator.args(["-monitor", "none"]);
+    emulator.args(["-serial", "stdio"]).stdin(File::open(heard)?);
+    emulator.arg("-serial").arg(format!("file:{}", said.display()));
+    run_for(PATIENCE, board, emulator, image)
+}
+
 fn emulator(board: &Board) -> Command {
     let mut emulator = shell::command("qemu-system-arm");
-    emulator.args(["-M", board.machine, "-nographic"]);
+    emulator.args(["-M", board.machine, "-nographic"]).stdin(Stdio::null());
     emulator
 }
 
@@ -71,7 +81,6 @@ fn run_to_end(
         .args(["-semihosting-config", "enable=on,target=native"])
         .arg("-kernel")
         .arg(image)
-        .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped());
     let program = image.file_name().unwrap_or_default().to_string_lossy().into_owned();

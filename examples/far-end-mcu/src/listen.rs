@@ -1,0 +1,58 @@
+//! Bytes to commands.
+
+use core::{
+    fmt::{self, Write},
+    sync::atomic::{AtomicU32, Ordering::Relaxed},
+};
+
+use cortex_m::peripheral::syst::SystClkSource;
+use cortex_m_rt::exception;
+use far_end::{FarEnd, SILENCE_MS};
+
+use crate::uart::{Listener, Speaker};
+
+/// A millisecond at QEMU's 168 MHz.
+const TIMER_RELOAD: u32 = 168_000;
+
+static MILLISECONDS: AtomicU32 = AtomicU32::new(0);
+
+#[exception]
+fn SysTick() {
+    MILLISECONDS.fetch_add(1, Relaxed);
+}
+
+pub fn run(out: &mut impl Write) -> fmt::Result {
+    let mut timer = cortex_m::Peripherals::take().ok_or(fmt::Error)?.SYST;
+    timer.set_clock_source(SystClkSource::Core);
+    timer.set_reload(TIMER_RELOAD - 1);
+    timer.clear_current();
+    timer.enable_counter();
+    timer.enable_interrupt();
+
+    let (mut line, mut actuators) = (Listener::new(), Speaker::new());
+    let mut far = FarEnd::default();
+    let (mut values, mut hash, mut commands) = (0_u32, 0xcbf2_9ce4_8422_2325_u64, 0_u32);
+    let mut heard = MILLISECONDS.load(Relaxed);
+    while MILLISECONDS.load(Relaxed).wrapping_sub(heard) < SILENCE_MS {
+        let Some(byte) = line.byte() else { continue };
+        heard = MILLISECONDS.load(Relaxed);
+        far.take(
+            &[byte],
+            |channel, tick, value| {
+                values += 1;
+                // FNV-1a, as the sender prints its own.
+                let words = [channel.into(), tick.micros(), value.to_bits()];
+                for byte in words.into_iter().flat_map(u32::to_le_bytes) {
+                    hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+                }
+            },
+            |command| {
+                commands += 1;
+                actuators.send(command.bytes());
+            },
+        );
+    }
+    actuators.send(far.silence().bytes());
+    writeln!(out, "{values} values and keyframes hash={hash:016x}")?;
+    writeln!(out, "{commands} commands, {} frames lost", far.lost_frames())
+}

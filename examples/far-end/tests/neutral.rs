@@ -1,0 +1,134 @@
+//! When the command is neutral, and when it is not.
+
+use far_end::{CHANNELS, Command, FarEnd, SCHEMES};
+use spikewire::{
+    Bank, EventQueue, Overflow, Tick,
+    link::{Coding, MAX_FRAME, Transmitter},
+};
+
+/// A sender, and what it has sent: one frame each.
+struct Sender {
+    bank: Bank<far_end::Schemes, CHANNELS>,
+    queue: EventQueue<256>,
+    transmitter: Transmitter,
+    now: Tick,
+}
+
+impl Sender {
+    fn new(session: u16) -> Self {
+        Self {
+            bank: Bank::per_channel(SCHEMES),
+            queue: EventQueue::new(Overflow::DropOldest),
+            transmitter: Transmitter::new(Coding::for_channels(CHANNELS as u16, 1_000), session),
+            now: Tick::from(0),
+        }
+    }
+
+    fn sample(&mut self, rate: f32) -> Vec<u8> {
+        self.now += 1_000;
+        self.bank.encode_into(self.now, [rate; CHANNELS], &self.queue);
+        self.frames()
+    }
+
+    fn keyframe(&mut self) -> Vec<u8> {
+        self.bank.keyframe_into(self.now, &self.queue);
+        self.frames()
+    }
+
+    fn sensor_dies(&mut self) -> Vec<u8> {
+        self.bank.reset_into(self.now, &self.queue);
+        self.frames()
+    }
+
+    fn frames(&mut self) -> Vec<u8> {
+        let mut events = self.queue.consumer().unwrap();
+        let (mut frames, mut buffer) = (Vec::new(), [0; MAX_FRAME]);
+        while let Some(frame) = self.transmitter.next_frame(&mut events, &mut buffer).unwrap() {
+            frames.extend_from_slice(frame);
+        }
+        frames
+    }
+}
+
+/// The command after these bytes; `None` if they are no frame.
+fn after(far: &mut FarEnd, bytes: &[u8]) -> Option<Command> {
+    let mut last = None;
+    for byte in bytes.chunks(1) {
+        far.take(byte, |_, _, _| (), |command| last = Some(command));
+    }
+    last
+}
+
+/// Both ends, with a first keyframe at a rate of 0.
+fn running() -> (Sender, FarEnd) {
+    let (mut sender, mut far) = (Sender::new(1), FarEnd::default());
+    sender.sample(0.0);
+    assert_eq!(after(&mut far, &sender.keyframe()), Some(Command::Damp([0; 3])));
+    (sender, far)
+}
+
+#[test]
+fn damps_what_it_knows() {
+    let (mut sender, mut far) = running();
+    // 0.1 rad/s is a spike.
+    assert_eq!(after(&mut far, &sender.sample(0.15)), Some(Command::Damp([-12; 3])));
+    assert_eq!(after(&mut far, &sender.sample(0.35)), Some(Command::Damp([-24; 3])));
+}
+
+#[test]
+fn neutral_before_the_first_keyframe() {
+    let (mut sender, mut far) = (Sender::new(1), FarEnd::default());
+    sender.sample(0.0);
+    assert_eq!(after(&mut far, &sender.sample(0.5)), Some(Command::Neutral));
+    assert!(matches!(after(&mut far, &sender.keyframe()), Some(Command::Damp(_))));
+}
+
+#[test]
+fn neutral_from_a_lost_frame_to_the_next_keyframe() {
+    let (mut sender, mut far) = running();
+    let lost = sender.sample(0.5);
+    assert!(!lost.is_empty());
+    assert_eq!(after(&mut far, &sender.sample(0.8)), Some(Command::Neutral));
+    assert!(matches!(after(&mut far, &sender.keyframe()), Some(Command::Damp(_))));
+}
+
+#[test]
+fn neutral_from_a_flipped_bit_to_the_next_keyframe() {
+    let (mut sender, mut far) = running();
+    let mut frame = sender.sample(0.5);
+    let middle = frame.len() / 2;
+    frame[middle] ^= 4;
+    assert_eq!(after(&mut far, &frame), None);
+    assert_eq!(after(&mut far, &sender.sample(0.8)), Some(Command::Neutral));
+    assert!(matches!(after(&mut far, &sender.keyframe()), Some(Command::Damp(_))));
+}
+
+#[test]
+fn neutral_as_soon_as_the_sensor_is_dead() {
+    let (mut sender, mut far) = running();
+    assert_eq!(after(&mut far, &sender.sensor_dies()), Some(Command::Neutral));
+    sender.sample(0.5);
+    assert_eq!(after(&mut far, &sender.keyframe()), Some(Command::Damp([-60; 3])));
+}
+
+#[test]
+fn neutral_when_the_sender_starts_again() {
+    let (_, mut far) = running();
+    let mut other = Sender::new(2);
+    other.sample(0.0);
+    assert_eq!(after(&mut far, &other.sample(0.5)), Some(Command::Neutral));
+}
+
+#[test]
+fn neutral_after_silence_to_the_next_keyframe() {
+    let (mut sender, mut far) = running();
+    assert_eq!(far.silence(), Command::Neutral);
+    assert_eq!(after(&mut far, &sender.sample(0.5)), Some(Command::Neutral));
+    assert!(matches!(after(&mut far, &sender.keyframe()), Some(Command::Damp(_))));
+}
+
+#[test]
+fn bytes_of_a_command() {
+    assert_eq!(Command::Neutral.bytes(), [0x5C, 0, 0, 0, 0, 0, 0, 0]);
+    assert_eq!(Command::Damp([1, -2, 1000]).bytes(), [0x5C, 1, 1, 0, 0xFE, 0xFF, 0xE8, 3]);
+}
