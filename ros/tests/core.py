@@ -14,7 +14,6 @@ from spikewire_ros.counters import Counters
 from spikewire_ros.decoding import Decoding, Received
 from spikewire_ros.encoding import Encoding, Event
 from spikewire_ros.fields import Field, FieldError, numeric
-from spikewire_ros.layout import Layout
 from spikewire_ros.wave import wave
 
 PACKAGE = Path(__file__).parent.parent / "ros1" / "spikewire_ros"
@@ -149,29 +148,6 @@ class Parameters(unittest.TestCase):
             self.assertEqual(schemes.of_catalogue(schemes.published(name)), name)
 
 
-class Layouts(unittest.TestCase):
-    def test_there_and_back(self) -> None:
-        for layout, cells, spikes in (
-            (Layout("sf", 1, 1), [-1], [-1]),
-            (Layout("sod", 1, 4), [-1, -1, 0, 0], [-2]),
-            (Layout("if", 1, 4), [0, 0, 0, 0], [0]),
-            (Layout("grf", 3, 1), [0, 1, 0], [0, 1, 0]),
-            (Layout("burst", 1, 3), [1, 0, 1], [1, 0, 1]),
-            (Layout("grf-slots", 2, 2), [0, 1, 1, 0], [0, 1, 1, 0]),
-        ):
-            self.assertEqual(layout.spikes(cells), spikes)
-            self.assertEqual(layout.cells(spikes), cells)
-            self.assertEqual(layout.is_array, len(spikes) > 1)
-
-    def test_what_is_not_of_the_scheme(self) -> None:
-        with self.assertRaises(ValueError) as caught:
-            Layout("grf", 3, 1).cells([0, 1])
-        self.assertEqual(str(caught.exception), "2 numbers a message, where grf has 3")
-        with self.assertRaises(ValueError) as caught:
-            Layout("sod", 1, 4).cells([5])
-        self.assertEqual(str(caught.exception), "spike 5, where sod has -4 to 4")
-
-
 def encoded(given: Dict[str, Any], samples: List[float], told: Counters) -> List[Event]:
     encoding = Encoding(settings.read({**given, "topic": "signal"}, {}), told)
     events: List[Event] = []
@@ -208,7 +184,7 @@ class Coding(unittest.TestCase):
             self.assertEqual([event.stamp for event in events], [index * STEP for index in range(400)], name)
             self.assertEqual([event.input for event in events], self.samples, name)
             for event, row in zip(events, np.asarray(spikes).reshape(400, -1)):
-                self.assertEqual(event.spikes, list(row) if event.is_array else [sum(row)], name)
+                self.assertEqual(event.spikes, list(row), name)
             decoded = np.array([event.decoded for event in events])
             np.testing.assert_array_equal(decoded, spikes.decode(), name)
 
@@ -231,6 +207,15 @@ class Coding(unittest.TestCase):
         self.assertEqual(encoded(CONFIGS["gaussian_fields"], self.samples[:99], self.told), [])
         self.assertEqual(self.told.counts, {"samples that came too few to start": 99})
         self.assertEqual(len(encoded(CONFIGS["moving_window"], self.samples[:3], self.told)), 3)
+
+    def test_the_toolbox_numbers_its_fields_from_0(self) -> None:
+        row = [0] * 20
+        row[7] = 1
+        said = {"start": 0.0, "min_input": -1.0, "max_input": 1.0, "threshold": 0.0, "input": 0.0, "stamp": 0}
+        toolbox = Decoding(settings.read({}, {}), self.told).take(Received(row, scheme="gaussian_fields", **said))
+        ours = Decoding(settings.read({}, {}), self.told).take(Received(row, scheme="grf", **said))
+        self.assertAlmostEqual(toolbox, -1.0 + (2 * 7 - 3) / 2 * 2.0 / 18, places=6)
+        self.assertAlmostEqual(ours, -1.0 + (2 * 8 - 3) / 2 * 2.0 / 18, places=6)
 
     def test_messages_of_another_scheme_are_refused_and_counted(self) -> None:
         events = [message(event) for event in encoded(CONFIGS["step_forward"], self.samples, self.told)]

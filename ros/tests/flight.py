@@ -125,12 +125,11 @@ def compare(bag: Path, flight: Flight, wanted: Dict[str, expected.Flown]) -> Non
 
 def is_as_wanted(spike: Any, firings: List[expected.Firing], name: str) -> bool:
     """A number of `spyke`, or those of `spyke_array`: sub-timestep after sub-timestep, in each neuron by neuron."""
-    if not hasattr(spike, "__len__"):
-        return spike == sum(sign for _, _, sign in firings)
-    row = [0] * len(spike)
+    found = list(spike) if hasattr(spike, "__len__") else [spike]
+    row = [0] * len(found)
     for neuron, slot, sign in firings:
         row[slot * NEURONS.get(name, 1) + neuron] = sign
-    return list(spike) == row
+    return found == row
 
 
 def main() -> None:

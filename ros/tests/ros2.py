@@ -97,6 +97,8 @@ class Nodes(unittest.TestCase):
             self.assertEqual(stamps, [event.stamp for event in events])
             values = [one.value for one in made.publishers["~/decoded"].published]
             self.assertEqual(values, [event.decoded for event in events])
+            [header] = made.publishers["event_header"].published
+            self.assertIn(f"spikewire=1\nscheme={'grf-slots' if parameters is GRF else 'sf'}\nsample=f32\n", header.data)
             self.assertEqual(made.subscriptions["/imu"].profile.reliability, "best effort")
 
     def test_decodes_what_it_encodes(self) -> None:

@@ -131,6 +131,7 @@ def install() -> None:
         "rclpy.executors": {"ExternalShutdownException": type("ExternalShutdownException", (Exception,), {})},
         "rclpy.node": {"Node": Node},
         "rclpy.qos": {
+            "DurabilityPolicy": SimpleNamespace(TRANSIENT_LOCAL="latched"),
             "HistoryPolicy": SimpleNamespace(KEEP_ALL="all"),
             "QoSProfile": SimpleNamespace,
             "ReliabilityPolicy": reliability,
@@ -144,7 +145,7 @@ def install() -> None:
         "builtin_interfaces": ["Time"],
         "diagnostic_msgs": ["DiagnosticArray", "DiagnosticStatus", "KeyValue"],
         "spyke_msgs": ["Spyke", "SpykeArray", "SpykeValue"],
-        "std_msgs": ["Float64"],
+        "std_msgs": ["Float64", "String"],
     }.items():
         modules[package] = {}
         modules[f"{package}.msg"] = {name: message(f"{package}/msg/{name}") for name in names}

@@ -1,11 +1,13 @@
-"""A bag in the toolbox's format, played to the decoding node, against the toolbox's own reconstruction.
+"""A bag in the toolbox's format, through the decoding node and the laptop program, against the toolbox's reconstruction.
 
-    toolbox.py DIRECTORY
+    toolbox.py SPIKEWIRE DIRECTORY
 
 What the toolbox does is written down here from its `generate_spikes.py`, `EncodingSchemes.py`, `DecodingSchemes.py` and
 `process_rosbags.py`, index by index.
 """
 
+import csv
+import subprocess
 import sys
 from pathlib import Path
 from typing import Callable, Dict, List, Tuple
@@ -91,16 +93,11 @@ def field_decode(messages: List[object]) -> List[float]:
     return [low + (2 * np.argmax(message.spike) - 3) / 2 * (high - low) / (m - 2) for message in messages]
 
 
-def lower(low: float, high: float) -> Dict[str, float]:
-    """The range in which the toolbox's neurons, numbered from 0, have the paper's centres, numbered from 1."""
-    field = (high - low) / (NEURONS - 2)
-    return {"min": low - field, "max": high - field}
-
-
+# How the toolbox decodes, and what the node must be given besides.
 SCHEMES: Dict[str, Tuple[Callable, Dict[str, float]]] = {
     "step_forward": (step_decode, {}),
     "moving_window": (step_decode, {"window": WINDOW}),
-    "gaussian_fields": (field_decode, lower(min(SIGNAL), max(SIGNAL))),
+    "gaussian_fields": (field_decode, {}),
 }
 
 
@@ -128,14 +125,23 @@ def decoded(ros: Ros, scheme: str, parameters: Dict[str, float]) -> Tuple[List[o
         return [message for _, message, _ in opened.read_messages()], [message.value for message in read]
 
 
+def by_program(program: Path, bag: Path) -> List[float]:
+    """What `spikewire decode` makes of it."""
+    decoded = subprocess.run([program, "decode", bag], check=True, capture_output=True, text=True).stdout
+    return [float(row["value"]) for row in csv.DictReader(decoded.splitlines())]
+
+
 def main() -> None:
-    with Ros(Path(sys.argv[1])) as ros:
+    program, directory = map(Path, sys.argv[1:])
+    with Ros(directory) as ros:
         rospy.init_node("toolbox", disable_signals=True)
         for scheme, (decode, parameters) in SCHEMES.items():
             messages, values = decoded(ros, scheme, parameters)
-            off = np.max(np.abs(np.array(values) - np.array(decode(messages))))
-            print(f"{scheme}: {len(values)} values, {off:.1e} from the toolbox's at most, in f32")
-            assert off < 1e-4, scheme
+            own = by_program(program, directory / f"toolbox-{scheme}.bag")
+            for who, found in (("the node", values), ("spikewire decode", own)):
+                off = np.max(np.abs(np.array(found) - np.array(decode(messages))))
+                print(f"{scheme}: {len(found)} values of {who}, {off:.1e} from the toolbox's at most, in f32")
+                assert off < 1e-4, scheme
 
 
 if __name__ == "__main__":

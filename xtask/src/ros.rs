@@ -30,14 +30,15 @@ pub fn ros() -> Result<()> {
     let ros = Ros::ready()?;
     run(&mut ros.test("core.py"))?;
     ros.ros2()?;
-    let (demo, spikewire) = (host::example("demo")?, host::spikewire("")?);
+    let (demo, mut spikewire) = (host::example("demo")?, host::spikewire("")?);
     let mut flight = ros.test("flight.py");
     flight.arg(paths::root().join("data/hexarotor.csv")).arg(demo).arg(spikewire.get_program());
     run(flight.arg(ros.room("flight")?))?;
-    for name in ["faults", "toolbox"] {
-        run(ros.test(&format!("{name}.py")).arg(ros.room(name)?))?;
-    }
-    ros_figure::ensure_drawn(&ros.figure()?)
+    run(ros.test("faults.py").arg(ros.room("faults")?))?;
+    run(ros.test("toolbox.py").arg(spikewire.get_program()).arg(ros.room("toolbox")?))?;
+    ros_figure::ensure_drawn(&ros.figure()?)?;
+    let bag = ros.room("figure")?.join("encoding.bag");
+    ros_figure::ensure_decoded(&output(spikewire.arg("decode").arg(bag))?, &ros.table()?)
 }
 
 /// `cargo xtask ros-figure`
@@ -119,8 +120,13 @@ impl Ros {
         let room = self.room("figure")?;
         run(self.test("figure.py").arg(&room))?;
         let drawn = room.join("ros.svg");
-        ros_figure::draw(&room.join("figure.csv"), &drawn)?;
+        ros_figure::draw(&self.table()?, &drawn)?;
         Ok(drawn)
+    }
+
+    /// What the figure's bag holds.
+    fn table(&self) -> Result<PathBuf> {
+        Ok(self.room("figure")?.join("figure.csv"))
     }
 }
 

@@ -30,9 +30,7 @@ struct Sample {
 
 /// Draws the table of a bag.
 pub fn draw(table: &Path, picture: &Path) -> Result<()> {
-    let text = fs::read_to_string(table).with_context(|| table.display().to_string())?;
-    let samples = text.lines().skip(1).map(sample).collect::<Option<Vec<_>>>();
-    let samples = samples.with_context(|| format!("{} has other columns", table.display()))?;
+    let samples = read(table)?;
     let root = SVGBackend::new(picture, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
     let (head, body) = root.split_vertically(100);
@@ -42,6 +40,22 @@ pub fn draw(table: &Path, picture: &Path) -> Result<()> {
     draw_spikes(&spikes, &samples)?;
     root.present()?;
     Ok(())
+}
+
+/// Fails if these lines of `index,value,time_us` have other values, as numbers of 32 bits.
+pub fn ensure_decoded(lines: &str, table: &Path) -> Result<()> {
+    let values = lines.lines().skip(1).map(|line| line.split(',').nth(1)?.parse::<f32>().ok());
+    let values = values.collect::<Option<Vec<_>>>().context("the decoded values are no table")?;
+    let wanted: Vec<f32> = read(table)?.iter().map(|sample| sample.decoded as f32).collect();
+    ensure!(values == wanted, "`spikewire decode` and the node decode the bag to other values");
+    println!("`spikewire decode` makes of the bag what the node decoded.");
+    Ok(())
+}
+
+fn read(table: &Path) -> Result<Vec<Sample>> {
+    let text = fs::read_to_string(table).with_context(|| table.display().to_string())?;
+    let samples = text.lines().skip(1).map(sample).collect::<Option<Vec<_>>>();
+    samples.with_context(|| format!("{} has other columns", table.display()))
 }
 
 /// Puts the picture into the page.

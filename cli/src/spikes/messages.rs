@@ -1,7 +1,7 @@
 //! Reads spikes out of logs: ours, and those that the paper's toolbox wrote.
 
 use super::recorder::{EVENT, HEADER};
-use super::spyke::meant;
+use super::spyke::{GAUSSIAN_FIELDS, meant};
 use super::{Header, Item, Spikes};
 use crate::input::messages::{Kind, Reading};
 use anyhow::{Context, Result, bail};
@@ -203,11 +203,17 @@ impl Found {
                 line("window", "1".to_owned()),
                 line("first", self.start.to_string()),
             ],
-            "grf" => vec![
-                line("neurons", self.neurons.to_string()),
-                line("min", self.range.0.to_string()),
-                line("max", self.range.1.to_string()),
-            ],
+            "grf" => {
+                let (min, max) = self.range;
+                let field = (max - min) / (self.neurons.saturating_sub(2).max(1)) as f64;
+                // The range in which our neurons have the centres of the toolbox's.
+                let lower = if self.scheme == GAUSSIAN_FIELDS { field } else { 0.0 };
+                vec![
+                    line("neurons", self.neurons.to_string()),
+                    line("min", (min - lower).to_string()),
+                    line("max", (max - lower).to_string()),
+                ]
+            }
             other => bail!(
                 "messages do not say all that decoding `{other}` needs, and there is no topic `{HEADER}` that does"
             ),

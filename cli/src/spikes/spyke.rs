@@ -163,16 +163,20 @@ const OF_TOOLBOX: [(&str, &str); 7] = [
     ("temporal_contrast", "tbr"),
     ("step_forward", "sf"),
     ("moving_window", "mw"),
-    ("gaussian_fields", "grf"),
+    (GAUSSIAN_FIELDS, "grf"),
     ("bsa", "bsa"),
     ("hsa", "hsa"),
     ("threshold_hsa", "t-hsa"),
 ];
 
-/// What messages call a scheme of ours.
+/// What messages call a scheme of ours. The toolbox's name of `grf` stays its own: there, neurons are numbered otherwise.
 pub(crate) fn published(scheme: &'static str) -> &'static str {
-    OF_TOOLBOX.iter().find(|(_, own)| *own == scheme).map_or(scheme, |(name, _)| name)
+    let same = OF_TOOLBOX.iter().find(|(name, own)| *own == scheme && *name != GAUSSIAN_FIELDS);
+    same.map_or(scheme, |(name, _)| name)
 }
+
+/// GRF as the toolbox's node has it: its neurons are numbered from 0 where the paper's centres are from 1.
+pub(crate) const GAUSSIAN_FIELDS: &str = "gaussian_fields";
 
 /// Which scheme of ours messages mean.
 pub(crate) fn meant(name: &str) -> &str {

@@ -6,7 +6,6 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 import numpy as np
 import spikewire
 
-from .layout import Layout
 from .settings import Settings
 
 # Of these a message has a number for each neuron.
@@ -14,23 +13,32 @@ _NEURON_BY_NEURON = ("position", "grf", "grf-prob", "grf-nonlinear")
 
 
 class Codec:
-    """An encoder and its decoder, as they start on a signal."""
+    """An encoder and its decoder, as they start on a signal.
 
-    def __init__(self, scheme: Any, layout: Layout, first: float) -> None:
-        """`first`: the first sample, where decoders that add up steps start unless `start` is given."""
+    The spikes of a sample are cells: a number for each neuron of each sub-timestep, sub-timestep after sub-timestep.
+    """
+
+    def __init__(self, scheme: Any, values: Sequence[float]) -> None:
+        """`values`: the first samples. Decoders that add up steps start from the first, unless `start` is given."""
         given = scheme.parameters
-        self.layout = layout
+        self.name = scheme.name
         # Whether the value of the first sample is known, so that its spike changes nothing.
         self.starts_at_first = "start" in _names(scheme) and "start" not in given
         # What messages say of it.
-        self.first = first if self.starts_at_first else float(given.get("start", 0.0))
+        self.first = values[0] if self.starts_at_first else float(given.get("start", 0.0))
         self.threshold = float(given.get("threshold", 0.0))
         self._lowest, self._highest = given.get("min", given.get("shift")), given.get("max")
-        # As the package has them: of sub-timesteps and neurons, or of neurons, or none.
-        neurons, slots = layout.neurons, layout.slots
-        self._axes = (slots, neurons) if slots > 1 else (neurons,) if neurons > 1 else ()
+        self._neurons, self._slots = _shape(scheme)
         self._encoder = scheme.encoder()
-        self._decoder = scheme.decoder(first=first if self.starts_at_first else None)
+        self._decoder = scheme.decoder(first=self.first if self.starts_at_first else None)
+        self._told = scheme.encode(np.array(values, dtype=float)).parameters[0]
+        self._sample = scheme.sample
+
+    @property
+    def header(self) -> str:
+        """What a file of spikes says in its header: all that decoding needs."""
+        lines = {"spikewire": "1", "scheme": self.name, "sample": self._sample, **self._told}
+        return "".join(f"{key}={value}\n" for key, value in lines.items())
 
     def range(self, lowest: float, highest: float) -> Tuple[float, float]:
         """The range that it codes, or, where it has none, that of the samples so far."""
@@ -49,11 +57,14 @@ class Codec:
 
     def decode(self, cells: Sequence[int]) -> float:
         """The value of the next sample. `ValueError`: no encoder makes such cells."""
-        row = np.array(cells, dtype=np.int8).reshape(1, *self._axes)
-        return float(self._decoder.decode(row)[0])
+        if len(cells) != self._neurons * self._slots:
+            raise ValueError(f"{len(cells)} numbers a message, where {self.name} has {self._neurons * self._slots}")
+        # As the package has them: of sub-timesteps and neurons, or of neurons, or none.
+        axes = (self._slots, self._neurons) if self._slots > 1 else (self._neurons,) if self._neurons > 1 else ()
+        return float(self._decoder.decode(np.array(cells, dtype=np.int8).reshape(1, *axes))[0])
 
     def _rows(self, codes: np.ndarray) -> List[List[int]]:
-        return codes.reshape(-1, self.layout.neurons * self.layout.slots).tolist()
+        return codes.reshape(-1, self._neurons * self._slots).tolist()
 
 
 class Request:
@@ -72,21 +83,26 @@ class Request:
         """How many samples it starts on; an encoder with a window waits for that by itself."""
         return max(self._settings.calibrate, 1)
 
-    def layout(self) -> Layout:
-        """How its spikes stand in messages. `ValueError`: a parameter is missing or not good."""
-        scheme = self._made(self._settings.options)
+    def check(self) -> None:
+        """`ValueError`: a parameter is missing or not good."""
         if not self._settings.calibrate:
+            scheme = self._made(self._settings.options)
             # These say what is missing, and what is not good.
             scheme.encoder()
             scheme.decoder(first=0.0)
-        return _layout(scheme)
+
+    @property
+    def is_array(self) -> bool:
+        """Whether a sample has several numbers: of several neurons, or of several sub-timesteps."""
+        neurons, slots = _shape(self._made(self._settings.options))
+        return neurons * slots > 1
 
     def start(self, values: Sequence[float]) -> Codec:
         """As it starts on these samples, which stand in for what is not given where the settings say so."""
         scheme = self._made(self._settings.options)
         if self._settings.calibrate:
             scheme = scheme.fit(np.array(values, dtype=float))
-        return Codec(scheme, _layout(scheme), values[0])
+        return Codec(scheme, values)
 
     def receive(self, told: Mapping[str, float], length: int, first: float) -> Codec:
         """As it decodes messages of so many numbers that tell these parameters."""
@@ -95,16 +111,15 @@ class Request:
         if self._settings.scheme in _NEURON_BY_NEURON:
             options["neurons"] = length
         options.update(self._settings.options)
-        scheme = self._made(options)
-        return Codec(scheme, _layout(scheme), first)
+        return Codec(self._made(options), [first])
 
     def _made(self, options: Mapping[str, Any]) -> Any:
         return self._class(sample=self._settings.sample, **options)
 
 
-def _layout(scheme: Any) -> Layout:
-    neurons, slots = scheme._coder.shape()
-    return Layout(scheme.name, neurons, slots)
+def _shape(scheme: Any) -> Tuple[int, int]:
+    """How many neurons and sub-timesteps a scheme has, whatever the signal."""
+    return scheme._coder.shape()
 
 
 def _names(scheme: Any) -> List[str]:

@@ -49,7 +49,7 @@ class Decoding:
                 self._counters.add("new starts of the encoder")
             self._start(message)
         try:
-            return self._codec.decode(self._codec.layout.cells(message.spikes))
+            return self._codec.decode(message.spikes)
         except ValueError as error:
             self._counters.add("messages refused", str(error))
             return None
@@ -62,12 +62,12 @@ class Decoding:
         settings = self._settings
         if settings.scheme is None:
             settings = replace(settings, scheme=schemes.of_catalogue(message.scheme))
-        known = {
-            "threshold": message.threshold,
-            "min": message.min_input,
-            "max": message.max_input,
-            "shift": message.min_input,
-        }
+        low, high = message.min_input, message.max_input
+        if message.scheme == schemes.GAUSSIAN_FIELDS:
+            # The range in which our neurons have the centres of the toolbox's.
+            field = (high - low) / max(len(message.spikes) - 2, 1)
+            low, high = low - field, high - field
+        known = {"threshold": message.threshold, "min": low, "max": high, "shift": low}
         self._codec = Request(settings).receive(known, len(message.spikes), message.start)
         self._started_by = message
         if self._codec.starts_at_first and message.input != message.start:

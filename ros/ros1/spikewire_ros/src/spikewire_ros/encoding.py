@@ -19,8 +19,8 @@ Sample = Tuple[float, int]
 class Event:
     """What becomes of one sample: a `spyke` or a `spyke_array`, and a `spyke_value`."""
 
+    # One, or of several neurons or sub-timesteps each.
     spikes: List[int]
-    is_array: bool
     start: float
     min_input: float
     max_input: float
@@ -43,7 +43,7 @@ class Encoding:
         """`ValueError`: a parameter is not good."""
         self._request = Request(settings)
         self._enough = self._request.enough
-        self._layout = self._request.layout()
+        self._request.check()
         self._counters = counters
         self._clock = Clock(settings.gap)
         self._codec: Optional[Codec] = None
@@ -56,7 +56,12 @@ class Encoding:
     @property
     def is_array(self) -> bool:
         """Whether events are a `spyke_array` each."""
-        return self._layout.is_array
+        return self._request.is_array
+
+    @property
+    def header(self) -> Optional[str]:
+        """From the first event on, all that decoding needs, as the text of a file's header."""
+        return self._codec.header if self._codec is not None else None
 
     def take(self, value: float, stamp: int) -> List[Event]:
         """Takes a sample. One that is not finite is counted and emits nothing."""
@@ -98,14 +103,13 @@ class Encoding:
         value, stamp = self._waiting.popleft()
         lowest, highest = codec.range(*self._range)
         return Event(
-            spikes=self._layout.spikes(cells),
-            is_array=self._layout.is_array,
+            spikes=list(cells),
             start=codec.first,
             min_input=lowest,
             max_input=highest,
             threshold=codec.threshold,
             input=value,
-            scheme=schemes.published(self._layout.scheme),
+            scheme=schemes.published(codec.name),
             stamp=stamp,
             decoded=codec.decode(cells),
         )

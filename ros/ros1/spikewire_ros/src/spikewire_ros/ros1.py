@@ -9,7 +9,7 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from genpy.dynamic import generate_dynamic
 from spyke_msgs.msg import spyke, spyke_array, spyke_value
-from std_msgs.msg import Float64
+from std_msgs.msg import Float64, String
 
 from . import settings as parameters
 from .counters import Counters
@@ -134,6 +134,9 @@ class Encode(Node):
         self._encoding = Encoding(settings, self.counters)
         kind = spyke_array if self._encoding.is_array else spyke
         self._event = rospy.Publisher("event", kind, queue_size=_NO_LIMIT)
+        # For those who come later, too.
+        self._header = rospy.Publisher("event_header", String, queue_size=_NO_LIMIT, latch=True)
+        self._is_header_sent = False
         self._decoded = rospy.Publisher("~decoded", spyke_value, queue_size=_NO_LIMIT)
         rospy.on_shutdown(self.guarded(self._end))
         self._topic = rospy.Subscriber(settings.topic, rospy.AnyMsg, self.guarded(self._take))
@@ -154,6 +157,9 @@ class Encode(Node):
 
     def _publish(self, events: Iterable[Event]) -> None:
         for event in events:
+            if not self._is_header_sent:
+                self._header.publish(self._encoding.header)
+                self._is_header_sent = True
             self._event.publish(spyke_of(event))
             self._decoded.publish(spyke_value(event.decoded, _time(event.stamp)))
             self.given += 1
@@ -207,10 +213,8 @@ class Signal(Node):
 
 def spyke_of(event: Event) -> Any:
     """The event as a message."""
-    if event.is_array:
-        message = spyke_array(spike=event.spikes)
-    else:
-        message = spyke(spike=event.spikes[0])
+    is_array = len(event.spikes) > 1
+    message = spyke_array(spike=event.spikes) if is_array else spyke(spike=event.spikes[0])
     message.start, message.min_input, message.max_input = event.start, event.min_input, event.max_input
     message.threshold, message.input, message.scheme = event.threshold, event.input, event.scheme
     message.timestamp = _time(event.stamp)

@@ -8,11 +8,11 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node as RclpyNode
-from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 from rosidl_runtime_py.utilities import get_message
 from spyke_msgs.msg import Spyke, SpykeArray, SpykeValue
-from std_msgs.msg import Float64
+from std_msgs.msg import Float64, String
 
 try:
     from rclpy.event_handler import SubscriptionEventCallbacks
@@ -37,6 +37,7 @@ def _all_kept(reliability: ReliabilityPolicy) -> QoSProfile:
 
 
 _RELIABLE = _all_kept(ReliabilityPolicy.RELIABLE)
+_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class Node(RclpyNode):
@@ -114,6 +115,9 @@ class Encode(Node):
         self._field = Field(settings.field)
         self._encoding = Encoding(settings, self.counters)
         self._event = self.create_publisher(SpykeArray if self._encoding.is_array else Spyke, "event", _RELIABLE)
+        # For those who come later, too.
+        self._header = self.create_publisher(String, "event_header", _LATCHED)
+        self._is_header_sent = False
         self._decoded = self.create_publisher(SpykeValue, "~/decoded", _RELIABLE)
         self.subscribe(settings.topic, self._take)
 
@@ -129,6 +133,9 @@ class Encode(Node):
 
     def _publish(self, events: Iterable[Event]) -> None:
         for event in events:
+            if not self._is_header_sent:
+                self._header.publish(String(data=self._encoding.header))
+                self._is_header_sent = True
             self._event.publish(spyke_of(event))
             self._decoded.publish(SpykeValue(value=event.decoded, timestamp=_time(event.stamp)))
             self.given += 1
@@ -186,7 +193,7 @@ def spyke_of(event: Event) -> Any:
         "scheme": event.scheme,
         "timestamp": _time(event.stamp),
     }
-    if event.is_array:
+    if len(event.spikes) > 1:
         return SpykeArray(spike=event.spikes, **said)
     return Spyke(spike=event.spikes[0], **said)
 

@@ -10,7 +10,9 @@ _OF_TOOLBOX = {
     "threshold_hsa": "t-hsa",
     "gaussian_fields": "grf",
 }
-_BY_TOOLBOX = {name: word for word, name in _OF_TOOLBOX.items()}
+# GRF as the toolbox's node has it: its neurons are numbered from 0 where the paper's centres are from 1.
+GAUSSIAN_FIELDS = "gaussian_fields"
+_SAME = {name: word for word, name in _OF_TOOLBOX.items() if word != GAUSSIAN_FIELDS}
 
 
 def of_catalogue(name: str) -> str:
@@ -19,5 +21,5 @@ def of_catalogue(name: str) -> str:
 
 
 def published(name: str) -> str:
-    """What messages call a scheme of the catalogue: as the toolbox does where it has the scheme."""
-    return _BY_TOOLBOX.get(name, name)
+    """What messages call a scheme of the catalogue: as the toolbox does where it has the same."""
+    return _SAME.get(name, name)
