@@ -3,7 +3,7 @@
 import math
 import unittest
 from pathlib import Path
-from typing import Any, Dict, List
+from typing import Any
 
 import numpy as np
 import spikewire
@@ -82,7 +82,7 @@ class Times(unittest.TestCase):
         clock = Clock(1.5)
         found = [clock.observe(stamp * 1000) for stamp in (0, 10, 20, 30, 40, 60, 70, 65, 75, 75, 85)]
         names = [one and one[0] for one in found]
-        wanted: List[Any] = [None] * 11
+        wanted: list[Any] = [None] * 11
         wanted[5], wanted[7], wanted[9] = "gaps", "steps back in time", "repeated stamps"
         self.assertEqual(names, wanted)
 
@@ -94,7 +94,7 @@ class Times(unittest.TestCase):
         self.assertTrue(0 < gaps <= 17, gaps)
 
     def test_counts_are_told_sparsely(self) -> None:
-        told: List[str] = []
+        told: list[str] = []
         counters = Counters(told.append)
         for number in range(150):
             counters.add("gaps", f"number {number}")
@@ -148,9 +148,9 @@ class Parameters(unittest.TestCase):
             self.assertEqual(schemes.of_catalogue(schemes.published(name)), name)
 
 
-def encoded(given: Dict[str, Any], samples: List[float], told: Counters) -> List[Event]:
+def encoded(given: dict[str, Any], samples: list[float], told: Counters) -> list[Event]:
     encoding = Encoding(settings.read({**given, "topic": "signal"}, {}), told)
-    events: List[Event] = []
+    events: list[Event] = []
     for index, sample in enumerate(samples):
         events += encoding.take(sample, index * STEP)
     return events + encoding.end()
@@ -160,12 +160,6 @@ def message(event: Event) -> Received:
     """As a `spyke` has it: with numbers of 32 bits."""
     narrow = [float(np.float32(getattr(event, name))) for name in ("start", "min_input", "max_input", "threshold", "input")]
     return Received(event.spikes, *narrow, event.scheme, event.stamp)
-
-
-# What the decoding node is given: the rest is in the messages.
-def decoder_of(given: Dict[str, Any]) -> Dict[str, Any]:
-    told = ("encoding_scheme", "calibrate", "factor", "neurons" if given["encoding_scheme"] == "gaussian_fields" else "")
-    return {name: value for name, value in given.items() if name not in told}
 
 
 class Coding(unittest.TestCase):
@@ -191,7 +185,7 @@ class Coding(unittest.TestCase):
     def test_messages_decode_to_what_the_encoder_decoded(self) -> None:
         for name, given in CONFIGS.items():
             events = encoded(given, self.samples, self.told)
-            decoding = Decoding(settings.read(decoder_of(given), {}), self.told)
+            decoding = Decoding(settings.read(given, {}), self.told)
             values = [decoding.take(message(event)) for event in events]
             self.assertEqual(values, [event.decoded for event in events], name)
         self.assertEqual(self.told.counts, {})

@@ -1,4 +1,4 @@
-"""What is not as it should be: bad parameters and fields end a node, bad samples are counted.
+"""Launch files, and what is not as it should be: bad parameters and fields end a node, bad samples are counted.
 
     faults.py DIRECTORY
 """
@@ -7,12 +7,16 @@ import math
 import sys
 import time
 from pathlib import Path
-from typing import Dict
 
 import rospy
+import spikewire
 from diagnostic_msgs.msg import DiagnosticArray
-from ros import Ros, stop, until
+from ros import Ros, node_path, stop, until
+from roslaunch.config import load_config_default
 from sensor_msgs.msg import Imu
+from spikewire_ros import settings
+from spikewire_ros.counters import Counters
+from spikewire_ros.encoding import Encoding
 from std_msgs.msg import String
 
 # Parameters besides good ones, and what the node must say.
@@ -27,6 +31,18 @@ BAD = (
     ({"topic": "/words"}, "is no number, but str; numbers of std_msgs/String: none"),
 )
 GOOD = {"topic": "/imu", "field": "angular_velocity.x", "encoding_scheme": "step_forward", "threshold": 0.1}
+
+
+def launch_files() -> None:
+    """Each starts the toolbox's signal and a node with parameters that are good, and records where asked to."""
+    files = sorted((Path(node_path("encode")).parents[2] / "share/spikewire_ros/launch").glob("encode_*.launch"))
+    for file in files:
+        config = load_config_default([(str(file), ["bag:=spikes.bag"])], None)
+        assert sorted(node.type for node in config.nodes) == ["encode", "record", "signal"], file
+        own = {name.rsplit("/", 1)[1]: one.value for name, one in config.params.items() if name.startswith("/encode/")}
+        Encoding(settings.to_encode(settings.read(own, {})), Counters(print))
+    assert len(files) == len(spikewire.schemes), files
+    print(f"{len(files)} launch files")
 
 
 def bad_parameters(ros: Ros, imu: rospy.Publisher, words: rospy.Publisher) -> None:
@@ -55,7 +71,7 @@ def bad_parameters(ros: Ros, imu: rospy.Publisher, words: rospy.Publisher) -> No
 
 def bad_samples(ros: Ros, imu: rospy.Publisher) -> None:
     """They are counted, and told to monitors."""
-    counts: Dict[str, int] = {}
+    counts: dict[str, int] = {}
 
     def take(message: DiagnosticArray) -> None:
         for status in message.status:
@@ -99,6 +115,7 @@ def main() -> None:
     with Ros(Path(sys.argv[1])) as ros:
         rospy.init_node("faults", disable_signals=True)
         imu = rospy.Publisher("/imu", Imu, queue_size=0)
+        launch_files()
         bad_parameters(ros, imu, rospy.Publisher("/words", String, queue_size=0))
         bad_samples(ros, imu)
 

@@ -11,7 +11,7 @@ import sys
 import time
 from collections import defaultdict
 from pathlib import Path
-from typing import Any, Dict, List, Tuple
+from typing import Any
 
 import flown as expected
 import rosbag
@@ -39,7 +39,7 @@ NEURONS = {
 }
 
 # Times in µs and yaw rates.
-Flight = Tuple[List[int], List[float]]
+Flight = tuple[list[int], list[float]]
 
 
 class Count:
@@ -66,7 +66,7 @@ def imu(stamp: int, rate: float) -> Imu:
     return message
 
 
-def fly(ros: Ros, flight: Flight, schemes: Dict[str, Dict[str, Any]]) -> Path:
+def fly(ros: Ros, flight: Flight, schemes: dict[str, dict[str, Any]]) -> Path:
     """The flight through all schemes; the bag."""
     encoders, decoders = {}, {}
     for name, given in schemes.items():
@@ -98,11 +98,11 @@ def fly(ros: Ros, flight: Flight, schemes: Dict[str, Dict[str, Any]]) -> Path:
     return ros.end_recording(recorder, "flight.bag")
 
 
-def compare(bag: Path, flight: Flight, wanted: Dict[str, expected.Flown]) -> None:
+def compare(bag: Path, flight: Flight, wanted: dict[str, expected.Flown]) -> None:
     """The bag against what was wanted."""
     times, rates = flight
     stamps = [EPOCH * 10**9 + 1000 * stamp for stamp in times]
-    found: Dict[str, List[Any]] = defaultdict(list)
+    found: dict[str, list[Any]] = defaultdict(list)
     with rosbag.Bag(str(bag)) as opened:
         for topic, message, _ in opened.read_messages():
             found[topic].append(message)
@@ -123,7 +123,7 @@ def compare(bag: Path, flight: Flight, wanted: Dict[str, expected.Flown]) -> Non
         print(f"{name:20} {spikes:6} spikes, {len(events)} values: every bit agrees; by the firmware: {by_firmware}")
 
 
-def is_as_wanted(spike: Any, firings: List[expected.Firing], name: str) -> bool:
+def is_as_wanted(spike: Any, firings: list[expected.Firing], name: str) -> bool:
     """A number of `spyke`, or those of `spyke_array`: sub-timestep after sub-timestep, in each neuron by neuron."""
     found = list(spike) if hasattr(spike, "__len__") else [spike]
     row = [0] * len(found)

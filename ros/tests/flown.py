@@ -9,22 +9,22 @@ import struct
 import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Dict, List, Tuple
+from typing import Any
 
 import spikewire
 from spikewire_ros.schemes import of_catalogue
 
 # Neuron, sub-timestep, sign.
-Firing = Tuple[int, int, int]
+Firing = tuple[int, int, int]
 
 
 @dataclass
 class Flown:
     """What became of each sample."""
 
-    firings: List[List[Firing]] = field(default_factory=list)
+    firings: list[list[Firing]] = field(default_factory=list)
     # The bits of an f32.
-    values: List[int] = field(default_factory=list)
+    values: list[int] = field(default_factory=list)
 
 
 def f32(value: float) -> float:
@@ -37,21 +37,21 @@ def bits(value: float) -> int:
     return struct.unpack("I", struct.pack("f", value))[0]
 
 
-def flight(table: Path) -> Tuple[List[int], List[float]]:
+def flight(table: Path) -> tuple[list[int], list[float]]:
     """Times in µs and yaw rates in rad/s."""
     with open(table) as rows:
         read = [(int(row["time_us"]), f32(float(row["gyro_z"]))) for row in csv.DictReader(rows)]
     return [time for time, _ in read], [rate for _, rate in read]
 
 
-def schemes(rates: List[float]) -> Dict[str, Dict[str, Any]]:
+def schemes(rates: list[float]) -> dict[str, dict[str, Any]]:
     """The nodes' parameters by the names that the firmware has: parts of the signal's range, as its constants are."""
     low, high = min(rates), max(rates)
 
     def part(of_range: float) -> float:
         return f32((high - low) * of_range)
 
-    def ranged(scheme: str, **more: Any) -> Dict[str, Any]:
+    def ranged(scheme: str, **more: Any) -> dict[str, Any]:
         return {"encoding_scheme": scheme, "min": low, "max": high, **more}
 
     def triangle(taps: int, peak: float) -> str:
@@ -118,10 +118,10 @@ MEANS_BY_PROGRAM = ("if", "lif", "sigma-delta", "burst-weighted")
 LOOK_AHEAD = {"bsa": 23, "bsa-mul": 23, "bsa-toolbox": 9, "hsa": 14, "t-hsa": 14}
 
 
-def by_firmware(program: Path) -> Dict[str, Flown]:
+def by_firmware(program: Path) -> dict[str, Flown]:
     """What the firmware prints: a scheme's name and latency, then a line a sample."""
     printed = subprocess.run([program], check=True, capture_output=True, text=True).stdout
-    flown: Dict[str, Flown] = {}
+    flown: dict[str, Flown] = {}
     for line in printed.splitlines():
         left, right = line.split(" ")
         if left[:1].isalpha():
@@ -132,14 +132,14 @@ def by_firmware(program: Path) -> Dict[str, Flown]:
     return flown
 
 
-def _firings(text: str) -> List[Firing]:
+def _firings(text: str) -> list[Firing]:
     """`+3.0-4.1`"""
     spaced = text.replace("+", " +").replace("-", " -").split()
     places = [(one[0], *one[1:].split(".")) for one in spaced]
     return [(int(neuron), int(slot), 1 if sign == "+" else -1) for sign, neuron, slot in places]
 
 
-def by_program(program: Path, table: Path, parameters: Dict[str, Any], samples: int) -> Flown:
+def by_program(program: Path, table: Path, parameters: dict[str, Any], samples: int) -> Flown:
     """What the laptop program makes of it, of schemes with one spike at a time."""
     slots = parameters.get("spikes", 1)
     options = {**parameters, "scheme": of_catalogue(parameters["encoding_scheme"])}

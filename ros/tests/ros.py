@@ -6,7 +6,7 @@ import socket
 import subprocess
 import time
 from pathlib import Path
-from typing import Callable, Dict, List
+from typing import Callable
 from xmlrpc.client import ServerProxy
 
 
@@ -31,7 +31,7 @@ class Ros:
         os.environ["ROS_LOG_DIR"] = str(directory / "log")
         os.environ["PYTHONUNBUFFERED"] = "1"  # what they say is read while they run
         self._port = port
-        self._all: List[subprocess.Popen] = []
+        self._all: list[subprocess.Popen] = []
 
     def __enter__(self) -> "Ros":
         self.start("core", "roscore", "-p", str(self._port))
@@ -49,12 +49,12 @@ class Ros:
         self._all.append(process)
         return process
 
-    def node(self, place: str, kind: str, parameters: Dict[str, object], *remaps: str) -> subprocess.Popen:
+    def node(self, place: str, kind: str, parameters: dict[str, object], *remaps: str) -> subprocess.Popen:
         """A node of the package in a namespace, with its own parameters."""
         given = [f"_{name}:={value}" for name, value in parameters.items()]
         return self.start(f"{place}-{kind}", node_path(kind), f"__ns:=/{place}", *given, *remaps)
 
-    def record(self, file: str, topics: List[str]) -> subprocess.Popen:
+    def record(self, file: str, topics: list[str]) -> subprocess.Popen:
         """The distribution's `rosbag record`."""
         process = self.start(f"{file}-record", "rosbag", "record", "-O", str(self.directory / file), *topics)
         until(lambda: all(self.subscribers(topic) for topic in topics), "the recorder")
@@ -67,7 +67,7 @@ class Ros:
         until(path.exists, "the bag's end")
         return path
 
-    def subscribers(self, topic: str) -> List[str]:
+    def subscribers(self, topic: str) -> list[str]:
         """The nodes that subscribe to it."""
         _, _, (_, subscribers, _) = self._master().getSystemState("/test")
         return dict(subscribers).get(topic, [])
@@ -82,7 +82,7 @@ class Ros:
         except OSError:
             return False
 
-    def subscribers_of_all(self) -> List[str]:
+    def subscribers_of_all(self) -> list[str]:
         """The topics that have a subscriber."""
         _, _, (_, subscribers, _) = self._master().getSystemState("/test")
         return [topic for topic, _ in subscribers]

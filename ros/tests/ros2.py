@@ -6,7 +6,7 @@ Needs the packages of `ros2.txt` and `spikewire`. A ROS 2 itself is not there.
 import math
 import unittest
 from dataclasses import dataclass
-from typing import Any, Dict, List
+from typing import Any
 
 import ros2_stand_in as ros
 from cyclonedds.idl import IdlStruct, types
@@ -56,7 +56,14 @@ class SpykeValue(IdlStruct, typename="spyke_msgs::msg::dds_::SpykeValue_"):
 
 
 SF = {"encoding_scheme": "step_forward", "threshold": 0.35, "topic": "/imu", "field": "angular_velocity.x"}
-GRF = {"encoding_scheme": "grf-slots", "neurons": 4, "slots": 3, "min": -1.0, "max": 1.0, **{key: SF[key] for key in ("topic", "field")}}
+GRF = {
+    "encoding_scheme": "grf-slots",
+    "neurons": 4,
+    "slots": 3,
+    "min": -1.0,
+    "max": 1.0,
+    **{key: SF[key] for key in ("topic", "field")},
+}
 
 
 def imu(step: int, rate: float) -> Any:
@@ -66,18 +73,18 @@ def imu(step: int, rate: float) -> Any:
     return message
 
 
-def rates() -> List[float]:
+def rates() -> list[float]:
     return [math.sin(step / 5.0) for step in range(100)]
 
 
-def node(kind: type, parameters: Dict[str, Any], topics: Dict[str, Any]) -> Any:
+def node(kind: type, parameters: dict[str, Any], topics: dict[str, Any]) -> Any:
     ros.Node.parameters, ros.Node.topics = parameters, topics
     made = kind()
     made.tick()
     return made
 
 
-def encoded(parameters: Dict[str, Any]) -> Any:
+def encoded(parameters: dict[str, Any]) -> Any:
     made = node(ros2.Encode, parameters, {"/imu": ("sensor_msgs/msg/Imu", "best effort")})
     for step, rate in enumerate(rates()):
         made.subscriptions["/imu"].call(imu(step, rate))
@@ -98,7 +105,9 @@ class Nodes(unittest.TestCase):
             values = [one.value for one in made.publishers["~/decoded"].published]
             self.assertEqual(values, [event.decoded for event in events])
             [header] = made.publishers["event_header"].published
-            self.assertIn(f"spikewire=1\nscheme={'grf-slots' if parameters is GRF else 'sf'}\nsample=f32\n", header.data)
+            self.assertIn(
+                f"spikewire=1\nscheme={'grf-slots' if parameters is GRF else 'sf'}\nsample=f32\n", header.data
+            )
             self.assertEqual(made.subscriptions["/imu"].profile.reliability, "best effort")
 
     def test_decodes_what_it_encodes(self) -> None:
@@ -119,7 +128,9 @@ class Nodes(unittest.TestCase):
         made.tick()
         status = made.publishers["/diagnostics"].published[-1].status[0]
         told = {pair.key: pair.value for pair in status.values}
-        self.assertEqual(told, {"messages in": "101", "messages out": "100", "messages lost": "3", "samples not finite": "1"})
+        self.assertEqual(
+            told, {"messages in": "101", "messages out": "100", "messages lost": "3", "samples not finite": "1"}
+        )
         self.assertEqual(status.level, b"\1")
 
     def test_bad_input_ends_the_node(self) -> None:

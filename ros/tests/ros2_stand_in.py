@@ -1,13 +1,13 @@
-"""As much of a ROS 2 as the nodes use, in one process: what they publish is kept, what they subscribe to is handed over.
+"""As much of a ROS 2 as the nodes use, in one process: what they publish is kept, what they hear is handed to them.
 
-Message classes come from the definitions: those of the ROS from the package `rosbags`, `spyke_msgs` from this repository.
+Message classes come from the definitions: ROS's own from the package `rosbags`, `spyke_msgs` from this repository.
 They take keywords and check the kinds of values as those of `rclpy` do.
 """
 
 import sys
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
-from typing import Any, Callable, Dict, List
+from typing import Any, Callable
 
 import numpy as np
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
@@ -19,7 +19,7 @@ for _file in sorted(DEFINITIONS.glob("*.msg")):
 
 # Of `rosbags`: a number or a text, a message, an array, a list.
 _BASE, _NAME, _ARRAY, _SEQUENCE = 1, 2, 3, 4
-_MADE: Dict[str, type] = {}
+_MADE: dict[str, type] = {}
 
 
 def message(name: str) -> type:
@@ -38,7 +38,11 @@ def _made(name: str) -> type:
         for field, kind in fields.items():
             object.__setattr__(self, field, _value(kind, given[field]) if field in given else _default(kind))
 
-    return type(name.rsplit("/", 1)[1], (STORE.types[name],), {"__init__": __init__, "__slots__": [f"_{field}" for field in fields]})
+    return type(
+        name.rsplit("/", 1)[1],
+        (STORE.types[name],),
+        {"__init__": __init__, "__slots__": [f"_{field}" for field in fields]},
+    )
 
 
 def _default(kind: Any) -> Any:
@@ -55,7 +59,9 @@ def _default(kind: Any) -> Any:
 def _value(kind: Any, value: Any) -> Any:
     sort, of = kind
     if sort == _BASE:
-        wanted = {"string": str, "bool": bool, "float32": float, "float64": float, "octet": bytes, "byte": bytes}.get(of[0], int)
+        wanted = {"string": str, "bool": bool, "float32": float, "float64": float, "octet": bytes, "byte": bytes}.get(
+            of[0], int
+        )
         assert type(value) is wanted, f"{value!r} is no {of[0]}"
     elif sort == _SEQUENCE and of[0][0] == _BASE:
         assert all(type(one) is int for one in value), value
@@ -75,15 +81,15 @@ class Publisher:
 class Node:
     """A node with these parameters, in a graph with these topics."""
 
-    parameters: Dict[str, Any] = {}
+    parameters: dict[str, Any] = {}
     # A topic's type, and whether it is reliable.
-    topics: Dict[str, Any] = {}
+    topics: dict[str, Any] = {}
 
     def __init__(self, name: str, **_: Any) -> None:
         self.name, self.publishers, self.subscriptions, self.timers = name, {}, {}, []
-        self.told: List[str] = []
+        self.told: list[str] = []
 
-    def get_parameters_by_prefix(self, _: str) -> Dict[str, Any]:
+    def get_parameters_by_prefix(self, _: str) -> dict[str, Any]:
         return {name: SimpleNamespace(value=value) for name, value in self.parameters.items()}
 
     def get_logger(self) -> Any:
@@ -111,7 +117,7 @@ class Node:
     def resolve_topic_name(self, topic: str) -> str:
         return topic if topic.startswith("/") else f"/{topic}"
 
-    def get_publishers_info_by_topic(self, topic: str) -> List[Any]:
+    def get_publishers_info_by_topic(self, topic: str) -> list[Any]:
         if topic not in self.topics:
             return []
         kind, reliability = self.topics[topic]
@@ -126,7 +132,7 @@ class Node:
 def install() -> None:
     """Puts it where the nodes import from."""
     reliability = SimpleNamespace(RELIABLE="reliable", BEST_EFFORT="best effort")
-    modules: Dict[str, Dict[str, Any]] = {
+    modules: dict[str, dict[str, Any]] = {
         "rclpy": {},
         "rclpy.executors": {"ExternalShutdownException": type("ExternalShutdownException", (Exception,), {})},
         "rclpy.node": {"Node": Node},

@@ -1,4 +1,4 @@
-"""A bag in the toolbox's format, through the decoding node and the laptop program, against the toolbox's reconstruction.
+"""A bag in the toolbox's format, decoded by the node and by the laptop program, against the toolbox's reconstruction.
 
     toolbox.py SPIKEWIRE DIRECTORY
 
@@ -10,7 +10,7 @@ import csv
 import subprocess
 import sys
 from pathlib import Path
-from typing import Callable, Dict, List, Tuple
+from typing import Callable
 
 import numpy as np
 import rosbag
@@ -57,7 +57,7 @@ def gaussian_fields(x: float) -> np.ndarray:
     return spikes
 
 
-def events(scheme: str) -> List[object]:
+def events(scheme: str) -> list[object]:
     """The messages of the toolbox's node."""
     messages = []
     buffer = SIGNAL[:BUFFER].copy()
@@ -78,7 +78,7 @@ def events(scheme: str) -> List[object]:
     return messages
 
 
-def step_decode(messages: List[object]) -> List[float]:
+def step_decode(messages: list[object]) -> list[float]:
     """`DecodingSchemes.step_forward`, which `moving_window` equals, as `process_rosbags.py` calls it."""
     threshold = np.mean([message.threshold for message in messages])
     signal = [messages[0].start]
@@ -87,21 +87,21 @@ def step_decode(messages: List[object]) -> List[float]:
     return signal
 
 
-def field_decode(messages: List[object]) -> List[float]:
+def field_decode(messages: list[object]) -> list[float]:
     """`DecodingSchemes.grf_spike`."""
     low, high, m = messages[0].min_input, messages[0].max_input, len(messages[0].spike)
     return [low + (2 * np.argmax(message.spike) - 3) / 2 * (high - low) / (m - 2) for message in messages]
 
 
 # How the toolbox decodes, and what the node must be given besides.
-SCHEMES: Dict[str, Tuple[Callable, Dict[str, float]]] = {
+SCHEMES: dict[str, tuple[Callable, dict[str, float]]] = {
     "step_forward": (step_decode, {}),
     "moving_window": (step_decode, {"window": WINDOW}),
     "gaussian_fields": (field_decode, {}),
 }
 
 
-def decoded(ros: Ros, scheme: str, parameters: Dict[str, float]) -> Tuple[List[object], List[float]]:
+def decoded(ros: Ros, scheme: str, parameters: dict[str, float]) -> tuple[list[object], list[float]]:
     """What the bag holds, and what the node makes of it."""
     bag = ros.directory / f"toolbox-{scheme}.bag"
     messages = events(scheme)
@@ -125,7 +125,7 @@ def decoded(ros: Ros, scheme: str, parameters: Dict[str, float]) -> Tuple[List[o
         return [message for _, message, _ in opened.read_messages()], [message.value for message in read]
 
 
-def by_program(program: Path, bag: Path) -> List[float]:
+def by_program(program: Path, bag: Path) -> list[float]:
     """What `spikewire decode` makes of it."""
     decoded = subprocess.run([program, "decode", bag], check=True, capture_output=True, text=True).stdout
     return [float(row["value"]) for row in csv.DictReader(decoded.splitlines())]

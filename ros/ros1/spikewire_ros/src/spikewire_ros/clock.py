@@ -2,7 +2,7 @@
 
 from collections import deque
 from statistics import median
-from typing import Deque, Optional, Tuple
+from typing import Optional
 
 _STEPS = 31
 
@@ -15,10 +15,10 @@ class Clock:
         if not gap > 1.0:
             raise ValueError(f"gap {gap}: it must be above 1, in usual steps")
         self._gap = gap
-        self._steps: Deque[int] = deque(maxlen=_STEPS)
+        self._steps: deque[int] = deque(maxlen=_STEPS)
         self._last: Optional[int] = None
 
-    def observe(self, stamp: int) -> Optional[Tuple[str, str]]:
+    def observe(self, stamp: int) -> Optional[tuple[str, str]]:
         """What is wrong with the step to this stamp, if anything: what is counted, and how much it was."""
         last, self._last = self._last, stamp
         if last is None:

@@ -1,7 +1,8 @@
 """The codecs of the package `spikewire`, a sample at a time."""
 
+from collections.abc import Mapping, Sequence
 from inspect import signature
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any
 
 import numpy as np
 import spikewire
@@ -10,6 +11,9 @@ from .settings import Settings
 
 # Of these a message has a number for each neuron.
 _NEURON_BY_NEURON = ("position", "grf", "grf-prob", "grf-nonlinear")
+
+# From these an encoder finds its threshold, which messages tell.
+_OF_THRESHOLD = ("factor", "magnitudes")
 
 
 class Codec:
@@ -40,18 +44,18 @@ class Codec:
         lines = {"spikewire": "1", "scheme": self.name, "sample": self._sample, **self._told}
         return "".join(f"{key}={value}\n" for key, value in lines.items())
 
-    def range(self, lowest: float, highest: float) -> Tuple[float, float]:
+    def range(self, lowest: float, highest: float) -> tuple[float, float]:
         """The range that it codes, or, where it has none, that of the samples so far."""
         return (
             lowest if self._lowest is None else float(self._lowest),
             highest if self._highest is None else float(self._highest),
         )
 
-    def encode(self, values: Sequence[float]) -> List[List[int]]:
+    def encode(self, values: Sequence[float]) -> list[list[int]]:
         """The cells of the samples that these complete, a list for each."""
         return self._rows(self._encoder.encode(np.array(values, dtype=float)))
 
-    def finish(self) -> List[List[int]]:
+    def finish(self) -> list[list[int]]:
         """The cells of the samples that wait for later ones."""
         return self._rows(self._encoder.finish())
 
@@ -63,7 +67,7 @@ class Codec:
         axes = (self._slots, self._neurons) if self._slots > 1 else (self._neurons,) if self._neurons > 1 else ()
         return float(self._decoder.decode(np.array(cells, dtype=np.int8).reshape(1, *axes))[0])
 
-    def _rows(self, codes: np.ndarray) -> List[List[int]]:
+    def _rows(self, codes: np.ndarray) -> list[list[int]]:
         return codes.reshape(-1, self._neurons * self._slots).tolist()
 
 
@@ -107,22 +111,23 @@ class Request:
     def receive(self, told: Mapping[str, float], length: int, first: float) -> Codec:
         """As it decodes messages of so many numbers that tell these parameters."""
         names = _names(self._class)
-        options: Dict[str, Any] = {name: value for name, value in told.items() if name in names}
+        options: dict[str, Any] = {name: value for name, value in told.items() if name in names}
         if self._settings.scheme in _NEURON_BY_NEURON:
             options["neurons"] = length
-        options.update(self._settings.options)
+        given = self._settings.options.items()
+        options.update((name, value) for name, value in given if name not in _OF_THRESHOLD)
         return Codec(self._made(options), [first])
 
     def _made(self, options: Mapping[str, Any]) -> Any:
         return self._class(sample=self._settings.sample, **options)
 
 
-def _shape(scheme: Any) -> Tuple[int, int]:
+def _shape(scheme: Any) -> tuple[int, int]:
     """How many neurons and sub-timesteps a scheme has, whatever the signal."""
     return scheme._coder.shape()
 
 
-def _names(scheme: Any) -> List[str]:
+def _names(scheme: Any) -> list[str]:
     """The parameters that a scheme, or its class, takes."""
     kind = scheme if isinstance(scheme, type) else type(scheme)
     return [name for name in signature(kind).parameters if name not in ("sample", "paper")]

@@ -1,15 +1,15 @@
 """What went wrong, counted and told."""
 
-from typing import Callable, Dict
+from typing import Callable
 
 
 class Counters:
     """Counts by name. Tells the first of each, the tenth, the hundredth and so on, so that a log stays readable."""
 
     def __init__(self, tell: Callable[[str], None]) -> None:
-        self.counts: Dict[str, int] = {}
+        self.counts: dict[str, int] = {}
         self._tell = tell
-        self._next: Dict[str, int] = {}
+        self._next: dict[str, int] = {}
 
     def add(self, what: str, detail: str = "", by: int = 1) -> None:
         """Counts `by` more of it."""

@@ -1,7 +1,8 @@
 """From the messages of spikes to values, without ROS."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Optional, Sequence
+from typing import Optional
 
 from . import schemes
 from .clock import Clock
@@ -37,28 +38,26 @@ class Decoding:
         self._counters = counters
         self._clock = Clock(settings.gap)
         self._codec: Optional[Codec] = None
-        self._started_by: Optional[Received] = None
+        # The scheme and the start that its messages tell.
+        self._encoder = ("", 0.0)
 
     def take(self, message: Received) -> Optional[float]:
         """The value, unless the message is none of the scheme's: that is counted, and the decoder stays as it is."""
         wrong = self._clock.observe(message.stamp)
         if wrong is not None:
             self._counters.add(*wrong)
-        if self._codec is None or self._is_new(message):
-            if self._codec is not None:
+        codec = self._codec
+        if codec is None or (message.scheme, message.start) != self._encoder:
+            if codec is not None:
                 self._counters.add("new starts of the encoder")
-            self._start(message)
+            codec = self._codec = self._start(message)
         try:
-            return self._codec.decode(message.spikes)
+            return codec.decode(message.spikes)
         except ValueError as error:
             self._counters.add("messages refused", str(error))
             return None
 
-    def _is_new(self, message: Received) -> bool:
-        before = self._started_by
-        return (message.scheme, message.start) != (before.scheme, before.start)
-
-    def _start(self, message: Received) -> None:
+    def _start(self, message: Received) -> Codec:
         settings = self._settings
         if settings.scheme is None:
             settings = replace(settings, scheme=schemes.of_catalogue(message.scheme))
@@ -68,11 +67,12 @@ class Decoding:
             field = (high - low) / max(len(message.spikes) - 2, 1)
             low, high = low - field, high - field
         known = {"threshold": message.threshold, "min": low, "max": high, "shift": low}
-        self._codec = Request(settings).receive(known, len(message.spikes), message.start)
-        self._started_by = message
-        if self._codec.starts_at_first and message.input != message.start:
+        codec = Request(settings).receive(known, len(message.spikes), message.start)
+        self._encoder = (message.scheme, message.start)
+        if codec.starts_at_first and message.input != message.start:
             self._counters.add(
                 "starts in the middle",
                 f"the first sample heard is {message.input:g}, the encoder's was {message.start:g}: values are off by "
                 "what was missed",
             )
+        return codec

@@ -1,9 +1,10 @@
 """From samples to the messages of their spikes, without ROS."""
 
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
-from typing import Deque, List, Optional, Sequence, Tuple
+from typing import Optional
 
 from . import schemes
 from .clock import Clock
@@ -12,7 +13,7 @@ from .counters import Counters
 from .settings import Settings
 
 # A value, and its stamp in nanoseconds.
-Sample = Tuple[float, int]
+Sample = tuple[float, int]
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,7 @@ class Event:
     """What becomes of one sample: a `spyke` or a `spyke_array`, and a `spyke_value`."""
 
     # One, or of several neurons or sub-timesteps each.
-    spikes: List[int]
+    spikes: list[int]
     start: float
     min_input: float
     max_input: float
@@ -48,9 +49,9 @@ class Encoding:
         self._clock = Clock(settings.gap)
         self._codec: Optional[Codec] = None
         # Before the start.
-        self._held: List[Sample] = []
+        self._held: list[Sample] = []
         # Those whose spikes are still to come.
-        self._waiting: Deque[Sample] = deque()
+        self._waiting: deque[Sample] = deque()
         self._range = (float("inf"), float("-inf"))
 
     @property
@@ -63,7 +64,7 @@ class Encoding:
         """From the first event on, all that decoding needs, as the text of a file's header."""
         return self._codec.header if self._codec is not None else None
 
-    def take(self, value: float, stamp: int) -> List[Event]:
+    def take(self, value: float, stamp: int) -> list[Event]:
         """Takes a sample. One that is not finite is counted and emits nothing."""
         wrong = self._clock.observe(stamp)
         if wrong is not None:
@@ -78,7 +79,7 @@ class Encoding:
         self._held.append((value, stamp))
         return self._start() if len(self._held) >= self._enough else []
 
-    def end(self) -> List[Event]:
+    def end(self) -> list[Event]:
         """What is left when no more samples come."""
         if self._codec is None:
             if self._held:
@@ -87,16 +88,16 @@ class Encoding:
             return []
         return self._events(self._codec, self._codec.finish())
 
-    def _start(self) -> List[Event]:
+    def _start(self) -> list[Event]:
         held, self._held = self._held, []
         self._codec = self._request.start([value for value, _ in held])
         return self._encode(self._codec, held)
 
-    def _encode(self, codec: Codec, samples: Sequence[Sample]) -> List[Event]:
+    def _encode(self, codec: Codec, samples: Sequence[Sample]) -> list[Event]:
         self._waiting.extend(samples)
         return self._events(codec, codec.encode([value for value, _ in samples]))
 
-    def _events(self, codec: Codec, rows: Sequence[Sequence[int]]) -> List[Event]:
+    def _events(self, codec: Codec, rows: Sequence[Sequence[int]]) -> list[Event]:
         return [self._event(codec, cells) for cells in rows]
 
     def _event(self, codec: Codec, cells: Sequence[int]) -> Event:

@@ -1,7 +1,8 @@
 """Numeric fields of messages: `data`, `angular_velocity.x`, `ranges[3]`, `poses[0].position.z`."""
 
 import re
-from typing import Any, List, Union
+from collections.abc import Iterator
+from typing import Any, Union
 
 _PART = re.compile(r"[./]?([A-Za-z]\w*)|\[(\d+)\]")
 
@@ -15,7 +16,7 @@ class Field:
 
     def __init__(self, expression: str) -> None:
         self.expression = expression
-        self._parts: List[Union[str, int]] = []
+        self._parts: list[Union[str, int]] = []
         place = 0
         while place < len(expression):
             part = _PART.match(expression, place)
@@ -56,12 +57,12 @@ class Field:
         return FieldError(f"field `{self.expression}`: {why}; numbers of {_kind(message)}: {fields}")
 
 
-def numeric(message: Any) -> List[str]:
+def numeric(message: Any) -> list[str]:
     """The expressions of all numbers of a message; of a list, the first's."""
     return list(_numeric(message, ""))
 
 
-def _numeric(value: Any, before: str):
+def _numeric(value: Any, before: str) -> Iterator[str]:
     if isinstance(value, (str, bytes)):
         if isinstance(value, bytes) and value:
             yield f"{before}[0]"
@@ -75,7 +76,7 @@ def _numeric(value: Any, before: str):
         yield before
 
 
-def _names(value: Any) -> List[str]:
+def _names(value: Any) -> list[str]:
     """A message's fields: in ROS 2 its slots have an underscore before, and one more that is no field."""
     slots = [slot.lstrip("_") for slot in getattr(value, "__slots__", ())]
     return [slot for slot in slots if slot != "check_fields"]

@@ -3,7 +3,8 @@
 import sys
 import threading
 import time
-from typing import Any, Callable, Dict, Iterable, List, Optional
+from collections.abc import Iterable
+from typing import Any, Callable, Optional
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -92,7 +93,7 @@ class AnyMessage:
     """Messages of any type, by the definition that their publisher sends; nothing of it needs to be installed."""
 
     def __init__(self) -> None:
-        self._types: Dict[str, Any] = {}
+        self._types: dict[str, Any] = {}
 
     def of(self, raw: rospy.AnyMsg) -> Any:
         """The message."""
@@ -109,7 +110,7 @@ class Sequence:
 
     def __init__(self, counters: Counters) -> None:
         self._counters = counters
-        self._last: Dict[str, int] = {}
+        self._last: dict[str, int] = {}
 
     def observe(self, publisher: str, number: int) -> None:
         """Takes the next number of a publisher."""
@@ -223,7 +224,7 @@ def spyke_of(event: Event) -> Any:
 
 def received_of(message: Any) -> Received:
     """What a message says."""
-    spikes: List[int] = message.spike if hasattr(message.spike, "__len__") else [message.spike]
+    spikes: list[int] = message.spike if hasattr(message.spike, "__len__") else [message.spike]
     return Received(
         spikes,
         message.start,

@@ -1,7 +1,8 @@
 """The nodes in ROS 2."""
 
 import sys
-from typing import Any, Callable, Dict, Iterable, Optional
+from collections.abc import Iterable
+from typing import Any, Callable, Optional
 
 import rclpy
 from builtin_interfaces.msg import Time
@@ -52,7 +53,7 @@ class Node(RclpyNode):
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", _RELIABLE)
         self._every_second = self.create_timer(1.0, self._diagnose)
 
-    def all_given(self) -> Dict[str, Any]:
+    def all_given(self) -> dict[str, Any]:
         """The parameters that were set."""
         all_of_them = self.get_parameters_by_prefix("")
         return {name: own.value for name, own in all_of_them.items() if name not in _OF_ROS and "." not in name}

@@ -1,7 +1,8 @@
 """Parameters of the nodes, by the toolbox's names where it has them."""
 
-from dataclasses import dataclass, field
-from typing import Any, Dict, Mapping, Optional
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Optional
 
 from . import schemes
 
@@ -18,14 +19,15 @@ class Settings:
     # A scheme's name in the catalogue; the decoding node may take it from the messages.
     scheme: Optional[str]
     sample: str
-    topic: Optional[str]
+    # Empty where it is not given.
+    topic: str
     field: str
     # How many samples stand in for what is not given.
     calibrate: int
     # A step above so many usual steps is a gap.
     gap: float
     # The scheme's own, by the names that the catalogue has.
-    options: Dict[str, Any] = field(default_factory=dict)
+    options: dict[str, Any]
 
 
 def read(private: Mapping[str, Any], shared: Mapping[str, Any]) -> Settings:
@@ -45,7 +47,7 @@ def read(private: Mapping[str, Any], shared: Mapping[str, Any]) -> Settings:
     return Settings(
         scheme=schemes.of_catalogue(str(scheme)) if scheme else None,
         sample=str(given.get("sample", "f32")),
-        topic=given.get("topic"),
+        topic=str(given.get("topic") or ""),
         field=str(given.get("field", "data")),
         calibrate=calibrate,
         gap=float(gap),
@@ -63,7 +65,7 @@ def _checked(name: str, value: Any) -> Any:
 
 def to_encode(settings: Settings) -> Settings:
     """Those of an encoding node, which says what to encode and how."""
-    if settings.topic is None:
+    if not settings.topic:
         raise ValueError("topic is missing: what to encode, such as /imu/data")
     if settings.scheme is None:
         raise ValueError("encoding_scheme is missing: how to encode, such as step_forward")

@@ -1,8 +1,9 @@
 """The toolbox's signal: three sines and noise."""
 
+from collections.abc import Iterator
 from math import pi, sin
 from random import Random
-from typing import Any, Iterator
+from typing import Any
 
 # As `generate_spikes.py` has them.
 HERTZ = (1.0, 3.0, 5.0)
