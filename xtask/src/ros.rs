@@ -68,7 +68,10 @@ impl Ros {
         let ros = Self { site: top.join("site"), top };
         let pip = ros.environment("pip")?;
         let install = "-m pip install --quiet --disable-pip-version-check --no-deps --upgrade";
-        run(command(pip).args(install.split(' ')).arg("--target").arg(&ros.site).arg("./python"))?;
+        let mut pip = command(pip);
+        pip.args(install.split(' ')).arg("--target").arg(&ros.site).arg("./python");
+        // Compiled as the tests are, with which it shares its dependencies.
+        run(pip.env("MATURIN_PEP517_ARGS", "--profile dev").env("CARGO_INCREMENTAL", "0"))?;
         let mut catkin = command("catkin_make_isolated");
         catkin.args(["--source".into(), paths::root().join("ros/ros1")]);
         for space in ["build", "devel", "install-space"] {
