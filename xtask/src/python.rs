@@ -5,7 +5,11 @@ use crate::{
     shell::{command, lint, output, run},
 };
 use anyhow::{Result, ensure};
-use std::{env, fs, path::PathBuf, process::Command};
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
 
 /// The package's version, as in `python/Cargo.toml`.
 const VERSION: &str = "0.1.0";
@@ -75,7 +79,7 @@ fn package(python: &PathBuf, profile: &str) -> Result<()> {
 }
 
 /// The source package, which has all that the package is built from.
-fn source_package(python: &PathBuf) -> Result<PathBuf> {
+fn source_package(python: &Path) -> Result<PathBuf> {
     let place = paths::target().join("python-source");
     let maturin = python.with_file_name("maturin");
     let manifest = "python/Cargo.toml";
