@@ -2,7 +2,7 @@
 
 use fixed::FixedI16;
 use fixed::FixedI32;
-use fixed::types::extra::{U8, U16};
+use fixed::types::extra::{LeEqU16, LeEqU32, U8, U16};
 use spikewire::rate::Shape;
 use spikewire::{Calibration, Sample};
 
@@ -44,7 +44,7 @@ pub trait Number: Copy {
     const TYPE: &'static str;
 }
 
-/// A sample type of the library.
+/// A sample type that can be calibrated.
 pub trait CSample: Sample + Number {
     /// How the names of its functions end.
     const SUFFIX: &'static str;
@@ -80,8 +80,35 @@ numbers! {
     u16, "uint16_t";
     f32, "float", "f32";
     i16, "int16_t", "i16";
-    FixedI16<U8>, "sw_q8_8", "q8_8";
-    FixedI32<U16>, "sw_q16_16", "q16_16";
+}
+
+/// Fixed point is an integer in C, whatever its fraction; two have names there.
+macro_rules! fixed {
+    ($($type:ident, $most:ident, $c:literal, $named:literal: $name:literal, $fraction:ident, $suffix:literal;)*) => {
+        $(
+            impl<Frac: $most + 'static> Number for $type<Frac> {
+                const TYPE: &'static str = if Self::FRAC_NBITS == $named { $name } else { $c };
+            }
+
+            impl<Frac: $most + 'static> Argument for $type<Frac> {
+                type C = Self;
+                const DECLARED: Declared = Declared::Number(Self::TYPE);
+
+                unsafe fn taken(c: Self) -> Result<Self, Status> {
+                    Ok(c)
+                }
+            }
+
+            impl CSample for $type<$fraction> {
+                const SUFFIX: &'static str = $suffix;
+            }
+        )*
+    };
+}
+
+fixed! {
+    FixedI16, LeEqU16, "int16_t", 8: "sw_q8_8", U8, "q8_8";
+    FixedI32, LeEqU32, "int32_t", 16: "sw_q16_16", U16, "q16_16";
 }
 
 impl<T: Number, const N: usize> Argument for [T; N] {

@@ -32,7 +32,9 @@ unsafe fn observe<S: Sample>(
     // SAFETY: C's promise; any bytes are samples.
     let (calibration, samples) =
         unsafe { (Kept::exclusive(calibration)?, pointer::slice(samples, count)?) };
-    samples.iter().for_each(|sample| calibration.observe(*sample));
+    for sample in samples {
+        calibration.observe(*sample);
+    }
     Ok(Status::OK)
 }
 

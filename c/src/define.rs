@@ -115,3 +115,17 @@ macro_rules! codecs {
         )*
     };
 }
+
+/// Checks sizes and alignments: of parameters, of what an encoder and a decoder keep, and of a code.
+#[macro_export]
+macro_rules! sized {
+    ($($scheme:ty: $codec:tt $encoder:tt $decoder:tt $code:tt;)*) => {
+        $(const _: () = assert!(
+            $crate::Layout::of::<$crate::codec::Codec<$scheme>>().is $codec
+                && $crate::Layout::of::<<$scheme as ::spikewire::Scheme>::EncoderState>().is $encoder
+                && $crate::Layout::of::<<$scheme as ::spikewire::Scheme>::DecoderState>().is $decoder
+                && $crate::Layout::of::<<$scheme as ::spikewire::Scheme>::Code>().is $code,
+            "the header has another size: write it again"
+        );)*
+    };
+}

@@ -4,7 +4,7 @@ use core::any::type_name;
 
 use spikewire::{Code, Spike};
 
-use crate::argument::{CSample, Declared};
+use crate::argument::{Declared, Number};
 use crate::codec::{Codec, Exported};
 
 /// A size and an alignment in bytes.
@@ -20,6 +20,11 @@ impl Layout {
     /// That of a type.
     pub const fn of<T>() -> Self {
         Self { size: size_of::<T>(), align: align_of::<T>() }
+    }
+
+    /// Whether it is this one.
+    pub const fn is(self, size: usize, align: usize) -> bool {
+        self.size == size && self.align == align
     }
 }
 
@@ -67,7 +72,7 @@ pub struct Description {
 
 impl Description {
     /// That of a scheme.
-    pub fn of<P: Exported<Sample: CSample>>(
+    pub fn of<P: Exported<Sample: Number>>(
         name: &'static str,
         words: &'static [&'static str],
         rust: &'static str,
@@ -77,7 +82,7 @@ impl Description {
             name,
             words,
             constructors,
-            sample: <P::Sample as crate::argument::Number>::TYPE,
+            sample: <P::Sample as Number>::TYPE,
             rust,
             codec: Layout::of::<Codec<P>>(),
             encoder: Layout::of::<P::EncoderState>(),

@@ -1,29 +1,11 @@
 //! The header's sizes, checked on each target as it is compiled. Written with the header.
 
-use crate::codec::Codec;
-use crate::describe::Layout;
+#[allow(unused_imports)]
 use fixed::types::{I8F8, I16F16};
-use spikewire::{Scheme, population, rate, temporal, timing};
+#[allow(unused_imports)]
+use spikewire::{population, rate, temporal, timing};
 
-const fn is<T>(size: usize, align: usize) -> bool {
-    let own = Layout::of::<T>();
-    own.size == size && own.align == align
-}
-
-/// Parameters, what an encoder and a decoder keep, and a code.
-macro_rules! sized {
-    ($($scheme:ty: $codec:tt $encoder:tt $decoder:tt $code:tt;)*) => {
-        $(const _: () = assert!(
-            is::<Codec<$scheme>> $codec
-                && is::<<$scheme as Scheme>::EncoderState> $encoder
-                && is::<<$scheme as Scheme>::DecoderState> $decoder
-                && is::<<$scheme as Scheme>::Code> $code,
-            "the header has another size: cargo xtask c-library --write"
-        );)*
-    };
-}
-
-sized! {
+crate::sized! {
     temporal::TemporalContrast<f32>: (12, 4) (8, 4) (4, 4) (1, 1);
     temporal::TemporalContrast<i16>: (8, 4) (8, 4) (2, 2) (1, 1);
     temporal::TemporalContrast<I8F8>: (8, 4) (8, 4) (2, 2) (1, 1);

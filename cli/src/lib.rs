@@ -57,6 +57,7 @@ enum Command {
     Tune(commands::tune::Tune),
     Frames(commands::frames::Frames),
     Advise(commands::advise::Advise),
+    Emit(commands::emit::Emit),
 }
 
 /// As for wrong options.
@@ -77,6 +78,7 @@ pub fn run() -> ExitCode {
         Command::Info(options) => info::run(&options),
         Command::Signal(options) => signal::run(&options),
         Command::Advise(options) => commands::advise::run(&options),
+        Command::Emit(options) => commands::emit::run(&options),
         Command::Tune(options) => commands::tune::run(&options),
         Command::Frames(options) => commands::frames::run(&options),
     };

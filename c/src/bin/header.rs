@@ -28,5 +28,5 @@ fn main() -> io::Result<()> {
     for (name, codecs) in &files {
         fs::write(each.join(name).with_extension("h"), header::file(name, codecs))?;
     }
-    fs::write(sizes, header::sizes(&codecs))
+    fs::write(sizes, header::sizes("crate", &codecs))
 }

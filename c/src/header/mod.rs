@@ -74,7 +74,10 @@ pub fn file(name: &str, codecs: &[Description]) -> String {
 
 /// A header that includes others of its directory.
 pub fn all<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    let includes: String = names.map(|name| format!("#include \"{name}.h\"\n")).collect();
+    let mut includes = String::new();
+    for name in names {
+        let _ = writeln!(includes, "#include \"{name}.h\"");
+    }
     format!(
         "/* Every codec. */\n#ifndef SPIKEWIRE_ALL_H\n#define SPIKEWIRE_ALL_H\n\n{includes}\n#endif\n"
     )
@@ -94,10 +97,13 @@ fn storage(name: &str, pointer: &str, size: &str, layout: Layout) -> String {
 fn codec(codec: &Description) -> String {
     let Description { name, sample, latency, neurons, slots, .. } = codec;
     let upper = name.to_uppercase();
-    let mut text = format!("/* {}\n", codec.words.join("\n *").trim());
+    let words = codec.words.join("\n");
+    let mut text = comment(&format!(
+        "{words}\n\nLatency: {latency} samples. Neurons of a channel: {neurons}. Sub-timesteps of a sample: {slots}."
+    ));
     let _ = write!(
         text,
-        " *\n * Latency: {latency} samples. Neurons of a channel: {neurons}. Sub-timesteps of a sample: {slots}. */\n\
+        "\
          #define SW_{upper}_LATENCY {latency}u\n\
          #define SW_{upper}_NEURONS {neurons}u\n\
          #define SW_{upper}_SLOTS {slots}u\n"
@@ -156,43 +162,64 @@ fn codec(codec: &Description) -> String {
         ),
     ];
     for function in functions {
-        let _ = writeln!(text, "sw_status sw_{name}_{function};");
+        text += &prototype(&format!("{name}_{function}"));
     }
     text + "\n"
 }
 
-fn constructor(name: &str, init: &Constructor) -> String {
-    let mut text = String::new();
-    if !init.words.is_empty() {
-        let _ = writeln!(text, "/* {} */", init.words.join("\n *").trim());
+/// A comment in lines that a terminal holds; none of no words.
+fn comment(text: &str) -> String {
+    const WIDTH: usize = 116;
+    let mut lines = Vec::new();
+    for paragraph in text.lines() {
+        let mut line = String::new();
+        for word in paragraph.split_whitespace() {
+            if !line.is_empty() && line.len() + 1 + word.len() > WIDTH {
+                lines.push(std::mem::take(&mut line));
+            }
+            line += if line.is_empty() { "" } else { " " };
+            line += word;
+        }
+        lines.push(line);
     }
-    let _ = write!(text, "sw_status sw_{name}_{}(sw_{name} *codec", init.name);
+    if lines.is_empty() {
+        return String::new();
+    }
+    format!("/* {} */\n", lines.join("\n * ")).replace("* \n", "*\n")
+}
+
+/// A prototype; the arguments each in its line where one is too short for all.
+fn prototype(function: &str) -> String {
+    let line = format!("sw_status sw_{function};\n");
+    if line.len() <= 120 {
+        return line;
+    }
+    line.replacen('(', "(\n    ", 1).replace(", ", ",\n    ")
+}
+
+fn constructor(name: &str, init: &Constructor) -> String {
+    let text = comment(&init.words.join("\n"));
+    let mut function = format!("{name}_{}(sw_{name} *codec", init.name);
     for (argument, declared) in init.arguments {
         let _ = match declared {
-            Declared::Number(kind) => write!(text, ", {kind} {argument}"),
-            Declared::List(kind, length) => write!(text, ", const {kind} {argument}[{length}]"),
+            Declared::Number(kind) => write!(function, ", {kind} {argument}"),
+            Declared::List(kind, length) => write!(function, ", const {kind} {argument}[{length}]"),
             Declared::Calibration(suffix) => {
-                write!(text, ", const sw_calibration_{suffix} *{argument}")
+                write!(function, ", const sw_calibration_{suffix} *{argument}")
             }
         };
     }
-    text + ", sw_error *error);\n"
+    text + &prototype(&(function + ", sw_error *error)"))
 }
 
-/// Rust that fails to compile for a target on which a size differs from the header's.
-pub fn sizes(codecs: &[Description]) -> String {
-    let mut text = String::from(
+/// Rust that fails to compile for a target on which a size differs from the header's. The library's name is `crate` in
+/// the library itself.
+pub fn sizes(library: &str, codecs: &[Description]) -> String {
+    let mut text = format!(
         "//! The header's sizes, checked on each target as it is compiled. Written with the header.\n\n\
-         use crate::codec::Codec;\n\
-         use crate::describe::Layout;\n\
-         use fixed::types::{I8F8, I16F16};\n\
-         use spikewire::{Scheme, population, rate, temporal, timing};\n\n\
-         const fn is<T>(size: usize, align: usize) -> bool {\n    \
-             let own = Layout::of::<T>();\n    own.size == size && own.align == align\n}\n\n\
-         /// Parameters, what an encoder and a decoder keep, and a code.\n\
-         macro_rules! sized {\n    ($($scheme:ty: $codec:tt $encoder:tt $decoder:tt $code:tt;)*) => {\n        $(const _: () = assert!(\n            \
-             is::<Codec<$scheme>> $codec\n                && is::<<$scheme as Scheme>::EncoderState> $encoder\n                && is::<<$scheme as Scheme>::DecoderState> $decoder\n                && is::<<$scheme as Scheme>::Code> $code,\n            \
-             \"the header has another size: cargo xtask c-library --write\"\n        );)*\n    };\n}\n\nsized! {\n",
+         #[allow(unused_imports)]\nuse fixed::types::{{I8F8, I16F16}};\n\
+         #[allow(unused_imports)]\nuse spikewire::{{population, rate, temporal, timing}};\n\n\
+         {library}::sized! {{\n"
     );
     for codec in codecs {
         let _ = write!(text, "    {}:", codec.rust);

@@ -5,6 +5,7 @@ pub(crate) mod bench;
 pub(crate) mod capture;
 pub(crate) mod convert;
 pub(crate) mod decode;
+pub(crate) mod emit;
 pub(crate) mod encode;
 pub(crate) mod frames;
 pub(crate) mod info;

@@ -92,8 +92,13 @@ fn files(directory: &Path) -> Result<Vec<String>> {
 
 /// The library for the host, with what writes its header.
 fn host_archive() -> Result<PathBuf> {
-    let mut cargo = shell::cargo("build --features header");
-    shell::run(cargo.current_dir(room()).env("CARGO_TARGET_DIR", work()))?;
+    for args in [
+        "rustc --lib --crate-type staticlib --features header",
+        "build --features header --bin header",
+    ] {
+        let mut cargo = shell::cargo(args);
+        shell::run(cargo.current_dir(room()).env("CARGO_TARGET_DIR", work()))?;
+    }
     Ok(work().join("debug").join(ARCHIVE))
 }
 
