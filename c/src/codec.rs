@@ -20,6 +20,24 @@ impl<P: Start<Code: 'static, Output: 'static + From<P::Code>>> Exported for P {}
 /// A spike's byte where a rate code waits for later samples.
 pub const WAITING: i8 = 2;
 
+/// What a rate code returns is a spike's byte, or [`WAITING`]: checked here, as the language does not promise it.
+const WAITS: () = {
+    const fn byte(output: Option<Spike>) -> i8 {
+        // SAFETY: it is a byte, and has no padding, or this does not compile.
+        unsafe { core::mem::transmute::<Option<Spike>, i8>(output) }
+    }
+    assert!(byte(None) == WAITING);
+    assert!(byte(Some(Spike::Up)) == 1 && byte(Some(Spike::Down)) == -1);
+    assert!(byte(Some(Spike::None)) == 0);
+};
+
+/// Outputs whose bytes are those of codes: codes themselves, and spikes for which a rate code waits.
+fn is_output<P: Exported>() -> bool {
+    let () = WAITS;
+    let output = TypeId::of::<P::Output>();
+    output == TypeId::of::<P::Code>() || output == TypeId::of::<Option<Spike>>()
+}
+
 /// A scheme's parameters in the caller's storage, or in flash.
 #[repr(C)]
 pub struct Codec<P> {
@@ -200,25 +218,22 @@ pub unsafe fn encode_slice<P: Exported>(
         let samples = unsafe { pointer::slice(samples, count) }?;
         pointer::apart(samples.as_ptr(), count, codes, count)?;
         pointer::apart(encoder, 1, codes, count)?;
+        if !is_output::<P>() {
+            return Err(Status::BAD_CHOICE); // no scheme has such outputs
+        }
         // SAFETY: C's promise; any bytes are a `MaybeUninit`.
         let codes = unsafe { pointer::slice_mut(codes.cast::<MaybeUninit<P::Code>>(), count) }?;
-        if TypeId::of::<P::Output>() == TypeId::of::<P::Code>() {
-            for code in codes.iter_mut() {
-                code.write(silence());
-            }
-            // SAFETY: all codes are written, and outputs are the same type.
-            let outputs =
-                unsafe { core::slice::from_raw_parts_mut(codes.as_mut_ptr().cast(), codes.len()) };
-            scheme.encode_slice(state, samples, outputs);
+        if is_spike::<P::Code>() {
+            // SAFETY: a spike is a byte, and so is what a rate code returns; 0 is one of either.
+            unsafe { codes.as_mut_ptr().write_bytes(0, codes.len()) };
         } else {
-            let mut outputs = [P::Output::from(silence()); 32];
-            for (samples, codes) in samples.chunks(outputs.len()).zip(codes.chunks_mut(32)) {
-                scheme.encode_slice(state, samples, &mut outputs);
-                for (code, output) in codes.iter_mut().zip(&outputs) {
-                    write_output::<P>(code, *output);
-                }
-            }
+            const { assert!(size_of::<P::Output>() == size_of::<P::Code>()) };
+            codes.iter_mut().for_each(|code| _ = code.write(silence()));
         }
+        // SAFETY: all are written, and outputs are codes, or spikes for which `WAITS` tells that they have their bytes.
+        let outputs =
+            unsafe { core::slice::from_raw_parts_mut(codes.as_mut_ptr().cast(), codes.len()) };
+        scheme.encode_slice(state, samples, outputs);
         Ok(Status::OK)
     };
     encode().into()
@@ -324,11 +339,16 @@ fn check_codes<C: 'static>(codes: &[MaybeUninit<C>]) -> Result<(), Status> {
     if !is_spike::<C>() {
         return Ok(());
     }
-    let is_other = codes.iter().fold(false, |is_other, code| {
-        // SAFETY: a spike is a byte, and C promises that it is written.
-        let sign = unsafe { code.as_ptr().cast::<i8>().read() };
-        is_other | (sign.wrapping_add(1).cast_unsigned() > 2)
-    });
+    // SAFETY: spikes are bytes, and C promises that they are written.
+    let bytes = unsafe { core::slice::from_raw_parts(codes.as_ptr().cast::<u8>(), codes.len()) };
+    // Four at a time: a byte is its lowest bit, or all ones if its highest is.
+    let other = |word: u32| {
+        let negative = (word >> 7) & 0x0101_0101;
+        word ^ ((negative << 8).wrapping_sub(negative) | (word & 0x0101_0101))
+    };
+    let (words, rest) = bytes.as_chunks();
+    let words = words.iter().fold(0, |found, word| found | other(u32::from_ne_bytes(*word)));
+    let is_other = rest.iter().fold(words, |found, &byte| found | other(byte.into()) & 0xff) != 0;
     if is_other { Err(Status::BAD_CODE) } else { Ok(()) }
 }
 

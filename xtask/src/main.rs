@@ -64,7 +64,7 @@ cargo xtask <command>
   ros-figure [--write]  draws what a ROS node records of the paper's signal; --write puts it into docs/ros.svg
   firmware --write      puts the spike counts of flight-log, and which bits agree, into docs/bits.md
   c-library [--target]  the library for C: archive, header, CMake package and pkg-config file for each core
-  c-library --write     writes its header and declarations from the catalogue
+  c-library --write     writes its header and declarations from the catalogue; --sizes, the table in c/README.md
   demo                  real flight data through encoder, emulated flight controller and decoder
   bench-target          what every codec costs on every emulated board, in instructions and bytes
   verify [STEP]...      every check, or the named ones; `cargo verify --help` lists them

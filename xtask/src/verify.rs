@@ -68,6 +68,7 @@ const LONG: &[Step] = &[
     ),
     step("py-speed", "the Python package from its source package, and its speed", python::speed),
     step("more-parts", "the examples for further cores", parts::more),
+    step("c-cost", "what the calls of C take beside the crate's", crate::c_library::cost),
     step("cores", "instruction counts on all five cores", long::cores),
 ];
 

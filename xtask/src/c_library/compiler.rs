@@ -30,7 +30,7 @@ pub fn for_board(name: &str, board: &Board, archive: &Path, defined: &[&str]) ->
     let place = work().join(board.machine);
     fs::create_dir_all(&place)?;
     fs::copy(board.map(), place.join("memory.x")).with_context(|| board.machine.to_owned())?;
-    let program = place.join([&[name], defined].concat().join("-"));
+    let program = place.join([&[name], defined].concat().join("-").replace('=', "-"));
     let mut gcc = shell::command("arm-none-eabi-gcc");
     gcc.arg(format!("-mcpu={}", board.cpu)).args(["-mthumb", "-std=c99"]).args(STRICT);
     if board.target.ends_with("hf") {
@@ -57,10 +57,31 @@ fn sources(gcc: &mut Command, name: &str, board: &str, defined: &[&str]) {
     gcc.arg("-I").arg(room().join("include")).arg("-I").arg(&tests);
     gcc.args(defined.iter().map(|name| format!("-D{name}")));
     gcc.arg(tests.join(name).with_extension("c")).arg(tests.join(board));
-    if name == "flight" {
+    if ["flight", "count"].contains(&name) {
         gcc.arg(format!("-Wa,-I{}", work().display()));
         gcc.args(["-x", "assembler-with-cpp"]).arg(tests.join("recording.S"));
     }
+}
+
+/// The guides, each against declarations of what its firmware has; the firmwares themselves are not here.
+pub fn guides() -> Result<()> {
+    for (guide, compiler, standard) in [
+        ("crazyflie.c", "arm-none-eabi-gcc", "c11"),
+        ("betaflight.c", "arm-none-eabi-gcc", "c11"),
+        ("px4.cpp", "g++", "c++14"),
+    ] {
+        let guides = room().join("guides");
+        let mut gcc = shell::command(compiler);
+        if compiler != "g++" {
+            gcc.args(["-mcpu=cortex-m4", "-mthumb"]);
+        }
+        gcc.arg(format!("-std={standard}")).args(["-Wall", "-Wextra", "-Wpedantic", "-Werror"]);
+        gcc.arg("-I").arg(room().join("include"));
+        gcc.arg("-I").arg(guides.join("stubs").join(Path::new(guide).with_extension("")));
+        gcc.arg("-c").arg(guides.join(guide)).arg("-o").arg(work().join(guide).with_extension("o"));
+        shell::run(&mut gcc)?;
+    }
+    Ok(())
 }
 
 /// Puts the recorded flight where the assembler finds it.

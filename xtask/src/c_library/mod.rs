@@ -1,8 +1,10 @@
 //! `cargo xtask c-library` and `cargo verify c`: the library for C, its header, and its tests.
 
 mod compiler;
+mod cost;
 mod declared;
 mod package;
+mod sizes;
 mod tests;
 
 use crate::{
@@ -17,6 +19,7 @@ use std::{
     process::Command,
 };
 
+pub use cost::cost;
 pub use tests::{cores, verify};
 
 const ARCHIVE: &str = "libspikewire_c.a";
@@ -26,6 +29,7 @@ pub fn library(args: &[String]) -> Result<()> {
     let args: Vec<&str> = args.iter().map(String::as_str).collect();
     let boards: Vec<&Board> = match args[..] {
         ["--write"] => return write(),
+        ["--sizes"] => return sizes::write(),
         [] => BOARDS.iter().collect(),
         ["--target", name] => BOARDS
             .iter()

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, ensure};
 use std::process::Command;
 
 /// The sample types of `flight.c`.
-const SAMPLES: [&str; 4] = ["FLY_f32", "FLY_i16", "FLY_q8_8", "FLY_q16_16"];
+pub const SAMPLES: [&str; 4] = ["FLY_f32", "FLY_i16", "FLY_q8_8", "FLY_q16_16"];
 
 /// What is written is what the catalogue says; the host under sanitizers, and one core, do what the crate does.
 pub fn verify() -> Result<()> {
@@ -20,6 +20,7 @@ pub fn verify() -> Result<()> {
         let misuse = compiler::on_host("misuse", language, &archive, &[])?;
         print!("{}", shell::output(&mut Command::new(misuse))?);
     }
+    compiler::guides()?;
     let rust = in_rust()?;
     let flight = compiler::on_host("flight", "c99", &archive, &SAMPLES)?;
     compare("host", &shell::output(&mut Command::new(flight))?, &rust)?;

@@ -1,0 +1,80 @@
+/* An app-layer file for the Crazyflie: spikes of the three turn rates to the ground, over the app channel.
+ *
+ * In the app's directory: this file as src/spikes.c, `obj-y += spikes.o` in src/Kbuild, and in its Makefile
+ *
+ *     EXTRA_CFLAGS += -I$(SPIKEWIRE)/include
+ *     EXTRA_LIBS   += $(SPIKEWIRE)/lib/libspikewire.a
+ *
+ * where SPIKEWIRE is target/c-library/cortex-m4. The ground feeds what arrives to sw_reader_take, or to
+ * `spikewire listen --from link`.
+ */
+#include "FreeRTOS.h"
+#include "app.h"
+#include "app_channel.h"
+#include "debug.h"
+#include "log.h"
+#include "task.h"
+
+#include "spikewire/step_forward.h"
+
+#define CHANNELS 3u
+#define PERIOD_MS 2u
+#define THRESHOLD 5.0f /* degrees a second */
+
+static sw_step_forward_f32 codec;
+static sw_step_forward_f32_encoder encoders[CHANNELS];
+static uintptr_t storage[SW_QUEUE_WORDS(128)];
+static sw_queue queue;
+static sw_writer writer;
+
+static sw_status start(uint16_t session)
+{
+    sw_error error;
+    sw_status status = sw_step_forward_f32_init(&codec, THRESHOLD, &error);
+    for (uint32_t i = 0; (i < CHANNELS) && (status == SW_OK); ++i) {
+        status = sw_step_forward_f32_encoder_start(&encoders[i], &codec);
+    }
+    if (status == SW_OK) {
+        status = sw_queue_init(&queue, storage, sizeof storage);
+    }
+    if (status == SW_OK) {
+        status = sw_writer_init(&writer, CHANNELS, PERIOD_MS * 1000u, session);
+    }
+    return status;
+}
+
+void appMain(void)
+{
+    static uint8_t frame[SW_MAX_FRAME];
+    int8_t codes[CHANNELS];
+    TickType_t woken = xTaskGetTickCount();
+    const logVarId_t gyro[CHANNELS] = {
+        logGetVarId("gyro", "x"), logGetVarId("gyro", "y"), logGetVarId("gyro", "z")};
+    sw_status status = start((uint16_t)woken);
+
+    if (status != SW_OK) {
+        DEBUG_PRINT("spikes: %s\n", sw_status_text(status));
+        return;
+    }
+    for (uint32_t sample = 0;; ++sample) {
+        const sw_stamp stamp = {(uint32_t)(xTaskGetTickCount() * 1000u), 0u, 0u};
+        float rates[CHANNELS];
+        size_t length = 0;
+
+        for (uint32_t i = 0; i < CHANNELS; ++i) {
+            rates[i] = logGetFloat(gyro[i]);
+        }
+        (void)sw_step_forward_f32_bank(encoders, rates, codes, CHANNELS, &stamp, &queue);
+        if ((sample % 500u) == 0u) {
+            (void)sw_step_forward_f32_keyframes(encoders, CHANNELS, &stamp, &queue);
+        }
+        /* A packet of the radio is shorter than a frame, which a reader takes cut anywhere. */
+        if (((sample % 10u) == 0u) && (sw_writer_next_frame(&writer, &queue, frame, sizeof frame, &length) == SW_OK)) {
+            for (size_t at = 0; at < length; at += APPCHANNEL_MTU) {
+                size_t rest = length - at;
+                appchannelSendDataPacketBlock(&frame[at], (rest < APPCHANNEL_MTU) ? rest : APPCHANNEL_MTU);
+            }
+        }
+        vTaskDelayUntil(&woken, M2T(PERIOD_MS));
+    }
+}

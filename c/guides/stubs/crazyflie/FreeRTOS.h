@@ -1,0 +1,5 @@
+#pragma once
+#include <stddef.h>
+#include <stdint.h>
+typedef uint32_t TickType_t;
+#define M2T(ms) ((TickType_t)(ms))
