@@ -45,12 +45,12 @@ static void print_count(const char *name, uint32_t number)
 #define FLY_(CODEC, S, LABEL, INIT, NAME, ...)                                                                        \
     static void count_##NAME(void)                                                                                    \
     {                                                                                                                 \
-        static sw_##CODEC codec;                                                                                      \
-        static sw_##CODEC##_encoder encoder;                                                                          \
-        static sw_##CODEC##_decoder decoder;                                                                          \
-        static value_type_##S slice[SLICE], values[SLICE];                                                            \
-        static sw_##CODEC##_code codes[SLICE], kept[SLICE];                                                           \
-        static sw_status statuses[SLICE];                                                                             \
+        sw_##CODEC codec = {0};                                                                                       \
+        sw_##CODEC##_encoder encoder = {0};                                                                           \
+        sw_##CODEC##_decoder decoder = {0};                                                                           \
+        value_type_##S slice[SLICE] = {0}, values[SLICE] = {0};                                                       \
+        sw_##CODEC##_code codes[SLICE] = {0}, kept[SLICE] = {0};                                                      \
+        sw_status statuses[SLICE] = {0};                                                                              \
         const channel_##S *channel = &channels_##S[0];                                                                \
         uint32_t encode = 0, encode_slice = 0, decode = 0, decode_slice = 0;                                          \
         check(sw_##CODEC##_##INIT(&codec, __VA_ARGS__, NULL), "init");                                                \

@@ -79,10 +79,10 @@ static void print_line(const char *label, const char *sample, const line *own)
 #define FLY_(CODEC, LATENCY, S, LABEL, INIT, NAME, ...)                                                                        \
     static line one_by_one_##NAME(void)                                                                               \
     {                                                                                                                 \
-        static sw_##CODEC codec;                                                                                      \
-        static sw_##CODEC##_encoder encoder;                                                                          \
-        static sw_##CODEC##_decoder decoder;                                                                          \
-        static sw_firing firings[MOST_FIRINGS];                                                                       \
+        sw_##CODEC codec = {0};                                                                                       \
+        sw_##CODEC##_encoder encoder = {0};                                                                           \
+        sw_##CODEC##_decoder decoder = {0};                                                                           \
+        sw_firing firings[MOST_FIRINGS] = {0};                                                                        \
         line own = {0u, 0xcbf29ce484222325u};                                                                         \
         for (uint32_t index = 0; index < CHANNELS; ++index) {                                                         \
             const channel_##S *channel = &channels_##S[index];                                                        \
@@ -109,12 +109,12 @@ static void print_line(const char *label, const char *sample, const line *own)
     }                                                                                                                 \
     static line in_slices_##NAME(void)                                                                                \
     {                                                                                                                 \
-        static sw_##CODEC codec;                                                                                      \
-        static sw_##CODEC##_encoder encoder;                                                                          \
-        static sw_##CODEC##_decoder decoder;                                                                          \
-        static sw_firing firings[MOST_FIRINGS];                                                                       \
-        static value_type_##S slice[SLICE], values[SLICE];                                                            \
-        static sw_##CODEC##_code codes[SLICE];                                                                        \
+        sw_##CODEC codec = {0};                                                                                       \
+        sw_##CODEC##_encoder encoder = {0};                                                                           \
+        sw_##CODEC##_decoder decoder = {0};                                                                           \
+        sw_firing firings[MOST_FIRINGS] = {0};                                                                        \
+        value_type_##S slice[SLICE] = {0}, values[SLICE] = {0};                                                       \
+        sw_##CODEC##_code codes[SLICE] = {0};                                                                         \
         line own = {0u, 0xcbf29ce484222325u};                                                                         \
         for (uint32_t index = 0; index < CHANNELS; ++index) {                                                         \
             const channel_##S *channel = &channels_##S[index];                                                        \

@@ -1,5 +1,5 @@
 /* The codecs that fly, as the catalogue flies them. Written by `cargo xtask c-library --write`. */
-#if defined(FLY_f32)
+#if defined(FLY_f32) && (!defined(HALF) || (HALF == 0))
 FLY(temporal_contrast_f32, SW_TEMPORAL_CONTRAST_F32_LATENCY, f32, "tbr", init_calibrated, &channel->calibration, 0.5f)
 FLY(adaptive_contrast_f32, SW_ADAPTIVE_CONTRAST_F32_LATENCY, f32, "atbr", init, fraction_f32(channel, 0.001), 5)
 FLY(moving_window_6_f32, SW_MOVING_WINDOW_6_F32_LATENCY, f32, "mw", init, fraction_f32(channel, 0.02))
@@ -13,6 +13,8 @@ FLY(hough_15_f32, SW_HOUGH_15_F32_LATENCY, f32, "hsa", init_peak, 0, fraction_f3
 FLY(threshold_hough_15_f32, SW_THRESHOLD_HOUGH_15_F32_LATENCY, f32, "t-hsa", init_peak, 0, fraction_f32(channel, 0.1), fraction_f32(channel, 0.085), channel->min)
 FLY(integrate_and_fire_8_f32, SW_INTEGRATE_AND_FIRE_8_F32_LATENCY, f32, "if", init, fraction_f32(channel, 0.2), 3, 0)
 FLY(leaky_integrate_and_fire_8_f32, SW_LEAKY_INTEGRATE_AND_FIRE_8_F32_LATENCY, f32, "lif", init, fraction_f32(channel, 0.2), 3, 0)
+#endif
+#if defined(FLY_f32) && (!defined(HALF) || (HALF == 1))
 FLY(sigma_delta_f32, SW_SIGMA_DELTA_F32_LATENCY, f32, "sigma-delta", init, channel->min, channel->max, 4)
 FLY(sigma_delta_window_2_f32, SW_SIGMA_DELTA_WINDOW_2_F32_LATENCY, f32, "sigma-delta-window", init, channel->min, channel->max, 6)
 FLY(weighted_burst_f32, SW_WEIGHTED_BURST_F32_LATENCY, f32, "burst-weighted", init, channel->min, channel->max, fraction_f32(channel, 0.14), 3, 4)
@@ -29,7 +31,7 @@ FLY(latency_phase_4_32_4_f32, SW_LATENCY_PHASE_4_32_4_F32_LATENCY, f32, "latency
 FLY(weighted_phase_8_f32, SW_WEIGHTED_PHASE_8_F32_LATENCY, f32, "weighted-phase", init, channel->min, channel->max)
 FLY(burst_19_f32, SW_BURST_19_F32_LATENCY, f32, "burst", init, channel->min, channel->max, 5, 2, 10)
 #endif
-#if defined(FLY_i16)
+#if defined(FLY_i16) && (!defined(HALF) || (HALF == 0))
 FLY(temporal_contrast_i16, SW_TEMPORAL_CONTRAST_I16_LATENCY, i16, "tbr", init_calibrated, &channel->calibration, 0.5f)
 FLY(adaptive_contrast_i16, SW_ADAPTIVE_CONTRAST_I16_LATENCY, i16, "atbr", init, fraction_i16(channel, 0.001), 5)
 FLY(moving_window_6_i16, SW_MOVING_WINDOW_6_I16_LATENCY, i16, "mw", init, fraction_i16(channel, 0.02))
@@ -43,6 +45,8 @@ FLY(hough_15_i16, SW_HOUGH_15_I16_LATENCY, i16, "hsa", init_peak, 0, fraction_i1
 FLY(threshold_hough_15_i16, SW_THRESHOLD_HOUGH_15_I16_LATENCY, i16, "t-hsa", init_peak, 0, fraction_i16(channel, 0.1), fraction_i16(channel, 0.085), channel->min)
 FLY(integrate_and_fire_8_i16, SW_INTEGRATE_AND_FIRE_8_I16_LATENCY, i16, "if", init, fraction_i16(channel, 0.2), 3, 0)
 FLY(leaky_integrate_and_fire_8_i16, SW_LEAKY_INTEGRATE_AND_FIRE_8_I16_LATENCY, i16, "lif", init, fraction_i16(channel, 0.2), 3, 0)
+#endif
+#if defined(FLY_i16) && (!defined(HALF) || (HALF == 1))
 FLY(sigma_delta_i16, SW_SIGMA_DELTA_I16_LATENCY, i16, "sigma-delta", init, channel->min, channel->max, 4)
 FLY(sigma_delta_window_2_i16, SW_SIGMA_DELTA_WINDOW_2_I16_LATENCY, i16, "sigma-delta-window", init, channel->min, channel->max, 6)
 FLY(weighted_burst_i16, SW_WEIGHTED_BURST_I16_LATENCY, i16, "burst-weighted", init, channel->min, channel->max, fraction_i16(channel, 0.14), 3, 4)
@@ -59,7 +63,7 @@ FLY(latency_phase_4_32_4_i16, SW_LATENCY_PHASE_4_32_4_I16_LATENCY, i16, "latency
 FLY(weighted_phase_8_i16, SW_WEIGHTED_PHASE_8_I16_LATENCY, i16, "weighted-phase", init, channel->min, channel->max)
 FLY(burst_19_i16, SW_BURST_19_I16_LATENCY, i16, "burst", init, channel->min, channel->max, 5, 2, 10)
 #endif
-#if defined(FLY_q8_8)
+#if defined(FLY_q8_8) && (!defined(HALF) || (HALF == 0))
 FLY(temporal_contrast_q8_8, SW_TEMPORAL_CONTRAST_Q8_8_LATENCY, q8_8, "tbr", init_calibrated, &channel->calibration, 0.5f)
 FLY(adaptive_contrast_q8_8, SW_ADAPTIVE_CONTRAST_Q8_8_LATENCY, q8_8, "atbr", init, fraction_q8_8(channel, 0.001), 5)
 FLY(moving_window_6_q8_8, SW_MOVING_WINDOW_6_Q8_8_LATENCY, q8_8, "mw", init, fraction_q8_8(channel, 0.02))
@@ -73,6 +77,8 @@ FLY(hough_15_q8_8, SW_HOUGH_15_Q8_8_LATENCY, q8_8, "hsa", init_peak, 0, fraction
 FLY(threshold_hough_15_q8_8, SW_THRESHOLD_HOUGH_15_Q8_8_LATENCY, q8_8, "t-hsa", init_peak, 0, fraction_q8_8(channel, 0.1), fraction_q8_8(channel, 0.085), channel->min)
 FLY(integrate_and_fire_8_q8_8, SW_INTEGRATE_AND_FIRE_8_Q8_8_LATENCY, q8_8, "if", init, fraction_q8_8(channel, 0.2), 3, 0)
 FLY(leaky_integrate_and_fire_8_q8_8, SW_LEAKY_INTEGRATE_AND_FIRE_8_Q8_8_LATENCY, q8_8, "lif", init, fraction_q8_8(channel, 0.2), 3, 0)
+#endif
+#if defined(FLY_q8_8) && (!defined(HALF) || (HALF == 1))
 FLY(sigma_delta_q8_8, SW_SIGMA_DELTA_Q8_8_LATENCY, q8_8, "sigma-delta", init, channel->min, channel->max, 4)
 FLY(sigma_delta_window_2_q8_8, SW_SIGMA_DELTA_WINDOW_2_Q8_8_LATENCY, q8_8, "sigma-delta-window", init, channel->min, channel->max, 6)
 FLY(weighted_burst_q8_8, SW_WEIGHTED_BURST_Q8_8_LATENCY, q8_8, "burst-weighted", init, channel->min, channel->max, fraction_q8_8(channel, 0.14), 3, 4)
@@ -89,7 +95,7 @@ FLY(latency_phase_4_32_4_q8_8, SW_LATENCY_PHASE_4_32_4_Q8_8_LATENCY, q8_8, "late
 FLY(weighted_phase_8_q8_8, SW_WEIGHTED_PHASE_8_Q8_8_LATENCY, q8_8, "weighted-phase", init, channel->min, channel->max)
 FLY(burst_19_q8_8, SW_BURST_19_Q8_8_LATENCY, q8_8, "burst", init, channel->min, channel->max, 5, 2, 10)
 #endif
-#if defined(FLY_q16_16)
+#if defined(FLY_q16_16) && (!defined(HALF) || (HALF == 0))
 FLY(temporal_contrast_q16_16, SW_TEMPORAL_CONTRAST_Q16_16_LATENCY, q16_16, "tbr", init_calibrated, &channel->calibration, 0.5f)
 FLY(adaptive_contrast_q16_16, SW_ADAPTIVE_CONTRAST_Q16_16_LATENCY, q16_16, "atbr", init, fraction_q16_16(channel, 0.001), 5)
 FLY(moving_window_6_q16_16, SW_MOVING_WINDOW_6_Q16_16_LATENCY, q16_16, "mw", init, fraction_q16_16(channel, 0.02))
@@ -103,6 +109,8 @@ FLY(hough_15_q16_16, SW_HOUGH_15_Q16_16_LATENCY, q16_16, "hsa", init_peak, 0, fr
 FLY(threshold_hough_15_q16_16, SW_THRESHOLD_HOUGH_15_Q16_16_LATENCY, q16_16, "t-hsa", init_peak, 0, fraction_q16_16(channel, 0.1), fraction_q16_16(channel, 0.085), channel->min)
 FLY(integrate_and_fire_8_q16_16, SW_INTEGRATE_AND_FIRE_8_Q16_16_LATENCY, q16_16, "if", init, fraction_q16_16(channel, 0.2), 3, 0)
 FLY(leaky_integrate_and_fire_8_q16_16, SW_LEAKY_INTEGRATE_AND_FIRE_8_Q16_16_LATENCY, q16_16, "lif", init, fraction_q16_16(channel, 0.2), 3, 0)
+#endif
+#if defined(FLY_q16_16) && (!defined(HALF) || (HALF == 1))
 FLY(sigma_delta_q16_16, SW_SIGMA_DELTA_Q16_16_LATENCY, q16_16, "sigma-delta", init, channel->min, channel->max, 4)
 FLY(sigma_delta_window_2_q16_16, SW_SIGMA_DELTA_WINDOW_2_Q16_16_LATENCY, q16_16, "sigma-delta-window", init, channel->min, channel->max, 6)
 FLY(weighted_burst_q16_16, SW_WEIGHTED_BURST_Q16_16_LATENCY, q16_16, "burst-weighted", init, channel->min, channel->max, fraction_q16_16(channel, 0.14), 3, 4)

@@ -29,7 +29,7 @@ pub fn on_host(name: &str, language: &str, archive: &Path, defined: &[&str]) -> 
 pub fn for_board(name: &str, board: &Board, archive: &Path, defined: &[&str]) -> Result<PathBuf> {
     let place = work().join(board.machine);
     fs::create_dir_all(&place)?;
-    fs::copy(board.map(), place.join("memory.x")).with_context(|| board.machine.to_owned())?;
+    fs::copy(board.map(), place.join("board.x")).with_context(|| board.machine.to_owned())?;
     let program = place.join([&[name], defined].concat().join("-").replace('=', "-"));
     let mut gcc = shell::command("arm-none-eabi-gcc");
     gcc.arg(format!("-mcpu={}", board.cpu)).args(["-mthumb", "-std=c99"]).args(STRICT);

@@ -34,8 +34,11 @@ fn compare(board: &Board) -> Result<()> {
     let archive = archive(board)?;
     let ticks = format!("TICKS_PER_GIGAINSTRUCTION={}u", board.ticks_per_gigainstruction());
     let mut c = Counts::new();
-    for sample in super::tests::SAMPLES {
-        let program = compiler::for_board("count", board, &archive, &[sample, &ticks])?;
+    for (sample, half) in super::tests::SAMPLES
+        .into_iter()
+        .flat_map(|sample| [(sample, "HALF=0"), (sample, "HALF=1")])
+    {
+        let program = compiler::for_board("count", board, &archive, &[sample, half, &ticks])?;
         c.extend(counts(&qemu::run_counting(board, &program)?)?);
     }
     let rust = counts(&qemu::run_counting(board, &image::build("c-boundary", board)?)?)?;
