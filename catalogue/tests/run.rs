@@ -225,6 +225,32 @@ fn what_is_wanted_of_a_signal_is_said() {
 }
 
 #[test]
+fn centres_at_the_quantiles_of_the_signal() {
+    let sample: SampleType = "f32".parse().unwrap();
+    for name in ["grf-nonlinear", "grf-nonlinear-slots"] {
+        let scheme = ALL.iter().find(|scheme| scheme.info().name == name).unwrap();
+        let mut options = paper();
+        options.set("centres", "quantiles");
+        options.set("neurons", "9");
+        assert!(scheme.needs_signal(&options).is_some());
+        let settings = resolve(*scheme, &options, sample).unwrap();
+        let mut sorted = signal();
+        sorted.sort_by(f64::total_cmp);
+        let centres = settings.numbers("centres").unwrap();
+        assert_eq!(centres.len(), 9);
+        for (i, centre) in centres.iter().enumerate() {
+            let quantile = sorted[(2 * i + 1) * sorted.len() / 18];
+            assert!((centre - quantile).abs() < 0.02, "{i}: {centre} for {quantile}");
+        }
+        let (_, values) = there_and_back(*scheme, sample, &settings, 100);
+        assert_eq!(values.len(), signal().len());
+        options.set("companding", "20");
+        let error = resolve(*scheme, &options, sample).unwrap_err().to_string();
+        assert_eq!(error, "--centres quantiles says it all; --companding contradicts it");
+    }
+}
+
+#[test]
 fn the_spike_of_the_first_sample_changes_nothing() {
     for scheme in ALL.iter().filter(|scheme| scheme.info().has_first_value) {
         for sample in SAMPLES {

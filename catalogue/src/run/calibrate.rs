@@ -1,6 +1,7 @@
 //! What a scheme takes from a whole recording, in any sample type.
 
 use super::SampleType;
+use super::quantiles::Quantiles;
 use crate::for_sample_type;
 use spikewire::temporal::TemporalContrast;
 use spikewire::{Calibration, ConfigError, Sample};
@@ -8,6 +9,7 @@ use spikewire::{Calibration, ConfigError, Sample};
 /// A calibration in the recording's unit.
 pub struct Calibrated {
     calibration: Box<dyn Calibrate + Send + Sync>,
+    quantiles: Quantiles,
     /// What a 1 is in the unit of the calibration.
     one: f64,
 }
@@ -17,19 +19,26 @@ impl Calibrated {
     pub fn new(sample: SampleType) -> Self {
         let calibration: Box<dyn Calibrate + Send + Sync> =
             for_sample_type!(sample, S => Box::new(Calibration::<S>::new()));
-        Self { calibration, one: sample.one() }
+        Self { calibration, quantiles: Quantiles::new(), one: sample.one() }
     }
 
     /// Takes the next samples, all finite.
     pub fn observe(&mut self, samples: &[f64]) {
         for sample in samples {
             self.calibration.observe(sample * self.one);
+            self.quantiles.observe(*sample);
         }
     }
 
     /// The smallest and the largest sample, if there was one.
     pub fn range(&self) -> Option<(f64, f64)> {
         self.calibration.range().map(|(min, max)| (min / self.one, max / self.one))
+    }
+
+    /// So many quantiles `(2i + 1) / 2M`, dense where the samples are, if there was one.
+    pub fn quantiles(&self, count: usize) -> Option<Vec<f64>> {
+        let part = |i: usize| (2 * i + 1) as f64 / (2 * count) as f64;
+        (0..count).map(|i| self.quantiles.quantile(part(i))).collect()
     }
 
     /// The threshold of temporal contrast, from the differences or from their magnitudes.

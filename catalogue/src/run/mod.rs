@@ -10,6 +10,7 @@ mod codec;
 mod exact;
 mod filter;
 mod given;
+mod quantiles;
 mod rust;
 mod sample_type;
 mod settings;

@@ -16,7 +16,7 @@ use {
         Asked, Build, BuildPopulation, Constant, Counted, Given, Options, Rust, Settings, Shape,
         Visit, missing, state,
     },
-    anyhow::{Result, bail},
+    anyhow::{Context, Result, bail},
     spikewire::dynamic,
 };
 
@@ -29,9 +29,10 @@ pub(super) const CENTRES: Parameter = Parameter::new(
     "centres",
     Kind::Text,
     Unit::Signal,
-    "`companded`, dense in the middle, or a rising list such as `-1,-0.2,0,0.2,1`",
+    "`companded`, dense in the middle; `quantiles`, dense where the signal is; or a rising list such as `-1,-0.2,0,0.2,1`",
 )
-.with_default("companded");
+.with_default("companded")
+.searched(Search::Words(&["companded", "quantiles"]));
 
 /// How wide the fields are.
 pub(super) const WIDTHS: Parameter = Parameter::new(
@@ -119,8 +120,13 @@ impl Entry for Scheme {
 /// Settings of fields: a list of centres and widths says it all.
 #[cfg(feature = "run")]
 pub(super) fn resolve(asked: &Asked, info: &Info) -> Result<Settings> {
-    let (centres, widths) =
-        (asked.list("centres", &["companded"])?, asked.list("widths", &["spacing"])?);
+    let has_quantiles = asked.text("centres").as_deref() == Some("quantiles");
+    let centres = if has_quantiles {
+        Some(quantiles(asked)?)
+    } else {
+        asked.list("centres", &["companded", "quantiles"])?
+    };
+    let widths = asked.list("widths", &["spacing"])?;
     let mut settings = Settings::default();
     for parameter in info.parameters.iter().filter(|parameter| parameter.is_recorded) {
         let replaced = match parameter.name {
@@ -129,6 +135,11 @@ pub(super) fn resolve(asked: &Asked, info: &Info) -> Result<Settings> {
             _ => None,
         };
         match (parameter.name, replaced, &centres, &widths) {
+            // How many quantiles.
+            ("neurons", ..) if has_quantiles => {}
+            (name, Some("centres"), ..) if has_quantiles && asked.user(name).is_some() => {
+                bail!("--centres quantiles says it all; --{name} contradicts it")
+            }
             (name, Some(by), ..) if asked.user(name).is_some() => {
                 bail!("--{by} is a list, which says it all; --{name} contradicts it")
             }
@@ -142,13 +153,24 @@ pub(super) fn resolve(asked: &Asked, info: &Info) -> Result<Settings> {
     Ok(settings)
 }
 
-/// The signal's range, unless there is a list of centres.
+/// Centres at the signal's quantiles, as a file holds them.
+#[cfg(feature = "run")]
+fn quantiles(asked: &Asked) -> Result<String> {
+    let mut settings = Settings::default();
+    asked.settle("neurons", &mut settings)?;
+    let neurons = Given::new(&settings, 1.0).neurons()?;
+    let calibrated = asked.known.calibrated.context("--centres quantiles: no signal is known")?;
+    let centres = calibrated.quantiles(neurons).context("there is no sample")?;
+    Ok(centres.iter().map(f64::to_string).collect::<Vec<_>>().join(","))
+}
+
+/// The signal's range or its quantiles, unless there is a list of centres.
 #[cfg(feature = "run")]
 pub(super) fn needs_signal(options: &Options, info: &Info) -> Option<String> {
-    if options.get("centres").is_some_and(|centres| centres != "companded") {
-        None
-    } else {
-        missing(info, options)
+    match options.get("centres") {
+        Some("quantiles") => Some("--centres as a list".to_owned()),
+        None | Some("companded") => missing(info, options),
+        Some(_) => None,
     }
 }
 

@@ -1,0 +1,94 @@
+//! Quantiles of a recording whose range nobody knows before.
+
+/// How many samples lie in each of equal cells, whose range doubles where a sample leaves it.
+///
+/// Between a quarter and all of the cells lie within the samples' range: a quantile is within 1/2048 of it.
+pub(super) struct Quantiles {
+    /// The lower end of the first cell.
+    low: f64,
+    /// Of a cell; 0 before the first sample.
+    width: f64,
+    counts: Vec<u64>,
+}
+
+const CELLS: usize = 8192;
+
+impl Quantiles {
+    pub(super) fn new() -> Self {
+        Self { low: 0.0, width: 0.0, counts: vec![0; CELLS] }
+    }
+
+    /// Takes the next sample, which is finite.
+    pub(super) fn observe(&mut self, sample: f64) {
+        if self.width == 0.0 {
+            // So narrow that a second value widens it.
+            self.width = (sample.abs() * 1e-12).max(1e-300);
+            self.low = sample - self.width * 0.5 * CELLS as f64;
+        }
+        while sample < self.low {
+            self.low -= self.width * CELLS as f64;
+            self.double(CELLS / 2);
+        }
+        while sample >= self.low + self.width * CELLS as f64 {
+            self.double(0);
+        }
+        let cell = ((sample - self.low) / self.width) as usize;
+        self.counts[cell.min(CELLS - 1)] += 1;
+    }
+
+    /// Puts every two cells together, the first at a place.
+    fn double(&mut self, place: usize) {
+        let halved: Vec<u64> = self.counts.chunks(2).map(|pair| pair.iter().sum()).collect();
+        self.counts.fill(0);
+        self.counts[place..place + CELLS / 2].copy_from_slice(&halved);
+        self.width *= 2.0;
+    }
+
+    /// The value below which this part of the samples lies, if there was one.
+    pub(super) fn quantile(&self, part: f64) -> Option<f64> {
+        let wanted = part * self.counts.iter().sum::<u64>() as f64;
+        let mut below = 0.0;
+        for (cell, &count) in self.counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+            let rest = wanted - below;
+            if rest <= count as f64 {
+                return Some(self.low + self.width * (cell as f64 + rest / count as f64));
+            }
+            below += count as f64;
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Quantiles;
+
+    /// Against the sorted samples, for ranges near 0, far from it, tiny and large, and in any order.
+    #[test]
+    fn quantiles_of_what_was_seen() {
+        for (scale, offset) in [(1.0, 0.0), (1e-9, 0.0), (1e9, -3e9), (0.5, -9.81), (1.0, 1e6)] {
+            let mut quantiles = Quantiles::new();
+            assert_eq!(quantiles.quantile(0.5), None);
+            let spread = |i: u32| f64::from(i * 7919 % 10_007) / 10_007.0;
+            let mut samples: Vec<f64> =
+                (0..10_007).map(|i| spread(i).powi(3) * scale + offset).collect();
+            samples.iter().for_each(|sample| quantiles.observe(*sample));
+            samples.sort_by(f64::total_cmp);
+            for part in [0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 0.99] {
+                let (own, sorted) =
+                    (quantiles.quantile(part).unwrap(), samples[(part * 10_007.0) as usize]);
+                assert!((own - sorted).abs() <= scale / 1000.0, "{part}: {own} for {sorted}");
+            }
+        }
+    }
+
+    #[test]
+    fn one_value_is_every_quantile() {
+        for value in [0.0, -9.81, 1e30] {
+            let mut quantiles = Quantiles::new();
+            (0..5).for_each(|_| quantiles.observe(value));
+            let own = quantiles.quantile(0.3).unwrap();
+            assert!((own - value).abs() <= value.abs() * 1e-8 + 1e-290, "{own} for {value}");
+        }
+    }
+}
