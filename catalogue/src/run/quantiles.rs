@@ -72,7 +72,9 @@ mod tests {
             let spread = |i: u32| f64::from(i * 7919 % 10_007) / 10_007.0;
             let mut samples: Vec<f64> =
                 (0..10_007).map(|i| spread(i).powi(3) * scale + offset).collect();
-            samples.iter().for_each(|sample| quantiles.observe(*sample));
+            for sample in &samples {
+                quantiles.observe(*sample);
+            }
             samples.sort_by(f64::total_cmp);
             for part in [0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 0.99] {
                 let (own, sorted) =
@@ -86,7 +88,9 @@ mod tests {
     fn one_value_is_every_quantile() {
         for value in [0.0, -9.81, 1e30] {
             let mut quantiles = Quantiles::new();
-            (0..5).for_each(|_| quantiles.observe(value));
+            for _ in 0..5 {
+                quantiles.observe(value);
+            }
             let own = quantiles.quantile(0.3).unwrap();
             assert!((own - value).abs() <= value.abs() * 1e-8 + 1e-290, "{own} for {value}");
         }
