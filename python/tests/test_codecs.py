@@ -157,7 +157,7 @@ def test_threads_share_what_is_encoded(x):
 
 def test_progress_and_an_end_to_long_work():
     told = []
-    long = np.zeros(1 << 23, np.float32)
+    long = np.zeros(1 << 21, np.float32)
     sw.Gaussian(neurons=20, min=-1, max=1).encode(long, progress=lambda *done: told.append(done))
     assert told[-1] == (len(long), len(long)) and sorted(told) == told
 

@@ -83,9 +83,7 @@ fn source_package(python: &Path) -> Result<PathBuf> {
     let place = paths::target().join("python-source");
     let maturin = python.with_file_name("maturin");
     let manifest = "python/Cargo.toml";
-    run(command(maturin)
-        .args(["sdist", "--quiet", "--manifest-path", manifest, "--out"])
-        .arg(&place))?;
+    run(command(maturin).args(["sdist", "--manifest-path", manifest, "--out"]).arg(&place))?;
     let packed = place.join(format!("spikewire-{}.tar.gz", VERSION));
     let listed = output(command("tar").arg("--list").arg("--file").arg(&packed))?;
     for file in [
