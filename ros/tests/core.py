@@ -191,11 +191,11 @@ class Coding(unittest.TestCase):
         self.assertEqual(self.told.counts, {})
 
     def test_what_is_not_finite_emits_nothing_and_is_counted(self) -> None:
-        samples = self.samples[:100] + [math.nan, math.inf] + self.samples[100:]
+        samples = self.samples[:100] + [math.nan, math.inf, -1e39] + self.samples[100:]
         events = encoded(CONFIGS["step_forward"], samples, self.told)
         without = encoded(CONFIGS["step_forward"], self.samples, Counters(lambda text: None))
         self.assertEqual([event.spikes for event in events], [event.spikes for event in without])
-        self.assertEqual(self.told.counts, {"samples not finite": 2})
+        self.assertEqual(self.told.counts, {"samples not finite": 3})
 
     def test_a_signal_too_short_to_start_is_told(self) -> None:
         self.assertEqual(encoded(CONFIGS["gaussian_fields"], self.samples[:99], self.told), [])

@@ -3,14 +3,18 @@
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import isfinite
 from typing import Optional
+
+import numpy as np
 
 from . import schemes
 from .clock import Clock
 from .codec import Codec, Request
 from .counters import Counters
 from .settings import Settings
+
+# Of the 32 bits that messages have.
+_LARGEST = float(np.finfo(np.float32).max)
 
 # A value, and its stamp in nanoseconds.
 Sample = tuple[float, int]
@@ -65,11 +69,11 @@ class Encoding:
         return self._codec.header if self._codec is not None else None
 
     def take(self, value: float, stamp: int) -> list[Event]:
-        """Takes a sample. One that is not finite is counted and emits nothing."""
+        """Takes a sample. One that is not finite, in 32 bits, is counted and emits nothing."""
         wrong = self._clock.observe(stamp)
         if wrong is not None:
             self._counters.add(*wrong)
-        if not isfinite(value):
+        if not abs(value) <= _LARGEST:  # nor is NaN
             self._counters.add("samples not finite", str(value))
             return []
         lowest, highest = self._range

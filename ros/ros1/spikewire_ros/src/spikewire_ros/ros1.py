@@ -8,7 +8,8 @@ from typing import Any, Callable, Optional
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from genpy.dynamic import generate_dynamic
+from genpy import DeserializationError
+from genpy.dynamic import MsgGenerationException, generate_dynamic
 from spyke_msgs.msg import spyke, spyke_array, spyke_value
 from std_msgs.msg import Float64, String
 
@@ -57,7 +58,9 @@ class Node:
                 if self._failure is None:
                     try:
                         call(*arguments)
-                    except ValueError as error:
+                    except DeserializationError as error:
+                        self.counters.add("messages refused", str(error))
+                    except (ValueError, MsgGenerationException) as error:
                         self.fail(str(error))
 
         return one_after_the_other
