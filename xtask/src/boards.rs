@@ -65,6 +65,12 @@ pub const BOARDS: [Board; 5] = [
 
 impl Board {
     /// What the clock counts in 10^9 instructions.
+    /// That with this core.
+    pub fn with(core: &str) -> Result<&'static Self> {
+        let board = BOARDS.iter().find(|board| board.core.eq_ignore_ascii_case(core));
+        board.with_context(|| format!("no core `{core}`"))
+    }
+
     pub fn ticks_per_gigainstruction(&self) -> u64 {
         self.clock << self.icount
     }

@@ -1,7 +1,7 @@
 //! `cargo demo`: real flight data through encoder, emulated flight controller and decoder.
 
 use crate::{
-    boards::BOARDS,
+    boards::Board,
     firmware,
     flown::{self, Flown},
     image,
@@ -10,7 +10,7 @@ use crate::{
     signal::Signal,
     usage::usage,
 };
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 
 /// The firmware program.
 const PROGRAM: &str = "demo";
@@ -26,7 +26,7 @@ pub fn demo(args: &[String]) -> Result<()> {
 
 pub fn fly() -> Result<()> {
     println!("\n=== The flight, in the firmware of an emulated flight controller");
-    let board = BOARDS.iter().find(|board| board.core == "M4F").context("no Cortex-M4F")?;
+    let board = Board::with("M4F")?;
     let image = image::build(PROGRAM, board)?;
     let flown = flown::parse(&qemu::run(board, &image)?)?;
     let here = flown::parse(&firmware::on_host(PROGRAM)?)?;

@@ -1,7 +1,7 @@
 //! `cargo verify fifo`: a sensor at 8 kHz through its FIFO: its driver's tests, and what it costs an STM32F405's core.
 
 use crate::{
-    boards::BOARDS,
+    boards::Board,
     firmware, image, paths, qemu,
     shell::{cargo, run},
 };
@@ -19,7 +19,7 @@ pub fn fifo() -> Result<()> {
 
 /// The program checks itself, and its exit status tells: all samples encoded, all frames decoded to the same values.
 pub fn count(core: &str) -> Result<()> {
-    let board = BOARDS.iter().find(|board| board.core == core).context("no such core")?;
+    let board = Board::with(core)?;
     let printed = qemu::run_counting(board, &image::build(PROGRAM, board)?)?;
     println!("{core}:\n{printed}");
     let on_host = firmware::on_host(PROGRAM)?;

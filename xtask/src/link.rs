@@ -47,7 +47,7 @@ pub fn link() -> Result<()> {
 /// A second microcontroller and a companion computer hear the same bytes: the values must be those, and the commands
 /// that both send back the same.
 fn far_ends(board: &Board, heard: &Path, values: &str) -> Result<()> {
-    run(&mut cargo("test --quiet --manifest-path examples/Cargo.toml --package far-end")
+    run(cargo("test --quiet --manifest-path examples/Cargo.toml --package far-end")
         .env("CARGO_TARGET_DIR", paths::target()))?;
 
     let image = image::build("far-end-mcu", board)?;

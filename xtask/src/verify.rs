@@ -51,7 +51,7 @@ const STEPS: &[Step] = &[
     step("laptop", "the laptop program on a flight, and the paper's tables", checks::laptop),
     step("python", "the Python package: tests, hashes, README, example", python::python),
     step("video", "the paper's figure of a video, from a packaged clip", crate::video::video),
-    step("bench", "instruction counts against the baseline", checks::bench),
+    step("bench", "instruction counts of a Cortex-M4F against the baseline", checks::bench),
 ];
 
 /// Those that take too long for every change.
@@ -69,6 +69,8 @@ const LONG: &[Step] = &[
     step("py-speed", "the Python package from its source package, and its speed", python::speed),
     step("more-parts", "the examples for further cores", parts::more),
     step("c-cost", "what the calls of C take beside the crate's", crate::c_library::cost),
+    step("no-panic-all", "every codec without a panic handler, on two cores", checks::no_panic_all),
+    step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", checks::bench_m0),
     step("cores", "instruction counts on all five cores", long::cores),
 ];
 
