@@ -235,3 +235,26 @@ impl Found {
 
 /// As many neurons as there are.
 const MOST: usize = 1 << 16;
+
+#[cfg(test)]
+mod tests {
+    use super::Found;
+
+    /// Neuron 7 of the toolbox has the centre of our neuron 6, whose range begins a field lower.
+    #[test]
+    fn the_toolbox_numbers_its_fields_from_0() {
+        for (scheme, min, max) in [("gaussian_fields", "-1.5", "7.5"), ("grf", "-1", "8")] {
+            let found = Found {
+                scheme: scheme.to_owned(),
+                range: (-1.0, 8.0),
+                neurons: 20,
+                samples: 1,
+                ..Found::default()
+            };
+            let lines = found.lines().unwrap();
+            let value = |key| lines.iter().find(|line| line.0 == key).map(|line| line.1.as_str());
+            assert_eq!((value("scheme"), value("neurons")), (Some("grf"), Some("20")));
+            assert_eq!((value("min"), value("max")), (Some(min), Some(max)));
+        }
+    }
+}
