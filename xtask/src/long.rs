@@ -41,6 +41,8 @@ pub fn sweeps() -> Result<()> {
 pub fn lints() -> Result<()> {
     let warnings = ["--", "-D", "warnings"];
     run(cargo("clippy --workspace --all-targets --all-features").args(warnings))?;
+    let library = "clippy --manifest-path c/Cargo.toml --features header --all-targets";
+    run(cargo(library).args(warnings))?;
     let firmware = "clippy --workspace --manifest-path examples/Cargo.toml";
     run(cargo(firmware).args(warnings))?;
     // One core stands for all: the firmware's source has no conditions on the core.

@@ -93,6 +93,7 @@ fn codec(name: &str, path: &Path) -> Result<String> {
     let sample = sample.unwrap_or_default();
     let known = Known { calibrated: None, first: &[0.0], can_calibrate: false };
     let (settings, _) = scheme.rounded(sample, &scheme.resolve(&options, &known)?)?;
+    scheme.codec(sample, &settings)?; // what makes no sense is told here, not by the compiler
     let Constant { scheme: kind, value } = scheme.constant(sample, &settings)?;
     let text = params::write(&[], scheme, sample, &settings.to_options(info));
     let text: String = text.lines().map(|line| format!("    /// {line}\n")).collect();

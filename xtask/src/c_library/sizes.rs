@@ -39,7 +39,8 @@ fn table() -> Result<String> {
         let header = fs::read_to_string(room().join(format!("include/spikewire/{name}.h")))?;
         let pair = |part: &str, more: usize| -> Result<String> {
             let of = |sample: &str| {
-                size(&header, &format!("{name}_{sample}{part}")).map(|own| own + more)
+                size(&header, &format!("{name}_{sample}{part}"))
+                    .map(|own| (own + more).next_multiple_of(4))
             };
             Ok(format!("{}, {}", of("f32")?, of("i16")?))
         };
