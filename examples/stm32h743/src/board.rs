@@ -40,6 +40,7 @@ bind_interrupts!(struct Interrupts {
 
 pub type Imu = flight::Device<Spi<'static, Async, Master>, Output<'static>, Delay>;
 pub type DataReady = ExtiInput<'static, Async>;
+pub type Usb = Sender<'static, UsbDriver>;
 type UsbDriver = usb::Driver<'static, USB_OTG_FS>;
 
 const CRYSTAL_HZ: u32 = 8_000_000;
@@ -59,7 +60,7 @@ const PACKET: u16 = 64;
 pub struct Board {
     pub imu: Imu,
     pub data_ready: DataReady,
-    pub usb: Sender<'static, UsbDriver>,
+    pub usb: Usb,
     pub watchdog: IndependentWatchdog<'static, IWDG1>,
     /// A number from the part's generator: another after most starts.
     pub session: u16,
@@ -100,7 +101,7 @@ fn usb(
 }
 
 /// A serial port over USB; the task that serves the bus is spawned.
-fn serial(driver: UsbDriver, spawner: Spawner) -> Sender<'static, UsbDriver> {
+fn serial(driver: UsbDriver, spawner: Spawner) -> Usb {
     static CONFIGURATION: StaticCell<[u8; 128]> = StaticCell::new();
     static BOS: StaticCell<[u8; 32]> = StaticCell::new();
     static CONTROL: StaticCell<[u8; 64]> = StaticCell::new();

@@ -14,14 +14,14 @@ mod memory;
 
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-use board::{Board, DataReady, Imu};
+use board::{Board, DataReady, Imu, Usb};
 use defmt_rtt as _;
 use embassy_executor::Spawner;
 use embassy_time::{Delay, Duration, Instant, Timer, with_timeout};
 use flight::{Counters, Sampler};
 use icm42688p::{Fault, Icm42688p, PLAN, Pace, SCHEMES, Sender, Watch};
 use panic_probe as _;
-use spikewire::{Bank, EventQueue, Overflow, Tick};
+use spikewire::{Bank, Consumer, EventQueue, Overflow, Tick};
 
 /// How long events gather for a frame.
 const GATHER: Duration = Duration::from_millis(5);
@@ -62,6 +62,16 @@ fn report(counters: Counters, fault: Option<Fault>) {
     }
 }
 
+/// Sends what waits. A last packet of 64 bytes would tell the host that more follows: an empty one says that it does not.
+async fn send(sender: &mut Sender, events: &mut Consumer<'_>, usb: &mut Usb) {
+    let before = sender.bytes;
+    sender.send(events, usb).await;
+    if sender.bytes != before {
+        // A port that is gone takes nothing, which the next frame counts.
+        _ = usb.write_packet(&[]).await;
+    }
+}
+
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
     let Board { imu, data_ready, mut usb, mut watchdog, session } = board::start(spawner);
@@ -72,9 +82,10 @@ async fn main(spawner: Spawner) {
     let (mut rounds, mut late) = (0, 0_u32);
     loop {
         Timer::after(GATHER).await;
-        // Nobody listens who has not opened the port.
-        if usb.dtr() && with_timeout(SEND_LIMIT, sender.send(&mut events, &mut usb)).await.is_err()
-        {
+        // While nobody has opened the port, the oldest events give way.
+        let is_open = usb.dtr();
+        let sending = with_timeout(SEND_LIMIT, send(&mut sender, &mut events, &mut usb));
+        if is_open && sending.await.is_err() {
             late = late.wrapping_add(1);
             defmt::warn!("the host was too slow {} times", late);
         }
