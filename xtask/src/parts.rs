@@ -86,6 +86,9 @@ fn build(parts: &[Part]) -> Result<()> {
         if name == "stm32f405-rtic" {
             speed::spi_pins_are_fast(&image)?;
         }
+        if name == "stm32h743" {
+            dma_has_its_memory(&image)?;
+        }
     }
     Ok(())
 }
@@ -137,6 +140,21 @@ fn without_patch(manifest: &Path) -> Result<()> {
     let text = fs::read_to_string(manifest)?;
     ensure!(text.contains(PATCH), "{} does not patch the crate", manifest.display());
     Ok(fs::write(manifest, text.replace(PATCH, ""))?)
+}
+
+/// What DMA moves lies where DMA reaches, and where `memory.rs` of the example keeps the cache out.
+fn dma_has_its_memory(image: &Path) -> Result<()> {
+    let sections = output(command("arm-none-eabi-objdump").arg("-h").arg(image))?;
+    let section = |name| {
+        let mut lines = sections.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
+        let line = lines.find(|words| words.get(1) == Some(&name)).context("no such section")?;
+        let number = |at: usize| u32::from_str_radix(line.get(at).unwrap_or(&""), 16);
+        anyhow::Ok((number(3)?, number(2)?))
+    };
+    let (start, length) = section(".dma")?;
+    println!("DMA: {length} bytes from {start:#x} on");
+    ensure!(start == 0x3000_0000 && length >= 132, "the buffer is not in SRAM1");
+    Ok(())
 }
 
 /// The stack ends where the memory does: one that overflows meets no static, but a fault.
