@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::logs::{CHUNKED, KINDS, Kind, PAGE, record, wave};
+use common::logs::{CHUNKED, KINDS, Kind, PAGE, blackbox, frame, gyro, record, wave};
 use common::{file, flight, good, refused, values};
 
 const SCHEME: &str = "encode --scheme sf --threshold 0.1 --topic imu --field rate";
@@ -162,6 +162,52 @@ fn the_files_of_a_directory_are_read_one_after_the_other() {
     refused(&format!("info {path}"), "", &["b.db3: cannot be opened"]);
     let empty = tempfile::tempdir().unwrap();
     refused(&format!("info {}", empty.path().display()), "", &["metadata.yaml: cannot be read"]);
+}
+
+#[test]
+fn a_blackbox_log_is_read_frame_by_frame() {
+    let (_directory, path) = file("log.bbl", blackbox());
+    let told = good(&format!("info {path}"), "").output;
+    assert!(told.contains("main: 200 samples, 0.050 s, 4000.00 Hz\n  0 gaps"), "{told}");
+    assert!(told.contains("  loopIteration, time, gyroADC[0..3]\n"), "{told}");
+    // Steps of 100 follow the rate, which changes by less from frame to frame.
+    let encode = format!("encode --scheme sf --threshold 101 --field gyroADC[0] {path}");
+    let spikes = good(&encode, "").output;
+    assert!(spikes.contains("# topic=main\n# field=gyroADC[0]\n"), "{spikes}");
+    for (sample, value) in (0..).zip(values(&good("decode", &spikes).output)) {
+        assert!((value - gyro(sample) as f64).abs() <= 101.0, "sample {sample}: {value}");
+    }
+}
+
+#[test]
+fn a_blackbox_log_that_is_cut_or_damaged_goes_on_where_it_can() {
+    let log = blackbox();
+    let end = log.len() - b"E\xffEnd of log\0".len();
+    let (_directory, path) = file("cut.bbl", &log[..end - 3]);
+    refused(&format!("info {path}"), "", &["the log ends within a frame; --accept-cut"]);
+    let told = good(&format!("info --accept-cut {path}"), "").output;
+    assert!(told.contains("main: 199 samples"), "{told}");
+    // Without its end it is whole.
+    let (_directory, path) = file("unended.bbl", &log[..end]);
+    let told = good(&format!("info {path}"), "").output;
+    assert!(told.starts_with("the log has no end") && told.contains("200 samples"), "{told}");
+    // A damaged frame: the one before it is doubted, and those up to the next of all numbers mean nothing.
+    let before: usize = (0..69).map(|sample| frame(sample).len()).sum();
+    let head = end - (0..200).map(|sample| frame(sample).len()).sum::<usize>();
+    let mut damaged = log.clone();
+    damaged[head + before + frame(69).len()] = 0;
+    let (_directory, path) = file("damaged.bbl", &damaged);
+    let words = format!("byte {}: ", head + before);
+    refused(&format!("info {path}"), "", &[&words, "bytes are no frames; --accept-cut goes on"]);
+    let told = good(&format!("info --accept-cut {path}"), "").output;
+    assert!(told.contains("main: 173 samples") && told.contains("1 gaps"), "{told}");
+    // Two logs in one file.
+    let (_directory, path) = file("two.bbl", [blackbox(), blackbox()].concat());
+    let told = good(&format!("info {path}"), "").output;
+    assert!(told.contains("main: 200 samples") && told.contains("main:1: 200 samples"), "{told}");
+    let ran =
+        good(&format!("encode --scheme sf --threshold 101 --topic main:1 --field time {path}"), "");
+    assert!(ran.output.contains("# samples=200\n"), "{}", ran.output);
 }
 
 #[test]

@@ -8,7 +8,8 @@ use std::io::{Write, stdout};
 use std::path::PathBuf;
 
 /// What is read.
-const KINDS: &str = "there are PX4's ULog, bags of ROS 1 and 2, and MCAP files";
+const KINDS: &str =
+    "there are PX4's ULog, bags of ROS 1 and 2, MCAP files and Betaflight's blackbox";
 
 /// List a log's topics with their fields, rates and gaps, and what its logger missed.
 #[derive(Args, Debug)]
@@ -16,7 +17,7 @@ const KINDS: &str = "there are PX4's ULog, bags of ROS 1 and 2, and MCAP files";
 Example:
   spikewire info flight.ulg")]
 pub(crate) struct Info {
-    /// PX4's `ULog`, a bag of ROS 1 or 2 or an MCAP file, also compressed by gzip
+    /// PX4's `ULog`, a bag of ROS 1 or 2, an MCAP file or Betaflight's blackbox, also compressed by gzip
     log: PathBuf,
     /// Report steps in time above this many usual steps
     #[arg(long, default_value_t = 1.5, value_parser = above_zero)]

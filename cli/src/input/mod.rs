@@ -33,7 +33,7 @@ pub(crate) const CHUNK: usize = 8192;
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InputOptions {
     /// CSV table with a header, also compressed by gzip, or log: PX4's `ULog`, bag of ROS 1 or
-    /// 2, MCAP; `-` is a CSV table on
+    /// 2, MCAP, Betaflight's blackbox; `-` is a CSV table on
     /// standard input
     pub input: PathBuf,
     #[command(flatten)]

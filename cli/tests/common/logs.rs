@@ -340,3 +340,56 @@ pub fn database(messages: &[Vec<u8>]) -> Vec<u8> {
     pages[3] = page(5, &cells, right, &[]);
     pages.concat()
 }
+
+/// The rate of a sample in a blackbox log.
+pub fn gyro(sample: u32) -> i64 {
+    (wave(sample) * 1000.0).round() as i64
+}
+
+fn packed(mut number: u32) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    while number > 127 {
+        bytes.push((number & 127) as u8 | 128);
+        number >>= 7;
+    }
+    bytes.push(number as u8);
+    bytes
+}
+
+fn signed(number: i64) -> Vec<u8> {
+    let number = number as i32;
+    packed(((number << 1) ^ (number >> 31)) as u32)
+}
+
+/// A frame of a blackbox log: of all numbers every 32nd time, else of what changed.
+pub fn frame(sample: u32) -> Vec<u8> {
+    let time = 1000 + sample * 250;
+    if sample.is_multiple_of(32) {
+        return [b"I".to_vec(), packed(sample), packed(time), signed(gyro(sample)), signed(0)]
+            .concat();
+    }
+    // Twice the time before less the one before that, which is the same in the first frame.
+    let step = if sample % 32 == 1 { 250 } else { 0 };
+    let change = (gyro(sample) - gyro(sample - 1)) as i16;
+    let [low, high] = change.to_le_bytes();
+    [b"P".to_vec(), signed(step), vec![0b1100_0001, low, high, 0, 0]].concat()
+}
+
+/// A blackbox log of 200 frames.
+pub fn blackbox() -> Vec<u8> {
+    let mut log = b"H Product:Blackbox flight data recorder by Nicholas Sherlock
+H Data version:2
+H I interval:32
+H P interval:1/1
+H Field I name:loopIteration,time,gyroADC[0],gyroADC[1],gyroADC[2]
+H Field I signed:0,0,1,1,1
+H Field I predictor:0,0,0,0,0
+H Field I encoding:1,1,0,0,9
+H Field P predictor:6,2,1,1,1
+H Field P encoding:9,0,7,7,7
+"
+    .to_vec();
+    log.extend((0..200).flat_map(frame));
+    log.extend(b"E\xffEnd of log\0");
+    log
+}

@@ -3,6 +3,7 @@
 //! Each kind of log gives its messages one after the other, in the order of the file, so that memory does not grow.
 
 mod bag;
+mod blackbox;
 mod bytes;
 mod channel;
 mod definition;
@@ -72,12 +73,15 @@ pub(crate) enum Kind {
     Sqlite,
     /// A ROS 2 bag of several files.
     Directory,
+    /// Betaflight's.
+    Blackbox,
 }
 
 impl Kind {
     /// The topic that is meant unless another is named.
     fn usual_topic(self) -> Option<&'static str> {
         match self {
+            Self::Blackbox => Some(blackbox::MAIN),
             Self::Bag | Self::Mcap | Self::Sqlite | Self::Directory => None,
         }
     }
@@ -102,7 +106,12 @@ pub(crate) fn kind_of(path: &Path) -> Result<Option<Kind>> {
 
 /// What kind of log starts like this.
 fn kind(start: &[u8]) -> Option<Kind> {
-    let kinds = [(bag::START, Kind::Bag), (mcap::START, Kind::Mcap), (sqlite::START, Kind::Sqlite)];
+    let kinds = [
+        (bag::START, Kind::Bag),
+        (mcap::START, Kind::Mcap),
+        (sqlite::START, Kind::Sqlite),
+        (blackbox::START, Kind::Blackbox),
+    ];
     kinds.into_iter().find(|(own, _)| start.starts_with(own)).map(|(_, kind)| kind)
 }
 
@@ -117,6 +126,7 @@ fn open(path: &Path, kind: Kind, accept_cut: bool) -> Result<Box<dyn Log>> {
         Kind::Bag => Box::new(bag::Bag::open(path, faults)?),
         Kind::Mcap => Box::new(mcap::Mcap::open(path, faults)?),
         Kind::Sqlite => Box::new(rosbag2::Sqlite::open(path, faults)?),
+        Kind::Blackbox => Box::new(blackbox::Blackbox::open(path, faults)?),
         Kind::Directory => Box::new(rosbag2::Directory::open(path, faults)?),
     })
 }
