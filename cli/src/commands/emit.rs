@@ -96,7 +96,8 @@ fn codec(name: &str, path: &Path) -> Result<String> {
     scheme.codec(sample, &settings)?; // what makes no sense is told here, not by the compiler
     let Constant { scheme: kind, value } = scheme.constant(sample, &settings)?;
     let text = params::write(&[], scheme, sample, &settings.to_options(info));
-    let text: String = text.lines().map(|line| format!("    /// {line}\n")).collect();
+    let lines: Vec<String> = text.lines().map(|line| format!("    /// {line}\n")).collect();
+    let text = lines.concat();
     Ok(format!(
         "    /// {}, in {sample}.\n    ///\n{text}    {name}: {kind} {{\n        constant {value};\n    }}\n",
         info.words
