@@ -1,6 +1,7 @@
 //! A companion computer at the end of a serial line: link frames in, a command back for each.
 //!
-//! `far-end-linux /dev/ttyAMA0 921600`; a board over USB has no baud rate, so that any will do.
+//! `far-end-linux /dev/ttyAMA0 921600`; a board over USB has no baud rate, so that any will do. After the rate, the
+//! milliseconds of silence after which nothing is known: 1500 unless given.
 
 use std::{
     env,
@@ -15,24 +16,24 @@ use linux_embedded_hal::{
     serialport::{self, SerialPort, TTYPort},
 };
 
-const USAGE: &str = "far-end-linux PORT [BAUD]";
+const USAGE: &str = "far-end-linux PORT [BAUD [SILENCE]]";
 const BAUD: u32 = 921_600;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
-    let (path, baud) = match &arguments[..] {
-        [path] => (path, Ok(BAUD)),
-        [path, baud] => (path, baud.parse()),
+    let (path, numbers) = match &arguments[..] {
+        [path, numbers @ ..] if numbers.len() <= 2 => (path, numbers),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);
         }
     };
-    let Ok(baud) = baud else {
-        eprintln!("BAUD is a number\n{USAGE}");
+    let number = |place: usize, usual| numbers.get(place).map_or(Ok(usual), |text| text.parse());
+    let (Ok(baud), Ok(silence)) = (number(0, BAUD), number(1, SILENCE_MS)) else {
+        eprintln!("BAUD and SILENCE are numbers\n{USAGE}");
         return ExitCode::from(2);
     };
-    match open(path, baud) {
+    match open(path, baud, silence) {
         Ok(mut port) => {
             let error = run(&mut port);
             eprintln!("{path}: {error}");
@@ -45,9 +46,9 @@ fn main() -> ExitCode {
     }
 }
 
-fn open(path: &str, baud: u32) -> Result<TTYPort, serialport::Error> {
+fn open(path: &str, baud: u32, silence: u32) -> Result<TTYPort, serialport::Error> {
     let Serial(mut port) = Serial::open(path.into(), baud)?;
-    port.set_timeout(Duration::from_millis(SILENCE_MS.into()))?;
+    port.set_timeout(Duration::from_millis(silence.into()))?;
     Ok(port)
 }
 

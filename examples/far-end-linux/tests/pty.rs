@@ -13,7 +13,10 @@ use linux_embedded_hal::serialport::{SerialPort, TTYPort};
 /// A command that damps nothing.
 const NEUTRAL: [u8; 8] = [0x5C, 0, 0, 0, 0, 0, 0, 0];
 
-const PATIENCE: Duration = Duration::from_secs(20);
+/// In ms: longer than a busy machine stands still.
+const SILENCE: &str = "6000";
+
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The program, which ends with the test.
 struct Program(Child);
@@ -36,7 +39,7 @@ fn answers_what_a_board_has_sent() {
     let (mut board, companion) = TTYPort::pair().unwrap();
     board.set_timeout(Duration::from_millis(20)).unwrap();
     let program = Command::new(env!("CARGO_BIN_EXE_far-end-linux"))
-        .arg(companion.name().unwrap())
+        .args([&companion.name().unwrap(), "115200", SILENCE])
         .spawn()
         .unwrap();
     let _program = Program(program);
