@@ -3,20 +3,38 @@
 use crate::{
     host::tests,
     paths,
-    shell::{command, run},
+    shell::{cargo, command, run},
 };
 use anyhow::Result;
+use std::path::PathBuf;
 
 /// Installs the Python packages in an environment of their own and runs the tests against them.
 pub fn peers() -> Result<()> {
-    let environment = paths::target().join("peers");
+    let python = environment("peers", "host-tests/peers/requirements.txt")?;
+    run(tests("--test all formats_peers -- --ignored")?.env("PEERS_PYTHON", &python))?;
+    run(tests("--test network -- --ignored")?.env("PEERS_PYTHON", &python))
+}
+
+/// Logs of every kind, written and read by other people's programs.
+pub fn logs() -> Result<()> {
+    let python = environment("logs", "cli/python/logs_requirements.txt")?;
+    run(&mut cargo("build --package spikewire-cli"))?;
+    let program = paths::target().join("debug/spikewire");
+    let place = paths::target().join("logs-check");
+    let recording = paths::root().join("data/hexarotor.csv");
+    let check = paths::root().join("cli/python/logs_check.py");
+    run(command(&python).arg(check).args([program, recording, place]))
+}
+
+/// The Python of an environment of this name, with these packages.
+fn environment(name: &str, requirements: &str) -> Result<PathBuf> {
+    let environment = paths::target().join(name);
     let python = environment.join("bin/python");
     if !python.is_file() {
         run(command("python3").args(["-m", "venv"]).arg(&environment))?;
     }
     let install =
         ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"];
-    run(command(&python).args(install).arg("host-tests/peers/requirements.txt"))?;
-    run(tests("--test all formats_peers -- --ignored")?.env("PEERS_PYTHON", &python))?;
-    run(tests("--test network -- --ignored")?.env("PEERS_PYTHON", &python))
+    run(command(&python).args(install).arg(requirements))?;
+    Ok(python)
 }

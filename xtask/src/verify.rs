@@ -66,6 +66,7 @@ const LONG: &[Step] = &[
         "ROS nodes in the distribution's ROS, a flight through every scheme",
         crate::ros::ros,
     ),
+    step("logs", "logs of every kind, read as independent readers do", crate::peers::logs),
     step("py-speed", "the Python package from its source package, and its speed", python::speed),
     step("more-parts", "the examples for further cores", parts::more),
     step("c-cost", "what the calls of C take beside the crate's", crate::c_library::cost),
