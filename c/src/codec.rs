@@ -228,7 +228,9 @@ pub unsafe fn encode_slice<P: Exported>(
             unsafe { codes.as_mut_ptr().write_bytes(0, codes.len()) };
         } else {
             const { assert!(size_of::<P::Output>() == size_of::<P::Code>()) };
-            codes.iter_mut().for_each(|code| _ = code.write(silence()));
+            for code in codes.iter_mut() {
+                code.write(silence());
+            }
         }
         // SAFETY: all are written, and outputs are codes, or spikes for which `WAITS` tells that they have their bytes.
         let outputs =

@@ -49,7 +49,7 @@ static void print_count(const char *name, uint32_t number)
         sw_##CODEC##_encoder encoder = {0};                                                                           \
         sw_##CODEC##_decoder decoder = {0};                                                                           \
         value_type_##S slice[SLICE] = {0}, values[SLICE] = {0};                                                       \
-        sw_##CODEC##_code codes[SLICE] = {0}, kept[SLICE] = {0};                                                      \
+        sw_##CODEC##_code codes[SLICE] = {0}, first = {0};                                                      \
         sw_status statuses[SLICE] = {0};                                                                              \
         const channel_##S *channel = &channels_##S[0];                                                                \
         uint32_t encode = 0, encode_slice = 0, decode = 0, decode_slice = 0;                                          \
@@ -74,7 +74,7 @@ static void print_count(const char *name, uint32_t number)
                     }                                                                                                 \
                 }                                                                                                     \
             } else {                                                                                                  \
-                check(sw_##CODEC##_encode(&encoder, slice[0], &kept[0]), "encode");                                   \
+                check(sw_##CODEC##_encode(&encoder, slice[0], &first), "encode");                                   \
                 begin();                                                                                              \
                 sw_status status = sw_##CODEC##_encode_slice(&encoder, &slice[1], codes, SLICE - 1u);                 \
                 encode_slice += count(end());                                                                         \

@@ -24,10 +24,9 @@ type Counts = BTreeMap<String, [u32; 4]>;
 /// Prints what each form takes in C beside Rust, and fails where encoding a slice takes too much.
 pub fn cost() -> Result<()> {
     compiler::record()?;
-    for board in BOARDS.iter().filter(|board| CORES.contains(&board.core)) {
-        compare(board)?;
-    }
-    Ok(())
+    CORES.iter().try_for_each(|core| {
+        compare(BOARDS.iter().find(|board| board.core == *core).context("no such core")?)
+    })
 }
 
 fn compare(board: &Board) -> Result<()> {
