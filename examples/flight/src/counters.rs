@@ -12,7 +12,8 @@ pub struct Counters {
     pub missed: u32,
     /// Reads that failed, or brought no data.
     pub failed: u32,
-    /// How often a channel had as many spikes in a sample as its code can: there the signal may have outrun it.
+    /// How often a channel had as many spikes in a sample as its code can, or of a code with one spike a sample had it in
+    /// two samples in a row: there the signal may have outrun it.
     pub at_limit: u32,
     /// How often the sensor was found dead.
     pub deaths: u32,

@@ -58,6 +58,8 @@ pub struct Sampler<T: Schemes<N>, const N: usize> {
     bits: [u32; N],
     alike: u8,
     failed: u8,
+    /// Which channels were at the limit of their code, by their addresses.
+    at_limit: u32,
     counters: Counters,
 }
 
@@ -88,6 +90,7 @@ where
             bits: [0; N],
             alike: 0,
             failed: 0,
+            at_limit: 0,
             counters,
         }
     }
@@ -128,15 +131,20 @@ where
     }
 
     fn encode(&mut self, edge: Tick, sample: [S; N], queue: &mut impl Put) {
-        let (most, mut at_limit) = (self.plan.most_spikes, 0);
+        let (most, mut at_limit) = (self.plan.most_spikes, 0_u32);
         let (mut address, mut spikes) = (None, 0);
         self.bank.encode(edge, sample, |event| {
             spikes = if address == Some(event.address) { spikes + 1 } else { 1 };
             address = Some(event.address);
-            at_limit += u32::from(spikes == most);
+            if spikes == most {
+                at_limit |= 1 << (event.address & 31);
+            }
             queue.put(Item::Event(event));
         });
-        self.counters.at_limit = self.counters.at_limit.wrapping_add(at_limit);
+        // One spike is no limit yet; one after the other is.
+        let counted = if most > 1 { at_limit } else { at_limit & self.at_limit };
+        self.at_limit = at_limit;
+        self.counters.at_limit = self.counters.at_limit.wrapping_add(counted.count_ones());
         self.counters.samples = self.counters.samples.wrapping_add(1);
     }
 

@@ -1,7 +1,10 @@
 //! What the far end is told of a sensor that dies.
 
 use flight::{Counters, Plan, Sampler, Why};
-use spikewire::{Bank, Item, Put, Tick, temporal::SendOnDelta};
+use spikewire::{
+    Bank, Item, Put, Tick,
+    temporal::{SendOnDelta, StepForward},
+};
 
 static SCHEME: SendOnDelta<i16, 4> = SendOnDelta::new(10);
 
@@ -178,6 +181,21 @@ fn a_channel_at_its_codes_limit_is_counted() {
     fly(&mut sampler, 1..4, &mut log);
     for (sample, values, at_limit) in
         [(4, [31, 0], 0), (5, [52, 0], 0), (6, [200, 90], 2), (7, [200, 91], 4), (8, [200, 92], 5)]
+    {
+        sampler.take(at(sample), Ok::<_, ()>(values), &mut log);
+        assert_eq!(sampler.counters().at_limit, at_limit, "{sample}");
+    }
+}
+
+/// Of a code of one spike a sample a spike says nothing; one in the next sample, too, does.
+#[test]
+fn a_code_of_one_spike_is_at_its_limit_in_two_samples_in_a_row() {
+    static STEP: StepForward<i16> = StepForward::new(10);
+    let plan = Plan { most_spikes: 1, settle: 0, ..PLAN };
+    let (mut sampler, mut log) = (Sampler::<_, 2>::new(Bank::new(&STEP), plan), Log::default());
+    sampler.started(at(0));
+    for (sample, values, at_limit) in
+        [(1, [0, 0], 0), (2, [11, 0], 0), (3, [12, 11], 0), (4, [40, 50], 1), (5, [50, 51], 3)]
     {
         sampler.take(at(sample), Ok::<_, ()>(values), &mut log);
         assert_eq!(sampler.counters().at_limit, at_limit, "{sample}");
