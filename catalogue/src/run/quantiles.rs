@@ -9,13 +9,15 @@ pub(super) struct Quantiles {
     /// Of a cell; 0 before the first sample.
     width: f64,
     counts: Vec<u64>,
+    /// The first and the last cell with samples.
+    filled: (usize, usize),
 }
 
 const CELLS: usize = 8192;
 
 impl Quantiles {
     pub(super) fn new() -> Self {
-        Self { low: 0.0, width: 0.0, counts: vec![0; CELLS] }
+        Self { low: 0.0, width: 0.0, counts: vec![0; CELLS], filled: (CELLS - 1, 0) }
     }
 
     /// Takes the next sample, which is finite.
@@ -33,15 +35,24 @@ impl Quantiles {
             self.double(0);
         }
         let cell = ((sample - self.low) / self.width) as usize;
-        self.counts[cell.min(CELLS - 1)] += 1;
+        let cell = cell.min(CELLS - 1);
+        self.counts[cell] += 1;
+        self.filled = (self.filled.0.min(cell), self.filled.1.max(cell));
     }
 
-    /// Puts every two cells together, the first at a place.
+    /// Puts every two cells together, the first at a place. Between two far values this happens a thousand times, so
+    /// only those with samples are touched.
     fn double(&mut self, place: usize) {
-        let halved: Vec<u64> = self.counts.chunks(2).map(|pair| pair.iter().sum()).collect();
-        self.counts.fill(0);
-        self.counts[place..place + CELLS / 2].copy_from_slice(&halved);
         self.width *= 2.0;
+        let (first, last) = (self.filled.0 / 2, self.filled.1 / 2);
+        if first > last {
+            return; // there is none yet
+        }
+        let old = &mut self.counts[2 * first..2 * last + 2];
+        let halved: Vec<u64> = old.chunks(2).map(|pair| pair.iter().sum()).collect();
+        old.fill(0);
+        self.filled = (place + first, place + last);
+        self.counts[place + first..=place + last].copy_from_slice(&halved);
     }
 
     /// The value below which this part of the samples lies, if there was one.
