@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -75,6 +76,14 @@ class Scheme:
         pub static ROLL: spikewire::temporal::StepForward<f32> = spikewire::temporal::StepForward::new(0.35);
         """
         return _native.to_rust(self._coder, name, [])
+
+    def to_c(self, directory: str | Path, name: str = "codec", spikewire: str | Path | None = None) -> None:
+        """Writes a crate that makes the library for C of this very codec, its parameters in flash: ``spikewire emit c``.
+
+        The `directory` must not be there; functions are called after `name`, as ``sw_codec_encode``. `spikewire` is a
+        checkout; the published crates unless given.
+        """
+        _native.to_c(self._coder, name, Path(directory), None if spikewire is None else Path(spikewire))
 
     def to_toml(self) -> str:
         """It as a file of parameters, for ``--params`` of the laptop program."""

@@ -123,9 +123,12 @@ impl Coder {
     fn shape(&self) -> PyResult<(usize, usize)> {
         // They do not depend on what a signal tells.
         let ramp = [0.0, 1.0, 0.5];
-        let mut calibrated = Calibrated::new(self.sample);
-        calibrated.observe(&ramp);
-        let settings = self.settle(&ramp, Some(&calibrated)).map_err(|error| value(&error))?;
+        let calibrated = self.scheme.needs_signal(&self.options).map(|_| {
+            let mut calibrated = Calibrated::new(self.sample);
+            calibrated.observe(&ramp);
+            calibrated
+        });
+        let settings = self.settle(&ramp, calibrated.as_ref()).map_err(|error| value(&error))?;
         let shape = self.scheme.shape(&settings).map_err(|error| value(&error))?;
         Ok((shape.neurons, shape.slots))
     }

@@ -24,7 +24,7 @@ mod _native {
     use super::info::schemes;
     #[pymodule_export]
     use super::library::{
-        advise, plot, read, read_events, score, to_rust, to_toml, tune, write_events,
+        advise, plot, read, read_events, score, to_c, to_rust, to_toml, tune, write_events,
     };
     #[pymodule_export]
     use super::stream::{Decoder, Encoder};

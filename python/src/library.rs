@@ -1,5 +1,7 @@
 //! What the laptop program does, on arrays.
 
+use std::path::PathBuf;
+
 use anyhow::Result;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -130,6 +132,18 @@ pub(crate) fn advise(
 #[pyfunction]
 pub(crate) fn to_rust(coder: &Coder, name: &str, comments: Vec<String>) -> PyResult<String> {
     library::rust(&coder.coding(), name, &comments).map_err(|error| value(&error))
+}
+
+/// A crate that makes the library for C of a scheme, in a new directory.
+#[pyfunction]
+pub(crate) fn to_c(
+    coder: &Coder,
+    name: &str,
+    directory: PathBuf,
+    spikewire: Option<PathBuf>,
+) -> PyResult<()> {
+    library::c(&coder.coding(), name, &directory, spikewire.as_deref())
+        .map_err(|error| value(&error))
 }
 
 /// A scheme as a file of parameters.

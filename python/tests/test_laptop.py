@@ -111,3 +111,12 @@ def test_a_flight_log_of_px4(tmp_path):
     flight = sw.read_ulog(path, "sensor_combined", "gyro_rad[0]", "gyro_rad[1]")
     table = sw.read(FLIGHT, "gyro_x", "gyro_y")
     assert np.array_equal(flight.x.astype(np.float32), table.x.astype(np.float32))
+
+
+def test_a_library_for_c(tmp_path):
+    sw.StepForward(threshold=0.35).to_c(tmp_path / "roll", name="roll")
+    assert "roll: spikewire::temporal::StepForward<f32>" in (tmp_path / "roll/src/codecs.rs").read_text()
+    with pytest.raises(ValueError, match="roll: cannot be written"):
+        sw.StepForward(threshold=0.35).to_c(tmp_path / "roll", name="roll")
+    with pytest.raises(ValueError, match="draws from a generator"):
+        sw.Bernoulli(min=0, max=1).to_c(tmp_path / "chance")

@@ -48,6 +48,14 @@ struct C {
 /// A file is bad, or the crate cannot be written.
 pub(crate) fn run(options: &Emit) -> Result<()> {
     let What::C(C { params, output, spikewire }) = &options.what;
+    c(params, output, spikewire.as_deref())
+}
+
+/// Writes a crate that makes the library for C of the codecs in these files.
+///
+/// # Errors
+/// A file is bad, or the crate cannot be written.
+pub(crate) fn c(params: &[PathBuf], output: &Path, spikewire: Option<&Path>) -> Result<()> {
     let mut codecs: Vec<(String, String)> = Vec::new();
     for path in params {
         let name = codec_name(path)?;
@@ -60,7 +68,7 @@ pub(crate) fn run(options: &Emit) -> Result<()> {
         let codec = codec(&name, path).with_context(|| path.display().to_string())?;
         codecs.push((name, codec));
     }
-    write(output, &codecs, spikewire.as_deref())
+    write(output, &codecs, spikewire)
         .with_context(|| format!("{}: cannot be written", output.display()))
 }
 

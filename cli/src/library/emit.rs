@@ -1,9 +1,12 @@
 //! Settings to paste into firmware, and to give to the laptop program.
 
 use super::Coding;
+use crate::commands;
 use crate::tune::emit;
 use anyhow::Result;
 use catalogue::run::{Known, Settings};
+use std::fs;
+use std::path::Path;
 
 /// A constant in Rust of this name, below these comments.
 ///
@@ -19,6 +22,17 @@ pub fn rust(coding: &Coding, name: &str, comments: &[String]) -> Result<String> 
 /// A parameter is missing or makes no sense.
 pub fn toml(coding: &Coding, comments: &[String]) -> Result<String> {
     Ok(emit::toml(comments, coding.scheme()?, coding.sample, &settings(coding)?))
+}
+
+/// Writes a crate that makes the library for C of this codec, its parameters in flash, into a new directory.
+///
+/// # Errors
+/// A parameter is missing or makes no sense, the library has no such scheme, or the directory is there.
+pub fn c(coding: &Coding, name: &str, directory: &Path, spikewire: Option<&Path>) -> Result<()> {
+    let place = tempfile::tempdir()?;
+    let params = place.path().join(name).with_extension("toml");
+    fs::write(&params, toml(coding, &[])?)?;
+    commands::emit::c(&[params], directory, spikewire)
 }
 
 /// As they run. Where a signal begins is no parameter of a codec that flies.

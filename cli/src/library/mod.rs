@@ -14,7 +14,7 @@ mod tune;
 
 pub use advise::{Advice, advise};
 pub use arguments::Arguments;
-pub use emit::{rust, toml};
+pub use emit::{c, rust, toml};
 pub use events::{Events, read_events, write_events};
 pub use log::{Log, read};
 pub use plot::{Shown, plot};
