@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::logs::{CHUNKED, KINDS, Kind, PAGE, blackbox, frame, gyro, record, wave};
+use common::logs::{CHUNKED, KINDS, Kind, PAGE, blackbox, fields, frame, gyro, long, record, wave};
 use common::{file, flight, good, refused, values};
 
 const SCHEME: &str = "encode --scheme sf --threshold 0.1 --topic imu --field rate";
@@ -301,4 +301,35 @@ fn spikes_as_messages_decode_as_those_of_a_table() {
     }
     let told = good(&format!("info {}", path("spikes.mcap")), "").output;
     assert!(told.contains("event_1: 3627 samples of spyke_msgs/msg/SpykeArray"), "{told}");
+}
+
+/// The toolbox's script takes the mean of the thresholds, and leaves out the spike of the first message.
+#[test]
+fn the_toolboxs_own_bag_decodes_as_its_script_does() {
+    let numbers =
+        "float32 start\nfloat32 min_input\nfloat32 max_input\nfloat32 threshold\nfloat32 input\n";
+    let definition =
+        format!("# A spyke event\nint8    spike\n{numbers}string  scheme\ntime    timestamp");
+    for (scheme, expected) in
+        [("step_forward", [1.5, 2.0, 1.5, 1.5]), ("temporal_contrast", [0.0, 1.0, 0.0, 0.0])]
+    {
+        let data = fields(&[
+            ("topic", b"event"),
+            ("type", b"spyke_msgs/spyke"),
+            ("message_definition", definition.as_bytes()),
+        ]);
+        let mut bag = b"#ROSBAG V2.0\n".to_vec();
+        bag.extend(record(&[("op", &[7]), ("conn", &[0; 4]), ("topic", b"event")], &data));
+        for (spike, threshold) in [(1_i8, 0.25_f32), (1, 0.75), (-1, 0.5), (0, 0.5)] {
+            let mut message = spike.to_le_bytes().to_vec();
+            for number in [1.5, -3.0, 3.0, threshold, 9.0] {
+                message.extend(f32::to_le_bytes(number));
+            }
+            message.extend(long(scheme.as_bytes()));
+            message.extend([0; 8]);
+            bag.extend(record(&[("op", &[2]), ("conn", &[0; 4]), ("time", &[0; 8])], &message));
+        }
+        let (_directory, path) = file("encoding.bag", &bag);
+        assert_eq!(values(&good(&format!("decode {path}"), "").output), expected, "{scheme}");
+    }
 }
