@@ -78,7 +78,7 @@ pub fn targets() -> Result<()> {
 
 /// The program has no panic handler: one path to a panic that the compiler cannot rule out, and it does not link. It
 /// links with overflow checks too: no arithmetic can overflow unnoticed in a release build, or panic in a debug build.
-/// Here one core stands for each; `cargo verify no-panic-all` links both on both.
+/// Here one core stands for each; `cargo verify panic-free` links both on both.
 pub fn no_panic() -> Result<()> {
     image::build("no-panic", Board::with("M4F")?)?;
     image::link_checked("no-panic", Board::with("M0")?)

@@ -70,7 +70,7 @@ const LONG: &[Step] = &[
     step("py-speed", "the Python package from its source package, and its speed", python::speed),
     step("more-parts", "the examples for further cores", parts::more),
     step("c-cost", "what the calls of C take beside the crate's", crate::c_library::cost),
-    step("no-panic-all", "every codec without a panic handler, on two cores", checks::no_panic_all),
+    step("panic-free", "every codec without a panic handler, on two cores", checks::no_panic_all),
     step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", checks::bench_m0),
     step("cores", "instruction counts on all five cores", long::cores),
 ];
