@@ -573,8 +573,8 @@ class NonLinearGaussian(Scheme):
     """Non-linear Gaussian receptive fields (GRF), `grf-nonlinear`: good for a value, finer where it is most of the time.
 
     centres:
-        `companded`, dense in the middle, or a rising list such as `-1,-0.2,0,0.2,1` (a text, a number or numbers, in
-        the signal's unit; companded unless given)
+        `companded`, dense in the middle; `quantiles`, dense where the signal is; or a rising list such as
+        `-1,-0.2,0,0.2,1` (a text, a number or numbers, in the signal's unit; companded unless given)
     widths:
         `spacing`, as wide as the distance between a centre's neighbours, one number for all fields, or a list (a
         text, a number or numbers, in the signal's unit; spacing unless given)
@@ -612,8 +612,8 @@ class NonLinearSlots(Scheme):
     """Non-linear GRF with sub-timesteps, `grf-nonlinear-slots`: good for a value finer than the neurons, by spike time, and finest where it is most of the time.
 
     centres:
-        `companded`, dense in the middle, or a rising list such as `-1,-0.2,0,0.2,1` (a text, a number or numbers, in
-        the signal's unit; companded unless given)
+        `companded`, dense in the middle; `quantiles`, dense where the signal is; or a rising list such as
+        `-1,-0.2,0,0.2,1` (a text, a number or numbers, in the signal's unit; companded unless given)
     widths:
         `spacing`, as wide as the distance between a centre's neighbours, one number for all fields, or a list (a
         text, a number or numbers, in the signal's unit; spacing unless given)
