@@ -143,12 +143,9 @@ fn run(steps: &[&'static Step]) -> Vec<Outcome> {
         if let Err(error) = &result {
             println!("FAILED: {error:#}");
         }
-        outcomes.push(Outcome {
-            step,
-            good: result.is_ok(),
-            seconds: start.elapsed().as_secs_f64(),
-            processor: cpu::seconds() - before,
-        });
+        let (seconds, processor) = (start.elapsed().as_secs_f64(), cpu::seconds() - before);
+        println!("--- {}: {seconds:.0} s, {processor:.0} s of processor time", step.name);
+        outcomes.push(Outcome { step, good: result.is_ok(), seconds, processor });
         if step.name == SETUP && result.is_err() {
             break; // nothing below can work
         }
