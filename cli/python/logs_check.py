@@ -1,18 +1,28 @@
-"""Compares what `spikewire` reads of logs with what independent readers do: `rosbags`, and `mcap` with `mcap-ros2-support`.
+"""Compares what `spikewire` reads of logs with what independent readers do: `rosbags`, `mcap` with `mcap-ros1-support` and
+`mcap-ros2-support`, `pyulog` and `orangebox`.
 
-Logs of every kind and packing are written by `rosbags`. `spikewire encode` writes the samples that it read as messages; those are read
-again, and every value and time is compared. Run by `cargo verify logs`: logs_check.py SPIKEWIRE RECORDING.csv DIRECTORY
+Bags and MCAP files of every kind and packing are written by `rosbags` and `mcap`, blackbox logs by `blackbox_log.py`; the `ULog` is
+a flight that a crate's package holds. `spikewire encode` writes the samples that it read as messages; those are read again, and
+every value and time is compared. Run by `cargo verify logs`: logs_check.py SPIKEWIRE RECORDING.csv DIRECTORY
 """
 
 import csv
+import json
+import re
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+import blackbox_log
 import numpy as np
 from mcap.reader import make_reader
-from mcap_ros2.decoder import DecoderFactory
+from mcap.writer import CompressionType
+from mcap.writer import Writer as McapWriter
+from mcap_ros1.decoder import DecoderFactory as Ros1
+from mcap_ros2.decoder import DecoderFactory as Ros2
+from orangebox import Parser
+from pyulog import ULog
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag1 import Writer as Writer1
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
@@ -60,6 +70,17 @@ def write(directory, recording):
             topic = writer.add_connection("/imu", KIND, typestore=types)
             for time, message in messages(types, recording, True):
                 writer.write(topic, time, types.serialize_ros1(message, KIND))
+    definition, _ = types.generate_msgdef(KIND, ros_version=1)
+    for packing in (CompressionType.NONE, CompressionType.LZ4, CompressionType.ZSTD):
+        logs.append(directory / f"ros1_{packing.name.lower()}.mcap")
+        with open(logs[-1], "wb") as file:
+            writer = McapWriter(file, compression=packing)
+            writer.start(profile="ros1")
+            schema = writer.register_schema("sensor_msgs/Imu", "ros1msg", definition.encode())
+            topic = writer.register_channel("/imu", "ros1", schema)
+            for time, message in messages(types, recording, True):
+                writer.add_message(topic, time, bytes(types.serialize_ros1(message, KIND)), time)
+            writer.finish()
     types = get_typestore(Stores.ROS2_HUMBLE)
     for storage in (StoragePlugin.SQLITE3, StoragePlugin.MCAP):
         modes = [None, CompressionMode.MESSAGE]
@@ -85,45 +106,120 @@ def value(message, field):
     return message
 
 
+def nearest(number):
+    """As messages of the toolbox hold it."""
+    return np.float32(np.float64(number))
+
+
 def expected(log):
-    """By rosbags: times in µs and values of all fields."""
-    with AnyReader([log]) as reader:
-        for _, time, raw in reader.messages():
-            message = reader.deserialize(raw, KIND)
-            yield (time + 500) // 1000, [np.float32(value(message, own)) for own in FIELDS]
+    """By rosbags or mcap: times in µs and values of all fields."""
+    for time, message, _ in decoded(log, Ros1()):
+        yield (time + 500) // 1000, [nearest(value(message, own)) for own in FIELDS]
 
 
-def read(spikewire, log, output):
-    """By spikewire, out of the messages that it wrote."""
-    command = [spikewire, "encode", "--scheme", "sf", "--threshold", "1", "--topic", "imu"]
-    subprocess.run(command + ["--fields", ",".join(FIELDS), log, "-o", output], check=True, capture_output=True)
-    rows = {}
-    if output.suffix == ".bag":
-        with AnyReader([output]) as reader:
-            found = [(own.topic, time, reader.deserialize(raw, own.msgtype)) for own, time, raw in reader.messages()]
+def decoded(log, mcap):
+    """Times in ns, messages and topics, those of an MCAP file by this decoder."""
+    if log.suffix == ".mcap":
+        with open(log, "rb") as file:
+            for _, topic, message, data in make_reader(file, True, [mcap]).iter_decoded_messages():
+                yield message.log_time, data, topic.topic
     else:
-        with open(output, "rb") as file:
-            reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
-            found = [(own.topic, message.log_time, data) for _, own, message, data in reader.iter_decoded_messages()]
-    for topic, time, message in found:
+        with AnyReader([log]) as reader:
+            for own, time, raw in reader.messages():
+                yield time, reader.deserialize(raw, own.msgtype), own.topic
+
+
+def read(spikewire, log, topic, fields, output):
+    """By spikewire, out of the messages that it wrote: times in µs and values of all fields."""
+    command = [spikewire, "encode", "--scheme", "sf", "--threshold", "1", "--topic", topic]
+    subprocess.run(command + ["--fields", ",".join(fields), log, "-o", output], check=True, capture_output=True)
+    columns = [[] for _ in fields]
+    for time, message, topic in decoded(output, Ros2()):
         if topic != "event_header":
-            place = int(topic.partition("_")[2] or 0)
-            rows.setdefault(time // 1000, [None] * len(FIELDS))[place] = np.float32(message.input)
-    return sorted(rows.items())
+            columns[int(topic.partition("_")[2] or 0)].append((time // 1000, np.float32(message.input)))
+    for row in zip(*columns, strict=True):
+        times, values = zip(*row)
+        assert len(set(times)) == 1, (log, row)
+        yield times[0], list(values)
+
+
+def compare(spikewire, log, topic, fields, told, output):
+    told, own = list(told), list(read(spikewire, log, topic, fields, output))
+    assert len(own) == len(told) > 1, (log, topic, len(own), len(told))
+    for ours, theirs in zip(own, told):
+        assert ours == theirs, (log, topic, ours, theirs)
+    return f"{len(told)} messages of {len(fields)} fields"
+
+
+def flight_log():
+    """The log of the recording, in the package of a crate that the tests need."""
+    command = ["cargo", "metadata", "--format-version", "1", "--features", "host-tests/extract"]
+    packages = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)["packages"]
+    package = next(own for own in packages if own["name"] == "ulog-rs")
+    return Path(package["manifest_path"]).parent / "test_data/sample-small.ulg"
+
+
+def ulog(spikewire, directory):
+    """Every topic's count and span, and all numbers that are finite of those that came often."""
+    log = flight_log()
+    info = subprocess.run([spikewire, "info", log], check=True, stdout=subprocess.PIPE, text=True).stdout
+    own = {name: (int(count), time) for name, count, time in re.findall(r"^(\S+): (\d+) samples(?:, ([0-9.]+) s)?", info, re.M)}
+    topics, numbers = ULog(str(log)).data_list, 0
+    assert len(own) == len(topics) > 100
+    for topic in topics:
+        name = f"{topic.name}:{topic.multi_id}" if topic.multi_id else topic.name
+        times = topic.data.pop("timestamp").astype(int)
+        span = f"{(times[-1] - times[0]) / 1e6:.3f}" if len(times) > 1 else ""
+        assert own[name] == (len(times), span), (name, own[name], len(times), span)
+        fields = [field for field, column in topic.data.items() if np.isfinite(column).all()]
+        if len(times) >= 90 and fields:
+            rows = zip(*(map(nearest, topic.data[field]) for field in fields))
+            told = zip(times.tolist(), map(list, rows))
+            compare(spikewire, log, name, fields, told, directory / "read.mcap")
+            numbers += len(times) * len(fields)
+    print(f"{log.name}: {len(topics)} topics, {numbers} numbers of them, every value and time agrees")
+
+
+def changes(rows):
+    """Those that differ from the row before."""
+    before = None
+    for time, row in rows:
+        if row != before:
+            yield time, row
+        before = row
+
+
+def blackbox(spikewire, recording, directory, every):
+    log = directory / f"every_{every}.bbl"
+    blackbox_log.write(log, recording, every)
+    parser = Parser.load(str(log))
+    frames = [frame.data for frame in parser.frames()]
+    names = parser.field_names
+    time = names.index("time")
+    for topic, kind in (("main", blackbox_log.MAIN), ("slow", blackbox_log.SLOW), ("gps", blackbox_log.GPS)):
+        fields = [own[0] for own in kind if topic == "main" or own[0] != "time"]
+        places = [names.index(field) for field in fields]
+        if topic == "main":
+            told = [(frame[time], [nearest(frame[place]) for place in places]) for frame in frames]
+        else:
+            # It gives them with the frames that follow; they were logged at the time of the frame before.
+            pairs = [(before[time], [frame[place] for place in places]) for before, frame in zip(frames, frames[1:])]
+            known = (pair for pair in pairs if "" not in pair[1])
+            told = [(time, list(map(nearest, row))) for time, row in changes(known)]
+        print(f"{log.name}, {topic}: {compare(spikewire, log, topic, fields, told, directory / 'read.bag')} agree")
 
 
 def main():
     spikewire, recording, directory = sys.argv[1], sys.argv[2], Path(sys.argv[3])
     shutil.rmtree(directory, ignore_errors=True)
     directory.mkdir(parents=True)
-    for log in write(directory, recording):
-        told = list(expected(log))
-        for name in ("read.bag", "read.mcap"):
-            own = read(spikewire, log, directory / name)
-            assert len(own) == len(told) > 1000, (log, len(own), len(told))
-            for ours, theirs in zip(own, told):
-                assert ours == theirs, (log, ours, theirs)
-        print(f"{log.name}: {len(told)} messages of {len(FIELDS)} fields, every value and time agrees")
+    for every in (1, 2):
+        blackbox(spikewire, recording, directory, every)
+    ulog(spikewire, directory)
+    for place, log in enumerate(write(directory, recording)):
+        output = directory / ("read.bag", "read.mcap")[place % 2]
+        agreed = compare(spikewire, log, "imu", FIELDS, expected(log), output)
+        print(f"{log.name}: {agreed}, every value and time agrees")
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ mod common;
 
 use common::logs::{CHUNKED, KINDS, Kind, PAGE, blackbox, fields, frame, gyro, long, record, wave};
 use common::{file, flight, good, refused, values};
+use serde_json::Value;
 
 const SCHEME: &str = "encode --scheme sf --threshold 0.1 --topic imu --field rate";
 
@@ -257,6 +258,21 @@ fn gaps_and_missing_messages_are_told() {
 }
 
 #[test]
+fn rates_that_jump_are_told() {
+    let mut log = Kind::Mcap.start();
+    let samples = (0..400).step_by(2).chain(400..500);
+    let records: Vec<u8> = samples.flat_map(|own| Kind::Mcap.record(own)).collect();
+    log.extend(Kind::Mcap.chunk("none", &records));
+    log.extend(Kind::Mcap.end());
+    let (_directory, path) = file("log.mcap", &log);
+    let said = "the rate jumps 1 times: 200.00 Hz from about sample 192\n";
+    let told = good(&format!("info {path}"), "").output;
+    assert!(told.contains(said), "{told}");
+    let ran = good(&format!("{SCHEME} {path}"), "");
+    assert!(ran.told.contains(said), "{}", ran.told);
+}
+
+#[test]
 fn all_commands_take_logs() {
     let (directory, path) = file("log.mcap", Kind::Mcap.log("zstd"));
     let channel = format!("--topic /imu --field rate {path}");
@@ -268,6 +284,25 @@ fn all_commands_take_logs() {
         good(&command, "");
     }
     good(&format!("score --scheme sf --threshold 0.05 --channel /imu.rate {path}"), "");
+}
+
+#[test]
+fn bags_are_tuned_and_advised_on() {
+    for kind in CHUNKED {
+        let mut log = kind.start();
+        let records: Vec<u8> = (0..400).flat_map(|sample| kind.record(sample)).collect();
+        log.extend(kind.chunk("none", &records));
+        log.extend(kind.end());
+        let (_directory, path) = file(kind.name(), &log);
+        let channel = format!("--topic /imu --field rate --evaluations 10 {path}");
+        let tuned =
+            good(&format!("tune --scheme sf --min-efficiency 10 --emit toml {channel}"), "");
+        assert!(tuned.output.contains("threshold = "), "{kind:?}: {}", tuned.output);
+        let advised = good(&format!("advise --json --max-rmse 0.4 {channel}"), "").output;
+        let advised: Value = serde_json::from_str(&advised).unwrap();
+        assert_eq!(advised[0]["look"]["samples"], 400, "{kind:?}: {advised:#}");
+        assert_ne!(advised[0]["reaching"], Value::Array(Vec::new()), "{kind:?}: {advised:#}");
+    }
 }
 
 /// What is decoded from a log is what is decoded from a table of spikes, for one neuron and several, with a sign and

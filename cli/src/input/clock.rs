@@ -22,6 +22,27 @@ pub(crate) struct Step {
     pub microseconds: i64,
 }
 
+impl fmt::Display for Step {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.3} ms after sample {}", self.microseconds as f64 / 1e3, self.after)
+    }
+}
+
+/// Another rate than before, for a while.
+#[derive(Debug)]
+struct Jump {
+    /// Samples a second.
+    rate: f64,
+    /// The sample that it was seen from.
+    from: u64,
+}
+
+impl fmt::Display for Jump {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.2} Hz from about sample {}", self.rate, self.from)
+    }
+}
+
 /// Watches the times of a recording.
 #[derive(Debug)]
 pub(crate) struct Clock {
@@ -31,17 +52,32 @@ pub(crate) struct Clock {
     samples_a_step: f64,
     previous: Option<i64>,
     seen: u64,
-    gaps: Told,
-    backward: Told,
+    gaps: Told<Step>,
+    backward: Told<Step>,
     repeated: u64,
+    /// The last times, up to a run of them, and the step from sample to sample in the run before.
+    run: Vec<i64>,
+    run_step: f64,
+    jumps: Told<Jump>,
     is_timed: bool,
 }
 
+/// So many steps tell a rate.
+const RUN: usize = 64;
+/// A rate jumps where it changes by more than this factor.
+const JUMP: f64 = 1.5;
+
 /// How many there were, and the first of them.
-#[derive(Debug, Default)]
-struct Told {
+#[derive(Debug)]
+struct Told<T> {
     count: u64,
-    first: Vec<Step>,
+    first: Vec<T>,
+}
+
+impl<T> Default for Told<T> {
+    fn default() -> Self {
+        Self { count: 0, first: Vec::new() }
+    }
 }
 
 impl Clock {
@@ -58,6 +94,9 @@ impl Clock {
             gaps: Told::default(),
             backward: Told::default(),
             repeated: 0,
+            run: Vec::with_capacity(RUN + 1),
+            run_step: usual_step / samples_a_step,
+            jumps: Told::default(),
             is_timed: !first_times.is_empty(),
         }
     }
@@ -93,13 +132,40 @@ impl Clock {
             }
             self.previous = Some(time);
             self.seen += 1;
+            self.run.push(time);
+            if self.run.len() > RUN {
+                self.end_run();
+                self.run.clear();
+                self.run.push(time);
+            }
         }
         steps
     }
+
+    /// Takes the rate of a run. Both its median and its mean tell a jump: a gap moves only the mean, steps of two
+    /// lengths by turns only the median.
+    fn end_run(&mut self) {
+        let (Some((median, samples)), [first, .., last]) = (usual_step(&self.run), &*self.run)
+        else {
+            return;
+        };
+        // Batches too long for a run to hold several of them.
+        if samples > 8.0 {
+            return;
+        }
+        let step = median / samples;
+        let mean = last.saturating_sub(*first) as f64 / RUN as f64;
+        let is_longer = step.min(mean) > self.run_step * JUMP;
+        let is_shorter = step.max(mean) < self.run_step / JUMP && mean > 0.0;
+        if is_longer || is_shorter {
+            self.jumps.take(Jump { rate: 1e6 / step, from: self.seen - 1 - RUN as u64 });
+            self.run_step = step;
+        }
+    }
 }
 
-impl Told {
-    fn take(&mut self, step: Step) {
+impl<T> Told<T> {
+    fn take(&mut self, step: T) {
         const TOLD: usize = 5;
         self.count += 1;
         if self.first.len() < TOLD {
@@ -108,12 +174,11 @@ impl Told {
     }
 }
 
-impl fmt::Display for Told {
+impl<T: fmt::Display> fmt::Display for Told<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (place, step) in self.first.iter().enumerate() {
             let before = if place == 0 { ": " } else { ", " };
-            let milliseconds = step.microseconds as f64 / 1e3;
-            write!(f, "{before}{milliseconds:.3} ms after sample {}", step.after)?;
+            write!(f, "{before}{step}")?;
         }
         let more = self.count - self.first.len() as u64;
         if more > 0 { write!(f, ", and {more} more") } else { Ok(()) }
@@ -132,6 +197,9 @@ impl fmt::Display for Clock {
             write!(f, "{count} gaps above {longest:.3} ms where {usual:.3} ms are usual{gaps}")?;
         } else {
             write!(f, "no time comes after the one before, so gaps cannot be seen")?;
+        }
+        if self.jumps.count > 0 {
+            write!(f, "; the rate jumps {} times{}", self.jumps.count, self.jumps)?;
         }
         if self.backward.count > 0 {
             write!(f, "; {} steps back in time{}", self.backward.count, self.backward)?;
@@ -173,9 +241,40 @@ mod tests {
 
     #[test]
     fn times_of_batches_are_no_gaps() {
-        let times: Vec<i64> = (0..1000).map(|sample| sample / 4 * 20_000).collect();
-        let mut clock = Clock::new(&times, None, 1.5);
-        assert_eq!(clock.observe(&times), []);
-        assert!((clock.rate().unwrap() - 200.0).abs() < 1.0, "{:?}", clock.rate());
+        for (batch, within) in [(4, 0.005), (100, 0.12)] {
+            let times: Vec<i64> = (0..1000).map(|sample| sample / batch * 5000 * batch).collect();
+            let mut clock = Clock::new(&times, None, 1.5);
+            assert_eq!(clock.observe(&times), []);
+            let rate = clock.rate().unwrap();
+            assert!((rate / 200.0 - 1.0).abs() < within, "{rate}");
+            assert!(!clock.to_string().contains("jumps"), "{clock}");
+        }
+    }
+
+    #[test]
+    fn rates_that_jump_for_a_while_are_told() {
+        let told = |steps: &[(usize, i64)]| {
+            let steps = steps.iter().flat_map(|&(count, step)| std::iter::repeat_n(step, count));
+            let mut time = 0;
+            let times: Vec<i64> = steps
+                .map(|step| {
+                    time += step;
+                    time
+                })
+                .collect();
+            let mut clock = Clock::new(&times, None, 1.5);
+            clock.observe(&times);
+            clock.to_string().split_once("; ").map(|(_, told)| told.to_owned())
+        };
+        let jumps = "the rate jumps 2 times: 2000.00 Hz from about sample 320, 1000.00 Hz from about sample 512";
+        assert_eq!(told(&[(321, 1000), (200, 500), (300, 1000)]).as_deref(), Some(jumps));
+        let slower = "the rate jumps 1 times: 400.00 Hz from about sample 640";
+        assert_eq!(told(&[(640, 1000), (100, 2500)]).as_deref(), Some(slower));
+        // Not for a while, not by much, and a gap.
+        for steady in
+            [[(500, 1000), (20, 500)], [(500, 1000), (200, 1400)], [(500, 1000), (1, 1_000_000)]]
+        {
+            assert_eq!(told(&[steady[0], steady[1], (300, 1000)]), None, "{steady:?}");
+        }
     }
 }
