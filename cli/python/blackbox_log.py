@@ -124,7 +124,7 @@ def flight(recording):
 
 def head(every):
     lines = ["Product:Blackbox flight data recorder by Nicholas Sherlock", "Data version:2", "I interval:32"]
-    lines += [f"P interval:1/{every}", f"vbatref:{VOLTAGE}", f"motorOutput:{LEAST_MOTOR},1850"]
+    lines += [f"P interval:1/{every}", "minthrottle:1070", f"vbatref:{VOLTAGE}", f"motorOutput:{LEAST_MOTOR},1850"]
     home = [("GPS_home[0]", 1, 0, 0), ("GPS_home[1]", 1, 0, 0)]
     for kind, fields in (("I", MAIN), ("S", SLOW), ("G", GPS), ("H", home)):
         for place, what in enumerate(("name", "signed", "predictor", "encoding")):
