@@ -149,7 +149,7 @@ fn options_that_the_input_does_not_take() {
     refused(&format!("{SF} --rate 200 -"), timed, &["--rate 200 contradicts", "column time_us"]);
     let log = flight_logs()[0].display().to_string();
     let channel = "--topic sensor_combined --field gyro_rad[0]";
-    refused(&format!("{SF} --rate 200 {channel} {log}"), "", &["a flight log takes no --rate"]);
+    refused(&format!("{SF} --rate 200 {channel} {log}"), "", &["a log takes no --rate"]);
 }
 
 #[test]
