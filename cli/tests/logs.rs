@@ -258,6 +258,20 @@ fn gaps_and_missing_messages_are_told() {
 }
 
 #[test]
+fn logs_are_read_from_files_only() {
+    for (start, words) in [
+        ("H Product:Blackbox flight data recorder\n", "a Betaflight log"),
+        ("#ROSBAG V2.0\nE", "a ROS bag"),
+        ("SQLite format 3\0\x10\0", "a database, perhaps a ROS 2 bag"),
+    ] {
+        let scheme = "encode --scheme sf --threshold 1";
+        refused(&format!("{scheme} -"), start, &[words, "read from a file only", "standard input"]);
+        let (_directory, path) = file("log.bin", start);
+        refused(&format!("{scheme} {path}"), "", &["a log needs --topic and --field", "log.bin"]);
+    }
+}
+
+#[test]
 fn rates_that_jump_are_told() {
     let mut log = Kind::Mcap.start();
     let samples = (0..400).step_by(2).chain(400..500);
