@@ -17,16 +17,16 @@ struct Part {
     boards: &'static [&'static str],
 }
 
-const PARTS: [Part; 4] = [
-    Part { name: "rp2040", target: "thumbv6m-none-eabi", boards: &[] },
+const PARTS: [Part; 3] = [
     Part { name: "speedybee-f405", target: F4, boards: &[] },
     Part { name: "stm32f405-rtic", target: F4, boards: &[] },
     Part { name: "stm32f4-embassy", target: F4, boards: &["crazyflie"] },
 ];
 
-/// Further cores, whose HALs take minutes: `cargo verify more-parts`.
-const MORE: [Part; 3] = [
+/// Other parts, whose HALs take minutes: `cargo verify more-parts`.
+const MORE: [Part; 4] = [
     Part { name: "nrf52840", target: F4, boards: &[] },
+    Part { name: "rp2040", target: "thumbv6m-none-eabi", boards: &[] },
     Part { name: "rp2350", target: "thumbv8m.main-none-eabihf", boards: &[] },
     Part { name: "stm32h743", target: F4, boards: &[] },
 ];
@@ -39,13 +39,13 @@ const SHARED: [&str; 2] = ["flight", "icm42688p"];
 /// What every manifest says of the checkout, and a copy does without.
 const PATCH: &str = "[patch.crates-io]\nspikewire = { path = \"../..\" }\n";
 
-/// The usual parts, and what all of them share.
+/// The STM32F405's, and what all of them share.
 pub fn parts() -> Result<()> {
     bodies()?;
     build(&PARTS)
 }
 
-/// The further cores.
+/// The other parts.
 pub fn more() -> Result<()> {
     build(&MORE)
 }
