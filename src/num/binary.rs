@@ -52,11 +52,16 @@ impl Binary for f32 {
         min + (max - min) * ((2 * digits + 1) as f32 * half)
     }
 
-    /// Halves of subnormal values would be rounded before their sum; a sum that is too large has exact halves.
+    /// Halves of the smallest values would be rounded before their sum, and the sum of the largest is infinite.
     #[inline]
     fn middle(self, other: f32) -> f32 {
-        let sum = self + other;
-        if sum.is_finite() { sum * 0.5 } else { self * 0.5 + other * 0.5 }
+        // Below 2^-125, whose half is the smallest that is exact.
+        let is_tiny = |x: f32| x.to_bits() << 1 < 0x0200_0000;
+        if is_tiny(self) || is_tiny(other) {
+            (self + other) * 0.5
+        } else {
+            self * 0.5 + other * 0.5
+        }
     }
 
     #[inline]
