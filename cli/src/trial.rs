@@ -2,7 +2,7 @@
 
 use crate::brief::short;
 use crate::fit::{Fit, rounded};
-use crate::input::{Chunk, Clock, InputOptions};
+use crate::input::{Clock, InputOptions};
 use crate::options::SchemeOptions;
 use crate::scheme::Scheme;
 use anyhow::{Context, Result, anyhow, bail};
@@ -49,14 +49,7 @@ impl Recording {
     /// As reading does, or no row without a value that is not finite.
     pub(crate) fn read_all(input: &InputOptions) -> Result<Vec<Self>> {
         let mut source = input.open()?;
-        let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
-        loop {
-            source.next(&mut chunk)?;
-            if chunk.is_empty() {
-                break;
-            }
-            all.append(&mut chunk);
-        }
+        let all = source.rest()?;
         let rows = all.finite_rows();
         let times: Vec<i64> =
             all.times.iter().zip(&rows).filter(|(_, row)| **row).map(|(time, _)| *time).collect();

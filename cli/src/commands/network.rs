@@ -2,7 +2,7 @@
 
 use crate::bank::Bank;
 use crate::fit::rounded;
-use crate::input::{Chunk, Clock, InputOptions, above_zero};
+use crate::input::{Clock, InputOptions, above_zero};
 use crate::network::{Distance, File, Ran, Told, Trained, Trains, emit, quantise, run_on_chip};
 use crate::options::SchemeOptions;
 use crate::output::Output;
@@ -124,14 +124,7 @@ fn driven(options: &Network) -> Result<Driven> {
     let Network { scheme, sample, input, parameters, .. } = options;
     parameters.check(scheme.info())?;
     let mut source = input.open()?;
-    let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
-    loop {
-        source.next(&mut chunk)?;
-        if chunk.is_empty() {
-            break;
-        }
-        all.append(&mut chunk);
-    }
+    let all = source.rest()?;
     let mut clock = Clock::new(&all.times, input.rate, input.gap);
     clock.observe(&all.times);
     let rows = all.finite_rows();

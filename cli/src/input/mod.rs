@@ -179,6 +179,21 @@ pub(crate) trait Source {
     /// What cannot be read, and where.
     fn next(&mut self, chunk: &mut Chunk) -> Result<()>;
 
+    /// All samples that are left.
+    ///
+    /// # Errors
+    /// As for [`next`](Self::next).
+    fn rest(&mut self) -> Result<Chunk> {
+        let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
+        loop {
+            self.next(&mut chunk)?;
+            if chunk.is_empty() {
+                return Ok(all);
+            }
+            all.append(&mut chunk);
+        }
+    }
+
     /// What the channels are, as keys and values for the header of a file of spikes.
     fn origin(&self) -> &[(&'static str, String)];
 

@@ -1,7 +1,7 @@
 //! Recordings from files: flight logs and tables.
 
 use super::Arguments;
-use crate::input::{Chunk, InputOptions};
+use crate::input::InputOptions;
 use anyhow::Result;
 
 /// Channels of a recording.
@@ -24,14 +24,7 @@ pub struct Log {
 pub fn read(path: &str, arguments: &Arguments) -> Result<Log> {
     let input: InputOptions = arguments.parse(path)?;
     let mut source = input.or_all()?.open()?;
-    let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
-    loop {
-        source.next(&mut chunk)?;
-        if chunk.is_empty() {
-            break;
-        }
-        all.append(&mut chunk);
-    }
+    let all = source.rest()?;
     let names = source.origin().last().map_or("", |(_, names)| names.as_str());
     let names = names.split(',').map(str::to_owned).collect();
     Ok(Log { names, columns: all.columns, times: all.times, notes: source.notes().to_vec() })

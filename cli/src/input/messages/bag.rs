@@ -3,6 +3,7 @@
 //! The index is not needed, so bags that were never closed or indexed are read as any other.
 
 use super::bytes::{Bytes, take, u32_from, u64_from, unpack};
+use super::chunk::{Chunk, Chunked};
 use super::definition::Dialect;
 use super::faults::Faults;
 use super::topic::Topic;
@@ -33,16 +34,11 @@ pub(super) struct Bag {
     topics: Vec<Topic>,
     /// The topic of each connection.
     connections: HashMap<u32, usize>,
-    /// The chunk that is being read, how far, and where it is in the file.
-    chunk: Vec<u8>,
-    taken: usize,
-    chunk_at: u64,
+    chunk: Chunk,
     header: Vec<u8>,
     data: Vec<u8>,
     /// The message that came last is here, in the chunk or else in the data.
     message: Message,
-    /// The chunk ends before it should, which was told.
-    is_cut: bool,
     is_over: bool,
 }
 
@@ -107,121 +103,13 @@ impl Bag {
             bytes,
             topics: Vec::new(),
             connections: HashMap::new(),
-            chunk: Vec::new(),
-            taken: 0,
-            chunk_at: 0,
+            chunk: Chunk::default(),
             header: Vec::new(),
             data: Vec::new(),
             message: Message::Alone,
-            is_cut: false,
             is_over: false,
             faults,
         })
-    }
-
-    /// Reads the next record outside of chunks into `header` and `data`; `None` at the end.
-    fn record(&mut self) -> Result<Option<u64>> {
-        let at = self.bytes.at();
-        self.data.clear();
-        let read = part(&mut self.bytes, &mut self.header)
-            .and_then(|()| part(&mut self.bytes, &mut self.data));
-        let Err(what) = read else { return Ok(Some(at)) };
-        if self.bytes.at() == at {
-            return Ok(None);
-        }
-        self.faults.end(at, what)?;
-        self.is_over = true;
-        // Of a chunk, what is there may hold messages.
-        let is_chunk = Fields(&self.header).op() == Some(op::CHUNK);
-        Ok(is_chunk.then_some(at))
-    }
-
-    /// Takes a record outside of chunks; gives the entry of a message.
-    fn outside(&mut self, at: u64) -> Result<Option<Entry>> {
-        let fields = Fields(&self.header);
-        match fields.op() {
-            Some(op::CHUNK) => {
-                let compression = fields.text("compression").unwrap_or_default();
-                let size = fields.u32("size").unwrap_or_default();
-                let (chunk, fault) = unpack(&compression, &self.data, size.into());
-                (self.chunk, self.taken, self.chunk_at) = (chunk, 0, at);
-                self.is_cut = self.is_over || fault.is_some();
-                if let Some(what) = fault.filter(|_| !self.is_over) {
-                    self.faults.skip(at, what)?;
-                }
-            }
-            Some(op::MESSAGE) => {
-                let (connection, time) = (fields.u32("conn"), fields.time("time"));
-                self.message = Message::Alone;
-                return self.entry(connection, time, at);
-            }
-            Some(op::CONNECTION) => {
-                let connection = connection(&fields, &self.data);
-                self.add(connection, at)?;
-            }
-            Some(op::BAG) => {
-                if fields.u64("index_pos") == Some(0) {
-                    self.faults
-                        .note("the bag has no index: its recorder did not close it".to_owned());
-                }
-            }
-            Some(op::INDEX | op::CHUNK_INFO) => {}
-            Some(other) => self.faults.skip(at, format!("a record of unknown kind {other}"))?,
-            None => self.faults.skip(at, "a record without a kind")?,
-        }
-        Ok(None)
-    }
-
-    /// Goes to the next message of the chunk; `None` at its end.
-    fn inside(&mut self) -> Result<Option<Entry>> {
-        while self.taken < self.chunk.len() {
-            let entry = self.of_chunk()?;
-            if entry.is_some() {
-                return Ok(entry);
-            }
-        }
-        Ok(None)
-    }
-
-    /// Takes the next record of the chunk; gives the entry of a message.
-    fn of_chunk(&mut self) -> Result<Option<Entry>> {
-        let mut left = &self.chunk[self.taken..];
-        let at = self.chunk_at;
-        let record = (|| {
-            let length = u32_from(&mut left)?;
-            let header = take(&mut left, length.into())?;
-            let length = u32_from(&mut left)?;
-            Some((Fields(header), take(&mut left, length.into())?))
-        })();
-        let Some((fields, data)) = record else {
-            let what = format!("the chunk is damaged at its byte {}", self.taken);
-            self.taken = self.chunk.len();
-            if !self.is_cut {
-                self.faults.skip(at, what)?;
-            }
-            return Ok(None);
-        };
-        let end = self.chunk.len() - left.len();
-        match fields.op() {
-            Some(op::MESSAGE) => {
-                let (connection, time) = (fields.u32("conn"), fields.time("time"));
-                self.message = Message::InChunk(end - data.len()..end);
-                self.taken = end;
-                self.entry(connection, time, at)
-            }
-            Some(op::CONNECTION) => {
-                let connection = connection(&fields, data);
-                self.taken = end;
-                self.add(connection, at)?;
-                Ok(None)
-            }
-            _ => {
-                let what = format!("the chunk has no message at its byte {}", self.taken);
-                self.taken = end;
-                self.faults.skip(at, what)?;
-                Ok(None)
-            }
-        }
     }
 
     fn entry(
@@ -270,25 +158,104 @@ fn connection(fields: &Fields<'_>, data: &[u8]) -> Option<(u32, Topic)> {
     Some((id, Topic::new(name, kind, Dialect::Ros1, &text)))
 }
 
-impl Log for Bag {
-    fn next(&mut self) -> Result<Option<Entry>> {
-        loop {
-            if let Some(entry) = self.inside()? {
-                return Ok(Some(entry));
+impl Chunked for Bag {
+    /// Its place; it is in `header` and `data`.
+    type Record = u64;
+
+    fn chunk(&self) -> &Chunk {
+        &self.chunk
+    }
+
+    fn of_chunk(&mut self) -> Result<Option<Entry>> {
+        let mut left = self.chunk.left();
+        let at = self.chunk.at();
+        let record = (|| {
+            let length = u32_from(&mut left)?;
+            let header = take(&mut left, length.into())?;
+            let length = u32_from(&mut left)?;
+            Some((Fields(header), take(&mut left, length.into())?))
+        })();
+        let Some((fields, data)) = record else {
+            return self.chunk.leave(&mut self.faults).map(|()| None);
+        };
+        let end = self.chunk.bytes().len() - left.len();
+        match fields.op() {
+            Some(op::MESSAGE) => {
+                let (connection, time) = (fields.u32("conn"), fields.time("time"));
+                self.message = Message::InChunk(end - data.len()..end);
+                self.chunk.take_to(end);
+                self.entry(connection, time, at)
             }
-            if self.is_over {
-                return Ok(None);
+            Some(op::CONNECTION) => {
+                let connection = connection(&fields, data);
+                self.chunk.take_to(end);
+                self.add(connection, at)?;
+                Ok(None)
             }
-            match self.record()? {
-                Some(at) => {
-                    let entry = self.outside(at)?;
-                    if entry.is_some() {
-                        return Ok(entry);
-                    }
-                }
-                None => self.is_over = true,
+            _ => {
+                let what = format!("the chunk has no message at its byte {}", self.chunk.taken());
+                self.chunk.take_to(end);
+                self.faults.skip(at, what)?;
+                Ok(None)
             }
         }
+    }
+
+    fn is_over(&mut self) -> &mut bool {
+        &mut self.is_over
+    }
+
+    fn record(&mut self) -> Result<Option<u64>> {
+        let at = self.bytes.at();
+        self.data.clear();
+        let read = part(&mut self.bytes, &mut self.header)
+            .and_then(|()| part(&mut self.bytes, &mut self.data));
+        let Err(what) = read else { return Ok(Some(at)) };
+        if self.bytes.at() == at {
+            return Ok(None);
+        }
+        self.faults.end(at, what)?;
+        self.is_over = true;
+        // Of a chunk, what is there may hold messages.
+        let is_chunk = Fields(&self.header).op() == Some(op::CHUNK);
+        Ok(is_chunk.then_some(at))
+    }
+
+    fn outside(&mut self, at: u64) -> Result<Option<Entry>> {
+        let fields = Fields(&self.header);
+        match fields.op() {
+            Some(op::CHUNK) => {
+                let compression = fields.text("compression").unwrap_or_default();
+                let size = fields.u32("size").unwrap_or_default();
+                let unpacked = unpack(&compression, &self.data, size.into());
+                self.chunk.begin(at, unpacked, self.is_over, &mut self.faults)?;
+            }
+            Some(op::MESSAGE) => {
+                let (connection, time) = (fields.u32("conn"), fields.time("time"));
+                self.message = Message::Alone;
+                return self.entry(connection, time, at);
+            }
+            Some(op::CONNECTION) => {
+                let connection = connection(&fields, &self.data);
+                self.add(connection, at)?;
+            }
+            Some(op::BAG) => {
+                if fields.u64("index_pos") == Some(0) {
+                    self.faults
+                        .note("the bag has no index: its recorder did not close it".to_owned());
+                }
+            }
+            Some(op::INDEX | op::CHUNK_INFO) => {}
+            Some(other) => self.faults.skip(at, format!("a record of unknown kind {other}"))?,
+            None => self.faults.skip(at, "a record without a kind")?,
+        }
+        Ok(None)
+    }
+}
+
+impl Log for Bag {
+    fn next(&mut self) -> Result<Option<Entry>> {
+        self.next_message()
     }
 
     fn topics(&self) -> &[Topic] {
@@ -297,7 +264,7 @@ impl Log for Bag {
 
     fn message(&self) -> &[u8] {
         match &self.message {
-            Message::InChunk(range) => &self.chunk[range.clone()],
+            Message::InChunk(range) => &self.chunk.bytes()[range.clone()],
             Message::Alone => &self.data,
         }
     }

@@ -3,6 +3,7 @@
 //! The index is not needed, so files that were never closed are read as any other.
 
 use super::bytes::{Bytes, ZSTD, take, u16_from, u32_from, u64_from, unpack};
+use super::chunk::{Chunk, Chunked};
 use super::definition::Dialect;
 use super::faults::Faults;
 use super::topic::Topic;
@@ -40,12 +41,7 @@ pub(super) struct Mcap {
     schemas: HashMap<u16, (String, String, String)>,
     /// The topic of each channel.
     channels: HashMap<u16, usize>,
-    /// The chunk that is being read, how far, and where it is in the file.
-    chunk: Vec<u8>,
-    taken: usize,
-    chunk_at: u64,
-    /// The chunk ends before it should, which was told.
-    is_cut: bool,
+    chunk: Chunk,
     data: Vec<u8>,
     /// The message that came last.
     message: Message,
@@ -73,77 +69,11 @@ impl Mcap {
             topics: Vec::new(),
             schemas: HashMap::new(),
             channels: HashMap::new(),
-            chunk: Vec::new(),
-            taken: 0,
-            chunk_at: 0,
-            is_cut: false,
+            chunk: Chunk::default(),
             data: Vec::new(),
             message: Message::InData(0..0),
             is_over: false,
         })
-    }
-
-    /// Reads the next record outside of chunks into `data`; its kind and place, `None` at the end.
-    fn record(&mut self) -> Result<Option<(u8, u64)>> {
-        const CUT: &str = "the file ends within the record";
-        let at = self.bytes.at();
-        let head = self.bytes.take(9, &mut self.data);
-        let kind = self.data.first().copied();
-        let length = u64_from(&mut self.data.get(1..).unwrap_or_default());
-        let what = match (head, kind, length) {
-            (Err(error), ..) => error.to_string(),
-            (Ok(_), None, _) => {
-                self.faults.note("the file has no end: its recorder did not close it".to_owned());
-                return Ok(None);
-            }
-            (Ok(_), Some(kind), Some(length)) => {
-                let is_wanted = (op::HEADER..=op::CHUNK).contains(&kind) || kind == op::DATA_END;
-                let taken = if is_wanted {
-                    self.bytes.take(length, &mut self.data)
-                } else {
-                    self.bytes.pass(length)
-                };
-                match taken {
-                    Ok(true) => return Ok(Some((kind, at))),
-                    Ok(false) => CUT.to_owned(),
-                    Err(error) => error.to_string(),
-                }
-            }
-            _ => CUT.to_owned(),
-        };
-        self.faults.end(at, what)?;
-        self.is_over = true;
-        // Of a chunk, what is there may hold messages.
-        Ok(kind.filter(|kind| *kind == op::CHUNK && length.is_some()).map(|kind| (kind, at)))
-    }
-
-    /// Takes a record outside of chunks; gives the entry of a message.
-    fn outside(&mut self, kind: u8, at: u64) -> Result<Option<Entry>> {
-        match kind {
-            op::CHUNK => {
-                self.open_chunk(at)?;
-                Ok(None)
-            }
-            op::MESSAGE => {
-                let Some((entry, content)) = self.entry(&self.data, at) else {
-                    return self.odd(at);
-                };
-                let start = self.data.len() - content;
-                self.message = unpacked(&self.data[start..])
-                    .map_or(Message::InData(start..self.data.len()), Message::Unpacked);
-                Ok(Some(entry))
-            }
-            op::FOOTER | op::DATA_END => {
-                self.is_over = true;
-                Ok(None)
-            }
-            _ => {
-                let data = std::mem::take(&mut self.data);
-                let defined = self.define(kind, &data, at);
-                self.data = data;
-                defined.map(|()| None)
-            }
-        }
     }
 
     fn open_chunk(&mut self, at: u64) -> Result<()> {
@@ -164,55 +94,7 @@ impl Mcap {
             (checksum != 0 && crc32fast::hash(&chunk) != checksum)
                 .then(|| "the checksum of the chunk does not match".to_owned())
         });
-        (self.chunk, self.taken, self.chunk_at) = (chunk, 0, at);
-        self.is_cut = self.is_over || fault.is_some();
-        match fault.filter(|_| !self.is_over) {
-            Some(what) => self.faults.skip(at, what),
-            None => Ok(()),
-        }
-    }
-
-    /// Goes to the next message of the chunk; `None` at its end.
-    fn inside(&mut self) -> Result<Option<Entry>> {
-        while self.taken < self.chunk.len() {
-            let entry = self.of_chunk()?;
-            if entry.is_some() {
-                return Ok(entry);
-            }
-        }
-        Ok(None)
-    }
-
-    /// Takes the next record of the chunk; gives the entry of a message.
-    fn of_chunk(&mut self) -> Result<Option<Entry>> {
-        let mut left = &self.chunk[self.taken..];
-        let at = self.chunk_at;
-        let record = (|| {
-            let kind = take(&mut left, 1)?[0];
-            let length = u64_from(&mut left)?;
-            Some((kind, take(&mut left, length)?))
-        })();
-        let Some((kind, data)) = record else {
-            let what = format!("the chunk is damaged at its byte {}", self.taken);
-            self.taken = self.chunk.len();
-            if !self.is_cut {
-                self.faults.skip(at, what)?;
-            }
-            return Ok(None);
-        };
-        let end = self.chunk.len() - left.len();
-        self.taken = end;
-        if kind == op::MESSAGE {
-            let Some((entry, content)) = self.entry(data, at) else {
-                return self.odd(at);
-            };
-            let content = end - content..end;
-            self.message = unpacked(&self.chunk[content.clone()])
-                .map_or(Message::InChunk(content), Message::Unpacked);
-            return Ok(Some(entry));
-        }
-        let data = data.to_vec();
-        self.define(kind, &data, at).map(|()| None)
+        self.chunk.begin(at, (chunk, fault), self.is_over, &mut self.faults)
     }
 
     /// The entry of a message, and how long its content is; `None` if it has no known channel.
@@ -276,25 +158,111 @@ impl Mcap {
     }
 }
 
-impl Log for Mcap {
-    fn next(&mut self) -> Result<Option<Entry>> {
-        loop {
-            if let Some(entry) = self.inside()? {
-                return Ok(Some(entry));
-            }
-            if self.is_over {
+impl Chunked for Mcap {
+    /// Its kind and place; it is in `data`.
+    type Record = (u8, u64);
+
+    fn chunk(&self) -> &Chunk {
+        &self.chunk
+    }
+
+    fn of_chunk(&mut self) -> Result<Option<Entry>> {
+        let mut left = self.chunk.left();
+        let at = self.chunk.at();
+        let record = (|| {
+            let kind = take(&mut left, 1)?[0];
+            let length = u64_from(&mut left)?;
+            Some((kind, take(&mut left, length)?))
+        })();
+        let Some((kind, data)) = record else {
+            return self.chunk.leave(&mut self.faults).map(|()| None);
+        };
+        let end = self.chunk.bytes().len() - left.len();
+        if kind == op::MESSAGE {
+            let entry = self.entry(data, at);
+            self.chunk.take_to(end);
+            let Some((entry, content)) = entry else {
+                return self.odd(at);
+            };
+            let content = end - content..end;
+            self.message = unpacked(&self.chunk.bytes()[content.clone()])
+                .map_or(Message::InChunk(content), Message::Unpacked);
+            return Ok(Some(entry));
+        }
+        let data = data.to_vec();
+        self.chunk.take_to(end);
+        self.define(kind, &data, at).map(|()| None)
+    }
+
+    fn is_over(&mut self) -> &mut bool {
+        &mut self.is_over
+    }
+
+    fn record(&mut self) -> Result<Option<(u8, u64)>> {
+        const CUT: &str = "the file ends within the record";
+        let at = self.bytes.at();
+        let head = self.bytes.take(9, &mut self.data);
+        let kind = self.data.first().copied();
+        let length = u64_from(&mut self.data.get(1..).unwrap_or_default());
+        let what = match (head, kind, length) {
+            (Err(error), ..) => error.to_string(),
+            (Ok(_), None, _) => {
+                self.faults.note("the file has no end: its recorder did not close it".to_owned());
                 return Ok(None);
             }
-            match self.record()? {
-                Some((kind, at)) => {
-                    let entry = self.outside(kind, at)?;
-                    if entry.is_some() {
-                        return Ok(entry);
-                    }
+            (Ok(_), Some(kind), Some(length)) => {
+                let is_wanted = (op::HEADER..=op::CHUNK).contains(&kind) || kind == op::DATA_END;
+                let taken = if is_wanted {
+                    self.bytes.take(length, &mut self.data)
+                } else {
+                    self.bytes.pass(length)
+                };
+                match taken {
+                    Ok(true) => return Ok(Some((kind, at))),
+                    Ok(false) => CUT.to_owned(),
+                    Err(error) => error.to_string(),
                 }
-                None => self.is_over = true,
+            }
+            _ => CUT.to_owned(),
+        };
+        self.faults.end(at, what)?;
+        self.is_over = true;
+        // Of a chunk, what is there may hold messages.
+        Ok(kind.filter(|kind| *kind == op::CHUNK && length.is_some()).map(|kind| (kind, at)))
+    }
+
+    fn outside(&mut self, (kind, at): (u8, u64)) -> Result<Option<Entry>> {
+        match kind {
+            op::CHUNK => {
+                self.open_chunk(at)?;
+                Ok(None)
+            }
+            op::MESSAGE => {
+                let Some((entry, content)) = self.entry(&self.data, at) else {
+                    return self.odd(at);
+                };
+                let start = self.data.len() - content;
+                self.message = unpacked(&self.data[start..])
+                    .map_or(Message::InData(start..self.data.len()), Message::Unpacked);
+                Ok(Some(entry))
+            }
+            op::FOOTER | op::DATA_END => {
+                self.is_over = true;
+                Ok(None)
+            }
+            _ => {
+                let data = std::mem::take(&mut self.data);
+                let defined = self.define(kind, &data, at);
+                self.data = data;
+                defined.map(|()| None)
             }
         }
+    }
+}
+
+impl Log for Mcap {
+    fn next(&mut self) -> Result<Option<Entry>> {
+        self.next_message()
     }
 
     fn topics(&self) -> &[Topic] {
@@ -303,7 +271,7 @@ impl Log for Mcap {
 
     fn message(&self) -> &[u8] {
         match &self.message {
-            Message::InChunk(range) => &self.chunk[range.clone()],
+            Message::InChunk(range) => &self.chunk.bytes()[range.clone()],
             Message::InData(range) => &self.data[range.clone()],
             Message::Unpacked(bytes) => bytes,
         }

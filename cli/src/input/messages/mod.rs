@@ -6,6 +6,7 @@ mod bag;
 mod blackbox;
 mod bytes;
 mod channel;
+mod chunk;
 mod definition;
 mod faults;
 mod known;

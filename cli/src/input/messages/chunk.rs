@@ -1,0 +1,120 @@
+//! Files whose messages lie in chunks, or outside of them.
+
+use super::Entry;
+use super::faults::Faults;
+use anyhow::Result;
+
+/// The chunk that is being read, unpacked.
+#[derive(Default)]
+pub(super) struct Chunk {
+    bytes: Vec<u8>,
+    taken: usize,
+    /// Where it is in the file.
+    at: u64,
+    /// It ends before it should, which was told.
+    is_cut: bool,
+}
+
+impl Chunk {
+    /// Begins a chunk, with what is wrong with it; whether its file ends within it was told.
+    ///
+    /// # Errors
+    /// It is damaged, and that was not accepted.
+    pub(super) fn begin(
+        &mut self,
+        at: u64,
+        (bytes, fault): (Vec<u8>, Option<String>),
+        is_last: bool,
+        faults: &mut Faults,
+    ) -> Result<()> {
+        *self = Self { bytes, taken: 0, at, is_cut: is_last || fault.is_some() };
+        fault.filter(|_| !is_last).map_or(Ok(()), |what| faults.skip(at, what))
+    }
+
+    /// All of it.
+    pub(super) fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// What is still to be read.
+    pub(super) fn left(&self) -> &[u8] {
+        &self.bytes[self.taken..]
+    }
+
+    /// How far it was read.
+    pub(super) fn taken(&self) -> usize {
+        self.taken
+    }
+
+    /// Where it is in the file.
+    pub(super) fn at(&self) -> u64 {
+        self.at
+    }
+
+    /// Reads on up to this byte.
+    pub(super) fn take_to(&mut self, end: usize) {
+        self.taken = end;
+    }
+
+    /// Leaves the rest, which is no record.
+    ///
+    /// # Errors
+    /// Damage was not accepted.
+    pub(super) fn leave(&mut self, faults: &mut Faults) -> Result<()> {
+        let what = format!("the chunk is damaged at its byte {}", self.taken);
+        self.taken = self.bytes.len();
+        if self.is_cut { Ok(()) } else { faults.skip(self.at, what) }
+    }
+}
+
+/// A log of records, some of which are chunks of records.
+pub(super) trait Chunked {
+    /// What is known of a record outside of chunks once it is read.
+    type Record;
+
+    /// The chunk that is being read.
+    fn chunk(&self) -> &Chunk;
+
+    /// Takes the next record of the chunk; gives the entry of a message.
+    ///
+    /// # Errors
+    /// It is damaged, and that was not accepted.
+    fn of_chunk(&mut self) -> Result<Option<Entry>>;
+
+    /// Whether the last record outside of chunks was read.
+    fn is_over(&mut self) -> &mut bool;
+
+    /// Reads the next record outside of chunks; `None` at the end.
+    ///
+    /// # Errors
+    /// As for [`of_chunk`](Self::of_chunk).
+    fn record(&mut self) -> Result<Option<Self::Record>>;
+
+    /// Takes a record outside of chunks; gives the entry of a message.
+    ///
+    /// # Errors
+    /// As for [`of_chunk`](Self::of_chunk).
+    fn outside(&mut self, record: Self::Record) -> Result<Option<Entry>>;
+
+    /// Goes to the next message, in a chunk or outside.
+    ///
+    /// # Errors
+    /// As for [`of_chunk`](Self::of_chunk).
+    fn next_message(&mut self) -> Result<Option<Entry>> {
+        loop {
+            let entry = if !self.chunk().left().is_empty() {
+                self.of_chunk()?
+            } else if *self.is_over() {
+                return Ok(None);
+            } else if let Some(record) = self.record()? {
+                self.outside(record)?
+            } else {
+                *self.is_over() = true;
+                None
+            };
+            if entry.is_some() {
+                return Ok(entry);
+            }
+        }
+    }
+}
