@@ -1,9 +1,13 @@
 //! `cargo xtask jumps`: the hardest second of the flight in three step codes of one threshold, and how far behind each
 //! of them is.
 
-use crate::{paths, signal::Signal};
+use crate::{
+    drawing::{Area, Drawn, FONT, LEFT, MARGIN, SIGNAL},
+    paths,
+    signal::Signal,
+};
 use anyhow::{Result, ensure};
-use plotters::{coord::Shift, prelude::*};
+use plotters::prelude::*;
 use spikewire::{
     Code, Output, Start,
     temporal::{AdaptiveStepForward, SendOnDelta, StepForward},
@@ -19,15 +23,8 @@ const THRESHOLD: f32 = 0.1;
 /// Spikes a sample: so many thresholds are more than the signal ever moves from one sample to the next.
 const SPIKES: usize = 24;
 
-const SIGNAL: RGBColor = RGBColor(165, 165, 165);
 /// Okabe and Ito's, which colour-blind people tell apart.
 const COLOURS: [RGBColor; 3] = [RGBColor(213, 94, 0), RGBColor(0, 114, 178), RGBColor(0, 158, 115)];
-const LEFT: i32 = 76;
-const MARGIN: i32 = 16;
-const FONT: &str = "sans-serif";
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 /// What a code makes of the second.
 struct Followed {

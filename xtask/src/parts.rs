@@ -4,11 +4,11 @@ use crate::{
     package, paths,
     shell::{cargo, command, lint, output, run},
     speed,
-    temporary::Temporary,
     toolchain::cargo_for,
 };
 use anyhow::{Context, Result, ensure};
 use std::{fs, path::Path, process::Command};
+use tempfile::TempDir;
 
 /// An example, its part's target, and the boards that it knows beside the usual one.
 struct Part {
@@ -52,21 +52,14 @@ pub fn more() -> Result<()> {
 
 /// Builds each for its part, with the crate as it would be published. The linker tells if it does not fit.
 fn build(parts: &[Part]) -> Result<()> {
-    let crate_ = package::unpacked()?;
-    let elsewhere = Temporary::new("parts")?;
-    for name in SHARED {
-        copy(&paths::examples().join(name), &elsewhere.path().join(name))?;
-    }
     for part in parts {
         let Part { name, target, boards } = *part;
         println!("a copy of examples/{name}:");
         let original = paths::examples().join(name);
         run(cargo("fmt --check").current_dir(&original))?;
+        let (elsewhere, patch) = copied(name, &SHARED)?;
         let project = elsewhere.path().join(name);
-        copy(&original, &project)?;
-        without_patch(&project.join("Cargo.toml"))?;
 
-        let patch = format!("patch.crates-io.spikewire.path={:?}", crate_.display().to_string());
         // There, cargo does not see this repository's settings. All share what they can.
         let cargo = |args: &str| -> Result<Command> {
             let mut cargo = cargo_for(target, args)?;
@@ -94,8 +87,8 @@ fn build(parts: &[Part]) -> Result<()> {
 }
 
 /// A copy of an example and of what is copied beside it, and what tells cargo of the crate as it would be published.
-pub fn copied(name: &str, shared: &[&str]) -> Result<(Temporary, String)> {
-    let elsewhere = Temporary::new(name)?;
+pub fn copied(name: &str, shared: &[&str]) -> Result<(TempDir, String)> {
+    let elsewhere = tempfile::tempdir()?;
     for name in shared.iter().chain([&name]) {
         copy(&paths::examples().join(name), &elsewhere.path().join(name))?;
     }

@@ -1,10 +1,13 @@
 //! The picture of `cargo demo`: a signal, its spikes and its reconstruction, for three kinds of code.
-//!
-//! The colours are Okabe and Ito's, which colour-blind people tell apart; polarity is also a direction.
 
-use crate::{flown::Flown, names::full_name, signal::Signal};
+use crate::{
+    drawing::{Area, DECODED, DOWN, Drawn, FONT, LEFT, MARGIN, SIGNAL, UP, legend},
+    flown::Flown,
+    names::full_name,
+    signal::Signal,
+};
 use anyhow::{Context, Result};
-use plotters::{coord::Shift, prelude::*};
+use plotters::prelude::*;
 use std::{ops::Range, path::Path};
 
 const SIZE: (u32, u32) = (1000, 1180);
@@ -14,18 +17,6 @@ const SHOWN: Range<f64> = 11.2..13.2;
 const RATES: Range<f64> = -4.4..1.5;
 /// One of each family.
 const SCHEMES: [&str; 3] = ["sf", "bsa", "position"];
-
-const SIGNAL: RGBColor = RGBColor(165, 165, 165);
-const DECODED: RGBColor = RGBColor(0, 114, 178);
-const UP: RGBColor = RGBColor(213, 94, 0);
-const DOWN: RGBColor = RGBColor(0, 0, 0);
-/// Pixels beside the curves.
-const LEFT: i32 = 76;
-const MARGIN: i32 = 16;
-const FONT: &str = "sans-serif";
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 pub fn draw(path: &Path, signal: &Signal, flown: &[Flown]) -> Result<()> {
     let root = SVGBackend::new(path, SIZE).into_drawing_area();
@@ -51,19 +42,7 @@ fn heading(area: &Area) -> Drawn {
     let subtitle =
         "Turning, falling, hitting the ground; encoded and decoded on an emulated STM32F405";
     area.draw_text(subtitle, &(FONT, 17).into_text_style(area), (LEFT, 46))?;
-
-    let style = (FONT, 16).into_text_style(area);
-    for (x, label, colour, width) in
-        [(LEFT, "signal", SIGNAL, 4), (LEFT + 120, "decoded from the spikes", DECODED, 2)]
-    {
-        area.draw(&PathElement::new([(x, 83), (x + 32, 83)], colour.stroke_width(width)))?;
-        area.draw_text(label, &style, (x + 40, 76))?;
-    }
-    for (x, label, colour) in [(LEFT + 365, "spike up", UP), (LEFT + 480, "spike down", DOWN)] {
-        area.draw(&PathElement::new([(x, 76), (x, 91)], colour.stroke_width(2)))?;
-        area.draw_text(label, &style, (x + 10, 76))?;
-    }
-    Ok(())
+    legend(area)
 }
 
 /// What the panel shows, and how well.

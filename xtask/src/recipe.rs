@@ -3,7 +3,6 @@
 use crate::{
     package, paths,
     shell::{output, run},
-    temporary::Temporary,
     toolchain::cargo_for,
 };
 use anyhow::{Context, Result, ensure};
@@ -21,7 +20,7 @@ pub fn recipe() -> Result<()> {
     let expected = blocks.iter().find(|(name, _)| *name == OUTPUT);
     let (_, expected) = expected.with_context(|| format!("{GUIDE} has no block `{OUTPUT}`"))?;
 
-    let project = Temporary::new("recipe")?;
+    let project = tempfile::tempdir()?;
     for (name, text) in blocks.iter().filter(|(name, _)| *name != OUTPUT) {
         let path = project.path().join(name);
         fs::create_dir_all(path.parent().context("a file lies in a directory")?)?;

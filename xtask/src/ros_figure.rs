@@ -1,25 +1,16 @@
 //! The paper's figure of its ROS package: a signal, what its spikes decode to, and the spikes.
 
-use crate::paths;
+use crate::{
+    drawing::{Area, DECODED, DOWN, Drawn, FONT, LEFT, MARGIN, SIGNAL, UP, legend},
+    paths,
+};
 use anyhow::{Context, Result, ensure};
-use plotters::{coord::Shift, prelude::*};
+use plotters::prelude::*;
 use std::{fs, ops::Range, path::Path};
 
 const PAGE: &str = "docs/ros.svg";
 const SIZE: (u32, u32) = (1000, 560);
 const VALUES: Range<f64> = -3.6..4.0;
-
-const SIGNAL: RGBColor = RGBColor(165, 165, 165);
-/// Okabe and Ito's, which colour-blind people tell apart.
-const DECODED: RGBColor = RGBColor(0, 114, 178);
-const UP: RGBColor = RGBColor(213, 94, 0);
-const DOWN: RGBColor = RGBColor(0, 0, 0);
-const LEFT: i32 = 76;
-const MARGIN: i32 = 16;
-const FONT: &str = "sans-serif";
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 /// A message of the bag.
 struct Sample {
@@ -91,18 +82,7 @@ fn heading(area: &Area, samples: &[Sample]) -> Drawn {
         samples.len()
     );
     area.draw_text(&subtitle, &(FONT, 17).into_text_style(area), (LEFT, 44))?;
-    let style = (FONT, 16).into_text_style(area);
-    for (x, label, colour, width) in
-        [(LEFT, "signal", SIGNAL, 4), (LEFT + 120, "decoded from the spikes", DECODED, 2)]
-    {
-        area.draw(&PathElement::new([(x, 83), (x + 32, 83)], colour.stroke_width(width)))?;
-        area.draw_text(label, &style, (x + 40, 76))?;
-    }
-    for (x, label, colour) in [(LEFT + 365, "spike up", UP), (LEFT + 480, "spike down", DOWN)] {
-        area.draw(&PathElement::new([(x, 76), (x, 91)], colour.stroke_width(2)))?;
-        area.draw_text(label, &style, (x + 10, 76))?;
-    }
-    Ok(())
+    legend(area)
 }
 
 /// The signal, and over it what the decoder made of its spikes.
