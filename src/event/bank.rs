@@ -171,7 +171,8 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         queue.put(Item::Break(tick));
     }
 
-    /// Resets every encoder. The receiver of a link is not told; use [`reset_into`](Self::reset_into) for that.
+    /// Resets every encoder, without a break in a queue: where the events go to a link, use
+    /// [`reset_into`](Self::reset_into), so that its receiver knows.
     pub fn reset(&mut self)
     where
         T::Scheme: Start,

@@ -8,10 +8,10 @@ use super::{Event, Tick};
 ///
 /// - **Step:** 1 to 2³¹-1 µs; a longer one is cut to that. **Counts:** 0 to the [limit](Self::with_limit), 255 by
 ///   default.
-/// - **Memory:** `N + 28` bytes. **Work:** constant for each event.
+/// - **Memory:** `N + 21` bytes, rounded up to words. **Work:** constant for each event.
 /// - **Order:** give it events in the order of time. An event of a step that was already taken is late, and so is one
 ///   2³¹ µs (35.8 minutes) or more after the start of the step.
-/// - **Polarity:** both polarities count alike; give each its own address if they must be told apart.
+/// - **Polarity:** both polarities count alike; to count them apart, give each its own address.
 /// - **Events left out** are counted by [`saturated`](Self::saturated), [`late`](Self::late) and
 ///   [`outside`](Self::outside).
 ///

@@ -5,7 +5,7 @@ use crate::{Sample, SampleKind};
 
 /// The value that the decoder of an address should hold between the events before the keyframe and those after it.
 ///
-/// 16 bytes. It makes the decoder of a temporal code exact again after a loss.
+/// 12 bytes. It makes the decoder of a temporal code exact again after a loss.
 ///
 /// ```
 /// use spikewire::{Keyframe, SampleKind, Tick};

@@ -12,6 +12,7 @@ use crate::{Code, ConfigError, Firing, Scheme, error};
 /// - **Addresses:** those of a bank: neuron `n` of channel `c` has the address `first + c * neurons + n`. The output
 ///   neurons of a chip count as addresses.
 /// - **Codes:** all; [`Code::assemble`] says what becomes of neurons that no encoder fires together.
+/// - **Memory:** the channels' states and 8 bytes, and 4 bytes for each reference to a scheme on a 32-bit part.
 /// - **Work:** one pass over the events for each channel.
 /// - **Time:** ticks are not checked: give each call only the events of its time step.
 ///

@@ -1,4 +1,4 @@
-//! Ticks: time stamps in microseconds of 32 bits, which wrap after 71.6 minutes.
+//! Ticks: time stamps of 32 bits in microseconds, which wrap after 71.6 minutes.
 
 use core::ops::{Add, AddAssign};
 

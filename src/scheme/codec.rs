@@ -12,7 +12,7 @@ use crate::Sample;
 /// and a state; made from one scheme, they cannot disagree on a parameter.
 ///
 /// Encoding never fails and never panics. A sample that is not finite emits no spike and is counted as
-/// [rejected](Self::rejected); otherwise the state stays as it was.
+/// [rejected](Self::rejected); nothing else in the state changes, except that adaptive codes count a silent sample.
 pub trait Scheme: Sized {
     /// The type of its samples.
     type Sample: Sample;
@@ -25,12 +25,12 @@ pub trait Scheme: Sized {
     /// What a decoder keeps from sample to sample.
     type DecoderState: Clone + Debug;
 
-    /// The latency in samples: how many samples after its own sample a code comes out. For a filter length chosen
-    /// at run time, the largest possible; [`latency`](Self::latency) gives its own.
+    /// The latency in samples: how many samples after its own sample a code comes out. Where the filter length is
+    /// chosen at run time it is the largest possible; [`latency`](Self::latency) gives that of this filter.
     const LATENCY: usize;
 
-    /// How a decoder becomes exact again after codes were lost. For a filter length chosen at run time, after the
-    /// longest possible; [`recovery`](Self::recovery) gives its own.
+    /// How a decoder becomes exact again after codes were lost. Where the filter length is chosen at run time it is
+    /// that of the longest filter; [`recovery`](Self::recovery) gives that of this filter.
     const RECOVERY: Recovery;
 
     /// Encodes one sample.
@@ -58,10 +58,7 @@ pub trait Scheme: Sized {
     /// Starts an encoder from the samples before its first one, oldest first; see [`Encoder::prime`].
     fn prime(&self, _state: &mut Self::EncoderState, _past: &[Self::Sample]) {}
 
-    /// The value that a decoder should hold now, for a keyframe on a link that may lose spikes.
-    ///
-    /// `None` before the first sample, while the value alone does not say what a decoder holds, and for schemes
-    /// whose decoders recover without keyframes.
+    /// The value that a decoder should hold now, for a keyframe; see [`Encoder::keyframe`].
     fn keyframe(&self, _state: &Self::EncoderState) -> Option<Self::Sample> {
         None
     }
@@ -139,15 +136,16 @@ pub trait Start: Scheme<EncoderState: Copy> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Recovery {
-    /// At the next keyframe: errors add up until then. A sample without spikes changes nothing.
+    /// At the next keyframe: errors add up until then. A sample without spikes leaves the decoder as it is.
     Keyframe,
-    /// At the next keyframe: errors add up until then. Samples without spikes count, so many in a row at most.
+    /// At the next keyframe: errors add up until then. A sample without spikes changes the decoder's step, too; after
+    /// this many in a row the step is the smallest, and further ones change nothing.
     TimedKeyframe(usize),
     /// After this many samples without a loss.
     Samples(usize),
     /// At the next sample whose code has a spike.
     Spike,
-    /// Never bit for bit: what was lost fades away. After so many samples without spikes little is left to fade.
+    /// Never bit for bit: the error fades. After this many samples without spikes the value has all but settled.
     Fading(usize),
 }
 
@@ -222,8 +220,8 @@ impl<'a, P: Scheme> Encoder<'a, P> {
     }
 
     /// Starts from the samples before the first one, oldest first. A moving window takes as many as its window
-    /// holds, the other temporal codes take the last one; rate and population codes need none. Without a past the
-    /// encoder starts from its first sample. If a sample that it takes is not finite, it takes none and counts one
+    /// holds, the other temporal codes take the last one; rate, population and timing codes need none. Without a past
+    /// the encoder starts from its first sample. If a sample that it takes is not finite, it takes none and counts one
     /// rejected sample.
     pub fn prime(&mut self, past: &[P::Sample]) {
         self.scheme.prime(&mut self.state, past);
@@ -231,8 +229,8 @@ impl<'a, P: Scheme> Encoder<'a, P> {
 
     /// The value that a decoder should hold now, for a keyframe on a link that may lose spikes.
     ///
-    /// `None` before the first sample, while the value alone does not say what a decoder holds, and for schemes
-    /// whose decoders recover without keyframes.
+    /// `None` before the first sample; while a value is not all that a decoder must know, as for an adaptive code that
+    /// is not at rest; and for schemes whose decoders recover without keyframes.
     pub fn keyframe(&self) -> Option<P::Sample> {
         self.scheme.keyframe(&self.state)
     }
@@ -300,7 +298,8 @@ impl<'a, P: Scheme> Decoder<'a, P> {
         self.scheme.decode_slice(&mut self.state, codes, values)
     }
 
-    /// The value that it holds until the next spike; `None` for rate codes, whose values change between spikes.
+    /// The value that the decoder holds until the next spike; `None` for rate codes, whose values change between
+    /// spikes.
     pub fn held(&self) -> Option<P::Sample> {
         self.scheme.held(&self.state)
     }
@@ -332,7 +331,7 @@ pub(super) fn encode_each<P: Scheme>(
     samples.len().min(outputs.len())
 }
 
-/// Encodes until the encoder has seen a first sample, which its keyframe shows; returns how many samples that took.
+/// Encodes until the encoder has seen a first finite sample, as its keyframe shows; returns how many samples that took.
 #[cold]
 #[inline(never)]
 pub(super) fn encode_first<P: Scheme>(

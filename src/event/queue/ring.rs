@@ -74,7 +74,7 @@ struct State {
     len: Cell<usize>,
     /// The most items that there were when one was taken.
     peak: Cell<usize>,
-    /// How many items were lost after the last one in the queue, and the tick of the last of those.
+    /// How many items were lost after the last one in the queue, and the tick of the one lost last.
     behind: Cell<u32>,
     behind_tick: Cell<Tick>,
     /// Losses beyond the 255 that a slot can count.
@@ -84,7 +84,7 @@ struct State {
     has_consumer: Cell<bool>,
 }
 
-/// Added to the length, makes the queue look full, so that a push leaves the usual path.
+/// Added to the length, it makes the queue look full, so that a push leaves the usual path.
 const CLOSED: usize = 1 << (usize::BITS - 1);
 
 impl State {
@@ -146,13 +146,13 @@ impl fmt::Debug for QueueView {
     }
 }
 
-/// What the caller can do with an item that the queue refuses.
+/// What becomes of an item that the queue refuses.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Giver {
-    /// Take it back.
-    TakesBack,
-    /// Nothing: the item is lost.
-    Leaves,
+enum Refusal {
+    /// The caller gets it back.
+    Returns,
+    /// It is lost.
+    Loses,
 }
 
 impl QueueView {
@@ -163,7 +163,7 @@ impl QueueView {
     #[inline]
     pub fn push(&self, item: impl Into<Item>) -> Result<(), Refused> {
         let item = item.into();
-        if self.add(item.into(), Giver::TakesBack) { Ok(()) } else { Err(Refused(item)) }
+        if self.add(item.into(), Refusal::Returns) { Ok(()) } else { Err(Refused(item)) }
     }
 
     /// The consumer; `None` while there is one already. After it is dropped there can be another.
@@ -209,7 +209,7 @@ impl QueueView {
 
     /// Adds an item, and returns whether the queue took it.
     #[inline]
-    fn add(&self, slot: Slot, giver: Giver) -> bool {
+    fn add(&self, slot: Slot, refusal: Refusal) -> bool {
         #[cfg_attr(not(feature = "async"), expect(unused_variables))]
         let (is_taken, waker) = critical_section::with(|section| {
             let is_taken = if self.state.borrow(section).len.get() < self.places.len() {
@@ -217,7 +217,7 @@ impl QueueView {
                 true
             } else {
                 let (tick, bits, rest) = slot.words();
-                self.add_past_loss(section, tick, bits, rest, giver)
+                self.add_past_loss(section, tick, bits, rest, refusal)
             };
             #[cfg(feature = "async")]
             let waker = self.waker.borrow(section).take();
@@ -261,7 +261,7 @@ impl QueueView {
         tick: Tick,
         bits: u32,
         rest: u32,
-        giver: Giver,
+        refusal: Refusal,
     ) -> bool {
         let slot = Slot::from_words((tick, bits, rest));
         let state = self.state.borrow(section);
@@ -270,7 +270,7 @@ impl QueueView {
             self.append(section, with_loss(state, slot, state.behind.take()));
             return true;
         }
-        match (self.overflow, giver) {
+        match (self.overflow, refusal) {
             (Overflow::DropOldest, _) => {
                 count(&state.lost);
                 let dropped = self.oldest(section).map_or(0, Slot::lost);
@@ -283,7 +283,7 @@ impl QueueView {
                 }
                 true
             }
-            (Overflow::Refuse, Giver::TakesBack) => {
+            (Overflow::Refuse, Refusal::Returns) => {
                 count(&state.refused);
                 false
             }
@@ -316,7 +316,7 @@ impl QueueView {
         if event.is_some() { event } else { self.take_event_apart() }
     }
 
-    /// [`take_event`](Self::take_event) where the oldest item may be none.
+    /// [`take_event`](Self::take_event) where the oldest item may be no event, or there may be no item.
     #[cold]
     #[inline(never)]
     fn take_event_apart(&self) -> Option<Event> {
@@ -360,7 +360,7 @@ impl QueueView {
         Some(place.borrow(section).get())
     }
 
-    /// Removes the oldest item, which there is.
+    /// Removes the oldest item of a queue that has one.
     #[inline]
     fn remove_oldest(&self, section: CriticalSection<'_>) {
         let state = self.state.borrow(section);
@@ -394,9 +394,9 @@ impl QueueView {
 /// The slot with this many more losses before it.
 fn with_loss(state: &State, slot: Slot, lost: u32) -> Slot {
     let sum = u32::from(slot.lost()).saturating_add(lost);
-    let said = sum.min(u8::MAX.into());
-    state.excess.set(state.excess.get().saturating_add(sum - said));
-    slot.with_lost(said as u8)
+    let counted = sum.min(u8::MAX.into());
+    state.excess.set(state.excess.get().saturating_add(sum - counted));
+    slot.with_lost(counted as u8)
 }
 
 fn count(counter: &Cell<u32>) {
@@ -407,7 +407,7 @@ fn count(counter: &Cell<u32>) {
 impl Put for &QueueView {
     #[inline]
     fn put(&mut self, item: Item) {
-        self.add(item.into(), Giver::Leaves);
+        self.add(item.into(), Refusal::Loses);
     }
 }
 
@@ -415,6 +415,6 @@ impl Put for &QueueView {
 impl<const N: usize> Put for &EventQueue<N> {
     #[inline]
     fn put(&mut self, item: Item) {
-        self.add(item.into(), Giver::Leaves);
+        self.add(item.into(), Refusal::Loses);
     }
 }

@@ -26,10 +26,10 @@ const KEYFRAME: u32 = 1;
 const BREAK: u32 = 2;
 
 impl Slot {
-    pub(super) const EMPTY: Self = Self::lost_at(Tick::from_micros(0));
+    pub(super) const EMPTY: Self = Self::break_at(Tick::from_micros(0));
 
-    /// A break.
-    pub(super) const fn lost_at(tick: Tick) -> Self {
+    /// A break at this tick.
+    const fn break_at(tick: Tick) -> Self {
         Self { tick, bits: 0, rest: BREAK << WHAT_AT }
     }
 
@@ -98,7 +98,7 @@ impl From<Item> for Slot {
                 let detail = u32::from(kind.to_byte()) << DETAIL_AT;
                 Self { tick, bits, rest: KEYFRAME << WHAT_AT | detail | u32::from(address) }
             }
-            Item::Break(tick) => Self::lost_at(tick),
+            Item::Break(tick) => Self::break_at(tick),
         }
     }
 }

@@ -9,7 +9,8 @@ use crate::event::{Event, Item, Put, Source, Taken, Tick};
 ///
 /// Interrupts are never held off; an item that finds no room is lost and counted.
 /// [`EventQueue`](super::EventQueue) has other policies, takes any number of interrupts, and can wake a task. The
-/// algorithm is that of `heapless::spsc`, which divides by the capacity, a panic that a linker cannot rule out.
+/// algorithm is that of `heapless::spsc`. That crate divides by the capacity, and a linker cannot rule out the panic
+/// of a division by 0.
 ///
 /// - **Ends:** [`split`](Self::split) makes an [`SpscProducer`] for the interrupt and an [`SpscConsumer`]
 ///   for main.
@@ -196,13 +197,13 @@ impl SpscConsumer<'_> {
         Some((self.newly(count), Slot::from_words(words)))
     }
 
-    /// How many items were lost since this was asked last, when there were so many in all.
+    /// How many items were lost since the last call, from the count of all losses so far.
     #[inline]
     fn newly(&mut self, lost: u32) -> u32 {
         lost.wrapping_sub(core::mem::replace(&mut self.known, lost))
     }
 
-    /// What comes where the queue was empty: an item pushed meanwhile, or a break if items were lost after the last one.
+    /// Takes from a queue that was empty: an item pushed meanwhile, or a break if items were lost after the last one.
     #[cold]
     #[inline(never)]
     fn take_where_empty(&mut self) -> Option<Taken> {
@@ -216,7 +217,7 @@ impl SpscConsumer<'_> {
         (lost > 0).then(|| Taken { lost, item: Item::Break(Tick::from(tick)) })
     }
 
-    /// The next event, after an item that was none, or none was there.
+    /// The next event, where the oldest item was no event or the queue was empty.
     #[cold]
     #[inline(never)]
     fn take_event_apart(&mut self) -> Option<Event> {

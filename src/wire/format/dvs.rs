@@ -8,11 +8,12 @@ use crate::wire::bytes::Cursor;
 
 /// Event Stream version 2, DVS events, of a [camera](crate::frame) of this size.
 ///
-/// - **Layout:** the [header](Self::header), then for each event the µs since the one before in seven bits above one that
-///   is 1 for up (`FF` lets 127 µs pass, `FE` is a reset), x and y in 16 bits each, little endian.
+/// - **Layout:** the [header](Self::header), then five bytes an event: the first has the µs since the event before in
+///   its upper 7 bits, and 1 for up in its lowest; x and y follow in 16 bits each, little endian. Between events the
+///   byte `FF` adds 127 µs, and `FE` is a reset.
 /// - **Rows:** as this crate counts them, from the top; a viewer that draws y upwards shows the picture upside down.
 /// - **Length:** 5 bytes an event, and one for every 127 µs between two.
-/// - **Resynchronisation:** none; it is a file format. A damaged byte may spoil what follows.
+/// - **Resynchronisation:** none, as it is a file format: a damaged byte may spoil all events after it.
 ///
 /// Source: Event Stream specification, neuromorphic-paris/event_stream.
 ///
@@ -56,22 +57,23 @@ impl Dvs {
         [m0, m1, m2, m3, m4, m5, m6, m7, m8, m9, ma, mb, mc, md, me, mf, w0, w1, h0, h1]
     }
 
-    /// Writes events, whose file begins at tick 0; write the [header](Self::header) before the first.
+    /// An encoder of a file that begins at tick 0. Write the [header](Self::header) before the first event.
     pub const fn encoder(&self) -> DvsEncoder {
         self.encoder_from(Tick::from_micros(0))
     }
 
-    /// Writes events of a file that begins at this tick: it counts time from there, and does not say which tick it was.
+    /// An encoder of a file that begins at this tick. The file counts time from there, and does not contain the tick
+    /// itself.
     pub const fn encoder_from(&self, start: Tick) -> DvsEncoder {
         DvsEncoder { camera: *self, clock: Clock::starting_at(start) }
     }
 
-    /// Reads a file, from its header on; it begins at tick 0.
+    /// A decoder of a file that begins at tick 0, from its header on.
     pub const fn decoder() -> DvsDecoder {
         Self::decoder_from(Tick::from_micros(0))
     }
 
-    /// Reads a file that begins at this tick, from its header on.
+    /// A decoder of a file that begins at this tick, from its header on.
     pub const fn decoder_from(start: Tick) -> DvsDecoder {
         DvsDecoder { tick: start, size: [0; 4], state: State::Header(0), skipped: 0 }
     }
@@ -87,7 +89,8 @@ pub struct DvsEncoder {
 impl EventFormat<PixelEvent> for DvsEncoder {
     const LONGEST: usize = 5;
 
-    /// Writes an event. Time that passes is written as far as it fits, a byte for every 127 µs, and not written again.
+    /// Writes an event. The time before it, a byte for every 127 µs, is written as far as it fits and is not written
+    /// again when the event is offered again.
     fn encode(&mut self, event: PixelEvent, bytes: &mut [u8]) -> Result<usize, FormatError> {
         let PixelEvent { tick, x, y, polarity } = event;
         let Dvs { width, height } = self.camera;
@@ -126,8 +129,9 @@ pub struct DvsDecoder {
 
 #[derive(Clone, Copy, Debug)]
 enum State {
-    /// That many bytes of the header were right.
+    /// This many bytes of the header were right.
     Header(u8),
+    /// The header was another one.
     Foreign,
     Time,
     Pixel {
@@ -138,12 +142,12 @@ enum State {
 }
 
 impl DvsDecoder {
-    /// Whether the header was another format's or type's: then nothing is read.
+    /// Whether the header is that of another format or type, so that no event is read.
     pub const fn is_foreign(&self) -> bool {
         matches!(self.state, State::Foreign)
     }
 
-    /// The columns and rows, once the header was read.
+    /// The columns and rows; `None` before the header has been read.
     pub const fn size(&self) -> Option<(u16, u16)> {
         let [w0, w1, h0, h1] = self.size;
         match self.state {

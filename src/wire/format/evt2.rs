@@ -53,8 +53,8 @@ impl Evt2 {
         Evt2Decoder::starting_at(Header::Over)
     }
 
-    /// A decoder of a file. It skips the header, if there is one: lines that begin with `%`, up to `% end`. A file
-    /// without a header may also begin with the byte `%`: the fourth byte of a word, with its type, is no text.
+    /// A decoder of a file. It skips the header, if there is one: lines that begin with `%`, up to `% end`. A word that
+    /// begins with the byte `%` is told from a header by its fourth byte, which is no text.
     pub const fn file_decoder() -> Evt2Decoder {
         Evt2Decoder::starting_at(Header::LineStart)
     }
@@ -70,7 +70,7 @@ pub struct Evt2Encoder {
     retimed: u32,
 }
 
-/// What a word says: a time, a direction, and the bits of x and y.
+/// The content of an event word: a time, a direction, and the bits of x and y.
 #[derive(Clone, Copy)]
 pub(super) struct Word {
     pub(super) tick: Tick,
@@ -131,24 +131,23 @@ impl EventFormat for Evt2Encoder {
 #[derive(Clone, Copy, Debug)]
 pub struct Evt2Decoder {
     header: Header,
-    /// The bytes of the next word so far, in its highest bits, below them a 1 and else 0.
+    /// The bytes of the next word so far, in the highest bits; below them a 1, then zeros.
     partial: u32,
     high: Option<u32>,
     skipped: u32,
 }
 
-/// Where a header is read that may be there.
+/// How far the header of a file is read, which may have none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Header {
-    /// It is over, or there is none: words come.
+    /// The header is over, or the file has none: words come.
     Over,
+    /// At the start of the file, or of a line of the header.
     LineStart,
-    /// After a `%`, which begins a line of the header or a word: `partial` has the bytes from it on.
+    /// After a `%`, which begins a line of the header or a word: `partial` has the bytes from the `%` on.
     Percent,
     /// Within a line of the header, whose first `end` bytes are those of `% end`; `u8::MAX` if they are others.
-    Line {
-        end: u8,
-    },
+    Line { end: u8 },
 }
 
 /// No byte of a word.
@@ -224,12 +223,12 @@ impl Evt2Decoder {
         Some(Word { tick, polarity, x, y })
     }
 
-    /// Counts a word that is no event here.
+    /// Counts the bytes of a word that gives no event.
     pub(super) fn skip(&mut self) {
         self.skipped = self.skipped.saturating_add(4);
     }
 
-    /// Takes a byte, and returns what the word of an event says that it completes.
+    /// Takes a byte, and returns the content of the event word that it completes.
     #[inline]
     pub(super) fn push_word(&mut self, byte: u8) -> Option<Word> {
         if self.header != Header::Over {

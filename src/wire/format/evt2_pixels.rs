@@ -1,4 +1,4 @@
-//! EVT2 of a camera's pixels.
+//! EVT 2.0 with the columns and rows of a camera's pixels.
 
 use super::evt2::{Word, X_MASK};
 use super::{EventDecoder, EventFormat, Evt2, Evt2Decoder, Evt2Encoder, FormatError};
@@ -24,17 +24,17 @@ use crate::frame::PixelEvent;
 pub struct Evt2Pixels;
 
 impl Evt2Pixels {
-    /// Writes words.
+    /// An encoder. For a file, write the header first.
     pub const fn encoder() -> Evt2PixelsEncoder {
         Evt2PixelsEncoder(Evt2::encoder())
     }
 
-    /// Reads words, from a word's start on.
+    /// A decoder of words, from the start of a word on.
     pub const fn decoder() -> Evt2PixelsDecoder {
         Evt2PixelsDecoder(Evt2::decoder())
     }
 
-    /// Reads a file: skips its header.
+    /// A decoder of a file. It skips the header, if there is one; see [`Evt2::file_decoder`].
     pub const fn file_decoder() -> Evt2PixelsDecoder {
         Evt2PixelsDecoder(Evt2::file_decoder())
     }

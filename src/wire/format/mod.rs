@@ -87,7 +87,7 @@ pub enum FormatError {
         /// The largest allowed.
         max: u16,
     },
-    /// The pixel lies outside the picture that the header tells.
+    /// The pixel lies outside the picture, whose size is in the file's header.
     Pixel {
         /// Its column.
         x: u16,

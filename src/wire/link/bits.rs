@@ -19,7 +19,7 @@ fn code(value: u32, k: u32) -> (u32, u32, u32) {
     (number, 32 - number.leading_zeros(), low)
 }
 
-/// A string of fewer than 32 bits. A longer one keeps its length alone.
+/// A string of fewer than 32 bits. A longer one keeps only its length.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Word {
     bits: u32,

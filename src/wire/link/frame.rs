@@ -37,7 +37,7 @@ pub(super) fn checksum(bytes: &[u8]) -> u32 {
 
 /// A frame, read in place without a copy.
 ///
-/// [`new`](Self::new) checks it; after that reading cannot fail.
+/// [`new`](Self::new) checks the frame; reading it cannot fail after that.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameView<'a> {
     flags: u8,

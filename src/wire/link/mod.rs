@@ -10,7 +10,7 @@
 //! | 1 | version and flags | version 2 in the high nibble; flags 1 *lost*, 2 *keyframes*; others are 0 |
 //! | 2-3 | session | changes at each start of the sender |
 //! | 4-5 | sequence | of the frame: 0 first, +1 each, wraps |
-//! | 6-9 | first tick | µs, of the keyframes, and what the first event's time is counted from |
+//! | 6-9 | first tick | µs; the tick of the keyframes, from which the first event's time is counted |
 //! | 10-11 | period | µs from sample to sample, 1 to 65 535 |
 //! | 12 | coding | address bits in the low nibble, jitter bits in the high one |
 //! | 13 | length | bytes of keyframes and events, 0 to 255 |

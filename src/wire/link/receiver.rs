@@ -27,9 +27,10 @@ use crate::{Code, ConfigError, Firing, Recovery, Scheme, error};
 /// - **Means** ([`Recovery::Fading`]) take their samples every period too. They are never exact: the error of an
 ///   estimate fades.
 ///
-/// - **Memory:** per channel the decoder's state and 2 samples; 8 bytes for each of `EVENTS`, the most events that one
-///   sample has over all channels. Temporal codes need none of these: 0.
-/// - **Latency:** none for temporal codes; for others until the sample is over.
+/// - **Memory:** on a 32-bit part about 40 bytes; per channel the decoder's state, a sample and 8 bytes; and 8 bytes
+///   for each of `EVENTS`, the most events that one sample has over all channels. Codes of [`Recovery::Keyframe`] need
+///   none of these: 0.
+/// - **Latency:** none for codes of [`Recovery::Keyframe`]; for others until the sample is over.
 ///
 /// ```
 /// use spikewire::{link::Receiver, temporal::StepForward};
@@ -168,8 +169,8 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
     }
 
     /// Tells the receiver that all events before this tick have arrived: samples that are over by then are decoded and
-    /// passed to `on_value`. Otherwise a sample is decoded when an event of a later one arrives. Temporal codes do
-    /// not need this.
+    /// passed to `on_value`. Otherwise a sample is decoded when an event of a later one arrives. Codes of
+    /// [`Recovery::Keyframe`] do not need this.
     pub fn advance(&mut self, now: Tick, mut on_value: impl FnMut(u16, Tick, SampleOf<T, N>)) {
         if T::Scheme::RECOVERY != Recovery::Keyframe {
             self.finish_samples(now, &mut on_value);
@@ -183,8 +184,8 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         self.sample.is_next_whole = false;
     }
 
-    /// The value of a channel if it is exact, else `None`. Of a temporal code it is the value after the last event, of
-    /// others that of the last sample that is over.
+    /// The value of a channel if it is exact, else `None`. For a code of [`Recovery::Keyframe`] it is the value after
+    /// the last event, for others that of the last sample that is over.
     pub fn exact(&self, channel: u16) -> Option<SampleOf<T, N>> {
         let channel = self.channels.get(usize::from(channel))?;
         channel.is_exact.then_some(channel.value)
@@ -279,7 +280,8 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         self.sample.is_next_whole = true;
         self.sample.has_begun = true;
         if self.addresses.slot_ticks == 0 {
-            // Near the grid: it differs by jitter, or as the sender's period is not quite that of the link.
+            // The event's own tick instead of a whole number of periods: samples are counted from here on, whatever
+            // the jitter, and where the sender's period is not quite that of the link.
             self.sample.tick = Some(tick);
         }
     }

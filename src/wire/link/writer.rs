@@ -139,7 +139,7 @@ impl Framer {
     }
 }
 
-/// The bytes before the first keyframe: how many, and their sample type.
+/// The bytes before the first keyframe: the number of keyframes, and their sample type.
 const RUN_HEADER: usize = 2;
 
 /// A frame that is being written: keyframes, then events.
