@@ -1,4 +1,4 @@
-//! Codes: what a sample becomes, a spike or the neurons that fire.
+//! Codes: the spikes that a sample becomes, and the traits of all codes.
 
 use core::cmp::Ordering;
 

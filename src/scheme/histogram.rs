@@ -1,4 +1,4 @@
-//! How often a signal takes which values, and the quantiles from which centres follow.
+//! Histogram of a signal, and its quantiles, which may become the centres of a population.
 
 use core::ops::RangeInclusive;
 
@@ -53,7 +53,7 @@ pub struct Histogram<S: Sample, const B: usize> {
     limit: u16,
     /// The sum of the counts: below the limit.
     total: u16,
-    /// Cells for 1.
+    /// Cells per unit of the samples.
     #[cfg_attr(feature = "serde", serde(skip))]
     scale: f64,
     #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array"))]
@@ -198,10 +198,10 @@ impl<S: Sample, const B: usize> Histogram<S, B> {
         Ok(centres)
     }
 
-    /// As [`centres`](Self::centres), as many as there is room for, up to 1024.
+    /// Fills `centres` with the [`centres`](Self::centres) of as many neurons as it has room for, 1 to 1024.
     ///
     /// # Errors
-    /// Two are alike in the sample type, or there are more than 1024.
+    /// Two are alike in the sample type, or there is room for none or for more than 1024.
     pub fn write_centres(&self, centres: &mut [S]) -> Result<(), ConfigError> {
         within("neurons", centres.len() as f64, 1.0, 1024.0)?;
         let parts = 2 * centres.len() as u16;

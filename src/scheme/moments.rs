@@ -11,7 +11,7 @@ use crate::{ConfigError, Sample};
 ///   in `f32`, in software where the core has no such unit: run it before arming.
 /// - **Range:** it takes 2³²-1 finite samples, 49 days at 1 kHz. Later ones are counted and change nothing.
 /// - **Rejected samples:** a sample that is not finite is counted and changes nothing.
-/// - **Memory:** 32 bytes in `f32`, 40 in fixed point.
+/// - **Memory:** 32 bytes in `f32`, 40 in fixed point on a Cortex-M.
 ///
 /// Source: Welford, *Note on a method for calculating corrected sums of squares and products*, 1962.
 ///
@@ -59,12 +59,12 @@ impl<S: Sample> Moments<S> {
         self.seen = seen;
     }
 
-    /// How many finite samples it has taken, to 2³²-1.
+    /// How many finite samples it has taken, up to 2³²-1.
     pub const fn seen(&self) -> u32 {
         self.seen
     }
 
-    /// How many finite samples came after those, up to 2³²-1. They changed nothing.
+    /// How many finite samples came after the first 2³²-1 and are left out; up to 2³²-1.
     pub const fn ignored(&self) -> u32 {
         self.ignored
     }

@@ -1,4 +1,4 @@
-//! What a channel does before arming: whether its sensor is well, and the thresholds that fit its signal.
+//! The survey of a channel before arming: whether its sensor works, and the thresholds that suit its signal.
 
 use core::fmt;
 use core::ops::RangeInclusive;
@@ -8,7 +8,7 @@ use crate::num::to_f64;
 use crate::temporal::{StepForward, TemporalContrast};
 use crate::{Calibration, ConfigError, Histogram, Moments, Sample};
 
-/// What a channel must show before it is [`Fit`].
+/// What a channel must show before it is [`Fit`] to fly.
 ///
 /// ```
 /// use spikewire::Conditions;
@@ -28,9 +28,7 @@ pub struct Conditions<S> {
 }
 
 impl<S: Sample> Conditions<S> {
-    /// So many samples, at least 3; the limits of the sensor, which a sound signal stays within; and the largest
-    /// change from sample to sample that thresholds should tell from larger ones, above 0. For constants, where
-    /// bad conditions fail the build.
+    /// The conditions of a channel, for constants, where bad ones fail the build; see [`try_new`](Self::try_new).
     ///
     /// # Panics
     /// As [`try_new`](Self::try_new) fails.
@@ -38,8 +36,12 @@ impl<S: Sample> Conditions<S> {
         unwrap(Self::of(samples, &limits, largest_change))
     }
 
-    /// So many samples, at least 3; the limits of the sensor, which a sound signal stays within; and the largest
-    /// change from sample to sample that thresholds should tell from larger ones, above 0.
+    /// The conditions of a channel.
+    ///
+    /// - `samples`: how many samples it must show, at least 3.
+    /// - `limits`: those of the sensor, in the samples' unit. A sound signal stays within them.
+    /// - `largest_change`: the largest change from sample to sample that the histogram of changes tells from larger
+    ///   ones, above 0, in the samples' unit.
     ///
     /// # Errors
     /// Fewer than 3 samples; limits that are not finite or do not rise; a change that is not above 0 or not
@@ -70,8 +72,8 @@ impl<S: Sample> Conditions<S> {
         Ok(Self { samples, limits, largest_change, stillness: None })
     }
 
-    /// The distance between the largest and the smallest sample of a vehicle at rest, at most. Unless told, the
-    /// vehicle may move. For constants, where a bad distance fails the build.
+    /// Requires a vehicle at rest: its largest and smallest sample lie at most this distance apart. Without this
+    /// condition the vehicle may move. For constants, where a bad distance fails the build.
     ///
     /// # Panics
     /// The distance is not above 0, or not finite.
@@ -80,8 +82,8 @@ impl<S: Sample> Conditions<S> {
         unwrap(self.try_with_stillness(distance))
     }
 
-    /// The distance between the largest and the smallest sample of a vehicle at rest, at most. Unless told, the
-    /// vehicle may move.
+    /// Requires a vehicle at rest: its largest and smallest sample lie at most this distance apart. Without this
+    /// condition the vehicle may move.
     ///
     /// # Errors
     /// The distance is not above 0, or not finite.
@@ -98,7 +100,7 @@ impl<S: Sample> Conditions<S> {
 /// It keeps minimum, maximum, mean and deviation of the signal, mean and deviation of its changes, and a
 /// [`Histogram`] of `B` cells of each. Thresholds come from a channel that is [`Fit`] alone.
 ///
-/// - **Memory:** 4 B bytes, and about 220.
+/// - **Memory:** `4 B` bytes, and 184 in `f32`.
 /// - **Work:** some arithmetic in double precision a sample, in software where the core has no such unit: run it
 ///   before arming.
 /// - **Rejected samples:** a sample that is not finite is counted, makes the channel unfit, and changes nothing
@@ -156,11 +158,11 @@ pub enum Unfit {
     },
     /// All samples were alike: a sensor that works has noise.
     Constant,
-    /// The vehicle moved, so that its rest cannot be told from its motion. Values are shown as `f32`.
+    /// The vehicle moved, where the conditions require it to rest. Values are shown as `f32`.
     Moving {
         /// The distance between the largest and the smallest sample.
         distance: f32,
-        /// What it may be.
+        /// The largest distance allowed.
         stillness: f32,
     },
 }
@@ -223,10 +225,10 @@ impl<S: Sample, const B: usize> Survey<S, B> {
         *self = Self::new(self.conditions);
     }
 
-    /// Whether the channel is fit to fly, and what follows from its signal then.
+    /// The channel, if it is fit to fly.
     ///
     /// # Errors
-    /// Why it is unfit; more samples may mend [`Unfit::TooFewSamples`], the others call for a
+    /// Why it is unfit. More samples may mend [`Unfit::TooFewSamples`]; the others call for a
     /// [`reset`](Self::reset).
     pub fn verdict(&self) -> Result<Fit<'_, S, B>, Unfit> {
         let Conditions { samples: needed, stillness, .. } = self.conditions;
@@ -255,7 +257,7 @@ impl<S: Sample, const B: usize> Survey<S, B> {
     }
 }
 
-/// A channel that is fit to fly: what its signal is like, and thresholds that follow from it.
+/// A channel that is fit to fly: the statistics of its signal, and thresholds that follow from them.
 #[derive(Clone, Copy, Debug)]
 pub struct Fit<'a, S: Sample, const B: usize> {
     survey: &'a Survey<S, B>,
@@ -282,7 +284,7 @@ impl<'a, S: Sample, const B: usize> Fit<'a, S, B> {
         &self.survey.changes
     }
 
-    /// Step forward with so many spikes a sample at most, above 0 to 1.
+    /// Step forward with at most `spikes` spikes a sample, above 0 and up to 1.
     ///
     /// The threshold is `mean |x[i] - x[i-1]| / spikes`. Every spike moves the baseline by a threshold, and the
     /// baseline travels no further than the signal does, so that the samples seen have no more spikes than this,
@@ -291,21 +293,21 @@ impl<'a, S: Sample, const B: usize> Fit<'a, S, B> {
     /// # Errors
     /// The number is not within 0 to 1, or the threshold rounds to 0 in the sample type.
     pub fn step_forward(&self, spikes: f32) -> Result<StepForward<S>, ConfigError> {
-        share(spikes)?;
+        check_spikes(spikes)?;
         let mean = self.calibration().magnitudes()?.mean;
         StepForward::try_new(S::from_f64(mean / f64::from(spikes)))
     }
 
-    /// Temporal contrast with so many spikes a sample at most, above 0 to 1.
+    /// Temporal contrast with at most `spikes` spikes a sample, above 0 and up to 1.
     ///
-    /// The threshold is the lowest border of two cells of [`changes`](Self::changes) that no larger part of the
-    /// changes exceeds: it is a whole number of B-ths of the largest change. Up to 65 534 changes that holds
-    /// exactly; of more the older ones count less.
+    /// The threshold is the lowest border between two cells of [`changes`](Self::changes) that at most the part
+    /// `spikes` of the changes exceeds: a multiple of `largest_change / B`. Up to 65 534 changes this is exact; of more
+    /// the older ones count less.
     ///
     /// # Errors
-    /// The number is not within 0 to 1, or more changes than that are in the last cell.
+    /// The number is not within 0 to 1, or a larger part of the changes is in the last cell.
     pub fn temporal_contrast(&self, spikes: f32) -> Result<TemporalContrast<S>, ConfigError> {
-        share(spikes)?;
+        check_spikes(spikes)?;
         let counts = self.changes().counts();
         let all: u32 = counts.iter().copied().map(u32::from).sum();
         let part = |above: u32| above as f32 / all as f32;
@@ -324,7 +326,7 @@ impl<'a, S: Sample, const B: usize> Fit<'a, S, B> {
     }
 }
 
-/// A number of spikes a sample: above 0 to 1.
-fn share(spikes: f32) -> Result<(), ConfigError> {
+/// Checks a number of spikes a sample: above 0, at most 1.
+fn check_spikes(spikes: f32) -> Result<(), ConfigError> {
     within("spikes a sample", spikes.into(), f32::MIN_POSITIVE, 1.0)
 }

@@ -1,4 +1,4 @@
-//! Where cells end, and what they decode to.
+//! The edges between cells, and the values that cells decode to.
 
 use core::ops::RangeInclusive;
 
@@ -54,7 +54,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
         Ok(Self { min, start: to_f64(min), max, lasts: [max; C], ends: [to_f64(max); C], count })
     }
 
-    /// Cells of the samples above an edge alone.
+    /// Leaves out the samples up to an edge: the first cell begins above it.
     pub(in crate::scheme) const fn above(mut self, start: f64) -> Self {
         let below = to_f64::<S>(floor_from_f64(start));
         self.min = match S::KIND {
@@ -135,7 +135,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
         if cell < C { self.lasts[cell] } else { self.max }
     }
 
-    /// What a cell decodes to: the middle of its samples, in `f32` of its ends, rounded.
+    /// The value that a cell decodes to: the middle of its samples; in `f32` the middle of its ends, rounded.
     pub(in crate::scheme) const fn middle(&self, cell: usize) -> S {
         if matches!(S::KIND, SampleKind::F32) {
             let end = if cell < C { self.ends[cell] } else { to_f64(self.max) };
@@ -144,7 +144,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
         floor_from_f64(f64::midpoint(to_f64(self.first(cell)), to_f64(self.last(cell))))
     }
 
-    /// So many of the cells.
+    /// Keeps the first `count` cells.
     pub(in crate::scheme) const fn counted(self, count: usize) -> Self {
         Self { count: if count < C { count } else { C }, ..self }
     }
@@ -205,6 +205,8 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
         Ok(Partition::new(values, self.lasts, self.count))
     }
 
+    /// Checks that every cell holds a sample.
+    ///
     /// # Errors
     /// A cell holds no sample.
     const fn check(&self) -> Result<(), ConfigError> {

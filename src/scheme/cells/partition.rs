@@ -1,4 +1,4 @@
-//! Which cell a value lies in.
+//! Partition: looks up the cell in which a value lies.
 
 use super::count_preceding;
 use crate::Sample;

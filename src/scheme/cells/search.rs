@@ -1,6 +1,6 @@
 //! Binary search in a number of steps that depends only on the length.
 
-/// The number of indices below `length` that precede, given that these come first.
+/// How many indices below `length` are such that `precedes` is true; they must come before all others.
 #[inline]
 pub(in crate::scheme) fn count_preceding(length: usize, precedes: impl Fn(usize) -> bool) -> usize {
     let mut preceding = 0;

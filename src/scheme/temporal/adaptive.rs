@@ -14,17 +14,17 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 /// sample: if the last `run` spikes went one way without a sample between, `e` grows by 1, up to `doublings`; otherwise
 /// it falls by 1, down to 0. The decoder does the same.
 ///
-/// - **Threshold:** above 0, in the samples' unit. The largest step, `threshold * 2^doublings`, is one that the
-///   sample type holds; up to 10³¹ in `f32`. **Doublings:** 0 to 30; 0 is step forward. **Run:** 1 to 8, 2 unless told.
+/// - **Threshold:** above 0, in the samples' unit. The sample type must hold the largest step,
+///   `threshold * 2^doublings`; in `f32` it is at most 10³¹. **Doublings:** 0 to 30; 0 is step forward. **Run:** 1 to
+///   8, 2 by default.
 /// - **Latency:** 0 samples. **Memory:** 12 bytes a channel in `f32`, 8 to decode.
 /// - **Work:** two comparisons.
 /// - **Exactness:** steps are exact, `f32` rounds `base ± step` once; fixed point is exact.
 /// - **Error:** while `|x[i] - x[i-1]| <= threshold`, the decoded value stays within two thresholds of the signal.
 ///   It never overshoots. A jump by `J` from rest is followed to within a threshold after
 ///   `J / (threshold * 2^doublings) + 3 * doublings` samples, rounded up (for runs of 2 to 4).
-/// - **Keyframes:** only at rest, when `e` is 0 and the last sample had no spike: then the baseline alone is all that
-///   a decoder must know. So taking keyframes changes no spike. Where there is none now, ask again at the next
-///   sample.
+/// - **Keyframes:** only at rest, when `e` is 0 and the last sample had no spike: then the baseline is all that a
+///   decoder must know. Where there is no keyframe now, ask again at the next sample.
 ///
 /// Source: Jayant, *Adaptive delta modulation with a one-bit memory*, 1970.
 ///
@@ -53,13 +53,13 @@ pub struct AdaptiveStepForward<S> {
     run: u8,
 }
 
-/// Up to 2³⁰ thresholds.
+/// The largest step is then 2³⁰ thresholds.
 const MOST_DOUBLINGS: u8 = 30;
-/// The error is known for runs up to this.
+/// The bound on the error is checked for runs up to this.
 const LONGEST_RUN: u8 = 8;
 
 impl<S: Sample> AdaptiveStepForward<S> {
-    /// A scheme with this threshold, whose step doubles so many times at most. For constants, where bad parameters
+    /// A scheme with this threshold, whose step doubles at most `doublings` times. For constants, where bad parameters
     /// fail the build.
     ///
     /// # Panics
@@ -68,7 +68,7 @@ impl<S: Sample> AdaptiveStepForward<S> {
         unwrap(Self::try_new(threshold, doublings))
     }
 
-    /// A scheme with this threshold, whose step doubles so many times at most.
+    /// A scheme with this threshold, whose step doubles at most `doublings` times.
     ///
     /// # Errors
     /// The threshold is not above 0, or not finite; there are more than 30 doublings; the largest step is more than the
@@ -80,8 +80,8 @@ impl<S: Sample> AdaptiveStepForward<S> {
         }
     }
 
-    /// The step grows after so many spikes in one direction, one a sample; 2 unless told. For constants, where a bad
-    /// number fails the build.
+    /// Sets after how many spikes in one direction, one a sample, the step grows; 2 by default. For constants, where a
+    /// bad number fails the build.
     ///
     /// # Panics
     /// The number is not within 1 to 8.
@@ -90,7 +90,7 @@ impl<S: Sample> AdaptiveStepForward<S> {
         unwrap(self.try_with_run(run))
     }
 
-    /// The step grows after so many spikes in one direction, one a sample; 2 unless told.
+    /// Sets after how many spikes in one direction, one a sample, the step grows; 2 by default.
     ///
     /// # Errors
     /// The number is not within 1 to 8.
@@ -111,7 +111,7 @@ impl<S: Sample> AdaptiveStepForward<S> {
         Band::around(base, self.threshold.doubled(pace.exponent))
     }
 
-    /// Takes a sample; `None` if it is not finite. The decoder counts that as a silent sample, and so does the pace.
+    /// Takes a sample; `None` if it is not finite. The pace then counts a silent sample, as the decoder does.
     #[inline]
     fn follow(&self, base: &mut S, pace: &mut Pace, sample: S) -> Option<Spike> {
         let band = self.band(*base, *pace);
@@ -132,12 +132,12 @@ impl<S: Sample> AdaptiveStepForward<S> {
     }
 }
 
-/// How fast the baseline runs: two bytes.
+/// How fast the baseline moves: the size of its step, and the run of spikes that may double it. Two bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pace {
     /// How often the step is doubled.
     exponent: u8,
-    /// How many spikes in one direction came last, negative if they went down.
+    /// How many spikes in one direction came last, one a sample; negative if they went down.
     run: i8,
 }
 
@@ -187,7 +187,7 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
     type DecoderState = AdaptiveStepState<S>;
 
     const LATENCY: usize = 0;
-    /// After as many silent samples as there are doublings the step is the smallest.
+    /// Each silent sample halves the step: after as many as there are doublings it is the smallest.
     const RECOVERY: Recovery = Recovery::TimedKeyframe(MOST_DOUBLINGS as usize);
 
     #[inline]
@@ -201,7 +201,7 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         Spike::None
     }
 
-    /// The baseline and the pace stay in registers, and at rest the band.
+    /// The baseline and the pace stay in registers, and while at rest also the band.
     #[inline]
     fn encode_slice(
         &self,
@@ -222,7 +222,7 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
                 continue;
             }
             match self.follow(&mut base, &mut pace, sample) {
-                Some(told) => *spike = told,
+                Some(emitted) => *spike = emitted,
                 None => state.tally.reject(),
             }
             band = Band::around(base, self.threshold);
@@ -231,7 +231,8 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         first + samples.len().min(spikes.len())
     }
 
-    /// The last of the past becomes the baseline, at rest; a decoder must be told, as by a keyframe.
+    /// The last sample of the past becomes the baseline, and the step the smallest. Give the decoder that value by
+    /// `resync`.
     fn prime(&self, state: &mut AdaptiveState<S>, past: &[S]) {
         if let Some(base) = state.tally.last_of(past) {
             state.base = base;

@@ -1,4 +1,4 @@
-//! Adaptive temporal contrast: temporal contrast whose threshold doubles the more often it fires.
+//! Adaptive temporal contrast: temporal contrast whose threshold grows with the number of recent spikes.
 
 use super::doublings;
 use crate::error::unwrap;
@@ -12,16 +12,16 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 /// `n (doublings + 1) / 16`, rounded down and at most `doublings`, and `n` is how many of the last 16 samples had a
 /// spike. The decoder counts the same spikes, and steps by the same threshold.
 ///
-/// - **Threshold:** above 0, in the samples' unit: the smallest, as at rest. The largest, `threshold * 2^doublings`, is
-///   one that the sample type holds; up to 10³¹ in `f32`. **Doublings:** 0 to 15; 0 is temporal contrast.
+/// - **Threshold:** above 0, in the samples' unit: the smallest, as at rest. The sample type must hold the largest,
+///   `threshold * 2^doublings`; in `f32` it is at most 10³¹. **Doublings:** 0 to 15; 0 is temporal contrast.
 /// - **Latency:** 0 samples. **Memory:** 12 bytes a channel in `f32`, 8 to decode.
 /// - **Work:** that of temporal contrast, a multiplication and some shifts.
 /// - **Exactness:** thresholds are exact; `f32` rounds the difference of two samples once, fixed point compares it
 ///   exactly.
 /// - **Error:** the decoded value drifts without bound, since a difference within the threshold is never made up for.
 ///   Resynchronise it.
-/// - **Keyframes:** only when the last 16 samples had no spike: then the last sample alone is all that a decoder must
-///   know. Where there is none now, ask again at the next sample.
+/// - **Keyframes:** only when the last 16 samples had no spike: then the last sample is all that a decoder must know.
+///   Where there is no keyframe now, ask again at the next sample.
 ///
 /// Source: temporal contrast is algorithm 6 of the paper; the count of spikes is this crate's own.
 ///
@@ -50,13 +50,13 @@ pub struct AdaptiveContrast<S> {
     doublings: u8,
 }
 
-/// How many samples are counted.
+/// Among how many samples spikes are counted.
 const COUNTED: usize = 16;
-/// So that every number of spikes may have a threshold of its own.
+/// With so many, each spike among the last 16 samples doubles the threshold once more, up to the 15th.
 const MOST_DOUBLINGS: u8 = 15;
 
 impl<S: Sample> AdaptiveContrast<S> {
-    /// A scheme with this smallest threshold, which doubles so many times at most. For constants, where bad
+    /// A scheme with this smallest threshold, which doubles at most `doublings` times. For constants, where bad
     /// parameters fail the build.
     ///
     /// # Panics
@@ -65,7 +65,7 @@ impl<S: Sample> AdaptiveContrast<S> {
         unwrap(Self::try_new(threshold, doublings))
     }
 
-    /// A scheme with this smallest threshold, which doubles so many times at most.
+    /// A scheme with this smallest threshold, which doubles at most `doublings` times.
     ///
     /// # Errors
     /// The threshold is not above 0, or not finite; there are more than 15 doublings; the largest threshold is more
@@ -155,8 +155,8 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
         spike
     }
 
-    /// The last sample stays in a register, and whether all were finite is asked once: if not, the slice is taken
-    /// again with care.
+    /// The last sample stays in a register, and one check at the end asks whether all were finite: if not, the slice is
+    /// encoded again, sample by sample.
     #[inline]
     fn encode_slice(
         &self,
@@ -176,7 +176,7 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
             taint = taint.taint(sample);
             *spike = Spike::from_side(sample.step(previous, threshold));
             previous = sample;
-            // Without a spike now and among those counted there is nothing to adapt to.
+            // Without a spike now or among the last 16 samples the threshold stays the smallest.
             if recent != Recent::NONE || spike.is_fired() {
                 recent.take(*spike);
                 threshold = self.after(recent);
@@ -190,7 +190,7 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
         first + samples.len().min(spikes.len())
     }
 
-    /// The last of the past becomes the predecessor of the next sample, without a spike counted.
+    /// The last sample of the past becomes the predecessor of the next one, and the count of spikes starts at 0.
     fn prime(&self, state: &mut AdaptiveContrastState<S>, past: &[S]) {
         if let Some(previous) = state.tally.last_of(past) {
             state.previous = previous;

@@ -16,14 +16,14 @@ impl<S: Sample> Band<S> {
         Self { lower: base.minus(threshold), base, upper: base.plus(threshold) }
     }
 
-    /// Whether the sample is below the band, or not a number.
+    /// Whether the whole band lies above the sample; also true of NaN.
     #[inline]
-    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "true of what is not a number")]
+    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "true of NaN")]
     pub(super) fn is_above(self, sample: S) -> bool {
         !(sample >= self.lower)
     }
 
-    /// Whether the sample is within the band, ends included; nothing that is not a number is.
+    /// Whether the sample is within the band, ends included; false for NaN.
     #[inline]
     pub(super) fn holds(self, sample: S) -> bool {
         sample <= self.upper && sample >= self.lower

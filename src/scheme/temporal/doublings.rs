@@ -1,4 +1,4 @@
-//! What adaptive schemes ask of a step that doubles.
+//! The check of a step or a threshold that doubles, for the adaptive schemes.
 
 use crate::error::{step, within};
 use crate::num::{largest_step, to_f64};
@@ -7,8 +7,8 @@ use crate::{ConfigError, Sample};
 /// Checks a threshold and how often it doubles, at most `most` times.
 ///
 /// # Errors
-/// The threshold is not above 0, or not finite; there are more doublings; what they lead to, called `largest`, is more
-/// than the sample type holds, or above 10³¹ in `f32`.
+/// The threshold is not above 0, or not finite; there are more doublings; the threshold doubled as often, which the
+/// error names `largest`, is more than the sample type holds, or above 10³¹ in `f32`.
 pub(super) const fn check<S: Sample>(
     threshold: S,
     doublings: u8,

@@ -1,4 +1,4 @@
-//! Moving window (MW): a spike when a sample leaves the band around the mean of those before it.
+//! Moving window (MW): a spike when a sample leaves the band around the mean of the samples before it.
 
 use core::hint::black_box;
 use core::slice::{from_mut, from_ref};
@@ -111,8 +111,8 @@ const GROUP: usize = 4;
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct MovingWindowState<S: Sample, const N: usize> {
-    // In one instruction most cores reach a slot if the window comes first. A Cortex-M0, which alone has no atomic
-    // exchange, never does, and reaches the rest only near the beginning.
+    // Most cores reach a slot in one instruction if the window comes first. A Cortex-M0, the only core without atomic
+    // exchange, never does; it reaches the other fields in one instruction if they come first.
     #[cfg(target_has_atomic = "32")]
     ring: [S; N],
     partial: S::Sum,
@@ -184,7 +184,7 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
         self.encode_groups(margin, groups, spikes)
     }
 
-    /// Takes a sample into the slot `next`, and the sum with it.
+    /// Stores a sample in the slot `next`, and the sum over the window with it.
     #[inline]
     fn take(&mut self, next: usize, sample: S, partial: S::Fast) {
         if let Some(slot) = self.ring.get_mut(next) {
@@ -197,7 +197,8 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
         }
     }
 
-    /// Sums in a function of its own, where there are any: one sample in `N` comes here.
+    /// Ends a block. In `f32`, where this takes a pass of additions, in a function of its own: one sample in `N` comes
+    /// here.
     #[inline]
     fn close_block_once(&mut self) {
         if S::Fast::IS_ALWAYS_FINITE { self.close_block() } else { self.close_block_apart() }
@@ -288,7 +289,7 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
                 state.take(next, sample, partial);
                 return Spike::from_side(difference.beyond(self.fast_margin));
             }
-            // A difference within the margin is finite: only those beyond it are asked.
+            // A difference within the margin is finite: only those beyond it need the check.
             let side = difference.beyond(self.fast_margin);
             if side.is_eq() {
                 state.take(next, sample, partial);
@@ -335,7 +336,7 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
         length
     }
 
-    /// The last `N` samples of the past fill the window; a past of fewer is ignored.
+    /// The last `N` samples of the past fill the window; a shorter past is ignored.
     fn prime(&self, state: &mut MovingWindowState<S, N>, past: &[S]) {
         let Some(window) = past.last_chunk::<N>() else { return };
         if window.iter().all(S::is_finite) {

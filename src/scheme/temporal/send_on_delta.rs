@@ -15,7 +15,7 @@ use crate::{Code, ConfigError, Firing, Output, Polarity, Recovery, Sample, Schem
 /// [`StepForward`](super::StepForward).
 ///
 /// - **Threshold:** above 0, in the samples' unit; up to 10³¹ in `f32`, so that no band reaches infinity.
-///   **K:** 1 to 127, of which [`with_most`](Self::with_most) may allow fewer.
+///   **K:** 1 to 127; a smaller number set by [`with_most`](Self::with_most) takes its place in the law and the error.
 /// - **Latency:** 0 samples. **Memory:** 8 bytes a channel in `f32`, 4 to decode.
 /// - **Work:** two comparisons a sample, and one more for each spike.
 /// - **Exactness:** `f32` rounds `base ± threshold` once a spike; fixed point is exact.

@@ -103,7 +103,7 @@ impl<S: Sample> Scheme for StepForward<S> {
         } else if band.is_above(sample) {
             (Spike::Down, band.lower)
         } else if S::IS_FLOAT || state.tally.is_primed() {
-            return Spike::None; // no float lies near a baseline that there is not yet
+            return Spike::None; // before the first sample the base is NaN: every float takes a branch above
         } else {
             (Spike::None, sample)
         };
