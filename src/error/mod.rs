@@ -1,4 +1,4 @@
-//! Errors of parameters, which are all found when a scheme is built.
+//! The error of a bad parameter, which is found when a scheme is built, and the checks that return it.
 
 mod message;
 
@@ -8,7 +8,7 @@ pub(crate) use message::unwrap;
 
 /// A parameter is out of its range.
 ///
-/// Every variant names the parameter, its value and what is allowed. Values are shown as `f32` for every sample type.
+/// Every variant says what is wrong, where, and what is allowed. Values are given as `f32` for every sample type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -69,11 +69,11 @@ pub enum ConfigError {
         /// How many cells there are.
         cells: usize,
     },
-    /// A receptive field must not win where two others meet.
+    /// A receptive field is so wide that its response is the strongest where two others meet.
     FieldTooWide {
         /// Which field, from 0, the lowest.
         field: usize,
-        /// The lower of the two that meet; the other is the next one.
+        /// The lower of the two fields that meet; the other is the next one.
         lower: usize,
     },
     /// A calibration has seen too few samples.
@@ -136,8 +136,8 @@ pub(crate) const fn positive(parameter: &'static str, value: f64) -> Result<(), 
     }
 }
 
-/// The largest step in `f32`: adding it to any finite value stays finite, as it is less than half a unit in the last
-/// place of the largest one.
+/// The largest step in `f32`. It is less than half a unit in the last place of `f32::MAX`, so that a finite value plus
+/// a step is finite.
 pub(crate) const LARGEST_STEP: f32 = 1e31;
 
 /// Checks that a value is above 0 and at most [`LARGEST_STEP`].
@@ -200,7 +200,7 @@ pub(crate) const fn range(min: f64, max: f64) -> Result<(), ConfigError> {
     }
 }
 
-/// The error that a value does not exceed the one before it.
+/// The error of a value that does not exceed the value before it.
 pub(crate) const fn not_rising(
     parameter: &'static str,
     index: usize,

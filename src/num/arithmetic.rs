@@ -8,8 +8,8 @@ pub(crate) trait Arithmetic: Sized {
 
     const IS_FLOAT: bool;
 
-    /// The baseline before the first sample. In `f32` NaN: every sample lies beyond it.
-    const NOWHERE: Self;
+    /// The baseline before the first sample. In `f32` it is NaN, so that no sample compares as near to it.
+    const NO_BASELINE: Self;
 
     fn is_finite(&self) -> bool;
 
@@ -23,7 +23,7 @@ pub(crate) trait Arithmetic: Sized {
     /// `self - step`.
     fn minus(self, step: Self) -> Self;
 
-    /// `self * 2^times`, which the type holds.
+    /// `self * 2^times`, for results that the type holds.
     fn doubled(self, times: u8) -> Self;
 
     /// Compares `self - previous` with the threshold: `Greater` above it, `Less` below its negative, else `Equal`.
@@ -35,7 +35,7 @@ impl Arithmetic for f32 {
 
     const IS_FLOAT: bool = true;
 
-    const NOWHERE: Self = f32::NAN;
+    const NO_BASELINE: Self = f32::NAN;
 
     #[inline]
     fn is_finite(&self) -> bool {
@@ -109,7 +109,7 @@ macro_rules! integer_arithmetic {
 
             const IS_FLOAT: bool = false;
 
-            const NOWHERE: Self = $from_bits(0);
+            const NO_BASELINE: Self = $from_bits(0);
 
             #[inline]
             fn is_finite(&self) -> bool {
@@ -136,7 +136,7 @@ macro_rules! integer_arithmetic {
                 self.wrapping_shl(times.into())
             }
 
-            // A bound that saturates is an end of the type, and no sample lies beyond it or the exact bound.
+            // A bound that saturates is an end of the type: no sample lies beyond it, nor beyond the exact bound.
             #[inline]
             fn step(self, previous: Self, threshold: Self) -> Ordering {
                 if self > previous.saturating_add(threshold) {

@@ -14,7 +14,7 @@ pub(crate) trait Binary: Sized {
     /// The middle of two values, rounded down in fixed point and once in `f32`.
     fn middle(self, other: Self) -> Self;
 
-    /// The largest value below the start of a cell: in `f32` the start itself.
+    /// The largest value below this one; in `f32` this one itself, as cells there end where the next one starts.
     fn before(self) -> Self;
 }
 
@@ -52,7 +52,8 @@ impl Binary for f32 {
         min + (max - min) * ((2 * digits + 1) as f32 * half)
     }
 
-    /// Halves of the smallest values would be rounded before their sum, and the sum of the largest is infinite.
+    /// Adds halves, as the sum of large values may be infinite; but halves the sum of tiny values, whose halves would
+    /// be rounded.
     #[inline]
     fn middle(self, other: f32) -> f32 {
         // Below 2^-125, whose half is the smallest that is exact.
@@ -90,7 +91,7 @@ macro_rules! integer {
                 let mut rest = value.wrapping_sub(min).cast_unsigned();
                 let mut digits = 0;
                 for _ in 0..count {
-                    // Doubled, the rest may leave 32 bits: it is compared with what it lacks to the range.
+                    // Twice the rest may exceed 32 bits, so that the rest is compared with `range - rest`.
                     let lacking = range.wrapping_sub(rest);
                     digits <<= 1;
                     if rest >= lacking {

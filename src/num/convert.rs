@@ -23,7 +23,7 @@ pub(crate) const fn to_f64<S: Sample>(value: S) -> f64 {
     }
 }
 
-/// The value in units of the type's last place, exactly; as it is in `f32`.
+/// The value in units of the type's last place, exactly; in `f32` the value itself.
 pub(crate) const fn units<S: Sample>(value: S) -> f64 {
     match S::KIND {
         SampleKind::F32 => to_f64(value),
@@ -33,7 +33,7 @@ pub(crate) const fn units<S: Sample>(value: S) -> f64 {
     }
 }
 
-/// What one of the [`units`] is: the type's last place; 1 in `f32`.
+/// The size of one of the [`units`]: that of the type's last place; 1 in `f32`.
 pub(crate) const fn one<S: Sample>() -> f64 {
     match S::KIND {
         SampleKind::F32 => 1.0,
@@ -43,7 +43,7 @@ pub(crate) const fn one<S: Sample>() -> f64 {
     }
 }
 
-/// The largest value of the type that is a step: 10³¹ in `f32`.
+/// The largest step of a scheme in this type: 10³¹ in `f32`, in fixed point the type's largest value.
 pub(crate) const fn largest_step<S: Sample>() -> f64 {
     match S::KIND {
         SampleKind::F32 => crate::error::LARGEST_STEP as f64,
@@ -91,7 +91,7 @@ pub(crate) const fn below_from_f64<S: Sample>(value: f64) -> S {
     }
 }
 
-/// The number of 2, 4 or 8 bytes with these low bits.
+/// A number of 2, 4 or 8 bytes, made of the low bits of `bits`.
 pub(crate) const fn word<T: Pod>(bits: u64) -> T {
     // Repeated, so that the first bytes hold the number on machines of either byte order.
     let filled = match size_of::<T>() {

@@ -10,36 +10,36 @@ use super::{Sample, SampleKind, word};
 
 /// What a sample type computes of a field.
 pub(crate) trait Field: Sized {
-    /// `1 / sigma`: the bits of an `f32`; or 2³² times, in units of the last place.
+    /// `1 / sigma` as the bits of an `f32`; or the integer `2³² / sigma`, with `sigma` in units of the last place.
     type Scale: Pod + PartialEq + Debug + Send + Sync;
-    /// `|x - mu| / sigma`: the bits of an `f32`, which have its order; or 2³² times.
+    /// `|x - mu| / sigma` as the bits of an `f32`, which sort as it does; or the integer `2³² |x - mu| / sigma`.
     type Widths: Pod + Ord + Debug + Send + Sync;
-    /// Distances of centres from the lowest, or the centres, times levels, summed.
+    /// A sum of levels, each times a centre (`f32`) or the distance of a centre from the lowest one (integers).
     type Centroid: Copy + Default;
 
-    /// `|x - mu|`: the bits of an `f32`, which have its order, or an integer in units of the last place.
+    /// `|x - mu|` as the bits of an `f32`, which sort as it does; or an integer in units of the last place.
     fn distance(self, centre: Self) -> u32;
 
     /// Halfway to a higher value, rounded down; in `f32` to the nearest.
     fn midway(self, higher: Self) -> Self;
 
-    /// The value after this one, which is not the largest; in `f32` the value itself.
+    /// The next larger value, for any value but the largest; in `f32` the value itself.
     fn next(self) -> Self;
 
-    /// A distance of up to four widths or so, in widths.
+    /// A distance in widths, for distances up to about four widths.
     fn in_widths(distance: u32, scale: Self::Scale) -> Self::Widths;
 
-    /// Adds a centre, not below the lowest.
+    /// Adds a centre times a level. No centre is below `lowest`.
     fn add_centre(sum: Self::Centroid, centre: Self, lowest: Self, level: u32) -> Self::Centroid;
 
     /// The mean, rounded to the nearest, halves upwards; `levels` is above 0.
     fn mean_of(sum: Self::Centroid, lowest: Self, levels: u32) -> Self;
 }
 
-/// What 2³² widths are less than: no level reaches as far.
+/// Four widths, times 2³²: no level reaches as far.
 const FAR: f64 = 17_179_869_184.0;
 
-/// `1 / sigma`, rounded half up in fixed point, where what would let no distance but 0 respond stays as it is.
+/// `1 / sigma`; in fixed point rounded half up, and at most [`FAR`], at which only the centre itself responds.
 pub(crate) const fn scale<S: Sample>(sigma: f64) -> S::Scale {
     if matches!(S::KIND, SampleKind::F32) {
         return word(((1.0 / sigma) as f32).to_bits() as u64);
@@ -56,7 +56,7 @@ pub(crate) const fn widths<S: Sample>(widths: f64) -> S::Widths {
     }
 }
 
-/// The largest distance within so many widths of a field.
+/// The largest distance from the centre that is at most `widths` widths of a field.
 pub(crate) const fn within_widths<S: Sample>(widths: S::Widths, scale: S::Scale) -> u32 {
     let (widths, scale) = (number(widths), number(scale));
     if !matches!(S::KIND, SampleKind::F32) {

@@ -42,7 +42,7 @@ pub(crate) struct Ratio {
 }
 
 impl Ratio {
-    /// A factor above 0 and below 4.
+    /// A factor of 2⁻¹⁴ to 4 - 2⁻¹⁴.
     pub(crate) const fn new(factor: f32) -> Self {
         Self { float: factor, fixed: (factor * 16_384.0 + 0.5) as u16 }
     }

@@ -1,4 +1,4 @@
-//! The numbers that encoders work on.
+//! The trait of sample types: the numbers that encoders take.
 
 use core::fmt::Debug;
 

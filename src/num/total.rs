@@ -1,10 +1,10 @@
-//! Sums over time of what samples are above a reference, for the codes of a signal's mean.
+//! Sums over time of samples minus a reference, for the codes of a signal's mean.
 
 use core::fmt::Debug;
 
 use super::arithmetic::for_each_integer;
 
-/// What a sample type is summed in: `f32`, 32 bits for 16, 64 bits for 32.
+/// The type of a sample's sums: `f32`, 32 bits for samples of 16, 64 bits for samples of 32.
 pub(crate) trait Totalled: Sized {
     type Total: Total;
 
@@ -15,8 +15,8 @@ pub(crate) trait Totalled: Sized {
     fn raised(self, sum: Self::Total) -> Self;
 }
 
-/// A sum. In `f32` every operation rounds once. Integers are exact; those of 32 bits saturate, those of 64 bits have
-/// room for all that a code adds up, once it caps what it adds up without end.
+/// A sum. In `f32` every operation rounds once. Integers are exact: sums of 32 bits saturate; sums of 64 bits never
+/// overflow, as a code whose sum may grow without end [caps](Self::capped) it.
 pub trait Total: Copy + PartialOrd + Debug + Send + Sync {
     const ZERO: Self;
 
@@ -24,7 +24,7 @@ pub trait Total: Copy + PartialOrd + Debug + Send + Sync {
     fn plus(self, other: Self) -> Self;
     fn minus(self, other: Self) -> Self;
 
-    /// Within a quarter of the numbers of 64 bits.
+    /// A sum of 64 bits limited to ±2⁶²; any other as it is.
     fn capped(self) -> Self;
 
     /// `self * count`.
@@ -167,7 +167,7 @@ macro_rules! integer_total {
     };
 }
 
-// Of 16 bits 2^16 p and draw * R + R / 2, rounded up, fit 32.
+// For samples of 16 bits, `2^16 p` and `draw * R + R / 2`, rounded up, fit 32 bits.
 integer_total!(
     i32,
     saturating_add,

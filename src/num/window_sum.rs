@@ -160,7 +160,7 @@ impl Windowed for f32 {
         groups.as_flattened_mut().iter_mut().rev().for_each(&mut close);
         for slot in rest.iter_mut().rev() {
             close(slot);
-            black_box(()); // or the compiler would write out four turns
+            black_box(()); // keeps the compiler from unrolling the loop
         }
         *partial = 0.0;
     }
@@ -260,11 +260,13 @@ macro_rules! integer_window {
                 slots: &[Self; M],
             ) -> bool {
                 let small: i32 = (1 << 28) / count.next_power_of_two() as i32;
-                let above = |taint: u32, value: &Self| {
-                    taint | i32::from($to_bits(*value)).wrapping_add(small).cast_unsigned()
+                // `value + small` is below `2 * small`, a power of 2, for every value in `-small..small`: so is the
+                // bitwise or of all of them.
+                let combine = |bits: u32, value: &Self| {
+                    bits | i32::from($to_bits(*value)).wrapping_add(small).cast_unsigned()
                 };
-                let taint = slots.iter().fold(samples.iter().fold(0, above), above);
-                <$sum>::BITS == 32 || taint < 2 * small.cast_unsigned()
+                let bits = slots.iter().fold(samples.iter().fold(0, combine), combine);
+                <$sum>::BITS == 32 || bits < 2 * small.cast_unsigned()
             }
 
             #[inline]

@@ -1,7 +1,7 @@
 //! The state of decoders that hold the value decoded last, for codes of the value itself instead of its changes.
 
-/// The state of a decoder that holds the value decoded last until the next spike. Each scheme says which value it starts
-/// from: population codes from the middle centre. 4 bytes in `f32`.
+/// The state of a decoder that holds the value decoded last until the next spike. Each scheme says which value it
+/// starts from: population codes from the middle centre. 4 bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
 pub struct Held<S> {
     value: S,

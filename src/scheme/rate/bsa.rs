@@ -15,8 +15,8 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 /// ([`multiplicative`](Self::multiplicative)); then `r[i+j] -= h[j]`. At the end of a recording both sums end with
 /// its last sample.
 ///
-/// - **Threshold:** subtractive: 0 or more, in the samples' unit. Multiplicative: above 0 and below
-///   4; with samples in fixed point it is rounded to a multiple of 2⁻¹⁴.
+/// - **Threshold:** subtractive: 0 or more, in the samples' unit. Multiplicative: 2⁻¹⁴ to 4 - 2⁻¹⁴; with samples in
+///   fixed point it is rounded to a multiple of 2⁻¹⁴.
 /// - **Latency:** `F - 1` samples. **Memory:** `4 F + 8` bytes a channel in `f32`.
 /// - **Exactness:** `f32` adds up `e1` and `e2` separately: by rising `(i + j) mod F`, which is their order in
 ///   memory, and from the first tap on where the recording ends within the filter. Subtractive compares `e1 - e2`
@@ -63,7 +63,7 @@ enum Limit<S> {
 }
 
 impl<S: Sample, const F: usize> Bsa<S, F> {
-    /// A scheme with these taps and either criterion. For constants, where a bad threshold fails the build.
+    /// A scheme with these taps and this criterion. For constants, where a bad threshold fails the build.
     ///
     /// # Panics
     /// The threshold is out of its range, or not finite.
@@ -71,7 +71,7 @@ impl<S: Sample, const F: usize> Bsa<S, F> {
         unwrap(Self::try_new(taps, criterion))
     }
 
-    /// A scheme with these taps and either criterion.
+    /// A scheme with these taps and this criterion.
     ///
     /// # Errors
     /// The threshold is out of its range, or not finite.
@@ -90,7 +90,7 @@ impl<S: Sample, const F: usize> Bsa<S, F> {
         }
     }
 
-    /// `e1 <= e2 - threshold`. For constants, where a bad threshold fails the build.
+    /// A scheme that spikes if `e1 <= e2 - threshold`. For constants, where a bad threshold fails the build.
     ///
     /// # Panics
     /// The threshold is negative or not finite.
@@ -98,7 +98,7 @@ impl<S: Sample, const F: usize> Bsa<S, F> {
         unwrap(Self::try_subtractive(taps, threshold))
     }
 
-    /// `e1 <= e2 - threshold`.
+    /// A scheme that spikes if `e1 <= e2 - threshold`.
     ///
     /// # Errors
     /// The threshold is negative or not finite.
@@ -106,18 +106,18 @@ impl<S: Sample, const F: usize> Bsa<S, F> {
         Self::try_new(taps, Criterion::Subtractive(threshold))
     }
 
-    /// `e1 <= e2 * threshold`. For constants, where a bad threshold fails the build.
+    /// A scheme that spikes if `e1 <= e2 * threshold`. For constants, where a bad threshold fails the build.
     ///
     /// # Panics
-    /// The threshold is not above 0 and below 4.
+    /// The threshold is not within 2⁻¹⁴ to 4 - 2⁻¹⁴.
     pub const fn multiplicative(taps: Taps<S, F>, threshold: f32) -> Self {
         unwrap(Self::try_multiplicative(taps, threshold))
     }
 
-    /// `e1 <= e2 * threshold`.
+    /// A scheme that spikes if `e1 <= e2 * threshold`.
     ///
     /// # Errors
-    /// The threshold is not above 0 and below 4.
+    /// The threshold is not within 2⁻¹⁴ to 4 - 2⁻¹⁴.
     pub const fn try_multiplicative(taps: Taps<S, F>, threshold: f32) -> Result<Self, ConfigError> {
         Self::try_new(taps, Criterion::Multiplicative(threshold))
     }

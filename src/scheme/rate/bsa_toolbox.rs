@@ -15,8 +15,7 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 /// With `r = x - shift`, `e1 = sum |r[i+j+1] - h[j]|` and `e2 = sum |r[i+j]|`: a spike at `i` if
 /// `e1 <= e2 * threshold`; then `r[i+j+2] -= h[j]`. The last `F` samples of a recording never spike.
 ///
-/// - **Threshold:** above 0 and below 4; with samples in fixed point it is rounded to a multiple of
-///   2⁻¹⁴.
+/// - **Threshold:** 2⁻¹⁴ to 4 - 2⁻¹⁴; with samples in fixed point it is rounded to a multiple of 2⁻¹⁴.
 /// - **Latency:** `F` samples. **Memory:** `4 F + 12` bytes a channel in `f32`.
 /// - **Exactness:** that of a multiplicative [`Bsa`](super::Bsa), where the window of `e1` begins at `i + 1`.
 ///
@@ -42,7 +41,7 @@ impl<S: Sample, const F: usize> BsaToolbox<S, F> {
     /// A scheme with these taps and this threshold. For constants, where a bad threshold fails the build.
     ///
     /// # Panics
-    /// The threshold is not above 0 and below 4.
+    /// The threshold is not within 2⁻¹⁴ to 4 - 2⁻¹⁴.
     pub const fn new(taps: Taps<S, F>, threshold: f32) -> Self {
         unwrap(Self::try_new(taps, threshold))
     }
@@ -50,7 +49,7 @@ impl<S: Sample, const F: usize> BsaToolbox<S, F> {
     /// A scheme with these taps and this threshold.
     ///
     /// # Errors
-    /// The threshold is not above 0 and below 4.
+    /// The threshold is not within 2⁻¹⁴ to 4 - 2⁻¹⁴.
     pub const fn try_new(taps: Taps<S, F>, threshold: f32) -> Result<Self, ConfigError> {
         match ratio("threshold", threshold) {
             Ok(()) => Ok(Self { filtered: Filtered::new(taps), ratio: Ratio::new(threshold) }),
@@ -109,7 +108,7 @@ pub struct BsaToolboxState<S: Sample, const F: usize> {
 /// The state besides the residuals, which a slice keeps in registers.
 #[derive(Clone, Copy, Debug)]
 struct Registers<R, const F: usize> {
-    /// What the spike just emitted still subtracts from the next sample: its last tap, or 0 without a spike.
+    /// What the last sample's spike still subtracts from the next sample: its last tap, or 0 without a spike.
     owed: R,
     cursor: Cursor<F>,
     tally: Tally,

@@ -1,10 +1,10 @@
-//! The decoder that the rate codes share: it adds up the filters of the spikes.
+//! The decoder that the rate codes with a filter share: it adds up the filters of the spikes.
 
 use super::filtered::Filtered;
 use crate::num::Residual;
 use crate::{Sample, Spike};
 
-/// The state of a rate code's decoder: what past spikes add to the next `F` values.
+/// The state of the decoder of a rate code with a filter: what past spikes add to the next `F` values.
 ///
 /// `y[i] = shift + sum over j of s[i-j] h[j]`.
 ///

@@ -48,7 +48,7 @@ impl<S: Sample> Taps<S> {
         self.twice.get(start..start + length).unwrap_or_default()
     }
 
-    /// A filter of one tap that is not 0, with which a rule is made. The rule takes no tap from it.
+    /// A filter of one tap that is not 0, from which a rule is built. The rule never reads the tap.
     fn one(&self) -> Result<super::Taps<S, 1>, ConfigError> {
         let tap = self.twice.iter().copied().find(|&tap| tap != S::ZERO);
         super::Taps::try_new([tap.unwrap_or_default()])
@@ -117,7 +117,7 @@ impl<S: Sample> Hough<S> {
     /// A scheme with these taps.
     ///
     /// # Errors
-    /// None: every filter will do. The result is that of the other schemes.
+    /// None: every filter will do. It returns a `Result` as the other schemes do.
     pub fn try_new(taps: Taps<S>) -> Result<Self, ConfigError> {
         Ok(Self { rule: hough::Hough::new(taps.one()?), taps, shift: S::ZERO })
     }
@@ -135,7 +135,7 @@ impl<S: Sample> ThresholdHough<S> {
 }
 
 impl<S: Sample> Bsa<S> {
-    /// A scheme with these taps and either criterion.
+    /// A scheme with these taps and this criterion.
     ///
     /// # Errors
     /// The threshold is out of its range, or not finite.
@@ -295,7 +295,7 @@ pub struct BsaToolbox<S: Sample> {
 pub struct BsaToolboxState<S: Sample> {
     residuals: Vec<S::Residual>,
     cursor: Cursor,
-    /// What the spike just emitted still subtracts from the next sample: its last tap, or 0 without a spike.
+    /// What the last sample's spike still subtracts from the next sample: its last tap, or 0 without a spike.
     owed: S::Residual,
     tally: Tally,
 }
@@ -304,7 +304,7 @@ impl<S: Sample> BsaToolbox<S> {
     /// A scheme with these taps and this threshold.
     ///
     /// # Errors
-    /// The threshold is not above 0 and below 4.
+    /// The threshold is not within 2⁻¹⁴ to 4 - 2⁻¹⁴.
     pub fn try_new(taps: Taps<S>, threshold: f32) -> Result<Self, ConfigError> {
         ratio("threshold", threshold)?;
         Ok(Self { taps, shift: S::ZERO, ratio: Ratio::new(threshold) })

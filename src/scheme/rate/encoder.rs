@@ -1,4 +1,4 @@
-//! The encoder that the rate codes share; each code adds its rule for when a sample spikes.
+//! The encoder that the rate codes with a filter share; each code adds its rule for when a sample spikes.
 
 use core::cell::Cell;
 use core::hint::black_box;
@@ -10,8 +10,8 @@ use crate::{Sample, Spike};
 
 /// A rate code's rule for when a sample spikes.
 pub(super) trait Rule<S: Sample, const F: usize> {
-    /// Whether slices are decided from the first tap on, which settles this rule early. If false, samples and
-    /// slices are both decided from the first slot on.
+    /// Whether slices take the pairs in the order of the taps, since the first taps often decide this rule. If false,
+    /// single samples and slices both take the pairs in the order of the ring's slots.
     const IN_ORDER: bool;
 
     /// Whether the rule keeps a sum in a register from tap to tap.
@@ -41,7 +41,7 @@ pub(super) trait Rule<S: Sample, const F: usize> {
     }
 }
 
-/// The state of a rate code's encoder: what past spikes have left of the last `F` samples.
+/// The state of the encoder of a rate code with a filter: what past spikes have left of the last `F` samples.
 ///
 /// `4 F + 8` bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
@@ -135,8 +135,8 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         length
     }
 
-    /// Encodes up to about three filter lengths of samples, ends before one that is not finite, and returns how many
-    /// it has encoded. Each must complete a window.
+    /// Encodes up to about three filter lengths of samples, stops before a sample that is not finite, and returns how
+    /// many it has encoded. Each of them must complete a window.
     ///
     /// The residuals lie in a line of four filter lengths on the stack, where windows do not wrap: the taps need no
     /// rotation and stay in registers.

@@ -1,4 +1,4 @@
-//! What every rate code owns: a filter, and the signal's minimum.
+//! The parameters of every rate code with a filter: the taps, and the shift.
 
 use super::Taps;
 use crate::error::offset;

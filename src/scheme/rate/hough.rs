@@ -51,7 +51,7 @@ impl<S: Sample, const F: usize> Hough<S, F> {
     with_shift!();
 }
 
-/// Every residual reaches its tap.
+/// A sample spikes if every residual reaches its tap.
 impl<S: Sample, const F: usize> Rule<S, F> for Hough<S, F> {
     const IN_ORDER: bool = true;
     const KEEPS_A_SUM: bool = false;

@@ -1,4 +1,4 @@
-//! Rate codes: convolved with a filter, the spikes give the signal back; or counted, its mean.
+//! Rate codes: convolved with a filter the spikes give the signal back, or counted they give its mean.
 //!
 //! **Filters** ([`Hough`], [`ThresholdHough`], [`Bsa`], [`BsaToolbox`]). Each looks ahead over the filter, and at every
 //! spike subtracts the filter from the residual `r`, which starts as `x - shift`. `shift` is the signal's minimum, from

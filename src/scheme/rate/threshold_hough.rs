@@ -21,7 +21,7 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 ///   compares with twice the threshold. Fixed point is exact within the range of
 ///   [`rate`](crate::rate).
 ///
-/// Source: paper, section II-B, algorithm 4 (whose comparison is a slip for `<`).
+/// Source: paper, section II-B, algorithm 4 (where `input >= filter` is a slip for `<`).
 ///
 /// ```
 /// use spikewire::{Scheme, Spike, rate::{Taps, ThresholdHough}};
@@ -68,7 +68,7 @@ impl<S: Sample, const F: usize> ThresholdHough<S, F> {
     }
 }
 
-/// The residuals fall short of their taps by the threshold at most.
+/// A sample spikes if the residuals fall short of their taps by the threshold at most.
 impl<S: Sample, const F: usize> Rule<S, F> for ThresholdHough<S, F> {
     const IN_ORDER: bool = true;
     const KEEPS_A_SUM: bool = true;

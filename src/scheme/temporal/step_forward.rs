@@ -82,7 +82,8 @@ pub struct StepForwardState<S> {
 }
 
 impl<S: Sample> Start for StepForward<S> {
-    const START: StepForwardState<S> = StepForwardState { base: S::NOWHERE, tally: Tally::NONE };
+    const START: StepForwardState<S> =
+        StepForwardState { base: S::NO_BASELINE, tally: Tally::NONE };
 }
 
 impl<S: Sample> Scheme for StepForward<S> {

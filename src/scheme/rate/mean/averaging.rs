@@ -1,4 +1,4 @@
-//! How the mean of spikes is taken: over a window, or as an average that forgets.
+//! The decoders of a mean: over a window of samples, or as an average in which old samples fade.
 
 use core::fmt::Debug;
 
@@ -13,14 +13,14 @@ pub(super) mod sealed {
     use super::{Debug, Recovery, Total, Weight};
 
     pub trait Averaging {
-        /// What it keeps.
+        /// What the decoder keeps from sample to sample.
         type State<T: Total>: Clone + Debug;
 
         const RECOVERY: Recovery;
 
         fn start<T: Total>(&self, weight: &Weight<T>) -> Self::State<T>;
 
-        /// Takes what a sample's spike weighs and gives the mean.
+        /// Takes a sample, which had a spike or not, and returns the mean above the minimum.
         fn take<T: Total>(
             &self,
             state: &mut Self::State<T>,
@@ -28,7 +28,7 @@ pub(super) mod sealed {
             weight: &Weight<T>,
         ) -> T;
 
-        /// Goes on from a mean, if it can.
+        /// Goes on from a known mean; a window, which cannot, starts again.
         fn resync<T: Total>(&self, state: &mut Self::State<T>, mean: T, weight: &Weight<T>);
     }
 }
@@ -49,7 +49,8 @@ impl<S: Sample, A: Averaging> Debug for MeanState<S, A> {
     }
 }
 
-/// The decoding half of a mean code's [`Scheme`](crate::Scheme): a method of it gives what spikes weigh.
+/// The decoding half of a mean code's [`Scheme`](crate::Scheme). The weight of a spike comes from the method `weight`
+/// of the scheme, or of its field `$of`.
 macro_rules! decode_mean {
     ($($of:ident)?) => {
         fn decoder_state(&self) -> MeanState<S, A> {
@@ -71,23 +72,23 @@ macro_rules! decode_mean {
 }
 pub(super) use decode_mean;
 
-/// What a spike weighs: `unit * 2^g`, where `g` counts the spikes right before it, up to `doublings`.
+/// The weight of a spike: `unit * 2^g`, where `g` counts the spikes right before it, up to `doublings`.
 #[derive(Clone, Copy, Debug)]
 pub struct Weight<T> {
     pub(super) unit: T,
     pub(super) doublings: u8,
-    /// In whose middle an average starts.
+    /// The width of the range: an average starts in its middle.
     pub(super) range: T,
 }
 
-/// How many spikes came right before: the `g` of [`Weight`].
+/// How many spikes came right before, up to the doublings: the `g` of [`Weight`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gain(pub(super) u8);
 
 impl Gain {
     pub(super) const NONE: Self = Self(0);
 
-    /// Goes on behind a sample.
+    /// Counts a sample's spike; a sample without one sets the count to 0.
     #[inline]
     pub(super) fn take(&mut self, is_spike: bool, doublings: u8) {
         self.0 = if is_spike { self.0.saturating_add(1).min(doublings) } else { 0 };
@@ -98,7 +99,7 @@ impl Gain {
 ///
 /// It starts as if there had been no spike: at the minimum. Integers are rounded to the nearest, halves upwards.
 ///
-/// - **Memory:** `4 WORDS + 12` bytes a channel in `f32`.
+/// - **Memory:** `4 WORDS + 8` bytes a channel.
 /// - **After a loss:** exact again after `32 WORDS + 32` samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -113,18 +114,18 @@ impl<const WORDS: usize> Window<WORDS> {
         32 * WORDS as u32
     };
 
-    /// The last `2^power` samples. For constants, where a bad number fails the build.
+    /// A window of the last `2^power` samples. For constants, where a bad number fails the build.
     ///
     /// # Panics
-    /// They are more than `32 WORDS`.
+    /// `2^power` is more than `32 WORDS`.
     pub const fn new(power: u8) -> Self {
         unwrap(Self::try_new(power))
     }
 
-    /// The last `2^power` samples.
+    /// A window of the last `2^power` samples.
     ///
     /// # Errors
-    /// They are more than `32 WORDS`.
+    /// `2^power` is more than `32 WORDS`.
     pub const fn try_new(power: u8) -> Result<Self, ConfigError> {
         match within("power of the window", power as f64, 0.0, Self::MOST.ilog2() as f32) {
             Ok(()) => Ok(Self { power }),
@@ -132,7 +133,7 @@ impl<const WORDS: usize> Window<WORDS> {
         }
     }
 
-    /// How many samples.
+    /// How many samples the mean is taken over: `2^power`.
     pub const fn samples(&self) -> usize {
         1 << self.power
     }
@@ -140,15 +141,16 @@ impl<const WORDS: usize> Window<WORDS> {
 
 impl<const WORDS: usize> Averaging for Window<WORDS> {}
 
-/// The last spikes, a bit each, and their sum.
+/// Which of the last samples had a spike, one bit each, and the sum of these spikes' weights.
 #[derive(Clone, Debug)]
 pub struct Spikes<const WORDS: usize> {
     bits: [u32; WORDS],
-    /// The place of the oldest, which the next replaces.
+    /// The place of the oldest bit, which the next one replaces.
     oldest: u16,
+    /// The gain of the oldest sample, and that of the next one.
     first: Gain,
     last: Gain,
-    /// In units of the weight.
+    /// In units of the smallest weight.
     sum: u32,
 }
 
@@ -203,7 +205,7 @@ pub struct Average {
 impl Average {
     const MOST: u8 = 15;
 
-    /// Over about the last `2^power` samples. For constants, where a bad number fails the build.
+    /// An average over about the last `2^power` samples. For constants, where a bad number fails the build.
     ///
     /// # Panics
     /// The power is not within 1 to 15.
@@ -211,7 +213,7 @@ impl Average {
         unwrap(Self::try_new(power))
     }
 
-    /// Over about the last `2^power` samples.
+    /// An average over about the last `2^power` samples.
     ///
     /// # Errors
     /// The power is not within 1 to 15.

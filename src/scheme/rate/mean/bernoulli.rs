@@ -11,19 +11,20 @@ use crate::error::unwrap;
 use crate::num::{Tally, Total};
 use crate::{ConfigError, Encoder, Recovery, Sample, Scheme, Spike};
 
-/// A spike with the probability of how high the sample is in its range, from a generator that the caller passes in: a
-/// Poisson spike train, in samples.
+/// Bernoulli spiking: a sample spikes with the probability `p / R`, its height in the range, drawn from the caller's
+/// random number generator. Sample by sample this is a Poisson spike train.
 ///
-/// With `p` from 0 at the minimum to `R = max - min` at the maximum, outside the value at that end, and `j` the top 16
-/// bits of a 32-bit draw: a spike if `2^17 p >= (2j + 1) R`. There is one draw for every finite sample.
+/// With `R = max - min`, `p = x - min` limited to `0..=R`, and `j` the top 16 bits of a 32-bit draw: a spike if
+/// `2^17 p >= (2j + 1) R`. There is one draw for every finite sample.
 ///
 /// - **Range:** `min < max`, within 10³¹ of 0 in `f32`.
 /// - **Latency:** 0 samples; the mean is that of the past. **Memory:** 4 bytes a channel and the generator; to decode
 ///   that of the [`Window`](super::super::Window) or [`Average`](super::super::Average).
 /// - **Work:** a draw and two products.
 /// - **Exactness:** `f32` rounds `(2j + 1) R` once; fixed point is exact.
-/// - **Error:** the mean is right on average, to `2^-17` of the range. The mean over `W` samples deviates by
-///   `R / 2√W` at most (in the middle of the range): [`SigmaDelta`](super::super::SigmaDelta) needs far fewer spikes.
+/// - **Error:** the mean is right on average, to `2^-17` of the range. The mean over `W` samples has a standard
+///   deviation of `R / 2√W` or less, the most in the middle of the range: the mean of
+///   [`SigmaDelta`](super::super::SigmaDelta) is far nearer with as many spikes.
 ///
 /// Its encoder needs the generator, so it has an [`encoder`](Self::encoder) of its own and is no
 /// [`Start`](crate::Start).

@@ -1,4 +1,4 @@
-//! Burst: spikes that weigh twice as much as the one before, until the signal is told.
+//! Weighted bursts: a rate code in which each spike of a burst weighs twice as much as the one before.
 
 use core::ops::RangeInclusive;
 
@@ -8,11 +8,11 @@ use crate::error::{LARGEST_STEP, step, unwrap, within};
 use crate::num::{Tally, Total, to_f64};
 use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 
-/// Bursts whose spikes double in weight: many spikes for a high signal, few for a low one.
+/// Weighted bursts: spikes that follow each other double in weight. A high signal has many spikes, a low one few.
 ///
-/// With `p` from 0 at the minimum to `R = max - min` at the maximum, outside the value at that end: `V += p`; if
-/// `V >= θ 2^g`: a spike, `V -= θ 2^g`, and `g` grows by 1, up to `doublings`; otherwise `g = 0`. Both start at 0. The
-/// decoder follows `g`: a spike means `θ 2^g`.
+/// With `R = max - min` and `p = x - min` limited to `0..=R`: `V += p`; if `V >= θ 2^g`: a spike, `V -= θ 2^g`, and
+/// `g` grows by 1, up to `doublings`; otherwise `g = 0`. Both start at 0. The decoder follows `g`: a spike means
+/// `θ 2^g`.
 ///
 /// - **Range:** `min < max`, within 10³¹ of 0 in `f32`. **Unit** `θ`: above 0. **Doublings:** 0 to 14. The largest
 ///   weight, `θ 2^doublings`, is `R` at least, and 10³¹ at most.
@@ -20,7 +20,7 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 ///   32-bit fixed point; to decode that of the [`Window`](super::super::Window) or [`Average`](super::super::Average).
 /// - **Work:** a sum and a comparison.
 /// - **Exactness:** `f32` rounds the sum once a sample, the weights are exact; fixed point is exact.
-/// - **Error:** what the samples add up to less what the spikes mean is `V`, and
+/// - **Error:** the sum of `p` minus the sum of the spikes' weights is `V`, and
 ///   `0 <= V < (doublings + 1) θ 2^doublings`.
 ///
 /// Source: Park et al., *Fast and efficient information transmission with burst spikes in deep spiking neural networks*,
@@ -48,8 +48,8 @@ pub struct WeightedBurst<S, A> {
 const MOST_DOUBLINGS: u8 = 14;
 
 impl<S: Sample, A: Averaging> WeightedBurst<S, A> {
-    /// A scheme for a range, whose spikes weigh `weight` at first and double so many times at most. For constants, where
-    /// bad parameters fail the build.
+    /// A scheme for a range, whose spikes weigh `weight` at first and at most `doublings` times double. For constants,
+    /// where bad parameters fail the build.
     ///
     /// # Panics
     /// As [`try_new`](Self::try_new) fails.
@@ -58,7 +58,7 @@ impl<S: Sample, A: Averaging> WeightedBurst<S, A> {
         Self { range, weight, doublings, averaging }
     }
 
-    /// A scheme for a range, whose spikes weigh `weight` at first and double so many times at most.
+    /// A scheme for a range, whose spikes weigh `weight` at first and at most `doublings` times double.
     ///
     /// # Errors
     /// The ends are not finite, or do not rise, or are more than 10³¹ from 0; the weight is not above 0; there are more
@@ -99,8 +99,8 @@ impl<S: Sample, A: Averaging> WeightedBurst<S, A> {
     }
 }
 
-/// The state of a [`WeightedBurst`] encoder: what no spike has told yet, and how
-/// long the burst is. 12 bytes in `f32`.
+/// The state of a [`WeightedBurst`] encoder: the sum that is not yet sent as spikes, and the length of the burst. 12
+/// bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
 #[allow(private_bounds)] // sums are the crate's own
 pub struct WeightedBurstState<S: Sample> {

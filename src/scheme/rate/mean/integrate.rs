@@ -15,7 +15,7 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 /// value is `reference + U / 2^k`, in fixed point rounded to the nearest, halves upwards.
 ///
 /// - **Threshold:** above 0, in the samples' unit times a sample; up to 10³¹ in `f32`. **Power `k`:** 1 to 15: the value
-///   is a mean over about `2^k` samples. **Reference:** 0 unless told. **K:** 1 to 127.
+///   is a mean over about `2^k` samples. **Reference:** 0 by default. **K:** 1 to 127.
 /// - **Latency:** 0 samples; the mean is that of the past. **Memory:** 8 bytes a channel in `f32` and of 16 bits, 16 of
 ///   32-bit fixed point; 4 and 8 to decode.
 /// - **Work:** a sum, two comparisons, and one a spike.
@@ -23,7 +23,7 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 ///   finite counts as not finite itself; potentials in fixed point saturate, those of 16 bits at
 ///   2³¹ units, those of 32 bits at 2⁶².
 /// - **Error:** while `|x - reference| <= K threshold`, IF keeps `Σ(x - reference) = threshold Σn + V`, `|V| < threshold`:
-///   of a gyroscope the angle never drifts. A decoded value is near the same leaky mean of the samples: within
+///   a gyroscope's angle never drifts. A decoded value is near the same leaky mean of the samples: within
 ///   `2 threshold / 2^k + 3` (IF), `threshold / 2^k + 3` (LIF), where the 3 are units of fixed point, from rounding.
 /// - **Silence:** LIF does not fire for a signal that stays below about `threshold / 2^k`.
 ///
@@ -79,13 +79,13 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
         }
     }
 
-    /// The potential leaks: LIF.
+    /// Makes the potential leak: LIF.
     #[must_use]
     pub const fn leaky(self) -> Self {
         Self { is_leaky: true, ..self }
     }
 
-    /// The value without spikes; 0 unless told. For constants, where a bad value fails the build.
+    /// Sets the reference, the value without spikes; 0 by default. For constants, where a bad value fails the build.
     ///
     /// # Panics
     /// The reference is not within 10³¹ of 0.
@@ -94,7 +94,7 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
         unwrap(self.try_with_reference(reference))
     }
 
-    /// The value without spikes; 0 unless told.
+    /// Sets the reference, the value without spikes; 0 by default.
     ///
     /// # Errors
     /// The reference is not within 10³¹ of 0.
@@ -105,7 +105,7 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
         }
     }
 
-    /// At most so many spikes a sample; `K` unless told. For constants, where a bad number fails the build.
+    /// Allows at most this many spikes a sample; `K` by default. For constants, where a bad number fails the build.
     ///
     /// # Panics
     /// The number is not within 1 to `K`.
@@ -114,7 +114,7 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
         unwrap(self.try_with_most(most))
     }
 
-    /// At most so many spikes a sample; `K` unless told.
+    /// Allows at most this many spikes a sample; `K` by default.
     ///
     /// # Errors
     /// The number is not within 1 to `K`.
@@ -228,8 +228,8 @@ impl<S: Sample, const K: usize> Scheme for IntegrateAndFire<S, K> {
     #[inline]
     fn decode(&self, state: &mut PotentialState<S>, steps: Steps<K>) -> S {
         let mut potential = leaked(state.potential, self.power);
-        let told = self.unit().times(steps.count().unsigned_abs().into());
-        potential = if steps.count() < 0 { potential.minus(told) } else { potential.plus(told) };
+        let step = self.unit().times(steps.count().unsigned_abs().into());
+        potential = if steps.count() < 0 { potential.minus(step) } else { potential.plus(step) };
         state.potential = potential;
         self.reference.raised(potential.halved_to_nearest(self.power))
     }

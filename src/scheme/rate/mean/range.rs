@@ -1,11 +1,11 @@
-//! The range of the codes of a mean, and what a spike of theirs weighs.
+//! The range of values of the codes of a mean, and the weight of a spike that stands for all of it.
 
 use super::averaging::Weight;
 use crate::error::{LARGEST_STEP, range, within};
 use crate::num::{Total, to_f64};
 use crate::{ConfigError, Sample};
 
-/// From the smallest sample to the largest. Samples outside count as the end that they are beyond.
+/// A range of values. A sample outside counts as the end that it is beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -34,7 +34,7 @@ impl<S: Sample> Range<S> {
         self.max.above(self.min)
     }
 
-    /// A spike that stands for a whole range.
+    /// The weight of a spike that stands for the whole range.
     #[inline]
     pub(super) fn weight(self) -> Weight<S::Total> {
         let width = self.width();
@@ -51,7 +51,7 @@ impl<S: Sample> Range<S> {
         }
     }
 
-    /// Of a sample outside the range.
+    /// [`above_min`](Self::above_min) of a sample outside the range, or not finite.
     #[cold]
     fn at_end(self, sample: S) -> Option<S::Total> {
         if !sample.is_finite() {

@@ -8,17 +8,17 @@ use crate::error::unwrap;
 use crate::num::{Tally, Total};
 use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 
-/// First-order sigma-delta: the share of samples with a spike is how high the signal is in its range.
+/// First-order sigma-delta: the share of samples with a spike is `p / R`, the signal's height in its range.
 ///
-/// With `p` from 0 at the minimum to `R = max - min` at the maximum, outside the value at that end: `a += p`, and if
-/// `a >= R`: a spike, and `a -= R`. `a` starts at 0.
+/// With `R = max - min` and `p = x - min` limited to `0..=R`: `a += p`, and if `a >= R`: a spike, and `a -= R`. `a`
+/// starts at 0.
 ///
 /// - **Range:** `min < max`, within 10³¹ of 0 in `f32`.
 /// - **Latency:** 0 samples; the mean is that of the past. **Memory:** 8 bytes a channel in `f32` and of 16 bits, 16 of
 ///   32-bit fixed point; to decode that of the [`Window`](super::super::Window) or [`Average`](super::super::Average).
 /// - **Work:** a sum and a comparison.
 /// - **Exactness:** `f32` rounds the sum once a sample; fixed point is exact.
-/// - **Error:** over any `W` samples the `n` spikes tell the sum to less than a spike, `|n R - Σp| < R`. A window's
+/// - **Error:** over any `W` samples with `n` spikes `|n R - Σp| < R`: the sum is known to less than a spike. A window's
 ///   value is within `R / W + ½` of the mean of its samples, an average's within `R / 2^k + 1` of the same average of
 ///   the samples; the ½ and the 1 are units of fixed point, from rounding.
 ///
@@ -62,7 +62,7 @@ impl<S: Sample, A: Averaging> SigmaDelta<S, A> {
     }
 }
 
-/// The state of a [`SigmaDelta`] encoder: what no spike has told yet. 8 bytes in `f32`.
+/// The state of a [`SigmaDelta`] encoder: the sum that is not yet sent as spikes. 8 bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
 #[allow(private_bounds)] // sums are the crate's own
 pub struct SigmaDeltaState<S: Sample> {
