@@ -15,7 +15,7 @@ use crate::{ConfigError, Sample, SampleKind};
 /// rounded to the sample type.
 pub(super) type Centres<S, const M: usize> = Partition<S, M>;
 
-/// The midpoint of two doubles, rounded down: that of two `f32` of very different size may be no double.
+/// The midpoint of two doubles, rounded down where no double holds it, as for two `f32` of very different size.
 const fn halfway(low: f64, high: f64) -> f64 {
     let sum = low + high;
     let rest = sum - low;
@@ -201,6 +201,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
         }
     }
 
+    /// The middle centre.
     pub(super) fn middle(&self) -> S {
         self.get(M / 2).unwrap_or(S::ZERO)
     }

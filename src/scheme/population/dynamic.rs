@@ -21,11 +21,12 @@ pub const NEURONS: usize = 1024;
 /// The most levels of a response, which is also the most slots of a sample.
 pub const LEVELS: usize = 256;
 
+/// Checks that there are 3 to `most` neurons, and no more than [`NEURONS`].
 pub(super) fn check_neurons(neurons: usize, most: usize) -> Result<(), ConfigError> {
     within("neurons", neurons as f64, 3.0, most.min(NEURONS) as f32)
 }
 
-/// That there is a width for each neuron.
+/// Checks that there is a width for each neuron.
 pub(super) fn check_widths(neurons: usize, widths: &[f32]) -> Result<(), ConfigError> {
     let neurons = neurons as f32;
     within("number of widths", widths.len() as f64, neurons, neurons)
@@ -43,7 +44,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// The user's own centres, strictly rising.
     ///
     /// # Errors
-    /// There are not 3 to `M`; a centre is not finite, or does not exceed the one before.
+    /// There are not 3 to `M` centres; a centre is not finite, or does not exceed the one before.
     pub fn try_new(centres: &[S]) -> Result<Self, ConfigError> {
         check_neurons(centres.len(), M)?;
         let mut edges = centres.to_vec();

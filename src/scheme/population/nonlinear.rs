@@ -122,7 +122,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     }
 }
 
-/// Takes up the user's widths.
+/// Copies the user's widths as doubles.
 ///
 /// # Errors
 /// A width is not above 0 and finite.

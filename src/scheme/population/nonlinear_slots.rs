@@ -1,4 +1,4 @@
-//! Non-linear receptive fields with sub-timesteps: any centres and widths; the stronger the response, the earlier.
+//! Non-linear receptive fields with sub-timesteps: the stronger the response, the earlier the spike.
 
 use core::ops::RangeInclusive;
 
@@ -10,7 +10,7 @@ use crate::num::{scale, to_f64, widths, within_widths};
 use crate::scheme::cells::count_preceding;
 use crate::{ConfigError, Recovery, Sample, SampleKind, Scheme, Start};
 
-/// Non-linear Gaussian receptive fields with `N` sub-timesteps, slots, a sample.
+/// Non-linear Gaussian receptive fields whose neurons fire in one of `N` sub-timesteps of a sample, its slots.
 ///
 /// `M` neurons with any centres `mu` and widths `sigma` respond by `r = exp(-(x - mu)² / (2 sigma²))`. The level
 /// `k` of a response is `N r`, rounded half up. A level fires in slot `N - k`; a level below the floor is silent. A
@@ -25,12 +25,13 @@ use crate::{ConfigError, Recovery, Sample, SampleKind, Scheme, Start};
 /// - **Work:** a subtraction and a comparison a neuron, and for each one that responds a multiplication and a search
 ///   among `N` levels; no exponential.
 /// - **Exactness:** `f32` rounds the distance and its product with `1 / sigma` once each. Fixed point compares
-///   `|x - mu|`, exact, times `2³² / sigma`, rounded to a whole number, with whole numbers: fields wider than 2²⁴
-///   of the type's steps are rounded to less than 8 bits.
+///   `|x - mu|`, exact, times `2³² / sigma`, rounded to a whole number, with whole numbers. Of a field wider than 2²⁴
+///   units in the last place this rounding keeps fewer than 8 significant bits.
 /// - **Range:** a value so far from all centres that no neuron reaches the floor fires none.
 /// - **Decoder:** the mean of the centres weighted by their levels, `N - slot`; where no neuron fired, the value
 ///   before. One division a sample. Fixed point gives the exact mean, rounded to the nearest, halves upwards.
-/// - **Error:** at most the mean, weighted by the levels, of the distances within which they are reached.
+/// - **Error:** at most the mean of the distances within which the neurons' levels are reached, weighted by these
+///   levels.
 ///
 /// Source: Bohté et al. 2002; ITU-T G.711 (µ-law), for the companding.
 ///
@@ -55,12 +56,12 @@ pub struct NonLinearSlots<S: Sample, const M: usize, const N: usize> {
     /// The largest distance with a level of at least the floor, for each neuron.
     #[cfg_attr(feature = "serde", serde(skip))]
     reaches: [u32; M],
-    /// `radii[slot]` is how many widths a level of at least `N - slot` reaches: rising.
+    /// `radii[slot]` is how many widths a level of at least `N - slot` reaches. They rise.
     #[cfg_attr(feature = "serde", serde(skip))]
     radii: [S::Widths; N],
 }
 
-/// Without the tables.
+/// Leaves out the tables.
 #[cfg(feature = "defmt")]
 impl<S: Sample + defmt::Format, const M: usize, const N: usize> defmt::Format
     for NonLinearSlots<S, M, N>
@@ -173,7 +174,7 @@ impl<S: Sample, const M: usize, const N: usize> NonLinearSlots<S, M, N> {
         Ok(Self { centres, floor: 1, scales, reaches, radii })
     }
 
-    /// Silence below this level. For constants, where a bad floor fails the build.
+    /// Sets the lowest level that fires; 1 by default. For constants, where a bad floor fails the build.
     ///
     /// # Panics
     /// The floor is not within 1 to `N`.
@@ -182,7 +183,7 @@ impl<S: Sample, const M: usize, const N: usize> NonLinearSlots<S, M, N> {
         unwrap(self.try_with_floor(floor))
     }
 
-    /// Silence below this level.
+    /// Sets the lowest level that fires; 1 by default.
     ///
     /// # Errors
     /// The floor is not within 1 to `N`.
@@ -226,7 +227,7 @@ pub(super) const fn spaced_widths<S: Sample>(centres: &[S], beta: f32, sigmas: &
     }
 }
 
-/// Sets the scale of each neuron, and how many widths the levels reach.
+/// Sets the scale of each neuron, and the radius of each level in widths.
 ///
 /// # Errors
 /// A centre is too large for `f32`, or a width too small or too large.
@@ -268,14 +269,14 @@ pub(super) const fn reach<S: Sample>(
     reaches: &mut [u32],
 ) {
     let mut i = 0;
-    // Levels count from 1; the compiler cannot tell that a floor does.
+    // Levels count from 1, which the compiler does not know of `level`.
     while i < scales.len() && i < reaches.len() && level >= 1 && level <= radii.len() {
         reaches[i] = within_widths::<S>(radii[radii.len() - level], scales[i]);
         i += 1;
     }
 }
 
-/// The tables of the fields, one entry a neuron.
+/// The tables of the fields: one entry a neuron; of `radii` one a slot.
 pub(super) struct Fields<'f, S: Sample> {
     pub(super) centres: &'f [S],
     pub(super) scales: &'f [S::Scale],

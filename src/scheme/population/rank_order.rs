@@ -24,8 +24,8 @@ use crate::{ConfigError, Recovery, Sample, SampleKind, Scheme, Start};
 /// - **Work:** a search for the nearest centre, as in [`Position`](super::Position), and `K - 1` comparisons; no sort.
 /// - **Exactness:** middles are rounded down in fixed point, and to the nearest in `f32`. Encoder and decoder know
 ///   centres as rounded to the sample type.
-/// - **Decoder:** it takes the spikes up to the first that no value explains, and gives a value after any number of
-///   them; where the first spike is missing, the value before.
+/// - **Decoder:** it takes the spikes up to the first that contradicts those before it, and gives a value after any
+///   number of them; where the first spike is missing, the value before.
 /// - **Error:** at most half the length of the interval of values with these spikes, and one step of fixed point. With
 ///   even centres, `D` apart, and `K` of 2 or more it is `D / 4` and a step.
 ///
@@ -76,8 +76,8 @@ impl<S: Sample, const M: usize, const K: usize> RankOrder<S, M, K> {
     /// The user's own centres, strictly rising.
     ///
     /// # Errors
-    /// A centre is not finite, or does not exceed the one before, or is too close to it for its middles to rise; in
-    /// `f32` it is too far from 0.
+    /// A centre is not finite, or does not exceed the one before, or is so close to it that two middles are alike; in
+    /// `f32` it is more than 10³¹ from 0.
     pub const fn try_new(centres: [S; M]) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
         Self::over(centres, centres[0], centres[M - 1])
@@ -98,7 +98,7 @@ impl<S: Sample, const M: usize, const K: usize> RankOrder<S, M, K> {
     ///
     /// # Errors
     /// The ends are not finite, or do not rise, or the sample type is too coarse to tell the centres apart; in `f32`
-    /// an end is too far from 0.
+    /// an outermost centre is more than 10³¹ from 0.
     pub const fn try_linear(range: RangeInclusive<S>) -> Result<Self, ConfigError> {
         Self::linear_over(&range)
     }
@@ -167,8 +167,8 @@ impl<S: Sample, const M: usize, const K: usize> RankOrder<S, M, K> {
 /// Sets each edge but the last to the middle of two centres.
 ///
 /// # Errors
-/// A centre is not finite, or does not exceed the one before, or is too close to it for the middles to rise; in `f32`
-/// it is too far from 0.
+/// A centre is not finite, or does not exceed the one before, or is so close to it that two middles are alike; in `f32`
+/// it is more than 10³¹ from 0.
 #[allow(clippy::indexing_slicing)] // constants have no iterators
 pub(super) const fn middles<S: Sample>(centres: &[S], edges: &mut [S]) -> Result<(), ConfigError> {
     if let Err(error) = halfway_edges(centres, edges) {
@@ -201,7 +201,7 @@ pub(super) struct Ranks<'r, S> {
 }
 
 impl<S: Sample> Ranks<'_, S> {
-    /// The value of the range that is nearest.
+    /// The value of the range that is nearest to a sample.
     #[inline]
     pub(super) fn within(&self, sample: S) -> S {
         if sample < self.min {
@@ -213,7 +213,7 @@ impl<S: Sample> Ranks<'_, S> {
         }
     }
 
-    /// Sets the neurons in the order in which they fire; returns the lowest.
+    /// Fills `order` with the neurons in the order in which they fire; returns the lowest of them.
     #[inline]
     pub(super) fn order(&self, sample: S, winner: usize, order: &mut [u16]) -> u16 {
         let (mut lowest, mut above) = (winner, winner.wrapping_add(1));
@@ -241,7 +241,8 @@ impl<S: Sample> Ranks<'_, S> {
         self.centres.get(neuron.wrapping_sub(1)).copied()
     }
 
-    /// The middle of the values with these spikes of neighbours, or `None` without a first that a value explains.
+    /// The middle of the values that have these spikes of neighbouring neurons. `first` is the lowest neuron; `ranks`
+    /// are the slots from that neuron upwards. `None` if the first spike is missing, or no value has it.
     #[inline]
     pub(super) fn value(&self, first: usize, ranks: &[u8]) -> Option<S> {
         let nearest = ranks.iter().position(|&rank| rank == 0)?;
@@ -285,29 +286,29 @@ impl<S: Sample> Ranks<'_, S> {
     }
 }
 
-/// Values above one and up to another.
+/// The values above one value and up to another.
 #[derive(Clone, Copy)]
 struct Interval<S> {
-    /// `None`: from the minimum on.
+    /// `None` if the interval begins with the minimum.
     above: Option<S>,
     last: S,
 }
 
 impl<S: Sample> Interval<S> {
-    /// Without the values up to this one.
+    /// The interval without the values up to this one.
     #[inline]
     fn above(self, value: S, min: S) -> Self {
         let is_higher = value >= self.above.unwrap_or(min);
         Self { above: if is_higher { Some(value) } else { self.above }, ..self }
     }
 
-    /// Without the values above this one.
+    /// The interval without the values above this one.
     #[inline]
     fn up_to(self, value: S) -> Self {
         Self { last: if value < self.last { value } else { self.last }, ..self }
     }
 
-    /// Unless it is empty.
+    /// The interval; `None` if it is empty.
     #[inline]
     fn if_any(self, min: S) -> Option<Self> {
         let has_any = self.above.map_or(min <= self.last, |above| above < self.last);

@@ -9,17 +9,17 @@ use crate::scheme::cells::{Cuts, Partition, Side, count_preceding};
 use crate::scheme::held::Held;
 use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 
-/// Burst coding: every sample is a burst whose spike count and interval tell the value.
+/// Burst coding: every sample is a burst, whose spike count and interval give the value.
 ///
 /// With `p = x - min` and `R = max - min`, a burst has `⌈pS/R⌉` spikes, up to `S`, in the slots `0, T, 2T, …`, where
 /// `T = longest - ⌊(longest - shortest) p/R⌋`.
 ///
 /// - **N:** 2 to 256 slots a sample, enough for all bursts. **S:** 1 to `N`, at most 255. **Intervals:** 1 slot or
 ///   more.
-/// - **Latency:** 0 samples. **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes `13 N + 20` bytes
+/// - **Latency:** 0 samples. **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes `13 N + 16` bytes
 ///   of flash in `f32`.
 /// - **Work:** one multiplication and two comparisons; three table look-ups to decode, or where the sample
-///   type is coarse `log2 N` comparisons.
+///   type is coarse also `log2 N` comparisons.
 /// - **Exactness:** fixed point compares with exact edges; `f32` with edges computed in double precision and rounded
 ///   once.
 /// - **Decoder:** the middle of the values with this count and interval. No spike is the minimum; a burst that no
@@ -68,7 +68,7 @@ pub struct Burst<S: Sample, const N: usize> {
 impl<S: Sample, const N: usize> Burst<S, N> {
     const SHAPE: () = assert!(N >= 2 && N <= 256, "a sample has 2 to 256 slots");
 
-    /// Bursts of up to so many spikes, at intervals in slots from the shortest to the longest. For constants, where
+    /// Bursts of up to `spikes` spikes, at intervals in slots from the shortest to the longest. For constants, where
     /// bad parameters fail the build.
     ///
     /// # Panics
@@ -77,7 +77,7 @@ impl<S: Sample, const N: usize> Burst<S, N> {
         unwrap(Self::of(&range, spikes, [*intervals.start(), *intervals.end()], N))
     }
 
-    /// Bursts of up to so many spikes, at intervals in slots from the shortest to the longest.
+    /// Bursts of up to `spikes` spikes, at intervals in slots from the shortest to the longest.
     ///
     /// # Errors
     /// The ends are not finite or do not rise; the number of spikes or an interval is 0, or the shortest interval
@@ -90,7 +90,7 @@ impl<S: Sample, const N: usize> Burst<S, N> {
         Self::of(&range, spikes, [*intervals.start(), *intervals.end()], N)
     }
 
-    /// With so many slots, of which there is room for `N`.
+    /// A scheme of this many slots, at most `N`.
     pub(super) const fn of(
         range: &RangeInclusive<S>,
         spikes: u8,
@@ -195,12 +195,14 @@ impl<S: Sample, const N: usize> Burst<S, N> {
         if self.known(cell) == Some(burst) { self.cells.get(cell) } else { self.searched(burst) }
     }
 
+    /// The burst of a cell, if there is such a cell.
     #[inline]
     fn known(&self, cell: usize) -> Option<BurstSpikes<N>> {
         let known = self.bursts.get(cell).filter(|_| cell < usize::from(self.count));
         known.map(|&burst| BurstSpikes::of(burst))
     }
 
+    /// The value of a burst by binary search, where cells are coarse.
     #[cold]
     #[inline(never)]
     fn searched(&self, burst: BurstSpikes<N>) -> Option<S> {
@@ -227,7 +229,7 @@ impl<S: Sample, const N: usize> Scheme for Burst<S, N> {
     type DecoderState = Held<S>;
 
     const LATENCY: usize = 0;
-    /// A sample stands for itself, also one without a spike.
+    /// Every code gives a value by itself, also one without a spike.
     const RECOVERY: Recovery = Recovery::Samples(1);
 
     #[inline]

@@ -2,7 +2,7 @@
 
 use crate::{Code, Firing, Output, Polarity};
 
-/// The spikes of one sample: so many, from slot 0 on, at one interval, in slots below `N`.
+/// The spikes of one sample: a number of them, from slot 0 on, at one interval, in slots below `N`.
 ///
 /// Two bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -17,8 +17,8 @@ impl<const N: usize> BurstSpikes<N> {
     /// No spike.
     pub const SILENT: Self = Self { count: 0, interval: 0 };
 
-    /// So many spikes at this interval in slots, which counts from two spikes on. `None` if it is 0 there, or the
-    /// last spike fires after slot `N - 1`.
+    /// `count` spikes, `interval` slots apart. With fewer than two spikes the interval is ignored; with more the result
+    /// is `None` if the interval is 0, or the last spike would fire after slot `N - 1`.
     pub const fn new(count: u8, interval: u8) -> Option<Self> {
         if count < 2 {
             return Some(Self { count, interval: 0 });
@@ -37,12 +37,12 @@ impl<const N: usize> BurstSpikes<N> {
         self.interval
     }
 
-    /// Without the checks of [`new`](Self::new).
+    /// A burst without the checks of [`new`](Self::new).
     pub(super) const fn of([count, interval]: [u8; 2]) -> Self {
         Self { count, interval }
     }
 
-    /// Rises with the value that it stands for: more spikes, or as many at a shorter interval.
+    /// A number that rises with the value: with more spikes, or as many at a shorter interval.
     #[inline]
     pub(super) const fn rank(self) -> u16 {
         (self.count as u16) << 8 | (u8::MAX - self.interval) as u16
@@ -59,7 +59,7 @@ impl<const N: usize> Code for BurstSpikes<N> {
         slots.map(|slot| Firing { neuron: 0, slot, polarity: Polarity::Up })
     }
 
-    /// The spikes from slot 0 on at the interval of the first two, up to the first that lacks.
+    /// The spikes from slot 0 on at the interval of the first two, up to the first that is missing.
     fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
         let mut fired = [false; N];
         for firing in firings.filter(|firing| firing.neuron == 0) {

@@ -1,4 +1,4 @@
-//! Timing codes whose number of slots is chosen at run time: there is room for the most that there may be.
+//! Timing codes whose number of slots is chosen at run time; each has room for the largest number.
 
 use core::ops::RangeInclusive;
 
@@ -59,7 +59,7 @@ impl<S: Sample> LatencyPhase<S> {
     /// [`try_new`](Self::try_new) with so many neurons and latencies, and a period of so many slots.
     ///
     /// # Errors
-    /// There are not 2 to 255 latencies, or more than 256 slots; the period is no power of 2, or has no slot for each
+    /// There are not 2 to 256 latencies, or more than 256 slots; the period is no power of 2, or has no slot for each
     /// neuron; or as for [`try_new`](Self::try_new).
     pub fn try_of(
         neurons: usize,
@@ -70,7 +70,7 @@ impl<S: Sample> LatencyPhase<S> {
     ) -> Result<Self, ConfigError> {
         check("latencies", latencies, 2, SLOTS)?;
         check("period", period, 1, SLOTS + 1 - latencies)?;
-        // The nearest power of 2 below is the one that is allowed.
+        // The error names the next lower power of 2 as the period allowed.
         let power = 1 << period.ilog2();
         check("period", period, power, power)?;
         check("neurons", neurons, 1, period)?;

@@ -10,7 +10,7 @@ use crate::scheme::cells::{Cuts, Partition, Side};
 use crate::scheme::held::Held;
 use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 
-/// Time to first spike: one spike a sample, in the slot that tells the cell of the value, the highest cell first.
+/// Time to first spike: one spike a sample, in the slot of the value's cell; the highest cell has the first slot.
 ///
 /// - **Cells:** [even points](Self::linear), [logarithmic](Self::logarithmic), or above the
 ///   [user's edges](Self::new). Below all edges there is no spike.
@@ -176,7 +176,7 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
         Self::of_edges(range, &edges, slots)
     }
 
-    /// Up to `N` edges of the user's.
+    /// A scheme of the user's edges, the first `N`.
     pub(super) const fn of_own(range: &RangeInclusive<S>, own: &[S]) -> Result<Self, ConfigError> {
         let mut edges = [0.0; N];
         let mut i = 0;
@@ -252,7 +252,7 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
     }
 }
 
-/// A part of the range, or the sample that it misses by no more than its rounding.
+/// A part of the range, or the nearest sample if the two differ by no more than the rounding of the part.
 const fn whole<S: Sample>(part: f64) -> f64 {
     const ROUNDING: f64 = 1e-13;
     let nearest = to_f64::<S>(from_f64(part));
@@ -272,7 +272,7 @@ impl<S: Sample, const N: usize> Scheme for FirstSpike<S, N> {
     type DecoderState = Held<S>;
 
     const LATENCY: usize = 0;
-    /// A sample stands for itself, also one without a spike.
+    /// Every code gives a value by itself, also one without a spike.
     const RECOVERY: Recovery = Recovery::Samples(1);
 
     #[inline]
@@ -284,7 +284,7 @@ impl<S: Sample, const N: usize> Scheme for FirstSpike<S, N> {
         state.rejected()
     }
 
-    /// The value of no spike, or of the middle cell.
+    /// The value of a sample without a spike; if there is none, the middle of the middle cell.
     fn decoder_state(&self) -> Held<S> {
         let middle = || self.cells.get(usize::from(self.slots / 2));
         Held::at(self.value(None).or_else(middle).unwrap_or(S::ZERO))

@@ -1,4 +1,4 @@
-//! Latency-phase: a latency tells the value, and the phase of an oscillation tells the neuron.
+//! Latency-phase: a spike's latency gives the value, and its phase in an oscillation the neuron.
 
 use core::ops::RangeInclusive;
 
@@ -15,16 +15,16 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 /// slot modulo `P` [tells the neuron](Self::neuron_at). All `M` neurons carry the same sample, one spike each. For a
 /// channel each, make a scheme with one neuron and a [phase](Self::with_phase) for each channel.
 ///
-/// - **W:** 2 to 255, and **P:** a power of 2, with `W + P - 1` slots a sample, at most 256. **M:** 1 or more.
+/// - **W:** 2 to 256, and **P:** a power of 2, with `W + P - 1` slots a sample, at most 256. **M:** 1 or more.
 ///   **D:** the peaks' spacing in slots, with `M D` at most `P`.
-/// - **Latency:** 0 samples. **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes `10 W + 20` bytes
+/// - **Latency:** 0 samples. **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes `10 W + 24` bytes
 ///   of flash in `f32`.
 /// - **Work:** one multiplication, one comparison, and four operations a neuron.
 /// - **Exactness:** fixed point compares with exact edges; `f32` with edges computed in double precision and rounded
 ///   once.
-/// - **Decoder:** each spike leaves `P` latencies that may be; the value is the middle of the cells that all of them
-///   leave. `f32` rounds the ends of these cells and their middle once each. Without spikes, or where no latency is
-///   left, the value before holds.
+/// - **Decoder:** each spike is possible for `P` latencies; the value is the middle of the cells that are possible for
+///   all spikes. `f32` rounds the ends of these cells and their middle once each. Without spikes, or where no cell is
+///   possible, the value before holds.
 /// - **Error:** within the range `PR/2W` of one neuron, with `R = max - min`, and `DR/2W` of `P/D` neurons; in
 ///   fixed point up to 1 unit of the last place more.
 ///
@@ -70,7 +70,7 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
         assert!(M >= 1 && M <= P, "a period has a slot for each of 1 neuron or more");
     };
 
-    /// Neurons whose peaks are so many slots apart. For constants, where bad parameters fail the build.
+    /// Neurons whose peaks are `spacing` slots apart. For constants, where bad parameters fail the build.
     ///
     /// # Panics
     /// As [`try_new`](Self::try_new) fails.
@@ -78,11 +78,11 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
         unwrap(Self::of_shape(&range, spacing))
     }
 
-    /// Neurons whose peaks are so many slots apart.
+    /// Neurons whose peaks are `spacing` slots apart.
     ///
     /// # Errors
     /// The ends are not finite or do not rise; the sample type is too coarse for so many cells; or the spacing is 0,
-    /// or `M` of it exceed the period.
+    /// or `M` times the spacing exceeds the period.
     pub const fn try_new(range: RangeInclusive<S>, spacing: u16) -> Result<Self, ConfigError> {
         Self::of_shape(&range, spacing)
     }
@@ -92,7 +92,7 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
         Self::of(range, M, W, P, spacing)
     }
 
-    /// With so many neurons, latencies and slots a period, of which there is room for `M`, `W` and `P`.
+    /// A scheme of this many neurons, latencies and slots a period, at most `M`, `W` and `P`.
     pub(super) const fn of(
         range: &RangeInclusive<S>,
         neurons: usize,
@@ -116,8 +116,8 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
         Ok(Self { cells, max: *range.end(), width, period, neurons, spacing, phase: 0 })
     }
 
-    /// The slot, below the period, in which neuron 0 peaks; 0 unless told. For constants, where a bad phase fails the
-    /// build.
+    /// Sets the phase, the slot below the period in which neuron 0 peaks; 0 by default. For constants, where a bad
+    /// phase fails the build.
     ///
     /// # Panics
     /// The phase is not below the period.
@@ -126,7 +126,7 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
         unwrap(self.try_with_phase(phase))
     }
 
-    /// The slot, below the period, in which neuron 0 peaks; 0 unless told.
+    /// Sets the phase, the slot below the period in which neuron 0 peaks; 0 by default.
     ///
     /// # Errors
     /// The phase is not below the period.
@@ -162,7 +162,7 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
         })
     }
 
-    /// The middle of the cells that all spikes leave.
+    /// The middle of the cells that are possible for all spikes.
     #[inline]
     fn value(&self, spikes: &PhaseSpikes<M, W, P>) -> Option<S> {
         let (earliest, latest) = spikes.ends()?;

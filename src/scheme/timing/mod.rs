@@ -1,4 +1,4 @@
-//! Timing codes: when a spike fires within its sample tells the value.
+//! Timing codes: the time of a spike within its sample gives the value.
 //!
 //! A sample is divided into slots, sub-timesteps of the caller's length: [`Firing::slot`](crate::Firing::slot) names
 //! one, [`Bank::with_slot_ticks`](crate::Bank::with_slot_ticks) says how long they last. Nothing is added up from

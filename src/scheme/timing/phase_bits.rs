@@ -14,7 +14,7 @@ impl<const K: usize> PhaseBits<K> {
     /// No spike.
     pub const SILENT: Self = Self(0);
 
-    /// These digits, of which the lowest `K` count.
+    /// The code of these digits; only the lowest `K` are kept.
     pub const fn new(digits: u16) -> Self {
         Self(if K < 16 { digits & ((1 << K) - 1) } else { digits })
     }

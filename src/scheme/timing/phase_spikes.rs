@@ -19,7 +19,7 @@ impl<const M: usize, const W: usize, const P: usize> PhaseSpikes<M, W, P> {
     /// How many slots there are.
     const SLOTS: usize = W + P - 1;
 
-    /// Each neuron in its slot, or silent. `None` if there is no such slot.
+    /// Each neuron in its slot, or silent. `None` if a slot is not below `W + P - 1`.
     pub fn new(slots: [Option<u16>; M]) -> Option<Self> {
         let exist = slots.iter().flatten().all(|&slot| usize::from(slot) < Self::SLOTS);
         exist.then(|| Self {
@@ -27,7 +27,7 @@ impl<const M: usize, const W: usize, const P: usize> PhaseSpikes<M, W, P> {
         })
     }
 
-    /// Each neuron in the slot that a function gives.
+    /// Each neuron in its slot, neuron 0 first.
     #[inline]
     pub(super) fn of(slots: impl Iterator<Item = u16>) -> Self {
         let mut spikes = Self::SILENT;
@@ -42,7 +42,7 @@ impl<const M: usize, const W: usize, const P: usize> PhaseSpikes<M, W, P> {
     pub(super) fn ends(&self) -> Option<(u16, u16)> {
         let (mut earliest, mut latest) = (u16::MAX, 0);
         for number in self.numbers {
-            // None is later than every slot, and earlier than the first.
+            // A silent neuron's number, 0, becomes the latest slot and is the lowest number: it is never an end.
             earliest = earliest.min(number.wrapping_sub(1));
             latest = latest.max(number);
         }

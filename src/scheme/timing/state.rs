@@ -12,7 +12,7 @@ pub struct TimingState {
 impl TimingState {
     pub(super) const START: Self = Self { tally: Tally::NONE };
 
-    /// A sample that is finite; another is counted.
+    /// Returns a finite sample; counts any other as rejected.
     #[inline]
     pub(super) fn accept<S: Sample>(&mut self, sample: S) -> Option<S> {
         if sample.is_finite() {

@@ -13,7 +13,7 @@ use crate::{ConfigError, Recovery, Sample, SampleKind, Scheme, Start};
 /// The place is `⌊2^K (x - min) / R⌋`, with `R = max - min`, or all ones from `max` on. A spike in slot `t` weighs
 /// `2^-(t+1)`.
 ///
-/// - **Range:** `min < max`; in `f32` apart by at most half of the largest value. **K:** 2 to 16, of which
+/// - **Range:** `min < max`; in `f32` `max - min` is at most `f32::MAX / 2`. **K:** 2 to 16, of which
 ///   [`with_slots`](Self::with_slots) may use fewer.
 /// - **Latency:** 0 samples. **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes 12 bytes of flash
 ///   in `f32`.
@@ -56,7 +56,7 @@ pub struct WeightedPhase<S, const K: usize> {
 impl<S: Sample, const K: usize> WeightedPhase<S, K> {
     const SHAPE: () = assert!(K >= 2 && K <= 16, "a sample has 2 to 16 digits");
 
-    /// Digits of the place in a range. For constants, where a bad range fails the build.
+    /// A scheme for a range, with `K` slots. For constants, where a bad range fails the build.
     ///
     /// # Panics
     /// As [`try_new`](Self::try_new) fails.
@@ -64,10 +64,10 @@ impl<S: Sample, const K: usize> WeightedPhase<S, K> {
         unwrap(Self::of(&range))
     }
 
-    /// Digits of the place in a range.
+    /// A scheme for a range, with `K` slots.
     ///
     /// # Errors
-    /// The ends are not finite or do not rise; in `f32` they are apart by more than half of the largest value.
+    /// The ends are not finite or do not rise; in `f32` `max - min` is more than `f32::MAX / 2`.
     pub const fn try_new(range: RangeInclusive<S>) -> Result<Self, ConfigError> {
         Self::of(&range)
     }
@@ -86,7 +86,7 @@ impl<S: Sample, const K: usize> WeightedPhase<S, K> {
         Ok(Self { min: *range.start(), max: *range.end(), slots: K as u8 })
     }
 
-    /// So many slots instead of `K`. For constants, where a bad number fails the build.
+    /// Uses this many slots instead of `K`. For constants, where a bad number fails the build.
     ///
     /// # Panics
     /// The number is not within 2 to `K`.
@@ -95,7 +95,7 @@ impl<S: Sample, const K: usize> WeightedPhase<S, K> {
         unwrap(self.try_with_slots(slots))
     }
 
-    /// So many slots instead of `K`.
+    /// Uses this many slots instead of `K`.
     ///
     /// # Errors
     /// The number is not within 2 to `K`.
@@ -106,7 +106,7 @@ impl<S: Sample, const K: usize> WeightedPhase<S, K> {
         }
     }
 
-    /// By how many places the digits stand left of those of a code.
+    /// How many of the lowest digits of a code are unused.
     #[inline]
     fn unused(&self) -> u32 {
         (K as u32).wrapping_sub(self.slots.into()) & 15
@@ -125,7 +125,7 @@ impl<S: Sample, const K: usize> Scheme for WeightedPhase<S, K> {
     type DecoderState = Held<S>;
 
     const LATENCY: usize = 0;
-    /// A sample stands for itself, also one without a spike.
+    /// Every code gives a value by itself, also one without a spike.
     const RECOVERY: Recovery = Recovery::Samples(1);
 
     #[inline]
@@ -140,7 +140,7 @@ impl<S: Sample, const K: usize> Scheme for WeightedPhase<S, K> {
         state.rejected()
     }
 
-    /// The value of no spike.
+    /// The value of a sample without a spike.
     fn decoder_state(&self) -> Held<S> {
         Held::at(S::of_digits(0, self.slots.into(), self.min, self.max))
     }

@@ -18,7 +18,7 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 ///   32-bit fixed point; to decode that of the [`Window`](super::super::Window) or [`Average`](super::super::Average).
 /// - **Work:** a sum and a comparison.
 /// - **Exactness:** `f32` rounds the sum once a sample; fixed point is exact.
-/// - **Error:** over any `W` samples with `n` spikes `|n R - Σp| < R`: the sum is known to less than a spike. A window's
+/// - **Error:** over any `W` samples with `n` spikes `|n R - Σp| < R`: the sum is known to within a spike. A window's
 ///   value is within `R / W + ½` of the mean of its samples, an average's within `R / 2^k + 1` of the same average of
 ///   the samples; the ½ and the 1 are units of fixed point, from rounding.
 ///
