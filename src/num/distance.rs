@@ -1,9 +1,9 @@
-//! Arithmetic of the population codes: the cell of a value, its distance from a centre, and the mean of centres.
+//! Arithmetic of the population codes: the bin of a value, its distance from a centre, and the mean of centres.
 
 use bytemuck::Pod;
 
 use super::convert::{floor, units};
-use super::{Cells, Sample, SampleKind, word};
+use super::{EvenBins, Sample, SampleKind, word};
 
 /// Arithmetic of centres and distances in one sample type.
 pub(crate) trait Spaced: Sized {
@@ -18,11 +18,11 @@ pub(crate) trait Spaced: Sized {
     /// Whether the distance of this value from every centre fits [`Short`](Self::Short). `near` comes from [`near`].
     fn is_near(&self, near: [Self; 2]) -> bool;
 
-    /// Whether [`cell`](Self::cell) is quicker than a search: false for floats on a core without a float unit.
-    const HAS_CELLS: bool;
+    /// Whether [`bin`](Self::bin) is quicker than a search: false for floats on a core without a float unit.
+    const HAS_BINS: bool;
 
-    /// The cell of this value.
-    fn cell(self, cells: Cells) -> usize;
+    /// The bin of this value.
+    fn bin(self, bins: EvenBins) -> usize;
 
     /// Whether a finite value exceeds an edge. Compares integers, which is quick without a float unit.
     fn is_beyond(&self, edge: Self) -> bool;
@@ -44,19 +44,19 @@ pub(crate) trait Distance<S: Spaced>: Copy + PartialOrd {
     fn of(reach: S::Reach) -> Self;
 }
 
-/// `count` cells of this width from this origin, both in [`units`].
-pub(crate) const fn cells<S: Sample>(origin: f64, width: f64, count: usize) -> Cells {
+/// `count` bins of this width from this origin, both in [`units`].
+pub(crate) const fn even_bins<S: Sample>(origin: f64, width: f64, count: usize) -> EvenBins {
     match S::KIND {
-        SampleKind::F32 => Cells::of_floats(origin, width),
-        _ => Cells::of_integers(origin, width, count),
+        SampleKind::F32 => EvenBins::of_floats(origin, width),
+        _ => EvenBins::of_integers(origin, width, count),
     }
 }
 
-/// The cell of a value.
-pub(crate) const fn cell<S: Sample>(cells: Cells, value: S) -> usize {
+/// The bin of a value.
+pub(crate) const fn bin_of<S: Sample>(bins: EvenBins, value: S) -> usize {
     match S::KIND {
-        SampleKind::F32 => cells.of_float(units(value) as f32),
-        _ => cells.of_integer(units(value) as i32),
+        SampleKind::F32 => bins.of_float(units(value) as f32),
+        _ => bins.of_integer(units(value) as i32),
     }
 }
 
@@ -111,11 +111,11 @@ impl Spaced for f32 {
         true
     }
 
-    const HAS_CELLS: bool = !cfg!(target_abi = "eabi");
+    const HAS_BINS: bool = !cfg!(target_abi = "eabi");
 
     #[inline]
-    fn cell(self, cells: Cells) -> usize {
-        cells.of_float(self)
+    fn bin(self, bins: EvenBins) -> usize {
+        bins.of_float(self)
     }
 
     // `total_cmp` sorts -0 below 0, but no edge is -0: it is a sum, or the float below a sum.
@@ -160,11 +160,11 @@ macro_rules! integer {
                 is_near($to_bits(*self), near.map($to_bits))
             }
 
-            const HAS_CELLS: bool = true;
+            const HAS_BINS: bool = true;
 
             #[inline]
-            fn cell(self, cells: Cells) -> usize {
-                cells.of_integer($to_bits(self).into())
+            fn bin(self, bins: EvenBins) -> usize {
+                bins.of_integer($to_bits(self).into())
             }
 
             #[inline]
@@ -243,7 +243,7 @@ distance!([] i16, i32, core::convert::identity);
 
 #[cfg(feature = "fixed")]
 mod fixed_point {
-    use super::{Cells, Distance, Spaced, mean};
+    use super::{Distance, EvenBins, Spaced, mean};
     use fixed::types::extra::{LeEqU16, LeEqU32};
     use fixed::{FixedI16, FixedI32};
 

@@ -5,10 +5,10 @@
 
 mod arithmetic;
 mod binary;
-mod cells;
 mod convert;
 pub(crate) mod curve;
 mod distance;
+mod even_bins;
 mod field;
 mod kind;
 mod nearer;
@@ -22,11 +22,11 @@ mod window_sum;
 
 pub(crate) use arithmetic::Arithmetic;
 pub(crate) use binary::Binary;
-pub(crate) use cells::Cells;
 pub(crate) use convert::{
     below_from_f64, floor_from_f64, from_f64, largest_step, one, to_f64, units, word,
 };
-pub(crate) use distance::{Distance, Spaced, cell, cells, near, reach, top};
+pub(crate) use distance::{Distance, Spaced, bin_of, even_bins, near, reach, top};
+pub(crate) use even_bins::EvenBins;
 pub(crate) use field::{Field, scale, widths, within_widths};
 pub use kind::SampleKind;
 pub(crate) use nearer::{Bound, Nearer};

@@ -2,7 +2,7 @@
 
 use super::count_preceding;
 use crate::Sample;
-use crate::num::{Cells, cell, cells, from_f64, units};
+use crate::num::{EvenBins, bin_of, even_bins, from_f64, units};
 
 /// `C` cells that cover the line of values, 2 to 1024, each of which stands for a value.
 ///
@@ -27,7 +27,7 @@ pub(in crate::scheme) struct Partition<S, const C: usize> {
     #[cfg_attr(feature = "serde", serde(skip))]
     edges: [S; C],
     #[cfg_attr(feature = "serde", serde(skip))]
-    bins: Cells,
+    bins: EvenBins,
     /// For each bin, the number (from 1) of the lowest cell to which one of its values belongs.
     #[cfg_attr(feature = "serde", serde(skip))]
     starts: [[u8; 2]; C],
@@ -54,28 +54,28 @@ impl<S: Sample, const C: usize> Partition<S, C> {
         }
         let bins = Self::bins(&edges, count);
         let (starts, is_unique) = Self::starts(&edges, count, bins);
-        let bins = if is_unique { bins } else { Cells::ONE };
+        let bins = if is_unique { bins } else { EvenBins::ONE };
         Self { values, edges, bins, starts }
     }
 
     /// Twice as many bins as there may be cells. The first edge lies in the first, the last edge in the last.
-    const fn bins(edges: &[S; C], count: usize) -> Cells {
+    const fn bins(edges: &[S; C], count: usize) -> EvenBins {
         if count < 2 || count > C {
-            return Cells::ONE;
+            return EvenBins::ONE;
         }
         let lowest = units(edges[0]);
         let width = (units(edges[count - 2]) - lowest) / (2 * C - 1) as f64;
-        cells::<S>(lowest - width / 16.0, width, 2 * C)
+        even_bins::<S>(lowest - width / 16.0, width, 2 * C)
     }
 
     /// The table of bins, and whether no two edges share one.
-    const fn starts(edges: &[S; C], count: usize, bins: Cells) -> ([[u8; 2]; C], bool) {
+    const fn starts(edges: &[S; C], count: usize, bins: EvenBins) -> ([[u8; 2]; C], bool) {
         let mut starts = [[1; 2]; C];
         let mut edge = 0;
         let mut i = 0;
         while i < 2 * C && edge < u8::MAX as usize {
             starts[i / 2][i % 2] = edge as u8 + 1;
-            if edge + 1 < count && edge < C && cell(bins, edges[edge]) == i {
+            if edge + 1 < count && edge < C && bin_of(bins, edges[edge]) == i {
                 edge += 1;
             }
             i += 1;
@@ -93,14 +93,14 @@ impl<S: Sample, const C: usize> Partition<S, C> {
     /// Whether [`by_bin`](Self::by_bin) finds the cell of every value.
     #[inline]
     pub(in crate::scheme) fn has_bins(&self) -> bool {
-        S::HAS_CELLS && !self.bins.is_one()
+        S::HAS_BINS && !self.bins.is_one()
     }
 
     /// [`number`](Self::number) by the table of bins; 1 for NaN.
     #[inline]
     pub(in crate::scheme) fn by_bin(&self, value: S) -> usize {
         // A value above all bins lies above the last edge, as do values of the last bin.
-        let bin = value.cell(self.bins).min(2 * C - 1);
+        let bin = value.bin(self.bins).min(2 * C - 1);
         let lowest = self.starts.as_flattened().get(bin).copied().map_or(C, usize::from);
         let is_beyond = self.edges().get(lowest.wrapping_sub(1)).is_some_and(|&edge| value > edge);
         if is_beyond { lowest.wrapping_add(1) } else { lowest }

@@ -10,7 +10,7 @@ use super::fields::tables;
 use super::nonlinear::{companded, crossings, own_widths, spacings};
 use super::{Neuron, PositionState, SlotSpikes, SlotsState};
 use crate::error::{positive, within};
-use crate::num::{Cells, Distance, reach};
+use crate::num::{Distance, EvenBins, reach};
 use crate::scheme::cells::{count_preceding, number_by_search};
 use crate::scheme::held::Held;
 use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
@@ -202,8 +202,8 @@ struct Fields<S: Sample> {
     centres: Vec<S>,
     min: S,
     max: S,
-    /// A value in cell `i` is out of reach of the neurons below `i`.
-    cells: Cells,
+    /// A value in bin `i` is out of reach of the neurons below `i`.
+    bins: EvenBins,
     /// `reaches[slot]` is the largest distance at which a neuron fires in this slot or an earlier one.
     reaches: Vec<S::Reach>,
 }
@@ -219,8 +219,8 @@ impl<S: Sample> Fields<S> {
         within("slots", levels as f64, 2.0, LEVELS as f32)?;
         let Position { centres, .. } = Position::<S, M>::try_linear(neurons, range)?;
         let mut reaches = vec![reach::<S>(0.0, neurons); levels];
-        let (cells, _) = tables::<S>(neurons, range, beta, &mut reaches);
-        Ok(Self { centres, min: *range.start(), max: *range.end(), cells, reaches })
+        let (bins, _) = tables::<S>(neurons, range, beta, &mut reaches);
+        Ok(Self { centres, min: *range.start(), max: *range.end(), bins, reaches })
     }
 
     fn is_above(&self, value: S, neuron: usize) -> bool {
@@ -341,7 +341,7 @@ impl<S: Sample, const M: usize> Scheme for Slots<S, M> {
             state.tally.reject();
             return spikes;
         }
-        let mut first = sample.cell(self.fields.cells);
+        let mut first = sample.bin(self.fields.bins);
         while !self.fire_from(sample, first, &mut spikes) && self.fields.is_above(sample, first) {
             first += 1;
         }
@@ -450,7 +450,7 @@ mod random {
                 return neurons;
             }
             let fields = &self.fields;
-            let first = sample.cell(fields.cells);
+            let first = sample.bin(fields.bins);
             let Some(reach) = fields.reach(1) else { return neurons };
             let mut responds = false;
             let fired = neurons.fired.iter_mut().enumerate().skip(first);

@@ -9,7 +9,7 @@ use super::FiredNeurons;
 use super::centres::{Centres, even_centre};
 use crate::error::positive;
 use crate::num::curve::{ln, sqrt};
-use crate::num::{Cells, Distance, cell, cells, near, reach, top, units};
+use crate::num::{Distance, EvenBins, bin_of, even_bins, near, reach, top, units};
 use crate::scheme::cells::count_preceding;
 use crate::{ConfigError, Sample};
 
@@ -32,9 +32,9 @@ pub(super) struct ReceptiveFields<S: Sample, const M: usize, const N: usize> {
     min: S,
     max: S,
     beta: f32,
-    /// No neuron below `i` responds to a value in cell `i`.
+    /// No neuron below `i` responds to a value in bin `i`.
     #[cfg_attr(feature = "serde", serde(skip))]
-    cells: Cells,
+    bins: EvenBins,
     /// The lowest and the highest value whose distances fit `S::Short`.
     #[cfg_attr(feature = "serde", serde(skip))]
     near: [S; 2],
@@ -67,7 +67,7 @@ const fn radius(min: f64, max: f64, beta: f64, m: usize, k: usize, n: usize) -> 
     sigma * sqrt(2.0 * ln(n as f64 / (k as f64 - 0.5)))
 }
 
-/// Sets the reaches of `m` neurons. Returns the cells that give the first neuron that may respond to a value, and the
+/// Sets the reaches of `m` neurons. Returns the bins that give the first neuron that may respond to a value, and the
 /// lowest and the highest value whose distances fit `S::Short`.
 #[allow(clippy::indexing_slicing)] // constants have no iterators
 pub(super) const fn tables<S: Sample>(
@@ -75,7 +75,7 @@ pub(super) const fn tables<S: Sample>(
     range: &RangeInclusive<S>,
     beta: f32,
     reaches: &mut [S::Reach],
-) -> (Cells, [S; 2]) {
+) -> (EvenBins, [S; 2]) {
     let (low, high) = (units(*range.start()), units(*range.end()));
     let n = reaches.len();
     let mut k = 0;
@@ -85,16 +85,16 @@ pub(super) const fn tables<S: Sample>(
     }
     let farthest = radius(low, high, beta as f64, m, 1, n);
     let width = (high - low) / (m as f64 - 2.0);
-    // One and a half cells, less a 32nd of a cell as a margin for rounding.
-    let cells = cells::<S>(low + farthest - 1.46875 * width, width, m + 2);
+    // One and a half bins, less a 32nd of a bin as a margin for rounding.
+    let bins = even_bins::<S>(low + farthest - 1.46875 * width, width, m + 2);
     let mut hold = true;
     let mut i = 0;
     while i < m {
         let top = top::<S>(even_centre(low, high, i, m), farthest);
-        hold &= cell(cells, top) <= i;
+        hold &= bin_of(bins, top) <= i;
         i += 1;
     }
-    (if hold { cells } else { Cells::ONE }, near(low, high, m, farthest))
+    (if hold { bins } else { EvenBins::ONE }, near(low, high, m, farthest))
 }
 
 // Constants have no iterators, and every index is compared first.
@@ -119,9 +119,9 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
             Err(error) => return Err(error),
         };
         let mut reaches = [reach::<S>(0.0, M); N];
-        let (cells, near) = tables::<S>(M, range, beta, &mut reaches);
+        let (bins, near) = tables::<S>(M, range, beta, &mut reaches);
         let (min, max) = (*range.start(), *range.end());
-        Ok(Self { centres, min, max, beta, cells, near, reaches })
+        Ok(Self { centres, min, max, beta, bins, near, reaches })
     }
 
     /// The centres, lowest first.
@@ -143,7 +143,7 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
     /// [is above](Self::is_above) its centre.
     #[inline]
     pub(super) fn first(&self, value: S) -> usize {
-        value.cell(self.cells)
+        value.bin(self.bins)
     }
 
     /// Whether a value is above the centre of a neuron.

@@ -17,10 +17,10 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 ///   that fires, not the nearest centre.
 /// - **Latency:** 0 samples. **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes
 ///   `10 M + 8` bytes of flash in `f32`.
-/// - **Work:** one multiplication finds the cell of a value, a table gives the lowest neuron of that cell, and one
-///   comparison with an edge decides between it and the next. A binary search takes their place where two edges
-///   share a cell, as with Gaussian-spaced centres from about 140 on or the user's own, with more than 256 neurons,
-///   and for `f32` without a float unit.
+/// - **Work:** one multiplication finds the bin of a value, one of `2 M` even bins; a table gives the lowest neuron of
+///   that bin, and one comparison with an edge decides between it and the next. A binary search takes their place where
+///   two edges share a bin, as with Gaussian-spaced centres from about 140 on or the user's own, with more than 256
+///   neurons, and for `f32` without a float unit.
 /// - **Exactness:** the nearest centre exactly, in every sample type. Linear centres are compared unrounded, and
 ///   the decoder returns them [rounded](Self::centres) to the sample type. Other centres are compared as rounded.
 /// - **Error:** at most half the distance between two centres, inside the centres' range.

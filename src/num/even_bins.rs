@@ -1,31 +1,31 @@
-//! Cells of equal width over a range of values: one multiplication finds the cell of a value.
+//! Bins of equal width over a range of values: one multiplication finds the bin of a value.
 
-/// Cells of equal width, numbered upwards from an origin; a value below the origin lies in cell 0.
+/// Bins of equal width, numbered upwards from an origin; a value below the origin lies in bin 0.
 ///
-/// Rounding may put a value close to a border into either cell, but into one and the same on every machine, and
-/// a larger value never lies in a lower cell. So a table checked at its borders when it is built is right for
+/// Rounding may put a value close to a border into either bin, but into one and the same on every machine, and
+/// a larger value never lies in a lower bin. So a table checked at its borders when it is built is right for
 /// every value between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub(crate) struct Cells {
+pub(crate) struct EvenBins {
     /// A float's bits, or an integer.
     origin: u32,
-    /// Cells per unit. For floats their bits. For integers, from the lowest bit: 16 bits of factor, 8 bits of the
+    /// Bins per unit. For floats their bits. For integers, from the lowest bit: 16 bits of factor, 8 bits of the
     /// shift that reduces a value to 16 bits, and 8 bits of the shift of the product.
     scale: u32,
 }
 
-impl Cells {
-    /// A single cell, which holds all values.
+impl EvenBins {
+    /// A single bin, which holds all values.
     pub(crate) const ONE: Self = Self { origin: 0, scale: 0 };
 
-    /// Whether there is a single cell.
+    /// Whether there is a single bin.
     #[inline]
     pub(crate) const fn is_one(self) -> bool {
         self.scale == 0
     }
 
-    /// Cells for `f32`; a single one if `1 / width` is not a positive finite `f32`.
+    /// Bins for `f32`; a single one if `1 / width` is not a positive finite `f32`.
     pub(crate) const fn of_floats(origin: f64, width: f64) -> Self {
         let scale = (1.0 / width) as f32;
         if scale > 0.0 && scale < f32::INFINITY {
@@ -35,7 +35,7 @@ impl Cells {
         }
     }
 
-    /// `count` cells for integers; origin and width in units of the last place.
+    /// `count` bins for integers; origin and width in units of the last place.
     pub(crate) const fn of_integers(origin: f64, width: f64, count: usize) -> Self {
         let range = (width * count as f64) as u64;
         let mut shift = 0_u32;
@@ -49,7 +49,7 @@ impl Cells {
             fraction += 1;
         }
         if scale < 65_535.0 {
-            // Rounded up, so that a multiple of a width is not in the cell below.
+            // Rounded up, so that a multiple of a width is not in the bin below.
             let scale = (scale as u32).wrapping_add(1);
             Self { origin: origin as i32 as u32, scale: fraction << 24 | shift << 16 | scale }
         } else {
@@ -57,13 +57,13 @@ impl Cells {
         }
     }
 
-    /// The cell of a float; 0 for NaN.
+    /// The bin of a float; 0 for NaN.
     #[inline]
     pub(crate) const fn of_float(self, value: f32) -> usize {
         ((value - f32::from_bits(self.origin)) * f32::from_bits(self.scale)) as u32 as usize
     }
 
-    /// The cell of an integer, in units of the last place.
+    /// The bin of an integer, in units of the last place.
     #[inline]
     pub(crate) const fn of_integer(self, value: i32) -> usize {
         let Self { origin, scale } = self;
