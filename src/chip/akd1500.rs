@@ -10,12 +10,11 @@ use super::error::{at_most, in_range};
 ///
 /// - **SPI:** mode 0, high bit first, 8 MHz; chip select low over header and data.
 /// - **Blocks:** 1, 4, 8, 16 or 32 words each; a longer run takes several.
-/// - **Addresses:** multiples of 4 from `0xFC00_0000` on. The bus carries the low 26 bits, and the chip adds the rest: any
-///   other address would be one of these.
+/// - **Addresses:** multiples of 4 from `0xFC00_0000` on. The bus carries the low 26 bits, and the chip adds the rest.
 /// - **Faults:** chip select begins every block anew, so that a clock lost or doubled spoils one block and no more. There
-///   is no checksum: [`program`](Self::program) reads all back. A block whose header was disturbed may lie elsewhere;
-///   after [`ReadBack`](ChipError::ReadBack) write all again that must be right. It is not noticed where the words
-///   were there already.
+///   is no checksum: [`program`](Self::program) reads all back. A disturbed header may write a block to another
+///   address: after [`ReadBack`](ChipError::ReadBack) write all memory again that must be right. If the right address
+///   already held the same words, this goes unnoticed.
 ///
 /// Checked against the vendor's sources, and a model of the transport written from them; never against a chip.
 ///

@@ -6,8 +6,9 @@
 //! | [`Akd1500`] | a window onto memory, over SPI | the same | bytes of the vendor's library, and a model of its transport: every byte lost, doubled, flipped |
 //! | [`Xylo`] | counts in registers | a status register | the registers in the vendor's sources |
 //!
-//! None of these drivers has run on hardware. No bus has a checksum. What can be read back is: all but the
-//! configuration registers of tinyODIN and ODIN, which a check of the bus follows, and the registers of Xylo.
+//! None of these drivers has run on hardware. No bus has a checksum. What can be read back is read back. The
+//! configuration registers of tinyODIN and ODIN cannot be read back: a check of the bus follows each. The registers of
+//! Xylo are not read back.
 //!
 //! # A network on tinyODIN
 //!

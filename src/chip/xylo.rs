@@ -62,11 +62,11 @@ pub struct XyloMap {
     pub trigger: u32,
     /// The register that shows whether the time step is done.
     pub status: u16,
-    /// The bit of `status` that shows it.
+    /// The mask of the bit of `status` that shows it.
     pub done: u32,
     /// The register with the outputs that fired.
     pub outputs: u16,
-    /// The bits of `outputs` in use: bit `i` is output `i`.
+    /// The mask of the bits of `outputs` in use: bit `i` is output `i`.
     pub output_bits: u32,
 }
 
@@ -107,8 +107,8 @@ impl XyloMap {
 /// - **Counts stay** in the chip: a step without new ones has those of the bank again, until they are
 ///   [cleared](Self::clear_input), as the vendor's programs do.
 /// - **Faults:** the chip confirms nothing that is written, and the public sources do not say which registers can be read
-///   back. A write that is lost without an error of yours leaves old counts; a trigger that is lost, the outputs
-///   of the step before. [`Registers`] must bring a bus that tells.
+///   back. So the [`Registers`] that you supply must report every write that fails: a lost write leaves the old counts,
+///   a lost trigger the outputs of the step before.
 ///
 /// Checked against the vendor's sources alone, never against a chip.
 ///
@@ -161,9 +161,9 @@ impl<R: Registers> Xylo<R> {
     /// Runs a time step and returns the outputs that fired: bit `i` is output `i`.
     ///
     /// # Errors
-    /// [`Unfinished`](ChipError::Unfinished): the step is not done yet; call this again, which waits for it. The bus failed:
-    /// after the trigger call this again, which loses nothing; at the trigger itself it is not known whether the step
-    /// began, and another call triggers.
+    /// [`Unfinished`](ChipError::Unfinished): the step is not done yet; call this again, which waits for it. The bus
+    /// failed: call this again. If it failed after the trigger, nothing is lost; if it failed at the trigger, the step
+    /// may have begun, and the next call triggers again.
     pub fn step(&mut self) -> Result<u32, ChipError<R::Error>> {
         let XyloMap { control, trigger, status, done, outputs, output_bits, .. } = self.map;
         if !self.is_under_way {

@@ -23,8 +23,8 @@ impl Band {
 
     /// Whether four values lie in the bands of their four bases; all of them up to 8191.
     ///
-    /// `value - base + down` lies in 0 to `down + up` then, and neither it nor what it leaves of that is negative. The
-    /// lowest lane that is negative shows it in its sign; those above may lack what it borrows.
+    /// A value lies in its band if neither `above = value - base + down` nor `down + up - above` is negative. The sign of
+    /// a lane shows that; a borrow falsifies only lanes above one that is negative itself.
     #[inline]
     pub(super) const fn holds(self, bases: [u32; 2], values: [u32; 2]) -> bool {
         let [a, b] = bases;
@@ -32,7 +32,7 @@ impl Band {
         (self.outside(a, p) | self.outside(b, q)) & Self::SIGNS == 0
     }
 
-    /// Has a sign where a lane lies outside.
+    /// Sets the sign of each lane that lies outside its band.
     #[inline]
     const fn outside(self, bases: u32, values: u32) -> u32 {
         let above = values.wrapping_sub(bases).wrapping_add(self.down);
@@ -54,7 +54,7 @@ pub(super) const fn lanes_of_pairs([a, b, c, d]: [u16; 4]) -> [u32; 2] {
     [a as u32 | (b as u32) << 16, c as u32 | (d as u32) << 16]
 }
 
-/// Pixels that are looked at together.
+/// How many pixels are compared at once.
 pub(super) const FOUR: usize = 4;
 
 /// How many pixels at the start of a row are quiet: whole fours by the one function, and what is left of the row by the

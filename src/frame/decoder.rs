@@ -1,4 +1,4 @@
-//! Events of pixels in, frames out.
+//! Frame decoder: events of pixels in, frames out.
 
 use core::fmt;
 
@@ -6,7 +6,7 @@ use super::{PixelCode, PixelEvent};
 use crate::error::{first_address, unwrap};
 use crate::{ConfigError, Event, Keyframe, Polarity};
 
-/// The picture at the far end: the base of every pixel, moved by each event as the encoder's.
+/// The picture at the far end: the base of every pixel, which each event moves as it moved the encoder's.
 ///
 /// It starts at 0 everywhere: give it the [first frame](Self::start), or [keyframes](Self::keyframe). After a lost
 /// event a pixel is wrong by a threshold until its next keyframe.
@@ -106,12 +106,12 @@ impl<C: PixelCode, const W: usize, const H: usize> FrameDecoder<C, W, H> {
         self.bases.get_mut(y)?.get_mut(x)
     }
 
-    /// The base of a pixel; `None` for one that there is not.
+    /// The base of a pixel; `None` if there is no such pixel.
     pub fn base(&self, x: usize, y: usize) -> Option<C::Base> {
         self.bases.get(y)?.get(x).copied()
     }
 
-    /// A row of the picture; `None` for one that there is not.
+    /// A row of the picture; `None` if there is no such row.
     pub fn row(&self, y: usize) -> Option<[u8; W]> {
         Some(self.bases.get(y)?.map(|base| self.code.value(base)))
     }
@@ -121,7 +121,7 @@ impl<C: PixelCode, const W: usize, const H: usize> FrameDecoder<C, W, H> {
         self.bases.iter().map(|row| row.map(|base| self.code.value(base)))
     }
 
-    /// How many events and keyframes were of no pixel here, or held no base.
+    /// How many events and keyframes had the address of no pixel, or a value that is no base.
     pub const fn outside(&self) -> u32 {
         self.outside
     }

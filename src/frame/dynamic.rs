@@ -1,4 +1,4 @@
-//! A camera whose size is known at run time only.
+//! Frame encoder of a camera whose size is known at run time only.
 
 use alloc::vec::Vec;
 use core::fmt;

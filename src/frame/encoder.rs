@@ -1,4 +1,4 @@
-//! Rows of a camera in, events of pixels out.
+//! Frame encoder: rows of a camera in, events of pixels out.
 
 use core::fmt;
 
@@ -9,15 +9,15 @@ use crate::{ConfigError, Item, Keyframe, Polarity, Put, Tick};
 
 /// The pixels of a camera of `W` columns and `H` rows.
 ///
-/// Takes a row a call, in the interrupt in which the camera's DMA has it, and hands out the events in raster order:
+/// Takes a row a call, in the interrupt at which the camera's DMA has it, and hands out the events in raster order:
 /// by rising column, a pixel's events one after the other, all at the frame's tick.
 /// [`encode_interpolated`](Self::encode_interpolated) spreads them over the time since the frame before.
 ///
 /// - **Rows:** by rising number within a frame; one that is not above the row before begins a new frame. A row that the
 ///   camera lost is left out, and its pixels wait. The first row of each number sets the bases and sends nothing.
 /// - **Budget:** with [`with_budget`](Self::with_budget), so many events a frame at most. Events beyond it are not sent
-///   and [counted](Self::over_budget); as the base stays too, nothing is wrong at the far end, only late. Rows at the top
-///   come first.
+///   and [counted](Self::over_budget); as their pixels' bases stay, too, the far end is late but not wrong. Rows at the
+///   top come first.
 /// - **Memory:** the code's state of `W * H` pixels, `H` bytes and about 32. **Latency:** 0 frames.
 ///
 /// ```
@@ -41,7 +41,7 @@ pub struct FrameEncoder<C: PixelCode, const W: usize, const H: usize> {
     has_begun: [bool; H],
     first_address: u16,
     budget: Budget,
-    /// The row above which the frame goes on.
+    /// The lowest row that goes on with this frame; a row below it begins a new one.
     next: usize,
     tick: Tick,
     outside: u32,
@@ -224,7 +224,7 @@ impl<C: PixelCode, const W: usize, const H: usize> FrameEncoder<C, W, H> {
         self.budget.renew();
     }
 
-    /// The base of a pixel; `None` before its row's first sample, and for a pixel that there is not.
+    /// The base of a pixel; `None` before its row's first sample, and if there is no such pixel.
     pub fn base(&self, x: usize, y: usize) -> Option<C::Base> {
         let pixel = self.pixels.get(y)?.get(x)?;
         self.has_begun.get(y).is_some_and(|&begun| begun).then(|| self.code.base_of(*pixel))

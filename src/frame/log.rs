@@ -73,7 +73,7 @@ impl Sealed for u8 {
 }
 
 const fn level(sample: u8, scale: u16) -> u16 {
-    /// Below, the logarithm is a line, as it would go to minus infinity.
+    /// Up to this sample a line takes the place of the logarithm, which would go to minus infinity.
     const KNEE: f64 = 20.0;
     let sample = sample as f64;
     let log = if sample <= KNEE { sample * curve::ln(KNEE) / KNEE } else { curve::ln(sample) };

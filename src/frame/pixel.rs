@@ -1,4 +1,4 @@
-//! What a code of pixels is.
+//! The trait of pixel codes, and the count of thresholds that they share.
 
 use core::num::NonZeroU8;
 
@@ -44,20 +44,20 @@ pub trait PixelCode: Copy {
     /// The sample that a base stands for.
     fn value(&self, base: Self::Base) -> u8;
 
-    /// Whether a pixel has nothing to do with a sample: no event is due, and [`follow`](Self::follow) would change nothing.
+    /// Whether a pixel is quiet at a sample: no event is due, and [`follow`](Self::follow) would change nothing.
     #[inline]
     fn is_quiet(&self, pixel: Self::Pixel, sample: u8) -> bool {
         self.steps(pixel, sample) == 0
     }
 
-    /// How many pixels at the start of a row have nothing to do with their samples; maybe up to three fewer.
+    /// How many pixels at the start of a row are [quiet](Self::is_quiet), or up to three fewer.
     fn quiet(&self, pixels: &[Self::Pixel], samples: &[u8]) -> usize {
         let pairs = pixels.iter().zip(samples);
         pairs.take_while(|&(&pixel, &sample)| self.is_quiet(pixel, sample)).count()
     }
 
-    /// Visits pixels of a row by rising index, with their samples: every one that has something to do, and maybe
-    /// neighbours of it. As many as the shorter slice has.
+    /// Visits the pixels of a row that are not [quiet](Self::is_quiet), and some neighbours, by rising index, each with
+    /// its sample. Stops at the end of the shorter slice.
     #[inline]
     fn row(
         &self,
@@ -99,7 +99,8 @@ pub(super) fn steps((base, sample): (u16, u16), (up, down): (u16, u16), most: No
     }
 }
 
-/// A function of its own: its loop would be in the way of the row's.
+/// How many whole thresholds lie strictly within a distance, up to `most`. A function of its own, so that its loop
+/// takes no registers from the row's.
 #[inline(never)]
 fn count(away: u16, threshold: u16, most: NonZeroU8) -> i16 {
     let mut left = away;

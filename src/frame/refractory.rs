@@ -1,4 +1,4 @@
-//! Silence after an event.
+//! Refractory pixels: silent for some frames after an event.
 
 use core::num::NonZeroU8;
 
@@ -9,8 +9,8 @@ use crate::error::{unwrap, within};
 /// A code whose pixels are silent for some frames after one with events, while their bases stay.
 ///
 /// - **Frames:** 1 to 255. **State:** 1 byte a pixel more than the code's.
-/// - **Error:** that of the code, but only in frames without silent pixels: a pixel that changes meanwhile is caught up
-///   with afterwards.
+/// - **Error:** that of the code while a pixel is not silent. A pixel that changes while it is silent catches up
+///   afterwards.
 ///
 /// ```
 /// use spikewire::frame::{Intensity, PixelCode, Refractory};

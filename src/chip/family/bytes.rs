@@ -57,8 +57,8 @@ impl core::error::Error for FormatError {}
 /// | 1 | bit 0: recurrent; bit 1: inputs are virtual events |
 /// | 2, 2, 2 | neurons, inputs, outputs |
 /// | 4 or 16 a neuron | the neuron as in the chip's memory |
-/// | a row an input | signed weights of 4 bits, two a byte, the first in the low half; of virtual events instead 2 bytes: neuron and weight |
-/// | a row a neuron | weights as those of an input; only if it is recurrent |
+/// | a row for each input | signed weights of 4 bits, two a byte, the first in the low half; for a virtual event instead 2 bytes, neuron and weight |
+/// | a row for each neuron | weights as those of an input; only if the network is recurrent |
 /// | 1 an output | the neuron |
 ///
 /// Numbers of two bytes are little-endian. There is no checksum; [`Gated::load`](super::Gated::load) compares the chip's

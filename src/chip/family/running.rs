@@ -48,9 +48,9 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
 
     /// Waits until the chip has processed all its input, and passes the neurons that fire meanwhile to `on_output`.
     ///
-    /// No pin shows that the chip is at rest. It is, once it has had no output for longer than it can work without one:
-    /// in open loop a few sweeps of 2 clocks a neuron, in closed loop a sweep for each spike that its queue can hold,
-    /// 66 000 clocks for tinyODIN's 256 neurons.
+    /// No pin shows that the chip is at rest, so this waits until no output has come for the longest time that the chip
+    /// can work without one: in open loop a few sweeps of 2 clocks a neuron, in closed loop a sweep for each spike that
+    /// its queue can hold, 66 000 clocks for tinyODIN's 256 neurons.
     ///
     /// # Errors
     /// [`Busy`](ChipError::Busy): outputs come without end, as from a network that drives itself; see

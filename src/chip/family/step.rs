@@ -11,7 +11,7 @@ const GATE_ACTIVITY: u16 = 0;
 /// The bit of a neuron's last byte that disables it.
 pub(super) const DISABLE: u8 = 0x80;
 
-/// A byte of a neuron's parameters that is known not to be 0.
+/// A byte of a neuron's parameters that is known not to be 0: a bus out of step reads 0 instead.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beacon {
     address: Address,
@@ -35,8 +35,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.check_step()
     }
 
-    /// Opens the gate. If the gate later shuts on a chip that works, tinyODIN writes to the byte that was accessed last,
-    /// in each neuron that it has still to process: so the last access is to a byte that does not exist.
+    /// Opens the gate. If the gate later shuts on a chip that works, tinyODIN overwrites the byte that was accessed
+    /// last, in each neuron that it has still to process. So the last access here is to a byte that does not exist.
     pub(super) fn open(&mut self) -> Outcome<(), D, P> {
         self.read_byte(Address::nowhere())?;
         self.configure(GATE_ACTIVITY, 0)
