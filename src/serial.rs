@@ -1,14 +1,57 @@
-//! Serialization that serde does not derive: arrays of any length, and structs that leave out their inner structure.
+//! What serde does not derive: arrays of any length, and structs that leave out their inner structure.
 
 use serde::ser::{SerializeSeq, SerializeStruct};
 use serde::{Serialize, Serializer};
 
-/// Serializes an array of any length; for `#[serde(serialize_with = …)]`.
-pub(crate) fn array<T: Serialize, S: Serializer, const N: usize>(
-    items: &[T; N],
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(items)
+/// An array of any length; for `#[serde(with = …)]`.
+pub(crate) mod array {
+    use core::fmt::{Formatter, Result as Written};
+    use core::marker::PhantomData;
+
+    use bytemuck::Pod;
+    use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
+    use serde::{Serialize, Serializer};
+
+    pub(crate) fn serialize<T: Serialize, S: Serializer, const N: usize>(
+        items: &[T; N],
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(items)
+    }
+
+    /// Refuses any other number of items.
+    pub(crate) fn deserialize<
+        'de,
+        T: Pod + Deserialize<'de>,
+        D: Deserializer<'de>,
+        const N: usize,
+    >(
+        deserializer: D,
+    ) -> Result<[T; N], D::Error> {
+        deserializer.deserialize_seq(Items(PhantomData))
+    }
+
+    struct Items<T, const N: usize>(PhantomData<T>);
+
+    impl<'de, T: Pod + Deserialize<'de>, const N: usize> Visitor<'de> for Items<T, N> {
+        type Value = [T; N];
+
+        fn expecting(&self, formatter: &mut Formatter) -> Written {
+            write!(formatter, "{N} items")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<[T; N], A::Error> {
+            let mut items = [T::zeroed(); N];
+            for (seen, item) in items.iter_mut().enumerate() {
+                let next = sequence.next_element()?;
+                *item = next.ok_or_else(|| Error::invalid_length(seen, &self))?;
+            }
+            match sequence.next_element::<T>()? {
+                None => Ok(items),
+                Some(_) => Err(Error::invalid_length(N.wrapping_add(1), &self)),
+            }
+        }
+    }
 }
 
 /// Serializes a sequence. It is counted first, as compact formats write the length before the items.

@@ -4,7 +4,7 @@ use spikewire::population::Position;
 use spikewire::{ConfigError, Sample, Scheme, Spike, Start};
 
 use crate::plain::{self, Plain};
-use crate::{Channel, InC, Info, Scaled};
+use crate::{Channel, InC, Info, Scaled, State};
 
 /// A scheme of the catalogue.
 pub trait Entry {
@@ -38,7 +38,7 @@ pub trait Flight {
     ///
     /// # Errors
     /// The visitor's own.
-    fn visit<P: Scheme<Sample = Self::Sample>>(
+    fn visit<P: Scheme<Sample = Self::Sample, EncoderState: State, DecoderState: State>>(
         &mut self,
         name: &'static str,
         words: &'static str,

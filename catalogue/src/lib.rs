@@ -17,12 +17,14 @@ pub mod plain;
 #[cfg(feature = "run")]
 pub mod run;
 mod signal;
+mod state;
 
 pub use channel::Channel;
 pub use entry::{Count, Entry, Flight};
 pub use in_c::{Argument, Flown, InC, Made};
 pub use info::{Found, Info, Kind, Paper, Parameter, Search, Unit};
 pub use signal::Scaled;
+pub use state::State;
 
 /// Calls a function that is not inlined: a small board has room for one scheme at a time on its stack.
 #[inline(never)]

@@ -51,6 +51,7 @@ mod samples;
 mod serde;
 mod sink_bus;
 mod slots;
+mod states;
 mod statics;
 mod step_forward;
 mod survey;

@@ -47,6 +47,26 @@ class Scheme:
         """What was given, by name."""
         return dict(self._given)
 
+    @property
+    def neurons(self) -> int:
+        """How many neurons a channel has.
+
+        >>> import spikewire as sw
+        >>> sw.Gaussian(neurons=20).neurons
+        20
+        """
+        return self._coder.shape()[0]
+
+    @property
+    def slots(self) -> int:
+        """How many sub-timesteps a sample has.
+
+        >>> import spikewire as sw
+        >>> sw.SendOnDelta(threshold=0.5, spikes=3).slots
+        3
+        """
+        return self._coder.shape()[1]
+
     def fit(self, x: ArrayLike) -> Scheme:
         """This scheme with the parameters that `x`, all channels together, tells: the one that flies.
 
@@ -119,15 +139,13 @@ class Scheme:
         first = np.ravel(first) if np.ndim(first) > 1 else first
         return self.decoder(first, channels).decode(codes.reshape(channels, outer[-1], *inner)).reshape(outer)
 
-    def encoder(self, channels: int | None = None, picklable: bool = False) -> Encoder:
+    def encoder(self, channels: int | None = None) -> Encoder:
         """An encoder that keeps its state between chunks (samples,), or (channels, samples) of so many channels."""
-        return Encoder(self, channels, picklable)
+        return Encoder(self, channels)
 
-    def decoder(
-        self, first: ArrayLike | None = None, channels: int | None = None, picklable: bool = False
-    ) -> Decoder:
+    def decoder(self, first: ArrayLike | None = None, channels: int | None = None) -> Decoder:
         """A decoder that keeps its state between chunks; a code of steps starts from the `first` sample."""
-        return Decoder(self, first, channels, picklable)
+        return Decoder(self, first, channels)
 
     def __repr__(self) -> str:
         given = dict(self._given)

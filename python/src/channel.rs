@@ -3,9 +3,9 @@
 //! The code of a sample is a row of cells, one for each neuron of each sub-timestep. A cell holds how many spikes went
 //! up less how many went down: -1, 0 or 1, or more where a code sends several spikes a sample.
 
-use anyhow::Result;
-use catalogue::for_sample_type;
+use anyhow::{Context, Result, ensure};
 use catalogue::run::{Given, RunTime, SampleType, Settings, Visit};
+use catalogue::{State, for_sample_type};
 use spikewire::{Code, Firing, Output, Polarity, Sample, SampleKind, Scheme};
 
 use crate::array::{Lane, Values};
@@ -37,6 +37,18 @@ pub(crate) trait Channel: Send + Sync {
     /// # Errors
     /// No encoder makes such a row.
     fn decode(&mut self, cells: &[i8], values: &mut Values) -> Result<(), Bad>;
+
+    /// All that it keeps from sample to sample, as bytes.
+    ///
+    /// # Errors
+    /// None that is known.
+    fn state(&self) -> Result<Vec<u8>>;
+
+    /// Goes on from what [`state`](Self::state) gave, of a channel of the same scheme.
+    ///
+    /// # Errors
+    /// It is damaged, or another scheme's.
+    fn set_state(&mut self, bytes: &[u8]) -> Result<()>;
 }
 
 /// A channel as it starts on these settings, which are complete; its decoder from a value, if there is one.
@@ -71,8 +83,8 @@ impl<S: Sample> Visit<S> for Start<'_> {
     where
         P: Scheme<
                 Sample = S,
-                EncoderState: Send + Sync,
-                DecoderState: Send + Sync,
+                EncoderState: State + Send + Sync,
+                DecoderState: State + Send + Sync,
                 Code: Send + Sync,
             > + Send
             + Sync
@@ -211,8 +223,11 @@ impl<P: Scheme> Running<P> {
 
 impl<P> Channel for Running<P>
 where
-    P: Scheme<EncoderState: Send + Sync, DecoderState: Send + Sync, Code: Send + Sync>
-        + Send
+    P: Scheme<
+            EncoderState: State + Send + Sync,
+            DecoderState: State + Send + Sync,
+            Code: Send + Sync,
+        > + Send
         + Sync,
 {
     fn latency(&self) -> usize {
@@ -261,5 +276,20 @@ where
                 self.decode_each(cells, values, |value| (value.to_f64() / one) as i16)
             }
         }
+    }
+
+    fn state(&self) -> Result<Vec<u8>> {
+        Ok(postcard::to_allocvec(&(&self.encoder, &self.decoder, self.is_first_held))?)
+    }
+
+    fn set_state(&mut self, bytes: &[u8]) -> Result<()> {
+        let read = postcard::take_from_bytes::<(P::EncoderState, P::DecoderState, bool)>(bytes);
+        let ((encoder, decoder, is_first_held), rest) = read.context("the state is damaged")?;
+        ensure!(
+            rest.is_empty() && self.scheme.fits(&encoder) && self.scheme.fits_decoder(&decoder),
+            "the state is damaged, or another scheme's"
+        );
+        (self.encoder, self.decoder, self.is_first_held) = (encoder, decoder, is_first_held);
+        Ok(())
     }
 }

@@ -1,6 +1,6 @@
 //! Encoders and decoders that keep their state from one call to the next.
 
-use anyhow::Result;
+use anyhow::{Context, Result, ensure};
 use catalogue::run::SampleType;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -11,6 +11,25 @@ use crate::array::{Lane, Samples, Values};
 use crate::channel::{self, Channel};
 use crate::coder::{Coder, told};
 use crate::error::value;
+
+/// What a stream pickles as: the package's version, the samples that wait for the encoder to start, and the states of the
+/// channels that run. No version reads another's.
+type Pickled = (String, Vec<Vec<f64>>, Vec<Vec<u8>>);
+
+fn pickled(waiting: &[Vec<f64>], running: &[Box<dyn Channel>]) -> Result<Pickled> {
+    let states = running.iter().map(|channel| channel.state()).collect::<Result<_>>()?;
+    Ok((env!("CARGO_PKG_VERSION").to_owned(), waiting.to_vec(), states))
+}
+
+fn set_states(running: &mut [Box<dyn Channel>], (version, _, states): &Pickled) -> Result<()> {
+    let own = env!("CARGO_PKG_VERSION");
+    ensure!(version == own, "the stream was pickled by spikewire {version}, and this is {own}");
+    ensure!(states.len() == running.len(), "the states are of {} channels", states.len());
+    for (place, (channel, state)) in running.iter_mut().zip(states).enumerate() {
+        channel.set_state(state).with_context(|| format!("channel {place}"))?;
+    }
+    Ok(())
+}
 
 /// Encoders of several channels.
 #[pyclass(module = "spikewire._native")]
@@ -48,6 +67,24 @@ impl Encoder {
         let waiting: Vec<Vec<f64>> = self.waiting.iter_mut().map(std::mem::take).collect();
         let lanes: Vec<Lane> = waiting.iter().map(|own| Lane::F64(own.as_slice().into())).collect();
         self.push(&lanes)
+    }
+
+    fn set(&mut self, pickled: &Pickled) -> Result<()> {
+        let (_, waiting, states) = pickled;
+        let channels = self.waiting.len();
+        ensure!(waiting.len() == channels, "the stream has {} channels", waiting.len());
+        let mut running = Vec::new();
+        if !states.is_empty() {
+            // They come from their states, whatever they would have started from.
+            let first = vec![0.0; self.coder.looks_back()];
+            let settings = self.coder.settle(&first, None)?;
+            let Coder { scheme, sample, .. } = self.coder;
+            let start = |_| channel::start(scheme, sample, &settings, None);
+            running = (0..channels).map(start).collect::<Result<_>>()?;
+        }
+        set_states(&mut running, pickled)?;
+        (self.running, self.waiting) = (running, waiting.clone());
+        Ok(())
     }
 
     fn push(&mut self, lanes: &[Lane]) -> Result<Vec<Vec<i8>>> {
@@ -121,6 +158,16 @@ impl Encoder {
         Ok(cells.concat().into_pyarray(py))
     }
 
+    /// All that it keeps from chunk to chunk.
+    fn state(&self) -> PyResult<Pickled> {
+        pickled(&self.waiting, &self.running).map_err(|error| value(&error))
+    }
+
+    /// Goes on from a state of an encoder of the same scheme and as many channels.
+    fn set_state(&mut self, state: Pickled) -> PyResult<()> {
+        self.set(&state).map_err(|error| value(&error))
+    }
+
     /// The cells of the samples that wait for later ones; the encoder is as at its start then.
     fn finish<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i8>>> {
         let cells = self.finish_all().map_err(|error| value(&error))?;
@@ -143,6 +190,16 @@ impl Decoder {
 
 #[pymethods]
 impl Decoder {
+    /// All that it keeps from chunk to chunk.
+    fn state(&self) -> PyResult<Pickled> {
+        pickled(&[], &self.channels).map_err(|error| value(&error))
+    }
+
+    /// Goes on from a state of a decoder of the same scheme and as many channels.
+    fn set_state(&mut self, state: Pickled) -> PyResult<()> {
+        set_states(&mut self.channels, &state).map_err(|error| value(&error))
+    }
+
     /// The values of the next rows of cells, this many of each channel, one channel after the other.
     fn decode<'py>(
         &mut self,

@@ -1,5 +1,6 @@
 """Every scheme of the catalogue: arrays, chunks, types."""
 
+import copy
 import pickle
 
 import numpy as np
@@ -122,27 +123,104 @@ def test_events_are_in_the_order_of_time():
     assert whole.count == len(events)
 
 
-@pytest.mark.parametrize("scheme", sw.schemes.values())
-def test_streams_survive_pickling(scheme, x):
-    own = scheme(paper=True).fit(x)
-    again = pickle.loads(pickle.dumps(own.encoder(channels=2)))
-    assert np.array_equal(again.encode(x), own.encoder(channels=2).encode(x))
+def streams(own, x):
+    first = x[:, 0] if own._info["has_first_value"] else None
+    return own.encoder(channels=2), own.decoder(first=first, channels=2)
+
+
+@pytest.mark.parametrize("scheme, sample", cases())
+def test_streams_survive_pickling_between_any_chunks(scheme, sample, x):
+    own, _ = of(scheme, sample, x)
+    own = own.fit(x)
     spikes = own.encode(x)
-    first = x[:, 0] if scheme._info["has_first_value"] else None
-    encoder, decoder = own.encoder(2, picklable=True), own.decoder(first, 2, picklable=True)
-    encoder.encode(x[:, :200]), decoder.decode(spikes.array[:, :200])
-    encoder, decoder = pickle.loads(pickle.dumps((encoder, decoder)))
-    rest = np.concatenate([encoder.encode(x[:, 200:]), encoder.finish()], axis=1)
-    assert np.array_equal(rest, spikes.array[:, -rest.shape[1] :])
-    assert np.array_equal(decoder.decode(spikes.array[:, 200:]), spikes.decode()[:, 200:])
+    encoder, decoder = streams(own, x)
+    cuts = [0, 1, 2, 5, 100, 101, 300]
+    codes, values = [], []
+    for chunk, row in zip(np.split(x, cuts, axis=1), np.split(spikes.array, cuts, axis=1)):
+        encoder, decoder = pickle.loads(pickle.dumps((encoder, decoder)))
+        codes.append(encoder.encode(chunk)), values.append(decoder.decode(row))
+    codes.append(pickle.loads(pickle.dumps(encoder)).finish())
+    assert np.array_equal(np.concatenate(codes, axis=1), spikes.array)
+    assert np.array_equal(np.concatenate(values, axis=1), spikes.decode())
     assert np.array_equal(pickle.loads(pickle.dumps(spikes)).decode(), spikes.decode())
 
 
-def test_a_stream_without_its_past_does_not_pickle():
-    encoder = sw.StepForward(threshold=1).encoder()
-    encoder.encode([1.0])
-    with pytest.raises(TypeError, match="picklable=True"):
-        pickle.dumps(encoder)
+@pytest.mark.parametrize("scheme", sw.schemes.values())
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
+def test_a_copy_goes_its_own_way(scheme, copied, x):
+    own = scheme(paper=True).fit(x)
+    spikes = own.encode(x)
+    encoder, decoder = streams(own, x)
+    encoder.encode(x[:, :200]), decoder.decode(spikes.array[:, :200])
+    again, decoded_again = copied(encoder), copied(decoder)
+    again.encode(-x), decoded_again.decode(spikes.array[:, ::-1])
+    rest = np.concatenate([encoder.encode(x[:, 200:]), encoder.finish()], axis=1)
+    assert np.array_equal(rest, spikes.array[:, -rest.shape[1] :])
+    assert np.array_equal(decoder.decode(spikes.array[:, 200:]), spikes.decode()[:, 200:])
+
+
+@pytest.mark.parametrize("scheme", sw.schemes.values())
+def test_a_pickle_does_not_grow_with_what_went_before(scheme, x):
+    own = scheme(paper=True).fit(x)
+    encoder, decoder = streams(own, x)
+    sizes = []
+    for _ in range(20):
+        decoder.decode(encoder.encode(x))
+        sizes.append(len(pickle.dumps((encoder, decoder))))
+    # Numbers take as many bytes as they need.
+    assert max(sizes) < 1.1 * sizes[0] < 3000
+
+
+def coded(encoder, x):
+    return encoder.encode(x), encoder
+
+
+def test_streams_go_through_a_pool_of_processes(x):
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    schemes = [sw.Hough(filter="triang:9", shift=-90), sw.MovingWindow(threshold=2, window=9), sw.Bernoulli(min=-90, max=90)]
+    encoders = [scheme.encoder(channels=2) for scheme in schemes]
+    codes = [[] for _ in schemes]
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        for chunk in np.split(x, 4, axis=1):
+            done = list(pool.map(coded, encoders, [chunk] * len(schemes)))
+            encoders = [encoder for _, encoder in done]
+            for own, (code, _) in zip(codes, done):
+                own.append(code)
+    for scheme, encoder, own in zip(schemes, encoders, codes):
+        assert np.array_equal(np.concatenate([*own, encoder.finish()], axis=1), scheme.encode(x).array)
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (lambda version, waiting, states: ("0.0.9", waiting, states), "pickled by spikewire 0.0.9, and this is"),
+        (lambda version, waiting, states: (version, waiting, states[:1]), "the states are of 1 channels"),
+        (lambda version, waiting, states: (version, waiting[:1], states), "the stream has 1 channels"),
+        (lambda version, waiting, states: (version, waiting, [states[0], states[1][:-1]]), "channel 1: the state is damaged"),
+        (lambda version, waiting, states: (version, waiting, [states[0] + b"0", states[1]]), "channel 0: the state is damaged"),
+    ],
+)
+def test_a_state_that_is_damaged_is_refused(change, words, x):
+    encoder = sw.Hough(filter="triang:9", shift=-90).encoder(channels=2)
+    before = encoder.encode(x)
+    state = encoder.__reduce__()[2]
+    with pytest.raises(ValueError, match=words):
+        encoder.__setstate__(change(*state))
+    other = sw.Hough(filter="triang:8", shift=-90).encoder(channels=2)
+    with pytest.raises(ValueError, match="channel 0: the state is damaged, or another scheme's"):
+        other.__setstate__(state)
+    encoder.__setstate__(state)
+    assert np.array_equal(encoder.finish().shape[1] + before.shape[1], x.shape[1])
+
+
+def test_a_bank_survives_pickling(x):
+    bank = sw.Bank(sw.StepForward(threshold=2), channels=2)
+    whole = sw.StepForward(threshold=2).encode(x).events(period=1000)
+    early = bank.encode(x[:, :200], period=1000)
+    late = pickle.loads(pickle.dumps(bank)).encode(x[:, 200:], period=1000)
+    assert np.array_equal(np.concatenate([early, late]), whole)
 
 
 def test_threads_share_what_is_encoded(x):

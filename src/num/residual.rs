@@ -3,7 +3,7 @@
 use bytemuck::Pod;
 
 use super::arithmetic::for_each_integer;
-use super::{Nearer, Shortfall};
+use super::{Nearer, Shortfall, Stored};
 
 /// Turns samples into residuals and back.
 pub(crate) trait Rated: Sized {
@@ -22,7 +22,7 @@ pub(crate) trait Rated: Sized {
 
 /// Residuals: `f32`, or exact 32-bit integers.
 pub(crate) trait Residual:
-    Copy + PartialOrd + Pod + Send + Sync + core::fmt::Debug + Shortfall + Nearer
+    Copy + PartialOrd + Pod + Send + Sync + core::fmt::Debug + Shortfall + Nearer + Stored
 {
     const ZERO: Self;
 

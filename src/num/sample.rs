@@ -10,7 +10,8 @@ use fixed::{
 };
 
 use super::{
-    Arithmetic, Binary, Field, Rated, SampleKind, Spaced, Summed, Totalled, Windowed, convert,
+    Arithmetic, Binary, Field, Rated, SampleKind, Spaced, Stored, Summed, Totalled, Windowed,
+    convert,
 };
 
 /// A number that comes from a sensor: `f32`, raw `i16` counts, or, with the feature `fixed`,
@@ -45,6 +46,7 @@ pub trait Sample:
     + Summed
     + Totalled
     + Field
+    + Stored
 {
     /// The type, as a value.
     const KIND: SampleKind;

@@ -4,6 +4,7 @@ use super::Sample;
 
 /// How many samples were rejected, up to 2³¹-1, and whether a first sample has been seen. Four bytes.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Tally(u32);
 
 impl Tally {

@@ -2,6 +2,7 @@
 
 use core::fmt::Debug;
 
+use super::Stored;
 use super::arithmetic::for_each_integer;
 
 /// The type of a sample's sums: `f32`, 32 bits for samples of 16, 64 bits for samples of 32.
@@ -17,7 +18,7 @@ pub(crate) trait Totalled: Sized {
 
 /// A sum. In `f32` every operation rounds once. Integers are exact: sums of 32 bits saturate; sums of 64 bits never
 /// overflow, as a code whose sum may grow without end [caps](Self::capped) it.
-pub trait Total: Copy + PartialOrd + Debug + Send + Sync {
+pub trait Total: Copy + PartialOrd + Debug + Send + Sync + Stored {
     const ZERO: Self;
 
     fn is_finite(&self) -> bool;

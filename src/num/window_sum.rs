@@ -8,7 +8,7 @@ use bytemuck::Pod;
 
 use super::arithmetic::{beyond, for_each_integer, magnitude};
 use super::convert::units;
-use super::{Sample, SampleKind, word};
+use super::{Sample, SampleKind, Stored, word};
 
 /// How a sample type sums a window.
 pub(crate) trait Windowed: SummedIn<Self::Sum> + SummedIn<Self::Fast> {
@@ -39,7 +39,7 @@ pub(crate) trait SummedIn<T>: Sized {
 }
 
 /// The sum over a window, or `N` times a sample minus that sum.
-pub(crate) trait Difference: Copy + Default + Debug + Send + Sync {
+pub(crate) trait Difference: Copy + Default + Debug + Send + Sync + Stored {
     /// What a difference is compared with: `N` times the threshold.
     type Margin: Pod + PartialEq + Debug + Send + Sync;
 

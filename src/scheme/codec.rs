@@ -119,6 +119,17 @@ pub trait Scheme: Sized {
         Self::RECOVERY
     }
 
+    /// Whether a state that was read back can be this scheme's: its positions lie within their rings, and these are as
+    /// long as the scheme's. Values are not judged. A state that does not fit codes wrongly, and never panics.
+    fn fits(&self, _state: &Self::EncoderState) -> bool {
+        true
+    }
+
+    /// [`fits`](Self::fits) for a decoder's state.
+    fn fits_decoder(&self, _state: &Self::DecoderState) -> bool {
+        true
+    }
+
     /// How many neurons a channel has. Channels of one bank, readout or receiver have the same number.
     fn neurons(&self) -> usize {
         Self::Code::NEURONS
@@ -178,7 +189,13 @@ impl<'a, P: Scheme> Encoder<'a, P> {
         Self { scheme, state: P::START }
     }
 
-    /// An encoder that goes on from this state.
+    /// An encoder that goes on from this state, which another of the same scheme was in.
+    ///
+    /// With the feature `serde` a state can be written and read back: into memory that a reset leaves alone, into flash,
+    /// to another program. What is read is one of the same version of the crate, on the same kind of core, in a format
+    /// that keeps every `f32`, such as postcard; JSON loses NaN, from which [`StepForward`](crate::temporal::StepForward)
+    /// starts. Add a checksum: a damaged state never panics, but its codes are wrong, perhaps until the
+    /// [reset](Self::reset). A state that does not even [fit](Scheme::fits) can be told without one.
     pub const fn with_state(scheme: &'a P, state: P::EncoderState) -> Self {
         Self { scheme, state }
     }
@@ -270,7 +287,8 @@ impl<P: Scheme> Debug for Decoder<'_, P> {
 }
 
 impl<'a, P: Scheme> Decoder<'a, P> {
-    /// A decoder that goes on from this state.
+    /// A decoder that goes on from this state, which another of the same scheme was in; as
+    /// [`Encoder::with_state`].
     pub const fn with_state(scheme: &'a P, state: P::DecoderState) -> Self {
         Self { scheme, state }
     }

@@ -3,6 +3,7 @@
 /// The state of a decoder that holds the value decoded last until the next spike. Each scheme says which value it
 /// starts from: population codes from the middle centre. 4 bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Held<S> {
     value: S,
 }

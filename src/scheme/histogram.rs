@@ -56,7 +56,7 @@ pub struct Histogram<S: Sample, const B: usize> {
     /// Cells per unit of the samples.
     #[cfg_attr(feature = "serde", serde(skip))]
     scale: f64,
-    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array"))]
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array::serialize"))]
     counts: [u16; B],
     seen: u32,
     rejected: u32,

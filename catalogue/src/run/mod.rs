@@ -28,7 +28,7 @@ pub use settings::{Settings, is_list, number};
 use anyhow::{Result, bail};
 use spikewire::{Sample, Scheme, Spike};
 
-use crate::{Entry, Info, Parameter, Search, for_sample_type};
+use crate::{Entry, Info, Parameter, Search, State, for_sample_type};
 
 /// Populations up to this size have codes of this capacity, larger ones of the largest.
 const FEW: usize = 64;
@@ -55,8 +55,8 @@ pub trait Visit<S: Sample> {
     where
         P: Scheme<
                 Sample = S,
-                EncoderState: Send + Sync,
-                DecoderState: Send + Sync,
+                EncoderState: State + Send + Sync,
+                DecoderState: State + Send + Sync,
                 Code: Send + Sync,
             > + Send
             + Sync
@@ -68,8 +68,12 @@ pub trait Visit<S: Sample> {
     /// The visitor's own.
     fn visit_steps<P>(self, scheme: P, start: P::EncoderState) -> Result<Self::Output>
     where
-        P: Scheme<Sample = S, Code = Spike, EncoderState: Send + Sync, DecoderState: Send + Sync>
-            + Send
+        P: Scheme<
+                Sample = S,
+                Code = Spike,
+                EncoderState: State + Send + Sync,
+                DecoderState: State + Send + Sync,
+            > + Send
             + Sync
             + 'static,
         Self: Sized,

@@ -21,7 +21,7 @@ use crate::num::{EvenBins, bin_of, even_bins, from_f64, units};
     serde(transparent, bound = "S: serde::Serialize")
 )]
 pub(in crate::scheme) struct Partition<S, const C: usize> {
-    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array"))]
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array::serialize"))]
     values: [S; C],
     /// `edges[c]` is the largest value that still belongs to cell `c`; the last is not used.
     #[cfg_attr(feature = "serde", serde(skip))]

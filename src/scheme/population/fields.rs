@@ -27,7 +27,7 @@ use crate::{ConfigError, Sample};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(bound = "S: serde::Serialize"))]
 pub(super) struct ReceptiveFields<S: Sample, const M: usize, const N: usize> {
-    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array"))]
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array::serialize"))]
     centres: [S; M],
     min: S,
     max: S,

@@ -47,7 +47,7 @@ use crate::{ConfigError, Recovery, Sample, SampleKind, Scheme, Start};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(bound = "S: serde::Serialize"))]
 pub struct NonLinearSlots<S: Sample, const M: usize, const N: usize> {
-    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array"))]
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array::serialize"))]
     centres: [S; M],
     floor: u16,
     /// `1 / sigma` of each neuron.

@@ -148,6 +148,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
 
 /// The state of a [`Position`] encoder: the count of rejected samples. 4 bytes.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PositionState {
     pub(super) tally: Tally,
 }

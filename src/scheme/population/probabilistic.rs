@@ -170,6 +170,7 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Encoder<'_, Probabilisti
 
 /// The state of a [`Probabilistic`] encoder: the generator, and the count of rejected samples.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ProbabilisticState<G> {
     pub(super) generator: G,
     pub(super) tally: Tally,

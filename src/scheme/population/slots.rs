@@ -156,6 +156,7 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
 
 /// The state of a [`Slots`] encoder: the count of rejected samples. 4 bytes.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SlotsState {
     pub(super) tally: Tally,
 }

@@ -100,13 +100,16 @@ impl<S: Sample, const F: usize> BsaToolbox<S, F> {
 
 /// The state of a [`BsaToolbox`] encoder. `4 F + 12` bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 pub struct BsaToolboxState<S: Sample, const F: usize> {
     registers: Registers<S::Residual, F>,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serial::array"))]
     residuals: [S::Residual; F],
 }
 
 /// The state besides the residuals, which a slice keeps in registers.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Registers<R, const F: usize> {
     /// What the last sample's spike still subtracts from the next sample: its last tap, or 0 without a spike.
     owed: R,
@@ -180,6 +183,10 @@ impl<S: Sample, const F: usize> Scheme for BsaToolbox<S, F> {
         }
         cursor.pop();
         Some(Spike::None)
+    }
+
+    fn fits(&self, state: &BsaToolboxState<S, F>) -> bool {
+        state.registers.cursor.fits()
     }
 
     fn rejected(state: &BsaToolboxState<S, F>) -> u32 {

@@ -5,6 +5,7 @@
 /// Residuals stay in their slots, and loops over them run from the first slot to the last: it is the taps that are
 /// rotated, so that each lies beside its residual.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Cursor<const F: usize> {
     /// The slot that is written next, which holds the oldest residual.
     next: u16,
@@ -28,6 +29,11 @@ impl<const F: usize> Cursor<F> {
     #[inline]
     pub(super) fn missing(self) -> usize {
         self.missing as usize
+    }
+
+    /// Whether it lies in the ring, which it may miss whole.
+    pub(super) fn fits(self) -> bool {
+        usize::from(self.next) < F && self.missing() <= F
     }
 
     /// The slot of the oldest residual.

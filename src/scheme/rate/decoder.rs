@@ -18,14 +18,20 @@ use crate::{Sample, Spike};
 ///
 /// Source: paper, section II-B.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 pub struct RateDecoderState<S: Sample, const F: usize> {
     /// A ring of sums, of which the one in slot `next` belongs to the next value.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serial::array"))]
     pending: [S::Residual; F],
     next: u16,
 }
 
 impl<S: Sample, const F: usize> RateDecoderState<S, F> {
     pub(super) const START: Self = Self { pending: [S::Residual::ZERO; F], next: 0 };
+
+    pub(super) fn fits(&self) -> bool {
+        usize::from(self.next) < F
+    }
 
     #[inline(always)]
     pub(super) fn decode(&mut self, filtered: &Filtered<S, F>, spike: Spike) -> S {
@@ -67,6 +73,10 @@ macro_rules! decode_rate {
                 *value = state.decode(&self.filtered, spike);
             }
             spikes.len().min(values.len())
+        }
+
+        fn fits_decoder(&self, state: &RateDecoderState<S, F>) -> bool {
+            state.fits()
         }
 
         /// Forgets past spikes. The value is unused, since the values of a rate code come from spikes alone.

@@ -57,6 +57,7 @@ impl<S: Sample> Taps<S> {
 
 /// The position in a ring of residuals, whose length is that of the taps.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Cursor {
     /// The slot that is written next, which holds the oldest residual.
     next: usize,
@@ -74,13 +75,19 @@ impl Cursor {
     }
 
     fn oldest(self, length: usize) -> usize {
-        let slot = self.next + self.missing;
+        let slot = self.next.saturating_add(self.missing);
         if slot < length { slot } else { slot - length }
+    }
+
+    /// Whether it is one of a ring of this length, which it may miss whole.
+    fn fits(self, length: usize) -> bool {
+        self.next < length && self.missing <= length
     }
 }
 
 /// The state of a rate code's encoder: what past spikes have left of the last samples.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 pub struct RateState<S: Sample> {
     residuals: Vec<S::Residual>,
     cursor: Cursor,
@@ -89,6 +96,7 @@ pub struct RateState<S: Sample> {
 
 /// The state of a rate code's decoder: what past spikes add to the next values.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 pub struct RateDecoderState<S: Sample> {
     /// A ring of sums, of which the one in slot `next` belongs to the next value.
     pending: Vec<S::Residual>,
@@ -191,8 +199,13 @@ macro_rules! decode {
             let pending = state.pending.get_mut(state.next);
             let sum =
                 pending.map_or(S::Residual::ZERO, |sum| core::mem::replace(sum, S::Residual::ZERO));
-            state.next = if state.next + 1 < self.taps.length() { state.next + 1 } else { 0 };
+            state.next = if state.next < self.taps.length() - 1 { state.next + 1 } else { 0 };
             self.shift.restore(sum)
+        }
+
+        fn fits_decoder(&self, state: &RateDecoderState<S>) -> bool {
+            let length = self.taps.length();
+            state.pending.len() == length && state.next < length
         }
 
         /// Forgets past spikes. The value is unused, since the values of a rate code come from spikes alone.
@@ -260,11 +273,16 @@ impl<S: Sample, R: Rule<S, 1>> Scheme for Rate<S, R> {
     }
 
     fn finish_next(&self, state: &mut RateState<S>) -> Option<Spike> {
-        if state.cursor.missing + 1 >= self.taps.length() {
+        if state.cursor.missing >= self.taps.length() - 1 {
             return None;
         }
         state.cursor.missing += 1;
         self.decide_in_order(state)
+    }
+
+    fn fits(&self, state: &RateState<S>) -> bool {
+        let length = self.taps.length();
+        state.residuals.len() == length && state.cursor.fits(length)
     }
 
     fn rejected(state: &RateState<S>) -> u32 {
@@ -292,6 +310,7 @@ pub struct BsaToolbox<S: Sample> {
 
 /// The state of a [`BsaToolbox`] encoder.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 pub struct BsaToolboxState<S: Sample> {
     residuals: Vec<S::Residual>,
     cursor: Cursor,
@@ -366,6 +385,11 @@ impl<S: Sample> Scheme for BsaToolbox<S> {
         }
         state.cursor.missing += 1;
         Some(Spike::None)
+    }
+
+    fn fits(&self, state: &BsaToolboxState<S>) -> bool {
+        let length = self.taps.length();
+        state.residuals.len() == length && state.cursor.fits(length)
     }
 
     fn rejected(state: &BsaToolboxState<S>) -> u32 {

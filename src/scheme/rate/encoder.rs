@@ -45,10 +45,12 @@ pub(super) trait Rule<S: Sample, const F: usize> {
 ///
 /// `4 F + 8` bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 #[repr(C)] // loops over residuals at the very start would take two more instructions a turn
 pub struct RateState<S: Sample, const F: usize> {
     cursor: Cursor<F>,
     tally: Tally,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serial::array"))]
     residuals: [S::Residual; F],
 }
 
@@ -58,6 +60,10 @@ impl<S: Sample, const F: usize> RateState<S, F> {
 
     pub(super) const fn rejected(&self) -> u32 {
         self.tally.rejected()
+    }
+
+    pub(super) fn fits(&self) -> bool {
+        self.cursor.fits()
     }
 
     /// Stores the residual of a sample, and returns its slot if that completes a window.
@@ -295,6 +301,10 @@ macro_rules! rate_scheme {
 
             fn finish_next(&self, state: &mut RateState<S, F>) -> Option<Spike> {
                 state.finish_next(self)
+            }
+
+            fn fits(&self, state: &RateState<S, F>) -> bool {
+                state.fits()
             }
 
             fn rejected(state: &RateState<S, F>) -> u32 {

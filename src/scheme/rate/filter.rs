@@ -52,7 +52,7 @@ fn once<T: serde::Serialize, S: serde::Serializer, const F: usize>(
     [taps, _]: &[[T; F]; 2],
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
-    crate::serial::array(taps, serializer)
+    crate::serial::array::serialize(taps, serializer)
 }
 
 /// The shape of a filter.

@@ -134,6 +134,7 @@ impl<S: Sample> AdaptiveStepForward<S> {
 
 /// How fast the baseline moves: the size of its step, and the run of spikes that may double it. Two bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Pace {
     /// How often the step is doubled.
     exponent: u8,
@@ -161,6 +162,7 @@ impl Pace {
 
 /// The state of an [`AdaptiveStepForward`] encoder: the baseline, the step's exponent and the run. 12 bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AdaptiveState<S> {
     base: S,
     tally: Tally,
@@ -169,6 +171,7 @@ pub struct AdaptiveState<S> {
 
 /// The state of an [`AdaptiveStepForward`] decoder: the value, the step's exponent and the run. 8 bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AdaptiveStepState<S> {
     value: S,
     pace: Pace,

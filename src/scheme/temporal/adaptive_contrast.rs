@@ -93,6 +93,7 @@ impl<S: Sample> AdaptiveContrast<S> {
 
 /// Which of the last 16 samples had a spike, the newest in the lowest bit.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Recent(u16);
 
 impl Recent {
@@ -112,6 +113,7 @@ impl Recent {
 /// The state of an [`AdaptiveContrast`] encoder: the last sample, and which of the last 16 had a spike. 12 bytes in
 /// `f32`.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AdaptiveContrastState<S> {
     previous: S,
     tally: Tally,
@@ -121,6 +123,7 @@ pub struct AdaptiveContrastState<S> {
 /// The state of an [`AdaptiveContrast`] decoder: the value, and which of the last 16 samples had a spike. 8 bytes in
 /// `f32`.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AdaptiveContrastStep<S> {
     value: S,
     recent: Recent,

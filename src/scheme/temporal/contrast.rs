@@ -114,6 +114,7 @@ impl<S: Sample> TemporalContrast<S> {
 
 /// The state of a [`TemporalContrast`] encoder: the last sample. 8 bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContrastState<S> {
     previous: S,
     tally: Tally,

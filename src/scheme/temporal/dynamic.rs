@@ -23,6 +23,7 @@ pub struct MovingWindow<S: Sample> {
 
 /// The state of a [`MovingWindow`] encoder: the window and its sum.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 pub struct MovingWindowState<S: Sample> {
     ring: Vec<S>,
     partial: S::Sum,
@@ -120,6 +121,10 @@ impl<S: Sample> Scheme for MovingWindow<S> {
     fn keyframe(&self, state: &MovingWindowState<S>) -> Option<S> {
         let newest = state.next.checked_sub(1).unwrap_or(self.count - 1);
         state.ring.get(newest).copied().filter(|_| state.is_full)
+    }
+
+    fn fits(&self, state: &MovingWindowState<S>) -> bool {
+        state.ring.len() == self.count && state.next < self.count
     }
 
     fn rejected(state: &MovingWindowState<S>) -> u32 {

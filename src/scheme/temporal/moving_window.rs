@@ -109,16 +109,19 @@ const GROUP: usize = 4;
 
 /// The state of a [`MovingWindow`] encoder: the window and its sum. `4 N + 12` bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 #[repr(C)]
 pub struct MovingWindowState<S: Sample, const N: usize> {
     // Most cores reach a slot in one instruction if the window comes first. A Cortex-M0, the only core without atomic
     // exchange, never does; it reaches the other fields in one instruction if they come first.
     #[cfg(target_has_atomic = "32")]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serial::array"))]
     ring: [S; N],
     partial: S::Sum,
     next: u16,
     tally: Tally,
     #[cfg(not(target_has_atomic = "32"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serial::array"))]
     ring: [S; N],
 }
 
@@ -353,6 +356,10 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
     fn keyframe(&self, state: &MovingWindowState<S, N>) -> Option<S> {
         let newest = (state.next as usize).checked_sub(1).unwrap_or(N - 1);
         state.ring.get(newest).copied()
+    }
+
+    fn fits(&self, state: &MovingWindowState<S, N>) -> bool {
+        ((state.next & !FILLING) as usize) < N
     }
 
     fn rejected(state: &MovingWindowState<S, N>) -> u32 {

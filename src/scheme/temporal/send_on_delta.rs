@@ -181,6 +181,7 @@ impl<const K: usize> Output for Steps<K> {
 
 /// The state of a [`SendOnDelta`] encoder: the baseline. 8 bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SendOnDeltaState<S> {
     base: S,
     tally: Tally,

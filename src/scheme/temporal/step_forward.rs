@@ -76,6 +76,7 @@ impl<S: Sample> StepForward<S> {
 
 /// The state of a [`StepForward`] encoder: the baseline. 8 bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepForwardState<S> {
     base: S,
     tally: Tally,

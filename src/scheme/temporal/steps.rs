@@ -9,6 +9,7 @@ use crate::{Sample, Spike};
 ///
 /// Source: paper, section II-C.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepState<S> {
     value: S,
 }

@@ -53,7 +53,7 @@ pub struct Burst<S: Sample, const N: usize> {
     /// The cells above the minimum.
     cells: Partition<S, N>,
     /// Count and interval of each cell.
-    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array"))]
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::array::serialize"))]
     bursts: [[u8; 2]; N],
     /// The first cell of each count, from 1.
     #[cfg_attr(feature = "serde", serde(skip))]

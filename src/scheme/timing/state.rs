@@ -5,6 +5,7 @@ use crate::num::Tally;
 
 /// The state of a timing code's encoder: the count of rejected samples. 4 bytes.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TimingState {
     tally: Tally,
 }

@@ -3,18 +3,18 @@
 use core::fmt::Debug;
 
 use crate::error::{unwrap, within};
-use crate::num::Total;
+use crate::num::{Stored, Total};
 use crate::{ConfigError, Recovery, Sample};
 
 /// How a decoder takes the mean of spikes: [`Window`] or [`Average`]. Sealed.
 pub trait Averaging: Copy + Debug + PartialEq + sealed::Averaging {}
 
 pub(super) mod sealed {
-    use super::{Debug, Recovery, Total, Weight};
+    use super::{Debug, Recovery, Stored, Total, Weight};
 
     pub trait Averaging {
         /// What the decoder keeps from sample to sample.
-        type State<T: Total>: Clone + Debug;
+        type State<T: Total>: Clone + Debug + Stored;
 
         const RECOVERY: Recovery;
 
@@ -34,6 +34,8 @@ pub(super) mod sealed {
 }
 
 /// The state of the decoder of a mean.
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(transparent, bound = ""))]
 #[allow(private_bounds)] // sums are the crate's own
 pub struct MeanState<S: Sample, A: Averaging>(pub(super) A::State<S::Total>);
 
@@ -83,6 +85,7 @@ pub struct Weight<T> {
 
 /// How many spikes came right before, up to the doublings: the `g` of [`Weight`].
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Gain(pub(super) u8);
 
 impl Gain {
@@ -143,7 +146,9 @@ impl<const WORDS: usize> Averaging for Window<WORDS> {}
 
 /// Which of the last samples had a spike, one bit each, and the sum of these spikes' weights.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spikes<const WORDS: usize> {
+    #[cfg_attr(feature = "serde", serde(with = "crate::serial::array"))]
     bits: [u32; WORDS],
     /// The place of the oldest bit, which the next one replaces.
     oldest: u16,
@@ -229,6 +234,7 @@ impl Averaging for Average {}
 
 /// The average, times `2^k`.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Faded<T> {
     sum: T,
     gain: Gain,

@@ -121,6 +121,7 @@ impl<S: Sample, G: Rng, A: Averaging> Encoder<'_, Bernoulli<S, G, A>> {
 
 /// The state of a [`Bernoulli`] encoder: the generator, and the count of rejected samples.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BernoulliState<G> {
     generator: G,
     tally: Tally,

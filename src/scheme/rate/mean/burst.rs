@@ -102,6 +102,7 @@ impl<S: Sample, A: Averaging> WeightedBurst<S, A> {
 /// The state of a [`WeightedBurst`] encoder: the sum that is not yet sent as spikes, and the length of the burst. 12
 /// bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 #[allow(private_bounds)] // sums are the crate's own
 pub struct WeightedBurstState<S: Sample> {
     sum: S::Total,

@@ -173,6 +173,7 @@ fn leaked<T: Total>(sum: T, power: u8) -> T {
 
 /// The state of an [`IntegrateAndFire`] encoder: the potential. 8 bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 #[allow(private_bounds)] // sums are the crate's own
 pub struct IntegrateAndFireState<S: Sample> {
     potential: S::Total,
@@ -181,6 +182,7 @@ pub struct IntegrateAndFireState<S: Sample> {
 
 /// The state of an [`IntegrateAndFire`] decoder: a leaky potential. 4 bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 pub struct PotentialState<S: Sample> {
     potential: S::Total,
 }

@@ -64,6 +64,7 @@ impl<S: Sample, A: Averaging> SigmaDelta<S, A> {
 
 /// The state of a [`SigmaDelta`] encoder: the sum that is not yet sent as spikes. 8 bytes in `f32`.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 #[allow(private_bounds)] // sums are the crate's own
 pub struct SigmaDeltaState<S: Sample> {
     sum: S::Total,

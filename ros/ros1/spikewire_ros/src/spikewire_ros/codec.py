@@ -32,7 +32,7 @@ class Codec:
         self.first = values[0] if self.starts_at_first else float(given.get("start", 0.0))
         self.threshold = float(given.get("threshold", 0.0))
         self._lowest, self._highest = given.get("min", given.get("shift")), given.get("max")
-        self._neurons, self._slots = _shape(scheme)
+        self._neurons, self._slots = scheme.neurons, scheme.slots
         self._encoder = scheme.encoder()
         self._decoder = scheme.decoder(first=self.first if self.starts_at_first else None)
         self._told = scheme.encode(np.array(values, dtype=float)).parameters[0]
@@ -98,8 +98,8 @@ class Request:
     @property
     def is_array(self) -> bool:
         """Whether a sample has several numbers: of several neurons, or of several sub-timesteps."""
-        neurons, slots = _shape(self._made(self._settings.options))
-        return neurons * slots > 1
+        scheme = self._made(self._settings.options)
+        return scheme.neurons * scheme.slots > 1
 
     def start(self, values: Sequence[float]) -> Codec:
         """As it starts on these samples, which stand in for what is not given where the settings say so."""
@@ -120,11 +120,6 @@ class Request:
 
     def _made(self, options: Mapping[str, Any]) -> Any:
         return self._class(sample=self._settings.sample, **options)
-
-
-def _shape(scheme: Any) -> tuple[int, int]:
-    """How many neurons and sub-timesteps a scheme has, whatever the signal."""
-    return scheme._coder.shape()
 
 
 def _names(scheme: Any) -> list[str]:
