@@ -37,7 +37,7 @@
 //! | | [`BsaToolbox`](rate::BsaToolbox) | BSA as in the paper's tables |
 //! | | [`SigmaDelta`](rate::SigmaDelta) | a mean from one neuron |
 //! | | `Bernoulli` | a mean by chance (feature `rand`) |
-//! | | [`WeightedBurst`](rate::WeightedBurst) | a mean, with few spikes for little |
+//! | | [`WeightedBurst`](rate::WeightedBurst) | a mean, with few spikes while it is low |
 //! | | [`IntegrateAndFire`](rate::IntegrateAndFire) (IF, LIF) | a mean, and an integral that never drifts |
 //! | [`population`] | [`Position`](population::Position) | a value, dense where it matters |
 //! | | [`Gaussian`](population::Gaussian) (GRF) | a value over an even range |
@@ -64,7 +64,7 @@
 //! | `alloc` | `dynamic`: any filter length, window and number of neurons at run time, on the heap; not for firmware |
 //! | `rand` | probabilistic and Bernoulli spiking, from any `rand_core` generator |
 //! | `defmt` | `defmt::Format` on public data |
-//! | `serde` | `Serialize` on public data, and `Deserialize` where nothing has to be checked; both on [states](Encoder::with_state) |
+//! | `serde` | `Serialize` on public data and [states](Encoder::with_state), `Deserialize` where nothing has to be checked |
 //! | `queue` | bounded queues from interrupts to main; `EventQueue` needs a `critical-section` implementation in the program |
 //! | `link` | `link`: framed events over any byte transport |
 //! | `embedded-hal` | [`out`]: SPI; `chip`: neuromorphic chips |

@@ -19,7 +19,7 @@ pub(crate) mod array {
         serializer.collect_seq(items)
     }
 
-    /// Refuses any other number of items.
+    /// Reads an array; refuses any other number of items.
     pub(crate) fn deserialize<
         'de,
         T: Pod + Deserialize<'de>,

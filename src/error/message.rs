@@ -104,8 +104,8 @@ impl Message {
         self
     }
 
-    /// Up to six digits, enough to tell the end of a range from the next whole number; with a power of ten if the number is
-    /// large or small.
+    /// Up to six digits, enough to distinguish the end of a range from the next whole number; with a power of ten if
+    /// the number is large or small.
     const fn number(mut self, value: f32) -> Self {
         if value < 0.0 {
             return self.byte(b'-').number(-value);

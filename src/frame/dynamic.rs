@@ -51,7 +51,7 @@ impl<C: PixelCode> DynamicFrameEncoder<C> {
         Ok(Self { code, width, height, pixels: Vec::new(), budget: Budget::NONE, tick })
     }
 
-    /// This encoder with so many events a frame at most.
+    /// This encoder with at most this many events a frame.
     ///
     /// # Errors
     /// The budget is 0.

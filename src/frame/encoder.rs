@@ -15,7 +15,7 @@ use crate::{ConfigError, Item, Keyframe, Polarity, Put, Tick};
 ///
 /// - **Rows:** by rising number within a frame; one that is not above the row before begins a new frame. A row that the
 ///   camera lost is left out, and its pixels wait. The first row of each number sets the bases and sends nothing.
-/// - **Budget:** with [`with_budget`](Self::with_budget), so many events a frame at most. Events beyond it are not sent
+/// - **Budget:** the most events a frame, set by [`with_budget`](Self::with_budget). Events beyond it are not sent
 ///   and [counted](Self::over_budget); as their pixels' bases stay, too, the far end is late but not wrong. Rows at the
 ///   top come first.
 /// - **Memory:** the code's state of `W * H` pixels, `H` bytes and about 32. **Latency:** 0 frames.
@@ -73,7 +73,7 @@ impl<C: PixelCode, const W: usize, const H: usize> FrameEncoder<C, W, H> {
         }
     }
 
-    /// This encoder with so many events a frame at most, for constants: 0 fails the build.
+    /// This encoder with at most this many events a frame, for constants: 0 fails the build.
     ///
     /// # Panics
     /// The budget is 0.
@@ -83,7 +83,7 @@ impl<C: PixelCode, const W: usize, const H: usize> FrameEncoder<C, W, H> {
         self
     }
 
-    /// This encoder with so many events a frame at most.
+    /// This encoder with at most this many events a frame.
     ///
     /// # Errors
     /// The budget is 0.

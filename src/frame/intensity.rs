@@ -39,7 +39,8 @@ pub struct Intensity {
 }
 
 impl Intensity {
-    /// With this threshold and one event a pixel and frame, for constants: a bad one fails the build.
+    /// A code with this threshold, in grey levels, and one event a pixel and frame. For constants, where a bad
+    /// threshold fails the build.
     ///
     /// # Panics
     /// The threshold is not within 1 to 254.
@@ -47,7 +48,7 @@ impl Intensity {
         unwrap(Self::try_new(threshold))
     }
 
-    /// With this threshold, in grey levels, and one event a pixel and frame.
+    /// A code with this threshold, in grey levels, and one event a pixel and frame.
     ///
     /// # Errors
     /// The threshold is not within 1 to 254.
@@ -58,7 +59,7 @@ impl Intensity {
         }
     }
 
-    /// With up to so many events a pixel and frame, for constants: a bad number fails the build.
+    /// This code with at most this many events a pixel and frame, for constants: a bad number fails the build.
     ///
     /// # Panics
     /// The number is 0.
@@ -67,7 +68,7 @@ impl Intensity {
         unwrap(self.try_with_most(most))
     }
 
-    /// With up to so many events a pixel and frame.
+    /// This code with at most this many events a pixel and frame.
     ///
     /// # Errors
     /// The number is 0.

@@ -136,7 +136,7 @@ pub struct LogIntensity<L> {
 }
 
 impl<L: Level> LogIntensity<L> {
-    /// With these thresholds of brighter and darker samples and one event a pixel and frame.
+    /// A code with these thresholds, in levels, of brighter and darker samples, and one event a pixel and frame.
     ///
     /// # Errors
     /// A threshold is 0, or no less than the whole range of levels.
@@ -147,7 +147,7 @@ impl<L: Level> LogIntensity<L> {
         Ok(Self { on, off, most: NonZeroU8::MIN })
     }
 
-    /// With up to so many events a pixel and frame, for constants: a bad number fails the build.
+    /// This code with at most this many events a pixel and frame, for constants: a bad number fails the build.
     ///
     /// # Panics
     /// The number is 0.
@@ -156,7 +156,7 @@ impl<L: Level> LogIntensity<L> {
         unwrap(self.try_with_most(most))
     }
 
-    /// With up to so many events a pixel and frame.
+    /// This code with at most this many events a pixel and frame.
     ///
     /// # Errors
     /// The number is 0.
@@ -180,8 +180,8 @@ impl<L: Level> LogIntensity<L> {
 macro_rules! constant {
     ($level:ty) => {
         impl LogIntensity<$level> {
-            /// With these thresholds of brighter and darker samples and one event a pixel and frame, for constants: a
-            /// bad one fails the build.
+            /// A code with these thresholds, in levels, of brighter and darker samples, and one event a pixel and
+            /// frame. For constants, where a bad threshold fails the build.
             ///
             /// # Panics
             /// A threshold is 0, or no less than the whole range of levels.

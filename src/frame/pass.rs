@@ -97,7 +97,7 @@ impl Budget {
     }
 }
 
-/// Whether one of `n` events of a pixel falls into this of so many slots: whether `n * slot / slots` grows there.
+/// Whether one of a pixel's `n` events falls into this slot: whether `⌊n * slot / slots⌋` is larger for the next slot.
 #[inline]
 fn has_event(slot: u32, n: u32, slots: NonZeroU32) -> bool {
     (slot.wrapping_mul(n) % slots).wrapping_add(n) >= slots.get()

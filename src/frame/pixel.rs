@@ -35,10 +35,10 @@ pub trait PixelCode: Copy {
     /// How many events are due, upwards if positive; up to [`most`](Self::most). The pixel stays as it is.
     fn steps(&self, pixel: Self::Pixel, sample: u8) -> i16;
 
-    /// Ends a pixel's frame in which so many events were sent.
+    /// Ends a pixel's frame in which `steps` events were sent, upwards if positive.
     fn follow(&self, pixel: &mut Self::Pixel, steps: i16);
 
-    /// A base after so many events.
+    /// A base after `steps` events, upwards if positive.
     fn moved(&self, base: Self::Base, steps: i16) -> Self::Base;
 
     /// The sample that a base stands for.

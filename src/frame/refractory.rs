@@ -33,7 +33,7 @@ pub struct Refractory<C> {
 }
 
 impl<C: PixelCode> Refractory<C> {
-    /// This code with so many frames of silence, for constants: a bad number fails the build.
+    /// This code with this many frames of silence after an event, for constants: a bad number fails the build.
     ///
     /// # Panics
     /// The number is 0.
@@ -41,7 +41,7 @@ impl<C: PixelCode> Refractory<C> {
         unwrap(Self::try_new(code, frames))
     }
 
-    /// This code with so many frames of silence.
+    /// This code with this many frames of silence after an event.
     ///
     /// # Errors
     /// The number is 0.

@@ -154,7 +154,7 @@ macro_rules! integer_field {
                 $to_bits(self).abs_diff($to_bits(centre)).into()
             }
 
-            // The bits in both, and half of those in one: no sum overflows.
+            // The bits that both have, and half of the bits that one of them has: no sum overflows.
             #[inline]
             fn midway(self, higher: Self) -> Self {
                 let (low, high) = ($to_bits(self), $to_bits(higher));

@@ -1,4 +1,4 @@
-//! Numbers that a state keeps, which the feature `serde` can write and read back.
+//! The trait of the numbers in a state: with the feature `serde` they can be written and read back.
 
 /// `Serialize` and `DeserializeOwned` with the feature `serde`; every type without.
 #[cfg(feature = "serde")]

@@ -119,8 +119,9 @@ pub trait Scheme: Sized {
         Self::RECOVERY
     }
 
-    /// Whether a state that was read back can be this scheme's: its positions lie within their rings, and these are as
-    /// long as the scheme's. Values are not judged. A state that does not fit codes wrongly, and never panics.
+    /// Whether a state that was read back fits this scheme: its rings are as long as the scheme's, and its positions
+    /// lie within them. The values in it are not checked. A state that does not fit gives wrong codes, but never
+    /// panics.
     fn fits(&self, _state: &Self::EncoderState) -> bool {
         true
     }
@@ -189,13 +190,13 @@ impl<'a, P: Scheme> Encoder<'a, P> {
         Self { scheme, state: P::START }
     }
 
-    /// An encoder that goes on from this state, which another of the same scheme was in.
+    /// An encoder that goes on from the state of another encoder of the same scheme.
     ///
     /// With the feature `serde` a state can be written and read back: into memory that a reset leaves alone, into flash,
-    /// to another program. What is read is one of the same version of the crate, on the same kind of core, in a format
-    /// that keeps every `f32`, such as postcard; JSON loses NaN, from which [`StepForward`](crate::temporal::StepForward)
-    /// starts. Add a checksum: a damaged state never panics, but its codes are wrong, perhaps until the
-    /// [reset](Self::reset). A state that does not even [fit](Scheme::fits) can be told without one.
+    /// to another program. Read it with the same version of the crate, on the same kind of core, in a format that keeps
+    /// every `f32`, such as postcard; JSON loses NaN, from which [`StepForward`](crate::temporal::StepForward) starts.
+    /// Add a checksum: a damaged state never panics, but its codes are wrong, perhaps until the [reset](Self::reset).
+    /// [`Scheme::fits`] only finds states that no encoder of the scheme can have.
     pub const fn with_state(scheme: &'a P, state: P::EncoderState) -> Self {
         Self { scheme, state }
     }
@@ -287,8 +288,7 @@ impl<P: Scheme> Debug for Decoder<'_, P> {
 }
 
 impl<'a, P: Scheme> Decoder<'a, P> {
-    /// A decoder that goes on from this state, which another of the same scheme was in; as
-    /// [`Encoder::with_state`].
+    /// A decoder that goes on from the state of another decoder of the same scheme; see [`Encoder::with_state`].
     pub const fn with_state(scheme: &'a P, state: P::DecoderState) -> Self {
         Self { scheme, state }
     }

@@ -1,4 +1,4 @@
-//! Rank order coding: the order in which the nearest neurons fire tells the value.
+//! Rank order coding: the order in which the nearest neurons fire gives the value.
 
 use core::ops::RangeInclusive;
 

@@ -31,7 +31,7 @@ impl<const F: usize> Cursor<F> {
         self.missing as usize
     }
 
-    /// Whether it lies in the ring, which it may miss whole.
+    /// Whether the position lies in the ring, and at most the whole ring is missing.
     pub(super) fn fits(self) -> bool {
         usize::from(self.next) < F && self.missing() <= F
     }

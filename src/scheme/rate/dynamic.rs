@@ -79,7 +79,7 @@ impl Cursor {
         if slot < length { slot } else { slot - length }
     }
 
-    /// Whether it is one of a ring of this length, which it may miss whole.
+    /// Whether the position lies in a ring of this length, and at most the whole ring is missing.
     fn fits(self, length: usize) -> bool {
         self.next < length && self.missing <= length
     }

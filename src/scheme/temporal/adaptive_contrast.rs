@@ -52,7 +52,7 @@ pub struct AdaptiveContrast<S> {
 
 /// Among how many samples spikes are counted.
 const COUNTED: usize = 16;
-/// With so many, each spike among the last 16 samples doubles the threshold once more, up to the 15th.
+/// With 15 doublings each spike among the last 16 samples doubles the threshold once more, up to the 15th.
 const MOST_DOUBLINGS: u8 = 15;
 
 impl<S: Sample> AdaptiveContrast<S> {

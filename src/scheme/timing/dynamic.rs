@@ -23,7 +23,7 @@ fn check(parameter: &'static str, value: usize, min: usize, max: usize) -> Resul
 }
 
 impl<S: Sample> FirstSpike<S> {
-    /// [`try_linear`](Self::try_linear) with so many slots.
+    /// [`try_linear`](Self::try_linear) with this many slots.
     ///
     /// # Errors
     /// There are not 2 to 256 slots, or as for [`try_linear`](Self::try_linear).
@@ -32,7 +32,7 @@ impl<S: Sample> FirstSpike<S> {
         Self::of_points(range, slots)
     }
 
-    /// [`try_logarithmic`](Self::try_logarithmic) with so many slots.
+    /// [`try_logarithmic`](Self::try_logarithmic) with this many slots.
     ///
     /// # Errors
     /// There are not 2 to 256 slots, or as for [`try_logarithmic`](Self::try_logarithmic).
@@ -56,7 +56,7 @@ impl<S: Sample> FirstSpike<S> {
 }
 
 impl<S: Sample> LatencyPhase<S> {
-    /// [`try_new`](Self::try_new) with so many neurons and latencies, and a period of so many slots.
+    /// [`try_new`](Self::try_new) with this many neurons and latencies, and a period of `period` slots.
     ///
     /// # Errors
     /// There are not 2 to 256 latencies, or more than 256 slots; the period is no power of 2, or has no slot for each
@@ -79,7 +79,7 @@ impl<S: Sample> LatencyPhase<S> {
 }
 
 impl<S: Sample> Burst<S> {
-    /// [`try_new`](Self::try_new) with so many slots.
+    /// [`try_new`](Self::try_new) with this many slots.
     ///
     /// # Errors
     /// There are not 2 to 256 slots, or as for [`try_new`](Self::try_new).

@@ -12,7 +12,7 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 ///
 /// The latency of a value is `L = W - 1 - cell`, of `W` even cells over the range. The oscillation of neuron `i` has
 /// its peaks at the slots `phase + iD` modulo `P`; the neuron fires at the first peak from `L` on. On one line the
-/// slot modulo `P` [tells the neuron](Self::neuron_at). All `M` neurons carry the same sample, one spike each. For a
+/// slot modulo `P` [gives the neuron](Self::neuron_at). All `M` neurons carry the same sample, one spike each. For a
 /// channel each, make a scheme with one neuron and a [phase](Self::with_phase) for each channel.
 ///
 /// - **W:** 2 to 256, and **P:** a power of 2, with `W + P - 1` slots a sample, at most 256. **M:** 1 or more.

@@ -45,7 +45,7 @@ const OVERFLOW: u8 = 0xFF;
 const OVERFLOW_TICKS: u32 = 127;
 
 impl Dvs {
-    /// A camera of so many columns and rows.
+    /// A camera of `width` columns and `height` rows.
     pub const fn new(width: u16, height: u16) -> Self {
         Self { width, height }
     }
