@@ -64,7 +64,7 @@
 //! | `alloc` | `dynamic`: any filter length, window and number of neurons at run time, on the heap; not for firmware |
 //! | `rand` | probabilistic and Bernoulli spiking, from any `rand_core` generator |
 //! | `defmt` | `defmt::Format` on public data |
-//! | `serde` | `Serialize` on public data and [states](Encoder::with_state), `Deserialize` where nothing has to be checked |
+//! | `serde` | `Serialize` on public data; `Deserialize` where nothing has to be checked, and on [states](Encoder::with_state) |
 //! | `queue` | bounded queues from interrupts to main; `EventQueue` needs a `critical-section` implementation in the program |
 //! | `link` | `link`: framed events over any byte transport |
 //! | `embedded-hal` | [`out`]: SPI; `chip`: neuromorphic chips |

@@ -10,7 +10,7 @@ pub(crate) trait Totalled: Sized {
     type Total: Total;
 
     /// `self - reference`.
-    fn above(self, reference: Self) -> Self::Total;
+    fn offset_from(self, reference: Self) -> Self::Total;
 
     /// `self + sum`, saturating; `self` is the reference.
     fn raised(self, sum: Self::Total) -> Self;
@@ -54,7 +54,7 @@ impl Totalled for f32 {
     type Total = f32;
 
     #[inline]
-    fn above(self, reference: f32) -> f32 {
+    fn offset_from(self, reference: f32) -> f32 {
         self - reference
     }
 
@@ -203,7 +203,7 @@ macro_rules! integer_totalled {
             type Total = $sum;
 
             #[inline]
-            fn above(self, reference: Self) -> $sum {
+            fn offset_from(self, reference: Self) -> $sum {
                 <$sum>::from($to_bits(self)).wrapping_sub($to_bits(reference).into())
             }
 

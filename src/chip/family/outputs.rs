@@ -5,6 +5,8 @@ use crate::event::{Event, Tick};
 
 /// A list of up to `N` events of one time step, to collect the outputs of a chip for a [`Readout`](crate::Readout).
 ///
+/// **Memory:** `8 N + 8` bytes on a 32-bit part.
+///
 /// ```
 /// use spikewire::{Readout, Tick, population::Position};
 /// use spikewire::chip::{Describe, Inputs, Network, Spikes, TinyOdinInput, TinyOdinNeuron};

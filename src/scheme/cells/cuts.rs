@@ -55,7 +55,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
     }
 
     /// Leaves out the samples up to an edge: the first cell begins above it.
-    pub(in crate::scheme) const fn above(mut self, start: f64) -> Self {
+    pub(in crate::scheme) const fn starting_above(mut self, start: f64) -> Self {
         let below = to_f64::<S>(floor_from_f64(start));
         self.min = match S::KIND {
             SampleKind::F32 => from_f64((below as f32).next_up() as f64),

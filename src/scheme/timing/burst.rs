@@ -110,7 +110,7 @@ impl<S: Sample, const N: usize> Burst<S, N> {
             Err(error) => return Err(error),
         };
         let (counts, steps) = (spikes as usize, longest.saturating_sub(shortest) as usize);
-        let mut cuts = whole.above(to_f64(min));
+        let mut cuts = whole.starting_above(to_f64(min));
         let (mut bursts, mut firsts) = ([[1, 0]; N], [0; N]);
         // The largest sample below the cell, and how many edges of counts and of intervals lie there.
         let (mut below, mut passed, mut shorter) = (to_f64(min), 1, steps / max(counts, 1));

@@ -209,7 +209,7 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
         if to_f64(silence.last) < to_f64(*range.start()) {
             return Err(ConfigError::EmptyCell { cell: 0, cells: slots.saturating_add(1) });
         }
-        cuts = cuts.above(edges[0]);
+        cuts = cuts.starting_above(edges[0]);
         let mut c = 1;
         while c < slots && c < N {
             cuts = cuts.set(c - 1, edges[c], Side::Low);

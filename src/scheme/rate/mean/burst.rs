@@ -94,7 +94,7 @@ impl<S: Sample, A: Averaging> WeightedBurst<S, A> {
 
     #[inline]
     fn weight(&self) -> Weight<S::Total> {
-        let unit = self.weight.above(S::ZERO);
+        let unit = self.weight.offset_from(S::ZERO);
         Weight { unit, doublings: self.doublings, range: self.range.width() }
     }
 }
@@ -132,7 +132,7 @@ impl<S: Sample, A: Averaging> Scheme for WeightedBurst<S, A> {
             state.gain.take(false, self.doublings); // as the decoder does
             return Spike::None;
         };
-        let weight = self.weight.above(S::ZERO).doubled(state.gain.0);
+        let weight = self.weight.offset_from(S::ZERO).doubled(state.gain.0);
         let sum = state.sum.plus(above);
         let is_spike = sum >= weight;
         state.gain.take(is_spike, self.doublings);

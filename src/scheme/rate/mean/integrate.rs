@@ -132,7 +132,7 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
 
     #[inline]
     fn unit(&self) -> S::Total {
-        self.threshold.above(S::ZERO)
+        self.threshold.offset_from(S::ZERO)
     }
 
     /// Takes a potential that has reached the threshold, or is not finite.
@@ -209,7 +209,7 @@ impl<S: Sample, const K: usize> Scheme for IntegrateAndFire<S, K> {
         if self.is_leaky {
             potential = leaked(potential, self.power);
         }
-        potential = potential.plus(sample.above(self.reference));
+        potential = potential.plus(sample.offset_from(self.reference));
         let threshold = self.unit();
         if potential < threshold && potential > S::Total::ZERO.minus(threshold) {
             state.potential = potential;
@@ -237,6 +237,6 @@ impl<S: Sample, const K: usize> Scheme for IntegrateAndFire<S, K> {
     }
 
     fn resync(&self, state: &mut PotentialState<S>, value: S) {
-        state.potential = value.above(self.reference).doubled(self.power);
+        state.potential = value.offset_from(self.reference).doubled(self.power);
     }
 }

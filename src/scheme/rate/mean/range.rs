@@ -31,7 +31,7 @@ impl<S: Sample> Range<S> {
     /// `max - min`.
     #[inline]
     pub(super) fn width(self) -> S::Total {
-        self.max.above(self.min)
+        self.max.offset_from(self.min)
     }
 
     /// The weight of a spike that stands for the whole range.
@@ -45,7 +45,7 @@ impl<S: Sample> Range<S> {
     #[inline]
     pub(super) fn above_min(self, sample: S) -> Option<S::Total> {
         if sample >= self.min && sample <= self.max {
-            Some(sample.above(self.min))
+            Some(sample.offset_from(self.min))
         } else {
             self.at_end(sample)
         }
