@@ -12,7 +12,8 @@ use crate::Sample;
 /// and a state; made from one scheme, they cannot disagree on a parameter.
 ///
 /// Encoding never fails and never panics. A sample that is not finite emits no spike and is counted as
-/// [rejected](Self::rejected); nothing else in the state changes, except that adaptive codes count a silent sample.
+/// [rejected](Self::rejected). Nothing else in the state changes, except that a code whose step or weight adapts counts
+/// a silent sample.
 pub trait Scheme: Sized {
     /// The type of its samples.
     type Sample: Sample;
@@ -92,8 +93,8 @@ pub trait Scheme: Sized {
         None
     }
 
-    /// Sets a decoder to a known value, such as a keyframe's, as if it had just decoded it. A rate code, whose
-    /// value is a sum over past spikes, forgets those instead.
+    /// Sets a decoder to a known value, such as a keyframe's, as if it had just decoded it. A rate code with a filter
+    /// or a window, whose value is a sum over past spikes, forgets these instead.
     fn resync(&self, state: &mut Self::DecoderState, value: Self::Sample);
 
     /// An encoder in its initial state.
@@ -322,8 +323,8 @@ impl<'a, P: Scheme> Decoder<'a, P> {
         self.scheme.held(&self.state)
     }
 
-    /// Goes on from a known value, such as the first sample or a keyframe, as if it had just decoded it. A rate
-    /// code, whose value is a sum over past spikes, forgets those instead.
+    /// Goes on from a known value, such as the first sample or a keyframe, as if it had just decoded it. A rate code
+    /// with a filter or a window, whose value is a sum over past spikes, forgets these instead.
     pub fn resync(&mut self, value: P::Sample) {
         self.scheme.resync(&mut self.state, value);
     }

@@ -48,7 +48,7 @@ pub struct WeightedBurst<S, A> {
 const MOST_DOUBLINGS: u8 = 14;
 
 impl<S: Sample, A: Averaging> WeightedBurst<S, A> {
-    /// A scheme for a range, whose spikes weigh `weight` at first and at most `doublings` times double. For constants,
+    /// A scheme for a range, whose spikes weigh `weight` at first and double at most `doublings` times. For constants,
     /// where bad parameters fail the build.
     ///
     /// # Panics
@@ -58,7 +58,7 @@ impl<S: Sample, A: Averaging> WeightedBurst<S, A> {
         Self { range, weight, doublings, averaging }
     }
 
-    /// A scheme for a range, whose spikes weigh `weight` at first and at most `doublings` times double.
+    /// A scheme for a range, whose spikes weigh `weight` at first and double at most `doublings` times.
     ///
     /// # Errors
     /// The ends are not finite, or do not rise, or are more than 10³¹ from 0; the weight is not above 0; there are more
