@@ -1,4 +1,4 @@
-//! What serde does not derive: arrays of any length, and structs that leave out their inner structure.
+//! Serialization that serde does not derive: arrays of any length, and structs without their inner structure.
 
 use serde::ser::{SerializeSeq, SerializeStruct};
 use serde::{Serialize, Serializer};

@@ -11,7 +11,7 @@ use crate::{ConfigError, Event, Keyframe, Polarity};
 /// It starts at 0 everywhere: give it the [first frame](Self::start), or [keyframes](Self::keyframe). After a lost
 /// event a pixel is wrong by a threshold until its next keyframe.
 ///
-/// - **Memory:** the code's base of `W * H` pixels, 1 or 2 bytes each. **Work:** constant, an event.
+/// - **Memory:** the code's base of `W * H` pixels, 1 or 2 bytes each. **Work:** constant for each event.
 /// - **Error:** that of the code: within a threshold of the samples while they change by `K` thresholds a frame at most.
 #[derive(Clone)]
 pub struct FrameDecoder<C: PixelCode, const W: usize, const H: usize> {

@@ -1,4 +1,4 @@
-//! The differences between the chips of the ODIN family.
+//! The trait of the ODIN family's chips: the input words, memories and registers in which they differ.
 
 use core::fmt::Debug;
 

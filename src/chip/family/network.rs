@@ -1,4 +1,4 @@
-//! A network as data: the trait of its forms, and its form as a constant.
+//! The trait of networks for a chip, and a network as constant data.
 
 use super::{AerPort, Input};
 use crate::chip::ChipError;

@@ -1,4 +1,4 @@
-//! Cells: intervals side by side on the line of values. Many codes number a value's cell and spell the number.
+//! Cells: intervals side by side on the line of values. Many codes send the number of a value's cell.
 
 mod cuts;
 mod partition;

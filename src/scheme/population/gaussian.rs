@@ -1,4 +1,4 @@
-//! Gaussian receptive fields (GRF), one spike a sample, winner takes all.
+//! Gaussian receptive fields (GRF) with one spike a sample: the strongest response wins.
 
 use super::position::Position;
 

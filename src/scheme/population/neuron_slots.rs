@@ -1,4 +1,4 @@
-//! Any neurons of a population in sub-timesteps, as the code of a sample.
+//! The code of a sample as spikes of any neurons of a population, each in one of several sub-timesteps.
 
 use crate::{Code, Firing, Output, Polarity};
 

@@ -1,4 +1,4 @@
-//! Adaptive step forward: step forward whose step doubles while it has to go on in one direction.
+//! Adaptive step forward: step forward whose step doubles while its spikes go on in one direction.
 
 use super::band::Band;
 use super::doublings;

@@ -1,4 +1,4 @@
-//! The band around a baseline that step forward and its kin compare a sample with.
+//! The band around a baseline: step forward and its relatives emit no spike for samples within.
 
 use crate::Sample;
 

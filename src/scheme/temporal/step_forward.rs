@@ -1,4 +1,4 @@
-//! Step forward (SF): a spike when the signal leaves the band around a baseline that follows it.
+//! Step forward (SF): a spike when the signal leaves the band around a baseline that follows the signal.
 
 use super::StepState;
 use super::band::Band;

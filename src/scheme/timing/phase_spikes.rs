@@ -1,4 +1,4 @@
-//! The spikes of neurons that share an oscillation, as the code of a sample.
+//! The code of a sample as the spikes of neurons that share an oscillation.
 
 use crate::{Code, Firing, Output, Polarity};
 

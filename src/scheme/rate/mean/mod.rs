@@ -1,4 +1,4 @@
-//! Codes of a signal's mean: how many spikes there are in a time says how high the signal was.
+//! Codes of a signal's mean: the number of spikes in a time gives the mean of the signal over that time.
 //!
 //! What their decoders share is here: a range, and how the mean of spikes is taken.
 

@@ -1,4 +1,4 @@
-//! Sigma-delta, the regular rate code: as many spikes as the signal is high, as evenly as can be.
+//! Sigma-delta, the regular rate code: the higher the signal, the more spikes, as evenly spaced as can be.
 
 use core::ops::RangeInclusive;
 
