@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::schemes::{CodeOf, EncoderStateOf, SampleOf};
+use super::schemes::{CodeOf, EncoderStateOf, SampleOf, States};
 use super::{Event, Item, Keyframe, Put, Schemes, Tick};
 use crate::{Code, ConfigError, Firing, Output, Scheme, Start, error};
 
@@ -33,8 +33,7 @@ use crate::{Code, ConfigError, Firing, Output, Scheme, Start, error};
 /// ]);
 /// ```
 pub struct Bank<T: Schemes<N>, const N: usize> {
-    schemes: T,
-    states: [EncoderStateOf<T, N>; N],
+    channels: T::Channels<EncoderStateOf<T, N>>,
     first_address: u16,
     slot_ticks: u32,
 }
@@ -46,10 +45,31 @@ impl<'a, P: Start, const N: usize> Bank<&'a P, N> {
     }
 }
 
+impl<'a, P: Scheme, const N: usize> Bank<&'a P, N> {
+    /// A bank whose encoders go on from these states, as for a code that draws from a generator.
+    pub const fn with_states(scheme: &'a P, states: [P::EncoderState; N]) -> Self {
+        Self::with_channels((scheme, states))
+    }
+}
+
 impl<'a, P: Start, const N: usize> Bank<[&'a P; N], N> {
     /// A bank with a scheme for each channel, such as one for rates and another for accelerations.
+    #[expect(clippy::indexing_slicing, reason = "below N, and there is at least one")]
     pub const fn per_channel(schemes: [&'a P; N]) -> Self {
-        Self::with_states(schemes, [P::START; N])
+        let mut channels = [(schemes[0], P::START); N];
+        let mut at = 1;
+        while at < N {
+            channels[at].0 = schemes[at];
+            at += 1;
+        }
+        Self::per_channel_with_states(channels)
+    }
+}
+
+impl<'a, P: Scheme, const N: usize> Bank<[&'a P; N], N> {
+    /// A bank with a scheme for each channel, whose encoders go on from these states.
+    pub const fn per_channel_with_states(channels: [(&'a P, P::EncoderState); N]) -> Self {
+        Self::with_channels(channels)
     }
 }
 
@@ -57,13 +77,12 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
     /// How many addresses it takes.
     const ADDRESSES: usize = N * CodeOf::<T, N>::NEURONS;
 
-    /// A bank whose encoders go on from these states, as for a code that draws from a generator.
-    pub const fn with_states(schemes: T, states: [EncoderStateOf<T, N>; N]) -> Self {
+    const fn with_channels(channels: T::Channels<EncoderStateOf<T, N>>) -> Self {
         const {
             assert!(N >= 1, "a bank has at least one channel");
             assert!(Self::ADDRESSES <= 1 << 16, "addresses have 16 bits");
         }
-        Self { schemes, states, first_address: 0, slot_ticks: 0 }
+        Self { channels, first_address: 0, slot_ticks: 0 }
     }
 
     /// Sets the first address, 0 by default, so that several banks can share a queue.
@@ -105,10 +124,8 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
             return self.encode_by_slot(tick, samples, emit);
         }
         let mut first = self.first_address;
-        for ((state, scheme), sample) in
-            self.states.iter_mut().zip(self.schemes.each()).zip(samples)
-        {
-            if let Some(code) = scheme.encode(state, sample).code() {
+        for ((scheme, state), sample) in T::each_mut(&mut self.channels).zip(&samples) {
+            if let Some(code) = scheme.encode(state, *sample).code() {
                 for firing in code.firings() {
                     emit(event(tick, first, firing));
                 }
@@ -125,14 +142,14 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         mut emit: impl FnMut(Event),
     ) {
         let mut codes = [None; N];
-        let states = self.states.iter_mut().zip(self.schemes.each());
-        for ((code, (state, scheme)), sample) in codes.iter_mut().zip(states).zip(samples) {
+        let channels = T::each_mut(&mut self.channels);
+        for ((code, (scheme, state)), sample) in codes.iter_mut().zip(channels).zip(samples) {
             *code = scheme.encode(state, sample).code();
         }
         let mut tick = tick;
         for slot in 0..CodeOf::<T, N>::SLOTS {
             let mut first = self.first_address;
-            for (code, scheme) in codes.iter().zip(self.schemes.each()) {
+            for (code, (scheme, _)) in codes.iter().zip(T::each(&self.channels)) {
                 let firings = code.iter().flat_map(Code::firings);
                 for firing in firings.filter(|firing| usize::from(firing.slot) == slot) {
                     emit(event(tick, first, firing));
@@ -154,7 +171,7 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
     /// in the interrupt that encodes; `tick` is that of the last sample.
     pub fn keyframe_into(&self, tick: Tick, mut queue: impl Put) {
         let mut address = self.first_address;
-        for (state, scheme) in self.states.iter().zip(self.schemes.each()) {
+        for (scheme, state) in T::each(&self.channels) {
             if let Some(value) = scheme.keyframe(state) {
                 queue.put(Item::Keyframe(Keyframe::new(tick, address, value)));
             }
@@ -177,31 +194,29 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
     where
         T::Scheme: Start,
     {
-        self.states = [<T::Scheme as Start>::START; N];
+        T::each_mut(&mut self.channels).for_each(|(_, state)| *state = T::Scheme::START);
     }
 
     /// The value that a channel's decoder should hold now; `None` before the first sample, for codes without
     /// keyframes, and for a channel that does not exist.
     pub fn keyframe(&self, channel: usize) -> Option<SampleOf<T, N>> {
-        let (state, scheme) = self.states.iter().zip(self.schemes.each()).nth(channel)?;
+        let (scheme, state) = T::each(&self.channels).nth(channel)?;
         scheme.keyframe(state)
     }
 
     /// How many samples were not finite, over all channels.
     pub fn rejected(&self) -> u32 {
-        let each = self.states.iter().map(T::Scheme::rejected);
+        let each = T::each(&self.channels).map(|(_, state)| T::Scheme::rejected(state));
         each.fold(0, u32::saturating_add)
     }
 }
 
-impl<T: Schemes<N> + Clone, const N: usize> Clone for Bank<T, N>
+impl<T: Schemes<N>, const N: usize> Clone for Bank<T, N>
 where
-    EncoderStateOf<T, N>: Clone,
+    T::Channels<EncoderStateOf<T, N>>: Clone,
 {
     fn clone(&self) -> Self {
-        let Self { schemes, states, first_address, slot_ticks } = self;
-        let (schemes, states) = (schemes.clone(), states.clone());
-        Self { schemes, states, first_address: *first_address, slot_ticks: *slot_ticks }
+        Self { channels: self.channels.clone(), ..*self }
     }
 }
 
@@ -211,7 +226,8 @@ where
 {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut bank = f.debug_struct("Bank");
-        bank.field("states", &self.states).field("first_address", &self.first_address);
+        bank.field("states", &States::<T, _, N>(&self.channels));
+        bank.field("first_address", &self.first_address);
         bank.finish_non_exhaustive()
     }
 }

@@ -30,6 +30,6 @@ pub(crate) use readout::Addresses;
 pub use readout::Readout;
 pub use schemes::Schemes;
 #[cfg(feature = "link")]
-pub(crate) use schemes::{CodeOf, DecoderStateOf, SampleOf};
+pub(crate) use schemes::{CodeOf, DecoderStateOf, SampleOf, States};
 pub use source::{AtMost, FromEvents, FromItems, Source};
 pub use tick::Tick;

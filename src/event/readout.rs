@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::schemes::{CodeOf, DecoderStateOf, SampleOf};
+use super::schemes::{CodeOf, DecoderStateOf, SampleOf, States};
 use super::{Event, Schemes, Tick};
 use crate::{Code, ConfigError, Firing, Scheme, error};
 
@@ -28,8 +28,7 @@ use crate::{Code, ConfigError, Firing, Scheme, error};
 /// assert_eq!(readout.decode(tick, &events), [0.5]);
 /// ```
 pub struct Readout<T: Schemes<N>, const N: usize> {
-    schemes: T,
-    states: [DecoderStateOf<T, N>; N],
+    channels: T::Channels<DecoderStateOf<T, N>>,
     addresses: Addresses,
 }
 
@@ -89,8 +88,8 @@ impl<T: Schemes<N>, const N: usize> Readout<T, N> {
             assert!(N >= 1, "a readout has at least one channel");
             assert!(Self::ADDRESSES <= 1 << 16, "addresses have 16 bits");
         }
-        let states = schemes.map_each(Scheme::decoder_state);
-        Self { schemes, states, addresses: Addresses { first: 0, slot_ticks: 0 } }
+        let channels = schemes.channels(Scheme::decoder_state);
+        Self { channels, addresses: Addresses { first: 0, slot_ticks: 0 } }
     }
 
     /// Sets the first address, 0 by default; events of lower addresses are left out.
@@ -123,8 +122,8 @@ impl<T: Schemes<N>, const N: usize> Readout<T, N> {
     /// Decodes the events of one time step, which begins at `tick`, into a value for each channel.
     pub fn decode(&mut self, tick: Tick, events: &[Event]) -> [SampleOf<T, N>; N] {
         let mut values = [SampleOf::<T, N>::default(); N];
-        let channels = self.states.iter_mut().zip(self.schemes.each()).enumerate();
-        for (value, (channel, (state, scheme))) in values.iter_mut().zip(channels) {
+        let channels = T::each_mut(&mut self.channels).enumerate();
+        for (value, (channel, (scheme, state))) in values.iter_mut().zip(channels) {
             let code = self.addresses.code(channel, scheme.neurons(), tick, events);
             *value = scheme.decode(state, code);
         }
@@ -133,32 +132,32 @@ impl<T: Schemes<N>, const N: usize> Readout<T, N> {
 
     /// Sets a channel's decoder to a known value, such as the first sample. Ignores a channel that does not exist.
     pub fn resync(&mut self, channel: usize, value: SampleOf<T, N>) {
-        let mut channels = self.states.iter_mut().zip(self.schemes.each());
-        if let Some((state, scheme)) = channels.nth(channel) {
+        if let Some((scheme, state)) = T::each_mut(&mut self.channels).nth(channel) {
             scheme.resync(state, value);
         }
     }
 
     /// Returns every decoder to its initial state.
     pub fn reset(&mut self) {
-        self.states = self.schemes.map_each(Scheme::decoder_state);
+        let channels = T::each_mut(&mut self.channels);
+        channels.for_each(|(scheme, state)| *state = scheme.decoder_state());
     }
 }
 
-impl<T: Schemes<N> + Clone, const N: usize> Clone for Readout<T, N> {
+impl<T: Schemes<N>, const N: usize> Clone for Readout<T, N>
+where
+    T::Channels<DecoderStateOf<T, N>>: Clone,
+{
     fn clone(&self) -> Self {
-        Self {
-            schemes: self.schemes.clone(),
-            states: self.states.clone(),
-            addresses: self.addresses,
-        }
+        Self { channels: self.channels.clone(), addresses: self.addresses }
     }
 }
 
 impl<T: Schemes<N>, const N: usize> fmt::Debug for Readout<T, N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut readout = f.debug_struct("Readout");
-        readout.field("states", &self.states).field("addresses", &self.addresses);
+        readout.field("states", &States::<T, _, N>(&self.channels));
+        readout.field("addresses", &self.addresses);
         readout.finish_non_exhaustive()
     }
 }

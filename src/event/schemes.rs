@@ -1,5 +1,7 @@
 //! The schemes of `N` channels: one that all share, or one for each.
 
+use core::fmt;
+
 use crate::Scheme;
 
 /// One scheme for all of `N` channels, `&SCHEME`, or one for each, `[&FIRST, &SECOND]`. Sealed.
@@ -7,11 +9,25 @@ pub trait Schemes<const N: usize>: sealed::Sealed {
     /// The type of the schemes.
     type Scheme: Scheme;
 
-    /// The schemes, in the order of the channels.
-    fn each(&self) -> impl Iterator<Item = &Self::Scheme>;
+    /// The channels: a state for each, next to the channel's own scheme if there is one.
+    type Channels<D>;
 
-    /// The results of `make` for each scheme, in the order of the channels.
-    fn map_each<R>(&self, make: impl FnMut(&Self::Scheme) -> R) -> [R; N];
+    /// The channels, with the states that `make` returns.
+    fn channels<D>(self, make: impl FnMut(&Self::Scheme) -> D) -> Self::Channels<D>;
+
+    /// The scheme and the state of each channel, in their order.
+    fn each<'a, D: 'a>(
+        channels: &'a Self::Channels<D>,
+    ) -> impl Iterator<Item = (&'a Self::Scheme, &'a D)>
+    where
+        Self: 'a;
+
+    /// The scheme and the state of each channel, in their order.
+    fn each_mut<'a, D: 'a>(
+        channels: &'a mut Self::Channels<D>,
+    ) -> impl Iterator<Item = (&'a Self::Scheme, &'a mut D)>
+    where
+        Self: 'a;
 }
 
 mod sealed {
@@ -20,29 +36,69 @@ mod sealed {
     impl<P, const N: usize> Sealed for [&P; N] {}
 }
 
-impl<P: Scheme, const N: usize> Schemes<N> for &P {
+impl<'p, P: Scheme, const N: usize> Schemes<N> for &'p P {
     type Scheme = P;
+    type Channels<D> = (&'p P, [D; N]);
 
-    #[inline]
-    fn each(&self) -> impl Iterator<Item = &P> {
-        core::iter::repeat_n(*self, N)
+    fn channels<D>(self, mut make: impl FnMut(&P) -> D) -> Self::Channels<D> {
+        (self, [(); N].map(|()| make(self)))
     }
 
-    fn map_each<R>(&self, mut make: impl FnMut(&P) -> R) -> [R; N] {
-        [(); N].map(|()| make(self))
+    #[inline]
+    fn each<'a, D: 'a>(
+        (scheme, states): &'a Self::Channels<D>,
+    ) -> impl Iterator<Item = (&'a P, &'a D)>
+    where
+        Self: 'a,
+    {
+        states.iter().map(|state| (*scheme, state))
+    }
+
+    #[inline]
+    fn each_mut<'a, D: 'a>(
+        (scheme, states): &'a mut Self::Channels<D>,
+    ) -> impl Iterator<Item = (&'a P, &'a mut D)>
+    where
+        Self: 'a,
+    {
+        states.iter_mut().map(|state| (*scheme, state))
     }
 }
 
-impl<P: Scheme, const N: usize> Schemes<N> for [&P; N] {
+impl<'p, P: Scheme, const N: usize> Schemes<N> for [&'p P; N] {
     type Scheme = P;
+    /// A scheme and its state lie side by side, which takes one load where two arrays take two.
+    type Channels<D> = [(&'p P, D); N];
 
-    #[inline]
-    fn each(&self) -> impl Iterator<Item = &P> {
-        self.iter().copied()
+    fn channels<D>(self, mut make: impl FnMut(&P) -> D) -> Self::Channels<D> {
+        self.map(|scheme| (scheme, make(scheme)))
     }
 
-    fn map_each<R>(&self, make: impl FnMut(&P) -> R) -> [R; N] {
-        self.map(make)
+    #[inline]
+    fn each<'a, D: 'a>(channels: &'a Self::Channels<D>) -> impl Iterator<Item = (&'a P, &'a D)>
+    where
+        Self: 'a,
+    {
+        channels.iter().map(|(scheme, state)| (*scheme, state))
+    }
+
+    #[inline]
+    fn each_mut<'a, D: 'a>(
+        channels: &'a mut Self::Channels<D>,
+    ) -> impl Iterator<Item = (&'a P, &'a mut D)>
+    where
+        Self: 'a,
+    {
+        channels.iter_mut().map(|(scheme, state)| (*scheme, state))
+    }
+}
+
+/// The states of channels, for `Debug`.
+pub(crate) struct States<'a, T: Schemes<N>, D, const N: usize>(pub(crate) &'a T::Channels<D>);
+
+impl<T: Schemes<N>, D: fmt::Debug, const N: usize> fmt::Debug for States<'_, T, D, N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(T::each(self.0).map(|(_, state)| state)).finish()
     }
 }
 

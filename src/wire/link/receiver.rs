@@ -4,7 +4,9 @@ use core::fmt;
 use core::num::NonZeroU32;
 
 use super::Received;
-use crate::event::{Addresses, CodeOf, DecoderStateOf, Event, Keyframe, SampleOf, Schemes, Tick};
+use crate::event::{
+    Addresses, CodeOf, DecoderStateOf, Event, Keyframe, SampleOf, Schemes, States, Tick,
+};
 use crate::{Code, ConfigError, Firing, Recovery, Scheme, error};
 
 /// The decoders of `N` channels at the end of a link, for any code.
@@ -40,8 +42,7 @@ use crate::{Code, ConfigError, Firing, Recovery, Scheme, error};
 /// assert_eq!(receiver.exact(0), None); // until its first keyframe
 /// ```
 pub struct Receiver<T: Schemes<N>, const N: usize, const EVENTS: usize = 32> {
-    schemes: T,
-    channels: [Channel<DecoderStateOf<T, N>, SampleOf<T, N>>; N],
+    channels: T::Channels<Channel<DecoderStateOf<T, N>, SampleOf<T, N>>>,
     addresses: Addresses,
     sample: Sampled<EVENTS>,
     outside: u32,
@@ -104,13 +105,13 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             assert!(N >= 1, "a receiver has at least one channel");
             assert!(Self::ADDRESSES <= 1 << 16, "addresses have 16 bits");
         }
-        let channels = schemes.map_each(|scheme| {
+        let channels = schemes.channels(|scheme| {
             let state = scheme.decoder_state();
             let value = scheme.held(&state).unwrap_or_default();
             Channel { state, value, is_exact: false, whole: 0 }
         });
         let addresses = Addresses { first: 0, slot_ticks: 0 };
-        Self { schemes, channels, addresses, sample: Sampled::NONE, outside: 0, misfits: 0 }
+        Self { channels, addresses, sample: Sampled::NONE, outside: 0, misfits: 0 }
     }
 
     /// Sets the first address, 0 by default; events of addresses without a channel are counted as
@@ -179,7 +180,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
 
     /// Marks every channel as not exact, after a loss that the link cannot see.
     pub fn mark_stale(&mut self) {
-        self.channels.iter_mut().for_each(Channel::mark_stale);
+        T::each_mut(&mut self.channels).for_each(|(_, channel)| channel.mark_stale());
         self.sample.is_whole = false;
         self.sample.is_next_whole = false;
     }
@@ -187,14 +188,14 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
     /// The value of a channel if it is exact, else `None`. For a code of [`Recovery::Keyframe`] it is the value after
     /// the last event, for others that of the last sample that is over.
     pub fn exact(&self, channel: u16) -> Option<SampleOf<T, N>> {
-        let channel = self.channels.get(usize::from(channel))?;
+        let (_, channel) = T::each(&self.channels).nth(channel.into())?;
         channel.is_exact.then_some(channel.value)
     }
 
     /// The value of a channel, exact or not; 0 for a channel that does not exist.
     pub fn estimate(&self, channel: u16) -> SampleOf<T, N> {
-        let channel = self.channels.get(usize::from(channel));
-        channel.map(|channel| channel.value).unwrap_or_default()
+        let channel = T::each(&self.channels).nth(channel.into());
+        channel.map(|(_, channel)| channel.value).unwrap_or_default()
     }
 
     /// How many events and keyframes had an address of no channel.
@@ -211,7 +212,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
     /// How many neurons a channel has.
     #[inline]
     fn neurons(&self) -> usize {
-        self.schemes.each().next().map_or(1, Scheme::neurons).max(1)
+        T::each(&self.channels).next().map_or(1, |(scheme, _)| scheme.neurons()).max(1)
     }
 
     fn keyframe(
@@ -224,8 +225,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         }
         let address = usize::from(keyframe.address.wrapping_sub(self.addresses.first));
         let channel = address / self.neurons();
-        let mut channels = self.channels.iter_mut().zip(self.schemes.each());
-        let Some((known, scheme)) = channels.nth(channel) else {
+        let Some((scheme, known)) = T::each_mut(&mut self.channels).nth(channel) else {
             self.outside = self.outside.saturating_add(1);
             return;
         };
@@ -248,8 +248,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             self.outside = self.outside.saturating_add(1);
         } else if T::Scheme::RECOVERY == Recovery::Keyframe {
             let channel = address / neurons;
-            let mut channels = self.channels.iter_mut().zip(self.schemes.each());
-            if let Some((known, scheme)) = channels.nth(channel) {
+            if let Some((scheme, known)) = T::each_mut(&mut self.channels).nth(channel) {
                 let neuron = (address % neurons) as u16;
                 let firing = Firing { neuron, slot: 0, polarity: event.polarity };
                 let code = Code::assemble(core::iter::once(firing));
@@ -264,9 +263,8 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             } else {
                 self.misfits = self.misfits.saturating_add(1);
                 self.sample.is_whole = false;
-                if let Some(known) =
-                    self.channels.get_mut(address.checked_div(neurons).unwrap_or(0))
-                {
+                let channel = address.checked_div(neurons).unwrap_or(0);
+                if let Some((_, known)) = T::each_mut(&mut self.channels).nth(channel) {
                     known.mark_stale();
                 }
             }
@@ -311,7 +309,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             self.decode(tick, on_value);
             self.sample.is_whole = is_next_whole;
             self.sample.count = 0;
-            let recovery = self.schemes.each().next().map(Scheme::recovery);
+            let recovery = T::each(&self.channels).next().map(|(scheme, _)| scheme.recovery());
             if let Some(
                 Recovery::Samples(recovery)
                 | Recovery::TimedKeyframe(recovery)
@@ -328,8 +326,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
     /// Decodes a sample that is over, in every channel.
     fn decode(&mut self, tick: Tick, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
         let events = self.sample.events.get(..self.sample.count).unwrap_or_default();
-        let channels = self.channels.iter_mut().zip(self.schemes.each());
-        for (channel, (known, scheme)) in (0..N).zip(channels) {
+        for (channel, (scheme, known)) in (0..N).zip(T::each_mut(&mut self.channels)) {
             let code: CodeOf<T, N> = self.addresses.code(channel, scheme.neurons(), tick, events);
             known.value = scheme.decode(&mut known.state, code);
             if self.sample.is_whole {
@@ -357,18 +354,20 @@ impl<const EVENTS: usize> Sampled<EVENTS> {
     };
 }
 
-impl<T: Schemes<N> + Clone, const N: usize, const EVENTS: usize> Clone for Receiver<T, N, EVENTS> {
+impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Clone for Receiver<T, N, EVENTS>
+where
+    T::Channels<Channel<DecoderStateOf<T, N>, SampleOf<T, N>>>: Clone,
+{
     fn clone(&self) -> Self {
-        let (schemes, channels) = (self.schemes.clone(), self.channels.clone());
-        let Self { addresses, sample, outside, misfits, .. } = *self;
-        Self { schemes, channels, addresses, sample, outside, misfits }
+        Self { channels: self.channels.clone(), ..*self }
     }
 }
 
 impl<T: Schemes<N>, const N: usize, const EVENTS: usize> fmt::Debug for Receiver<T, N, EVENTS> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut receiver = f.debug_struct("Receiver");
-        receiver.field("channels", &self.channels).field("addresses", &self.addresses);
+        receiver.field("channels", &States::<T, _, N>(&self.channels));
+        receiver.field("addresses", &self.addresses);
         receiver.finish_non_exhaustive()
     }
 }
