@@ -6,8 +6,6 @@ use core::cmp::Ordering;
 pub(crate) trait Arithmetic: Sized {
     const ZERO: Self;
 
-    const IS_FLOAT: bool;
-
     /// The baseline before the first sample. In `f32` it is NaN, so that no sample compares as near to it.
     const NO_BASELINE: Self;
 
@@ -32,8 +30,6 @@ pub(crate) trait Arithmetic: Sized {
 
 impl Arithmetic for f32 {
     const ZERO: Self = 0.0;
-
-    const IS_FLOAT: bool = true;
 
     const NO_BASELINE: Self = f32::NAN;
 
@@ -106,8 +102,6 @@ macro_rules! integer_arithmetic {
     ([$($generics:tt)*] $sample:ty, $bits:ty, $to_bits:path, $from_bits:path) => {
         impl<$($generics)*> Arithmetic for $sample {
             const ZERO: Self = $from_bits(0);
-
-            const IS_FLOAT: bool = false;
 
             const NO_BASELINE: Self = $from_bits(0);
 

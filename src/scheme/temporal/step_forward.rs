@@ -104,10 +104,10 @@ impl<S: Sample> Scheme for StepForward<S> {
             (Spike::Up, band.upper)
         } else if band.is_above(sample) {
             (Spike::Down, band.lower)
-        } else if S::IS_FLOAT || state.tally.is_primed() {
-            return Spike::None; // before the first sample the base is NaN: every float takes a branch above
+        } else if state.base != S::NO_BASELINE {
+            return Spike::None;
         } else {
-            (Spike::None, sample)
+            (Spike::None, state.base) // a baseline of 0, or none yet
         };
         if !sample.is_finite() {
             state.tally.reject();
