@@ -6,7 +6,8 @@ use core::cmp::Ordering;
 pub(crate) trait Arithmetic: Sized {
     const ZERO: Self;
 
-    /// The baseline before the first sample. In `f32` it is NaN, so that no sample compares as near to it.
+    /// The baseline before the first sample: in `f32` NaN, which lies near no sample; in fixed point 0, which may also be
+    /// a true baseline.
     const NO_BASELINE: Self;
 
     fn is_finite(&self) -> bool;
