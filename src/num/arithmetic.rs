@@ -22,6 +22,9 @@ pub(crate) trait Arithmetic: Sized {
     /// `self - step`.
     fn minus(self, step: Self) -> Self;
 
+    /// `-self` of a step, which is above 0.
+    fn negated(self) -> Self;
+
     /// `self * 2^times`, for results that the type holds.
     fn doubled(self, times: u8) -> Self;
 
@@ -52,6 +55,11 @@ impl Arithmetic for f32 {
     #[inline]
     fn minus(self, step: Self) -> Self {
         self - step
+    }
+
+    #[inline]
+    fn negated(self) -> Self {
+        -self
     }
 
     #[inline]
@@ -124,6 +132,11 @@ macro_rules! integer_arithmetic {
             #[inline]
             fn minus(self, step: Self) -> Self {
                 self.saturating_sub(step)
+            }
+
+            #[inline]
+            fn negated(self) -> Self {
+                self.wrapping_neg()
             }
 
             #[inline]

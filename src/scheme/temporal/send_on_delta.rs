@@ -257,9 +257,14 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
     /// Adds step after step, as the encoder did.
     #[inline]
     fn decode(&self, state: &mut StepState<S>, steps: Steps<K>) -> S {
-        let spike = if steps.0 > 0 { Spike::Up } else { Spike::Down };
-        for _ in 0..steps.0.unsigned_abs() {
-            state.decode(self.threshold, spike);
+        let steps = i32::from(steps.0);
+        let step = match steps {
+            0 => return state.value(),
+            1.. => self.threshold,
+            _ => self.threshold.negated(),
+        };
+        for _ in 0..steps.unsigned_abs() {
+            state.decode(step, Spike::Up);
         }
         state.value()
     }

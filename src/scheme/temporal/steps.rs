@@ -27,11 +27,12 @@ impl<S: Sample> StepState<S> {
 
     #[inline]
     pub(super) fn decode(&mut self, step: S, spike: Spike) -> S {
-        match spike {
-            Spike::Up => self.value = self.value.plus(step),
-            Spike::Down => self.value = self.value.minus(step),
-            Spike::None => {}
-        }
+        let step = match spike {
+            Spike::Up => step,
+            Spike::Down => step.negated(),
+            Spike::None => return self.value,
+        };
+        self.value = self.value.plus(step);
         self.value
     }
 
@@ -39,7 +40,7 @@ impl<S: Sample> StepState<S> {
     #[allow(clippy::inline_always)]
     #[inline(always)] // a call would move five arguments
     pub(super) fn decode_slice(&mut self, step: S, spikes: &[Spike], values: &mut [S]) -> usize {
-        let steps = [S::ZERO.minus(step), S::ZERO, step];
+        let steps = [step.negated(), S::ZERO, step];
         let mut decoded = self.value;
         let mut decode = |value: &mut S, spike: Spike| {
             if spike.is_fired()
