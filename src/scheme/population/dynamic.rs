@@ -452,14 +452,12 @@ mod random {
             let fields = &self.fields;
             let first = sample.bin(fields.bins);
             let Some(reach) = fields.reach(1) else { return neurons };
-            let mut responds = false;
             let fired = neurons.fired.iter_mut().enumerate().skip(first);
             for ((neuron, fired), distance) in fired.zip(fields.distances(sample, first)) {
                 if distance <= reach {
                     let draw = state.generator.next_u32() >> (32 - Self::LEVELS.ilog2());
                     *fired = fields.reach(draw as usize + 1).is_some_and(|reach| distance <= reach);
-                    responds = true;
-                } else if responds || !fields.is_above(sample, neuron) {
+                } else if !fields.is_above(sample, neuron) {
                     break;
                 }
             }

@@ -148,13 +148,11 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
         let Some(reach) = fields.reach::<D>(1) else { return };
         let Some(distances) = fields.distances::<D>(sample, first) else { return };
         let fired = neurons.fired.iter_mut().enumerate().skip(first);
-        let mut responds = false;
         for ((neuron, fired), distance) in fired.zip(distances) {
             if distance <= reach {
                 let draw = (generator.next_u32() >> (32 - N.ilog2())) as usize;
                 *fired = fields.reach(draw + 1).is_some_and(|reach| distance <= reach);
-                responds = true;
-            } else if responds || !fields.is_above(sample, neuron) {
+            } else if !fields.is_above(sample, neuron) {
                 break;
             }
         }
