@@ -109,7 +109,7 @@ where
                 one_by_one.iter().map(|&sample| scheme.encode(&mut state, sample)).collect();
             outputs.resize(slice.len(), outputs[0]);
             scheme.encode_slice(&mut state, slice, &mut outputs);
-            (scheme.keyframe(&state), scheme.fits(&state), P::rejected(&state));
+            let _ = (scheme.keyframe(&state), scheme.fits(&state), P::rejected(&state));
             while scheme.finish_next(&mut state).is_some() {}
             scheme.prime(&mut state, samples);
         }
@@ -121,7 +121,7 @@ where
                     scheme.decode(&mut state, code);
                 }
             }
-            (scheme.held(&state), scheme.fits_decoder(&state));
+            let _ = (scheme.held(&state), scheme.fits_decoder(&state));
             scheme.resync(&mut state, samples[0]);
         }
     }
