@@ -197,7 +197,8 @@ impl<'a, P: Scheme> Encoder<'a, P> {
     /// to another program. Read it with the same version of the crate, on the same kind of core, in a format that keeps
     /// every `f32`, such as postcard; JSON loses NaN, from which [`StepForward`](crate::temporal::StepForward) starts.
     /// Add a checksum: a damaged state never panics, but its codes are wrong, perhaps until the [reset](Self::reset).
-    /// [`Scheme::fits`] only finds states that no encoder of the scheme can have.
+    /// [`Scheme::fits`] only finds states that no encoder of the scheme can have. A random number generator is part of
+    /// the state, and must be `Serialize` and `Deserialize` itself.
     pub const fn with_state(scheme: &'a P, state: P::EncoderState) -> Self {
         Self { scheme, state }
     }
