@@ -155,6 +155,8 @@ pub(super) trait TakeBits {
 pub(super) struct Glance {
     bits: u32,
     taken: u32,
+    /// How many bits it has.
+    count: u32,
 }
 
 impl TakeBits for Glance {
@@ -186,23 +188,32 @@ impl<'a> BitReader<'a> {
         Self { bytes, taken: 0 }
     }
 
-    /// The next 25 bits or more; 0 follow the last one.
+    /// The next bits, 25 if there are so many; 0 follow the last one.
     #[inline]
     pub(super) fn glance(&self) -> Glance {
-        let rest = self.bytes.get(self.taken / 8..).unwrap_or_default();
-        let bytes = rest.first_chunk().copied().unwrap_or_else(|| end(rest));
-        Glance { bits: u32::from_be_bytes(bytes) << (self.taken % 8), taken: 0 }
+        let at = self.taken / 8;
+        let whole = self.bytes.get(at..at.wrapping_add(4)).and_then(<[u8]>::first_chunk);
+        let (bytes, count) = match whole {
+            Some(bytes) => (*bytes, 25),
+            None => self.end(),
+        };
+        Glance { bits: u32::from_be_bytes(bytes) << (self.taken % 8), taken: 0, count }
     }
 
-    /// Takes the bits that were taken from a glance; `None` if there were fewer.
+    /// The last bytes, fewer than 4, filled up with 0, and how many bits of them are not taken.
+    #[cold]
+    #[inline(never)]
+    fn end(&self) -> ([u8; 4], u32) {
+        let rest = self.bytes.get(self.taken / 8..).unwrap_or_default();
+        (core::array::from_fn(|at| rest.get(at).copied().unwrap_or_default()), self.left() as u32)
+    }
+
+    /// Takes the bits that were taken from a glance; `None` if it had fewer.
     #[inline]
     pub(super) fn pass(&mut self, glance: Glance) -> Option<()> {
-        let taken = glance.taken as usize;
-        if glance.taken > 25 || taken > self.left() {
-            return None;
-        }
-        self.taken = self.taken.wrapping_add(taken);
-        Some(())
+        (glance.taken <= glance.count).then(|| {
+            self.taken = self.taken.wrapping_add(glance.taken as usize);
+        })
     }
 
     #[inline]
@@ -214,13 +225,6 @@ impl<'a> BitReader<'a> {
     pub(super) fn is_padding(self) -> bool {
         self.left() < 8 && self.glance().bits == 0
     }
-}
-
-/// The last bytes, fewer than 4, filled up with 0.
-#[cold]
-#[inline(never)]
-fn end(bytes: &[u8]) -> [u8; 4] {
-    core::array::from_fn(|i| bytes.get(i).copied().unwrap_or_default())
 }
 
 impl TakeBits for BitReader<'_> {
