@@ -7,7 +7,7 @@ pub(super) trait PutBits {
     /// Appends a value of `count` bits, up to 32.
     fn put(&mut self, value: u32, count: u32);
 
-    /// Appends `code(value, k)`, for values below 2³²-1 and `k` up to 15.
+    /// Appends `code(value, k)`, for values below 2³²-1 and `k` up to 16.
     fn put_code(&mut self, value: u32, k: u32);
 }
 
@@ -146,7 +146,7 @@ pub(super) trait TakeBits {
     /// The next `count` bits, 1 to 32.
     fn take(&mut self, count: u32) -> Option<u32>;
 
-    /// The value of the next `code(value, k)`, for `k` up to 15.
+    /// The value of the next `code(value, k)`, for `k` up to 16.
     fn take_code(&mut self, k: u32) -> Option<u32>;
 }
 
@@ -242,11 +242,11 @@ impl TakeBits for BitReader<'_> {
         let mut zeros = 0;
         while self.take(1)? == 0 {
             zeros += 1;
-            if zeros == 32 {
+            if zeros + k >= 32 {
                 return None;
             }
         }
         let number = 1_u32.wrapping_shl(zeros) | self.take(zeros)?;
-        Some(number.wrapping_sub(1).unbounded_shl(k) | self.take(k)?)
+        Some(number.wrapping_sub(1).wrapping_shl(k) | self.take(k)?)
     }
 }

@@ -10,6 +10,12 @@ use crate::event::{Event, Tick};
 /// The longest time between two events of a frame, in µs: 17.9 minutes.
 const MAX_SINCE: u32 = 1 << 30;
 
+/// How many addresses there are.
+const ADDRESSES: u32 = 1 << 16;
+
+/// The polarity's bit follows the low bits of the address: both are one code, with so many more low bits.
+const POLARITY: u32 = 1;
+
 /// The tick and address from which the next event is coded.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
@@ -30,11 +36,13 @@ impl Place {
     pub(super) fn put(&self, event: Event, bits: &mut impl PutBits) -> Option<()> {
         let Coding { period, address_bits, jitter_bits } = self.coding;
         let address = u32::from(event.address);
+        let up = u32::from(event.polarity == Polarity::Up);
+        let address_bits = u32::from(address_bits) + POLARITY;
         let since = event.tick.since(self.tick);
         match address.checked_sub(self.next_address) {
             Some(distance) if since == 0 => {
                 bits.put(0, 1);
-                bits.put_code(distance, address_bits.into());
+                bits.put_code(distance << POLARITY | up, address_bits);
             }
             _ => {
                 if since.unsigned_abs() > MAX_SINCE {
@@ -44,10 +52,9 @@ impl Place {
                 bits.put(1, 1);
                 bits.put_code(zigzag(steps.wrapping_sub(1)), 0);
                 bits.put_code(zigzag(jitter), jitter_bits.into());
-                bits.put_code(address, address_bits.into());
+                bits.put_code(address << POLARITY | up, address_bits);
             }
         }
-        bits.put((event.polarity == Polarity::Up).into(), 1);
         Some(())
     }
 
@@ -63,9 +70,13 @@ impl Place {
             tick = tick.shifted(since);
             next_address = 0;
         }
-        let address = next_address.checked_add(bits.take_code(address_bits.into())?)?;
-        let polarity = if bits.take(1)? == 1 { Polarity::Up } else { Polarity::Down };
-        Some(Event { tick, address: address.try_into().ok()?, polarity })
+        let code = bits.take_code(u32::from(address_bits) + POLARITY)?;
+        let polarity = if code & 1 == 1 { Polarity::Up } else { Polarity::Down };
+        let distance = code >> POLARITY;
+        (distance < ADDRESSES - next_address).then(|| {
+            let address = next_address.wrapping_add(distance) as u16;
+            Event { tick, address, polarity }
+        })
     }
 
     /// Codes the next event from this one.
