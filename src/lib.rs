@@ -105,8 +105,8 @@ pub use num::{Sample, SampleKind};
 pub use scheme::dynamic;
 pub use scheme::{
     Calibration, Code, Conditions, Decoder, Differences, Encoder, Firing, Fit, Histogram, Moments,
-    Output, Polarity, Recovery, Scheme, Spike, Start, Survey, Unfit, population, rate, temporal,
-    timing,
+    Output, Place, Polarity, Recovery, Scheme, Spike, Start, Survey, Unfit, population, rate,
+    temporal, timing,
 };
 pub use wire::format;
 #[cfg(feature = "link")]

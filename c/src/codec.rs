@@ -1,42 +1,24 @@
 //! What every codec does, once for all of them; `define.rs` exports it under each codec's names.
 
-use core::any::TypeId;
 use core::mem::MaybeUninit;
 
 use spikewire::{
-    Code, ConfigError, Event, Firing, Item, Keyframe, Output, Put, Spike, Start, Tick,
+    Code, ConfigError, Event, Firing, Item, Keyframe, Output, Place, Put, Scheme, Start, Tick,
 };
 
+use crate::code::CCode;
 use crate::event::CFiring;
 use crate::kept::Kept;
 use crate::queue::{Queue, producer};
 use crate::{Error, Stamp, Status, pointer};
 
-/// A scheme that C can have: its encoder starts by itself, and its outputs can be made of codes.
-pub trait Exported: Start<Code: 'static, Output: 'static + From<Self::Code>> {}
+/// A scheme that C can have: its encoder starts by itself, and its outputs go where C has room for codes.
+pub trait Exported: Start<Code: CCode<Room: Place<Self::Output>>> {}
 
-impl<P: Start<Code: 'static, Output: 'static + From<P::Code>>> Exported for P {}
+impl<P: Start<Code: CCode<Room: Place<P::Output>>>> Exported for P {}
 
-/// A spike's byte where a rate code waits for later samples.
-pub const WAITING: i8 = 2;
-
-/// What a rate code returns is a spike's byte, or [`WAITING`]: checked here, as the language does not promise it.
-const WAITS: () = {
-    const fn byte(output: Option<Spike>) -> i8 {
-        // SAFETY: it is a byte, and has no padding, or this does not compile.
-        unsafe { core::mem::transmute::<Option<Spike>, i8>(output) }
-    }
-    assert!(byte(None) == WAITING);
-    assert!(byte(Some(Spike::Up)) == 1 && byte(Some(Spike::Down)) == -1);
-    assert!(byte(Some(Spike::None)) == 0);
-};
-
-/// Outputs whose bytes are those of codes: codes themselves, and spikes for which a rate code waits.
-fn is_output<P: Exported>() -> bool {
-    let () = WAITS;
-    let output = TypeId::of::<P::Output>();
-    output == TypeId::of::<P::Code>() || output == TypeId::of::<Option<Spike>>()
-}
+/// C's room for a code of this scheme.
+type Room<P> = <<P as Scheme>::Code as CCode>::Room;
 
 /// A scheme's parameters in the caller's storage, or in flash.
 #[repr(C)]
@@ -108,15 +90,6 @@ impl<P, T> Running<P, T> {
         // still there, and changes neither.
         unsafe { Ok((&(*storage.codec).scheme, storage.state.assume_init_mut())) }
     }
-}
-
-fn is_spike<C: 'static>() -> bool {
-    TypeId::of::<C>() == TypeId::of::<Spike>()
-}
-
-/// The code of no spike.
-fn silence<C: Code>() -> C {
-    C::assemble(core::iter::empty())
 }
 
 /// Makes a codec of parameters.
@@ -192,9 +165,13 @@ pub unsafe fn encode<P: Exported>(
     let encode = || {
         // SAFETY: C's promise.
         let (scheme, state) = unsafe { Running::parts(encoder) }?;
-        // SAFETY: C's promise.
-        let place = unsafe { pointer::place(code) }?;
-        place.write(scheme.encode(state, sample).code().ok_or(Status::WAITING)?);
+        // SAFETY: C's promise; any bytes are room.
+        let room = unsafe { pointer::exclusive(code.cast::<Room<P>>()) }?;
+        let output = scheme.encode(state, sample);
+        if output.code().is_none() {
+            return Err(Status::WAITING);
+        }
+        room.write(output);
         Ok(Status::OK)
     };
     encode().into()
@@ -214,59 +191,24 @@ pub unsafe fn encode_slice<P: Exported>(
     let encode = || {
         // SAFETY: C's promise.
         let (scheme, state) = unsafe { Running::parts(encoder) }?;
-        // SAFETY: C's promise; any bytes are samples.
-        let samples = unsafe { pointer::slice(samples, count) }?;
-        pointer::apart(samples.as_ptr(), count, codes, count)?;
-        pointer::apart(encoder, 1, codes, count)?;
-        if !is_output::<P>() {
-            return Err(Status::BAD_CHOICE); // no scheme has such outputs
-        }
-        // SAFETY: C's promise; any bytes are a `MaybeUninit`.
-        let codes = unsafe { pointer::slice_mut(codes.cast::<MaybeUninit<P::Code>>(), count) }?;
-        if is_spike::<P::Code>() {
-            // SAFETY: a spike is a byte, and so is what a rate code returns; 0 is one of either.
-            unsafe { codes.as_mut_ptr().write_bytes(0, codes.len()) };
-        } else {
-            const { assert!(size_of::<P::Output>() == size_of::<P::Code>()) };
-            for code in codes.iter_mut() {
-                code.write(silence());
-            }
-        }
-        // SAFETY: all are written, and outputs are codes, or spikes for which `WAITS` tells that they have their bytes.
-        let outputs =
-            unsafe { core::slice::from_raw_parts_mut(codes.as_mut_ptr().cast(), codes.len()) };
-        scheme.encode_slice(state, samples, outputs);
+        // SAFETY: C's promise; any bytes are samples, and room for codes.
+        let (samples, rooms) =
+            unsafe { pointer::from_to(encoder, samples, codes.cast::<Room<P>>(), count) }?;
+        encode_apart(scheme, state, samples, rooms);
         Ok(Status::OK)
     };
     encode().into()
 }
 
-/// Writes a code, or in the place of a spike that the encoder waits.
-#[inline]
-fn write_output<P: Exported>(place: &mut MaybeUninit<P::Code>, output: P::Output) {
-    const {
-        // A code that has no byte for waiting comes at once.
-        assert!(P::LATENCY == 0 || size_of::<P::Code>() == 1);
-    }
-    match output.code() {
-        Some(code) => _ = place.write(code),
-        // SAFETY: it is a byte, as asserted above, in storage that C reads as bytes.
-        None if size_of::<P::Code>() == 1 => unsafe {
-            place.as_mut_ptr().cast::<i8>().write(WAITING);
-        },
-        None => _ = place.write(silence()),
-    }
-}
-
-/// Reads what [`write_output`] wrote.
-#[inline]
-fn read_output<P: Exported>(place: &MaybeUninit<P::Code>) -> Option<P::Code> {
-    // SAFETY: the byte of a spike was written.
-    if is_spike::<P::Code>() && unsafe { place.as_ptr().cast::<i8>().read() } == WAITING {
-        return None;
-    }
-    // SAFETY: it was written, and does not say that the encoder waits.
-    Some(unsafe { place.assume_init_read() })
+/// Out of line: the checks' pointers would take registers from the loop.
+#[inline(never)]
+fn encode_apart<P: Exported>(
+    scheme: &P,
+    state: &mut P::EncoderState,
+    samples: &[P::Sample],
+    rooms: &mut [Room<P>],
+) {
+    scheme.encode_slice(state, samples, rooms);
 }
 
 /// At the end of a recording, the next code that still waits.
@@ -335,46 +277,14 @@ pub unsafe fn rejected<P: Exported>(encoder: *const Encoder<P>, count: *mut u32)
     rejected().into()
 }
 
-/// Whether bytes from C are codes; of codes other than spikes, C promises it.
-#[inline]
-fn check_codes<C: 'static>(codes: &[MaybeUninit<C>]) -> Result<(), Status> {
-    if !is_spike::<C>() {
-        return Ok(());
-    }
-    // SAFETY: spikes are bytes, and C promises that they are written.
-    let bytes = unsafe { core::slice::from_raw_parts(codes.as_ptr().cast::<u8>(), codes.len()) };
-    // Four at a time: a byte is its lowest bit, or all ones if its highest is.
-    let other = |word: u32| {
-        let negative = (word >> 7) & 0x0101_0101;
-        word ^ ((negative << 8).wrapping_sub(negative) | (word & 0x0101_0101))
-    };
-    let (words, rest) = bytes.as_chunks();
-    let words = words.iter().fold(0, |found, word| found | other(u32::from_ne_bytes(*word)));
-    let is_other = rest.iter().fold(words, |found, &byte| found | other(byte.into()) & 0xff) != 0;
-    if is_other { Err(Status::BAD_CODE) } else { Ok(()) }
-}
-
-/// The codes that C hands over.
+/// A code that C hands over.
 ///
 /// # Safety
 /// C's promise of [`pointer`], and that codes other than spikes come from this library.
 #[inline]
-unsafe fn codes<'a, C: 'static>(codes: *const C, count: usize) -> Result<&'a [C], Status> {
-    // SAFETY: C's promise; any bytes are a `MaybeUninit`.
-    let bytes = unsafe { pointer::slice(codes.cast::<MaybeUninit<C>>(), count) }?;
-    check_codes(bytes)?;
-    // SAFETY: spikes are checked; other codes come from this library, as C promises.
-    Ok(unsafe { core::slice::from_raw_parts(bytes.as_ptr().cast(), bytes.len()) })
-}
-
-/// One of them.
-///
-/// # Safety
-/// As of [`codes`].
-#[inline]
-unsafe fn one<C: Code + 'static>(code: *const C) -> Result<C, Status> {
-    // SAFETY: the caller's promise.
-    unsafe { codes(code, 1) }?.first().copied().ok_or(Status::NULL)
+unsafe fn given<C: CCode>(code: *const C) -> Result<C, Status> {
+    // SAFETY: C's promise.
+    Ok((*unsafe { pointer::shared(code.cast::<C::Given>()) }?).into())
 }
 
 /// Decodes the code of one sample.
@@ -391,7 +301,7 @@ pub unsafe fn decode<P: Exported>(
         // SAFETY: C's promise.
         let (scheme, state) = unsafe { Running::parts(decoder) }?;
         // SAFETY: C's promise.
-        let (code, place) = unsafe { (one(code)?, pointer::place(value)?) };
+        let (code, place) = unsafe { (given(code)?, pointer::place(value)?) };
         place.write(scheme.decode(state, code));
         Ok(Status::OK)
     };
@@ -405,22 +315,31 @@ pub unsafe fn decode<P: Exported>(
 #[inline]
 pub unsafe fn decode_slice<P: Exported>(
     decoder: *mut Decoder<P>,
-    from: *const P::Code,
+    codes: *const P::Code,
     values: *mut P::Sample,
     count: usize,
 ) -> Status {
     let decode = || {
         // SAFETY: C's promise.
         let (scheme, state) = unsafe { Running::parts(decoder) }?;
-        // SAFETY: C's promise.
-        let from = unsafe { codes(from, count) }?;
-        pointer::apart(from.as_ptr(), count, values, count)?;
-        pointer::apart(decoder, 1, values, count)?;
-        // SAFETY: C's promise; any bytes are samples.
-        scheme.decode_slice(state, from, unsafe { pointer::slice_mut(values, count) }?);
+        let codes = codes.cast::<<P::Code as CCode>::Given>();
+        // SAFETY: C's promise; any bytes are samples, and codes other than spikes come from this library.
+        let (codes, values) = unsafe { pointer::from_to(decoder, codes, values, count) }?;
+        decode_apart(scheme, state, codes, values);
         Ok(Status::OK)
     };
     decode().into()
+}
+
+/// Out of line, as [`encode_apart`].
+#[inline(never)]
+fn decode_apart<P: Exported>(
+    scheme: &P,
+    state: &mut P::DecoderState,
+    codes: &[<P::Code as CCode>::Given],
+    values: &mut [P::Sample],
+) {
+    scheme.decode_slice(state, codes, values);
 }
 
 /// The value that a decoder holds until the next spike.
@@ -455,7 +374,7 @@ pub unsafe fn resync<P: Exported>(decoder: *mut Decoder<P>, value: P::Sample) ->
 ///
 /// # Safety
 /// C's promise of [`pointer`].
-pub unsafe fn firings<C: Code + 'static>(
+pub unsafe fn firings<C: CCode>(
     code: *const C,
     into: *mut CFiring,
     capacity: usize,
@@ -465,7 +384,7 @@ pub unsafe fn firings<C: Code + 'static>(
         // SAFETY: C's promise; any bytes are a `MaybeUninit`.
         let (code, into, count) = unsafe {
             let into = pointer::slice_mut(into.cast::<MaybeUninit<CFiring>>(), capacity)?;
-            (one(code)?, into, pointer::place(count)?)
+            (given(code)?, into, pointer::place(count)?)
         };
         let all = count.write(0);
         let mut into = into.iter_mut();
@@ -482,11 +401,7 @@ pub unsafe fn firings<C: Code + 'static>(
 ///
 /// # Safety
 /// C's promise of [`pointer`].
-pub unsafe fn assemble<C: Code + 'static>(
-    firings: *const CFiring,
-    count: usize,
-    code: *mut C,
-) -> Status {
+pub unsafe fn assemble<C: CCode>(firings: *const CFiring, count: usize, code: *mut C) -> Status {
     let assemble = || {
         // SAFETY: C's promise; any bytes are firings.
         let (firings, place) = unsafe { (pointer::slice(firings, count)?, pointer::place(code)?) };
@@ -512,12 +427,12 @@ pub unsafe fn bank<P: Exported>(
     let encode = || {
         pointer::apart(samples, channels, codes, channels)?;
         pointer::apart(encoders, channels, codes, channels)?;
-        // SAFETY: C's promise; any bytes are samples, a `MaybeUninit`, and an encoder that is started or not.
-        let (encoders, samples, codes) = unsafe {
+        // SAFETY: C's promise; any bytes are samples, room for codes, and an encoder that is started or not.
+        let (encoders, samples, rooms) = unsafe {
             (
                 pointer::slice_mut(encoders, channels)?,
                 pointer::slice(samples, channels)?,
-                pointer::slice_mut(codes.cast::<MaybeUninit<P::Code>>(), channels)?,
+                pointer::slice_mut(codes.cast::<Room<P>>(), channels)?,
             )
         };
         // SAFETY: C's promise; any bytes are a stamp.
@@ -525,32 +440,37 @@ pub unsafe fn bank<P: Exported>(
         if encoders.iter().any(|encoder| encoder.codec.is_null()) {
             return Err(Status::NOT_STARTED);
         }
-        for ((encoder, sample), code) in encoders.iter_mut().zip(samples).zip(codes.iter_mut()) {
+        for ((encoder, sample), room) in encoders.iter_mut().zip(samples).zip(rooms.iter_mut()) {
             // SAFETY: it is started.
             let (scheme, state) = unsafe { Running::parts(encoder) }?;
-            write_output::<P>(code, scheme.encode(state, *sample));
+            room.write(scheme.encode(state, *sample));
         }
-        put::<P>(codes, stamp, queue);
+        // SAFETY: each room has an output.
+        unsafe { put::<P::Code>(rooms, stamp, queue) };
         Ok(Status::OK)
     };
     encode().into()
 }
 
 /// Puts the events of codes, slot by slot if slots have a length.
-fn put<P: Exported>(codes: &[MaybeUninit<P::Code>], stamp: &Stamp, mut queue: impl Put) {
-    let slots = if stamp.slot_ticks > 0 { P::Code::SLOTS } else { 1 };
+///
+/// # Safety
+/// An output was put into each room.
+unsafe fn put<C: CCode>(rooms: &[C::Room], stamp: &Stamp, mut queue: impl Put) {
+    let slots = if stamp.slot_ticks > 0 { C::SLOTS } else { 1 };
     let mut tick = Tick::from(stamp.tick);
     for slot in 0..slots {
         let mut first = stamp.first_address;
-        for code in codes {
-            let firings = read_output::<P>(code);
-            for Firing { neuron, slot: own, polarity } in firings.iter().flat_map(Code::firings) {
+        for room in rooms {
+            // SAFETY: the caller's promise.
+            let code = unsafe { C::read(room) };
+            for Firing { neuron, slot: own, polarity } in code.iter().flat_map(Code::firings) {
                 if slots == 1 || usize::from(own) == slot {
                     let address = first.wrapping_add(neuron);
                     queue.put(Item::Event(Event { tick, address, polarity }));
                 }
             }
-            first = first.wrapping_add(P::Code::NEURONS as u16);
+            first = first.wrapping_add(C::NEURONS as u16);
         }
         tick += stamp.slot_ticks;
     }

@@ -16,6 +16,7 @@ pub mod header;
 
 pub mod argument;
 mod calibration;
+pub mod code;
 pub mod codec;
 #[cfg(feature = "codecs")]
 mod codecs;

@@ -83,15 +83,42 @@ pub(crate) unsafe fn slice_mut<'a, T>(
     Ok(unsafe { core::slice::from_raw_parts_mut(pointer, length) })
 }
 
-/// Whether two buffers share no byte.
+/// What is read and, as long, what is written; it shares no byte with what is read, nor with what is `kept`.
+///
+/// # Safety
+/// C's promise, and what they point to are so many values, or any bytes are.
+#[inline]
+pub(crate) unsafe fn from_to<'a, K, A, B>(
+    kept: *const K,
+    from: *const A,
+    to: *mut B,
+    length: usize,
+) -> Result<(&'a [A], &'a mut [B]), Status> {
+    if length == 0 {
+        return Ok((&[], &mut []));
+    }
+    if length > isize::MAX as usize / size_of::<A>().max(size_of::<B>()) {
+        return Err(Status::BAD_LENGTH);
+    }
+    check(from)?;
+    check(to)?;
+    apart(from, length, to, length)?;
+    apart(kept, 1, to, length)?;
+    // SAFETY: neither null nor misaligned, apart, and not beyond the address space; the rest is the caller's promise.
+    unsafe {
+        Ok((core::slice::from_raw_parts(from, length), core::slice::from_raw_parts_mut(to, length)))
+    }
+}
+
+/// Whether two buffers share no byte; both are within the address space.
 pub(crate) fn apart<A, B>(
     a: *const A,
     a_length: usize,
     b: *const B,
     b_length: usize,
 ) -> Result<(), Status> {
-    let (a_start, b_start) = (a.addr(), b.addr());
-    let a_end = a_start.saturating_add(size_of::<A>().saturating_mul(a_length));
-    let b_end = b_start.saturating_add(size_of::<B>().saturating_mul(b_length));
-    if a_start < b_end && b_start < a_end { Err(Status::OVERLAPPING) } else { Ok(()) }
+    let (a, a_bytes) = (a.addr(), size_of::<A>().wrapping_mul(a_length));
+    let (b, b_bytes) = (b.addr(), size_of::<B>().wrapping_mul(b_length));
+    let overlap = b.wrapping_sub(a) < a_bytes || a.wrapping_sub(b) < b_bytes;
+    if overlap { Err(Status::OVERLAPPING) } else { Ok(()) }
 }

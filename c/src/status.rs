@@ -49,8 +49,6 @@ statuses! {
     NOT_MADE = -5, c"the codec is not initialised, or is of another type";
     /// Storage without its start.
     NOT_STARTED = -6, c"it is not started";
-    /// A spike is neither -1, 0 nor 1.
-    BAD_CODE = -7, c"a spike is neither -1, 0 nor 1";
     /// A number names no choice.
     BAD_CHOICE = -8, c"there is no such choice";
     /// A length is beyond the address space.

@@ -36,7 +36,7 @@ static void pointers(void)
         float samples[8];
         int8_t codes[32];
     } both;
-    static const int8_t bad[3] = {1, 7, 0};
+    static const int8_t signs[3] = {7, 0, -100};
     static const float three[3] = {0.0f, 1.0f, 2.0f};
     float value = 0.0f, values[3];
     int8_t code = 0, codes[3];
@@ -65,8 +65,10 @@ static void pointers(void)
     is("beyond", sw_step_forward_f32_encode_slice(&encoder, three, codes, SIZE_MAX), SW_BAD_LENGTH);
     is("slice", sw_step_forward_f32_encode_slice(&encoder, three, codes, 3u), SW_OK);
     holds("spikes", (codes[0] == 0) && (codes[1] == 1) && (codes[2] == 1));
-    is("bad spike", sw_step_forward_f32_decode(&decoder, &bad[1], &value), SW_BAD_CODE);
-    is("bad spikes", sw_step_forward_f32_decode_slice(&decoder, bad, values, 3u), SW_BAD_CODE);
+    is("signs", sw_step_forward_f32_decode_slice(&decoder, signs, values, 3u), SW_OK);
+    holds("a byte counts by its sign", (values[1] > 0.49f) && (values[1] < 0.51f) && (values[2] < 0.01f));
+    is("sign", sw_step_forward_f32_decode(&decoder, &signs[1], &value), SW_OK);
+    holds("no step", value < 0.01f);
     is("decode", sw_step_forward_f32_decode_slice(&decoder, codes, values, 3u), SW_OK);
     holds("values", (values[1] > 0.49f) && (values[2] > 0.99f) && (values[2] < 1.01f));
     is("keyframe", sw_step_forward_f32_keyframe(&encoder, &value), SW_OK);
@@ -76,12 +78,14 @@ static void choices(void)
 {
     static sw_hough_15_f32 codec;
     static sw_hough_15_f32_encoder encoder;
+    static sw_hough_15_f32_decoder decoder;
     static sw_slots_15_10_f32 slots;
     static sw_slots_15_10_f32_encoder neurons;
     static sw_slots_15_10_f32_code code;
     static sw_firing firings[15];
     float taps[15] = {0.0f};
     int8_t spikes[20];
+    float values[20];
     static const float rest[20] = {0.0f};
     size_t count = 0;
     sw_error error;
@@ -95,6 +99,9 @@ static void choices(void)
     is("waits", sw_hough_15_f32_encode(&encoder, 0.0f, &spikes[0]), SW_WAITING);
     is("slice", sw_hough_15_f32_encode_slice(&encoder, rest, spikes, 20u), SW_OK);
     holds("13 more wait", (spikes[12] == SW_WAITING_SPIKE) && (spikes[13] == 0));
+    is("decoder", sw_hough_15_f32_decoder_start(&decoder, &codec), SW_OK);
+    is("decode", sw_hough_15_f32_decode_slice(&decoder, spikes, values, 20u), SW_OK);
+    holds("none while it waits", (values[0] < 0.01f) && (values[12] < 0.01f));
     is("finish", sw_hough_15_f32_finish(&encoder, &spikes[0]), SW_OK);
 
     is("range", sw_slots_15_10_f32_init(&slots, 1.0f, 1.0f, 1.5f, 1u, &error), SW_NOT_RISING);

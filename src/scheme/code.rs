@@ -1,6 +1,7 @@
 //! Codes: the spikes that a sample becomes, and the traits of all codes.
 
 use core::cmp::Ordering;
+use core::mem::MaybeUninit;
 
 /// What a temporal or rate code emits for one sample.
 ///
@@ -136,6 +137,43 @@ impl Output for Spike {
 
     fn code(self) -> Option<Self> {
         Some(self)
+    }
+}
+
+/// Where the output of a sample goes: outputs, or memory that holds none yet.
+pub trait Place<T> {
+    /// Puts an output there.
+    fn write(&mut self, output: T);
+
+    /// Puts an output there, after this has filled it.
+    fn write_with(&mut self, mut output: T, fill: impl FnOnce(&mut T)) {
+        fill(&mut output);
+        self.write(output);
+    }
+}
+
+impl<T> Place<T> for T {
+    #[inline]
+    fn write(&mut self, output: T) {
+        *self = output;
+    }
+
+    #[inline]
+    fn write_with(&mut self, output: T, fill: impl FnOnce(&mut T)) {
+        *self = output;
+        fill(self);
+    }
+}
+
+impl<T> Place<T> for MaybeUninit<T> {
+    #[inline]
+    fn write(&mut self, output: T) {
+        self.write(output);
+    }
+
+    #[inline]
+    fn write_with(&mut self, output: T, fill: impl FnOnce(&mut T)) {
+        fill(self.write(output));
     }
 }
 

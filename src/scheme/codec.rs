@@ -2,7 +2,7 @@
 
 use core::fmt::Debug;
 
-use super::code::{Code, Output};
+use super::code::{Code, Output, Place};
 use crate::Sample;
 
 /// A coding scheme: checked parameters as plain data, in a `const` or a `static`.
@@ -43,10 +43,10 @@ pub trait Scheme: Sized {
         &self,
         state: &mut Self::EncoderState,
         samples: &[Self::Sample],
-        outputs: &mut [Self::Output],
+        outputs: &mut [impl Place<Self::Output>],
     ) -> usize {
         for (output, &sample) in outputs.iter_mut().zip(samples) {
-            *output = self.encode(state, sample);
+            output.write(self.encode(state, sample));
         }
         samples.len().min(outputs.len())
     }
@@ -78,11 +78,11 @@ pub trait Scheme: Sized {
     fn decode_slice(
         &self,
         state: &mut Self::DecoderState,
-        codes: &[Self::Code],
+        codes: &[impl Copy + Into<Self::Code>],
         values: &mut [Self::Sample],
     ) -> usize {
         for (value, &code) in values.iter_mut().zip(codes) {
-            *value = self.decode(state, code);
+            *value = self.decode(state, code.into());
         }
         codes.len().min(values.len())
     }
@@ -343,10 +343,10 @@ pub(super) fn encode_each<P: Scheme>(
     scheme: &P,
     state: &mut P::EncoderState,
     samples: &[P::Sample],
-    outputs: &mut [P::Output],
+    outputs: &mut [impl Place<P::Output>],
 ) -> usize {
     for (output, &sample) in outputs.iter_mut().zip(samples) {
-        *output = encode_apart(scheme, state, sample);
+        output.write(encode_apart(scheme, state, sample));
     }
     samples.len().min(outputs.len())
 }
@@ -358,14 +358,14 @@ pub(super) fn encode_first<P: Scheme>(
     scheme: &P,
     state: &mut P::EncoderState,
     samples: &[P::Sample],
-    outputs: &mut [P::Output],
+    outputs: &mut [impl Place<P::Output>],
 ) -> usize {
     let mut taken = 0;
     for (output, &sample) in outputs.iter_mut().zip(samples) {
         if scheme.keyframe(state).is_some() {
             break;
         }
-        *output = encode_apart(scheme, state, sample);
+        output.write(encode_apart(scheme, state, sample));
         taken += 1;
     }
     taken

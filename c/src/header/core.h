@@ -8,7 +8,7 @@
  *   sw_NAME           its parameters: one for any number of channels
  *   sw_NAME_encoder   what one channel's encoder keeps, with a pointer to the parameters
  *   sw_NAME_decoder   what one channel's decoder keeps, with a pointer to the parameters
- *   sw_NAME_code      what a sample becomes; an int8_t for spikes: -1, 0 or 1, or a signed number of them
+ *   sw_NAME_code      what a sample becomes; an int8_t for a spike, -1, 0 or 1, or for a signed number of spikes
  *
  *   sw_NAME_init             prepares parameters; what is wrong with one is told by the status, and by `error` unless
  *                            that is NULL
@@ -22,7 +22,7 @@
  *   sw_NAME_rejected         how many samples were not finite
  *   sw_NAME_decoder_start    starts, or resets, a decoder
  *   sw_NAME_decode           decodes the code of a sample
- *   sw_NAME_decode_slice     decodes codes in order; not those that wait
+ *   sw_NAME_decode_slice     decodes codes in order; a byte counts as a spike by its sign, and SW_WAITING_SPIKE as none
  *   sw_NAME_held             the value that a decoder holds until the next spike, or SW_NOTHING for rate codes
  *   sw_NAME_resync           sets a decoder to a known value: the first sample, or a keyframe
  *   sw_NAME_firings          a code as the neurons that fire, by rising index; SW_TOO_SMALL if there are more
@@ -41,7 +41,7 @@
  * - Codes other than int8_t come from encode, encode_slice, bank or assemble of the same codec.
  *
  * What can be known is answered with a status below 0 and changes nothing: null and misaligned pointers, overlapping
- * buffers, storage that is all 0 because it was not started, parameters of another codec, spikes that are none.
+ * buffers, storage that is all 0 because it was not started, parameters of another codec.
  * Nothing allocates, blocks, or keeps a global.
  */
 #ifndef SPIKEWIRE_H
@@ -64,7 +64,7 @@ typedef int32_t sw_status;
 
 @STATUSES@
 /* The spike of a rate code that waits for later samples. */
-#define SW_WAITING_SPIKE ((int8_t)2)
+#define SW_WAITING_SPIKE INT8_MIN
 
 /* A line that says what a status means. */
 const char *sw_status_text(sw_status status);

@@ -7,7 +7,7 @@ use super::centres::Centres;
 use crate::error::unwrap;
 use crate::num::Tally;
 use crate::scheme::held::Held;
-use crate::{ConfigError, Recovery, Sample, Scheme, Start};
+use crate::{ConfigError, Place, Recovery, Sample, Scheme, Start};
 
 /// Position coding: every sample fires the one neuron whose centre is nearest.
 ///
@@ -128,15 +128,15 @@ impl<S: Sample, const M: usize> Position<S, M> {
         &self,
         state: &mut PositionState,
         samples: &[S],
-        outputs: &mut [Option<Neuron<M>>],
+        outputs: &mut [impl Place<Option<Neuron<M>>>],
     ) {
         for (output, &sample) in outputs.iter_mut().zip(samples) {
-            *output = None;
-            if sample.is_finite() {
-                *output = Neuron::counted(self.centres.by_search(sample) as u16);
+            output.write(if sample.is_finite() {
+                Neuron::counted(self.centres.by_search(sample) as u16)
             } else {
                 state.tally.reject();
-            }
+                None
+            });
         }
     }
 
@@ -184,7 +184,7 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
         &self,
         state: &mut PositionState,
         samples: &[S],
-        outputs: &mut [Option<Neuron<M>>],
+        outputs: &mut [impl Place<Option<Neuron<M>>>],
     ) -> usize {
         let centres = &self.centres;
         let mut taint = S::ZERO;
@@ -192,7 +192,7 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
             // Encodes as if all were finite; if one was not, the slice is encoded again.
             for (output, &sample) in outputs.iter_mut().zip(samples) {
                 taint = taint.taint(sample);
-                *output = Neuron::counted(centres.by_bin(sample) as u16);
+                output.write(Neuron::counted(centres.by_bin(sample) as u16));
             }
         }
         if !centres.has_bins() || !taint.is_finite() {
@@ -219,12 +219,12 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
     fn decode_slice(
         &self,
         state: &mut Held<S>,
-        neurons: &[Option<Neuron<M>>],
+        neurons: &[impl Copy + Into<Option<Neuron<M>>>],
         values: &mut [S],
     ) -> usize {
         let mut held = *state;
         for (value, &neuron) in values.iter_mut().zip(neurons) {
-            *value = held.or_hold(self.centre(neuron));
+            *value = held.or_hold(self.centre(neuron.into()));
         }
         *state = held;
         neurons.len().min(values.len())

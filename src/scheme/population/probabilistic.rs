@@ -11,7 +11,7 @@ use super::fields::ReceptiveFields;
 use crate::error::unwrap;
 use crate::num::{Distance, Tally};
 use crate::scheme::held::Held;
-use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
+use crate::{ConfigError, Encoder, Place, Recovery, Sample, Scheme};
 
 /// Gaussian receptive fields in which a neuron fires with a probability equal to its response, drawn from the
 /// caller's random number generator.
@@ -201,11 +201,12 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Scheme for Probabilistic
         &self,
         state: &mut ProbabilisticState<G>,
         samples: &[S],
-        outputs: &mut [FiredNeurons<M>],
+        outputs: &mut [impl Place<FiredNeurons<M>>],
     ) -> usize {
-        for (neurons, &sample) in outputs.iter_mut().zip(samples) {
-            *neurons = FiredNeurons::EMPTY;
-            self.encode_into(state, sample, neurons);
+        for (output, &sample) in outputs.iter_mut().zip(samples) {
+            output.write_with(FiredNeurons::EMPTY, |neurons| {
+                self.encode_into(state, sample, neurons)
+            });
         }
         samples.len().min(outputs.len())
     }

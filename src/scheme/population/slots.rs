@@ -7,7 +7,7 @@ use super::fields::ReceptiveFields;
 use crate::error::{unwrap, within};
 use crate::num::{Distance, Tally};
 use crate::scheme::held::Held;
-use crate::{ConfigError, Recovery, Sample, Scheme, Start};
+use crate::{ConfigError, Place, Recovery, Sample, Scheme, Start};
 
 /// Gaussian receptive fields whose neurons fire in one of `N` sub-timesteps of a sample, its slots.
 ///
@@ -202,11 +202,10 @@ impl<S: Sample, const M: usize, const N: usize> Scheme for Slots<S, M, N> {
         &self,
         state: &mut SlotsState,
         samples: &[S],
-        outputs: &mut [SlotSpikes<M, N>],
+        outputs: &mut [impl Place<SlotSpikes<M, N>>],
     ) -> usize {
-        for (spikes, &sample) in outputs.iter_mut().zip(samples) {
-            *spikes = SlotSpikes::EMPTY;
-            self.encode_into(state, sample, spikes);
+        for (output, &sample) in outputs.iter_mut().zip(samples) {
+            output.write_with(SlotSpikes::EMPTY, |spikes| self.encode_into(state, sample, spikes));
         }
         samples.len().min(outputs.len())
     }

@@ -7,7 +7,7 @@ use super::encoder::{cells, subtract};
 use super::filtered::{Filtered, with_shift};
 use crate::error::{ratio, unwrap};
 use crate::num::{Nearer, Ratio, Residual, Tally};
-use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
 
 /// Ben's spiker algorithm with the indices behind the paper's tables: the filter is compared one sample later, and
 /// subtracted two samples later, than in [`Bsa`](super::Bsa).
@@ -165,11 +165,11 @@ impl<S: Sample, const F: usize> Scheme for BsaToolbox<S, F> {
         &self,
         state: &mut BsaToolboxState<S, F>,
         samples: &[S],
-        spikes: &mut [Option<Spike>],
+        spikes: &mut [impl Place<Option<Spike>>],
     ) -> usize {
         let mut registers = state.registers;
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
-            *spike = self.encode_one(&mut state.residuals, &mut registers, sample);
+            spike.write(self.encode_one(&mut state.residuals, &mut registers, sample));
         }
         state.registers = registers;
         samples.len().min(spikes.len())

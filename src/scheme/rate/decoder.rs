@@ -66,11 +66,11 @@ macro_rules! decode_rate {
         fn decode_slice(
             &self,
             state: &mut RateDecoderState<S, F>,
-            spikes: &[Spike],
+            spikes: &[impl Copy + Into<Spike>],
             values: &mut [S],
         ) -> usize {
             for (value, &spike) in values.iter_mut().zip(spikes) {
-                *value = state.decode(&self.filtered, spike);
+                *value = state.decode(&self.filtered, spike.into());
             }
             spikes.len().min(values.len())
         }

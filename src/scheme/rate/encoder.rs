@@ -6,7 +6,7 @@ use core::hint::black_box;
 use super::cursor::Cursor;
 use super::filtered::Filtered;
 use crate::num::{Residual, Tally};
-use crate::{Sample, Spike};
+use crate::{Place, Sample, Spike};
 
 /// A rate code's rule for when a sample spikes.
 pub(super) trait Rule<S: Sample, const F: usize> {
@@ -107,16 +107,16 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         &mut self,
         rule: &R,
         samples: &[S],
-        spikes: &mut [Option<Spike>],
+        spikes: &mut [impl Place<Option<Spike>>],
     ) -> usize {
         let length = samples.len().min(spikes.len());
         if !R::IN_ORDER {
             for (spike, &sample) in spikes.iter_mut().zip(samples) {
-                *spike = if S::Residual::IS_EXACT {
+                spike.write(if S::Residual::IS_EXACT {
                     self.encode_called(rule, sample)
                 } else {
                     self.encode(rule, sample)
-                };
+                });
             }
             return length;
         }
@@ -132,7 +132,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
             if encoded == 0 {
                 self.take(rule.filtered(), sample);
                 if let Some(spike) = spikes.first_mut() {
-                    *spike = None;
+                    spike.write(None);
                 }
                 done = done.wrapping_add(1);
             }
@@ -151,7 +151,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         &mut self,
         rule: &R,
         samples: &[S],
-        spikes: &mut [Option<Spike>],
+        spikes: &mut [impl Place<Option<Spike>>],
     ) -> usize {
         let filtered = rule.filtered();
         let taps = *filtered.taps.as_array();
@@ -188,7 +188,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
             if fits {
                 subtract(window, &taps);
             }
-            *spike = Some(if fits { Spike::Up } else { Spike::None });
+            spike.write(Some(if fits { Spike::Up } else { Spike::None }));
         }
         if let Some(last) = line.get(oldest.wrapping_add(length)..).and_then(<[_]>::first_chunk) {
             self.residuals = *last;
@@ -294,7 +294,7 @@ macro_rules! rate_scheme {
                 &self,
                 state: &mut RateState<S, F>,
                 samples: &[S],
-                spikes: &mut [Option<Spike>],
+                spikes: &mut [impl Place<Option<Spike>>],
             ) -> usize {
                 state.encode_slice(self, samples, spikes)
             }

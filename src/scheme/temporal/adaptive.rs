@@ -5,7 +5,7 @@ use super::doublings;
 use crate::error::{unwrap, within};
 use crate::num::Tally;
 use crate::scheme::codec::encode_first;
-use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
 
 /// Adaptive step forward: the baseline follows the signal by one step a spike, and the step grows while the signal
 /// runs away.
@@ -210,7 +210,7 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         &self,
         state: &mut AdaptiveState<S>,
         samples: &[S],
-        spikes: &mut [Spike],
+        spikes: &mut [impl Place<Spike>],
     ) -> usize {
         let first =
             if state.tally.is_primed() { 0 } else { encode_first(self, state, samples, spikes) };
@@ -220,14 +220,15 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         let AdaptiveState { mut base, mut pace, .. } = *state;
         let mut band = Band::around(base, self.threshold);
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
-            *spike = Spike::None;
             if pace == Pace::REST && band.holds(sample) {
+                spike.write(Spike::None);
                 continue;
             }
-            match self.follow(&mut base, &mut pace, sample) {
-                Some(emitted) => *spike = emitted,
-                None => state.tally.reject(),
+            let followed = self.follow(&mut base, &mut pace, sample);
+            if followed.is_none() {
+                state.tally.reject();
             }
+            spike.write(followed.unwrap_or_default());
             band = Band::around(base, self.threshold);
         }
         (state.base, state.pace) = (base, pace);
@@ -267,6 +268,22 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         };
         state.pace.take(spike, self.run, self.doublings);
         state.value
+    }
+
+    /// The state stays in registers.
+    #[inline]
+    fn decode_slice(
+        &self,
+        state: &mut AdaptiveStepState<S>,
+        spikes: &[impl Copy + Into<Spike>],
+        values: &mut [S],
+    ) -> usize {
+        let mut own = *state;
+        for (value, &spike) in values.iter_mut().zip(spikes) {
+            *value = self.decode(&mut own, spike.into());
+        }
+        *state = own;
+        spikes.len().min(values.len())
     }
 
     fn held(&self, state: &AdaptiveStepState<S>) -> Option<S> {

@@ -4,7 +4,7 @@ use super::doublings;
 use crate::error::unwrap;
 use crate::num::Tally;
 use crate::scheme::codec::{encode_each, encode_first};
-use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
 
 /// Adaptive temporal contrast: the threshold follows how much the signal changes, between two bounds.
 ///
@@ -165,7 +165,7 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
         &self,
         state: &mut AdaptiveContrastState<S>,
         samples: &[S],
-        spikes: &mut [Spike],
+        spikes: &mut [impl Place<Spike>],
     ) -> usize {
         let first =
             if state.tally.is_primed() { 0 } else { encode_first(self, state, samples, spikes) };
@@ -177,11 +177,12 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
         let mut taint = S::ZERO;
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
             taint = taint.taint(sample);
-            *spike = Spike::from_side(sample.step(previous, threshold));
+            let emitted = Spike::from_side(sample.step(previous, threshold));
+            spike.write(emitted);
             previous = sample;
             // Without a spike now or among the last 16 samples the threshold stays the smallest.
-            if recent != Recent::NONE || spike.is_fired() {
-                recent.take(*spike);
+            if recent != Recent::NONE || emitted.is_fired() {
+                recent.take(emitted);
                 threshold = self.after(recent);
             }
         }
@@ -217,14 +218,32 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
     /// Adds the threshold, and adapts it as the encoder did.
     #[inline]
     fn decode(&self, state: &mut AdaptiveContrastStep<S>, spike: Spike) -> S {
-        let threshold = self.after(state.recent);
-        state.value = match spike {
-            Spike::Up => state.value.plus(threshold),
-            Spike::None => state.value,
-            Spike::Down => state.value.minus(threshold),
-        };
+        if spike.is_fired() {
+            let threshold = self.after(state.recent);
+            state.value = if spike.sign() > 0 {
+                state.value.plus(threshold)
+            } else {
+                state.value.minus(threshold)
+            };
+        }
         state.recent.take(spike);
         state.value
+    }
+
+    /// The state stays in registers.
+    #[inline]
+    fn decode_slice(
+        &self,
+        state: &mut AdaptiveContrastStep<S>,
+        spikes: &[impl Copy + Into<Spike>],
+        values: &mut [S],
+    ) -> usize {
+        let mut own = *state;
+        for (value, &spike) in values.iter_mut().zip(spikes) {
+            *value = self.decode(&mut own, spike.into());
+        }
+        *state = own;
+        spikes.len().min(values.len())
     }
 
     fn held(&self, state: &AdaptiveContrastStep<S>) -> Option<S> {

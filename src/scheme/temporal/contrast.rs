@@ -5,7 +5,7 @@ use super::steps::decode_steps;
 use crate::error::{positive, unwrap};
 use crate::num::{Tally, to_f64};
 use crate::scheme::codec::{encode_each, encode_first};
-use crate::{Calibration, ConfigError, Recovery, Sample, Scheme, Spike, Start};
+use crate::{Calibration, ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
 
 /// Temporal contrast, also called temporal-based representation (TBR): what event cameras do.
 ///
@@ -151,7 +151,7 @@ impl<S: Sample> Scheme for TemporalContrast<S> {
         &self,
         state: &mut ContrastState<S>,
         samples: &[S],
-        spikes: &mut [Spike],
+        spikes: &mut [impl Place<Spike>],
     ) -> usize {
         let first =
             if state.tally.is_primed() { 0 } else { encode_first(self, state, samples, spikes) };
@@ -162,7 +162,7 @@ impl<S: Sample> Scheme for TemporalContrast<S> {
         let mut taint = S::ZERO;
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
             taint = taint.taint(sample);
-            *spike = Spike::from_side(sample.step(previous, self.threshold));
+            spike.write(Spike::from_side(sample.step(previous, self.threshold)));
             previous = sample;
         }
         if taint.is_finite() {

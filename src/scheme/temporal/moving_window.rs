@@ -7,7 +7,7 @@ use super::StepState;
 use super::steps::decode_steps;
 use crate::error::{positive, unwrap};
 use crate::num::{Difference, Tally, Windowed, fast_margin, margin, to_f64};
-use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
 
 /// Moving window: the baseline is the mean of the `N` samples before.
 ///
@@ -142,7 +142,7 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
         &mut self,
         margin: <S::Fast as Difference>::Margin,
         groups: &[[S; M]],
-        spikes: &mut [[Spike; M]],
+        spikes: &mut [[impl Place<Spike>; M]],
     ) -> usize {
         let Some(mut partial) = S::fast(self.partial) else { return 0 };
         let is_full = self.next < FILLING;
@@ -158,7 +158,7 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
             let mut taint = S::Fast::ZERO;
             for ((spike, sample), &slot) in spikes.iter_mut().zip(samples).zip(slots.iter()) {
                 let difference = sample.excess(N, slot, &mut sum);
-                *spike = Spike::from_side(difference.beyond(margin));
+                spike.write(Spike::from_side(difference.beyond(margin)));
                 taint = taint.taint(difference);
             }
             if !taint.is_finite() {
@@ -182,7 +182,7 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
         &mut self,
         margin: <S::Fast as Difference>::Margin,
         groups: &[[S; GROUP]],
-        spikes: &mut [[Spike; GROUP]],
+        spikes: &mut [[impl Place<Spike>; GROUP]],
     ) -> usize {
         self.encode_groups(margin, groups, spikes)
     }
@@ -311,7 +311,7 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
         &self,
         state: &mut MovingWindowState<S, N>,
         mut samples: &[S],
-        mut spikes: &mut [Spike],
+        mut spikes: &mut [impl Place<Spike>],
     ) -> usize {
         let length = samples.len().min(spikes.len());
         samples = samples.get(..length).unwrap_or_default();
@@ -333,7 +333,7 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
             } else if let (Some(&sample), Some(spike)) =
                 (samples.split_off_first(), spikes.split_off_first_mut())
             {
-                *spike = self.encode_carefully(state, sample);
+                spike.write(self.encode_carefully(state, sample));
             }
         }
         length

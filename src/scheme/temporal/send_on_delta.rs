@@ -5,7 +5,9 @@ use super::band::Band;
 use crate::error::{step, unwrap, within};
 use crate::num::{Tally, to_f64};
 use crate::scheme::codec::encode_first;
-use crate::{Code, ConfigError, Firing, Output, Polarity, Recovery, Sample, Scheme, Spike, Start};
+use crate::{
+    Code, ConfigError, Firing, Output, Place, Polarity, Recovery, Sample, Scheme, Spike, Start,
+};
 
 /// Send-on-delta: the baseline follows the signal by up to `K` thresholds a sample, with one spike for each.
 ///
@@ -216,7 +218,7 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
         &self,
         state: &mut SendOnDeltaState<S>,
         samples: &[S],
-        outputs: &mut [Steps<K>],
+        outputs: &mut [impl Place<Steps<K>>],
     ) -> usize {
         let first =
             if state.tally.is_primed() { 0 } else { encode_first(self, state, samples, outputs) };
@@ -225,9 +227,9 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
 
         let mut band = Band::around(state.base, self.threshold);
         for (output, &sample) in outputs.iter_mut().zip(samples) {
-            *output = Steps(0);
+            output.write(Steps(0));
             if !band.holds(sample) {
-                *output = self.follow(state, sample);
+                output.write(self.follow(state, sample));
                 band = Band::around(state.base, self.threshold);
             }
         }

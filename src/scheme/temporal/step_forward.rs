@@ -6,7 +6,7 @@ use super::steps::decode_steps;
 use crate::error::{step, unwrap};
 use crate::num::{Tally, to_f64};
 use crate::scheme::codec::{encode_each, encode_first};
-use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
 
 /// Step forward: the baseline starts at the first sample and follows the signal by one threshold with each
 /// spike.
@@ -129,7 +129,7 @@ impl<S: Sample> Scheme for StepForward<S> {
         &self,
         state: &mut StepForwardState<S>,
         samples: &[S],
-        spikes: &mut [Spike],
+        spikes: &mut [impl Place<Spike>],
     ) -> usize {
         let first =
             if state.tally.is_primed() { 0 } else { encode_first(self, state, samples, spikes) };
@@ -140,15 +140,15 @@ impl<S: Sample> Scheme for StepForward<S> {
         let mut band = Band::around(state.base, threshold);
         let mut taint = S::ZERO;
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
-            *spike = Spike::None;
+            spike.write(Spike::None);
             if sample > band.upper {
                 band = Band::around(band.upper, threshold);
                 taint = taint.taint(sample);
-                *spike = Spike::Up;
+                spike.write(Spike::Up);
             } else if band.is_above(sample) {
                 band = Band::around(band.lower, threshold);
                 taint = taint.taint(sample);
-                *spike = Spike::Down;
+                spike.write(Spike::Down);
             }
         }
         if taint.is_finite() {

@@ -39,7 +39,12 @@ impl<S: Sample> StepState<S> {
     /// The value stays in a register, and a turn of the loop decodes eight samples.
     #[allow(clippy::inline_always)]
     #[inline(always)] // a call would move five arguments
-    pub(super) fn decode_slice(&mut self, step: S, spikes: &[Spike], values: &mut [S]) -> usize {
+    pub(super) fn decode_slice(
+        &mut self,
+        step: S,
+        spikes: &[impl Copy + Into<Spike>],
+        values: &mut [S],
+    ) -> usize {
         let steps = [step.negated(), S::ZERO, step];
         let mut decoded = self.value;
         let mut decode = |value: &mut S, spike: Spike| {
@@ -56,11 +61,11 @@ impl<S: Sample> StepState<S> {
             values.get_mut(..length).unwrap_or_default().as_chunks_mut::<8>();
         for (values, spikes) in values.iter_mut().zip(spikes) {
             for (value, &spike) in values.iter_mut().zip(spikes) {
-                decode(value, spike);
+                decode(value, spike.into());
             }
         }
         for (value, &spike) in last_values.iter_mut().zip(last_spikes) {
-            decode(value, spike);
+            decode(value, spike.into());
         }
         self.value = decoded;
         length
@@ -83,7 +88,7 @@ macro_rules! decode_steps {
         fn decode_slice(
             &self,
             state: &mut StepState<S>,
-            spikes: &[Spike],
+            spikes: &[impl Copy + Into<Spike>],
             values: &mut [S],
         ) -> usize {
             state.decode_slice(self.$step, spikes, values)

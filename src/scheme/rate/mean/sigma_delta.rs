@@ -6,7 +6,7 @@ use super::averaging::{Averaging, MeanState, decode_mean};
 use super::range::Range;
 use crate::error::unwrap;
 use crate::num::{Tally, Total};
-use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
 
 /// First-order sigma-delta: the share of samples with a spike is `p / R`, the signal's height in its range.
 ///
@@ -106,10 +106,10 @@ impl<S: Sample, A: Averaging> Scheme for SigmaDelta<S, A> {
         &self,
         state: &mut SigmaDeltaState<S>,
         samples: &[S],
-        spikes: &mut [Spike],
+        spikes: &mut [impl Place<Spike>],
     ) -> usize {
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
-            *spike = self.encode(state, sample);
+            spike.write(self.encode(state, sample));
         }
         samples.len().min(spikes.len())
     }
