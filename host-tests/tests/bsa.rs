@@ -117,7 +117,7 @@ fn hostile() {
 /// Any ratio that is allowed, exact multiples of 2⁻¹⁴ and halves between them often.
 fn ratios() -> impl Strategy<Value = f32> {
     let grid = (2..131_070_u32).prop_map(|halves| halves as f32 / 32_768.0);
-    prop_oneof![grid, 0.1_f32..1.5, 0.000_062_f32..3.999]
+    prop_oneof![grid, crate::common::between(0.1, 1.5), crate::common::between(0.000_062, 3.999)]
 }
 
 macro_rules! drawn {

@@ -82,7 +82,7 @@ fn hostile() {
 macro_rules! drawn {
     ($sample:ty, $lengths:ident) => {{
     let shift = <$sample>::shift();
-    let threshold = prop_oneof![0.1_f32..1.5, 0.000_062_f32..3.999, Just(1.0_f32)];
+    let threshold = prop_oneof![crate::common::between(0.1, 1.5), crate::common::between(0.000_062, 3.999), Just(1.0_f32)];
     let parameters = (recordings::<$sample>(), threshold, shift);
     let cases = &cases(128);
     proptest!(cases, |(((x, taps), threshold, shift) in parameters)| {

@@ -153,7 +153,7 @@ fn fewest_slots() {
 /// `f32` next to every edge.
 #[test]
 fn beside_the_edges() {
-    proptest!(cases(128), |(min in -3.0_f32..3.0, width in 0.01_f32..5.0)| {
+    proptest!(cases(128), |(min in -3.0_f32..3.0, width in crate::common::between(0.01, 5.0))| {
         let range = [min, min + width];
         let counts = (0..5).map(|k| edge(range[0], range[1], k, 5));
         let intervals = (1..=8).map(|j| edge(range[0], range[1], j, 8));

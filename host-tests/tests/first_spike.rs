@@ -134,7 +134,7 @@ fn flights_and_hostile_recordings() {
 }
 
 fn drawn<S: Lined + Drawn>() {
-    proptest!(cases(48), |(x in S::recordings(), a in S::value(), b in S::value(), ratio in 1.5_f32..999.0)| {
+    proptest!(cases(48), |(x in S::recordings(), a in S::value(), b in S::value(), ratio in crate::common::between(1.5, 999.0))| {
         let range = rising(a, b);
         prop_assume!(range[0] < range[1]);
         check_linear::<S, 2>(range, &x);
@@ -154,7 +154,7 @@ fn drawn_recordings() {
 /// `f32` next to every edge.
 #[test]
 fn beside_the_edges() {
-    proptest!(cases(128), |(min in -3.0_f32..3.0, width in 0.01_f32..5.0)| {
+    proptest!(cases(128), |(min in -3.0_f32..3.0, width in crate::common::between(0.01, 5.0))| {
         let range = [min, min + width];
         let edges = (1..16).map(|c| edge(range[0], range[1], 2 * c - 1, 30));
         check_linear::<f32, 16>(range, &beside(edges));

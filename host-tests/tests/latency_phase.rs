@@ -130,7 +130,7 @@ fn drawn_recordings() {
 /// `f32` next to every edge.
 #[test]
 fn beside_the_edges() {
-    proptest!(cases(128), |(min in -3.0_f32..3.0, width in 0.01_f32..5.0)| {
+    proptest!(cases(128), |(min in -3.0_f32..3.0, width in crate::common::between(0.01, 5.0))| {
         let range = [min, min + width];
         let edges = (1..32).map(|c| edge(range[0], range[1], c, 32));
         check_phases::<f32, 4, 32, 4>(range, 1, 0, &beside(edges));

@@ -337,8 +337,8 @@ fn hostile() {
 
 fn drawn<S: Fields + Drawn + PartialOrd>() {
     let list = proptest::collection::vec(S::value(), 7);
-    let beta = prop_oneof![Just(1.5_f32), 0.3_f32..4.0];
-    let widths = proptest::collection::vec(0.2_f32..4.0, 7);
+    let beta = prop_oneof![Just(1.5_f32), crate::common::between(0.3, 4.0)];
+    let widths = proptest::collection::vec(crate::common::between(0.2, 4.0), 7);
     let cases = &cases(96);
     proptest!(cases, |((mut list, beta, widths, x, floor) in (list, beta, widths, S::recordings(), 1..10_u16))| {
         list.sort_by(|a, b| a.partial_cmp(b).unwrap());

@@ -224,7 +224,7 @@ fn edges_of_integer_ranges() {
 /// Ranges so fine that a spacing is a few last places of a float: all floats within.
 #[test]
 fn spacings_of_a_few_last_places() {
-    proptest!(cases(256), |(min in prop_oneof![-9.0_f32..9.0, 1e-40_f32..1e-36], last in 20..400_u32)| {
+    proptest!(cases(256), |(min in prop_oneof![-9.0_f32..9.0, crate::common::between(1e-40, 1e-36)], last in 20..400_u32)| {
         let mut x = vec![min];
         x.extend((0..last).scan(min, |x, _| {
             *x = x.next_up();
@@ -264,7 +264,7 @@ fn edges_of_ranges() {
         let spaced: Vec<_> = spaced.into_iter().map(|value| f64::from(value as f32)).collect();
         check_gaussian_spaced::<f32, M>(min, max, &around(halves(&spaced)));
     }
-    proptest!(cases(128), |(min in -100.0_f32..100.0, width in 0.01_f32..100.0)| {
+    proptest!(cases(128), |(min in -100.0_f32..100.0, width in crate::common::between(0.01, 100.0))| {
         let max = min + width;
         check_both::<3>(min, max);
         check_both::<4>(min, max);

@@ -162,7 +162,8 @@ fn hostile() {
 }
 
 fn drawn<S: Fields + Drawn>() {
-    let parameters = (S::recordings(), S::value(), S::value(), 0.3_f32..4.0, any::<u64>());
+    let parameters =
+        (S::recordings(), S::value(), S::value(), crate::common::between(0.3, 4.0), any::<u64>());
     let cases = &cases(64);
     proptest!(cases, |((x, a, b, beta, seed) in parameters)| {
         let (min, max) = if a < b { (a, b) } else { (b, a) };

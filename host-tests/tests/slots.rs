@@ -136,7 +136,7 @@ fn hostile() {
 }
 
 fn drawn<S: Fields + Drawn>() {
-    let beta = prop_oneof![Just(1.5_f32), 0.3_f32..4.0];
+    let beta = prop_oneof![Just(1.5_f32), crate::common::between(0.3, 4.0)];
     let cases = &cases(64);
     proptest!(cases, |((x, a, b, beta) in (S::recordings(), S::value(), S::value(), beta))| {
         let (min, max) = if a < b { (a, b) } else { (b, a) };
@@ -154,7 +154,7 @@ fn drawn_recordings() {
 #[test]
 fn within_the_range() {
     let x = proptest::collection::vec(-0.5_f32..1.5, 40);
-    proptest!(cases(128), |(x in x, min in -3.0_f32..3.0, width in 0.1_f32..5.0)| {
+    proptest!(cases(128), |(x in x, min in -3.0_f32..3.0, width in crate::common::between(0.1, 5.0))| {
         let max = min + width;
         let mut x: Vec<_> = x.into_iter().map(|x| min + x * width).collect();
         x.extend((0..=13_u8).map(|i| min + f32::from(i) * width / 13.0));
@@ -167,7 +167,7 @@ fn within_the_range() {
 #[test]
 fn a_floor_halfway_between_two_neurons() {
     let halfway = |n: f64, floor: f64| 2.0 * (2.0 * (n / (floor - 0.5)).ln()).sqrt();
-    proptest!(cases(512), |(min in -3.0_f32..3.0, width in 0.1_f32..5.0)| {
+    proptest!(cases(512), |(min in -3.0_f32..3.0, width in crate::common::between(0.1, 5.0))| {
         let max = min + width;
         let edges = (0..=3_u8).map(|i| min + f32::from(i) * (max - min) / 3.0);
         let x: Vec<_> = edges.flat_map(|x| [x.next_down(), x, x.next_up()]).collect();
@@ -182,7 +182,7 @@ fn a_floor_halfway_between_two_neurons() {
 #[test]
 fn distances_about_32_bits_long() {
     let range = (20..30_u32, 0..1_000_000).prop_map(|(bits, more)| (1 << bits) + more);
-    proptest!(cases(128), |(min in -1_000_000..1_000_000_i32, range in range, beta in 0.3_f32..4.0)| {
+    proptest!(cases(128), |(min in -1_000_000..1_000_000_i32, range in range, beta in crate::common::between(0.3, 4.0))| {
         let x: Vec<_> = (-64..=64_i32)
             .flat_map(|part| [min.saturating_add(part.saturating_mul(range >> 4)), part << 24])
             .map(I32F0::from_bits)

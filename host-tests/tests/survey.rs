@@ -149,7 +149,7 @@ fn shares_of_drawn_signals() {
     let cases = &cases(512);
     proptest!(cases, |(
         steps in proptest::collection::vec(-80..=80_i16, 3..200),
-        share in 0.005_f32..=1.0,
+        share in crate::common::between(0.005, 1.0),
     )| {
         let x: Vec<i16> = steps.iter().scan(0_i16, |x, step| { *x += step; Some(*x) }).collect();
         let survey = watched::<i16, 64>(conditions, &x);

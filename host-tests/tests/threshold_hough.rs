@@ -95,7 +95,7 @@ fn drawn_recordings() {
 /// order of the sum would decide some of them otherwise.
 #[test]
 fn at_the_limit() {
-    let taps = proptest::array::uniform8(0.1_f32..1.0);
+    let taps = proptest::array::uniform8(crate::common::between(0.1, 1.0));
     let x = proptest::collection::vec(-1.0_f32..1.5, 8..40);
     proptest!(cases(512), |(x in x, taps in taps, window in any::<prop::sample::Index>())| {
         let window = &x[window.index(x.len() - 7)..][..8];

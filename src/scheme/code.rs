@@ -141,6 +141,16 @@ impl Output for Spike {
 }
 
 /// Where the output of a sample goes: outputs, or memory that holds none yet.
+///
+/// ```
+/// use core::mem::MaybeUninit;
+/// use spikewire::{Scheme, Spike, Start, temporal::StepForward};
+///
+/// const ROLL: StepForward<f32> = StepForward::new(0.25);
+/// let mut state = StepForward::START;
+/// let mut memory = [const { MaybeUninit::<Spike>::uninit() }; 3];
+/// assert_eq!(ROLL.encode_slice(&mut state, &[0.0, 0.3, 0.6], &mut memory), 3);
+/// ```
 pub trait Place<T> {
     /// Puts an output there.
     fn write(&mut self, output: T);

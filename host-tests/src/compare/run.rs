@@ -2,7 +2,7 @@
 
 use core::fmt::Debug;
 
-use spikewire::{Decoder, Encoder, Output, Scheme, Start};
+use spikewire::{Decoder, Encoder, Output, Place, Scheme, Start};
 
 use super::wire::{Wire, assert_same_values, reals};
 
@@ -79,7 +79,22 @@ pub fn run<P: Repeatable>(encoder: &Encoder<'_, P>, samples: &[P::Sample]) -> Ru
     assert_eq!(halved.encode_slice(rest, &mut buffer), rest.len());
     outputs.extend(&buffer[..rest.len()]);
     assert_eq!(close(&mut halved, outputs), expected, "in halves");
+
+    let mut filled = state.clone();
+    let mut rooms: Vec<Room<P::Output>> = samples.iter().map(|_| Room(None)).collect();
+    assert_eq!(scheme.encode_slice(&mut filled, samples, &mut rooms), samples.len());
+    let outputs = rooms.into_iter().map(|Room(output)| output.expect("an output")).collect();
+    assert_eq!(close_state(scheme, filled, outputs), expected, "into empty memory");
     expected
+}
+
+/// Memory that holds no output at first.
+struct Room<T>(Option<T>);
+
+impl<T> Place<T> for Room<T> {
+    fn write(&mut self, output: T) {
+        self.0 = Some(output);
+    }
 }
 
 fn close<P: Scheme>(encoder: &mut Encoder<'_, P>, outputs: Vec<P::Output>) -> Run<P::Output> {

@@ -205,7 +205,7 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Scheme for Probabilistic
     ) -> usize {
         for (output, &sample) in outputs.iter_mut().zip(samples) {
             output.write_with(FiredNeurons::EMPTY, |neurons| {
-                self.encode_into(state, sample, neurons)
+                self.encode_into(state, sample, neurons);
             });
         }
         samples.len().min(outputs.len())
