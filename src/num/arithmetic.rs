@@ -12,9 +12,9 @@ pub(crate) trait Arithmetic: Sized {
 
     fn is_finite(&self) -> bool;
 
-    /// Adds a sample to a sum of a slice's samples. If that sum is finite, so was every sample: one check at the
-    /// end replaces one a sample. Fixed point, which is always finite, returns `self`.
-    fn taint(self, sample: Self) -> Self;
+    /// The sum of a slice's samples, including this one. If the last sum is finite, so was every sample: one check at
+    /// the end replaces one a sample. Fixed point, which is always finite, returns `self`.
+    fn including(self, sample: Self) -> Self;
 
     /// `self + step`.
     fn plus(self, step: Self) -> Self;
@@ -22,7 +22,7 @@ pub(crate) trait Arithmetic: Sized {
     /// `self - step`.
     fn minus(self, step: Self) -> Self;
 
-    /// `-self` of a step, which is above 0.
+    /// `-self`, for a step above 0.
     fn negated(self) -> Self;
 
     /// `self * 2^times`, for results that the type holds.
@@ -43,7 +43,7 @@ impl Arithmetic for f32 {
     }
 
     #[inline]
-    fn taint(self, sample: Self) -> Self {
+    fn including(self, sample: Self) -> Self {
         self + sample
     }
 
@@ -120,7 +120,7 @@ macro_rules! integer_arithmetic {
             }
 
             #[inline]
-            fn taint(self, _: Self) -> Self {
+            fn including(self, _: Self) -> Self {
                 self
             }
 

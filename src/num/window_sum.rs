@@ -54,8 +54,9 @@ pub(crate) trait Difference: Copy + Default + Debug + Send + Sync + Stored {
 
     fn is_finite(self) -> bool;
 
-    /// Adds up differences: if the result is finite, so was each of them. One check replaces one a sample.
-    fn taint(self, difference: Self) -> Self;
+    /// The sum of a group's differences, including this one. If the last sum is finite, so was every difference: one
+    /// check at the end replaces one a sample. Integers, which are always finite, return `self`.
+    fn including(self, difference: Self) -> Self;
 
     /// Compares a difference, which is not NaN, with the margin: `Greater` above it, `Less` below its negative, else
     /// `Equal`.
@@ -108,7 +109,7 @@ impl Difference for f32 {
     }
 
     #[inline]
-    fn taint(self, difference: f32) -> f32 {
+    fn including(self, difference: f32) -> f32 {
         self + difference
     }
 
@@ -189,7 +190,7 @@ macro_rules! integer_difference {
                 }
 
                 #[inline]
-                fn taint(self, _: $sum) -> $sum {
+                fn including(self, _: $sum) -> $sum {
                     self
                 }
 

@@ -140,7 +140,7 @@ impl Output for Spike {
     }
 }
 
-/// Where the output of a sample goes: outputs, or memory that holds none yet.
+/// A place for the output of a sample: an output, which is replaced, or memory that is not initialised yet.
 ///
 /// ```
 /// use core::mem::MaybeUninit;
@@ -152,10 +152,10 @@ impl Output for Spike {
 /// assert_eq!(ROLL.encode_slice(&mut state, &[0.0, 0.3, 0.6], &mut memory), 3);
 /// ```
 pub trait Place<T> {
-    /// Puts an output there.
+    /// Stores an output.
     fn write(&mut self, output: T);
 
-    /// Puts an output there, after this has filled it.
+    /// Fills an output and stores it.
     fn write_with(&mut self, mut output: T, fill: impl FnOnce(&mut T)) {
         fill(&mut output);
         self.write(output);

@@ -187,15 +187,15 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
         outputs: &mut [impl Place<Option<Neuron<M>>>],
     ) -> usize {
         let centres = &self.centres;
-        let mut taint = S::ZERO;
+        let mut check = S::ZERO;
         if centres.has_bins() {
             // Encodes as if all were finite; if one was not, the slice is encoded again.
             for (output, &sample) in outputs.iter_mut().zip(samples) {
-                taint = taint.taint(sample);
+                check = check.including(sample);
                 output.write(Neuron::counted(centres.by_bin(sample) as u16));
             }
         }
-        if !centres.has_bins() || !taint.is_finite() {
+        if !centres.has_bins() || !check.is_finite() {
             self.search_each(state, samples, outputs);
         }
         samples.len().min(outputs.len())

@@ -174,9 +174,9 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
 
         let (mut previous, mut recent) = (state.previous, state.recent);
         let mut threshold = self.after(recent);
-        let mut taint = S::ZERO;
+        let mut check = S::ZERO;
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
-            taint = taint.taint(sample);
+            check = check.including(sample);
             let emitted = Spike::from_side(sample.step(previous, threshold));
             spike.write(emitted);
             previous = sample;
@@ -186,7 +186,7 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
                 threshold = self.after(recent);
             }
         }
-        if taint.is_finite() {
+        if check.is_finite() {
             (state.previous, state.recent) = (previous, recent);
         } else {
             encode_each(self, state, samples, spikes);

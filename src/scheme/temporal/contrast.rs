@@ -159,13 +159,13 @@ impl<S: Sample> Scheme for TemporalContrast<S> {
         let spikes = spikes.get_mut(first..).unwrap_or_default();
 
         let mut previous = state.previous;
-        let mut taint = S::ZERO;
+        let mut check = S::ZERO;
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
-            taint = taint.taint(sample);
+            check = check.including(sample);
             spike.write(Spike::from_side(sample.step(previous, self.threshold)));
             previous = sample;
         }
-        if taint.is_finite() {
+        if check.is_finite() {
             state.previous = previous;
         } else {
             encode_each(self, state, samples, spikes);

@@ -155,13 +155,13 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
                 break;
             }
             let mut sum = partial;
-            let mut taint = S::Fast::ZERO;
+            let mut check = S::Fast::ZERO;
             for ((spike, sample), &slot) in spikes.iter_mut().zip(samples).zip(slots.iter()) {
                 let difference = sample.excess(N, slot, &mut sum);
                 spike.write(Spike::from_side(difference.beyond(margin)));
-                taint = taint.taint(difference);
+                check = check.including(difference);
             }
-            if !taint.is_finite() {
+            if !check.is_finite() {
                 break;
             }
             *slots = samples;

@@ -138,20 +138,20 @@ impl<S: Sample> Scheme for StepForward<S> {
 
         let threshold = self.threshold;
         let mut band = Band::around(state.base, threshold);
-        let mut taint = S::ZERO;
+        let mut check = S::ZERO;
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
             spike.write(Spike::None);
             if sample > band.upper {
                 band = Band::around(band.upper, threshold);
-                taint = taint.taint(sample);
+                check = check.including(sample);
                 spike.write(Spike::Up);
             } else if band.is_above(sample) {
                 band = Band::around(band.lower, threshold);
-                taint = taint.taint(sample);
+                check = check.including(sample);
                 spike.write(Spike::Down);
             }
         }
-        if taint.is_finite() {
+        if check.is_finite() {
             state.base = band.base;
         } else {
             encode_each(self, state, samples, spikes);

@@ -188,7 +188,7 @@ impl<'a> BitReader<'a> {
         Self { bytes, taken: 0 }
     }
 
-    /// The next bits, 25 if there are so many; 0 follow the last one.
+    /// The next bits: at least 25, or all that are left. Zeros follow the last one.
     #[inline]
     pub(super) fn glance(&self) -> Glance {
         let at = self.taken / 8;

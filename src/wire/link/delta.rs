@@ -13,7 +13,7 @@ const MAX_SINCE: u32 = 1 << 30;
 /// How many addresses there are.
 const ADDRESSES: u32 = 1 << 16;
 
-/// The polarity's bit follows the low bits of the address: both are one code, with so many more low bits.
+/// How many low bits a code has for the polarity, below those of the address.
 const POLARITY: u32 = 1;
 
 /// The tick and address from which the next event is coded.
