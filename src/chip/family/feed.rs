@@ -50,9 +50,10 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
 
     fn next_of(&mut self, events: &mut impl Source) -> Option<Event> {
         let event = events.take_event()?;
-        let is_late = self.chip.time.is_some_and(|time| time.is_over(event.tick));
-        let count = &mut self.chip.counters.late_events;
-        *count = count.saturating_add(is_late.into());
+        if self.chip.time.is_some_and(|time| time.is_over(event.tick)) {
+            let count = &mut self.chip.counters.late_events;
+            *count = count.saturating_add(1);
+        }
         Some(event)
     }
 }
