@@ -135,7 +135,7 @@ impl<S: Sample, const N: usize> Start for MovingWindow<S, N> {
 }
 
 impl<S: Sample, const N: usize> MovingWindowState<S, N> {
-    /// Encodes groups of samples up to the end of a block, and returns how many groups. Stops before a group that
+    /// Encodes groups of samples up to the end of a block, and returns how many samples. Stops before a group that
     /// could overflow the fast sum, or that holds a sample that is not finite.
     #[inline]
     fn encode_groups<const M: usize>(
@@ -166,11 +166,11 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
             }
             *slots = samples;
             partial = sum;
-            taken += 1;
+            taken += M;
         }
         self.partial = S::exact(partial);
-        self.next += (taken * M) as u16;
-        if next + taken * M == N {
+        self.next += taken as u16;
+        if next + taken == N {
             self.close_block();
         }
         taken
@@ -310,31 +310,31 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
     fn encode_slice(
         &self,
         state: &mut MovingWindowState<S, N>,
-        mut samples: &[S],
-        mut spikes: &mut [impl Place<Spike>],
+        samples: &[S],
+        spikes: &mut [impl Place<Spike>],
     ) -> usize {
         let length = samples.len().min(spikes.len());
-        samples = samples.get(..length).unwrap_or_default();
-        while !samples.is_empty() {
+        let mut encoded = 0;
+        while encoded < length {
+            let samples = samples.get(encoded..length).unwrap_or_default();
+            let spikes = spikes.get_mut(encoded..length).unwrap_or_default();
             let taken = if N > SHORT {
                 let (groups, spikes) = (samples.as_chunks().0, spikes.as_chunks_mut().0);
-                GROUP * state.encode_long(self.fast_margin, groups, spikes)
+                state.encode_long(self.fast_margin, groups, spikes)
             } else if state.next == 0
                 && let Some(block) = samples.first_chunk()
                 && let Some(spikes) = spikes.first_chunk_mut()
             {
-                N * state.encode_groups::<N>(self.fast_margin, from_ref(block), from_mut(spikes))
+                state.encode_groups::<N>(self.fast_margin, from_ref(block), from_mut(spikes))
             } else {
                 0
             };
-            if taken > 0 {
-                samples = samples.get(taken..).unwrap_or_default();
-                spikes = spikes.get_mut(taken..).unwrap_or_default();
-            } else if let (Some(&sample), Some(spike)) =
-                (samples.split_off_first(), spikes.split_off_first_mut())
+            if taken == 0
+                && let (Some(&sample), Some(spike)) = (samples.first(), spikes.first_mut())
             {
                 spike.write(self.encode_carefully(state, sample));
             }
+            encoded += taken.max(1);
         }
         length
     }
