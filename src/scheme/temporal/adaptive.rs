@@ -220,15 +220,14 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         let AdaptiveState { mut base, mut pace, .. } = *state;
         let mut band = Band::around(base, self.threshold);
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
+            spike.write(Spike::None);
             if pace == Pace::REST && band.holds(sample) {
-                spike.write(Spike::None);
                 continue;
             }
-            let followed = self.follow(&mut base, &mut pace, sample);
-            if followed.is_none() {
-                state.tally.reject();
+            match self.follow(&mut base, &mut pace, sample) {
+                Some(emitted) => spike.write(emitted),
+                None => state.tally.reject(),
             }
-            spike.write(followed.unwrap_or_default());
             band = Band::around(base, self.threshold);
         }
         (state.base, state.pace) = (base, pace);
