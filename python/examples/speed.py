@@ -57,26 +57,33 @@ def signal(samples):
     return (clean - 0.5 * np.random.default_rng(1).random(samples)).astype(np.float32)
 
 
-def others(x, long):
-    """What other libraries do with a threshold on differences, where they are installed."""
-    rows = []
+def others(long, ends):
+    """What other libraries encode the same signal with, where they are installed, and the scheme that is nearest."""
     try:
         import torch
+
+        torch.set_num_threads(1)
+    except ImportError:
+        return
+    data = torch.from_numpy(long)
+    # SpikingJelly takes values from 0 to less than 1.
+    unit = (data - ends["min"]) / (ends["max"] - ends["min"]) * (1 - 2**-8)
+    try:
         from snntorch import spikegen
 
-        data = torch.from_numpy(long)
-        rows.append(("snntorch.spikegen.delta", len(long) / seconds(lambda: spikegen.delta(data, threshold=0.3, off_spike=True))))
+        delta = sw.TemporalContrast(threshold=0.3)
+        yield "snnTorch `spikegen.delta`", lambda: spikegen.delta(data, threshold=0.3, off_spike=True), delta
     except ImportError:
-        rows.append(("snntorch.spikegen.delta", None))
+        pass
     try:
-        import torch
         from spikingjelly.activation_based import encoding
 
-        data = torch.from_numpy(x)
-        rows.append(("SpikingJelly WeightedPhaseEncoder", len(x) / seconds(lambda: encoding.WeightedPhaseEncoder(8)(data))))
+        phase, first = sw.WeightedPhase(slots=8, **ends), sw.FirstSpike(slots=8, **ends)
+        yield "SpikingJelly `PoissonEncoder`", lambda: encoding.PoissonEncoder()(unit), sw.Bernoulli(**ends)
+        yield "SpikingJelly `WeightedPhaseEncoder`", lambda: encoding.WeightedPhaseEncoder(8)(unit), phase
+        yield "SpikingJelly `LatencyEncoder`", lambda: encoding.LatencyEncoder(8)(unit), first
     except ImportError:
-        rows.append(("SpikingJelly WeightedPhaseEncoder", None))
-    return rows
+        pass
 
 
 def main():
@@ -120,8 +127,13 @@ def main():
         )
         if times < wanted:
             slow.append(f"{name} is {times:.0f} times as fast, not {wanted}")
-    for name, rate in others(x, long):
-        print(f"{name}: " + ("is not installed" if rate is None else f"{rate * 1e-6:.1f} M samples/s"))
+    print("\n| another library, M samples/s | | spikewire | | times |")
+    print("|---|--:|---|--:|--:|")
+    for name, call, scheme in others(long, ends):
+        theirs = len(long) / seconds(call)
+        own = len(long) / seconds(lambda: scheme.encode(long, progress=False))
+        kind = type(scheme).__name__
+        print(f"| {name} | {theirs * 1e-6:.1f} | `{kind}` | {own * 1e-6:.1f} | {own / theirs:.1f} |", flush=True)
     if check and slow:
         sys.exit("; ".join(slow))
 
