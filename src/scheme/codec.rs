@@ -336,6 +336,22 @@ impl<'a, P: Scheme> Decoder<'a, P> {
     }
 }
 
+/// Decodes a slice with a copy of a small state, which stays in registers.
+#[inline]
+pub(super) fn decode_copied<P: Scheme<DecoderState: Copy>>(
+    scheme: &P,
+    state: &mut P::DecoderState,
+    codes: &[impl Copy + Into<P::Code>],
+    values: &mut [P::Sample],
+) -> usize {
+    let mut own = *state;
+    for (value, &code) in values.iter_mut().zip(codes) {
+        *value = scheme.decode(&mut own, code.into());
+    }
+    *state = own;
+    codes.len().min(values.len())
+}
+
 /// Encodes a slice sample by sample. Out of line, so that the usual path of a codec stays small.
 #[cold]
 #[inline(never)]

@@ -6,6 +6,7 @@ use super::Neuron;
 use super::centres::Centres;
 use crate::error::unwrap;
 use crate::num::Tally;
+use crate::scheme::codec::decode_copied;
 use crate::scheme::held::Held;
 use crate::{ConfigError, Place, Recovery, Sample, Scheme, Start};
 
@@ -222,12 +223,7 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
         neurons: &[impl Copy + Into<Option<Neuron<M>>>],
         values: &mut [S],
     ) -> usize {
-        let mut held = *state;
-        for (value, &neuron) in values.iter_mut().zip(neurons) {
-            *value = held.or_hold(self.centre(neuron.into()));
-        }
-        *state = held;
-        neurons.len().min(values.len())
+        decode_copied(self, state, neurons, values)
     }
 
     fn held(&self, state: &Held<S>) -> Option<S> {

@@ -4,7 +4,7 @@ use super::band::Band;
 use super::doublings;
 use crate::error::{unwrap, within};
 use crate::num::Tally;
-use crate::scheme::codec::encode_first;
+use crate::scheme::codec::{decode_copied, encode_first};
 use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
 
 /// Adaptive step forward: the baseline follows the signal by one step a spike, and the step grows while the signal
@@ -220,14 +220,15 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         let AdaptiveState { mut base, mut pace, .. } = *state;
         let mut band = Band::around(base, self.threshold);
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
-            spike.write(Spike::None);
             if pace == Pace::REST && band.holds(sample) {
+                spike.write(Spike::None);
                 continue;
             }
-            match self.follow(&mut base, &mut pace, sample) {
-                Some(emitted) => spike.write(emitted),
-                None => state.tally.reject(),
+            let followed = self.follow(&mut base, &mut pace, sample);
+            if followed.is_none() {
+                state.tally.reject();
             }
+            spike.write(followed.unwrap_or_default());
             band = Band::around(base, self.threshold);
         }
         (state.base, state.pace) = (base, pace);
@@ -269,7 +270,6 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         state.value
     }
 
-    /// The state stays in registers.
     #[inline]
     fn decode_slice(
         &self,
@@ -277,12 +277,7 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         spikes: &[impl Copy + Into<Spike>],
         values: &mut [S],
     ) -> usize {
-        let mut own = *state;
-        for (value, &spike) in values.iter_mut().zip(spikes) {
-            *value = self.decode(&mut own, spike.into());
-        }
-        *state = own;
-        spikes.len().min(values.len())
+        decode_copied(self, state, spikes, values)
     }
 
     fn held(&self, state: &AdaptiveStepState<S>) -> Option<S> {

@@ -3,7 +3,7 @@
 use super::doublings;
 use crate::error::unwrap;
 use crate::num::Tally;
-use crate::scheme::codec::{encode_each, encode_first};
+use crate::scheme::codec::{decode_copied, encode_each, encode_first};
 use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
 
 /// Adaptive temporal contrast: the threshold follows how much the signal changes, between two bounds.
@@ -230,7 +230,6 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
         state.value
     }
 
-    /// The state stays in registers.
     #[inline]
     fn decode_slice(
         &self,
@@ -238,12 +237,7 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
         spikes: &[impl Copy + Into<Spike>],
         values: &mut [S],
     ) -> usize {
-        let mut own = *state;
-        for (value, &spike) in values.iter_mut().zip(spikes) {
-            *value = self.decode(&mut own, spike.into());
-        }
-        *state = own;
-        spikes.len().min(values.len())
+        decode_copied(self, state, spikes, values)
     }
 
     fn held(&self, state: &AdaptiveContrastStep<S>) -> Option<S> {

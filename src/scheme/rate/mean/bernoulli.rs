@@ -9,7 +9,7 @@ use super::averaging::{Averaging, MeanState, decode_mean};
 use super::range::Range;
 use crate::error::unwrap;
 use crate::num::{Tally, Total};
-use crate::{ConfigError, Encoder, Place, Recovery, Sample, Scheme, Spike};
+use crate::{ConfigError, Encoder, Recovery, Sample, Scheme, Spike};
 
 /// Bernoulli spiking: a sample spikes with the probability `p / R`, its height in the range, drawn from the caller's
 /// random number generator. Sample by sample this is a Poisson spike train.
@@ -145,18 +145,6 @@ impl<S: Sample, G: Rng, A: Averaging> Scheme for Bernoulli<S, G, A> {
         };
         let draw = state.generator.next_u32() >> 16;
         if above.is_drawn(self.range.width(), draw) { Spike::Up } else { Spike::None }
-    }
-
-    fn encode_slice(
-        &self,
-        state: &mut BernoulliState<G>,
-        samples: &[S],
-        spikes: &mut [impl Place<Spike>],
-    ) -> usize {
-        for (spike, &sample) in spikes.iter_mut().zip(samples) {
-            spike.write(self.encode(state, sample));
-        }
-        samples.len().min(spikes.len())
     }
 
     fn rejected(state: &BernoulliState<G>) -> u32 {

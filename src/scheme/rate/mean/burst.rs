@@ -6,7 +6,7 @@ use super::averaging::{Averaging, Gain, MeanState, Weight, decode_mean};
 use super::range::Range;
 use crate::error::{LARGEST_STEP, step, unwrap, within};
 use crate::num::{Tally, Total, to_f64};
-use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 
 /// Weighted bursts: spikes that follow each other double in weight. A high signal has many spikes, a low one few.
 ///
@@ -138,18 +138,6 @@ impl<S: Sample, A: Averaging> Scheme for WeightedBurst<S, A> {
         state.gain.take(is_spike, self.doublings);
         state.sum = if is_spike { sum.minus(weight) } else { sum };
         if is_spike { Spike::Up } else { Spike::None }
-    }
-
-    fn encode_slice(
-        &self,
-        state: &mut WeightedBurstState<S>,
-        samples: &[S],
-        spikes: &mut [impl Place<Spike>],
-    ) -> usize {
-        for (spike, &sample) in spikes.iter_mut().zip(samples) {
-            spike.write(self.encode(state, sample));
-        }
-        samples.len().min(spikes.len())
     }
 
     fn rejected(state: &WeightedBurstState<S>) -> u32 {

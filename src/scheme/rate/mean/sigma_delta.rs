@@ -6,7 +6,7 @@ use super::averaging::{Averaging, MeanState, decode_mean};
 use super::range::Range;
 use crate::error::unwrap;
 use crate::num::{Tally, Total};
-use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
 
 /// First-order sigma-delta: the share of samples with a spike is `p / R`, the signal's height in its range.
 ///
@@ -100,18 +100,6 @@ impl<S: Sample, A: Averaging> Scheme for SigmaDelta<S, A> {
             state.sum = sum;
             Spike::None
         }
-    }
-
-    fn encode_slice(
-        &self,
-        state: &mut SigmaDeltaState<S>,
-        samples: &[S],
-        spikes: &mut [impl Place<Spike>],
-    ) -> usize {
-        for (spike, &sample) in spikes.iter_mut().zip(samples) {
-            spike.write(self.encode(state, sample));
-        }
-        samples.len().min(spikes.len())
     }
 
     fn rejected(state: &SigmaDeltaState<S>) -> u32 {
