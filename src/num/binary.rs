@@ -24,6 +24,13 @@ const fn ones(count: u32) -> u32 {
     0xffff >> (16_u32.saturating_sub(count) & 31)
 }
 
+/// In a function of its own, or the usual path would compute it, too.
+#[cold]
+#[inline(never)]
+fn add_halves(one: f32, other: f32) -> f32 {
+    one * 0.5 + other * 0.5
+}
+
 impl Binary for f32 {
     /// Rounds `self - min` and `max - min` once each; the rest is exact.
     #[inline]
@@ -52,17 +59,11 @@ impl Binary for f32 {
         min + (max - min) * ((2 * digits + 1) as f32 * half)
     }
 
-    /// Adds halves, as the sum of large values may be infinite; but halves the sum of tiny values, whose halves would
-    /// be rounded.
+    /// Half of the sum rounds once, as does the sum of halves where the sum is infinite.
     #[inline]
     fn middle(self, other: f32) -> f32 {
-        // Below 2^-125, whose half is the smallest that is exact.
-        let is_tiny = |x: f32| x.to_bits() << 1 < 0x0200_0000;
-        if is_tiny(self) || is_tiny(other) {
-            (self + other) * 0.5
-        } else {
-            self * 0.5 + other * 0.5
-        }
+        let sum = self + other;
+        if sum.is_finite() { sum * 0.5 } else { add_halves(self, other) }
     }
 
     #[inline]
