@@ -210,8 +210,8 @@ impl QueueView {
     /// Adds an item of a bank. This is a call, as few samples give an event: with little code between its channels, a
     /// bank needs no loop over them.
     #[inline(never)]
-    fn add_or_lose(&self, slot: Slot) {
-        self.add(slot, Refusal::Loses);
+    fn add_or_lose(&self, tick: Tick, bits: u32, rest: u32) {
+        self.add(Slot::from_words((tick, bits, rest)), Refusal::Loses);
     }
 
     /// Adds an item, and returns whether the queue took it.
@@ -414,7 +414,8 @@ fn count(counter: &Cell<u32>) {
 impl Put for &QueueView {
     #[inline]
     fn put(&mut self, item: Item) {
-        self.add_or_lose(item.into());
+        let (tick, bits, rest) = Slot::from(item).words();
+        self.add_or_lose(tick, bits, rest);
     }
 }
 
@@ -422,6 +423,7 @@ impl Put for &QueueView {
 impl<const N: usize> Put for &EventQueue<N> {
     #[inline]
     fn put(&mut self, item: Item) {
-        self.add_or_lose(item.into());
+        let mut view: &QueueView = self;
+        view.put(item);
     }
 }
