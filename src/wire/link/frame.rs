@@ -195,6 +195,7 @@ impl Events<'_> {
         let mut bits = self.bits;
         let event = self.place.take(&mut bits)?;
         self.bits = bits;
+        self.place.pass(event);
         Some(event)
     }
 }
@@ -206,11 +207,12 @@ impl Iterator for Events<'_> {
     #[inline(always)]
     fn next(&mut self) -> Option<Event> {
         let mut glance = self.bits.glance();
-        let event = match self.place.take(&mut glance) {
-            Some(event) if self.bits.pass(glance).is_some() => event,
-            _ => self.take_long()?,
-        };
-        self.place.pass(event);
-        Some(event)
+        if let Some(event) = self.place.take(&mut glance)
+            && self.bits.pass(glance).is_some()
+        {
+            self.place.pass(event);
+            return Some(event);
+        }
+        self.take_long()
     }
 }
