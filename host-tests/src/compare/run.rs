@@ -80,11 +80,11 @@ pub fn run<P: Repeatable>(encoder: &Encoder<'_, P>, samples: &[P::Sample]) -> Ru
     outputs.extend(&buffer[..rest.len()]);
     assert_eq!(close(&mut halved, outputs), expected, "in halves");
 
-    let mut filled = state.clone();
+    let mut empty = state.clone();
     let mut rooms: Vec<Room<P::Output>> = samples.iter().map(|_| Room(None)).collect();
-    assert_eq!(scheme.encode_slice(&mut filled, samples, &mut rooms), samples.len());
+    assert_eq!(scheme.encode_slice(&mut empty, samples, &mut rooms), samples.len());
     let outputs = rooms.into_iter().map(|Room(output)| output.expect("an output")).collect();
-    assert_eq!(close_state(scheme, filled, outputs), expected, "into empty memory");
+    assert_eq!(close_state(scheme, empty, outputs), expected, "into empty memory");
     expected
 }
 
