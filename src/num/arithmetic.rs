@@ -6,8 +6,8 @@ use core::cmp::Ordering;
 pub(crate) trait Arithmetic: Sized {
     const ZERO: Self;
 
-    /// The baseline before the first sample: in `f32` NaN, which lies near no sample; in fixed point 0, which may also be
-    /// a true baseline.
+    /// The baseline before the first sample: in `f32` NaN, which lies near no sample; in fixed point a value that may also
+    /// be a true baseline, which then costs a little more. In 16 bits it is not 0, where coarse samples rest.
     const NO_BASELINE: Self;
 
     fn is_finite(&self) -> bool;
@@ -112,7 +112,7 @@ macro_rules! integer_arithmetic {
         impl<$($generics)*> Arithmetic for $sample {
             const ZERO: Self = $from_bits(0);
 
-            const NO_BASELINE: Self = $from_bits(0);
+            const NO_BASELINE: Self = $from_bits(if <$bits>::BITS == 16 { <$bits>::MIN } else { 0 });
 
             #[inline]
             fn is_finite(&self) -> bool {

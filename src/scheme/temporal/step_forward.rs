@@ -107,7 +107,7 @@ impl<S: Sample> Scheme for StepForward<S> {
         } else if state.base != S::NO_BASELINE {
             return Spike::None;
         } else {
-            (Spike::None, state.base) // a baseline of 0, or none yet
+            (Spike::None, state.base) // none yet, or a baseline of that very value
         };
         if !sample.is_finite() {
             state.tally.reject();
