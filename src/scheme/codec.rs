@@ -352,7 +352,17 @@ pub(super) fn decode_copied<P: Scheme<DecoderState: Copy>>(
     codes.len().min(values.len())
 }
 
-/// Encodes a slice sample by sample. Out of line, so that the usual path of a codec stays small.
+/// How far [`encode_each`] encodes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Until {
+    /// Until the encoder has seen a first sample, which its keyframe shows.
+    Primed,
+    /// To the end of the slice.
+    End,
+}
+
+/// Encodes sample by sample, and returns how many samples that took. Out of line, so that the usual path of a codec
+/// stays small.
 #[cold]
 #[inline(never)]
 pub(super) fn encode_each<P: Scheme>(
@@ -360,25 +370,11 @@ pub(super) fn encode_each<P: Scheme>(
     state: &mut P::EncoderState,
     samples: &[P::Sample],
     outputs: &mut [impl Place<P::Output>],
-) -> usize {
-    for (output, &sample) in outputs.iter_mut().zip(samples) {
-        output.write(encode_apart(scheme, state, sample));
-    }
-    samples.len().min(outputs.len())
-}
-
-/// Encodes until the encoder has seen a first finite sample, as its keyframe shows; returns how many samples that took.
-#[cold]
-#[inline(never)]
-pub(super) fn encode_first<P: Scheme>(
-    scheme: &P,
-    state: &mut P::EncoderState,
-    samples: &[P::Sample],
-    outputs: &mut [impl Place<P::Output>],
+    until: Until,
 ) -> usize {
     let mut taken = 0;
     for (output, &sample) in outputs.iter_mut().zip(samples) {
-        if scheme.keyframe(state).is_some() {
+        if until == Until::Primed && scheme.keyframe(state).is_some() {
             break;
         }
         output.write(encode_apart(scheme, state, sample));

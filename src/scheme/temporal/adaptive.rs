@@ -4,7 +4,7 @@ use super::band::Band;
 use super::doublings;
 use crate::error::{unwrap, within};
 use crate::num::Tally;
-use crate::scheme::codec::{decode_copied, encode_first};
+use crate::scheme::codec::{Until, decode_copied, encode_each};
 use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
 
 /// Adaptive step forward: the baseline follows the signal by one step a spike, and the step grows while the signal
@@ -212,8 +212,11 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         samples: &[S],
         spikes: &mut [impl Place<Spike>],
     ) -> usize {
-        let first =
-            if state.tally.is_primed() { 0 } else { encode_first(self, state, samples, spikes) };
+        let first = if state.tally.is_primed() {
+            0
+        } else {
+            encode_each(self, state, samples, spikes, Until::Primed)
+        };
         let samples = samples.get(first..).unwrap_or_default();
         let spikes = spikes.get_mut(first..).unwrap_or_default();
 

@@ -3,7 +3,7 @@
 use super::doublings;
 use crate::error::unwrap;
 use crate::num::Tally;
-use crate::scheme::codec::{decode_copied, encode_each, encode_first};
+use crate::scheme::codec::{Until, decode_copied, encode_each};
 use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
 
 /// Adaptive temporal contrast: the threshold follows how much the signal changes, between two bounds.
@@ -167,8 +167,11 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
         samples: &[S],
         spikes: &mut [impl Place<Spike>],
     ) -> usize {
-        let first =
-            if state.tally.is_primed() { 0 } else { encode_first(self, state, samples, spikes) };
+        let first = if state.tally.is_primed() {
+            0
+        } else {
+            encode_each(self, state, samples, spikes, Until::Primed)
+        };
         let samples = samples.get(first..).unwrap_or_default();
         let spikes = spikes.get_mut(first..).unwrap_or_default();
 
@@ -189,7 +192,7 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
         if check.is_finite() {
             (state.previous, state.recent) = (previous, recent);
         } else {
-            encode_each(self, state, samples, spikes);
+            encode_each(self, state, samples, spikes, Until::End);
         }
         first + samples.len().min(spikes.len())
     }

@@ -4,7 +4,7 @@ use super::StepState;
 use super::steps::decode_steps;
 use crate::error::{positive, unwrap};
 use crate::num::{Tally, to_f64};
-use crate::scheme::codec::{encode_each, encode_first};
+use crate::scheme::codec::{Until, encode_each};
 use crate::{Calibration, ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
 
 /// Temporal contrast, also called temporal-based representation (TBR): what event cameras do.
@@ -153,8 +153,11 @@ impl<S: Sample> Scheme for TemporalContrast<S> {
         samples: &[S],
         spikes: &mut [impl Place<Spike>],
     ) -> usize {
-        let first =
-            if state.tally.is_primed() { 0 } else { encode_first(self, state, samples, spikes) };
+        let first = if state.tally.is_primed() {
+            0
+        } else {
+            encode_each(self, state, samples, spikes, Until::Primed)
+        };
         let samples = samples.get(first..).unwrap_or_default();
         let spikes = spikes.get_mut(first..).unwrap_or_default();
 
@@ -168,7 +171,7 @@ impl<S: Sample> Scheme for TemporalContrast<S> {
         if check.is_finite() {
             state.previous = previous;
         } else {
-            encode_each(self, state, samples, spikes);
+            encode_each(self, state, samples, spikes, Until::End);
         }
         first + samples.len().min(spikes.len())
     }

@@ -4,7 +4,7 @@ use super::StepState;
 use super::band::Band;
 use crate::error::{step, unwrap, within};
 use crate::num::{Tally, to_f64};
-use crate::scheme::codec::encode_first;
+use crate::scheme::codec::{Until, encode_each};
 use crate::{
     Code, ConfigError, Firing, Output, Place, Polarity, Recovery, Sample, Scheme, Spike, Start,
 };
@@ -220,8 +220,11 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
         samples: &[S],
         outputs: &mut [impl Place<Steps<K>>],
     ) -> usize {
-        let first =
-            if state.tally.is_primed() { 0 } else { encode_first(self, state, samples, outputs) };
+        let first = if state.tally.is_primed() {
+            0
+        } else {
+            encode_each(self, state, samples, outputs, Until::Primed)
+        };
         let samples = samples.get(first..).unwrap_or_default();
         let outputs = outputs.get_mut(first..).unwrap_or_default();
 

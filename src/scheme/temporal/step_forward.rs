@@ -5,7 +5,7 @@ use super::band::Band;
 use super::steps::decode_steps;
 use crate::error::{step, unwrap};
 use crate::num::{Tally, to_f64};
-use crate::scheme::codec::{encode_each, encode_first};
+use crate::scheme::codec::{Until, encode_each};
 use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
 
 /// Step forward: the baseline starts at the first sample and follows the signal by one threshold with each
@@ -131,8 +131,11 @@ impl<S: Sample> Scheme for StepForward<S> {
         samples: &[S],
         spikes: &mut [impl Place<Spike>],
     ) -> usize {
-        let first =
-            if state.tally.is_primed() { 0 } else { encode_first(self, state, samples, spikes) };
+        let first = if state.tally.is_primed() {
+            0
+        } else {
+            encode_each(self, state, samples, spikes, Until::Primed)
+        };
         let samples = samples.get(first..).unwrap_or_default();
         let spikes = spikes.get_mut(first..).unwrap_or_default();
 
@@ -154,7 +157,7 @@ impl<S: Sample> Scheme for StepForward<S> {
         if check.is_finite() {
             state.base = band.base;
         } else {
-            encode_each(self, state, samples, spikes);
+            encode_each(self, state, samples, spikes, Until::End);
         }
         first + samples.len().min(spikes.len())
     }
