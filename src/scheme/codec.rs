@@ -363,8 +363,7 @@ pub(super) enum Until {
 
 /// Encodes sample by sample, and returns how many samples that took. Out of line, so that the usual path of a codec
 /// stays small.
-#[cold]
-#[inline(never)]
+#[inline]
 pub(super) fn encode_each<P: Scheme>(
     scheme: &P,
     state: &mut P::EncoderState,
