@@ -146,7 +146,7 @@ impl<S: Sample, const F: usize> Rule<S, F> for Bsa<S, F> {
     #[inline(always)]
     fn fits(
         &self,
-        magnitude: S::Residual,
+        magnitude: impl FnOnce() -> S::Residual,
         pairs: impl Iterator<Item = (S::Residual, S::Residual)>,
         _: bool,
     ) -> bool {
@@ -154,7 +154,7 @@ impl<S: Sample, const F: usize> Rule<S, F> for Bsa<S, F> {
             Limit::Subtractive(threshold) => Bound::Less(threshold.widen()),
             Limit::Multiplicative(ratio) => Bound::Part(ratio),
         };
-        S::Residual::is_nearer(bound, magnitude, pairs)
+        S::Residual::is_nearer(bound, magnitude(), pairs)
     }
 }
 

@@ -265,7 +265,7 @@ impl<S: Sample, R: Rule<S, 1>> Scheme for Rate<S, R> {
         }
         let taps = self.taps.starting_at(state.cursor.next);
         let residuals = cells(&mut state.residuals);
-        if !self.rule.fits(magnitude, pairs(residuals, taps), true) {
+        if !self.rule.fits(|| magnitude, pairs(residuals, taps), true) {
             return Some(Spike::None);
         }
         subtract(residuals, taps);

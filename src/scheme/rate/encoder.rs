@@ -24,7 +24,7 @@ pub(super) trait Rule<S: Sample, const F: usize> {
     /// the sum of these taps' magnitudes; `is_whole` is false where the recording ends within the filter.
     fn fits(
         &self,
-        magnitude: S::Residual,
+        magnitude: impl FnOnce() -> S::Residual,
         pairs: impl Iterator<Item = (S::Residual, S::Residual)>,
         is_whole: bool,
     ) -> bool;
@@ -34,7 +34,7 @@ pub(super) trait Rule<S: Sample, const F: usize> {
     #[inline(always)]
     fn fits_by_slot(
         &self,
-        magnitude: S::Residual,
+        magnitude: impl FnOnce() -> S::Residual,
         pairs: impl Iterator<Item = (S::Residual, S::Residual)>,
     ) -> Option<bool> {
         Some(self.fits(magnitude, pairs, true))
@@ -85,7 +85,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         let filtered = rule.filtered();
         let taps = filtered.taps.starting_at(slot + 1);
         let residuals = cells(&mut self.residuals);
-        match rule.fits_by_slot(filtered.taps.magnitude(), pairs(residuals, taps)) {
+        match rule.fits_by_slot(|| filtered.taps.magnitude(), pairs(residuals, taps)) {
             Some(true) => {
                 subtract(residuals, taps);
                 Some(Spike::Up)
@@ -184,7 +184,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
             if !takes_ahead && let Some(newest) = window.last() {
                 newest.set(sample.residual(shift, magnitude));
             }
-            let fits = rule.fits(magnitude, pairs(window, &taps), true);
+            let fits = rule.fits(|| magnitude, pairs(window, &taps), true);
             if fits {
                 subtract(window, &taps);
             }
@@ -231,10 +231,12 @@ pub(super) fn decide_in_order<S: Sample, const F: usize>(
     let length = taps.len().saturating_sub(missing);
     let (taps, absent) = taps.split_at_checked(length)?;
     let (first, rest) = taps.split_at_checked(early.len().min(length))?;
-    let magnitude = absent.iter().fold(magnitude, |magnitude, tap| {
-        let tap = tap.widen();
-        if tap < S::Residual::ZERO { magnitude.plus(tap) } else { magnitude.minus(tap) }
-    });
+    let magnitude = || {
+        absent.iter().fold(magnitude, |magnitude, tap| {
+            let tap = tap.widen();
+            if tap < S::Residual::ZERO { magnitude.plus(tap) } else { magnitude.minus(tap) }
+        })
+    };
     if !rule.fits(magnitude, pairs(early, first).chain(pairs(late, rest)), missing == 0) {
         return Some(Spike::None);
     }

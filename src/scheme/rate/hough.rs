@@ -64,7 +64,7 @@ impl<S: Sample, const F: usize> Rule<S, F> for Hough<S, F> {
     #[inline(always)]
     fn fits(
         &self,
-        _: S::Residual,
+        _: impl FnOnce() -> S::Residual,
         mut pairs: impl Iterator<Item = (S::Residual, S::Residual)>,
         is_whole: bool,
     ) -> bool {

@@ -81,7 +81,7 @@ impl<S: Sample, const F: usize> Rule<S, F> for ThresholdHough<S, F> {
     #[inline(always)]
     fn fits(
         &self,
-        _: S::Residual,
+        _: impl FnOnce() -> S::Residual,
         pairs: impl Iterator<Item = (S::Residual, S::Residual)>,
         _: bool,
     ) -> bool {
@@ -91,7 +91,7 @@ impl<S: Sample, const F: usize> Rule<S, F> for ThresholdHough<S, F> {
     #[inline(always)]
     fn fits_by_slot(
         &self,
-        _: S::Residual,
+        _: impl FnOnce() -> S::Residual,
         pairs: impl Iterator<Item = (S::Residual, S::Residual)>,
     ) -> Option<bool> {
         S::Residual::falls_short_in_any_order(self.threshold.widen(), pairs)
