@@ -104,9 +104,9 @@ pub use num::{Sample, SampleKind};
 #[cfg(feature = "alloc")]
 pub use scheme::dynamic;
 pub use scheme::{
-    Calibration, Code, Conditions, Decoder, Differences, Encoder, Firing, Fit, Histogram, Moments,
-    Output, Place, Polarity, Recovery, Scheme, Spike, Start, Survey, Unfit, population, rate,
-    temporal, timing,
+    Calibration, Code, Conditions, Decoder, Destination, Differences, Encoder, Fit, Histogram,
+    Moments, NeuronSpike, Output, Polarity, Recovery, Scheme, Spike, Start, Survey, Unfit,
+    population, rate, temporal, timing,
 };
 pub use wire::format;
 #[cfg(feature = "link")]

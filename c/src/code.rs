@@ -2,7 +2,7 @@
 
 use core::mem::MaybeUninit;
 
-use spikewire::{Code, Place, Spike, population, temporal, timing};
+use spikewire::{Code, Destination, Spike, population, temporal, timing};
 
 /// The byte where a rate code waits for later samples. Its sign is a spike down, which no rate code decodes.
 pub const WAITING: i8 = i8::MIN;
@@ -37,14 +37,14 @@ impl CCode for Spike {
 #[repr(transparent)]
 pub struct SpikeRoom(MaybeUninit<i8>);
 
-impl Place<Spike> for SpikeRoom {
+impl Destination<Spike> for SpikeRoom {
     #[inline]
     fn write(&mut self, spike: Spike) {
         self.0.write(spike.sign());
     }
 }
 
-impl Place<Option<Spike>> for SpikeRoom {
+impl Destination<Option<Spike>> for SpikeRoom {
     #[inline]
     fn write(&mut self, spike: Option<Spike>) {
         self.0.write(spike.map_or(WAITING, Spike::sign));

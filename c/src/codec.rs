@@ -3,19 +3,20 @@
 use core::mem::MaybeUninit;
 
 use spikewire::{
-    Code, ConfigError, Event, Firing, Item, Keyframe, Output, Place, Put, Scheme, Start, Tick,
+    Code, ConfigError, Destination, Event, Item, Keyframe, NeuronSpike, Output, Put, Scheme, Start,
+    Tick,
 };
 
 use crate::code::CCode;
-use crate::event::CFiring;
+use crate::event::CNeuronSpike;
 use crate::kept::Kept;
 use crate::queue::{Queue, producer};
 use crate::{Error, Stamp, Status, pointer};
 
 /// A scheme that C can have: its encoder starts by itself, and its outputs go where C has room for codes.
-pub trait Exported: Start<Code: CCode<Room: Place<Self::Output>>> {}
+pub trait Exported: Start<Code: CCode<Room: Destination<Self::Output>>> {}
 
-impl<P: Start<Code: CCode<Room: Place<P::Output>>>> Exported for P {}
+impl<P: Start<Code: CCode<Room: Destination<P::Output>>>> Exported for P {}
 
 /// C's room for a code of this scheme.
 type Room<P> = <<P as Scheme>::Code as CCode>::Room;
@@ -376,14 +377,14 @@ pub unsafe fn resync<P: Exported>(decoder: *mut Decoder<P>, value: P::Sample) ->
 /// C's promise of [`pointer`].
 pub unsafe fn firings<C: CCode>(
     code: *const C,
-    into: *mut CFiring,
+    into: *mut CNeuronSpike,
     capacity: usize,
     count: *mut usize,
 ) -> Status {
     let write = || {
         // SAFETY: C's promise; any bytes are a `MaybeUninit`.
         let (code, into, count) = unsafe {
-            let into = pointer::slice_mut(into.cast::<MaybeUninit<CFiring>>(), capacity)?;
+            let into = pointer::slice_mut(into.cast::<MaybeUninit<CNeuronSpike>>(), capacity)?;
             (given(code)?, into, pointer::place(count)?)
         };
         let all = count.write(0);
@@ -401,11 +402,15 @@ pub unsafe fn firings<C: CCode>(
 ///
 /// # Safety
 /// C's promise of [`pointer`].
-pub unsafe fn assemble<C: CCode>(firings: *const CFiring, count: usize, code: *mut C) -> Status {
+pub unsafe fn assemble<C: CCode>(
+    firings: *const CNeuronSpike,
+    count: usize,
+    code: *mut C,
+) -> Status {
     let assemble = || {
         // SAFETY: C's promise; any bytes are firings.
         let (firings, place) = unsafe { (pointer::slice(firings, count)?, pointer::place(code)?) };
-        place.write(C::assemble(firings.iter().map(|&firing| Firing::from(firing))));
+        place.write(C::assemble(firings.iter().map(|&firing| NeuronSpike::from(firing))));
         Ok(Status::OK)
     };
     assemble().into()
@@ -464,7 +469,7 @@ unsafe fn put<C: CCode>(rooms: &[C::Room], stamp: &Stamp, mut queue: impl Put) {
         for room in rooms {
             // SAFETY: the caller's promise.
             let code = unsafe { C::read(room) };
-            for Firing { neuron, slot: own, polarity } in code.iter().flat_map(Code::firings) {
+            for NeuronSpike { neuron, slot: own, polarity } in code.iter().flat_map(Code::firings) {
                 if slots == 1 || usize::from(own) == slot {
                     let address = first.wrapping_add(neuron);
                     queue.put(Item::Event(Event { tick, address, polarity }));

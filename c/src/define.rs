@@ -60,8 +60,8 @@ macro_rules! codecs {
                     decode_slice(decoder: *mut Decoder<Scheme>, codes: *const Code, values: *mut Sample, count: usize);
                     held(decoder: *const Decoder<Scheme>, value: *mut Sample);
                     resync(decoder: *mut Decoder<Scheme>, value: Sample);
-                    firings(code: *const Code, firings: *mut $crate::event::CFiring, capacity: usize, count: *mut usize);
-                    assemble(firings: *const $crate::event::CFiring, count: usize, code: *mut Code);
+                    firings(code: *const Code, firings: *mut $crate::event::CNeuronSpike, capacity: usize, count: *mut usize);
+                    assemble(firings: *const $crate::event::CNeuronSpike, count: usize, code: *mut Code);
                     bank(encoders: *mut Encoder<Scheme>, samples: *const Sample, codes: *mut Code, channels: usize, stamp: *const $crate::event::Stamp, queue: *mut $crate::Kept<$crate::Queue>);
                     keyframes(encoders: *mut Encoder<Scheme>, channels: usize, stamp: *const $crate::event::Stamp, queue: *mut $crate::Kept<$crate::Queue>);
                 );

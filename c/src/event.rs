@@ -1,11 +1,11 @@
 //! Events, keyframes and breaks as C sees them.
 
-use spikewire::{Event, Firing, Item, Keyframe, Polarity, SampleKind, Taken, Tick};
+use spikewire::{Event, Item, Keyframe, NeuronSpike, Polarity, SampleKind, Taken, Tick};
 
 /// One neuron's spike within the code of one sample.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub struct CFiring {
+pub struct CNeuronSpike {
     /// The neuron within its channel, from 0.
     pub neuron: u16,
     /// The sub-timestep within the sample, from 0.
@@ -64,16 +64,16 @@ pub(crate) const fn polarity(sign: i8) -> Polarity {
     if sign < 0 { Polarity::Down } else { Polarity::Up }
 }
 
-impl From<Firing> for CFiring {
-    fn from(firing: Firing) -> Self {
-        let Firing { neuron, slot, polarity } = firing;
+impl From<NeuronSpike> for CNeuronSpike {
+    fn from(firing: NeuronSpike) -> Self {
+        let NeuronSpike { neuron, slot, polarity } = firing;
         Self { neuron, slot, polarity: sign(polarity) }
     }
 }
 
-impl From<CFiring> for Firing {
-    fn from(firing: CFiring) -> Self {
-        let CFiring { neuron, slot, polarity: direction } = firing;
+impl From<CNeuronSpike> for NeuronSpike {
+    fn from(firing: CNeuronSpike) -> Self {
+        let CNeuronSpike { neuron, slot, polarity: direction } = firing;
         Self { neuron, slot, polarity: polarity(direction) }
     }
 }

@@ -26,7 +26,7 @@ static void hash_half(line *own, uint16_t half)
     hash_byte(own, (uint8_t)(half >> 8));
 }
 
-static void hash_firings(line *own, const sw_firing *firings, size_t count)
+static void hash_firings(line *own, const sw_neuron_spike *firings, size_t count)
 {
     for (size_t i = 0; i < count; ++i) {
         own->spikes += 1u;
@@ -82,7 +82,7 @@ static void print_line(const char *label, const char *sample, const line *own)
         sw_##CODEC codec = {0};                                                                                       \
         sw_##CODEC##_encoder encoder = {0};                                                                           \
         sw_##CODEC##_decoder decoder = {0};                                                                           \
-        sw_firing firings[MOST_FIRINGS] = {0};                                                                        \
+        sw_neuron_spike firings[MOST_FIRINGS] = {0};                                                                        \
         line own = {0u, 0xcbf29ce484222325u};                                                                         \
         for (uint32_t index = 0; index < CHANNELS; ++index) {                                                         \
             const channel_##S *channel = &channels_##S[index];                                                        \
@@ -112,7 +112,7 @@ static void print_line(const char *label, const char *sample, const line *own)
         sw_##CODEC codec = {0};                                                                                       \
         sw_##CODEC##_encoder encoder = {0};                                                                           \
         sw_##CODEC##_decoder decoder = {0};                                                                           \
-        sw_firing firings[MOST_FIRINGS] = {0};                                                                        \
+        sw_neuron_spike firings[MOST_FIRINGS] = {0};                                                                        \
         value_type_##S slice[SLICE] = {0}, values[SLICE] = {0};                                                       \
         sw_##CODEC##_code codes[SLICE] = {0};                                                                         \
         line own = {0u, 0xcbf29ce484222325u};                                                                         \

@@ -82,7 +82,7 @@ static void choices(void)
     static sw_slots_15_10_f32 slots;
     static sw_slots_15_10_f32_encoder neurons;
     static sw_slots_15_10_f32_code code;
-    static sw_firing firings[15];
+    static sw_neuron_spike firings[15];
     float taps[15] = {0.0f};
     int8_t spikes[20];
     float values[20];

@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 
 use catalogue::run::{Calibrated, Event, Known, Options, SampleType};
-use spikewire::{Code, Firing, Output, Sample, Start};
+use spikewire::{Code, NeuronSpike, Output, Sample, Start};
 
 /// Every constant, by its scheme, sample type and options: as it is written, and as the compiler takes it.
 macro_rules! constants {
@@ -162,7 +162,7 @@ fn compare<P: Start>(
         .iter()
         .filter_map(|value| own.encode(&mut state, P::Sample::from_f64(*value)).code());
     let own_events = codes.enumerate().flat_map(|(place, code)| {
-        let event = |Firing { neuron, slot, polarity }| Event {
+        let event = |NeuronSpike { neuron, slot, polarity }| Event {
             sample: place as u64,
             neuron,
             slot,

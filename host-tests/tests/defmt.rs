@@ -4,7 +4,7 @@ use defmt::Format;
 use fixed::types::{I8F8, I16F16};
 use rand_pcg::Pcg32;
 use spikewire::{
-    Calibration, Conditions, ConfigError, Differences, Firing, Histogram, Polarity, Recovery,
+    Calibration, Conditions, ConfigError, Differences, Histogram, NeuronSpike, Polarity, Recovery,
     Sample, SampleKind, Spike, Unfit,
     population::{
         FiredNeurons, Gaussian, Neuron, NeuronSlots, NonLinearSlots, Position, Probabilistic,
@@ -50,7 +50,7 @@ const fn is_format_in<S: Sample + Format>() {
 }
 
 const _: () = {
-    is_format::<(Spike, Polarity, Firing, Recovery, SampleKind, Unfit)>();
+    is_format::<(Spike, Polarity, NeuronSpike, Recovery, SampleKind, Unfit)>();
     is_format::<(Neuron<4>, SlotSpikes<4, 8>, NeuronSlots<4, 8>, FiredNeurons<4>)>();
     is_format::<(Slot<4>, PhaseSpikes<2, 16, 4>, PhaseBits<4>, BurstSpikes<19>)>();
     is_format::<(Shape, Differences, ConfigError)>();

@@ -5,7 +5,7 @@ use rand_pcg::Pcg32;
 use spikewire::population::{FiredNeurons, Neuron, Position, Probabilistic, SlotSpikes, Slots};
 use spikewire::rate::{Hough, Taps};
 use spikewire::temporal::StepForward;
-use spikewire::{Bank, Code, Event, Firing, Output, Polarity, Readout, Spike, Start, Tick};
+use spikewire::{Bank, Code, Event, NeuronSpike, Output, Polarity, Readout, Spike, Start, Tick};
 
 static STEP: StepForward<f32> = StepForward::new(0.2);
 static POSITION: Position<f32, 9> = Position::linear(-1.0..=1.0);
@@ -81,7 +81,7 @@ proptest! {
         firings in prop::collection::vec((0_u16..20, any::<u16>(), any::<bool>()), 0..40),
         narrow in any::<bool>(),
     ) {
-        let firings = firings.into_iter().map(|(neuron, slot, is_up)| Firing {
+        let firings = firings.into_iter().map(|(neuron, slot, is_up)| NeuronSpike {
             neuron,
             slot: if narrow { slot % 60 } else { slot },
             polarity: if is_up { Polarity::Up } else { Polarity::Down },
@@ -113,22 +113,22 @@ proptest! {
 
 #[test]
 fn a_crowd_of_neurons_gives_one_answer() {
-    let at = |neuron, slot| Firing { neuron, slot, polarity: Polarity::Up };
-    let winner = |firings: &[Firing]| {
+    let at = |neuron, slot| NeuronSpike { neuron, slot, polarity: Polarity::Up };
+    let winner = |firings: &[NeuronSpike]| {
         Option::<Neuron<9>>::assemble(firings.iter().copied()).map(Neuron::index)
     };
     assert_eq!(winner(&[at(4, 0), at(2, 0), at(4, 0)]), Some(4));
     assert_eq!(winner(&[at(4, 0), at(2, 0)]), Some(2));
     assert_eq!(winner(&[at(9, 0)]), None);
 
-    let volley = |firings: &[Firing]| {
+    let volley = |firings: &[NeuronSpike]| {
         SlotSpikes::<8, 50>::assemble(firings.iter().copied()).iter().collect::<Vec<_>>()
     };
     let firings = [at(1, 9), at(3, 7), at(4, 2), at(4, 1), at(5, 30), at(7, 3)];
     assert_eq!(volley(&firings), [(3, 7), (4, 1), (5, 30)]);
     assert_eq!(volley(&[at(0, 50), at(8, 0)]), []);
 
-    let down = Firing { polarity: Polarity::Down, ..at(0, 0) };
+    let down = NeuronSpike { polarity: Polarity::Down, ..at(0, 0) };
     assert_eq!(Spike::assemble([down, at(0, 0), down].into_iter()), Spike::Down);
     assert_eq!(Spike::assemble([down, at(0, 0)].into_iter()), Spike::None);
 }

@@ -11,7 +11,7 @@ use num_bigint::BigInt;
 use proptest::prelude::*;
 use spikewire::Scheme;
 use spikewire::population::{FiredNeurons, Gaussian, Neuron, Position, SlotSpikes, Slots};
-use spikewire::{Code, Firing, Polarity};
+use spikewire::{Code, NeuronSpike, Polarity};
 
 /// Calls a generic check with every size.
 macro_rules! every_size {
@@ -279,7 +279,7 @@ fn fields_of_many_neurons() {
 /// A code goes through its firings and back, the last neuron and the last slot included.
 #[test]
 fn codes_of_many_neurons() {
-    let fired = |neuron, slot| Firing { neuron, slot, polarity: Polarity::Up };
+    let fired = |neuron, slot| NeuronSpike { neuron, slot, polarity: Polarity::Up };
     for neuron in [0, 254, 255, 256, 1022, 1023] {
         let code = Neuron::<1024>::new(neuron);
         assert_eq!(code.map(Neuron::index), Some(neuron));

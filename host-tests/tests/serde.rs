@@ -5,7 +5,7 @@ use rand_pcg::Pcg32;
 use serde::Serialize;
 use serde_json::json;
 use spikewire::{
-    Calibration, ConfigError, Event, Firing, Histogram, Polarity, SampleKind, Scheme, Spike,
+    Calibration, ConfigError, Event, Histogram, NeuronSpike, Polarity, SampleKind, Scheme, Spike,
     population::{
         FiredNeurons, Neuron, NeuronSlots, NonLinearSlots, Position, Probabilistic, RankOrder,
         Slots,
@@ -30,7 +30,7 @@ fn spikes_and_firings() {
     assert_json([Spike::Down, Spike::None, Spike::Up], &json!(["Down", "None", "Up"]));
     let event = Event { tick: 5.into(), address: 2, polarity: Polarity::Down };
     assert_json(event, &json!({ "tick": 5, "address": 2, "polarity": "Down" }));
-    let firing = Firing { neuron: 1, slot: 3, polarity: Polarity::Up };
+    let firing = NeuronSpike { neuron: 1, slot: 3, polarity: Polarity::Up };
     assert_json(firing, &json!({ "neuron": 1, "slot": 3, "polarity": "Up" }));
     assert_json(SampleKind::F32, &json!("F32"));
     assert_json(SampleKind::Fixed32 { fraction: 16 }, &json!({ "Fixed32": { "fraction": 16 } }));

@@ -9,7 +9,9 @@ use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 use spikewire::rate::{Average, Hough, IntegrateAndFire, Taps, Window};
 use spikewire::temporal::{MovingWindow, StepForward};
-use spikewire::{Calibration, Code, ConfigError, Firing, Output, Sample, Scheme, Start, dynamic};
+use spikewire::{
+    Calibration, Code, ConfigError, NeuronSpike, Output, Sample, Scheme, Start, dynamic,
+};
 
 /// Roll rate in flight, with a sample that is not finite where the type has such.
 fn samples<S: Sample>() -> Vec<S> {
@@ -34,7 +36,7 @@ fn read<T: State>(bytes: &[u8]) -> T {
     state
 }
 
-fn firings(code: impl Code) -> Vec<Firing> {
+fn firings(code: impl Code) -> Vec<NeuronSpike> {
     code.firings().collect()
 }
 

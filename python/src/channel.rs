@@ -6,7 +6,7 @@
 use anyhow::{Context, Result, ensure};
 use catalogue::run::{Given, RunTime, SampleType, Settings, Visit};
 use catalogue::{State, for_sample_type};
-use spikewire::{Code, Firing, Output, Polarity, Sample, SampleKind, Scheme};
+use spikewire::{Code, NeuronSpike, Output, Polarity, Sample, SampleKind, Scheme};
 
 use crate::array::{Lane, Values};
 
@@ -131,7 +131,7 @@ struct Running<P: Scheme> {
 
 impl<P: Scheme> Running<P> {
     fn put(&self, code: P::Code, row: &mut [i8]) {
-        for Firing { neuron, slot, polarity } in code.firings() {
+        for NeuronSpike { neuron, slot, polarity } in code.firings() {
             let cell = usize::from(slot) * self.neurons + usize::from(neuron);
             if let Some(cell) = row.get_mut(cell) {
                 *cell = cell.saturating_add(if polarity == Polarity::Up { 1 } else { -1 });
@@ -181,7 +181,7 @@ impl<P: Scheme> Running<P> {
         let firings = row.iter().enumerate().flat_map(|(place, cell)| {
             let polarity = if *cell > 0 { Polarity::Up } else { Polarity::Down };
             let (neuron, slot) = ((place % neurons) as u16, (place / neurons) as u16);
-            let firing = Firing { neuron, slot, polarity };
+            let firing = NeuronSpike { neuron, slot, polarity };
             std::iter::repeat_n(firing, cell.unsigned_abs().into())
         });
         let code = P::Code::assemble(firings);

@@ -123,7 +123,7 @@ def compare(bag: Path, flight: Flight, wanted: dict[str, expected.Flown]) -> Non
         print(f"{name:20} {spikes:6} spikes, {len(events)} values: every bit agrees; by the firmware: {by_firmware}")
 
 
-def is_as_wanted(spike: Any, firings: list[expected.Firing], name: str) -> bool:
+def is_as_wanted(spike: Any, firings: list[expected.NeuronSpike], name: str) -> bool:
     """A number of `spyke`, or those of `spyke_array`: sub-timestep after sub-timestep, in each neuron by neuron."""
     found = list(spike) if hasattr(spike, "__len__") else [spike]
     row = [0] * len(found)

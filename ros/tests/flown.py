@@ -15,14 +15,14 @@ import spikewire
 from spikewire_ros.schemes import of_catalogue
 
 # Neuron, sub-timestep, sign.
-Firing = tuple[int, int, int]
+NeuronSpike = tuple[int, int, int]
 
 
 @dataclass
 class Flown:
     """What became of each sample."""
 
-    firings: list[list[Firing]] = field(default_factory=list)
+    firings: list[list[NeuronSpike]] = field(default_factory=list)
     # The bits of an f32.
     values: list[int] = field(default_factory=list)
 
@@ -132,7 +132,7 @@ def by_firmware(program: Path) -> dict[str, Flown]:
     return flown
 
 
-def _firings(text: str) -> list[Firing]:
+def _firings(text: str) -> list[NeuronSpike]:
     """`+3.0-4.1`"""
     spaced = text.replace("+", " +").replace("-", " -").split()
     places = [(one[0], *one[1:].split(".")) for one in spaced]

@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::schemes::{CodeOf, EncoderStateOf, SampleOf, States};
 use super::{Event, Item, Keyframe, Put, Schemes, Tick};
-use crate::{Code, ConfigError, Firing, Output, Scheme, Start, error};
+use crate::{Code, ConfigError, NeuronSpike, Output, Scheme, Start, error};
 
 /// The encoders of `N` channels, such as the six of an inertial sensor: one scheme for all channels or one for each,
 /// and a state for each.
@@ -233,7 +233,7 @@ where
 }
 
 #[inline]
-fn event(tick: Tick, first_address: u16, firing: Firing) -> Event {
-    let Firing { neuron, polarity, .. } = firing;
+fn event(tick: Tick, first_address: u16, firing: NeuronSpike) -> Event {
+    let NeuronSpike { neuron, polarity, .. } = firing;
     Event { tick, address: first_address.wrapping_add(neuron), polarity }
 }

@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::schemes::{CodeOf, DecoderStateOf, SampleOf, States};
 use super::{Event, Schemes, Tick};
-use crate::{Code, ConfigError, Firing, Scheme, error};
+use crate::{Code, ConfigError, NeuronSpike, Scheme, error};
 
 /// The decoders of `N` channels, which turn the events of a time step into a value for each channel: the inverse of
 /// a [`Bank`](crate::Bank).
@@ -57,7 +57,7 @@ impl Addresses {
         C::assemble(events.iter().filter(|event| is_ours(event)).filter_map(|event| {
             let since = event.tick.since(tick).max(0) as u32;
             let slot = since.checked_div(self.slot_ticks).unwrap_or(0);
-            Some(Firing {
+            Some(NeuronSpike {
                 neuron: event.address.checked_sub(first)?,
                 slot: slot.min(u16::MAX.into()) as u16,
                 polarity: event.polarity,

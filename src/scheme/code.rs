@@ -75,7 +75,7 @@ impl From<Polarity> for Spike {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Firing {
+pub struct NeuronSpike {
     /// The neuron within its channel, from 0.
     pub neuron: u16,
     /// The sub-timestep within the sample, from 0; 0 for codes without sub-timesteps.
@@ -93,25 +93,25 @@ pub trait Code: Copy {
     const SLOTS: usize = 1;
 
     /// The neurons that fire, by rising index.
-    fn firings(&self) -> impl Iterator<Item = Firing>;
+    fn firings(&self) -> impl Iterator<Item = NeuronSpike>;
 
     /// The code that these firings, in any order, make up.
     ///
     /// The firings of a code give that code back. A chip may also fire a neuron twice, or neurons that no encoder
     /// fires together; each code's own `assemble` says what that becomes. Neurons and slots that the code does
     /// not have are left out.
-    fn assemble(firings: impl Iterator<Item = Firing>) -> Self;
+    fn assemble(firings: impl Iterator<Item = NeuronSpike>) -> Self;
 }
 
 impl Code for Spike {
     const NEURONS: usize = 1;
 
-    fn firings(&self) -> impl Iterator<Item = Firing> {
-        self.polarity().map(|polarity| Firing { neuron: 0, slot: 0, polarity }).into_iter()
+    fn firings(&self) -> impl Iterator<Item = NeuronSpike> {
+        self.polarity().map(|polarity| NeuronSpike { neuron: 0, slot: 0, polarity }).into_iter()
     }
 
     /// The direction of most spikes; no spike if as many went up as down.
-    fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
+    fn assemble(firings: impl Iterator<Item = NeuronSpike>) -> Self {
         let balance =
             firings.filter(|firing| firing.neuron == 0).fold(0_i32, |balance, firing| match firing
                 .polarity
@@ -151,7 +151,7 @@ impl Output for Spike {
 /// let mut memory = [const { MaybeUninit::<Spike>::uninit() }; 3];
 /// assert_eq!(ROLL.encode_slice(&mut state, &[0.0, 0.3, 0.6], &mut memory), 3);
 /// ```
-pub trait Place<T> {
+pub trait Destination<T> {
     /// Stores an output.
     fn write(&mut self, output: T);
 
@@ -162,7 +162,7 @@ pub trait Place<T> {
     }
 }
 
-impl<T> Place<T> for T {
+impl<T> Destination<T> for T {
     #[inline]
     fn write(&mut self, output: T) {
         *self = output;
@@ -175,7 +175,7 @@ impl<T> Place<T> for T {
     }
 }
 
-impl<T> Place<T> for MaybeUninit<T> {
+impl<T> Destination<T> for MaybeUninit<T> {
     #[inline]
     fn write(&mut self, output: T) {
         self.write(output);

@@ -2,7 +2,7 @@
 
 use core::fmt::Debug;
 
-use super::code::{Code, Output, Place};
+use super::code::{Code, Destination, Output};
 use crate::Sample;
 
 /// A coding scheme: checked parameters as plain data, in a `const` or a `static`.
@@ -43,7 +43,7 @@ pub trait Scheme: Sized {
         &self,
         state: &mut Self::EncoderState,
         samples: &[Self::Sample],
-        outputs: &mut [impl Place<Self::Output>],
+        outputs: &mut [impl Destination<Self::Output>],
     ) -> usize {
         for (output, &sample) in outputs.iter_mut().zip(samples) {
             output.write(self.encode(state, sample));
@@ -368,7 +368,7 @@ pub(super) fn encode_each<P: Scheme>(
     scheme: &P,
     state: &mut P::EncoderState,
     samples: &[P::Sample],
-    outputs: &mut [impl Place<P::Output>],
+    outputs: &mut [impl Destination<P::Output>],
     until: Until,
 ) -> usize {
     let mut taken = 0;

@@ -16,7 +16,7 @@ pub mod temporal;
 pub mod timing;
 
 pub use calibrate::{Calibration, Differences};
-pub use code::{Code, Firing, Output, Place, Polarity, Spike};
+pub use code::{Code, Destination, NeuronSpike, Output, Polarity, Spike};
 pub use codec::{Decoder, Encoder, Recovery, Scheme, Start};
 pub use histogram::Histogram;
 pub use moments::Moments;

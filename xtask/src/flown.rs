@@ -14,13 +14,13 @@ pub struct Flown {
 /// What became of one sample.
 #[derive(PartialEq)]
 pub struct Step {
-    pub firings: Vec<Firing>,
+    pub firings: Vec<NeuronSpike>,
     /// The decoded value, an `f32`: two are equal if their bits are.
     bits: u32,
 }
 
 #[derive(PartialEq)]
-pub struct Firing {
+pub struct NeuronSpike {
     pub up: bool,
     pub neuron: u16,
     /// Not drawn, but compared.
@@ -71,7 +71,7 @@ fn step(firings: &str, bits: &str) -> Option<Step> {
     let numbers = signed.skip(1).map(|part| part.trim_end_matches(['+', '-']));
     let firings = signs.zip(numbers).map(|(up, number)| {
         let (neuron, slot) = number.split_once('.')?;
-        Some(Firing { up, neuron: neuron.parse().ok()?, slot: slot.parse().ok()? })
+        Some(NeuronSpike { up, neuron: neuron.parse().ok()?, slot: slot.parse().ok()? })
     });
     Some(Step {
         firings: firings.collect::<Option<_>>()?,

@@ -74,11 +74,11 @@ sw_status sw_adaptive_step_forward_f32_held(const sw_adaptive_step_forward_f32_d
 sw_status sw_adaptive_step_forward_f32_resync(sw_adaptive_step_forward_f32_decoder *decoder, float value);
 sw_status sw_adaptive_step_forward_f32_firings(
     const sw_adaptive_step_forward_f32_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_adaptive_step_forward_f32_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_adaptive_step_forward_f32_code *code);
 sw_status sw_adaptive_step_forward_f32_bank(
@@ -160,11 +160,11 @@ sw_status sw_adaptive_step_forward_i16_held(const sw_adaptive_step_forward_i16_d
 sw_status sw_adaptive_step_forward_i16_resync(sw_adaptive_step_forward_i16_decoder *decoder, int16_t value);
 sw_status sw_adaptive_step_forward_i16_firings(
     const sw_adaptive_step_forward_i16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_adaptive_step_forward_i16_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_adaptive_step_forward_i16_code *code);
 sw_status sw_adaptive_step_forward_i16_bank(
@@ -248,11 +248,11 @@ sw_status sw_adaptive_step_forward_q8_8_held(const sw_adaptive_step_forward_q8_8
 sw_status sw_adaptive_step_forward_q8_8_resync(sw_adaptive_step_forward_q8_8_decoder *decoder, sw_q8_8 value);
 sw_status sw_adaptive_step_forward_q8_8_firings(
     const sw_adaptive_step_forward_q8_8_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_adaptive_step_forward_q8_8_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_adaptive_step_forward_q8_8_code *code);
 sw_status sw_adaptive_step_forward_q8_8_bank(
@@ -340,11 +340,11 @@ sw_status sw_adaptive_step_forward_q16_16_held(
 sw_status sw_adaptive_step_forward_q16_16_resync(sw_adaptive_step_forward_q16_16_decoder *decoder, sw_q16_16 value);
 sw_status sw_adaptive_step_forward_q16_16_firings(
     const sw_adaptive_step_forward_q16_16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_adaptive_step_forward_q16_16_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_adaptive_step_forward_q16_16_code *code);
 sw_status sw_adaptive_step_forward_q16_16_bank(

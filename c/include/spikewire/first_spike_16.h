@@ -83,10 +83,13 @@ sw_status sw_first_spike_16_f32_held(const sw_first_spike_16_f32_decoder *decode
 sw_status sw_first_spike_16_f32_resync(sw_first_spike_16_f32_decoder *decoder, float value);
 sw_status sw_first_spike_16_f32_firings(
     const sw_first_spike_16_f32_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_first_spike_16_f32_assemble(const sw_firing *firings, size_t count, sw_first_spike_16_f32_code *code);
+sw_status sw_first_spike_16_f32_assemble(
+    const sw_neuron_spike *firings,
+    size_t count,
+    sw_first_spike_16_f32_code *code);
 sw_status sw_first_spike_16_f32_bank(
     sw_first_spike_16_f32_encoder *encoders,
     const float *samples,
@@ -175,10 +178,13 @@ sw_status sw_first_spike_16_i16_held(const sw_first_spike_16_i16_decoder *decode
 sw_status sw_first_spike_16_i16_resync(sw_first_spike_16_i16_decoder *decoder, int16_t value);
 sw_status sw_first_spike_16_i16_firings(
     const sw_first_spike_16_i16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_first_spike_16_i16_assemble(const sw_firing *firings, size_t count, sw_first_spike_16_i16_code *code);
+sw_status sw_first_spike_16_i16_assemble(
+    const sw_neuron_spike *firings,
+    size_t count,
+    sw_first_spike_16_i16_code *code);
 sw_status sw_first_spike_16_i16_bank(
     sw_first_spike_16_i16_encoder *encoders,
     const int16_t *samples,
@@ -267,10 +273,13 @@ sw_status sw_first_spike_16_q8_8_held(const sw_first_spike_16_q8_8_decoder *deco
 sw_status sw_first_spike_16_q8_8_resync(sw_first_spike_16_q8_8_decoder *decoder, sw_q8_8 value);
 sw_status sw_first_spike_16_q8_8_firings(
     const sw_first_spike_16_q8_8_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_first_spike_16_q8_8_assemble(const sw_firing *firings, size_t count, sw_first_spike_16_q8_8_code *code);
+sw_status sw_first_spike_16_q8_8_assemble(
+    const sw_neuron_spike *firings,
+    size_t count,
+    sw_first_spike_16_q8_8_code *code);
 sw_status sw_first_spike_16_q8_8_bank(
     sw_first_spike_16_q8_8_encoder *encoders,
     const sw_q8_8 *samples,
@@ -368,11 +377,11 @@ sw_status sw_first_spike_16_q16_16_held(const sw_first_spike_16_q16_16_decoder *
 sw_status sw_first_spike_16_q16_16_resync(sw_first_spike_16_q16_16_decoder *decoder, sw_q16_16 value);
 sw_status sw_first_spike_16_q16_16_firings(
     const sw_first_spike_16_q16_16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_first_spike_16_q16_16_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_first_spike_16_q16_16_code *code);
 sw_status sw_first_spike_16_q16_16_bank(

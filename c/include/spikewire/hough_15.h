@@ -58,10 +58,10 @@ sw_status sw_hough_15_f32_held(const sw_hough_15_f32_decoder *decoder, float *va
 sw_status sw_hough_15_f32_resync(sw_hough_15_f32_decoder *decoder, float value);
 sw_status sw_hough_15_f32_firings(
     const sw_hough_15_f32_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_hough_15_f32_assemble(const sw_firing *firings, size_t count, sw_hough_15_f32_code *code);
+sw_status sw_hough_15_f32_assemble(const sw_neuron_spike *firings, size_t count, sw_hough_15_f32_code *code);
 sw_status sw_hough_15_f32_bank(
     sw_hough_15_f32_encoder *encoders,
     const float *samples,
@@ -130,10 +130,10 @@ sw_status sw_hough_15_i16_held(const sw_hough_15_i16_decoder *decoder, int16_t *
 sw_status sw_hough_15_i16_resync(sw_hough_15_i16_decoder *decoder, int16_t value);
 sw_status sw_hough_15_i16_firings(
     const sw_hough_15_i16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_hough_15_i16_assemble(const sw_firing *firings, size_t count, sw_hough_15_i16_code *code);
+sw_status sw_hough_15_i16_assemble(const sw_neuron_spike *firings, size_t count, sw_hough_15_i16_code *code);
 sw_status sw_hough_15_i16_bank(
     sw_hough_15_i16_encoder *encoders,
     const int16_t *samples,
@@ -205,10 +205,10 @@ sw_status sw_hough_15_q8_8_held(const sw_hough_15_q8_8_decoder *decoder, sw_q8_8
 sw_status sw_hough_15_q8_8_resync(sw_hough_15_q8_8_decoder *decoder, sw_q8_8 value);
 sw_status sw_hough_15_q8_8_firings(
     const sw_hough_15_q8_8_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_hough_15_q8_8_assemble(const sw_firing *firings, size_t count, sw_hough_15_q8_8_code *code);
+sw_status sw_hough_15_q8_8_assemble(const sw_neuron_spike *firings, size_t count, sw_hough_15_q8_8_code *code);
 sw_status sw_hough_15_q8_8_bank(
     sw_hough_15_q8_8_encoder *encoders,
     const sw_q8_8 *samples,
@@ -287,10 +287,10 @@ sw_status sw_hough_15_q16_16_held(const sw_hough_15_q16_16_decoder *decoder, sw_
 sw_status sw_hough_15_q16_16_resync(sw_hough_15_q16_16_decoder *decoder, sw_q16_16 value);
 sw_status sw_hough_15_q16_16_firings(
     const sw_hough_15_q16_16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_hough_15_q16_16_assemble(const sw_firing *firings, size_t count, sw_hough_15_q16_16_code *code);
+sw_status sw_hough_15_q16_16_assemble(const sw_neuron_spike *firings, size_t count, sw_hough_15_q16_16_code *code);
 sw_status sw_hough_15_q16_16_bank(
     sw_hough_15_q16_16_encoder *encoders,
     const sw_q16_16 *samples,

@@ -82,11 +82,11 @@ sw_status sw_leaky_integrate_and_fire_8_f32_held(
 sw_status sw_leaky_integrate_and_fire_8_f32_resync(sw_leaky_integrate_and_fire_8_f32_decoder *decoder, float value);
 sw_status sw_leaky_integrate_and_fire_8_f32_firings(
     const sw_leaky_integrate_and_fire_8_f32_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_leaky_integrate_and_fire_8_f32_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_leaky_integrate_and_fire_8_f32_code *code);
 sw_status sw_leaky_integrate_and_fire_8_f32_bank(
@@ -176,11 +176,11 @@ sw_status sw_leaky_integrate_and_fire_8_i16_held(
 sw_status sw_leaky_integrate_and_fire_8_i16_resync(sw_leaky_integrate_and_fire_8_i16_decoder *decoder, int16_t value);
 sw_status sw_leaky_integrate_and_fire_8_i16_firings(
     const sw_leaky_integrate_and_fire_8_i16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_leaky_integrate_and_fire_8_i16_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_leaky_integrate_and_fire_8_i16_code *code);
 sw_status sw_leaky_integrate_and_fire_8_i16_bank(
@@ -272,11 +272,11 @@ sw_status sw_leaky_integrate_and_fire_8_q8_8_resync(
     sw_q8_8 value);
 sw_status sw_leaky_integrate_and_fire_8_q8_8_firings(
     const sw_leaky_integrate_and_fire_8_q8_8_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_leaky_integrate_and_fire_8_q8_8_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_leaky_integrate_and_fire_8_q8_8_code *code);
 sw_status sw_leaky_integrate_and_fire_8_q8_8_bank(
@@ -368,11 +368,11 @@ sw_status sw_leaky_integrate_and_fire_8_q16_16_resync(
     sw_q16_16 value);
 sw_status sw_leaky_integrate_and_fire_8_q16_16_firings(
     const sw_leaky_integrate_and_fire_8_q16_16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_leaky_integrate_and_fire_8_q16_16_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_leaky_integrate_and_fire_8_q16_16_code *code);
 sw_status sw_leaky_integrate_and_fire_8_q16_16_bank(

@@ -93,11 +93,11 @@ sw_status sw_non_linear_slots_15_10_f32_held(const sw_non_linear_slots_15_10_f32
 sw_status sw_non_linear_slots_15_10_f32_resync(sw_non_linear_slots_15_10_f32_decoder *decoder, float value);
 sw_status sw_non_linear_slots_15_10_f32_firings(
     const sw_non_linear_slots_15_10_f32_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_non_linear_slots_15_10_f32_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_non_linear_slots_15_10_f32_code *code);
 sw_status sw_non_linear_slots_15_10_f32_bank(
@@ -198,11 +198,11 @@ sw_status sw_non_linear_slots_15_10_i16_held(const sw_non_linear_slots_15_10_i16
 sw_status sw_non_linear_slots_15_10_i16_resync(sw_non_linear_slots_15_10_i16_decoder *decoder, int16_t value);
 sw_status sw_non_linear_slots_15_10_i16_firings(
     const sw_non_linear_slots_15_10_i16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_non_linear_slots_15_10_i16_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_non_linear_slots_15_10_i16_code *code);
 sw_status sw_non_linear_slots_15_10_i16_bank(
@@ -305,11 +305,11 @@ sw_status sw_non_linear_slots_15_10_q8_8_held(const sw_non_linear_slots_15_10_q8
 sw_status sw_non_linear_slots_15_10_q8_8_resync(sw_non_linear_slots_15_10_q8_8_decoder *decoder, sw_q8_8 value);
 sw_status sw_non_linear_slots_15_10_q8_8_firings(
     const sw_non_linear_slots_15_10_q8_8_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_non_linear_slots_15_10_q8_8_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_non_linear_slots_15_10_q8_8_code *code);
 sw_status sw_non_linear_slots_15_10_q8_8_bank(
@@ -414,11 +414,11 @@ sw_status sw_non_linear_slots_15_10_q16_16_held(
 sw_status sw_non_linear_slots_15_10_q16_16_resync(sw_non_linear_slots_15_10_q16_16_decoder *decoder, sw_q16_16 value);
 sw_status sw_non_linear_slots_15_10_q16_16_firings(
     const sw_non_linear_slots_15_10_q16_16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_non_linear_slots_15_10_q16_16_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_non_linear_slots_15_10_q16_16_code *code);
 sw_status sw_non_linear_slots_15_10_q16_16_bank(

@@ -58,10 +58,10 @@ sw_status sw_sigma_delta_f32_held(const sw_sigma_delta_f32_decoder *decoder, flo
 sw_status sw_sigma_delta_f32_resync(sw_sigma_delta_f32_decoder *decoder, float value);
 sw_status sw_sigma_delta_f32_firings(
     const sw_sigma_delta_f32_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_sigma_delta_f32_assemble(const sw_firing *firings, size_t count, sw_sigma_delta_f32_code *code);
+sw_status sw_sigma_delta_f32_assemble(const sw_neuron_spike *firings, size_t count, sw_sigma_delta_f32_code *code);
 sw_status sw_sigma_delta_f32_bank(
     sw_sigma_delta_f32_encoder *encoders,
     const float *samples,
@@ -128,10 +128,10 @@ sw_status sw_sigma_delta_i16_held(const sw_sigma_delta_i16_decoder *decoder, int
 sw_status sw_sigma_delta_i16_resync(sw_sigma_delta_i16_decoder *decoder, int16_t value);
 sw_status sw_sigma_delta_i16_firings(
     const sw_sigma_delta_i16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_sigma_delta_i16_assemble(const sw_firing *firings, size_t count, sw_sigma_delta_i16_code *code);
+sw_status sw_sigma_delta_i16_assemble(const sw_neuron_spike *firings, size_t count, sw_sigma_delta_i16_code *code);
 sw_status sw_sigma_delta_i16_bank(
     sw_sigma_delta_i16_encoder *encoders,
     const int16_t *samples,
@@ -203,10 +203,10 @@ sw_status sw_sigma_delta_q8_8_held(const sw_sigma_delta_q8_8_decoder *decoder, s
 sw_status sw_sigma_delta_q8_8_resync(sw_sigma_delta_q8_8_decoder *decoder, sw_q8_8 value);
 sw_status sw_sigma_delta_q8_8_firings(
     const sw_sigma_delta_q8_8_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_sigma_delta_q8_8_assemble(const sw_firing *firings, size_t count, sw_sigma_delta_q8_8_code *code);
+sw_status sw_sigma_delta_q8_8_assemble(const sw_neuron_spike *firings, size_t count, sw_sigma_delta_q8_8_code *code);
 sw_status sw_sigma_delta_q8_8_bank(
     sw_sigma_delta_q8_8_encoder *encoders,
     const sw_q8_8 *samples,
@@ -282,10 +282,13 @@ sw_status sw_sigma_delta_q16_16_held(const sw_sigma_delta_q16_16_decoder *decode
 sw_status sw_sigma_delta_q16_16_resync(sw_sigma_delta_q16_16_decoder *decoder, sw_q16_16 value);
 sw_status sw_sigma_delta_q16_16_firings(
     const sw_sigma_delta_q16_16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_sigma_delta_q16_16_assemble(const sw_firing *firings, size_t count, sw_sigma_delta_q16_16_code *code);
+sw_status sw_sigma_delta_q16_16_assemble(
+    const sw_neuron_spike *firings,
+    size_t count,
+    sw_sigma_delta_q16_16_code *code);
 sw_status sw_sigma_delta_q16_16_bank(
     sw_sigma_delta_q16_16_encoder *encoders,
     const sw_q16_16 *samples,

@@ -61,10 +61,10 @@ sw_status sw_step_forward_f32_held(const sw_step_forward_f32_decoder *decoder, f
 sw_status sw_step_forward_f32_resync(sw_step_forward_f32_decoder *decoder, float value);
 sw_status sw_step_forward_f32_firings(
     const sw_step_forward_f32_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_step_forward_f32_assemble(const sw_firing *firings, size_t count, sw_step_forward_f32_code *code);
+sw_status sw_step_forward_f32_assemble(const sw_neuron_spike *firings, size_t count, sw_step_forward_f32_code *code);
 sw_status sw_step_forward_f32_bank(
     sw_step_forward_f32_encoder *encoders,
     const float *samples,
@@ -131,10 +131,10 @@ sw_status sw_step_forward_i16_held(const sw_step_forward_i16_decoder *decoder, i
 sw_status sw_step_forward_i16_resync(sw_step_forward_i16_decoder *decoder, int16_t value);
 sw_status sw_step_forward_i16_firings(
     const sw_step_forward_i16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_step_forward_i16_assemble(const sw_firing *firings, size_t count, sw_step_forward_i16_code *code);
+sw_status sw_step_forward_i16_assemble(const sw_neuron_spike *firings, size_t count, sw_step_forward_i16_code *code);
 sw_status sw_step_forward_i16_bank(
     sw_step_forward_i16_encoder *encoders,
     const int16_t *samples,
@@ -201,10 +201,10 @@ sw_status sw_step_forward_q8_8_held(const sw_step_forward_q8_8_decoder *decoder,
 sw_status sw_step_forward_q8_8_resync(sw_step_forward_q8_8_decoder *decoder, sw_q8_8 value);
 sw_status sw_step_forward_q8_8_firings(
     const sw_step_forward_q8_8_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_step_forward_q8_8_assemble(const sw_firing *firings, size_t count, sw_step_forward_q8_8_code *code);
+sw_status sw_step_forward_q8_8_assemble(const sw_neuron_spike *firings, size_t count, sw_step_forward_q8_8_code *code);
 sw_status sw_step_forward_q8_8_bank(
     sw_step_forward_q8_8_encoder *encoders,
     const sw_q8_8 *samples,
@@ -275,10 +275,13 @@ sw_status sw_step_forward_q16_16_held(const sw_step_forward_q16_16_decoder *deco
 sw_status sw_step_forward_q16_16_resync(sw_step_forward_q16_16_decoder *decoder, sw_q16_16 value);
 sw_status sw_step_forward_q16_16_firings(
     const sw_step_forward_q16_16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_step_forward_q16_16_assemble(const sw_firing *firings, size_t count, sw_step_forward_q16_16_code *code);
+sw_status sw_step_forward_q16_16_assemble(
+    const sw_neuron_spike *firings,
+    size_t count,
+    sw_step_forward_q16_16_code *code);
 sw_status sw_step_forward_q16_16_bank(
     sw_step_forward_q16_16_encoder *encoders,
     const sw_q16_16 *samples,

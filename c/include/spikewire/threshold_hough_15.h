@@ -82,11 +82,11 @@ sw_status sw_threshold_hough_15_f32_held(const sw_threshold_hough_15_f32_decoder
 sw_status sw_threshold_hough_15_f32_resync(sw_threshold_hough_15_f32_decoder *decoder, float value);
 sw_status sw_threshold_hough_15_f32_firings(
     const sw_threshold_hough_15_f32_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_threshold_hough_15_f32_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_threshold_hough_15_f32_code *code);
 sw_status sw_threshold_hough_15_f32_bank(
@@ -179,11 +179,11 @@ sw_status sw_threshold_hough_15_i16_held(const sw_threshold_hough_15_i16_decoder
 sw_status sw_threshold_hough_15_i16_resync(sw_threshold_hough_15_i16_decoder *decoder, int16_t value);
 sw_status sw_threshold_hough_15_i16_firings(
     const sw_threshold_hough_15_i16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_threshold_hough_15_i16_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_threshold_hough_15_i16_code *code);
 sw_status sw_threshold_hough_15_i16_bank(
@@ -276,11 +276,11 @@ sw_status sw_threshold_hough_15_q8_8_held(const sw_threshold_hough_15_q8_8_decod
 sw_status sw_threshold_hough_15_q8_8_resync(sw_threshold_hough_15_q8_8_decoder *decoder, sw_q8_8 value);
 sw_status sw_threshold_hough_15_q8_8_firings(
     const sw_threshold_hough_15_q8_8_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_threshold_hough_15_q8_8_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_threshold_hough_15_q8_8_code *code);
 sw_status sw_threshold_hough_15_q8_8_bank(
@@ -373,11 +373,11 @@ sw_status sw_threshold_hough_15_q16_16_held(const sw_threshold_hough_15_q16_16_d
 sw_status sw_threshold_hough_15_q16_16_resync(sw_threshold_hough_15_q16_16_decoder *decoder, sw_q16_16 value);
 sw_status sw_threshold_hough_15_q16_16_firings(
     const sw_threshold_hough_15_q16_16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_threshold_hough_15_q16_16_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_threshold_hough_15_q16_16_code *code);
 sw_status sw_threshold_hough_15_q16_16_bank(

@@ -68,10 +68,13 @@ sw_status sw_weighted_phase_8_f32_held(const sw_weighted_phase_8_f32_decoder *de
 sw_status sw_weighted_phase_8_f32_resync(sw_weighted_phase_8_f32_decoder *decoder, float value);
 sw_status sw_weighted_phase_8_f32_firings(
     const sw_weighted_phase_8_f32_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_weighted_phase_8_f32_assemble(const sw_firing *firings, size_t count, sw_weighted_phase_8_f32_code *code);
+sw_status sw_weighted_phase_8_f32_assemble(
+    const sw_neuron_spike *firings,
+    size_t count,
+    sw_weighted_phase_8_f32_code *code);
 sw_status sw_weighted_phase_8_f32_bank(
     sw_weighted_phase_8_f32_encoder *encoders,
     const float *samples,
@@ -145,10 +148,13 @@ sw_status sw_weighted_phase_8_i16_held(const sw_weighted_phase_8_i16_decoder *de
 sw_status sw_weighted_phase_8_i16_resync(sw_weighted_phase_8_i16_decoder *decoder, int16_t value);
 sw_status sw_weighted_phase_8_i16_firings(
     const sw_weighted_phase_8_i16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
-sw_status sw_weighted_phase_8_i16_assemble(const sw_firing *firings, size_t count, sw_weighted_phase_8_i16_code *code);
+sw_status sw_weighted_phase_8_i16_assemble(
+    const sw_neuron_spike *firings,
+    size_t count,
+    sw_weighted_phase_8_i16_code *code);
 sw_status sw_weighted_phase_8_i16_bank(
     sw_weighted_phase_8_i16_encoder *encoders,
     const int16_t *samples,
@@ -224,11 +230,11 @@ sw_status sw_weighted_phase_8_q8_8_held(const sw_weighted_phase_8_q8_8_decoder *
 sw_status sw_weighted_phase_8_q8_8_resync(sw_weighted_phase_8_q8_8_decoder *decoder, sw_q8_8 value);
 sw_status sw_weighted_phase_8_q8_8_firings(
     const sw_weighted_phase_8_q8_8_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_weighted_phase_8_q8_8_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_weighted_phase_8_q8_8_code *code);
 sw_status sw_weighted_phase_8_q8_8_bank(
@@ -313,11 +319,11 @@ sw_status sw_weighted_phase_8_q16_16_held(const sw_weighted_phase_8_q16_16_decod
 sw_status sw_weighted_phase_8_q16_16_resync(sw_weighted_phase_8_q16_16_decoder *decoder, sw_q16_16 value);
 sw_status sw_weighted_phase_8_q16_16_firings(
     const sw_weighted_phase_8_q16_16_code *code,
-    sw_firing *firings,
+    sw_neuron_spike *firings,
     size_t capacity,
     size_t *count);
 sw_status sw_weighted_phase_8_q16_16_assemble(
-    const sw_firing *firings,
+    const sw_neuron_spike *firings,
     size_t count,
     sw_weighted_phase_8_q16_16_code *code);
 sw_status sw_weighted_phase_8_q16_16_bank(

@@ -90,11 +90,11 @@ typedef int32_t sw_q16_16;
 #define SW_GAUSSIAN ((uint8_t)2)
 
 /* One neuron's spike within the code of one sample. */
-typedef struct sw_firing {
+typedef struct sw_neuron_spike {
     uint16_t neuron; /* within its channel, from 0 */
     uint16_t slot;   /* sub-timestep within the sample, from 0 */
     int8_t polarity; /* 1 or -1 */
-} sw_firing;
+} sw_neuron_spike;
 
 /* When a sample was taken, and under which addresses its spikes go out. */
 typedef struct sw_stamp {

@@ -152,8 +152,10 @@ fn codec(codec: &Description) -> String {
         ),
         format!("held(const sw_{name}_decoder *decoder, {sample} *value)"),
         format!("resync(sw_{name}_decoder *decoder, {sample} value)"),
-        format!("firings(const {code} *code, sw_firing *firings, size_t capacity, size_t *count)"),
-        format!("assemble(const sw_firing *firings, size_t count, {code} *code)"),
+        format!(
+            "firings(const {code} *code, sw_neuron_spike *firings, size_t capacity, size_t *count)"
+        ),
+        format!("assemble(const sw_neuron_spike *firings, size_t count, {code} *code)"),
         format!(
             "bank(sw_{name}_encoder *encoders, const {sample} *samples, {code} *codes, size_t channels, const sw_stamp *stamp, sw_queue *queue)"
         ),

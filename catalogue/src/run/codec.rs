@@ -1,7 +1,7 @@
 //! An encoder and its decoder over many samples, whose type says nothing of the scheme.
 
 use anyhow::Result;
-use spikewire::{Code, Firing, Output, Polarity, Sample, Scheme};
+use spikewire::{Code, NeuronSpike, Output, Polarity, Sample, Scheme};
 
 use super::{Settings, Visit};
 
@@ -187,17 +187,17 @@ fn leading<'a>(events: &mut &'a [Event], sample: u64) -> &'a [Event] {
 fn assembled<C: Code>(events: &[Event]) -> Option<C> {
     let firing = |event: &Event| {
         let Event { neuron, slot, polarity, .. } = *event;
-        Firing { neuron, slot, polarity }
+        NeuronSpike { neuron, slot, polarity }
     };
     let code = C::assemble(events.iter().map(firing));
-    let mut left: Vec<Firing> = events.iter().map(firing).collect();
+    let mut left: Vec<NeuronSpike> = events.iter().map(firing).collect();
     for firing in code.firings() {
         left.swap_remove(left.iter().position(|other| *other == firing)?);
     }
     left.is_empty().then_some(code)
 }
 
-fn event_of(sample: u64, firing: Firing) -> Event {
-    let Firing { neuron, slot, polarity } = firing;
+fn event_of(sample: u64, firing: NeuronSpike) -> Event {
+    let NeuronSpike { neuron, slot, polarity } = firing;
     Event { sample, neuron, slot, polarity }
 }

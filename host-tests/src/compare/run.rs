@@ -2,7 +2,7 @@
 
 use core::fmt::Debug;
 
-use spikewire::{Decoder, Encoder, Output, Place, Scheme, Start};
+use spikewire::{Decoder, Destination, Encoder, Output, Scheme, Start};
 
 use super::wire::{Wire, assert_same_values, reals};
 
@@ -91,7 +91,7 @@ pub fn run<P: Repeatable>(encoder: &Encoder<'_, P>, samples: &[P::Sample]) -> Ru
 /// Memory that holds no output at first.
 struct Room<T>(Option<T>);
 
-impl<T> Place<T> for Room<T> {
+impl<T> Destination<T> for Room<T> {
     fn write(&mut self, output: T) {
         self.0 = Some(output);
     }

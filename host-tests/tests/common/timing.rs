@@ -6,7 +6,7 @@ use fixed::types::extra::{LeEqU16, LeEqU32};
 use fixed::{FixedI16, FixedI32};
 use host_tests::compare::{Repeatable, Wire, assert_same_values, decode, encode};
 use host_tests::reference::{Exact, Line, Spikes};
-use spikewire::{Code, Firing, Output, Polarity, Start};
+use spikewire::{Code, NeuronSpike, Output, Polarity, Start};
 
 /// A sample type, and the line of values that the reference reads it on.
 pub(crate) trait Lined: Wire {
@@ -62,7 +62,8 @@ pub(crate) fn spikes_of(code: &impl Code) -> Spikes {
 
 /// The code of spikes.
 pub(crate) fn code_of<C: Code>(spikes: &[(u16, u16)]) -> C {
-    let firing = |&(neuron, slot): &(u16, u16)| Firing { neuron, slot, polarity: Polarity::Up };
+    let firing =
+        |&(neuron, slot): &(u16, u16)| NeuronSpike { neuron, slot, polarity: Polarity::Up };
     C::assemble(spikes.iter().map(firing))
 }
 

@@ -1,6 +1,6 @@
 //! The code of a sample as any number of neurons of a population.
 
-use crate::{Code, Firing, Output, Polarity};
+use crate::{Code, NeuronSpike, Output, Polarity};
 
 /// Which neurons fired for one sample.
 ///
@@ -56,12 +56,12 @@ impl<const M: usize> FiredNeurons<M> {
 impl<const M: usize> Code for FiredNeurons<M> {
     const NEURONS: usize = M;
 
-    fn firings(&self) -> impl Iterator<Item = Firing> {
-        self.iter().map(|neuron| Firing { neuron, slot: 0, polarity: Polarity::Up })
+    fn firings(&self) -> impl Iterator<Item = NeuronSpike> {
+        self.iter().map(|neuron| NeuronSpike { neuron, slot: 0, polarity: Polarity::Up })
     }
 
     /// Every neuron that fired at least once.
-    fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
+    fn assemble(firings: impl Iterator<Item = NeuronSpike>) -> Self {
         let mut neurons = Self::EMPTY;
         for firing in firings {
             if let Some(fired) = neurons.fired.get_mut(usize::from(firing.neuron)) {

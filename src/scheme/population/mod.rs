@@ -1,7 +1,7 @@
 //! Population codes: the value is given by which of `M` neurons fire, and when.
 //!
 //! Every neuron has a centre. [`Position`] and [`Gaussian`] fire the one neuron that a sample is nearest to; the other
-//! codes fire several, by chance, in [slots](crate::Firing::slot) by the strength of their response, or in the order of
+//! codes fire several, by chance, in [slots](crate::NeuronSpike::slot) by the strength of their response, or in the order of
 //! their distance. Nothing is added up from sample to sample, so that a lost spike harms one sample only, and no
 //! keyframes are needed; while no neuron fires, a decoder holds its last value.
 

@@ -2,7 +2,7 @@
 
 use core::num::NonZeroU16;
 
-use crate::{Code, Firing, Output, Polarity};
+use crate::{Code, NeuronSpike, Output, Polarity};
 
 /// One of `M` neurons.
 ///
@@ -55,13 +55,13 @@ impl<const M: usize> serde::Serialize for Neuron<M> {
 impl<const M: usize> Code for Option<Neuron<M>> {
     const NEURONS: usize = M;
 
-    fn firings(&self) -> impl Iterator<Item = Firing> {
-        self.map(|neuron| Firing { neuron: neuron.index(), slot: 0, polarity: Polarity::Up })
+    fn firings(&self) -> impl Iterator<Item = NeuronSpike> {
+        self.map(|neuron| NeuronSpike { neuron: neuron.index(), slot: 0, polarity: Polarity::Up })
             .into_iter()
     }
 
     /// The neuron that fired most often; the lowest, if there are several.
-    fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
+    fn assemble(firings: impl Iterator<Item = NeuronSpike>) -> Self {
         let mut counts = [0_u16; M];
         for firing in firings {
             if let Some(count) = counts.get_mut(usize::from(firing.neuron)) {

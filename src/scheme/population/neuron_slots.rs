@@ -1,6 +1,6 @@
 //! The code of a sample as spikes of any neurons of a population, each in one of several sub-timesteps.
 
-use crate::{Code, Firing, Output, Polarity};
+use crate::{Code, NeuronSpike, Output, Polarity};
 
 /// The spikes of one sample: any of `M` neurons, each in its slot of `N`, which is at most 256.
 ///
@@ -55,14 +55,14 @@ impl<const M: usize, const N: usize> Code for NeuronSlots<M, N> {
     const NEURONS: usize = M;
     const SLOTS: usize = N;
 
-    fn firings(&self) -> impl Iterator<Item = Firing> {
-        self.iter().map(|(neuron, slot)| Firing { neuron, slot, polarity: Polarity::Up })
+    fn firings(&self) -> impl Iterator<Item = NeuronSpike> {
+        self.iter().map(|(neuron, slot)| NeuronSpike { neuron, slot, polarity: Polarity::Up })
     }
 
     /// Each neuron in the slot of its first spike.
-    fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
+    fn assemble(firings: impl Iterator<Item = NeuronSpike>) -> Self {
         let mut all = Self::EMPTY;
-        for Firing { neuron, slot, .. } in firings {
+        for NeuronSpike { neuron, slot, .. } in firings {
             let known = all.slots.get_mut(usize::from(neuron));
             if let (Some(known), Some(slot)) = (known, Self::counted(slot)) {
                 *known = if *known == 0 { slot } else { slot.min(*known) };

@@ -8,7 +8,7 @@ use crate::error::{offset, positive, unwrap, within};
 use crate::num::curve::{ln, sqrt};
 use crate::num::{scale, to_f64, widths, within_widths};
 use crate::scheme::cells::count_preceding;
-use crate::{ConfigError, Place, Recovery, Sample, SampleKind, Scheme, Start};
+use crate::{ConfigError, Destination, Recovery, Sample, SampleKind, Scheme, Start};
 
 /// Non-linear Gaussian receptive fields whose neurons fire in one of `N` sub-timesteps of a sample, its slots.
 ///
@@ -349,7 +349,7 @@ impl<S: Sample, const M: usize, const N: usize> Scheme for NonLinearSlots<S, M, 
         &self,
         state: &mut SlotsState,
         samples: &[S],
-        outputs: &mut [impl Place<NeuronSlots<M, N>>],
+        outputs: &mut [impl Destination<NeuronSlots<M, N>>],
     ) -> usize {
         for (output, &sample) in outputs.iter_mut().zip(samples) {
             output.write_with(NeuronSlots::EMPTY, |spikes| self.encode_into(state, sample, spikes));

@@ -8,7 +8,7 @@ use crate::error::unwrap;
 use crate::num::Tally;
 use crate::scheme::codec::decode_copied;
 use crate::scheme::held::Held;
-use crate::{ConfigError, Place, Recovery, Sample, Scheme, Start};
+use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Start};
 
 /// Position coding: every sample fires the one neuron whose centre is nearest.
 ///
@@ -129,7 +129,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
         &self,
         state: &mut PositionState,
         samples: &[S],
-        outputs: &mut [impl Place<Option<Neuron<M>>>],
+        outputs: &mut [impl Destination<Option<Neuron<M>>>],
     ) {
         for (output, &sample) in outputs.iter_mut().zip(samples) {
             output.write(if sample.is_finite() {
@@ -185,7 +185,7 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
         &self,
         state: &mut PositionState,
         samples: &[S],
-        outputs: &mut [impl Place<Option<Neuron<M>>>],
+        outputs: &mut [impl Destination<Option<Neuron<M>>>],
     ) -> usize {
         let centres = &self.centres;
         let mut check = S::ZERO;

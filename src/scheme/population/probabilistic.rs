@@ -11,7 +11,7 @@ use super::fields::ReceptiveFields;
 use crate::error::unwrap;
 use crate::num::{Distance, Tally};
 use crate::scheme::held::Held;
-use crate::{ConfigError, Encoder, Place, Recovery, Sample, Scheme};
+use crate::{ConfigError, Destination, Encoder, Recovery, Sample, Scheme};
 
 /// Gaussian receptive fields in which a neuron fires with a probability equal to its response, drawn from the
 /// caller's random number generator.
@@ -201,7 +201,7 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Scheme for Probabilistic
         &self,
         state: &mut ProbabilisticState<G>,
         samples: &[S],
-        outputs: &mut [impl Place<FiredNeurons<M>>],
+        outputs: &mut [impl Destination<FiredNeurons<M>>],
     ) -> usize {
         for (output, &sample) in outputs.iter_mut().zip(samples) {
             output.write_with(FiredNeurons::EMPTY, |neurons| {

@@ -6,7 +6,7 @@ use super::centres::{Centres, even, halfway_edges};
 use super::{Held, SlotSpikes, SlotsState};
 use crate::error::{offset, unwrap};
 use crate::num::{from_f64, to_f64};
-use crate::{ConfigError, Place, Recovery, Sample, SampleKind, Scheme, Start};
+use crate::{ConfigError, Destination, Recovery, Sample, SampleKind, Scheme, Start};
 
 /// Rank order coding: the `K` neurons of `M` whose centres are nearest fire one after the other, the nearest first.
 ///
@@ -346,7 +346,7 @@ impl<S: Sample, const M: usize, const K: usize> Scheme for RankOrder<S, M, K> {
         &self,
         state: &mut SlotsState,
         samples: &[S],
-        outputs: &mut [impl Place<SlotSpikes<M, K>>],
+        outputs: &mut [impl Destination<SlotSpikes<M, K>>],
     ) -> usize {
         for (output, &sample) in outputs.iter_mut().zip(samples) {
             output.write_with(SlotSpikes::EMPTY, |spikes| self.encode_into(state, sample, spikes));

@@ -1,6 +1,6 @@
 //! The code of a sample as spikes of neighbouring neurons, each in one of several sub-timesteps.
 
-use crate::{Code, Firing, Output, Polarity};
+use crate::{Code, NeuronSpike, Output, Polarity};
 
 /// The spikes of one sample: neighbouring neurons of `M`, each in one of `N` slots.
 ///
@@ -64,15 +64,17 @@ impl<const M: usize, const N: usize> Code for SlotSpikes<M, N> {
     const NEURONS: usize = M;
     const SLOTS: usize = N;
 
-    fn firings(&self) -> impl Iterator<Item = Firing> {
-        self.iter().map(|(neuron, slot)| Firing { neuron, slot, polarity: Polarity::Up })
+    fn firings(&self) -> impl Iterator<Item = NeuronSpike> {
+        self.iter().map(|(neuron, slot)| NeuronSpike { neuron, slot, polarity: Polarity::Up })
     }
 
     /// The neuron that fired first (the lowest, if there are several) and its neighbours on either side up to one that
     /// did not fire, each in the slot of its first spike.
-    fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
+    fn assemble(firings: impl Iterator<Item = NeuronSpike>) -> Self {
         let mut slots = [None::<u8>; M];
-        for Firing { neuron, slot, .. } in firings.filter(|firing| usize::from(firing.slot) < N) {
+        for NeuronSpike { neuron, slot, .. } in
+            firings.filter(|firing| usize::from(firing.slot) < N)
+        {
             if let Some(known) = slots.get_mut(usize::from(neuron)) {
                 *known = Some(known.map_or(slot as u8, |known| known.min(slot as u8)));
             }

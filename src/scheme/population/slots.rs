@@ -7,7 +7,7 @@ use super::fields::ReceptiveFields;
 use crate::error::{unwrap, within};
 use crate::num::{Distance, Tally};
 use crate::scheme::held::Held;
-use crate::{ConfigError, Place, Recovery, Sample, Scheme, Start};
+use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Start};
 
 /// Gaussian receptive fields whose neurons fire in one of `N` sub-timesteps of a sample, its slots.
 ///
@@ -202,7 +202,7 @@ impl<S: Sample, const M: usize, const N: usize> Scheme for Slots<S, M, N> {
         &self,
         state: &mut SlotsState,
         samples: &[S],
-        outputs: &mut [impl Place<SlotSpikes<M, N>>],
+        outputs: &mut [impl Destination<SlotSpikes<M, N>>],
     ) -> usize {
         for (output, &sample) in outputs.iter_mut().zip(samples) {
             output.write_with(SlotSpikes::EMPTY, |spikes| self.encode_into(state, sample, spikes));

@@ -6,7 +6,7 @@ use super::encoder::{RateState, Rule, rate_scheme};
 use super::filtered::{Filtered, with_shift};
 use crate::error::{not_negative, ratio, unwrap};
 use crate::num::{Bound, Nearer, Ratio, to_f64};
-use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 
 /// Ben's spiker algorithm, as published: errors and subtraction aligned with the sample.
 ///

@@ -7,7 +7,7 @@ use super::encoder::{cells, subtract};
 use super::filtered::{Filtered, with_shift};
 use crate::error::{ratio, unwrap};
 use crate::num::{Nearer, Ratio, Residual, Tally};
-use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 
 /// Ben's spiker algorithm with the indices behind the paper's tables: the filter is compared one sample later, and
 /// subtracted two samples later, than in [`Bsa`](super::Bsa).
@@ -165,7 +165,7 @@ impl<S: Sample, const F: usize> Scheme for BsaToolbox<S, F> {
         &self,
         state: &mut BsaToolboxState<S, F>,
         samples: &[S],
-        spikes: &mut [impl Place<Option<Spike>>],
+        spikes: &mut [impl Destination<Option<Spike>>],
     ) -> usize {
         let mut registers = state.registers;
         for (spike, &sample) in spikes.iter_mut().zip(samples) {

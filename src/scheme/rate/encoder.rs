@@ -6,7 +6,7 @@ use core::hint::black_box;
 use super::cursor::Cursor;
 use super::filtered::Filtered;
 use crate::num::{Residual, Tally};
-use crate::{Place, Sample, Spike};
+use crate::{Destination, Sample, Spike};
 
 /// A rate code's rule for when a sample spikes.
 pub(super) trait Rule<S: Sample, const F: usize> {
@@ -107,7 +107,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         &mut self,
         rule: &R,
         samples: &[S],
-        spikes: &mut [impl Place<Option<Spike>>],
+        spikes: &mut [impl Destination<Option<Spike>>],
     ) -> usize {
         let length = samples.len().min(spikes.len());
         if !R::IN_ORDER {
@@ -151,7 +151,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         &mut self,
         rule: &R,
         samples: &[S],
-        spikes: &mut [impl Place<Option<Spike>>],
+        spikes: &mut [impl Destination<Option<Spike>>],
     ) -> usize {
         let filtered = rule.filtered();
         let taps = *filtered.taps.as_array();
@@ -296,7 +296,7 @@ macro_rules! rate_scheme {
                 &self,
                 state: &mut RateState<S, F>,
                 samples: &[S],
-                spikes: &mut [impl Place<Option<Spike>>],
+                spikes: &mut [impl Destination<Option<Spike>>],
             ) -> usize {
                 state.encode_slice(self, samples, spikes)
             }

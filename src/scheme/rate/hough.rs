@@ -5,7 +5,7 @@ use super::decoder::{RateDecoderState, decode_rate};
 use super::encoder::{RateState, Rule, rate_scheme};
 use super::filtered::{Filtered, with_shift};
 use crate::error::unwrap;
-use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 
 /// The Hough spike algorithm (HSA).
 ///

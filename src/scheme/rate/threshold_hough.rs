@@ -6,7 +6,7 @@ use super::encoder::{RateState, Rule, rate_scheme};
 use super::filtered::{Filtered, with_shift};
 use crate::error::{not_negative, unwrap};
 use crate::num::{Shortfall, to_f64};
-use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 
 /// The threshold Hough spike algorithm (T-HSA).
 ///

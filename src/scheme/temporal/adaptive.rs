@@ -5,7 +5,7 @@ use super::doublings;
 use crate::error::{unwrap, within};
 use crate::num::Tally;
 use crate::scheme::codec::{Until, decode_copied, encode_each};
-use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 
 /// Adaptive step forward: the baseline follows the signal by one step a spike, and the step grows while the signal
 /// runs away.
@@ -210,7 +210,7 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         &self,
         state: &mut AdaptiveState<S>,
         samples: &[S],
-        spikes: &mut [impl Place<Spike>],
+        spikes: &mut [impl Destination<Spike>],
     ) -> usize {
         let first = if state.tally.is_primed() {
             0

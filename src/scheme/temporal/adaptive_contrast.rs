@@ -4,7 +4,7 @@ use super::doublings;
 use crate::error::unwrap;
 use crate::num::Tally;
 use crate::scheme::codec::{Until, decode_copied, encode_each};
-use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 
 /// Adaptive temporal contrast: the threshold follows how much the signal changes, between two bounds.
 ///
@@ -165,7 +165,7 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
         &self,
         state: &mut AdaptiveContrastState<S>,
         samples: &[S],
-        spikes: &mut [impl Place<Spike>],
+        spikes: &mut [impl Destination<Spike>],
     ) -> usize {
         let first = if state.tally.is_primed() {
             0

@@ -5,7 +5,7 @@ use super::steps::decode_steps;
 use crate::error::{positive, unwrap};
 use crate::num::{Tally, to_f64};
 use crate::scheme::codec::{Until, encode_each};
-use crate::{Calibration, ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
+use crate::{Calibration, ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 
 /// Temporal contrast, also called temporal-based representation (TBR): what event cameras do.
 ///
@@ -151,7 +151,7 @@ impl<S: Sample> Scheme for TemporalContrast<S> {
         &self,
         state: &mut ContrastState<S>,
         samples: &[S],
-        spikes: &mut [impl Place<Spike>],
+        spikes: &mut [impl Destination<Spike>],
     ) -> usize {
         let first = if state.tally.is_primed() {
             0

@@ -7,7 +7,7 @@ use super::StepState;
 use super::steps::decode_steps;
 use crate::error::{positive, unwrap};
 use crate::num::{Difference, Tally, Windowed, fast_margin, margin, to_f64};
-use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 
 /// Moving window: the baseline is the mean of the `N` samples before.
 ///
@@ -142,7 +142,7 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
         &mut self,
         margin: <S::Fast as Difference>::Margin,
         groups: &[[S; M]],
-        spikes: &mut [[impl Place<Spike>; M]],
+        spikes: &mut [[impl Destination<Spike>; M]],
     ) -> usize {
         let Some(mut partial) = S::fast(self.partial) else { return 0 };
         let is_full = self.next < FILLING;
@@ -182,7 +182,7 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
         &mut self,
         margin: <S::Fast as Difference>::Margin,
         groups: &[[S; GROUP]],
-        spikes: &mut [[impl Place<Spike>; GROUP]],
+        spikes: &mut [[impl Destination<Spike>; GROUP]],
     ) -> usize {
         self.encode_groups(margin, groups, spikes)
     }
@@ -311,7 +311,7 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
         &self,
         state: &mut MovingWindowState<S, N>,
         samples: &[S],
-        spikes: &mut [impl Place<Spike>],
+        spikes: &mut [impl Destination<Spike>],
     ) -> usize {
         let length = samples.len().min(spikes.len());
         let mut encoded = 0;

@@ -6,7 +6,8 @@ use crate::error::{step, unwrap, within};
 use crate::num::{Tally, to_f64};
 use crate::scheme::codec::{Until, encode_each};
 use crate::{
-    Code, ConfigError, Firing, Output, Place, Polarity, Recovery, Sample, Scheme, Spike, Start,
+    Code, ConfigError, Destination, NeuronSpike, Output, Polarity, Recovery, Sample, Scheme, Spike,
+    Start,
 };
 
 /// Send-on-delta: the baseline follows the signal by up to `K` thresholds a sample, with one spike for each.
@@ -156,13 +157,13 @@ impl<const K: usize> Code for Steps<K> {
     const NEURONS: usize = 1;
     const SLOTS: usize = K;
 
-    fn firings(&self) -> impl Iterator<Item = Firing> {
+    fn firings(&self) -> impl Iterator<Item = NeuronSpike> {
         let polarity = if self.0 > 0 { Polarity::Up } else { Polarity::Down };
-        (0..self.0.unsigned_abs().into()).map(move |slot| Firing { neuron: 0, slot, polarity })
+        (0..self.0.unsigned_abs().into()).map(move |slot| NeuronSpike { neuron: 0, slot, polarity })
     }
 
     /// The spikes up minus the spikes down.
-    fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
+    fn assemble(firings: impl Iterator<Item = NeuronSpike>) -> Self {
         let steps = firings.filter(|firing| firing.neuron == 0).fold(0_i8, |steps, firing| {
             match firing.polarity {
                 Polarity::Up => steps.saturating_add(1),
@@ -218,7 +219,7 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
         &self,
         state: &mut SendOnDeltaState<S>,
         samples: &[S],
-        outputs: &mut [impl Place<Steps<K>>],
+        outputs: &mut [impl Destination<Steps<K>>],
     ) -> usize {
         let first = if state.tally.is_primed() {
             0

@@ -6,7 +6,7 @@ use super::steps::decode_steps;
 use crate::error::{step, unwrap};
 use crate::num::{Tally, to_f64};
 use crate::scheme::codec::{Until, encode_each};
-use crate::{ConfigError, Place, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 
 /// Step forward: the baseline starts at the first sample and follows the signal by one threshold with each
 /// spike.
@@ -129,7 +129,7 @@ impl<S: Sample> Scheme for StepForward<S> {
         &self,
         state: &mut StepForwardState<S>,
         samples: &[S],
-        spikes: &mut [impl Place<Spike>],
+        spikes: &mut [impl Destination<Spike>],
     ) -> usize {
         let first = if state.tally.is_primed() {
             0

@@ -1,6 +1,6 @@
 //! The code of a sample as a burst of spikes at one interval.
 
-use crate::{Code, Firing, Output, Polarity};
+use crate::{Code, NeuronSpike, Output, Polarity};
 
 /// The spikes of one sample: a number of them, from slot 0 on, at one interval, in slots below `N`.
 ///
@@ -53,14 +53,14 @@ impl<const N: usize> Code for BurstSpikes<N> {
     const NEURONS: usize = 1;
     const SLOTS: usize = N;
 
-    fn firings(&self) -> impl Iterator<Item = Firing> {
+    fn firings(&self) -> impl Iterator<Item = NeuronSpike> {
         let interval = u16::from(self.interval);
         let slots = (0..u16::from(self.count)).map(move |spike| spike.wrapping_mul(interval));
-        slots.map(|slot| Firing { neuron: 0, slot, polarity: Polarity::Up })
+        slots.map(|slot| NeuronSpike { neuron: 0, slot, polarity: Polarity::Up })
     }
 
     /// The spikes from slot 0 on at the interval of the first two, up to the first that is missing.
-    fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
+    fn assemble(firings: impl Iterator<Item = NeuronSpike>) -> Self {
         let mut fired = [false; N];
         for firing in firings.filter(|firing| firing.neuron == 0) {
             if let Some(fired) = fired.get_mut(usize::from(firing.slot)) {

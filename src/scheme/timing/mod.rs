@@ -1,6 +1,6 @@
 //! Timing codes: the time of a spike within its sample gives the value.
 //!
-//! A sample is divided into slots, sub-timesteps of the caller's length: [`Firing::slot`](crate::Firing::slot) names
+//! A sample is divided into slots, sub-timesteps of the caller's length: [`NeuronSpike::slot`](crate::NeuronSpike::slot) names
 //! one, [`Bank::with_slot_ticks`](crate::Bank::with_slot_ticks) says how long they last. Nothing is added up from
 //! sample to sample, so that a lost spike harms one sample only, and no keyframes are needed.
 //!

@@ -1,6 +1,6 @@
 //! The code of a sample as the digits of its value.
 
-use crate::{Code, Firing, Output, Polarity};
+use crate::{Code, NeuronSpike, Output, Polarity};
 
 /// The spikes of one sample in up to `K` slots: one for each binary digit that is 1, the highest first.
 ///
@@ -29,14 +29,14 @@ impl<const K: usize> Code for PhaseBits<K> {
     const NEURONS: usize = 1;
     const SLOTS: usize = K;
 
-    fn firings(&self) -> impl Iterator<Item = Firing> {
+    fn firings(&self) -> impl Iterator<Item = NeuronSpike> {
         let digits = self.0.reverse_bits() >> (16_usize.saturating_sub(K) & 15);
         let fired = (0..K as u16).filter(move |&slot| digits >> (slot & 15) & 1 == 1);
-        fired.map(|slot| Firing { neuron: 0, slot, polarity: Polarity::Up })
+        fired.map(|slot| NeuronSpike { neuron: 0, slot, polarity: Polarity::Up })
     }
 
     /// A digit is 1 where a spike fired in its slot, once or more often.
-    fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
+    fn assemble(firings: impl Iterator<Item = NeuronSpike>) -> Self {
         let slots = firings.filter(|firing| firing.neuron == 0).map(|firing| firing.slot.into());
         let digits = slots.filter_map(|slot: usize| (K - 1).checked_sub(slot));
         Self::new(digits.fold(0, |digits, digit| digits | 1 << (digit & 15)))

@@ -1,6 +1,6 @@
 //! The code of a sample as the spikes of neurons that share an oscillation.
 
-use crate::{Code, Firing, Output, Polarity};
+use crate::{Code, NeuronSpike, Output, Polarity};
 
 /// The spikes of one sample: one of each of `M` neurons, in slots below `W + P - 1`.
 ///
@@ -60,14 +60,14 @@ impl<const M: usize, const W: usize, const P: usize> Code for PhaseSpikes<M, W, 
     const NEURONS: usize = M;
     const SLOTS: usize = Self::SLOTS;
 
-    fn firings(&self) -> impl Iterator<Item = Firing> {
-        self.iter().map(|(neuron, slot)| Firing { neuron, slot, polarity: Polarity::Up })
+    fn firings(&self) -> impl Iterator<Item = NeuronSpike> {
+        self.iter().map(|(neuron, slot)| NeuronSpike { neuron, slot, polarity: Polarity::Up })
     }
 
     /// Each neuron in the slot of its first spike.
-    fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
+    fn assemble(firings: impl Iterator<Item = NeuronSpike>) -> Self {
         let mut spikes = Self::SILENT;
-        for Firing { neuron, slot, .. } in firings {
+        for NeuronSpike { neuron, slot, .. } in firings {
             let number = spikes.numbers.get_mut(usize::from(neuron));
             if let Some(number) = number.filter(|_| usize::from(slot) < Self::SLOTS) {
                 let earlier = number.checked_sub(1).map_or(slot, |known| known.min(slot));

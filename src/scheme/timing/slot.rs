@@ -2,7 +2,7 @@
 
 use core::num::NonZeroU16;
 
-use crate::{Code, Firing, Output, Polarity};
+use crate::{Code, NeuronSpike, Output, Polarity};
 
 /// One of `N` slots of a sample.
 ///
@@ -56,13 +56,13 @@ impl<const N: usize> Code for Option<Slot<N>> {
     const NEURONS: usize = 1;
     const SLOTS: usize = N;
 
-    fn firings(&self) -> impl Iterator<Item = Firing> {
-        self.map(|slot| Firing { neuron: 0, slot: slot.index(), polarity: Polarity::Up })
+    fn firings(&self) -> impl Iterator<Item = NeuronSpike> {
+        self.map(|slot| NeuronSpike { neuron: 0, slot: slot.index(), polarity: Polarity::Up })
             .into_iter()
     }
 
     /// The slot of the first spike.
-    fn assemble(firings: impl Iterator<Item = Firing>) -> Self {
+    fn assemble(firings: impl Iterator<Item = NeuronSpike>) -> Self {
         let of_neuron = firings.filter(|firing| firing.neuron == 0);
         of_neuron.map(|firing| firing.slot).min().and_then(Slot::new)
     }

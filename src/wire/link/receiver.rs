@@ -7,7 +7,7 @@ use super::Received;
 use crate::event::{
     Addresses, CodeOf, DecoderStateOf, Event, Keyframe, SampleOf, Schemes, States, Tick,
 };
-use crate::{Code, ConfigError, Firing, Recovery, Scheme, error};
+use crate::{Code, ConfigError, NeuronSpike, Recovery, Scheme, error};
 
 /// The decoders of `N` channels at the end of a link, for any code.
 ///
@@ -250,7 +250,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             let channel = address / neurons;
             if let Some((scheme, known)) = T::each_mut(&mut self.channels).nth(channel) {
                 let neuron = (address % neurons) as u16;
-                let firing = Firing { neuron, slot: 0, polarity: event.polarity };
+                let firing = NeuronSpike { neuron, slot: 0, polarity: event.polarity };
                 let code = Code::assemble(core::iter::once(firing));
                 known.value = scheme.decode(&mut known.state, code);
                 on_value(channel as u16, event.tick, known.value);
