@@ -73,7 +73,7 @@ impl Place {
         let code = bits.take_code(u32::from(address_bits) + POLARITY)?;
         let polarity = if code & 1 == 1 { Polarity::Up } else { Polarity::Down };
         let distance = code >> POLARITY;
-        (distance < ADDRESSES - next_address).then(|| {
+        (distance < ADDRESSES.wrapping_sub(next_address)).then(|| {
             let address = next_address.wrapping_add(distance) as u16;
             Event { tick, address, polarity }
         })
