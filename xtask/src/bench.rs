@@ -78,10 +78,12 @@ pub fn bench(args: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Fails if anything takes more instructions on a core than it did, or six channels more than is promised.
+/// Fails if anything takes more instructions on a core than it did, or six channels more than is promised of theirs.
 pub fn verify(core: &str) -> Result<()> {
     let measured = measure(&[], &[core])?;
-    events::ensure_six_channels_fit(&measured.events)?;
+    if core == events::PROMISED.0 {
+        events::ensure_six_channels_fit(&measured.events)?;
+    }
     baseline::compare(core, &measured)
 }
 

@@ -43,7 +43,7 @@ const SAMPLES: [&str; 2] = ["f32", "q16.16"];
 
 /// Six channels a second, and the core and clock that they are promised for.
 const RATE: f64 = 8_000.0;
-const PROMISED: (&str, &str) = ("M4F", "f32");
+pub const PROMISED: (&str, &str) = ("M4F", "f32");
 const CLOCK: f64 = 168e6;
 const SHARE: f64 = 0.02;
 
