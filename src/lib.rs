@@ -66,6 +66,8 @@
 //! | `defmt` | `defmt::Format` on public data |
 //! | `serde` | `Serialize` on public data; `Deserialize` where nothing has to be checked, and on [states](Encoder::with_state) |
 //! | `queue` | bounded queues from interrupts to main; `EventQueue` needs a `critical-section` implementation in the program |
+//! | `heapless` | `heapless::Vec`, `Deque`, `spsc` and `mpmc` as ends of queues, by way of `Counted` |
+//! | `portable-atomic` | the same of `mpmc` on a Cortex-M0; needs a `critical-section` implementation in the program |
 //! | `link` | `link`: framed events over any byte transport |
 //! | `embedded-hal` | [`out`]: SPI; `chip`: neuromorphic chips |
 //! | `async` | [`out`]: asynchronous SPI; waiting on a queue |
@@ -100,6 +102,8 @@ pub use event::{
     Consumer, EventQueue, Overflow, Queue, QueueView, Refused, SpscConsumer, SpscProducer,
     SpscQueue,
 };
+#[cfg(feature = "heapless")]
+pub use event::{Container, Counted, Element};
 pub use num::{Sample, SampleKind};
 #[cfg(feature = "alloc")]
 pub use scheme::dynamic;
@@ -112,7 +116,13 @@ pub use wire::format;
 #[cfg(feature = "link")]
 pub use wire::link;
 
-/// The README's code, for doctests alone.
+/// The code of the README and of the pages in `docs`, for doctests alone.
 #[cfg(all(doctest, feature = "fixed", feature = "queue", feature = "link"))]
-#[doc = include_str!("../README.md")]
-pub struct Readme;
+pub mod pages {
+    #[doc = include_str!("../README.md")]
+    pub struct Readme;
+    #[doc = include_str!("../docs/usage.md")]
+    pub struct Usage;
+    #[doc = include_str!("../docs/frames.md")]
+    pub struct Frames;
+}

@@ -10,7 +10,8 @@ use super::error::{at_most, in_range};
 ///
 /// - **SPI:** mode 0, high bit first, 8 MHz; chip select low over header and data.
 /// - **Blocks:** 1, 4, 8, 16 or 32 words each; a longer run takes several.
-/// - **Addresses:** multiples of 4 from `0xFC00_0000` on. The bus carries the low 26 bits, and the chip adds the rest.
+/// - **Addresses:** multiples of 4 from `0xFC00_0000` to `0xFCFF_FFFC`, as in the vendor's driver. The bus carries the low
+///   26 bits, and the chip adds the rest.
 /// - **Faults:** chip select begins every block anew, so that a clock lost or doubled spoils one block and no more. There
 ///   is no checksum: [`program`](Self::program) reads all back. A disturbed header may write a block to another
 ///   address: after [`ReadBack`](ChipError::ReadBack) write all memory again that must be right. If the right address
@@ -43,9 +44,10 @@ const WRITE: u8 = 0x80;
 const READ: u8 = 0x60;
 /// The number of words of a block, and its code; longest first.
 const BLOCKS: [(usize, u8); 5] = [(32, 4), (16, 3), (8, 2), (4, 1), (1, 0)];
-const WINDOW: u32 = 1 << 26;
-/// What the chip adds to the bits of the bus.
+/// The first address; the chip adds its high 6 bits to those of the bus.
 const BASE: u32 = 0xFC00_0000;
+/// The end of the addresses, exclusive.
+const END: u32 = 0xFD00_0000;
 const MAX_BLOCK_BYTES: usize = 128;
 
 impl<D: SpiDevice> Akd1500<D> {
@@ -128,10 +130,9 @@ impl<D: SpiDevice> Akd1500<D> {
 fn check<E>(address: u32, words: usize) -> Result<(), ChipError<E>> {
     let bytes =
         u32::try_from(words).ok().and_then(|words| words.checked_mul(4)).unwrap_or(u32::MAX);
-    let room = WINDOW - (address & (WINDOW - 1));
-    in_range("address", address.into(), BASE.into(), u32::MAX.into())?;
+    in_range("address", address.into(), BASE.into(), (END - 1).into())?;
     at_most("offset into a word", address & 3, 0)?;
-    at_most("length in bytes", bytes, room)
+    at_most("length in bytes", bytes, END.saturating_sub(address))
 }
 
 /// `{command, word address}`, of 24 bits.

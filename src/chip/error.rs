@@ -28,6 +28,9 @@ pub enum ChipError<B, P = Infallible> {
     Gated,
     /// The chip did not answer after its gate was opened: reset it.
     NotStarted,
+    /// Every neuron is at its threshold, at the end of its range, or learns: no time step would leave one as it is, so
+    /// that the start could not be verified. The chip is still gated, and nothing was changed.
+    NoProbe,
     /// The chip's outputs do not end, so that it cannot be gated: see
     /// [`open_loop`](super::Running::open_loop).
     Busy,
@@ -72,6 +75,7 @@ impl<B: fmt::Debug, P: fmt::Debug> fmt::Display for ChipError<B, P> {
             Self::NotGated => write!(f, "the chip's activity must be gated first"),
             Self::Gated => write!(f, "the chip's activity is gated"),
             Self::NotStarted => write!(f, "the chip did not answer after its gate was opened"),
+            Self::NoProbe => write!(f, "no neuron can show that the chip starts"),
             Self::Busy => write!(f, "the chip's outputs do not end"),
             Self::MixedSigns { pre } => write!(f, "weights from {pre} have both signs"),
             Self::OutOfRange { what, value, min, max } => {

@@ -163,7 +163,6 @@ pub enum OdinInput {
 
 impl Input for OdinInput {
     const LEAK_ALL: Self = Self::LeakAll;
-    const PROBE: Self = Self::Leak { neuron: Self::PROBED };
     const PROBED: u8 = 255;
     const NEURON_BYTES: u8 = 16;
     const PARAMETERS: [u8; 16] = 0xFFFF_FFFF_FFC0_003F_FFFF_FFFF_FFFF_FFFF_u128.to_le_bytes();
@@ -202,6 +201,10 @@ impl Input for OdinInput {
 
     fn spike(pre: u8) -> Self {
         Self::Spike { pre }
+    }
+
+    fn probe(neuron: u8) -> Self {
+        Self::Leak { neuron }
     }
 
     fn virtual_event(neuron: u8, weight: i8) -> Self {
@@ -246,10 +249,18 @@ impl Input for OdinInput {
         }
     }
 
-    fn is_unmoved(neuron: &OdinNeuron) -> bool {
+    fn before_step(neuron: &OdinNeuron) -> Option<OdinNeuron> {
         let &OdinNeuron { threshold, leak, potential, learning, is_disabled } = neuron;
         // A time step changes calcium, too.
-        learning.is_none() && (is_disabled || leak == 0 && potential < threshold)
+        if learning.is_some() {
+            return None;
+        }
+        // The potential of a neuron that never fires is of no account.
+        if is_disabled || potential == 0 && threshold > 0 {
+            return Some(*neuron);
+        }
+        let before = potential.checked_add(leak).filter(|_| potential < threshold)?;
+        Some(OdinNeuron { potential: before, ..*neuron })
     }
 
     /// The mapping bit is set unless the weight is 0.

@@ -86,7 +86,6 @@ pub enum TinyOdinInput {
 
 impl Input for TinyOdinInput {
     const LEAK_ALL: Self = Self::LeakAll;
-    const PROBE: Self = Self::Leak { neuron: Self::PROBED };
     const PROBED: u8 = 254;
     const NEURON_BYTES: u8 = 4;
     const PARAMETERS: [u8; 16] = [0, 0xF0, 0xFF, 0xFF, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
@@ -130,6 +129,10 @@ impl Input for TinyOdinInput {
         Self::Spike { pre }
     }
 
+    fn probe(neuron: u8) -> Self {
+        Self::Leak { neuron }
+    }
+
     fn virtual_event(neuron: u8, weight: i8) -> Self {
         Self::Virtual { neuron, weight }
     }
@@ -158,10 +161,13 @@ impl Input for TinyOdinInput {
         }
     }
 
-    fn is_unmoved(neuron: &TinyOdinNeuron) -> bool {
+    fn before_step(neuron: &TinyOdinNeuron) -> Option<TinyOdinNeuron> {
         let &TinyOdinNeuron { threshold, leak, potential, is_disabled } = neuron;
-        let fires = u16::try_from(potential).is_ok_and(|potential| potential >= threshold);
-        is_disabled || leak == 0 && !fires
+        let stays = u16::try_from(potential).map_or(true, |potential| potential < threshold);
+        let rests = is_disabled && potential == 0;
+        let before = potential + potential.signum() * i16::from(leak);
+        let is_held = (-2048..=2047).contains(&before);
+        (is_held && (stays || rests)).then_some(TinyOdinNeuron { potential: before, ..*neuron })
     }
 
     fn weight_bits<B, P>(weight: i8) -> Result<u8, ChipError<B, P>> {

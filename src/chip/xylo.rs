@@ -68,6 +68,9 @@ pub struct XyloMap {
     pub outputs: u16,
     /// The mask of the bits of `outputs` in use: bit `i` is output `i`.
     pub output_bits: u32,
+    /// The register that shows which input bank the next time step reads, and the mask of its bit: 1 for the second. `None`
+    /// where the public sources do not tell the bit.
+    pub next_bank: Option<(u16, u32)>,
 }
 
 impl XyloMap {
@@ -80,6 +83,7 @@ impl XyloMap {
         done: 1,
         outputs: 0x152,
         output_bits: u32::MAX,
+        next_bank: Some((0x171, 1 << 16)),
     };
 
     /// Xylo Audio A2: 8 outputs. The word that triggers a time step has to come from the vendor:
@@ -93,6 +97,7 @@ impl XyloMap {
             done: 1 << 16,
             outputs: 0x15,
             output_bits: 0xFF,
+            next_bank: None,
         }
     }
 }
@@ -102,6 +107,7 @@ impl XyloMap {
 /// Count the events of a time step with [`Bins<16>`](crate::Bins), with a limit of 15 so that events beyond it are
 /// counted as saturated.
 ///
+/// - **Banks:** a step reads one of two banks of counts. [`set_next_input`](Self::set_next_input) asks the chip which.
 /// - **Order:** the counts, then the step. While a step is under way no counts are taken, and [`step`](Self::step) goes on
 ///   waiting for that one, without a second trigger.
 /// - **Counts stay** in the chip: a step without new ones has those of the bank again, until they are
@@ -147,6 +153,31 @@ impl<R: Registers> Xylo<R> {
         let [low, high] = pack_counts(counts);
         self.registers.write(first, low).map_err(ChipError::Bus)?;
         self.registers.write(first.wrapping_add(1), high).map_err(ChipError::Bus)
+    }
+
+    /// Reads which bank of counts the next time step reads; `None` if the map does not tell where that stands.
+    ///
+    /// # Errors
+    /// The bus failed. [`Unfinished`](ChipError::Unfinished): a step is under way.
+    pub fn next_bank(&mut self) -> Result<Option<InputBank>, ChipError<R::Error>> {
+        if self.is_under_way {
+            return Err(ChipError::Unfinished);
+        }
+        let Some((register, mask)) = self.map.next_bank else { return Ok(None) };
+        let is_second = self.registers.read(register).map_err(ChipError::Bus)? & mask != 0;
+        Ok(Some(if is_second { InputBank::Second } else { InputBank::First }))
+    }
+
+    /// Sets the counts that the next time step reads: in its bank, or in both if the map does not tell which that is.
+    ///
+    /// # Errors
+    /// As [`set_input`](Self::set_input).
+    pub fn set_next_input(&mut self, counts: [u8; 16]) -> Result<(), ChipError<R::Error>> {
+        if let Some(bank) = self.next_bank()? {
+            return self.set_input(bank, counts);
+        }
+        self.set_input(InputBank::First, counts)?;
+        self.set_input(InputBank::Second, counts)
     }
 
     /// Sets the counts of both banks to 0.

@@ -167,15 +167,21 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         self.encode(tick, samples, |event| queue.put(Item::Event(event)));
     }
 
-    /// Puts a keyframe of every channel that has one into a queue, after the events of the samples so far. Call it
-    /// in the interrupt that encodes; `tick` is that of the last sample.
+    /// Puts a keyframe of every channel that has one into a queue, after the events of the samples so far; where none
+    /// has one, as of rate and population codes, a [heartbeat](Item::Heartbeat), which tells the far end the time. Call
+    /// it about once a second in the interrupt that encodes; `tick` is that of the last sample.
     pub fn keyframe_into(&self, tick: Tick, mut queue: impl Put) {
         let mut address = self.first_address;
+        let mut has_keyframe = false;
         for (scheme, state) in T::each(&self.channels) {
             if let Some(value) = scheme.keyframe(state) {
                 queue.put(Item::Keyframe(Keyframe::new(tick, address, value)));
+                has_keyframe = true;
             }
             address = address.wrapping_add(scheme.neurons() as u16);
+        }
+        if !has_keyframe {
+            queue.put(Item::Heartbeat { tick, address: self.first_address });
         }
     }
 

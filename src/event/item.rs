@@ -13,6 +13,13 @@ pub enum Item {
     Keyframe(Keyframe),
     /// The encoders changed without events, as by a reset: temporal decoders are wrong until their next keyframe.
     Break(Tick),
+    /// A sample was taken at this tick, and all its events come before: the keyframe of a code without keyframes.
+    Heartbeat {
+        /// The tick of the sample.
+        tick: Tick,
+        /// The address of the bank's first neuron.
+        address: u16,
+    },
 }
 
 impl Item {
@@ -21,6 +28,7 @@ impl Item {
         match *self {
             Self::Event(Event { tick, .. })
             | Self::Keyframe(Keyframe { tick, .. })
+            | Self::Heartbeat { tick, .. }
             | Self::Break(tick) => tick,
         }
     }
@@ -47,6 +55,12 @@ pub struct Taken {
     pub lost: u32,
     /// The item.
     pub item: Item,
+}
+
+impl<T: Into<Item>> From<T> for Taken {
+    fn from(item: T) -> Self {
+        Self::whole(item.into())
+    }
 }
 
 impl Taken {

@@ -4,6 +4,8 @@
 mod address;
 mod bank;
 mod bins;
+#[cfg(feature = "heapless")]
+mod counted;
 mod item;
 mod keyframe;
 mod put;
@@ -17,6 +19,8 @@ mod tick;
 pub use address::Event;
 pub use bank::Bank;
 pub use bins::{Bins, StepOver};
+#[cfg(feature = "heapless")]
+pub use counted::{Container, Counted, Element};
 pub use item::{Item, Taken};
 pub use keyframe::Keyframe;
 pub use put::Put;

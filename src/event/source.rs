@@ -64,12 +64,12 @@ impl<I: Iterator<Item = Event>> Source for FromEvents<I> {
     }
 }
 
-/// An iterator of items as a source without losses.
+/// An iterator of items, each of which may tell how many were [lost before it](Taken), as a source.
 #[derive(Clone, Copy, Debug)]
 pub struct FromItems<I>(pub I);
 
-impl<I: Iterator<Item = Item>> Source for FromItems<I> {
+impl<I: Iterator<Item: Into<Taken>>> Source for FromItems<I> {
     fn take(&mut self) -> Option<Taken> {
-        self.0.next().map(Taken::whole)
+        self.0.next().map(Into::into)
     }
 }

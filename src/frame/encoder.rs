@@ -120,10 +120,14 @@ impl<C: PixelCode, const W: usize, const H: usize> FrameEncoder<C, W, H> {
         row: &[u8; W],
         mut emit: impl FnMut(PixelEvent),
     ) {
+        if y >= H {
+            self.outside = self.outside.saturating_add(1);
+            return;
+        }
         if y < self.next {
             self.budget.renew();
         }
-        self.next = y.saturating_add(1);
+        self.next = y.wrapping_add(1);
         self.tick = tick;
         self.pass(y, row, Pass::Whole, |x, polarity| {
             emit(PixelEvent { tick, x: x as u16, y: y as u16, polarity });
@@ -187,9 +191,8 @@ impl<C: PixelCode, const W: usize, const H: usize> FrameEncoder<C, W, H> {
     /// Goes over a row once.
     #[inline]
     fn pass(&mut self, y: usize, row: &[u8; W], pass: Pass, emit: impl FnMut(usize, Polarity)) {
-        let Self { code, pixels, has_begun, budget, outside, .. } = self;
+        let Self { code, pixels, has_begun, budget, .. } = self;
         let (Some(pixels), Some(has_begun)) = (pixels.get_mut(y), has_begun.get_mut(y)) else {
-            *outside = outside.saturating_add(1);
             return;
         };
         if !*has_begun {

@@ -6,7 +6,7 @@ use super::PixelCode;
 use super::band::{Band, FOUR, lanes_of_bytes, lanes_of_pairs, quiet};
 use crate::ConfigError;
 use crate::error::{unwrap, within};
-use crate::num::curve;
+use crate::num::{DoubleDouble, curve};
 
 /// The levels of a logarithm: `u8`, 46 of them for a factor of e, or `u16`, 1024.
 ///
@@ -76,7 +76,11 @@ const fn level(sample: u8, scale: u16) -> u16 {
     /// Up to this sample a line takes the place of the logarithm, which would go to minus infinity.
     const KNEE: f64 = 20.0;
     let sample = sample as f64;
-    let log = if sample <= KNEE { sample * curve::ln(KNEE) / KNEE } else { curve::ln(sample) };
+    let log = if sample <= KNEE {
+        curve::ln(DoubleDouble::new(KNEE)).nearest() * sample / KNEE
+    } else {
+        curve::ln(DoubleDouble::new(sample)).nearest()
+    };
     (scale as f64 * log + 0.5) as u16
 }
 

@@ -3,7 +3,7 @@
 use bytemuck::Pod;
 
 use super::convert::{floor, units};
-use super::{EvenBins, Sample, SampleKind, word};
+use super::{DoubleDouble, EvenBins, Sample, SampleKind, word};
 
 /// Arithmetic of centres and distances in one sample type.
 pub(crate) trait Spaced: Sized {
@@ -61,11 +61,12 @@ pub(crate) const fn bin_of<S: Sample>(bins: EvenBins, value: S) -> usize {
 }
 
 /// A distance in [`units`], as tables store it; rounded down in fixed point.
-pub(crate) const fn reach<S: Sample>(distance: f64, neurons: usize) -> S::Reach {
+pub(crate) const fn reach<S: Sample>(distance: DoubleDouble, neurons: usize) -> S::Reach {
+    let in_parts = distance.times(DoubleDouble::new(parts(neurons))).rounded();
     match S::KIND {
-        SampleKind::F32 => word((distance as f32).to_bits() as u64),
-        SampleKind::Fixed16 { .. } => word((distance * parts(neurons)) as i32 as u64),
-        SampleKind::Fixed32 { .. } => word((distance * parts(neurons)) as i64 as u64),
+        SampleKind::F32 => word((distance.rounded() as f32).to_bits() as u64),
+        SampleKind::Fixed16 { .. } => word(in_parts as i32 as u64),
+        SampleKind::Fixed32 { .. } => word(in_parts as i64 as u64),
     }
 }
 

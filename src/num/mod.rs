@@ -8,6 +8,7 @@ mod binary;
 mod convert;
 pub(crate) mod curve;
 mod distance;
+mod double_double;
 mod even_bins;
 mod field;
 mod kind;
@@ -27,6 +28,7 @@ pub(crate) use convert::{
     below_from_f64, floor_from_f64, from_f64, largest_step, one, to_f64, units, word,
 };
 pub(crate) use distance::{Distance, Spaced, bin_of, even_bins, near, reach, top};
+pub(crate) use double_double::DoubleDouble;
 pub(crate) use even_bins::EvenBins;
 pub(crate) use field::{Field, scale, widths, within_widths};
 pub use kind::SampleKind;

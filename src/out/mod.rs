@@ -4,6 +4,8 @@
 //! lost on an error: the sink keeps what it could not send, and sends it first the next time.
 
 mod error;
+#[cfg(feature = "embedded-io-06")]
+mod io06;
 #[cfg(feature = "embedded-io")]
 mod serial;
 #[cfg(feature = "embedded-hal")]
@@ -11,6 +13,8 @@ mod spi;
 
 pub use crate::wire::{Batch, Formatted};
 pub use error::SinkError;
+#[cfg(feature = "embedded-io-06")]
+pub use io06::{Io06, Io06Error};
 #[cfg(feature = "embedded-io")]
 pub use serial::SerialSink;
 #[cfg(feature = "async")]

@@ -92,6 +92,9 @@ pub trait Code: Copy {
     /// How many sub-timesteps a sample of this code has.
     const SLOTS: usize = 1;
 
+    /// Whether a neuron fires in both directions. A chip, whose inputs have no direction, then needs two inputs for it.
+    const IS_SIGNED: bool = false;
+
     /// The neurons that fire, by rising index.
     fn firings(&self) -> impl Iterator<Item = NeuronSpike>;
 
@@ -105,6 +108,7 @@ pub trait Code: Copy {
 
 impl Code for Spike {
     const NEURONS: usize = 1;
+    const IS_SIGNED: bool = true;
 
     fn firings(&self) -> impl Iterator<Item = NeuronSpike> {
         self.polarity().map(|polarity| NeuronSpike { neuron: 0, slot: 0, polarity }).into_iter()

@@ -136,6 +136,12 @@ pub trait Scheme: Sized {
     fn neurons(&self) -> usize {
         Self::Code::NEURONS
     }
+
+    /// How many sub-timesteps a sample has; the last ones may stay unused. Where their number is chosen at run time and
+    /// the scheme does not keep it, the largest possible.
+    fn slots(&self) -> usize {
+        Self::Code::SLOTS
+    }
 }
 
 /// A scheme whose encoder starts from the parameters alone: every scheme but `Probabilistic`, which also needs a

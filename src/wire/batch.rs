@@ -14,6 +14,19 @@ pub trait Batch {
     ///
     /// An item that was taken and does not fit is kept, and comes first in the next batch.
     fn fill(&mut self, events: &mut impl Source, bytes: &mut [u8]) -> usize;
+
+    /// [Fills](Self::fill) the room that is left in a vector of `heapless`, and returns how many bytes it appended.
+    #[cfg(feature = "heapless")]
+    fn fill_vec(&mut self, events: &mut impl Source, bytes: &mut heapless::VecView<u8>) -> usize {
+        let before = bytes.len();
+        let capacity = bytes.capacity();
+        if bytes.resize(capacity, 0).is_err() {
+            return 0;
+        }
+        let written = self.fill(events, bytes.get_mut(before..).unwrap_or_default());
+        bytes.truncate(before.saturating_add(written));
+        written
+    }
 }
 
 impl<B: Batch> Batch for &mut B {

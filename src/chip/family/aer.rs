@@ -1,5 +1,7 @@
 //! Address events over parallel wires, with the 4-phase handshake.
 
+use core::num::NonZeroU32;
+
 use super::AerPort;
 use crate::event::Event;
 
@@ -63,8 +65,10 @@ enum Answer {
 #[derive(Debug)]
 pub(super) struct Aer<P> {
     pub(super) port: P,
-    /// How often a wait reads the pins.
+    /// How often a wait reads the pins, for each look in a clock of the chip.
     polls: u32,
+    /// How often the pins may be read within one clock of the chip.
+    pub(super) looks_a_clock: NonZeroU32,
     /// The phase of the word that was begun last.
     phase: Phase,
     carries: Carries,
@@ -79,12 +83,18 @@ impl<P: AerPort> Aer<P> {
         Self {
             port,
             polls,
+            looks_a_clock: NonZeroU32::MIN,
             phase: Phase::Idle,
             carries: Carries::Word,
             answer: Answer::Idle,
             is_full: false,
             overflows: 0,
         }
+    }
+
+    /// How often to read the pins for this number of clocks.
+    pub(super) fn looks(&self, clocks: u32) -> u32 {
+        clocks.saturating_mul(self.looks_a_clock.get())
     }
 
     /// Raises reset while REQ stays as it is: if the chip takes the word meanwhile, it waits for REQ to fall, and the
@@ -128,7 +138,7 @@ impl<P: AerPort> Aer<P> {
             AerError::Timeout(_) => AerError::Timeout(Phase::Idle),
             port @ AerError::Port(_) => port,
         })?;
-        self.wait_for(false, self.polls, on_output)?;
+        self.wait_for(false, self.looks(self.polls), on_output)?;
         self.port.set_input(word)?;
         (self.phase, self.carries) = (Phase::Acknowledge, carries);
         Ok(())
@@ -139,7 +149,7 @@ impl<P: AerPort> Aer<P> {
         &mut self,
         on_output: &mut impl FnMut(u8),
     ) -> Result<(), AerError<P::Error>> {
-        self.finish_within(self.polls, on_output)
+        self.finish_within(self.looks(self.polls), on_output)
     }
 
     pub(super) fn finish_within(

@@ -11,6 +11,8 @@ pub struct Counters {
     pub skipped_steps: u32,
     /// Events that were fed after their time step was over.
     pub late_events: u32,
+    /// Events that were fed and left out, as they have no input.
+    pub unmapped_events: u32,
     /// Events under way at a reset, with no ACK seen. They are sent again. The chip may have taken such an event just
     /// before the reset; if the event waited in the queue, it did not act.
     pub repeated_events: u32,

@@ -8,9 +8,7 @@ use super::super::ChipError;
 pub trait Input: Copy {
     /// A time step for all neurons, which the chip does not count by itself.
     const LEAK_ALL: Self;
-    /// A time step for one neuron, [`PROBED`](Self::PROBED): the chip must answer it when it runs.
-    const PROBE: Self;
-    /// The neuron of [`PROBE`](Self::PROBE).
+    /// The last neuron that [`probe`](Self::probe) takes. A reset disables it if it was never written.
     const PROBED: u8;
     /// How many bytes a neuron has in memory, 16 at most.
     const NEURON_BYTES: u8;
@@ -46,6 +44,9 @@ pub trait Input: Copy {
     /// The input of a spike from outside.
     fn spike(pre: u8) -> Self;
 
+    /// A time step for one neuron, up to [`PROBED`](Self::PROBED): the chip must answer it when it runs.
+    fn probe(neuron: u8) -> Self;
+
     /// The input of a virtual event, which acts on one neuron without a synapse.
     fn virtual_event(neuron: u8, weight: i8) -> Self;
 
@@ -58,8 +59,8 @@ pub trait Input: Copy {
     /// The neuron of these bytes.
     fn neuron(bytes: [u8; 16]) -> Self::Neuron;
 
-    /// Whether a time step has no visible effect on the neuron: it is disabled, or neither leaks nor would fire.
-    fn is_unmoved(neuron: &Self::Neuron) -> bool;
+    /// The neuron that a time step turns into this one without a spike; `None` if there is none.
+    fn before_step(neuron: &Self::Neuron) -> Option<Self::Neuron>;
 
     /// A signed weight's 4 bits.
     ///

@@ -44,6 +44,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
             |address, keep, value| chip.put_byte(address, keep, value),
             |done| progress(Progress { done, total }),
         )?;
+        chip.check_step()?;
         each_byte(
             network,
             |address, keep, value| chip.expect_byte(address, keep, value),

@@ -47,9 +47,10 @@ pub use running::Running;
 ///   [`Gated::run`] gives a [`Running`] one, which takes events; [`Running::gate`] gives a gated one again. Each has
 ///   only the calls that are safe in its state. [`gated`](Self::gated) and [`running`](Self::running) give them
 ///   again later.
-/// - **Resynchronisation:** one clock lost or doubled puts chip and bus out of step, which every call on a gated chip
-///   detects. (A lost and a doubled clock within eight frames go unseen, as the registers cannot be read back.) After
-///   an error of the bus, or a byte that does not read back, all calls are refused until the next reset, and all
+/// - **Resynchronisation:** one clock lost or doubled puts chip and bus out of step, which calls on a gated chip detect; in
+///   the last frame of a call the next call does. They also detect a lost and a doubled clock within one access to
+///   memory. (Such a pair within a register's frame and its check goes unseen, as the registers cannot be read back.)
+///   After an error of the bus, or a byte that does not read back, all calls are refused until the next reset, and all
 ///   memory is in doubt: load it again.
 /// - **Waits** read the pins a given number of times, then return an error.
 /// - **Words** that the chip has not acknowledged by then stay under way: every call that sends finishes them first,
@@ -73,7 +74,6 @@ pub struct OdinChip<I: Input, D, P> {
     /// The byte that the step check writes to, once it is known.
     anchor: Option<u8>,
     beacon: Option<Beacon>,
-    looks_a_clock: NonZeroU32,
     held: Option<Event>,
     time: Option<Time>,
     counters: Counters,
@@ -96,8 +96,9 @@ const RESET_US: u32 = 10;
 impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// A chip that must be [reset](Self::reset) first. Every wait reads the pins up to `polls` times.
     ///
-    /// [`Input::MAX_CLOCKS`] polls suffice if each takes a clock of the chip or longer. With fewer, long words time out
-    /// and must be finished later.
+    /// [`Input::MAX_CLOCKS`] polls suffice if each takes a clock of the chip or longer; if they are shorter,
+    /// [`with_looks_a_clock`](Self::with_looks_a_clock) multiplies them. With fewer, long words time out and must be
+    /// finished later.
     pub const fn new(device: D, port: P, polls: u32) -> Self {
         Self {
             wire: Wire { device },
@@ -106,10 +107,10 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
             registers: None,
             anchor: None,
             beacon: None,
-            looks_a_clock: NonZeroU32::MIN,
             held: None,
             time: None,
             counters: Counters {
+                unmapped_events: 0,
                 resets: 0,
                 skipped_steps: 0,
                 late_events: 0,
@@ -132,11 +133,12 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     }
 
     /// Sets how often the pins may be read within one clock of the chip, 1 by default: more if the microcontroller is
-    /// much faster. [`Running::gate`] derives its wait from this. If it is too low, a chip that still works is gated, and
-    /// its potentials are lost.
+    /// much faster. Every wait is this many times as long, in reads of the pins. If it is too low, words time out, and
+    /// [`Running::gate`] gates a chip that still works, whose potentials are then lost.
     #[must_use]
-    pub fn with_looks_a_clock(self, looks: NonZeroU32) -> Self {
-        Self { looks_a_clock: looks, ..self }
+    pub fn with_looks_a_clock(mut self, looks: NonZeroU32) -> Self {
+        self.aer.looks_a_clock = looks;
+        self
     }
 
     /// Pulses reset, which brings chip and bus into step, gates the chip, opens its loop, and checks that it answers. For

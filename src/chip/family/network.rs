@@ -2,7 +2,7 @@
 
 use super::{AerPort, Input};
 use crate::chip::ChipError;
-use crate::{Event, Polarity, Tick};
+use crate::{Code, Event, Polarity, Scheme, Tick};
 
 /// The neurons and weights of a network, as [constant data](Network) or as [bytes](super::NetworkBytes).
 /// [`Gated::load`](super::Gated::load) writes them to the chip.
@@ -35,7 +35,41 @@ pub trait Describe<I: Input> {
     /// The number of the output that a neuron is; `None` if it is no output.
     fn output(&self, neuron: u8) -> Option<u16>;
 
-    /// The chip's input for an input of the network; `None` if the network has no such input.
+    /// Returns the chip's input for an event of a bank with this scheme, or `None` if the network has no such input.
+    ///
+    /// A neuron of a bank is an input of the network, in order. A [signed](Code::IS_SIGNED) code, such as that of
+    /// step-forward, takes two inputs for each neuron: the even one for [`Polarity::Up`], the odd one after it for
+    /// [`Polarity::Down`]. Rate codes have the same type of spikes and never go down: their odd inputs stay silent.
+    ///
+    /// ```
+    /// use spikewire::chip::{Describe, Inputs, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, neurons_from};
+    /// use spikewire::{Event, Polarity, Tick, temporal::StepForward};
+    ///
+    /// static RATE: StepForward<f32> = StepForward::new(0.1);
+    /// /// Rises and falls of three axes.
+    /// static NETWORK: TinyOdinNetwork<6, 6, 6> = TinyOdinNetwork {
+    ///     neurons: [TinyOdinNeuron { threshold: 20, leak: 1, ..TinyOdinNeuron::REST }; 6],
+    ///     inputs: Inputs::one_to_one(7),
+    ///     recurrent: &[],
+    ///     outputs: neurons_from::<0, 6>(),
+    /// };
+    ///
+    /// let yaw = |polarity| Event { tick: Tick::from_micros(0), address: 2, polarity };
+    /// let [rises, falls] = [Polarity::Up, Polarity::Down].map(|polarity| NETWORK.input_for(&RATE, yaw(polarity)));
+    /// assert_eq!(rises, NETWORK.input(4));
+    /// assert_eq!(falls, NETWORK.input(5));
+    /// // In flight: `chip.feed(events.waiting(), |event| NETWORK.input_for(&RATE, event), on_output)`.
+    /// ```
+    fn input_for<P: Scheme>(&self, _scheme: &P, event: Event) -> Option<I> {
+        if !P::Code::IS_SIGNED {
+            return self.input(event.address);
+        }
+        let falls = u16::from(event.polarity == Polarity::Down);
+        self.input(event.address.checked_mul(2)?.checked_add(falls)?)
+    }
+
+    /// Returns the chip's input for an input of the network, or `None` if the network has no such input. The number of an
+    /// input is not the address of an event: see [`input_for`](Self::input_for).
     fn input(&self, input: u16) -> Option<I> {
         if input >= self.inputs() {
             return None;

@@ -5,6 +5,14 @@
 /// Write the data with one store to the port instead of single pins, so that no half-written word is seen: on an STM32
 /// a store to BSRR.
 ///
+/// | line | direction | |
+/// |---|---|---|
+/// | `AERIN_ADDR` | to the chip | the word of [`set_input`](Self::set_input): bit n on line n; 10 lines for tinyODIN, 17 for ODIN |
+/// | `AERIN_REQ`, `AERIN_ACK` | to the chip, from it | the handshake of a word |
+/// | `AEROUT_ADDR` | from the chip | the neuron that fires, eight lines |
+/// | `AEROUT_REQ`, `AEROUT_ACK` | from the chip, to it | the handshake of a neuron |
+/// | `RST` | to the chip | pulsed at the start, and where chip and bus may be out of step |
+///
 /// A call that fails may have changed the pins or not: the driver repeats it before it goes on.
 pub trait AerPort {
     /// The error of the port; `Infallible` for the microcontroller's own pins.

@@ -65,9 +65,9 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
             None => return Err(ChipError::NotReset),
         };
         let clocks = sweeps * clocks + HANDSHAKE_CLOCKS;
-        let looks = |clocks: u32| clocks.saturating_mul(chip.looks_a_clock.get());
         let limit = 4 * clocks + OUTPUT_CLOCKS;
-        match chip.aer.rest(looks(clocks), looks(limit), &mut on_output) {
+        let (looks, limit) = (chip.aer.looks(clocks), chip.aer.looks(limit));
+        match chip.aer.rest(looks, limit, &mut on_output) {
             Ok(true) => Ok(()),
             Ok(false) => Err(ChipError::Busy),
             Err(error) => Err(ChipError::Port(error)),

@@ -19,6 +19,9 @@ pub(super) struct Beacon {
     value: u8,
 }
 
+/// A byte that the step check writes: moved by a bit, it is another.
+const SIGN: u8 = 0xA5;
+
 /// The byte that the step check writes to.
 fn anchor() -> Address {
     Address::synapse(255, 249)
@@ -54,8 +57,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
                 return self.check_step();
             }
         }
-        self.write_byte(Address::neuron(I::PROBED, last), !DISABLE, DISABLE)?;
-        self.check_step()
+        self.store([(Address::neuron(I::PROBED, last), !DISABLE, DISABLE)].into_iter())
     }
 
     /// Writes a register, which cannot be read back, and checks that chip and bus are still in step.
@@ -64,21 +66,24 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.check_step()
     }
 
-    /// Inverts a byte of the synapses' memory and inverts it back, and reads it each time: this fails on a chip that runs,
-    /// and after a clock was lost or doubled. Last it reads a byte that is not 0, if one is known: out of step, the
+    /// Changes a byte of the synapses' memory and changes it back, and reads it each time: this fails on a chip that runs,
+    /// and after a clock was lost or doubled. Between, it reads a byte that is not 0, if one is known: out of step, the
     /// chip's line is low.
     pub(super) fn check_step(&mut self) -> Outcome<(), D, P> {
         let value = match self.anchor {
             Some(value) => value,
             None => self.read_byte(anchor())?,
         };
-        self.write_byte(anchor(), 0, !value)?;
-        self.write_byte(anchor(), 0, value)?;
-        self.anchor = Some(value);
-        match self.beacon {
-            Some(Beacon { address, mask, value }) => self.expect_byte(address, !mask, value),
-            None => Ok(()),
+        let other = if value == SIGN { !SIGN } else { SIGN };
+        self.put_byte(anchor(), 0, other)?;
+        self.expect_byte(anchor(), 0, other)?;
+        self.put_byte(anchor(), 0, value)?;
+        if let Some(Beacon { address, mask, value }) = self.beacon {
+            self.expect_byte(address, !mask, value)?;
         }
+        self.expect_byte(anchor(), 0, value)?;
+        self.anchor = Some(value);
+        Ok(())
     }
 
     pub(super) fn configure(&mut self, register: u16, value: u32) -> Outcome<(), D, P> {
@@ -87,15 +92,56 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.heed(result)
     }
 
-    /// Writes the bits of a byte that are 0 in `keep`, and reads it back.
-    pub(super) fn write_byte(
+    /// Writes bytes, each with the bits to keep, and reads them back once the step is checked.
+    ///
+    /// A write that a fault leads astray leaves its own byte as it was. So that this shows, only bytes that differ are
+    /// written, and which ones is only believed after a check. Bits to keep are compared, too.
+    pub(super) fn store(
         &mut self,
-        address: Address,
-        keep: u8,
-        value: u8,
+        bytes: impl Iterator<Item = (Address, u8, u8)> + Clone,
     ) -> Outcome<(), D, P> {
-        self.put_byte(address, keep, value)?;
-        self.expect_byte(address, keep, value)
+        let old = self.read_bytes(bytes.clone().map(|(address, ..)| address))?;
+        self.check_step()?;
+        let bytes = bytes
+            .zip(old)
+            .map(|((address, keep, value), old)| (address, keep, old, old & keep | value & !keep));
+        let mut differing = bytes.clone().filter(|(_, _, old, new)| old != new).peekable();
+        if differing.peek().is_some() {
+            for (address, keep, _, new) in differing {
+                self.put_byte(address, keep, new & !keep)?;
+            }
+            self.check_step()?;
+        }
+        for (address, _, _, new) in bytes {
+            self.expect_byte(address, 0, new)?;
+        }
+        Ok(())
+    }
+
+    /// Reads up to 16 bytes, checks the step, and reads them again.
+    pub(super) fn fetch(
+        &mut self,
+        addresses: impl Iterator<Item = Address> + Clone,
+    ) -> Outcome<[u8; 16], D, P> {
+        let bytes = self.read_bytes(addresses.clone())?;
+        self.check_step()?;
+        for (address, byte) in addresses.zip(bytes) {
+            self.expect_byte(address, 0, byte)?;
+        }
+        Ok(bytes)
+    }
+
+    /// Reads up to 16 bytes, which may be wrong if the bus is out of step.
+    pub(super) fn read_bytes(
+        &mut self,
+        addresses: impl Iterator<Item = Address>,
+    ) -> Outcome<[u8; 16], D, P> {
+        let mut bytes = [0; 16];
+        for (address, byte) in addresses.zip(&mut bytes) {
+            *byte = self.read_byte(address)?;
+            self.note(address, 0xFF, *byte);
+        }
+        Ok(bytes)
     }
 
     /// Writes the bits of a byte that are 0 in `keep`.
@@ -105,6 +151,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
             self.anchor = self.anchor.map(|old| old & keep | value & !keep);
         }
         self.beacon = self.beacon.filter(|beacon| beacon.address != address);
+        self.note(address, !keep, value);
         let result = self.wire.write_byte(address, keep, value);
         self.heed(result)
     }

@@ -61,9 +61,10 @@ impl<D: SpiDevice> Wire<D> {
         self.write(WRITE | address.0, u32::from(keep) << 8 | u32::from(value))
     }
 
-    /// Reads a byte, which is the last one that comes back.
+    /// Reads a byte, which is the last one that comes back. The chip ignores the data that is sent; it is all ones, so
+    /// that a frame which a lost or doubled clock turns into a write keeps all bits.
     pub(super) fn read_byte(&mut self, address: Address) -> Result<u8, D::Error> {
-        let mut frame = frame(READ | address.0, 0);
+        let mut frame = frame(READ | address.0, 0xF_FFFF);
         self.device.transfer_in_place(&mut frame)?;
         let [.., last] = frame;
         Ok(last)

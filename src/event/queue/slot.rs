@@ -6,8 +6,8 @@ use crate::{Polarity, SampleKind};
 /// An item and how many items were lost before it, in three words, which few stores write.
 ///
 /// The last word is `lost << 24 | what << 22 | detail << 16 | address`. `lost` counts the items lost before this one,
-/// 255 for as many or more; `what` is an event, a keyframe or a break; `detail` is an event's polarity or a keyframe's
-/// sample type.
+/// 255 for as many or more; `what` is an event, a keyframe, a break or a heartbeat; `detail` is an event's polarity or a
+/// keyframe's sample type.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slot {
     tick: Tick,
@@ -24,6 +24,7 @@ const UP: u32 = 1 << DETAIL_AT;
 const EVENT: u32 = 0;
 const KEYFRAME: u32 = 1;
 const BREAK: u32 = 2;
+const HEARTBEAT: u32 = 3;
 
 impl Slot {
     pub(super) const EMPTY: Self = Self::break_at(Tick::from_micros(0));
@@ -81,6 +82,7 @@ impl Slot {
                 Some(kind) => Item::Keyframe(Keyframe { tick, address, kind, bits }),
                 None => Item::Break(tick),
             },
+            HEARTBEAT => Item::Heartbeat { tick, address },
             _ => Item::Break(tick),
         }
     }
@@ -97,6 +99,9 @@ impl From<Item> for Slot {
             Item::Keyframe(Keyframe { tick, address, kind, bits }) => {
                 let detail = u32::from(kind.to_byte()) << DETAIL_AT;
                 Self { tick, bits, rest: KEYFRAME << WHAT_AT | detail | u32::from(address) }
+            }
+            Item::Heartbeat { tick, address } => {
+                Self { tick, bits: 0, rest: HEARTBEAT << WHAT_AT | u32::from(address) }
             }
             Item::Break(tick) => Self::break_at(tick),
         }

@@ -4,7 +4,7 @@ use core::ops::RangeInclusive;
 
 use crate::error::{finite, not_rising, range};
 use crate::num::curve::normal_quantile;
-use crate::num::{floor_from_f64, from_f64, to_f64};
+use crate::num::{DoubleDouble, floor_from_f64, from_f64, to_f64};
 use crate::scheme::cells::Partition;
 use crate::{ConfigError, Sample, SampleKind};
 
@@ -55,18 +55,6 @@ const fn even_edge<S: Sample>(min: f64, max: f64, i: usize, m: usize) -> S {
 /// Whether `value <= sum + error`, where the error is that of a rounded sum.
 const fn is_at_most(value: f64, sum: f64, error: f64) -> bool {
     value < sum || value - sum <= error
-}
-
-/// The quantile `(2i + 1) / 2m` of a normal distribution, scaled so that the first one is `min` and the last `max`.
-const fn gaussian_centre(min: f64, max: f64, i: usize, m: usize) -> f64 {
-    let middle = f64::midpoint(min, max);
-    let from_end = m.wrapping_sub(1).wrapping_sub(i);
-    let mirrored = if i < from_end { from_end } else { i };
-    let (neuron, neurons) = (mirrored as f64, m as f64);
-    let outermost = normal_quantile((2.0 * neurons - 1.0) / (2.0 * neurons));
-    let quantile = normal_quantile((2.0 * neuron + 1.0) / (2.0 * neurons));
-    let offset = (max - min) / 2.0 * quantile / outermost;
-    if mirrored == i { middle + offset } else { middle - offset }
 }
 
 /// Sets each edge but the last to the largest value not above halfway between two centres.
@@ -144,10 +132,21 @@ pub(super) const fn gaussian_spaced<S: Sample>(
     if let Err(error) = range(min, max) {
         return Err(error);
     }
+    let (twice_middle, width) = (DoubleDouble::sum(min, max), DoubleDouble::sum(max, -min));
+    // The quantile `(2i + 1) / 2m`, for the upper half.
     let count = centres.len();
-    let mut i = 0;
+    let probabilities = count.saturating_mul(2);
+    let mut quantile = DoubleDouble::ZERO;
+    let outermost = normal_quantile(probabilities.saturating_sub(1), probabilities, quantile);
+    let mut i = count / 2;
     while i < count {
-        centres[i] = from_f64(gaussian_centre(min, max, i, count));
+        quantile = normal_quantile(i.saturating_mul(2).saturating_add(1), probabilities, quantile);
+        let offset = width.times(quantile).over(outermost);
+        centres[i] = from_f64(twice_middle.plus(offset).rounded() / 2.0);
+        let mirrored = count.wrapping_sub(1).wrapping_sub(i);
+        if mirrored < count {
+            centres[mirrored] = from_f64(twice_middle.minus(offset).rounded() / 2.0);
+        }
         i += 1;
     }
     Ok(())

@@ -10,7 +10,7 @@ use super::fields::tables;
 use super::nonlinear::{companded, crossings, own_widths, spacings};
 use super::{Neuron, PositionState, SlotSpikes, SlotsState};
 use crate::error::{positive, within};
-use crate::num::{Distance, EvenBins, reach};
+use crate::num::{Distance, DoubleDouble, EvenBins, reach};
 use crate::scheme::cells::{count_preceding, number_by_search};
 use crate::scheme::held::Held;
 use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
@@ -218,7 +218,7 @@ impl<S: Sample> Fields<S> {
         positive("beta", beta as f64)?;
         within("slots", levels as f64, 2.0, LEVELS as f32)?;
         let Position { centres, .. } = Position::<S, M>::try_linear(neurons, range)?;
-        let mut reaches = vec![reach::<S>(0.0, neurons); levels];
+        let mut reaches = vec![reach::<S>(DoubleDouble::ZERO, neurons); levels];
         let (bins, _) = tables::<S>(neurons, range, beta, &mut reaches);
         Ok(Self { centres, min: *range.start(), max: *range.end(), bins, reaches })
     }
@@ -365,6 +365,10 @@ impl<S: Sample, const M: usize> Scheme for Slots<S, M> {
 
     fn held(&self, state: &Held<S>) -> Option<S> {
         Some(state.value())
+    }
+
+    fn slots(&self) -> usize {
+        self.fields.reaches.len()
     }
 
     fn neurons(&self) -> usize {

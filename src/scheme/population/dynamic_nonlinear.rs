@@ -148,6 +148,14 @@ impl<S: Sample, const M: usize> Scheme for NonLinearSlots<S, M> {
         Some(state.value())
     }
 
+    fn neurons(&self) -> usize {
+        self.centres.len()
+    }
+
+    fn slots(&self) -> usize {
+        self.radii.len()
+    }
+
     fn resync(&self, state: &mut Held<S>, value: S) {
         *state = Held::at(value);
     }

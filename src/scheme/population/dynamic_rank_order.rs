@@ -129,6 +129,14 @@ impl<S: Sample, const M: usize> Scheme for RankOrder<S, M> {
         Some(state.value())
     }
 
+    fn neurons(&self) -> usize {
+        self.centres.len()
+    }
+
+    fn slots(&self) -> usize {
+        self.spikes
+    }
+
     fn resync(&self, state: &mut Held<S>, value: S) {
         *state = Held::at(value);
     }

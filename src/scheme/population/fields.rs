@@ -8,8 +8,8 @@ use core::ops::RangeInclusive;
 use super::FiredNeurons;
 use super::centres::{Centres, even_centre};
 use crate::error::positive;
-use crate::num::curve::{ln, sqrt};
-use crate::num::{Distance, EvenBins, bin_of, even_bins, near, reach, top, units};
+use crate::num::curve::ln;
+use crate::num::{Distance, DoubleDouble, EvenBins, bin_of, even_bins, near, reach, top, units};
 use crate::scheme::cells::count_preceding;
 use crate::{ConfigError, Sample};
 
@@ -61,10 +61,15 @@ impl<S: Sample + defmt::Format, const M: usize, const N: usize> defmt::Format
     }
 }
 
-/// The distance from the centre at which the response of a neuron, in `n` levels, falls below level `k`.
-const fn radius(min: f64, max: f64, beta: f64, m: usize, k: usize, n: usize) -> f64 {
-    let sigma = (max - min) / (beta * (m as f64 - 2.0));
-    sigma * sqrt(2.0 * ln(n as f64 / (k as f64 - 0.5)))
+/// The distance from the centre at which a response, in `n` levels, falls below level `k`: in widths of the field.
+pub(super) const fn level_radius(k: usize, n: usize) -> DoubleDouble {
+    let inverse = DoubleDouble::new(n as f64).over(DoubleDouble::new(k as f64 - 0.5));
+    DoubleDouble::new(2.0).times(ln(inverse)).sqrt()
+}
+
+/// The width of a field.
+const fn sigma(min: f64, max: f64, beta: f64, m: usize) -> DoubleDouble {
+    DoubleDouble::sum(max, -min).over(DoubleDouble::product(beta, m as f64 - 2.0))
 }
 
 /// Sets the reaches of `m` neurons. Returns the bins that give the first neuron that may respond to a value, and the
@@ -78,12 +83,13 @@ pub(super) const fn tables<S: Sample>(
 ) -> (EvenBins, [S; 2]) {
     let (low, high) = (units(*range.start()), units(*range.end()));
     let n = reaches.len();
+    let sigma = sigma(low, high, beta as f64, m);
     let mut k = 0;
     while k < n {
-        reaches[k] = reach::<S>(radius(low, high, beta as f64, m, n - k, n), m);
+        reaches[k] = reach::<S>(sigma.times(level_radius(n - k, n)), m);
         k += 1;
     }
-    let farthest = radius(low, high, beta as f64, m, 1, n);
+    let farthest = sigma.times(level_radius(1, n)).nearest();
     let width = (high - low) / (m as f64 - 2.0);
     // One and a half bins, less a 32nd of a bin as a margin for rounding.
     let bins = even_bins::<S>(low + farthest - 1.46875 * width, width, m + 2);
@@ -118,7 +124,7 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
             Ok(centres) => *centres.as_array(),
             Err(error) => return Err(error),
         };
-        let mut reaches = [reach::<S>(0.0, M); N];
+        let mut reaches = [reach::<S>(DoubleDouble::ZERO, M); N];
         let (bins, near) = tables::<S>(M, range, beta, &mut reaches);
         let (min, max) = (*range.start(), *range.end());
         Ok(Self { centres, min, max, beta, bins, near, reaches })

@@ -5,8 +5,8 @@ use core::ops::RangeInclusive;
 use super::centres::{Centres, halfway_edges};
 use super::position::Position;
 use crate::error::{positive, range, unwrap};
-use crate::num::curve::{exp, ln};
-use crate::num::{floor_from_f64, from_f64, to_f64};
+use crate::num::curve::growth;
+use crate::num::{DoubleDouble, floor_from_f64, from_f64, to_f64};
 use crate::{ConfigError, Sample};
 
 /// Non-linear receptive fields: the neuron with the strongest Gaussian response fires, whose field may be narrower
@@ -193,7 +193,8 @@ pub(super) const fn crossings<S: Sample>(
             }
             j += 1;
         }
-        let floor: S = floor_from_f64(edge / sum);
+        let exact = DoubleDouble::product(wide, low).plus(DoubleDouble::product(narrow, high));
+        let floor: S = floor_from_f64(exact.over(DoubleDouble::sum(narrow, wide)).rounded());
         // An edge of -0, which total order places below 0, becomes 0.
         edges[i] = from_f64(to_f64(floor) + 0.0);
         if i > 0 && real(edges, i) <= real(edges, i - 1) {
@@ -221,15 +222,16 @@ pub(super) const fn companded<S: Sample>(
     if let Err(error) = positive("companding", companding as f64) {
         return Err(error);
     }
-    let (companding, middle) = (companding as f64, f64::midpoint(min, max));
+    let (twice_middle, width) = (DoubleDouble::sum(min, max), DoubleDouble::sum(max, -min));
+    let companding = companding as f64;
     let last = centres.len().saturating_sub(1);
     let mut i = 0;
     while i < centres.len() {
-        let part = 2.0 * i as f64 / last as f64 - 1.0;
-        let magnitude = if part < 0.0 { -part } else { part };
-        let power = exp(magnitude * ln(1.0 + companding));
-        let offset = (max - min) / 2.0 * (power - 1.0) / companding;
-        centres[i] = from_f64(if part < 0.0 { middle - offset } else { middle + offset });
+        let from_end = last.wrapping_sub(i);
+        let growth = growth(companding, i.abs_diff(from_end), last);
+        let offset = width.times(growth).over(DoubleDouble::new(companding));
+        let offset = if i < from_end { offset.negated() } else { offset };
+        centres[i] = from_f64(twice_middle.plus(offset).rounded() / 2.0);
         i += 1;
     }
     Ok(())

@@ -2,10 +2,10 @@
 
 use core::ops::RangeInclusive;
 
+use super::fields::level_radius;
 use super::nonlinear::{companded, crossings, own_widths, spacings};
 use super::{Held, NeuronSlots, SlotsState};
 use crate::error::{offset, positive, unwrap, within};
-use crate::num::curve::{ln, sqrt};
 use crate::num::{scale, to_f64, widths, within_widths};
 use crate::scheme::cells::count_preceding;
 use crate::{ConfigError, Destination, Recovery, Sample, SampleKind, Scheme, Start};
@@ -254,7 +254,7 @@ pub(super) const fn tables<S: Sample>(
     let n = radii.len();
     i = 0;
     while i < n {
-        radii[i] = widths::<S>(sqrt(2.0 * ln(n as f64 / ((n - i) as f64 - 0.5))));
+        radii[i] = widths::<S>(level_radius(n - i, n).rounded());
         i += 1;
     }
     Ok(())

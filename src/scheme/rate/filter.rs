@@ -2,7 +2,7 @@
 
 use crate::error::{LARGEST_STEP, finite, positive, unwrap};
 use crate::num::curve::{exp, sin_pi};
-use crate::num::{from_f64, to_f64, word};
+use crate::num::{DoubleDouble, from_f64, to_f64, word};
 use crate::{ConfigError, Sample, SampleKind};
 
 /// `F` filter taps, 1 to 4096.
@@ -85,40 +85,48 @@ pub enum Scale<S> {
 impl Shape {
     /// Tap `k` of `n`, with 1 at the top of the shape.
     pub const fn at(self, k: usize, n: usize) -> f64 {
+        self.height(k, n).settled().nearest()
+    }
+
+    const fn height(self, k: usize, n: usize) -> DoubleDouble {
         let (position, length) = (k as f64, n as f64);
         match self {
             Self::Triangular => {
                 let from_end =
                     if k.saturating_mul(2) < n { position } else { length - 1.0 - position };
-                if n % 2 == 1 {
-                    2.0 * (from_end + 1.0) / (length + 1.0)
+                let (part, parts) = if n % 2 == 1 {
+                    (2.0 * (from_end + 1.0), length + 1.0)
                 } else {
-                    (2.0 * from_end + 1.0) / length
-                }
+                    (2.0 * from_end + 1.0, length)
+                };
+                DoubleDouble::new(part).over_double(parts)
             }
             Self::Hann => {
-                let root = sin_pi((position + 1.0) / (length + 1.0));
-                root * root
+                let root = sin_pi(k.saturating_add(1), n.saturating_add(1));
+                root.times(root)
             }
-            Self::Gaussian { .. } if n == 1 => 1.0,
+            Self::Gaussian { .. } if n == 1 => DoubleDouble::ONE,
             Self::Gaussian { alpha } => {
-                let u = alpha * (2.0 * position - length + 1.0) / (length - 1.0);
-                exp(-u * u / 2.0)
+                let from_middle = DoubleDouble::new(2.0 * position - length + 1.0);
+                let u = from_middle.over_double(length - 1.0);
+                // Beyond this all taps but a middle one are 0.
+                let u = u.times(DoubleDouble::new(alpha.min(1e9)));
+                exp(u.times(u).scaled(-0.5))
             }
         }
     }
 
-    const fn factor(self, n: usize, is_sum: bool, target: f64) -> f64 {
-        if !is_sum {
-            return target;
-        }
-        let mut sum = 0.0;
+    /// The heights of all taps together.
+    const fn total(self, n: usize) -> DoubleDouble {
+        // The shapes are symmetrical.
+        let mut half = DoubleDouble::ZERO;
         let mut k = 0;
-        while k < n {
-            sum += self.at(k, n);
+        while k < n / 2 {
+            half = half.plus(self.height(k, n));
             k += 1;
         }
-        target / sum
+        let both = half.scaled(2.0);
+        if n % 2 == 1 { both.plus(self.height(n / 2, n)) } else { both }
     }
 
     const fn check(self) -> Result<(), ConfigError> {
@@ -215,11 +223,13 @@ impl<S: Sample, const F: usize> Taps<S, F> {
         match (shape.check(), positive("filter scale", target)) {
             (Err(error), _) | (_, Err(error)) => Err(error),
             _ => {
-                let factor = shape.factor(F, is_sum, target);
+                let target = DoubleDouble::new(target);
+                let factor = if is_sum { target.over(shape.total(F)) } else { target };
                 let mut taps = [S::ZERO; F];
                 let mut k = 0;
                 while k < F {
-                    taps[k] = from_f64(shape.at(k, F) * factor);
+                    let tap = shape.height(k, F).times(factor);
+                    taps[k] = from_f64(tap.settled().rounded());
                     k += 1;
                 }
                 Self::try_new(taps)

@@ -155,6 +155,7 @@ impl<const K: usize> Steps<K> {
 
 impl<const K: usize> Code for Steps<K> {
     const NEURONS: usize = 1;
+    const IS_SIGNED: bool = true;
     const SLOTS: usize = K;
 
     fn firings(&self) -> impl Iterator<Item = NeuronSpike> {

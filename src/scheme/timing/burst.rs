@@ -255,6 +255,14 @@ impl<S: Sample, const N: usize> Scheme for Burst<S, N> {
         Some(state.value())
     }
 
+    /// The slots of the longest burst.
+    fn slots(&self) -> usize {
+        let last = |burst: BurstSpikes<N>| {
+            u16::from(burst.count()).saturating_sub(1).wrapping_mul(burst.interval().into())
+        };
+        self.bursts().map(|(burst, _)| usize::from(last(burst)).wrapping_add(1)).max().unwrap_or(1)
+    }
+
     fn resync(&self, state: &mut Held<S>, value: S) {
         *state = Held::at(value);
     }

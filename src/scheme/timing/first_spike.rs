@@ -5,7 +5,7 @@ use core::ops::RangeInclusive;
 use super::{Slot, TimingState};
 use crate::error::{not_rising, range as check_range, unwrap, within};
 use crate::num::curve::power;
-use crate::num::{from_f64, to_f64};
+use crate::num::{DoubleDouble, to_f64};
 use crate::scheme::cells::{Cuts, Partition, Side};
 use crate::scheme::held::Held;
 use crate::{ConfigError, Recovery, Sample, Scheme, Start};
@@ -19,8 +19,8 @@ use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 ///   of flash in `f32`.
 /// - **Work:** one multiplication and two comparisons; where cells are not even, `log2 N` comparisons. No
 ///   exponential, logarithm or division.
-/// - **Exactness:** fixed point compares with exact edges; `f32` with edges computed in double precision and rounded
-///   once.
+/// - **Exactness:** every sample type compares with exact edges, of which `f32` takes the linear ones as computed in
+///   double precision.
 /// - **Decoder:** the middle of the cell. No spike decodes to the middle of the values below all edges; where
 ///   there are none, the value before holds. A sample that is not finite has no spike, either.
 /// - **Error:** half a cell within the range: `R/(2(N-1))` if linear, with `R = max - min`;
@@ -168,9 +168,9 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
         let mut edges = [0.0; N];
         let mut c = 0;
         while c < slots && c < N {
-            let part = c as f64 - slots as f64;
-            edges[c] =
-                min + whole::<S>((max - min) * power(dynamic_range as f64, part, slots as f64));
+            let fall = power(DoubleDouble::new(dynamic_range as f64), slots.wrapping_sub(c), slots);
+            let above = DoubleDouble::sum(max, -min).over(fall);
+            edges[c] = DoubleDouble::new(min).plus(above).rounded();
             c += 1;
         }
         Self::of_edges(range, &edges, slots)
@@ -252,14 +252,6 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
     }
 }
 
-/// A part of the range, or the nearest sample if the two differ by no more than the rounding of the part.
-const fn whole<S: Sample>(part: f64) -> f64 {
-    const ROUNDING: f64 = 1e-13;
-    let nearest = to_f64::<S>(from_f64(part));
-    let missed = nearest - part;
-    if missed <= ROUNDING * part && -missed <= ROUNDING * part { nearest } else { part }
-}
-
 impl<S: Sample, const N: usize> Start for FirstSpike<S, N> {
     const START: TimingState = TimingState::START;
 }
@@ -272,8 +264,8 @@ impl<S: Sample, const N: usize> Scheme for FirstSpike<S, N> {
     type DecoderState = Held<S>;
 
     const LATENCY: usize = 0;
-    /// Every code gives a value by itself, also one without a spike.
-    const RECOVERY: Recovery = Recovery::Samples(1);
+    /// That of even points. Where silence has a value, [`recovery`](Self::recovery) is after one sample.
+    const RECOVERY: Recovery = Recovery::Spike;
 
     #[inline]
     fn encode(&self, state: &mut TimingState, sample: S) -> Option<Slot<N>> {
@@ -297,6 +289,14 @@ impl<S: Sample, const N: usize> Scheme for FirstSpike<S, N> {
 
     fn held(&self, state: &Held<S>) -> Option<S> {
         Some(state.value())
+    }
+
+    fn recovery(&self) -> Recovery {
+        if self.silence.is_some() { Recovery::Samples(1) } else { Recovery::Spike }
+    }
+
+    fn slots(&self) -> usize {
+        self.slots.into()
     }
 
     fn resync(&self, state: &mut Held<S>, value: S) {

@@ -220,6 +220,14 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> Scheme
         Some(state.value())
     }
 
+    fn neurons(&self) -> usize {
+        self.neurons.into()
+    }
+
+    fn slots(&self) -> usize {
+        usize::from(self.width).wrapping_add(self.period.into()).saturating_sub(1)
+    }
+
     fn resync(&self, state: &mut Held<S>, value: S) {
         *state = Held::at(value);
     }

@@ -155,6 +155,10 @@ impl<S: Sample, const K: usize> Scheme for WeightedPhase<S, K> {
         Some(state.value())
     }
 
+    fn slots(&self) -> usize {
+        self.slots.into()
+    }
+
     fn resync(&self, state: &mut Held<S>, value: S) {
         *state = Held::at(value);
     }

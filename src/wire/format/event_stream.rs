@@ -52,8 +52,7 @@ impl EventStream {
     }
 
     /// An encoder of a file that begins at this tick. The file counts time from there, and does not contain the tick
-    /// itself. (From tick 0 it would begin with a byte for every 254 µs since boot, and 35.8 minutes after boot
-    /// event times would be wrong.)
+    /// itself. (From tick 0 it would begin with a byte for every 254 µs since boot.)
     pub const fn encoder_from(start: Tick) -> EventStreamEncoder {
         EventStreamEncoder { clock: Clock::starting_at(start) }
     }

@@ -1,6 +1,6 @@
 //! EVT 2.0: the format of Prophesee's cameras and tools.
 
-use super::{EventDecoder, EventFormat, FormatError};
+use super::{Clock, EventDecoder, EventFormat, FormatError};
 use crate::Polarity;
 use crate::event::{Event, Tick};
 use crate::wire::bytes::Cursor;
@@ -88,8 +88,8 @@ impl Evt2Encoder {
         bytes: &mut [u8],
     ) -> Result<usize, FormatError> {
         let last = self.time.unwrap_or(tick.micros().into());
-        let delta = tick.since(Tick::from_micros(last));
-        let time = last.wrapping_add(delta.max(0) as u64) & ((1 << TIME_BITS) - 1);
+        let (delta, is_retimed) = Clock::starting_at(Tick::from_micros(last)).since(tick);
+        let time = last.wrapping_add(delta.into()) & ((1 << TIME_BITS) - 1);
         let high = (time >> LOW_BITS) as u32;
 
         let mut out = Cursor::new(bytes);
@@ -103,7 +103,7 @@ impl Evt2Encoder {
                 .ok_or(FormatError::Full { written: 0 })?;
         }
         self.high = Some(high);
-        self.retimed = self.retimed.saturating_add((delta < 0).into());
+        self.retimed = self.retimed.saturating_add(is_retimed.into());
         self.time = Some(time);
         out.put(&word.to_le_bytes()).ok_or(FormatError::Full { written: out.written() })?;
         Ok(out.written())

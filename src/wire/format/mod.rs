@@ -13,8 +13,9 @@
 //! Decoders take a byte at a time, from anywhere in a stream, never panic, and count the bytes that they skip.
 //!
 //! **Time** goes forward in all formats but [`eieio`] and eDVS E4: an event earlier than the one before it is written at
-//! the time of that one, or, by eDVS E2 and E3, at a later time. An event 2³¹ µs (35.8 minutes) or more after the one
-//! before counts as earlier. Every event that will be read at another time is counted as
+//! the time of that one, or, by eDVS E2 and E3, at a later time. Ticks wrap, so that an event counts as earlier if its tick
+//! lies up to 2²⁴ µs (16.8 s) back, and otherwise as later: after a silence of up to 71.3 minutes. A longer silence is
+//! written 2³² µs shorter, which leaves every tick as it is. Every event that will be read at another tick is counted as
 //! [retimed](EventFormat::retimed).
 
 mod dvs;
@@ -112,6 +113,9 @@ impl fmt::Display for FormatError {
 
 impl core::error::Error for FormatError {}
 
+/// How much earlier than the event before an event may be, in µs. One that looks earlier still comes after a silence.
+const MOST_EARLIER: u32 = 1 << 24;
+
 /// The time that a reader of the stream has reached, and the count of retimed events.
 #[derive(Clone, Copy, Debug, Default)]
 struct Clock {
@@ -126,8 +130,9 @@ impl Clock {
 
     /// How much later an event is, in microseconds; 0 and true if it is earlier and must be retimed.
     fn since(self, tick: Tick) -> (u32, bool) {
-        let delta = tick.since(self.tick);
-        (delta.max(0) as u32, delta < 0)
+        let delta = tick.since(self.tick).cast_unsigned();
+        let is_earlier = delta > MOST_EARLIER.wrapping_neg();
+        (if is_earlier { 0 } else { delta }, is_earlier)
     }
 
     /// Adds time that was written.

@@ -7,8 +7,8 @@ use super::bits::{PutBits, TakeBits};
 use crate::Polarity;
 use crate::event::{Event, Tick};
 
-/// The longest time between two events of a frame, in µs: 17.9 minutes.
-const MAX_SINCE: u32 = 1 << 30;
+/// The longest time from the frame's tick to an event, in µs: 8.9 minutes.
+const MAX_SINCE_START: u32 = 1 << 29;
 
 /// How many addresses there are.
 const ADDRESSES: u32 = 1 << 16;
@@ -20,6 +20,8 @@ const POLARITY: u32 = 1;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     coding: Coding,
+    /// The frame's tick.
+    start: Tick,
     tick: Tick,
     /// The lowest address that the next event can have at this tick: one above the last event, up to 65 536.
     next_address: u32,
@@ -28,10 +30,10 @@ pub(super) struct Place {
 impl Place {
     /// The beginning of a frame. The coding is within its limits.
     pub(super) fn new(coding: Coding, tick: Tick) -> Self {
-        Self { coding, tick, next_address: 0 }
+        Self { coding, start: tick, tick, next_address: 0 }
     }
 
-    /// Puts the bits of an event; `None` if it lies more than [`MAX_SINCE`] from the one before.
+    /// Puts the bits of an event; `None` if it lies more than [`MAX_SINCE_START`] from the frame's tick.
     #[inline]
     pub(super) fn put(&self, event: Event, bits: &mut impl PutBits) -> Option<()> {
         let Coding { period, address_bits, jitter_bits } = self.coding;
@@ -45,7 +47,7 @@ impl Place {
                 bits.put_code(distance << POLARITY | up, address_bits);
             }
             _ => {
-                if since.unsigned_abs() > MAX_SINCE {
+                if event.tick.since(self.start).unsigned_abs() > MAX_SINCE_START {
                     return None;
                 }
                 let (steps, jitter) = nearest_step(since, period.into());
@@ -77,6 +79,11 @@ impl Place {
             let address = next_address.wrapping_add(distance) as u16;
             Event { tick, address, polarity }
         })
+    }
+
+    /// The tick of the last event, or of the frame.
+    pub(super) fn tick(&self) -> Tick {
+        self.tick
     }
 
     /// Codes the next event from this one.

@@ -6,6 +6,7 @@ use crc::{CRC_32_ISO_HDLC, Crc, Table};
 
 use super::bits::BitReader;
 use super::delta::Place;
+use super::time::Time;
 use super::{Coding, LinkError};
 use crate::SampleKind;
 use crate::event::{Event, Keyframe, Tick};
@@ -15,18 +16,22 @@ pub const MIN_FRAME: usize = HEADER + CHECKSUM;
 /// The bytes of the longest frame.
 pub const MAX_FRAME: usize = MIN_FRAME + MAX_LENGTH;
 
-pub(super) const HEADER: usize = 14;
+pub(super) const HEADER: usize = 18;
 pub(super) const CHECKSUM: usize = 4;
 pub(super) const MAX_LENGTH: usize = u8::MAX as usize;
 pub(super) const MAGIC: u8 = 0xA5;
-pub(super) const VERSION: u8 = 2;
-/// The indices of the byte with version and flags, and of the length.
+pub(super) const VERSION: u8 = 3;
+/// The indices of the byte with version and flags, of the period, and of the length.
 pub(super) const FLAGS_AT: usize = 1;
-pub(super) const LENGTH_AT: usize = 13;
+const PERIOD_AT: usize = 14;
+pub(super) const LENGTH_AT: usize = 17;
+/// The sample type of keyframes that have no value: heartbeats.
+pub(super) const HEARTBEATS: u8 = u8::MAX;
 
 pub(super) mod flag {
     pub(in crate::wire::link) const LOST: u8 = 1;
     pub(in crate::wire::link) const KEYFRAMES: u8 = 2;
+    pub(in crate::wire::link) const FIRST: u8 = 4;
 }
 
 static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
@@ -41,11 +46,11 @@ pub(super) fn checksum(bytes: &[u8]) -> u32 {
 #[derive(Clone, Copy, Debug)]
 pub struct FrameView<'a> {
     flags: u8,
-    session: u16,
-    sequence: u16,
-    tick: Tick,
+    number: u64,
+    time: Time,
     coding: Coding,
-    kind: SampleKind,
+    /// The sample type of the keyframes; `None` if they are heartbeats.
+    kind: Option<SampleKind>,
     keyframes: &'a [u8],
     events: &'a [u8],
 }
@@ -71,13 +76,12 @@ impl<'a> FrameView<'a> {
     /// Reads a frame without its checksum, which was checked before.
     pub(super) fn read(body: &'a [u8]) -> Option<Self> {
         let (header, payload) = body.split_first_chunk::<HEADER>()?;
-        let &[_, flags, n0, n1, s0, s1, t0, t1, t2, t3, p0, p1, coding, _] = header;
+        let &[_, flags, n0, n1, n2, n3, n4, n5, t0, t1, t2, t3, t4, t5, p0, p1, coding, _] = header;
         let (kind, keyframes, events) = split_keyframes(flags, payload)?;
         Some(Self {
             flags,
-            session: u16::from_le_bytes([n0, n1]),
-            sequence: u16::from_le_bytes([s0, s1]),
-            tick: u32::from_le_bytes([t0, t1, t2, t3]).into(),
+            number: u64::from_le_bytes([n0, n1, n2, n3, n4, n5, 0, 0]),
+            time: Time::from_micros(u64::from_le_bytes([t0, t1, t2, t3, t4, t5, 0, 0])),
             coding: Coding::from_byte(NonZeroU16::new(u16::from_le_bytes([p0, p1]))?, coding),
             kind,
             keyframes,
@@ -97,26 +101,38 @@ impl<'a> FrameView<'a> {
             [_, version, ..] if version >> 4 != VERSION => {
                 return Err(LinkError::Version { found: version >> 4 });
             }
-            [_, _, _, _, _, _, _, _, _, _, 0, 0, ..] => return Err(LinkError::Header),
             _ => {}
+        }
+        if let Some([0, 0]) = bytes.get(PERIOD_AT..PERIOD_AT + 2) {
+            return Err(LinkError::Header);
         }
         let length = bytes.get(LENGTH_AT).ok_or(truncated)?;
         Ok(MIN_FRAME + usize::from(*length))
     }
 
-    /// The number of the sender's session, which changes at each start of the sender.
-    pub fn session(&self) -> u16 {
-        self.session
+    /// The frame's number: 1 more than that of the frame before, modulo 2⁴⁸, from that of the
+    /// [session](super::Session) on.
+    pub fn number(&self) -> u64 {
+        self.number
     }
 
-    /// The frame's number in its session, from 0 on; wraps after 65 535.
-    pub fn sequence(&self) -> u16 {
-        self.sequence
+    /// Whether it is the first frame of its session.
+    pub fn is_first(&self) -> bool {
+        self.flags & flag::FIRST != 0
     }
 
     /// The tick of the keyframes: at or before that of the first event, unless events are out of order.
     pub fn tick(&self) -> Tick {
-        self.tick
+        self.time.tick()
+    }
+
+    /// The time of [`tick`](Self::tick) in µs, modulo 2⁴⁸ (8.9 years), from any start of the sender's.
+    pub fn micros(&self) -> u64 {
+        self.time.micros()
+    }
+
+    pub(super) fn time(&self) -> Time {
+        self.time
     }
 
     /// Whether the sender lost items before this frame, or its encoders changed without events.
@@ -131,43 +147,59 @@ impl<'a> FrameView<'a> {
 
     /// The values that decoders should hold before the events of this frame.
     pub fn keyframes(&self) -> impl Iterator<Item = Keyframe> + use<'a> {
-        let Self { tick, kind, keyframes, .. } = *self;
-        keyframes.chunks_exact(keyframe_size(kind)).filter_map(move |entry| {
-            let (&address, bits) = entry.split_first_chunk()?;
-            let address = u16::from_le_bytes(address);
+        let Self { time, kind, .. } = *self;
+        self.entries().filter_map(move |(address, bits)| {
             let bits = match *bits {
                 [b0, b1] => u16::from_le_bytes([b0, b1]).into(),
                 [b0, b1, b2, b3] => u32::from_le_bytes([b0, b1, b2, b3]),
                 _ => return None,
             };
-            Some(Keyframe { tick, address, kind, bits })
+            Some(Keyframe { tick: time.tick(), address, kind: kind?, bits })
+        })
+    }
+
+    /// The addresses of its [heartbeats](crate::Item::Heartbeat), at the frame's tick.
+    pub fn heartbeats(&self) -> impl Iterator<Item = u16> + use<'a> {
+        let is_heartbeat = self.kind.is_none();
+        self.entries().filter_map(move |(address, _)| is_heartbeat.then_some(address))
+    }
+
+    /// Each keyframe or heartbeat: its address, and the bytes of its value.
+    fn entries(&self) -> impl Iterator<Item = (u16, &'a [u8])> + use<'a> {
+        self.keyframes.chunks_exact(keyframe_size(self.kind)).filter_map(|entry| {
+            let (&address, bits) = entry.split_first_chunk()?;
+            Some((u16::from_le_bytes(address), bits))
         })
     }
 
     /// This frame with its keyframes read as another sample type of the same width; `None` if the width differs. For
     /// programs that handle all fixed point of one width as one type.
     pub fn with_kind(self, kind: SampleKind) -> Option<Self> {
-        (kind.size() == self.kind.size()).then_some(Self { kind, ..self })
+        let is_as_wide = self.kind.is_some_and(|own| own.size() == kind.size());
+        is_as_wide.then_some(Self { kind: Some(kind), ..self })
     }
 
     /// The events, in the order they were written.
     pub fn events(&self) -> Events<'a> {
-        Events { bits: BitReader::new(self.events), place: Place::new(self.coding, self.tick) }
+        Events { bits: BitReader::new(self.events), place: Place::new(self.coding, self.tick()) }
     }
 }
 
-/// The bytes of a keyframe: its address and its sample.
-pub(super) const fn keyframe_size(kind: SampleKind) -> usize {
-    2 + kind.size()
+/// The bytes of a keyframe, its address and its sample; or of a heartbeat, which has no sample.
+pub(super) const fn keyframe_size(kind: Option<SampleKind>) -> usize {
+    match kind {
+        Some(kind) => 2 + kind.size(),
+        None => 2,
+    }
 }
 
 /// The keyframes with their sample type, and the events.
-fn split_keyframes(flags: u8, payload: &[u8]) -> Option<(SampleKind, &[u8], &[u8])> {
+fn split_keyframes(flags: u8, payload: &[u8]) -> Option<(Option<SampleKind>, &[u8], &[u8])> {
     if flags & flag::KEYFRAMES == 0 {
-        return Some((SampleKind::F32, &[], payload));
+        return Some((None, &[], payload));
     }
     let (&[count, kind], rest) = payload.split_first_chunk()?;
-    let kind = SampleKind::from_byte(kind)?;
+    let kind = if kind == HEARTBEATS { None } else { Some(SampleKind::from_byte(kind)?) };
     let (keyframes, events) = rest.split_at_checked(usize::from(count) * keyframe_size(kind))?;
     Some((kind, keyframes, events))
 }

@@ -1,26 +1,38 @@
 //! Framed events over any transport of bytes that keeps their order: UART, SPI to an FPGA, USB, TCP.
 //!
-//! # Specification, version 2
+//! # Specification, version 3
 //!
 //! A link is a run of frames. All numbers are little endian.
 //!
 //! | byte | field | |
 //! |---|---|---|
 //! | 0 | magic | `A5` |
-//! | 1 | version and flags | version 2 in the high nibble; flags 1 *lost*, 2 *keyframes*; others are 0 |
-//! | 2-3 | session | changes at each start of the sender |
-//! | 4-5 | sequence | of the frame: 0 first, +1 each, wraps |
-//! | 6-9 | first tick | µs; the tick of the keyframes, from which the first event's time is counted |
-//! | 10-11 | period | µs from sample to sample, 1 to 65 535 |
-//! | 12 | coding | address bits in the low nibble, jitter bits in the high one |
-//! | 13 | length | bytes of keyframes and events, 0 to 255 |
-//! | | keyframes | with the flag *keyframes*: their count, their sample type, then each its address (2 bytes) and bits (2 or 4) |
+//! | 1 | version and flags | version 3 in the high nibble; flags 1 *lost*, 2 *keyframes*, 4 *first*; others are 0 |
+//! | 2-7 | number | of the frame: that of the session first, +1 each, modulo 2⁴⁸ |
+//! | 8-13 | time | µs, modulo 2⁴⁸; that of the keyframes, from which the first event's time is counted |
+//! | 14-15 | period | µs from sample to sample, 1 to 65 535 |
+//! | 16 | coding | address bits in the low nibble, jitter bits in the high one |
+//! | 17 | length | bytes of keyframes and events, 0 to 255 |
+//! | | keyframes | with the flag *keyframes*: their count, their sample type, then each its address (2 bytes) and bits (2 or 4, or none) |
 //! | | events | a string of bits, below |
 //! | | checksum | CRC-32/ISO-HDLC, the one of zlib, of all bytes before it |
 //!
-//! **Flag *lost*:** the sender lost items before this frame, or its encoders changed without events. **Sample types:**
-//! 0 is `f32`; 1 to 17 are fixed point of 16 bits with 0 to 16 fraction bits; 18 to 50 are fixed point of 32 bits with
-//! 0 to 32 fraction bits.
+//! **Flags:** *lost*, the sender lost items before this frame, its encoders changed without events, or it does not know
+//! the time since the frame before; *first*, the first frame of a session. **Sample types:** 0 is `f32`; 1 to 17 are fixed
+//! point of 16 bits with 0 to 16 fraction bits; 18 to 50 are fixed point of 32 bits with 0 to 32 fraction bits; 255 has no
+//! bits, for heartbeats.
+//!
+//! **Number:** a session begins at a number of its own, which [`Session`] spreads over all 2⁴⁸. One number thus tells a
+//! reader whose frame it is and how many are missing: 0 ahead, none; up to 2³²-1 ahead, as many; up to 256 behind, the
+//! frame is late; anything else is another session, or the same after a very long outage. However many frames are lost, a
+//! frame continues the one before only by being the next one, or by a chance of one in 2⁴⁸. (A session and a sequence of 16
+//! bits each take 4 bytes, too few: 65 536 lost frames, 8 s of them, look like none, and so do sessions that come again.)
+//!
+//! **Time:** a receiver has no clock; what it knows of elapsed time is the difference of two frames' times, which is right
+//! for outages of up to 4.4 years. A rate code needs it to count the samples without events, which change its value. The
+//! sender extends the 32-bit ticks of its items, which wrap after 71.6 minutes: it must know a tick at least every 2³⁰ µs
+//! (17.9 minutes), by an item or by [`Transmitter::observe`]. A larger step of ticks has the flag *lost*. Events of a frame
+//! lie up to 2²⁹ µs from its time.
 //!
 //! **Events** follow each other without a gap, each byte filled from its high bit; the last is filled
 //! up with 0. `code(v, k)` is the exponential Golomb code: with `n = (v >> k) + 1`, as many 0 as `n`
@@ -39,10 +51,14 @@
 //! **Keyframes** give the value that the decoder of each address should hold after the events of earlier frames and
 //! before those of this one. They make the decoder of a temporal code exact again after a loss.
 //!
-//! **Order:** a reader delivers frames by rising sequence. It leaves out frames that are repeated or late.
+//! **Heartbeats** are the keyframes of codes without keyframes. They say that a sample was taken at the frame's time, and
+//! that its events lie in earlier frames: a receiver then knows that samples are whole though no event comes, and when
+//! those with sub-timesteps begin, also if it joins late or the link was down. Their address is the bank's first.
+//!
+//! **Order:** a reader delivers frames by rising number. It leaves out frames that are repeated or late.
 //!
 //! **Resynchronisation:** after a byte that is not the magic, a wrong header or a wrong checksum, the reader goes on
-//! with the next byte. Frames that are lost this way leave a gap in the sequence.
+//! with the next byte. Frames that are lost this way leave a gap in the numbers.
 //!
 //! # Parts
 //!
@@ -57,7 +73,7 @@
 //! static GYRO: StepForward<f32> = StepForward::new(0.1);
 //! let mut bank = Bank::<_, 3>::new(&GYRO);
 //! static EVENTS: EventQueue<64> = EventQueue::new(Overflow::DropOldest);
-//! let mut transmitter = Transmitter::new(Coding::for_channels(3, 1_000), 1);
+//! let mut transmitter = Transmitter::new(Coding::for_channels(3, 1_000), Session::counted(1));
 //! let mut reader = Reader::<MAX_FRAME>::new();
 //! let mut receiver = Receiver::<_, 3>::new(&GYRO);
 //!
@@ -87,12 +103,17 @@ mod error;
 mod frame;
 mod reader;
 mod receiver;
+mod session;
+mod time;
 mod transmitter;
+mod withheld;
 mod writer;
 
 pub use error::LinkError;
 pub use frame::{Events, FrameView, MAX_FRAME, MIN_FRAME};
 pub use reader::{Gap, Reader, Received};
 pub use receiver::Receiver;
+pub use session::Session;
 pub use transmitter::Transmitter;
+pub use withheld::Withheld;
 pub use writer::{Coding, FrameWriter, Framer};

@@ -1,23 +1,23 @@
 //! Reader: finds frames in bytes that arrive cut anywhere, damaged, or from the middle of a stream.
 
 use super::frame::{CHECKSUM, MAGIC};
-use super::{FrameView, LinkError, MIN_FRAME};
+use super::{FrameView, LinkError, MIN_FRAME, session};
 
-/// A gap in the sequence: frames that are missing between two that arrived.
+/// A gap in the numbers: frames that are missing between two that arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gap {
-    /// How many are missing, 1 to 65 279; sequences wrap, so that they count modulo 65 536.
-    pub lost_frames: u16,
+    /// How many are missing, from 1 on.
+    pub lost_frames: u32,
 }
 
 /// A frame that arrived, and what is missing before it.
 #[derive(Clone, Copy, Debug)]
 pub struct Received<'a> {
-    /// The sequence gap before this frame, if there is one.
+    /// The gap before this frame, if there is one.
     pub gap: Option<Gap>,
-    /// Whether it is the first frame of the sender's session that arrived.
+    /// Whether it is the first frame of the sender's session that arrived; also after 2³² lost frames or more.
     pub is_start: bool,
     /// The frame.
     pub frame: FrameView<'a>,
@@ -34,8 +34,9 @@ impl Received<'_> {
 /// Finds frames of up to `N` bytes; [`MAX_FRAME`](super::MAX_FRAME) takes all.
 ///
 /// - **Order:** a frame that was already delivered, or that comes up to 256 frames late, is left out. So is a late
-///   frame of the three sessions before, until the present one has delivered 256 frames.
-/// - **Memory:** `N + 68` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
+///   frame of the three sessions before, until the present one has delivered 256 frames. The first frame of a session
+///   is late in that session alone.
+/// - **Memory:** `N + 104` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
 ///   the first of a frame.
 /// - **Delay:** none; a frame whose length was damaged may delay the frames in the 255 bytes after it.
 ///
@@ -49,7 +50,7 @@ pub struct Reader<const N: usize> {
     end: usize,
     handed_out: usize,
     /// The sender's last sessions, the present one first.
-    sessions: [Option<Session>; 4],
+    sessions: [Run; 4],
     frames: u32,
     lost_frames: u32,
     bad_checksums: u32,
@@ -61,22 +62,31 @@ pub struct Reader<const N: usize> {
 /// A frame counts as late up to this many frames back, and beyond that as one after a long gap.
 const LATE: u16 = 256;
 
+/// The frames of one session.
 #[derive(Clone, Copy, Debug)]
-struct Session {
-    number: u16,
-    /// The sequence of the frame that comes next.
-    next: u16,
-    /// How many frames of it were delivered, up to 256.
+struct Run {
+    /// The number of the frame that comes next.
+    next: u64,
+    /// How many were delivered, up to 256.
     delivered: u16,
 }
 
-/// Where a frame stands in the sequence.
+impl Run {
+    const NONE: Self = Self { next: 0, delivered: 0 };
+
+    /// How many frames `frame` comes after the next one; `None` for no run.
+    fn ahead(&self, frame: &FrameView<'_>) -> Option<i64> {
+        (self.delivered > 0).then(|| session::ahead(frame.number(), self.next))
+    }
+}
+
+/// Where a frame stands among those delivered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Standing {
     /// The first of its session.
     First,
     /// A later one, with this many missing before it.
-    After(u16),
+    After(u32),
     /// The frame delivered last.
     Repeated,
     /// An earlier frame.
@@ -98,7 +108,7 @@ impl<const N: usize> Reader<N> {
             start: 0,
             end: 0,
             handed_out: 0,
-            sessions: [None; 4],
+            sessions: [Run::NONE; 4],
             frames: 0,
             lost_frames: 0,
             bad_checksums: 0,
@@ -117,23 +127,22 @@ impl<const N: usize> Reader<N> {
         let frame = FrameView::read(self.buffer.get(self.start..end)?)?;
         self.frames = self.frames.saturating_add(1);
 
-        let number = frame.session();
-        let next = frame.sequence().wrapping_add(1);
+        let next = session::next(frame.number());
         let [present, earlier @ ..] = &mut self.sessions;
         let is_start = standing == Standing::First;
         if is_start {
             let [second, third, _] = *earlier;
             *earlier = [*present, second, third];
-            *present = None;
+            *present = Run::NONE;
         }
-        let delivered = present.map_or(0, |session| session.delivered).saturating_add(1).min(LATE);
+        let delivered = present.delivered.saturating_add(1).min(LATE);
         if delivered == LATE {
-            *earlier = [None; 3];
+            *earlier = [Run::NONE; 3];
         }
-        *present = Some(Session { number, next, delivered });
+        *present = Run { next, delivered };
 
         let lost_frames = if let Standing::After(lost) = standing { lost } else { 0 };
-        self.lost_frames = self.lost_frames.saturating_add(lost_frames.into());
+        self.lost_frames = self.lost_frames.saturating_add(lost_frames);
         let gap = (lost_frames > 0).then_some(Gap { lost_frames });
         Some(Received { gap, is_start, frame })
     }
@@ -143,7 +152,7 @@ impl<const N: usize> Reader<N> {
         self.frames
     }
 
-    /// How many frames are missing in the sequence, over all gaps.
+    /// How many frames are missing, over all gaps.
     pub const fn lost_frames(&self) -> u32 {
         self.lost_frames
     }
@@ -205,24 +214,21 @@ impl<const N: usize> Reader<N> {
     }
 
     fn standing(&self, frame: &FrameView<'_>) -> Standing {
+        const LATEST: i64 = -(LATE as i64);
         let [present, earlier @ ..] = &self.sessions;
-        let ahead = |session: &Session| {
-            let ahead = frame.sequence().wrapping_sub(session.next);
-            (session.number == frame.session()).then_some(ahead)
-        };
-        match present.as_ref().and_then(ahead) {
-            Some(u16::MAX) => Standing::Repeated,
-            Some(ahead) if ahead > u16::MAX - LATE => Standing::Late,
-            Some(ahead) => Standing::After(ahead),
-            None => {
-                // A frame that was on its way when the sender restarted is late.
-                let is_late = |ahead: u16| ahead.wrapping_add(LATE) < 2 * LATE;
-                let mut earlier = earlier.iter().flatten();
-                if earlier.any(|session| ahead(session).is_some_and(is_late)) {
-                    Standing::Late
-                } else {
-                    Standing::First
+        match present.ahead(frame) {
+            Some(-1) => Standing::Repeated,
+            // The present session's own first frame, too, where later ones overtook it.
+            Some(LATEST..0) => Standing::Late,
+            _ if frame.is_first() => Standing::First,
+            ahead => {
+                if let Some(Ok(lost)) = ahead.map(u32::try_from) {
+                    return Standing::After(lost);
                 }
+                // A frame that was on its way when the sender restarted is late.
+                let is_near = |ahead: i64| ahead.unsigned_abs() < u64::from(LATE);
+                let mut earlier = earlier.iter().filter_map(|run| run.ahead(frame));
+                if earlier.any(is_near) { Standing::Late } else { Standing::First }
             }
         }
     }

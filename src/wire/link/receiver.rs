@@ -1,9 +1,10 @@
 //! Receiver: the decoders of several channels at the end of a link, which know whether their values are exact.
 
 use core::fmt;
-use core::num::NonZeroU32;
+use core::num::{NonZeroU32, NonZeroU64};
 
-use super::Received;
+use super::time::Time;
+use super::{Received, Withheld};
 use crate::event::{
     Addresses, CodeOf, DecoderStateOf, Event, Keyframe, SampleOf, Schemes, States, Tick,
 };
@@ -14,22 +15,29 @@ use crate::{Code, ConfigError, NeuronSpike, Recovery, Scheme, error};
 /// A value is *exact* if it has the bits of a decoder on the sender's side, which loses no event and takes the
 /// keyframes that arrive here. (How close that is to the signal depends on the scheme.) After a loss no channel is
 /// exact; each becomes exact again as its [`RECOVERY`](Scheme::RECOVERY) says. Until then events are still decoded,
-/// and give an [`estimate`](Self::estimate).
+/// and give an [`estimate`](Self::estimate); [`withheld`](Self::withheld) says what is missing.
 ///
 /// - **Temporal codes** ([`Recovery::Keyframe`]) are exact from their next keyframe on. A value holds from its event
 ///   until the next one.
 /// - **Temporal codes whose step adapts** ([`Recovery::TimedKeyframe`]) are exact from their next keyframe on too. The
 ///   sender must take its samples every period, as for rate codes.
 /// - **Population codes** ([`Recovery::Spike`]) are exact from the next whole sample in which the channel fires. A
-///   sample is over when an event of a later one arrives, or by [`advance`](Self::advance).
+///   sample is over when an event of a later one arrives, a heartbeat, or by [`advance`](Self::advance).
 /// - **Rate codes** ([`Recovery::Samples`]) are exact after as many whole samples as the filter has taps. The sender
-///   must take a sample every [period](super::Coding::period) of the link, with a jitter below half a period, since
-///   samples without events are decoded, too: after as many of them as the filter has taps the value no longer
-///   changes, and the others are passed over.
+///   must take a sample every [period](super::Coding::period) of the link, with a jitter of each tick below a quarter of
+///   a period, since samples without events are decoded, too: after as many of them as the filter has taps the value no
+///   longer changes, and the others are passed over.
 /// - **Means** ([`Recovery::Fading`]) take their samples every period too. They are never exact: the error of an
 ///   estimate fades.
+/// - **Codes with sub-timesteps** need the sender's [`with_slot_ticks`](Self::with_slot_ticks), and a
+///   [heartbeat](crate::Item::Heartbeat) after each loss, which says when a sample was taken: no value is decoded before.
+///   The sender must take a sample every period, as long as all sub-timesteps or longer, with a jitter of each tick
+///   below a quarter of a sub-timestep.
 ///
-/// - **Memory:** on a 32-bit part about 40 bytes; per channel the decoder's state, a sample and 8 bytes; and 8 bytes
+/// **Time:** however long a link is down, or a sender at rest, a frame's time says how many samples have passed. The
+/// sender must know it: see [`Transmitter::observe`](super::Transmitter::observe).
+///
+/// - **Memory:** on a 32-bit part about 64 bytes; per channel the decoder's state, a sample and 8 bytes; and 8 bytes
 ///   for each of `EVENTS`, the most events that one sample has over all channels. Codes of [`Recovery::Keyframe`] need
 ///   none of these: 0.
 /// - **Latency:** none for codes of [`Recovery::Keyframe`]; for others until the sample is over.
@@ -44,6 +52,8 @@ use crate::{Code, ConfigError, NeuronSpike, Recovery, Scheme, error};
 pub struct Receiver<T: Schemes<N>, const N: usize, const EVENTS: usize = 32> {
     channels: T::Channels<Channel<DecoderStateOf<T, N>, SampleOf<T, N>>>,
     addresses: Addresses,
+    /// How many sub-timesteps a sample has, in the channel with most; 1 where they do not matter.
+    slots: u32,
     sample: Sampled<EVENTS>,
     outside: u32,
     misfits: u32,
@@ -68,10 +78,9 @@ impl<D, S> Channel<D, S> {
 /// The sample that is being received, of codes that take all events of a sample at once.
 #[derive(Clone, Copy, Debug)]
 struct Sampled<const EVENTS: usize> {
-    /// The tick of the sample. Before the first one: `None`, or a tick from which samples lie whole periods away.
-    tick: Option<Tick>,
-    /// Whether an event has come.
-    has_begun: bool,
+    /// The time of the sample; `None` while it is not known.
+    time: Option<Time>,
+    /// The events, each at the tick of its sub-timestep from 0 on.
     events: [Event; EVENTS],
     count: usize,
     /// Whether none of its events was lost.
@@ -105,13 +114,17 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             assert!(N >= 1, "a receiver has at least one channel");
             assert!(Self::ADDRESSES <= 1 << 16, "addresses have 16 bits");
         }
+        let mut slots = 1;
         let channels = schemes.channels(|scheme| {
+            if T::Scheme::RECOVERY != Recovery::Keyframe {
+                slots = slots.max(scheme.slots() as u32);
+            }
             let state = scheme.decoder_state();
             let value = scheme.held(&state).unwrap_or_default();
             Channel { state, value, is_exact: false, whole: 0 }
         });
         let addresses = Addresses { first: 0, slot_ticks: 0 };
-        Self { channels, addresses, sample: Sampled::NONE, outside: 0, misfits: 0 }
+        Self { channels, addresses, slots, sample: Sampled::NONE, outside: 0, misfits: 0 }
     }
 
     /// Sets the first address, 0 by default; events of addresses without a channel are counted as
@@ -135,12 +148,11 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         Ok(Self { addresses: Addresses { first: first_address, ..self.addresses }, ..self })
     }
 
-    /// Sets the length of a sub-timestep in microseconds, 0 by default. `start` is the tick of one of the sender's
-    /// samples; the others lie whole periods from it.
+    /// Sets the length of a sub-timestep in microseconds, that of the sender's
+    /// [bank](crate::Bank::with_slot_ticks). By default it is 0: a code with sub-timesteps is then not decoded.
     #[must_use]
-    pub const fn with_slot_ticks(mut self, slot_ticks: u32, start: Tick) -> Self {
+    pub const fn with_slot_ticks(mut self, slot_ticks: u32) -> Self {
         self.addresses.slot_ticks = slot_ticks;
-        self.sample.tick = Some(start);
         self
     }
 
@@ -153,15 +165,18 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
     ) {
         let frame = &received.frame;
         if received.is_after_break() {
-            self.mark_stale();
+            self.begin_again(received.is_start, &mut on_value);
         }
         self.sample.period = frame.period().into();
         for keyframe in frame.keyframes() {
-            self.keyframe(keyframe, &mut on_value);
+            self.keyframe(frame.time(), keyframe, &mut on_value);
+        }
+        for address in frame.heartbeats() {
+            self.heartbeat(frame.time(), address, &mut on_value);
         }
         let mut events = frame.events();
         for event in &mut events {
-            self.event(event, &mut on_value);
+            self.event(frame.time(), event, &mut on_value);
         }
         if !events.is_complete() {
             self.misfits = self.misfits.saturating_add(1);
@@ -170,11 +185,11 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
     }
 
     /// Tells the receiver that all events before this tick have arrived: samples that are over by then are decoded and
-    /// passed to `on_value`. Otherwise a sample is decoded when an event of a later one arrives. Codes of
-    /// [`Recovery::Keyframe`] do not need this.
+    /// passed to `on_value`. Otherwise a sample is decoded when an event of a later one arrives. `now` must lie less than
+    /// 2³¹ µs (35.8 minutes) after the last event or call. Codes of [`Recovery::Keyframe`] do not need this.
     pub fn advance(&mut self, now: Tick, mut on_value: impl FnMut(u16, Tick, SampleOf<T, N>)) {
-        if T::Scheme::RECOVERY != Recovery::Keyframe {
-            self.finish_samples(now, &mut on_value);
+        if let Some(time) = self.sample.time {
+            self.finish_samples(time.nearest(now), &mut on_value);
         }
     }
 
@@ -183,6 +198,22 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         T::each_mut(&mut self.channels).for_each(|(_, channel)| channel.mark_stale());
         self.sample.is_whole = false;
         self.sample.is_next_whole = false;
+    }
+
+    /// Marks every channel as not exact after a loss, and forgets when samples are taken where that may have changed.
+    fn begin_again(
+        &mut self,
+        is_start: bool,
+        on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
+    ) {
+        self.mark_stale();
+        if (is_start || self.has_slots())
+            && let Some(time) = self.sample.time.take()
+            && self.sample.count > 0
+        {
+            self.decode(time, on_value);
+            self.sample.count = 0;
+        }
     }
 
     /// The value of a channel if it is exact, else `None`. For a code of [`Recovery::Keyframe`] it is the value after
@@ -198,13 +229,33 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         channel.map(|(_, channel)| channel.value).unwrap_or_default()
     }
 
+    /// Why a channel has no exact value; `None` if it has one, or does not exist.
+    pub fn withheld(&self, channel: u16) -> Option<Withheld> {
+        let (scheme, channel) = T::each(&self.channels).nth(channel.into())?;
+        let Sampled { time, period, .. } = self.sample;
+        let slot_ticks = self.addresses.slot_ticks;
+        Some(match scheme.recovery() {
+            _ if channel.is_exact => return None,
+            Recovery::Keyframe | Recovery::TimedKeyframe(_) => Withheld::Keyframe,
+            Recovery::Fading(_) => Withheld::Always,
+            _ if self.has_slots() && slot_ticks == 0 => Withheld::SlotTicks,
+            _ if self.is_blind() && period > NonZeroU32::MIN => {
+                Withheld::Slots { slots: self.slots, slot_ticks, period: period.get() }
+            }
+            _ if self.has_slots() && time.is_none() => Withheld::Heartbeat,
+            Recovery::Samples(needed) => Withheld::Samples(needed.saturating_sub(channel.whole)),
+            Recovery::Spike => Withheld::Spike,
+        })
+    }
+
     /// How many events and keyframes had an address of no channel.
     pub const fn outside(&self) -> u32 {
         self.outside
     }
 
     /// How many keyframes had another sample type or came for a code without keyframes, plus how many frames had bits
-    /// that code no event, plus how many events were more than the `EVENTS` of a sample.
+    /// that code no event, plus how many events were more than the `EVENTS` of a sample, came after their sample was over,
+    /// or lay in none of its sub-timesteps.
     pub const fn misfits(&self) -> u32 {
         self.misfits
     }
@@ -215,16 +266,34 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         T::each(&self.channels).next().map_or(1, |(scheme, _)| scheme.neurons()).max(1)
     }
 
+    /// Whether the code tells values by sub-timesteps.
+    #[inline]
+    fn has_slots(&self) -> bool {
+        CodeOf::<T, N>::SLOTS > 1 && self.slots > 1
+    }
+
+    /// Whether all sub-timesteps of a sample are over when the next begins.
+    fn slots_fit(&self) -> bool {
+        let length = u64::from(self.slots).wrapping_mul(self.addresses.slot_ticks.into());
+        length <= u64::from(self.sample.period.get())
+    }
+
+    /// Whether the code tells values by sub-timesteps that are not known.
+    fn is_blind(&self) -> bool {
+        self.has_slots() && (self.addresses.slot_ticks == 0 || !self.slots_fit())
+    }
+
     fn keyframe(
         &mut self,
+        time: Time,
         keyframe: Keyframe,
         on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
     ) {
-        if matches!(T::Scheme::RECOVERY, Recovery::TimedKeyframe(_)) {
-            self.sample_behind(keyframe.tick, on_value);
-        }
         let address = usize::from(keyframe.address.wrapping_sub(self.addresses.first));
         let channel = address / self.neurons();
+        if channel < N && matches!(T::Scheme::RECOVERY, Recovery::TimedKeyframe(_)) {
+            self.sample_behind(time, on_value);
+        }
         let Some((scheme, known)) = T::each_mut(&mut self.channels).nth(channel) else {
             self.outside = self.outside.saturating_add(1);
             return;
@@ -240,8 +309,28 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         }
     }
 
+    fn heartbeat(
+        &mut self,
+        time: Time,
+        address: u16,
+        on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
+    ) {
+        let address = usize::from(address.wrapping_sub(self.addresses.first));
+        if address >= N * self.neurons() {
+            self.outside = self.outside.saturating_add(1);
+        } else if T::Scheme::RECOVERY != Recovery::Keyframe {
+            self.sample_behind(time, on_value);
+        }
+    }
+
+    /// Takes an event of a frame of this time.
     #[inline]
-    fn event(&mut self, event: Event, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
+    fn event(
+        &mut self,
+        frame: Time,
+        event: Event,
+        on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
+    ) {
         let address = usize::from(event.address.wrapping_sub(self.addresses.first));
         let neurons = self.neurons();
         if address >= N * neurons {
@@ -256,78 +345,119 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
                 on_value(channel as u16, event.tick, known.value);
             }
         } else {
-            self.sample_at(event.tick, on_value);
-            if let Some(place) = self.sample.events.get_mut(self.sample.count) {
-                *place = event;
-                self.sample.count = self.sample.count.wrapping_add(1);
-            } else {
-                self.misfits = self.misfits.saturating_add(1);
-                self.sample.is_whole = false;
-                let channel = address.checked_div(neurons).unwrap_or(0);
-                if let Some((_, known)) = T::each_mut(&mut self.channels).nth(channel) {
-                    known.mark_stale();
-                }
+            self.sampled_event(frame.nearest(event.tick), event, on_value);
+        }
+    }
+
+    /// Takes an event of a code that takes all events of a sample at once.
+    fn sampled_event(
+        &mut self,
+        time: Time,
+        event: Event,
+        on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
+    ) {
+        if self.is_blind() || self.has_slots() && self.sample.time.is_none() {
+            return;
+        }
+        self.finish_samples(time, on_value);
+        let Some(slot) = self.slot(time) else {
+            self.misfits = self.misfits.saturating_add(1);
+            return self.begin_again(true, on_value);
+        };
+        // Events that were lost before this one belong to its sample or to an earlier one.
+        self.sample.is_next_whole = true;
+        let after = slot.wrapping_mul(self.addresses.slot_ticks);
+        // The event's own time instead of a whole number of periods: samples are counted from here on, whatever the
+        // jitter, and where the sender's period is not quite that of the link.
+        self.sample.time = Some(time.after(u64::from(after).wrapping_neg()));
+        if let Some(place) = self.sample.events.get_mut(self.sample.count) {
+            *place = Event { tick: after.into(), ..event };
+            self.sample.count = self.sample.count.wrapping_add(1);
+        } else {
+            self.misfits = self.misfits.saturating_add(1);
+            self.sample.is_whole = false;
+            let address = usize::from(event.address.wrapping_sub(self.addresses.first));
+            let channel = address.checked_div(self.neurons()).unwrap_or(0);
+            if let Some((_, known)) = T::each_mut(&mut self.channels).nth(channel) {
+                known.mark_stale();
             }
         }
     }
 
-    /// Goes on to the sample of an event at this tick.
-    fn sample_at(&mut self, tick: Tick, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
-        self.finish_samples(tick, on_value);
-        // Events that were lost before this one belong to its sample or to an earlier one.
-        self.sample.is_next_whole = true;
-        self.sample.has_begun = true;
-        if self.addresses.slot_ticks == 0 {
-            // The event's own tick instead of a whole number of periods: samples are counted from here on, whatever
-            // the jitter, and where the sender's period is not quite that of the link.
-            self.sample.tick = Some(tick);
+    /// How far an event may lie before its sample's time or sub-timestep: half a period, or half a sub-timestep.
+    fn half(&self) -> u32 {
+        let length =
+            if self.has_slots() { self.addresses.slot_ticks } else { self.sample.period.get() };
+        length / 2
+    }
+
+    /// The sub-timestep of the present sample at this time; `None` if the time lies in none.
+    fn slot(&self, time: Time) -> Option<u32> {
+        let Some(sample) = self.sample.time else { return Some(0) };
+        let since = time.since(sample).saturating_add(self.half().into());
+        let since = u32::try_from(since).ok()?;
+        if !self.has_slots() {
+            return Some(0);
         }
+        let slot = since.checked_div(self.addresses.slot_ticks)?;
+        (slot < self.slots).then_some(slot)
     }
 
-    /// Goes on to the sample after a keyframe of this tick, whose own sample is over.
-    fn sample_behind(&mut self, tick: Tick, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
-        let next = tick + u32::from(self.sample.period);
+    /// Goes on to the sample after the one taken at this time, which is over.
+    fn sample_behind(&mut self, time: Time, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
+        if self.is_blind() {
+            return;
+        }
+        let next = time.after(self.sample.period.get().into());
         self.finish_samples(next, on_value);
-        self.sample.tick.get_or_insert(next);
-        self.sample.has_begun = true;
+        // Events that come from here on belong to the next sample or to a later one.
+        self.sample.is_whole |= self.sample.count == 0;
+        self.sample.is_next_whole = true;
+        self.sample.time = Some(next);
     }
 
-    /// Decodes the sample that is over at this tick, and the samples without events after it.
-    fn finish_samples(&mut self, now: Tick, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
-        let Some(tick) = self.sample.tick else { return };
+    /// Decodes the sample that is over at this time, and the samples without events after it.
+    fn finish_samples(&mut self, now: Time, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
+        let Some(time) = self.sample.time else { return };
         let Sampled { period, is_next_whole, .. } = self.sample;
-        let since = now.since(tick).max(0) as u32;
         // With sub-timesteps an event lies in the period after its sample, otherwise near its sample.
-        let has_slots = self.addresses.slot_ticks > 0;
-        let half = if has_slots { 0 } else { period.get() / 2 };
-        let samples = since.saturating_add(half) / period;
+        let half = self.half();
+        let since = now.since(time).saturating_add(half.into()).max(0).cast_unsigned();
+        let samples = match u32::try_from(since) {
+            Ok(since) => (since / period).into(),
+            Err(_) => since / NonZeroU64::from(period),
+        };
         if samples == 0 {
             return;
         }
-        self.sample.tick = Some(tick + samples.wrapping_mul(period.get()));
-        if self.sample.has_begun {
-            self.decode(tick, on_value);
-            self.sample.is_whole = is_next_whole;
-            self.sample.count = 0;
-            let recovery = T::each(&self.channels).next().map(|(scheme, _)| scheme.recovery());
-            if let Some(
-                Recovery::Samples(recovery)
-                | Recovery::TimedKeyframe(recovery)
-                | Recovery::Fading(recovery),
-            ) = recovery
-            {
-                for sample in (1..samples).take(recovery) {
-                    self.decode(tick + sample.wrapping_mul(period.get()), on_value);
-                }
-            }
+        let period = u64::from(period.get());
+        self.sample.time = Some(time.after(samples.wrapping_mul(period)));
+        self.decode(time, on_value);
+        self.sample.is_whole = is_next_whole;
+        self.sample.count = 0;
+        if samples == 1 {
+            return;
+        }
+        // From the longest recovery on, samples without events change no channel.
+        let silent = T::each(&self.channels).map(|(scheme, _)| match scheme.recovery() {
+            Recovery::Samples(samples)
+            | Recovery::TimedKeyframe(samples)
+            | Recovery::Fading(samples) => samples,
+            Recovery::Keyframe | Recovery::Spike => 0,
+        });
+        let silent = silent.max().unwrap_or_default();
+        for sample in (1..samples).take(silent) {
+            self.decode(time.after(sample.wrapping_mul(period)), on_value);
         }
     }
 
     /// Decodes a sample that is over, in every channel.
-    fn decode(&mut self, tick: Tick, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
+    fn decode(&mut self, time: Time, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
         let events = self.sample.events.get(..self.sample.count).unwrap_or_default();
+        let tick = time.tick();
         for (channel, (scheme, known)) in (0..N).zip(T::each_mut(&mut self.channels)) {
-            let code: CodeOf<T, N> = self.addresses.code(channel, scheme.neurons(), tick, events);
+            let code: CodeOf<T, N> =
+                self.addresses.code(channel, scheme.neurons(), 0.into(), events);
             known.value = scheme.decode(&mut known.state, code);
             if self.sample.is_whole {
                 known.whole = known.whole.saturating_add(1);
@@ -344,8 +474,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
 
 impl<const EVENTS: usize> Sampled<EVENTS> {
     const NONE: Self = Self {
-        tick: None,
-        has_begun: false,
+        time: None,
         events: [Event::ZERO; EVENTS],
         count: 0,
         is_whole: false,

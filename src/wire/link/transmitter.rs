@@ -1,21 +1,24 @@
 //! Transmitter: turns items into frames, in their order.
 
-use super::{Coding, FrameWriter, Framer, LinkError};
-use crate::event::{Item, Source, Taken};
+use super::{Coding, FrameWriter, Framer, LinkError, Session};
+use crate::event::{Item, Source, Taken, Tick};
 use crate::wire::Batch;
 
 /// Takes items from a source and turns them into frames, in their order.
 ///
-/// - **Keyframes** come first in a frame: a keyframe after an event starts the next frame.
+/// - **Keyframes and heartbeats** come first in a frame: one after an event starts the next frame.
 /// - **Losses and breaks** also start a frame, with the flag *lost*: a temporal decoder is then wrong until its next
 ///   keyframe.
-/// - **Memory:** 28 bytes on a 32-bit part.
+/// - **Time:** a tick wraps after 71.6 minutes, so that a longer silence cannot be told from a short one. Where there may
+///   be no item for 17.9 minutes, as of a rate code at rest without heartbeats, call [`observe`](Self::observe).
+/// - **Memory:** 48 bytes on a 32-bit part.
 ///
 /// ```
-/// use spikewire::{Event, FromEvents, Polarity, Tick, link::{Coding, FrameView, MAX_FRAME, Transmitter}};
+/// use spikewire::{Event, FromEvents, Polarity, Tick};
+/// use spikewire::link::{Coding, FrameView, MAX_FRAME, Session, Transmitter};
 ///
-/// let boots = 7; // as counted in flash, or a number from a generator
-/// let mut link = Transmitter::new(Coding::for_channels(6, 1_000), boots);
+/// let starts = 7; // as counted in flash
+/// let mut link = Transmitter::new(Coding::for_channels(6, 1_000), Session::counted(starts));
 ///
 /// let event = Event { tick: Tick::from_micros(5_000), address: 3, polarity: Polarity::Up };
 /// let mut source = FromEvents([event].into_iter());
@@ -34,12 +37,21 @@ pub struct Transmitter {
 }
 
 impl Transmitter {
-    /// A transmitter before its first frame.
-    ///
-    /// `session` must differ from that of the previous start, so that a reader sees the restart even if it misses
-    /// frames: a counter kept in flash or in a backup register, or a random number.
-    pub const fn new(coding: Coding, session: u16) -> Self {
+    /// A transmitter before the first frame of this session.
+    pub const fn new(coding: Coding, session: Session) -> Self {
         Self { framer: Framer::new(coding, session), held: None }
+    }
+
+    /// Tells the time, which items do not while there are none. An item or this must come at least every 2³⁰ µs (17.9
+    /// minutes): at each turn of the main loop, for one. A [heartbeat](Item::Heartbeat) a second does as well.
+    pub fn observe(&mut self, now: Tick) {
+        self.framer.observe(now);
+    }
+
+    /// How often a tick lay more than 2³⁰ µs from the one before, so that the time between them is not known: the next
+    /// frame then has the flag *lost*. A silence of about 2³² µs, or of a multiple, is not noticed.
+    pub const fn leaps(&self) -> u32 {
+        self.framer.leaps()
     }
 
     /// Writes the next frame, with as many items as there are and fit; `None` if there is none. Call it until it
@@ -84,6 +96,7 @@ fn append(frame: &mut FrameWriter<'_, '_>, item: Item) -> Result<(), LinkError> 
     match item {
         Item::Event(event) => frame.event(event),
         Item::Keyframe(keyframe) => frame.keyframe(keyframe),
+        Item::Heartbeat { tick, address } => frame.heartbeat(tick, address),
         Item::Break(_) => Ok(()),
     }
 }

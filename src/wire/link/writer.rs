@@ -2,13 +2,14 @@
 
 use core::num::NonZeroU16;
 
-use super::LinkError;
 use super::bits::{BitWriter, Word};
 use super::delta::Place;
 use super::frame::{
-    CHECKSUM, FLAGS_AT, HEADER, LENGTH_AT, MAGIC, MAX_LENGTH, VERSION, checksum, flag,
+    CHECKSUM, FLAGS_AT, HEADER, HEARTBEATS, LENGTH_AT, MAGIC, MAX_LENGTH, VERSION, checksum, flag,
     keyframe_size,
 };
+use super::time::Time;
+use super::{LinkError, Session, session};
 use crate::SampleKind;
 use crate::event::{Event, Keyframe, Tick};
 use crate::wire::bytes::Cursor;
@@ -69,9 +70,9 @@ impl Coding {
 /// Starts and numbers a sender's frames. A [`Transmitter`](super::Transmitter) does this for the items of a queue.
 ///
 /// ```
-/// use spikewire::{Event, Polarity, Tick, link::{Coding, FrameView, Framer}};
+/// use spikewire::{Event, Polarity, Tick, link::{Coding, FrameView, Framer, Session}};
 ///
-/// let mut framer = Framer::new(Coding::for_channels(6, 1_000), 1);
+/// let mut framer = Framer::new(Coding::for_channels(6, 1_000), Session::counted(1));
 /// let tick = Tick::from_micros(2_000);
 /// let mut buffer = [0; 64];
 /// let mut frame = framer.start(tick, &mut buffer)?;
@@ -87,20 +88,51 @@ impl Coding {
 #[derive(Clone, Copy, Debug)]
 pub struct Framer {
     coding: Coding,
-    session: u16,
-    sequence: u16,
+    /// The number of the next frame.
+    number: u64,
+    /// That of the last tick told; without meaning before the first frame.
+    time: Time,
+    /// Those of the next frame.
     flags: u8,
+    leaps: u32,
 }
 
 impl Framer {
-    /// A framer whose first frame is number 0 of this session; see [`Transmitter::new`](super::Transmitter::new).
-    pub const fn new(coding: Coding, session: u16) -> Self {
-        Self { coding: coding.within_limits(), session, sequence: 0, flags: 0 }
+    /// A framer before the first frame of this session.
+    pub const fn new(coding: Coding, session: Session) -> Self {
+        Self {
+            coding: coding.within_limits(),
+            number: session.first_number(),
+            time: Time::from_micros(0),
+            flags: flag::FIRST,
+            leaps: 0,
+        }
     }
 
     /// Marks the next frame as one before which items were lost, or encoders changed without events.
     pub fn mark_loss(&mut self) {
         self.flags |= flag::LOST;
+    }
+
+    /// Tells the time; see [`Transmitter::observe`](super::Transmitter::observe).
+    pub fn observe(&mut self, now: Tick) {
+        if self.flags & flag::FIRST == 0 {
+            self.go_to(now);
+        }
+    }
+
+    /// How often the time could not be known; see [`Transmitter::leaps`](super::Transmitter::leaps).
+    pub const fn leaps(&self) -> u32 {
+        self.leaps
+    }
+
+    #[inline]
+    fn go_to(&mut self, tick: Tick) {
+        if !self.time.is_certain(tick) {
+            self.leaps = self.leaps.saturating_add(1);
+            self.mark_loss();
+        }
+        self.time = self.time.nearest(tick);
     }
 
     /// Starts a frame at this tick, best that of its first event. A frame that is not
@@ -114,12 +146,17 @@ impl Framer {
         buffer: &'a mut [u8],
     ) -> Result<FrameWriter<'f, 'a>, LinkError> {
         let limit = buffer.len().checked_sub(CHECKSUM).ok_or(LinkError::Full)?;
-        let [n0, n1] = self.session.to_le_bytes();
-        let [s0, s1] = self.sequence.to_le_bytes();
-        let [t0, t1, t2, t3] = tick.micros().to_le_bytes();
+        if self.flags & flag::FIRST != 0 {
+            self.time = Time::from_micros(tick.micros().into());
+        } else {
+            self.go_to(tick);
+        }
+        let [n0, n1, n2, n3, n4, n5, _, _] = self.number.to_le_bytes();
+        let [t0, t1, t2, t3, t4, t5, _, _] = self.time.micros().to_le_bytes();
         let coding = self.coding;
         let [p0, p1] = coding.period.get().to_le_bytes();
-        let header = [MAGIC, 0, n0, n1, s0, s1, t0, t1, t2, t3, p0, p1, coding.byte(), 0];
+        let code = coding.byte();
+        let header = [MAGIC, 0, n0, n1, n2, n3, n4, n5, t0, t1, t2, t3, t4, t5, p0, p1, code, 0];
 
         let mut bytes = Cursor::new(buffer);
         bytes.set_limit(limit.min(HEADER + MAX_LENGTH));
@@ -131,7 +168,7 @@ impl Framer {
             bits,
             flags,
             tick,
-            kind: None,
+            run: None,
             keyframes: 0,
             events: 0,
             place: Place::new(coding, tick),
@@ -139,18 +176,22 @@ impl Framer {
     }
 }
 
-/// The bytes before the first keyframe: the number of keyframes, and their sample type.
+/// The bytes before the first keyframe or heartbeat: how many there are, and their sample type.
 const RUN_HEADER: usize = 2;
 
-/// A frame that is being written: keyframes, then events.
+/// A run of keyframes in this sample type, or of heartbeats, which have none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Run(Option<SampleKind>);
+
+/// A frame that is being written: keyframes or heartbeats, then events.
 #[derive(Debug)]
 pub struct FrameWriter<'f, 'a> {
     framer: &'f mut Framer,
     bits: BitWriter<'a>,
     flags: u8,
     tick: Tick,
-    /// The sample type of the keyframes; `None` before the first.
-    kind: Option<SampleKind>,
+    /// What the frame's run of keyframes or heartbeats is of; `None` before the first.
+    run: Option<Run>,
     keyframes: u8,
     events: u32,
     place: Place,
@@ -164,17 +205,36 @@ impl<'a> FrameWriter<'_, 'a> {
     /// unchanged.
     pub fn keyframe(&mut self, keyframe: Keyframe) -> Result<(), LinkError> {
         let Keyframe { tick, address, kind, bits } = keyframe;
-        if self.events > 0 || tick != self.tick || self.kind.is_some_and(|first| first != kind) {
+        self.entry(tick, address, Some(kind), bits)
+    }
+
+    /// Appends a [heartbeat](crate::Item::Heartbeat), at the frame's tick.
+    ///
+    /// # Errors
+    /// The frame is full, has another tick, or already has events or keyframes. It is unchanged.
+    pub fn heartbeat(&mut self, tick: Tick, address: u16) -> Result<(), LinkError> {
+        self.entry(tick, address, None, 0)
+    }
+
+    fn entry(
+        &mut self,
+        tick: Tick,
+        address: u16,
+        kind: Option<SampleKind>,
+        bits: u32,
+    ) -> Result<(), LinkError> {
+        let own = Run(kind);
+        if self.events > 0 || tick != self.tick || self.run.is_some_and(|first| first != own) {
             return Err(LinkError::KeyframeOrder);
         }
-        let run = if self.kind.is_none() { RUN_HEADER } else { 0 };
+        let run = if self.run.is_none() { RUN_HEADER } else { 0 };
         if self.keyframes == u8::MAX || run + keyframe_size(kind) > self.bits.room() {
             return Err(LinkError::Full);
         }
-        if self.kind.is_none() {
-            self.kind = Some(kind);
+        if self.run.is_none() {
+            self.run = Some(own);
             self.flags |= flag::KEYFRAMES;
-            self.bits.put_bytes(&[0, kind.to_byte()]);
+            self.bits.put_bytes(&[0, kind.map_or(HEARTBEATS, SampleKind::to_byte)]);
         }
         let [a0, a1] = address.to_le_bytes();
         let [b0, b1, b2, b3] = bits.to_le_bytes();
@@ -187,8 +247,8 @@ impl<'a> FrameWriter<'_, 'a> {
     /// Appends an event.
     ///
     /// # Errors
-    /// [`LinkError::Full`]: the event does not fit, or lies more than 2³⁰ µs from the one before. The frame is
-    /// unchanged.
+    /// [`LinkError::Full`]: the event does not fit, or lies more than 2²⁹ µs (8.9 minutes) from the frame's tick. The
+    /// frame is unchanged.
     pub fn event(&mut self, event: Event) -> Result<(), LinkError> {
         let mut word = Word::default();
         self.place.put(event, &mut word).ok_or(LinkError::Full)?;
@@ -237,7 +297,8 @@ impl<'a> FrameWriter<'_, 'a> {
         let checksum = checksum(bytes.as_slice());
         // There is room, which the limit kept free.
         let _ = bytes.put(&checksum.to_le_bytes());
-        self.framer.sequence = self.framer.sequence.wrapping_add(1);
+        self.framer.number = session::next(self.framer.number);
+        self.framer.time = self.framer.time.nearest(self.place.tick());
         self.framer.flags = 0;
         bytes.into_slice()
     }

@@ -1,0 +1,55 @@
+//! Why a receiver calls no value exact.
+
+use core::fmt;
+
+/// Why a channel of a [`Receiver`](super::Receiver) has no exact value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Withheld {
+    /// It waits for its next keyframe.
+    Keyframe,
+    /// It waits for this many more samples without a loss.
+    Samples(usize),
+    /// It waits for the next sample with a spike.
+    Spike,
+    /// The code has sub-timesteps, and no [heartbeat](crate::Item::Heartbeat) has come since the start or the last loss:
+    /// the sender must call [`keyframe_into`](crate::Bank::keyframe_into).
+    Heartbeat,
+    /// The code has sub-timesteps, whose length is unknown: see
+    /// [`with_slot_ticks`](super::Receiver::with_slot_ticks).
+    SlotTicks,
+    /// The sub-timesteps of a sample are longer than the link's period: one of the three numbers is not the sender's.
+    Slots {
+        /// How many sub-timesteps a sample has.
+        slots: u32,
+        /// The length of one, in µs.
+        slot_ticks: u32,
+        /// The link's period, in µs.
+        period: u32,
+    },
+    /// The code is never exact after a start or a loss: the error fades.
+    Always,
+}
+
+impl fmt::Display for Withheld {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Keyframe => write!(f, "no keyframe since the start or the last loss"),
+            Self::Samples(samples) => write!(f, "{samples} more samples without a loss are needed"),
+            Self::Spike => write!(f, "no spike in a whole sample since the start or the last loss"),
+            Self::Heartbeat => {
+                write!(
+                    f,
+                    "no heartbeat since the start or the last loss, which tells sub-timesteps apart"
+                )
+            }
+            Self::SlotTicks => write!(f, "the length of the sub-timesteps is not given"),
+            Self::Slots { slots, slot_ticks, period } => write!(
+                f,
+                "{slots} sub-timesteps of {slot_ticks} µs are longer than the link's period of {period} µs"
+            ),
+            Self::Always => write!(f, "the error of this code fades, and is never 0"),
+        }
+    }
+}
