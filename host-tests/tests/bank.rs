@@ -91,12 +91,12 @@ fn keyframes_and_resets_stand_between_the_events() {
     let queue = EventQueue::<16>::new(Overflow::Refuse);
     let mut bank = Bank::<_, 2>::new(&COUNTS).with_first_address(7);
     let [first, second, third] = [1, 2, 3].map(Tick::from);
-    bank.keyframe_into(first, &queue); // nothing yet
+    bank.keyframe_into(first, &queue); // no keyframe yet: a heartbeat
     bank.encode_into(first, [0, 50], &queue);
     bank.encode_into(second, [5, 50], &queue);
     bank.keyframe_into(second, &queue);
     bank.reset_into(third, &queue);
-    bank.keyframe_into(third, &queue); // nothing again
+    bank.keyframe_into(third, &queue); // a heartbeat again
     bank.encode_into(third, [9, 9], &queue);
     bank.encode_into(third, [9, 0], &queue);
     let mut consumer = queue.consumer().unwrap();
@@ -104,10 +104,12 @@ fn keyframes_and_resets_stand_between_the_events() {
     assert_eq!(
         items,
         [
+            Item::Heartbeat { tick: first, address: 7 },
             Item::Event(event(2, 7, Polarity::Up)),
             Item::Keyframe(Keyframe::new(second, 7, 1_i16)),
             Item::Keyframe(Keyframe::new(second, 8, 50_i16)),
             Item::Break(third),
+            Item::Heartbeat { tick: third, address: 7 },
             Item::Event(event(3, 8, Polarity::Down)),
         ]
     );
@@ -223,6 +225,8 @@ fn float() -> impl Strategy<Value = f32> {
 }
 
 proptest! {
+    #![proptest_config(crate::common::cases(256))]
+
     #[test]
     fn drawn_recordings(
         (channels, ticks, slot_ticks) in (1..40_usize).prop_flat_map(|length| {

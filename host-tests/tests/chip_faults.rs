@@ -47,7 +47,8 @@ fn at_rest(board: &TinyBoard) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(crate::common::cases(60))]
+
     #[test]
     fn a_chip_that_works_is_gated_without_harm(
         ratio in 2..64_u32,
@@ -249,7 +250,7 @@ fn no_clock_lost_or_doubled_before_or_in_the_start_is_overlooked() {
             assert!(board.pins().chip.synapses.iter().all(|&word| word == 0), "{fault:?} at {at}");
         }
     }
-    assert!(noticed > 2 * clocks - 100, "{noticed} of {}", 2 * clocks);
+    assert!(noticed > 2 * clocks - 140, "{noticed} of {}", 2 * clocks);
 }
 
 #[test]
@@ -299,7 +300,7 @@ fn no_clock_lost_or_doubled_in_odins_start_is_overlooked() {
             }
         }
     }
-    assert!(noticed > 2 * at.count() - 100, "{noticed}");
+    assert!(noticed > 2 * at.count() - 150, "{noticed}");
 }
 
 #[test]
@@ -345,27 +346,103 @@ fn odin_programmed_run_and_gated_with_a_fault_is_an_error_or_right() {
 }
 
 #[test]
-fn a_start_that_cannot_be_probed_is_noticed_at_the_first_word() {
-    let board = TinyBoard::new(8, 1);
-    let mut chip = tiny(&board);
-    let gated = chip.reset(&mut board.clone()).unwrap();
-    board.pins().chip.neurons.fill(neuron(2047, 1, 5)); // 254 leaks
-    let running = gated.run(&OPEN).unwrap();
-    let clocks = board.pins().spi_clocks;
-    running.gate(drop).unwrap();
-    assert_eq!(board.pins().chip.neurons[254], neuron(2047, 1, 5), "no time step came of it");
+fn a_start_is_verified_and_changes_nothing_where_all_neurons_leak() {
+    // Above rest, below it, at rest, and next to the threshold.
+    for (threshold, leak, potential) in [(2047, 1, 5), (9, 127, -1920_i32), (1, 3, 0), (60, 7, 59)]
+    {
+        let all = neuron(threshold, leak, potential as u32);
+        let start = |fault| {
+            let board = TinyBoard::new(8, 1);
+            board.pins().clock_faults.extend(fault);
+            let mut chip = tiny(&board);
+            let gated = chip.reset(&mut board.clone()).unwrap();
+            board.pins().chip.neurons.fill(all);
+            let result = gated.run(&OPEN).map(drop);
+            let pins = board.pins();
+            (result, pins.chip.neurons.iter().all(|is| *is == all), pins.spi_clocks)
+        };
+        let (result, is_whole, clocks) = start(None);
+        assert_eq!((result, is_whole), (Ok(()), true), "{threshold} {leak} {potential}");
+        // The gate stays shut.
+        let (result, ..) = start(Some((clocks - 1, ClockFault::Lost)));
+        assert_eq!(result, Err(ChipError::NotStarted));
+    }
+}
 
+#[test]
+fn a_start_that_no_neuron_can_show_is_refused_and_changes_nothing() {
     let board = TinyBoard::new(8, 1);
-    board.pins().clock_faults.push_back((clocks - 1, ClockFault::Lost)); // the gate stays shut
     let mut chip = tiny(&board);
     let gated = chip.reset(&mut board.clone()).unwrap();
-    board.pins().chip.neurons.fill(neuron(2047, 1, 5));
-    let mut running = gated.run(&OPEN).unwrap();
-    assert!(running.send(TinyOdinInput::Spike { pre: 1 }, drop).is_err());
+    let at_threshold = neuron(5, 0, 5);
+    board.pins().chip.neurons.fill(at_threshold);
+    assert_eq!(gated.run(&OPEN).map(drop), Err(ChipError::NoProbe));
+    assert!(board.pins().chip.neurons.iter().all(|neuron| *neuron == at_threshold));
+    let mut gated = chip.gated().unwrap();
+    gated.set_neuron(7, &TinyOdinNeuron::REST).unwrap();
+    assert!(gated.run(&OPEN).is_ok());
+}
+
+/// Accesses to memory that holds these words, with a lost and a doubled clock, in either order: the pairs whose first
+/// fault is at every `stride`-th clock.
+fn pairs_within_an_access(stride: usize) -> usize {
+    use ClockFault::{Doubled, Lost};
+    let access = |words: (u32, u32), is_neuron: bool, faults: &[(u64, ClockFault)]| {
+        let board = TinyBoard::new(4, 1);
+        board.pins().chip.neurons.fill(words.0.into());
+        board.pins().chip.synapses.fill(words.1);
+        let mut chip = tiny(&board);
+        let mut gated = chip.reset(&mut board.clone()).unwrap();
+        gated.check_step().unwrap();
+        let (mut neurons, mut synapses, start) = {
+            let pins = board.pins();
+            (pins.chip.neurons.clone(), pins.chip.synapses.clone(), pins.spi_clocks)
+        };
+        board.pins().clock_faults.extend(faults.iter().map(|&(at, fault)| (start + at, fault)));
+        let result = if is_neuron {
+            neurons[5] = neuron(1, 0, 0);
+            gated.set_neuron(5, &TinyOdinNeuron { threshold: 1, ..TinyOdinNeuron::REST })
+        } else {
+            let word = &mut synapses[3 << 5 | 1];
+            *word = *word & !(0xF << 20) | 6 << 20;
+            gated.set_synapse(3, 13, 6)
+        };
+        board.run(20);
+        let pins = board.pins();
+        let is_right = pins.chip.neurons == neurons && pins.chip.synapses == synapses;
+        assert!(result.is_err() || is_right, "{words:x?}, neuron {is_neuron}: {faults:?}");
+        pins.spi_clocks - start
+    };
+    let mut pairs = 0;
+    for words in [(0x8765_4321, 0), (0x1000, 0x8765_4321), (0x8000_0000, u32::MAX)] {
+        for is_neuron in [true, false] {
+            let clocks = access(words, is_neuron, &[]);
+            for first in (0..clocks).step_by(stride) {
+                for second in first + 1..clocks {
+                    access(words, is_neuron, &[(first, Lost), (second, Doubled)]);
+                    access(words, is_neuron, &[(first, Doubled), (second, Lost)]);
+                    pairs += 2;
+                }
+            }
+        }
+    }
+    pairs
+}
+
+#[test]
+fn a_lost_and_a_doubled_clock_within_one_access_are_an_error_or_right() {
+    assert!(pairs_within_an_access(77) > 10_000);
+}
+
+#[test]
+#[ignore = "minutes"]
+fn every_lost_and_doubled_clock_within_one_access_are_an_error_or_right() {
+    assert!(pairs_within_an_access(1) > 1_000_000);
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(crate::common::cases(400))]
+
     #[test]
     fn across_a_reset_no_word_is_taken_twice_uncounted(
         polls in 2..20_u32,

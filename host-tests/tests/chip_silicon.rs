@@ -295,6 +295,8 @@ fn expected(neuron: (i32, i32, i32), event: Option<i32>) -> (i32, bool) {
 }
 
 proptest! {
+    #![proptest_config(crate::common::cases(256))]
+
     #[test]
     fn a_neuron_saturates_at_12_bits_leaks_to_0_and_fires_at_its_threshold(
         threshold in 0..4096_i32,

@@ -115,6 +115,8 @@ fn weights_are_signed_in_tiny_odin_and_have_a_mapping_bit_in_odin() {
 }
 
 proptest! {
+    #![proptest_config(crate::common::cases(256))]
+
     #[test]
     fn neurons_come_back_from_their_bytes(
         tiny in (1..=2047_u16, 0..=127_u8, -2048..=2047_i16, any::<bool>()),

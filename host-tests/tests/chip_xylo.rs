@@ -11,6 +11,8 @@ use spikewire::{Bins, Event, Polarity, Tick};
 struct Chip {
     accesses: Vec<(char, u16, u32)>,
     busy: u32,
+    /// Whether the next step reads the second bank.
+    is_second: bool,
     fails_at: Option<usize>,
 }
 
@@ -35,6 +37,7 @@ impl Registers for Chip {
         let value = match address {
             0x152 => 0x8000_0005,
             0x153 => 0xF0 | is_done,
+            0x171 => 0x7FFE_FFFF | u32::from(self.is_second) << 16,
             0x15 => 0xFE_0F05 | is_done << 16,
             _ => panic!("{address:#x} is not read"),
         };
@@ -43,6 +46,8 @@ impl Registers for Chip {
 }
 
 proptest! {
+    #![proptest_config(crate::common::cases(256))]
+
     #[test]
     fn every_channel_is_a_nibble(counts: [u8; 16]) {
         let [low, high] = pack_counts(counts);
@@ -76,6 +81,27 @@ fn a_time_step_from_events_to_outputs() {
         ('r', 0x152, 0x8000_0005),
     ];
     assert_eq!(xylo.release().accesses, expected);
+}
+
+#[test]
+fn counts_go_to_the_bank_that_the_next_step_reads() {
+    for (is_second, first) in [(false, 0x149), (true, 0x14B)] {
+        let mut xylo = Xylo::new(Chip { is_second, ..Chip::default() }, XyloMap::AUDIO_3, 5);
+        xylo.set_next_input([2; 16]).unwrap();
+        let pointer = 0x7FFE_FFFF | u32::from(is_second) << 16;
+        let counts = [first, first + 1].map(|register| ('w', register, 0x2222_2222));
+        assert_eq!(xylo.release().accesses, [&[('r', 0x171, pointer)][..], &counts].concat());
+    }
+    // Where the public sources do not tell the bit, both banks have the counts.
+    let mut xylo = Xylo::new(Chip::default(), XyloMap::a2(0x40), 5);
+    assert_eq!(xylo.next_bank(), Ok(None));
+    xylo.set_next_input([3; 16]).unwrap();
+    let expected: Vec<_> = (0x11..=0x14).map(|register| ('w', register, 0x3333_3333)).collect();
+    assert_eq!(xylo.release().accesses, expected);
+
+    let mut xylo = Xylo::new(Chip { busy: 9, ..Chip::default() }, XyloMap::AUDIO_3, 1);
+    assert_eq!(xylo.step(), Err(ChipError::Unfinished));
+    assert_eq!(xylo.set_next_input([1; 16]), Err(ChipError::Unfinished));
 }
 
 #[test]

@@ -19,7 +19,7 @@ fn check_linear<S: Lined, const N: usize>([min, max]: [S; 2], x: &[S]) {
     }
 }
 
-/// Logarithmic slots, where the edges are no closer to a sample than the reference can tell.
+/// Logarithmic slots; without a scheme where the type is too coarse.
 fn check_log<S: Lined, const N: usize>([min, max]: [S; 2], ratio: f32, x: &[S]) {
     let thresholds = log_thresholds(min.line(), max.line(), N as u32, ratio);
     let Ok(scheme) = FirstSpike::<S, N>::try_logarithmic(min..=max, ratio) else { return };
@@ -54,6 +54,13 @@ fn whole_thresholds() {
     let slots = [1, 2, 10, 11, 100, 101, 1000, 1001].map(|x| scheme.encoder().encode(x));
     let slots = slots.map(|slot| slot.map(Slot::index));
     assert_eq!(slots, [None, Some(3), Some(3), Some(2), Some(2), Some(1), Some(1), Some(0)]);
+}
+
+/// A threshold 0.00011 below a whole number, beside which an error of 1e-13 would take the next one.
+#[test]
+fn thresholds_close_to_whole_numbers() {
+    let range = [12, 1_993_552_906].map(I32F0::from_bits);
+    check_log::<I32F0, 11>(range, 172.1448, &[I32F0::from_bits(781_810_686)]);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use spikewire::format::{
     Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, FormatError, eieio,
 };
-use spikewire::link::{Coding, Transmitter};
+use spikewire::link::{Coding, Session, Transmitter};
 use spikewire::out::{Batch, Formatted};
 use spikewire::{Event, FromEvents, FromItems, Item, Keyframe, Polarity, Tick};
 
@@ -253,8 +253,9 @@ fn a_log_may_begin_long_after_boot() {
     let late = event(BOOT_TO_LOG + 300, 0x0102, true);
 
     let mut from_boot = EventStream::encoder();
-    assert_eq!(from_boot.encode(late, &mut [0; 8]), Ok(5));
-    assert_eq!(from_boot.retimed(), 1, "it looks earlier than boot");
+    let written = usize::try_from((BOOT_TO_LOG + 300) / 254).unwrap() + 5;
+    assert_eq!(from_boot.encode(late, &mut vec![0; written]), Ok(written));
+    assert_eq!(from_boot.retimed(), 0);
 
     let mut from_start = EventStream::encoder_from(BOOT_TO_LOG.into());
     let mut file = [EventStream::HEADER.as_slice(), &[0; 6]].concat();
@@ -272,6 +273,46 @@ fn a_log_may_begin_long_after_boot() {
         decoder.set_tick(BOOT_TO_LOG.into());
         assert!(decoder.decode(&bytes[..length]).eq([late]));
         assert_eq!(encoder.retimed(), 0);
+    }
+}
+
+/// An event after a silence of more than half the ticks is later, and those after it are right.
+#[test]
+fn silence_is_no_way_back() {
+    const SILENCES: [u32; 4] = [(1 << 31) - 1, 1 << 31, 2_200_000_000, u32::MAX - (1 << 24)];
+    fn read(
+        mut encoder: impl EventFormat,
+        mut decoder: impl EventDecoder,
+        silence: u32,
+    ) -> [(u32, bool); 3] {
+        let start = 7_u32;
+        [start, start.wrapping_add(silence), start.wrapping_add(silence).wrapping_add(1_000)].map(
+            |tick| {
+                let mut bytes = vec![0; 9_000_000];
+                let length = encoder.encode(event(tick, 5, true), &mut bytes).unwrap();
+                let read = decoder.decode(&bytes[..length]).last().unwrap();
+                (encoder.retimed(), read.tick == Tick::from(tick))
+            },
+        )
+    }
+    for silence in SILENCES {
+        // A byte for every 254 µs: one silence stands for all.
+        if silence == 1 << 31 {
+            let mut stream = EventStream::decoder();
+            assert_eq!(stream.decode(&EventStream::HEADER).count(), 0);
+            assert_eq!(read(EventStream::encoder(), stream, silence), [(0, true); 3]);
+        }
+        assert_eq!(read(Evt2::encoder(), Evt2::decoder(), silence), [(0, true); 3], "{silence}");
+        // E1 has room for 268 s an event: each comes nearer by as much.
+        let camera = Edvs::new(EdvsTime::Delta);
+        let (mut encoder, mut decoder) = (camera.encoder(), camera.decoder());
+        let mut is_right = false;
+        for event in [event(0, 5, true)].into_iter().chain([event(silence, 5, true); 17]) {
+            let mut bytes = [0; 6];
+            let length = encoder.encode(event, &mut bytes).unwrap();
+            is_right = decoder.decode(&bytes[..length]).eq([event]);
+        }
+        assert!(is_right, "{silence}");
     }
 }
 
@@ -296,6 +337,8 @@ fn goes_on<B: Batch>(mut batch: B, items: &[Item]) {
 }
 
 proptest! {
+    #![proptest_config(crate::common::cases(256))]
+
     #[test]
     fn the_shortest_batch_always_holds_something(
         near in events(100_000, u16::MAX),
@@ -313,7 +356,7 @@ proptest! {
             let at = at.index(far.len() + 1);
             far.insert(at, Item::Keyframe(Keyframe::new(Tick::default(), address, value)));
         }
-        goes_on(Transmitter::new(Coding { period, address_bits, jitter_bits }, 0), &far);
+        goes_on(Transmitter::new(Coding { period, address_bits, jitter_bits }, Session::counted(0)), &far);
     }
 
     #[test]

@@ -12,7 +12,7 @@ use spikewire::frame::{
     DynamicFrameEncoder, FrameDecoder, FrameEncoder, FrameSize, Intensity, LogIntensity, PixelCode,
     PixelEvent, Refractory,
 };
-use spikewire::link::{Coding, MAX_FRAME, Reader, Transmitter};
+use spikewire::link::{Coding, MAX_FRAME, Reader, Session, Transmitter};
 use spikewire::{ConfigError, Event, FromItems, Item, Keyframe, Polarity, Put, Tick};
 
 /// Odd, so that fours of pixels and what is left of a row are both there.
@@ -361,7 +361,8 @@ fn through_a_link_to_a_picture() {
     let code = LogIntensity::<u16>::new(150, 170).with_most(5);
     let mut camera = FrameEncoder::<_, 35, 35>::new(code).with_first_address(FIRST);
     let mut picture = FrameDecoder::<_, 35, 35>::new(code).with_first_address(FIRST);
-    let mut link = Transmitter::new(Coding::for_channels(FIRST + 35 * 35, 10_000), 1);
+    let mut link =
+        Transmitter::new(Coding::for_channels(FIRST + 35 * 35, 10_000), Session::counted(1));
     let mut reader = Reader::<MAX_FRAME>::new();
     for index in 0..40_usize {
         let tick = Tick::from_micros(10_000 * index as u64);
@@ -526,4 +527,18 @@ fn the_firmware_prints_what_the_reference_makes() {
     let mut printed = String::new();
     camera::run(&mut printed).unwrap();
     assert_eq!(printed, expected);
+}
+
+/// A row beyond the height is counted, and leaves the frame's budget as it is.
+#[test]
+fn a_row_beyond_the_height_renews_no_budget() {
+    let mut camera = FrameEncoder::<_, 4, 2>::new(Intensity::new(10)).with_budget(3);
+    let mut sent = 0;
+    for (tick, sample) in [(1, 0), (2, 100)] {
+        sent = 0;
+        for y in [0, 7, 1] {
+            camera.encode_row(Tick::from(tick), y, &[sample; 4], |_| sent += 1);
+        }
+    }
+    assert_eq!((sent, camera.outside()), (3, 2));
 }

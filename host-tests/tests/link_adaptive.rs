@@ -3,7 +3,7 @@
 
 use crate::common::flight_channels;
 use proptest::prelude::*;
-use spikewire::link::{Coding, MAX_FRAME, Reader, Receiver, Transmitter};
+use spikewire::link::{Coding, MAX_FRAME, Reader, Receiver, Session, Transmitter};
 use spikewire::temporal::AdaptiveStepForward;
 use spikewire::{Bank, EventQueue, Overflow, Scheme, Tick};
 
@@ -23,7 +23,8 @@ fn fly(
     let mut bank = Bank::<_, CHANNELS>::new(&GYRO);
     let mut beside = [(); CHANNELS].map(|()| GYRO.decoder());
     let mut encoders = [(); CHANNELS].map(|()| GYRO.encoder());
-    let mut link = Transmitter::new(Coding::for_channels(CHANNELS as u16, PERIOD), 7);
+    let mut link =
+        Transmitter::new(Coding::for_channels(CHANNELS as u16, PERIOD), Session::counted(7));
     let mut reader = Reader::<MAX_FRAME>::new();
     let mut receiver = Receiver::<_, CHANNELS>::new(&GYRO);
     let [mut exact, mut all, mut is_missing] = [0, 0, 0];

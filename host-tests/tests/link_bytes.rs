@@ -2,7 +2,7 @@
 
 use host_tests::flight;
 use spikewire::format::{Edvs, EdvsTime, EventFormat, EventStream, Evt2};
-use spikewire::link::{Coding, MAX_FRAME, Transmitter};
+use spikewire::link::{Coding, MAX_FRAME, Session, Transmitter};
 use spikewire::temporal::StepForward;
 use spikewire::{Bank, Event, FromEvents};
 
@@ -19,7 +19,7 @@ fn spikes(gyro: f32, accel: f32) -> Vec<Event> {
 
 /// The bytes of all frames, where one is closed when the next event lies this far behind its first.
 fn link(events: &[Event], coding: Coding, delay: u32) -> usize {
-    let mut transmitter = Transmitter::new(coding, 0);
+    let mut transmitter = Transmitter::new(coding, Session::counted(0));
     let mut bytes = 0;
     for batch in events.chunk_by(|a, b| a.tick.micros() / delay == b.tick.micros() / delay) {
         let mut source = FromEvents(batch.iter().copied());

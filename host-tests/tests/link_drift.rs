@@ -2,7 +2,7 @@
 
 use rand_core::Rng;
 use rand_pcg::Pcg32;
-use spikewire::link::{Coding, MAX_FRAME, Reader, Receiver, Transmitter};
+use spikewire::link::{Coding, MAX_FRAME, Reader, Receiver, Session, Transmitter};
 use spikewire::temporal::{MovingWindow, TemporalContrast};
 use spikewire::{
     Calibration, Encoder, Event, FromItems, Item, Keyframe, Scheme, Spike, Start, Tick,
@@ -30,7 +30,7 @@ fn errors<P>(mut encoder: Encoder<'_, P>, signal: &[f32], keyframes: bool) -> Ve
 where
     P: Scheme<Sample = f32, Output = Spike>,
 {
-    let mut transmitter = Transmitter::new(Coding::for_channels(1, 10_000), 1);
+    let mut transmitter = Transmitter::new(Coding::for_channels(1, 10_000), Session::counted(1));
     let mut reader = Reader::<MAX_FRAME>::new();
     let mut receiver = Receiver::<_, 1, 0>::new(encoder.scheme());
     let mut squares = Vec::new();

@@ -3,7 +3,9 @@
 use core::num::NonZeroU16;
 
 use proptest::prelude::*;
-use spikewire::link::{Coding, FrameView, Framer, Gap, LinkError, MAX_FRAME, MIN_FRAME, Reader};
+use spikewire::link::{
+    Coding, FrameView, Framer, LinkError, MAX_FRAME, MIN_FRAME, Reader, Session,
+};
 use spikewire::{Event, Keyframe, Polarity, Sample, SampleKind, Tick};
 
 /// The checksum of the specification, bit by bit.
@@ -18,7 +20,9 @@ fn event(tick: u32, address: u16, is_up: bool) -> Event {
     Event { tick, address, polarity: if is_up { Polarity::Up } else { Polarity::Down } }
 }
 
-const SESSION: u16 = 0x1234;
+const SESSION: u32 = 0x1234;
+/// The number of its first frame: the upper 48 bits of a product of 64.
+const FIRST: u64 = 0x1234_u64.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 16;
 
 fn keyframe<S: Sample>(tick: u32, address: u16, value: S) -> Keyframe {
     Keyframe::new(tick.into(), address, value)
@@ -40,7 +44,7 @@ fn any_coding() -> impl Strategy<Value = Coding> {
 
 /// Frames of at most `room` bytes with these events, and how many events each has.
 fn frames(coding: Coding, events: &[Event], room: usize) -> Vec<(Vec<u8>, usize)> {
-    let mut sender = Framer::new(coding, SESSION);
+    let mut sender = Framer::new(coding, Session::counted(SESSION));
     let mut frames = Vec::new();
     let mut rest = events;
     while let Some(first) = rest.first() {
@@ -58,7 +62,7 @@ fn frames(coding: Coding, events: &[Event], room: usize) -> Vec<(Vec<u8>, usize)
 fn the_bytes_are_those_of_the_specification() {
     let coding = Coding { address_bits: 1, ..Coding::for_channels(6, 1_000) };
     assert_eq!(coding.jitter_bits, 0);
-    let mut framer = Framer::new(coding, SESSION);
+    let mut framer = Framer::new(coding, Session::counted(SESSION));
     let mut buffer = [0xEE; 64];
     let mut frame = framer.start(0x0102_0304.into(), &mut buffer).unwrap();
     frame.keyframe(keyframe(0x0102_0304, 2, -2_i16)).unwrap();
@@ -68,14 +72,16 @@ fn the_bytes_are_those_of_the_specification() {
     let bytes = frame.finish();
 
     // 1 step: code(0) = 1; jitter 1: zigzag 2, code(2, 0) = 011; address 1: code(1, 1) = 1 1.
-    let mut expected = vec![0xA5, 0x22, 0x34, 0x12, 0, 0, 4, 3, 2, 1, 0xE8, 3, 0x01, 9];
+    let mut expected = vec![0xA5, 0x36];
+    expected.extend(&FIRST.to_le_bytes()[..6]);
+    expected.extend([4, 3, 2, 1, 0, 0, 0xE8, 3, 0x01, 9]);
     expected.extend([1, 1, 2, 0, 0xFE, 0xFF]); // one, of i16: address, bits
     expected.extend([0b0101_0010, 0b1011_0111, 0b1100_0000]);
     expected.extend(crc32(&expected).to_le_bytes());
     assert_eq!(bytes, expected);
 
     let (view, _) = FrameView::new(bytes).unwrap();
-    assert_eq!((view.session(), view.sequence(), view.is_after_loss()), (SESSION, 0, false));
+    assert_eq!((view.number(), view.is_first(), view.is_after_loss()), (FIRST, true, false));
     let kind = SampleKind::Fixed16 { fraction: 0 };
     let tick = Tick::from(0x0102_0304);
     assert!(view.keyframes().eq([Keyframe { tick, address: 2, kind, bits: 0xFFFE }]));
@@ -84,7 +90,7 @@ fn the_bytes_are_those_of_the_specification() {
 
 #[test]
 fn every_error_says_what_is_wrong() {
-    let mut framer = Framer::new(Coding::for_channels(1, 1), SESSION);
+    let mut framer = Framer::new(Coding::for_channels(1, 1), Session::counted(SESSION));
     assert_eq!(framer.start(0.into(), &mut [0; MIN_FRAME - 1]).err(), Some(LinkError::Full));
     let mut buffer = [0; MIN_FRAME];
     let mut frame = framer.start(0.into(), &mut buffer).unwrap();
@@ -103,8 +109,8 @@ fn every_error_says_what_is_wrong() {
     assert_eq!(error(&|bytes| bytes.truncate(7)), truncated(7));
     assert_eq!(error(&|bytes| bytes.truncate(MIN_FRAME - 1)), truncated(MIN_FRAME - 1));
     assert_eq!(error(&|bytes| bytes[0] = 0x5A), LinkError::NotAFrame { found: 0x5A });
-    assert_eq!(error(&|bytes| bytes[1] = 0x11), LinkError::Version { found: 1 });
-    assert_eq!(error(&|bytes| bytes[10] = 0), LinkError::Header);
+    assert_eq!(error(&|bytes| bytes[1] = 0x21), LinkError::Version { found: 2 });
+    assert_eq!(error(&|bytes| bytes[14] = 0), LinkError::Header);
     assert!(matches!(error(&|bytes| bytes[6] = 1), LinkError::Checksum { .. }));
 
     let mut buffer = [0; 64];
@@ -125,6 +131,8 @@ fn every_error_says_what_is_wrong() {
 }
 
 proptest! {
+    #![proptest_config(crate::common::cases(256))]
+
     #[test]
     fn any_events_come_back_in_any_coding(
         events in prop::collection::vec(any_event(), 0..200),
@@ -146,7 +154,7 @@ proptest! {
 
     #[test]
     fn keyframes_come_back_bit_for_bit(values in prop::collection::vec((any::<u16>(), any::<f32>()), 0..42)) {
-        let mut framer = Framer::new(Coding::for_channels(1, 1), SESSION);
+        let mut framer = Framer::new(Coding::for_channels(1, 1), Session::counted(SESSION));
         let mut buffer = [0; MAX_FRAME];
         let mut frame = framer.start(7.into(), &mut buffer).unwrap();
         for &(address, value) in &values {
@@ -210,7 +218,7 @@ proptest! {
         let mut numbers = Vec::new();
         let mut gaps = 0;
         while let Some(received) = reader.next_frame(&mut input) {
-            let number = received.frame.sequence();
+            let number = (received.frame.number() - FIRST) as u16;
             prop_assert!(received.frame.events().eq(
                 FrameView::new(&frames[usize::from(number)].0).unwrap().0.events()));
             gaps += received.gap.map_or(0, |gap| gap.lost_frames);
@@ -219,8 +227,8 @@ proptest! {
         let expected: Vec<u16> = (0..frames.len() as u16)
             .filter(|&number| is_whole || usize::from(number) != damaged).collect();
         prop_assert_eq!(numbers, expected);
-        prop_assert_eq!(gaps, u16::from(!is_whole && damaged > 0));
-        prop_assert_eq!(reader.lost_frames(), u32::from(gaps));
+        prop_assert_eq!(gaps, u32::from(!is_whole && damaged > 0));
+        prop_assert_eq!(reader.lost_frames(), gaps);
     }
 
     #[test]
@@ -238,9 +246,9 @@ proptest! {
     fn a_checked_frame_of_random_bytes_never_panics(
         flags in 0_u8..16,
         body in prop::collection::vec(any::<u8>(), 0..=255),
-        header in prop::collection::vec(any::<u8>(), 11),
+        header in prop::collection::vec(any::<u8>(), 15),
     ) {
-        let mut bytes = vec![0xA5, 0x20 | flags];
+        let mut bytes = vec![0xA5, 0x30 | flags];
         bytes.extend(&header);
         bytes.push(body.len() as u8);
         bytes.extend(&body);
@@ -249,26 +257,31 @@ proptest! {
             prop_assert_eq!(length, bytes.len());
             view.events().for_each(drop);
             view.keyframes().for_each(drop);
+            view.heartbeats().for_each(drop);
         }
     }
 }
 
 /// The frames of a session with an event each.
 fn session(session: u16, count: u32) -> Vec<Vec<u8>> {
+    frames_of(Session::counted(session.into()), session, count)
+}
+
+fn frames_of(session: Session, address: u16, count: u32) -> Vec<Vec<u8>> {
     let mut framer = Framer::new(Coding::for_channels(6, 1_000), session);
     let frame = |number: u32| {
         let mut buffer = [0; 64];
         let mut frame = framer.start((number * 1_000).into(), &mut buffer).unwrap();
-        frame.event(event(number * 1_000, session, true)).unwrap();
+        frame.event(event(number * 1_000, address, true)).unwrap();
         frame.finish().to_vec()
     };
     (0..count).map(frame).collect()
 }
 
-/// What a reader makes of frames: session, sequence, frames lost before it, and whether it is a start.
+/// What a reader makes of frames: session and place in it, frames lost before it, and whether it is a start.
 fn read<'a>(
     frames: impl IntoIterator<Item = &'a Vec<u8>>,
-) -> (Vec<(u16, u16, u16, bool)>, Reader<MAX_FRAME>) {
+) -> (Vec<(u16, u32, u32, bool)>, Reader<MAX_FRAME>) {
     let mut reader = Reader::<MAX_FRAME>::new();
     let stream: Vec<u8> = frames.into_iter().flatten().copied().collect();
     let mut input = &stream[..];
@@ -277,7 +290,8 @@ fn read<'a>(
         let lost = received.gap.map_or(0, |gap| gap.lost_frames);
         let (frame, is_start) = (received.frame, received.is_start);
         assert_eq!(received.is_after_break(), is_start || lost > 0);
-        read.push((frame.session(), frame.sequence(), lost, is_start));
+        let session = frame.events().next().unwrap().address;
+        read.push((session, frame.tick().micros() / 1_000, lost, is_start));
     }
     (read, reader)
 }
@@ -287,9 +301,10 @@ fn a_start_in_the_middle_and_a_new_session_are_starts() {
     let (first, second) = (session(1, 5), session(2, 3));
     let stream: Vec<u8> = first.concat();
     let mut reader = Reader::<MAX_FRAME>::new();
-    let mut input = &stream[35..];
+    let mut input = &stream[first[0].len() + 7..];
     let received = reader.next_frame(&mut input).unwrap();
-    assert_eq!((received.gap, received.is_start, received.frame.sequence()), (None, true, 2));
+    assert_eq!((received.gap, received.is_start), (None, true));
+    assert_eq!((received.frame.tick().micros(), received.frame.is_first()), (2_000, false));
 
     let (read, reader) = read(first.iter().chain(&second[1..]));
     assert_eq!(read[4..], [(1, 4, 0, false), (2, 1, 0, true), (2, 2, 0, false)]);
@@ -304,15 +319,67 @@ fn a_reboot_shows_whatever_is_lost() {
     assert_eq!(read[3..], [(2, 3, 0, true), (2, 4, 0, false), (2, 5, 0, false)]);
 }
 
+/// The next frame by its number alone, of 16 bits of which 65 536 lost frames leave none.
+#[test]
+fn an_outage_of_65536_frames_is_a_gap() {
+    let mut framer = Framer::new(Coding::for_channels(1, 1), Session::counted(SESSION));
+    let mut reader = Reader::<MIN_FRAME>::new();
+    for number in 0..200_000_u32 {
+        let mut buffer = [0; MIN_FRAME];
+        let mut bytes = framer.start(number.into(), &mut buffer).unwrap().finish();
+        if number < 5 || number == 5 + 65_536 || number > 5 + 2 * 65_536 {
+            let received = reader.next_frame(&mut bytes).unwrap();
+            let lost = match number {
+                65_541 | 131_078 => Some(65_536),
+                _ => None,
+            };
+            assert_eq!(received.gap.map(|gap| gap.lost_frames), lost, "{number}");
+        }
+    }
+}
+
+/// A session whose number comes again, as that of a bit that toggles, is none; those that are counted lie far apart.
+#[test]
+fn sessions_do_not_meet() {
+    let first = |starts| {
+        let frame = frames_of(Session::counted(starts), 0, 1).remove(0);
+        FrameView::new(&frame).unwrap().0.number()
+    };
+    let starts: Vec<u64> = (0..65_536).map(first).collect();
+    let mut sorted = starts.clone();
+    sorted.sort_unstable();
+    let around = (1 << 48) - sorted[65_535] + sorted[0];
+    let nearest = sorted.windows(2).map(|pair| pair[1] - pair[0]).min().unwrap().min(around);
+    assert!(nearest > 1_900_000_000, "{nearest}");
+}
+
+/// The first frame of a session says so, and is never taken for a late one.
+#[test]
+fn a_first_frame_is_a_start_even_if_the_session_was_there_before() {
+    let (three, five) = (session(3, 40), session(5, 40));
+    let (told, reader) = read(three[..35].iter().chain(&five[..2]).chain(&three));
+    assert_eq!(told.len(), 35 + 2 + 40);
+    assert_eq!(told[37], (3, 0, 0, true));
+    assert_eq!(reader.late(), 0);
+}
+
 #[test]
 fn frames_sent_twice_or_late_are_delivered_once() {
     let frames = session(1, 600);
-    let order = [0, 0, 1, 3, 2, 2, 3, 4, 4, 1, 300, 200, 45, 44];
+    let order = [0, 0, 1, 3, 2, 2, 3, 4, 4, 1, 300, 200, 45, 44, 43];
     let (read, reader) = read(order.map(|number| &frames[number]));
-    let expected = [(0, 0), (1, 0), (3, 1), (4, 0), (300, 295), (44, 65_279)];
-    let told: Vec<_> = read.iter().map(|&(_, sequence, lost, _)| (sequence, lost)).collect();
-    assert_eq!(told, expected, "one of more than 256 back counts as a long gap");
-    assert_eq!((reader.repeated(), reader.late()), (2 + 1, 4 + 1));
+    let told: Vec<_> =
+        read.iter().map(|&(_, place, lost, is_start)| (place, lost, is_start)).collect();
+    let expected = [
+        (0, 0, true),
+        (1, 0, false),
+        (3, 1, false),
+        (4, 0, false),
+        (300, 295, false),
+        (44, 0, true),
+    ];
+    assert_eq!(told, expected, "one of more than 256 back is another start");
+    assert_eq!((reader.repeated(), reader.late()), (2 + 1, 4 + 2));
 }
 
 #[test]
@@ -337,19 +404,28 @@ fn what_was_on_its_way_before_a_reboot_is_late() {
     assert_eq!(reader.late(), 0);
 }
 
+/// The time goes on where ticks wrap, told by items or by the clock alone; a step that is not known is a loss.
 #[test]
-fn the_sequence_wraps() {
-    let mut framer = Framer::new(Coding::for_channels(1, 1), SESSION);
-    let mut reader = Reader::<MIN_FRAME>::new();
-    for number in 0..=70_000_u32 {
-        let mut buffer = [0; MIN_FRAME];
-        let mut bytes = framer.start(0.into(), &mut buffer).unwrap().finish();
-        let is_lost = (65_530..65_540).contains(&number);
-        if !is_lost {
-            let received = reader.next_frame(&mut bytes).unwrap();
-            let gap = (number == 65_540).then_some(Gap { lost_frames: 10 });
-            assert_eq!(received.gap, gap, "{number}");
+fn the_time_of_a_sender_goes_on() {
+    const MOST: u64 = 1 << 30;
+    let mut framer = Framer::new(Coding::for_channels(1, 1), Session::random(9));
+    let mut send = |told: &[u64], at: u64| {
+        for &now in told {
+            framer.observe(Tick::from_micros(now));
         }
-    }
-    assert_eq!(reader.lost_frames(), 10);
+        let mut buffer = [0; MIN_FRAME];
+        let bytes = framer.start(Tick::from_micros(at), &mut buffer).unwrap().finish().to_vec();
+        let frame = FrameView::new(&bytes).unwrap().0;
+        (frame.micros(), frame.is_after_loss(), framer.leaps())
+    };
+    let start = 4_294_000_000;
+    assert_eq!(send(&[], start), (start, false, 0));
+    assert_eq!(send(&[], start + MOST), (start + MOST, false, 0));
+    let mut now = start + MOST;
+    let told: Vec<u64> = (1..=50).map(|step| now + step * MOST).collect();
+    now = told[49] - 300; // an item may be older than the time
+    assert_eq!(send(&told, now), (now, false, 0));
+    assert_eq!(send(&[], now - 1_000), (now - 1_000, false, 0), "and out of order");
+    assert_eq!(send(&[], now + MOST), (now + MOST, true, 1));
+    assert_eq!(send(&[], now), (now, false, 1));
 }

@@ -68,6 +68,8 @@ fn neurons_that_fire_by_chance_come_back() {
 }
 
 proptest! {
+    #![proptest_config(crate::common::cases(256))]
+
     #[test]
     fn every_code_comes_back(samples in samples(), start: u32) {
         agrees(&STEP, &samples, start, 0);

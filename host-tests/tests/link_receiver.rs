@@ -3,12 +3,14 @@
 
 use rand_core::Rng;
 use rand_pcg::Pcg32;
-use spikewire::link::{Coding, MAX_FRAME, Reader, Receiver, Transmitter};
+use spikewire::link::{Coding, MAX_FRAME, Reader, Receiver, Session, Transmitter, Withheld};
 use spikewire::population::{Position, Slots};
 use spikewire::rate::{BsaToolbox, Hough, Taps, ThresholdHough};
 use spikewire::temporal::StepForward;
+use spikewire::timing::FirstSpike;
 use spikewire::{
-    Bank, EventQueue, Keyframe, Output, Overflow, Recovery, Sample, Source, Start, Tick,
+    Bank, EventQueue, Keyframe, Output, Overflow, Recovery, Sample, Source, Spike, Start, Tick,
+    dynamic,
 };
 
 const CHANNELS: usize = 2;
@@ -42,11 +44,12 @@ where
     let queue = EventQueue::<256>::new(Overflow::Refuse);
     let mut consumer = queue.consumer().unwrap();
     let mut bank = Bank::<_, CHANNELS>::new(scheme).with_slot_ticks(way.slot_ticks);
-    let mut transmitter = Transmitter::new(Coding::for_channels(8, PERIOD as u16), 1);
+    let mut transmitter =
+        Transmitter::new(Coding::for_channels(8, PERIOD as u16), Session::counted(1));
     let mut reader = Reader::<MAX_FRAME>::new();
     let mut receiver = Receiver::<_, CHANNELS, EVENTS>::new(scheme);
     if way.slot_ticks > 0 {
-        receiver = receiver.with_slot_ticks(way.slot_ticks, start);
+        receiver = receiver.with_slot_ticks(way.slot_ticks);
     }
     let mut encoders = [(); CHANNELS].map(|()| scheme.encoder());
     let mut decoders = [(); CHANNELS].map(|()| scheme.decoder());
@@ -58,6 +61,9 @@ where
         let tick = (start + sample * PERIOD + away).shifted(-way.jitter.cast_signed());
         let samples = std::array::from_fn(|channel| signal(sample, channel));
         bank.encode_into(tick, samples, &queue);
+        if way.slot_ticks > 0 && sample.is_multiple_of(30) {
+            bank.keyframe_into(tick, &queue);
+        }
         let mut truth = [P::Sample::default(); CHANNELS];
         for channel in 0..CHANNELS {
             if let Some(code) = encoders[channel].encode(samples[channel]).code() {
@@ -149,7 +155,7 @@ fn a_sample_is_over_when_time_has_passed() {
     static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
     let queue = EventQueue::<8>::new(Overflow::Refuse);
     let mut bank = Bank::<_, 1>::new(&POSITION);
-    let mut transmitter = Transmitter::new(Coding::for_channels(9, 1_000), 1);
+    let mut transmitter = Transmitter::new(Coding::for_channels(9, 1_000), Session::counted(1));
     let mut receiver = Receiver::<_, 1>::new(&POSITION);
     let mut reader = Reader::<MAX_FRAME>::new();
     for (tick, sample) in [(1_000, 0.5), (2_000, 1.0)] {
@@ -183,7 +189,7 @@ fn what_does_not_belong_is_counted() {
     ];
     let mut receiver = Receiver::<_, 2, 0>::new(&STEP).with_first_address(10);
     let mut reader = Reader::<MAX_FRAME>::new();
-    let mut transmitter = Transmitter::new(Coding::for_channels(2, 1), 1);
+    let mut transmitter = Transmitter::new(Coding::for_channels(2, 1), Session::counted(1));
     let mut source = FromItems(items.into_iter());
     let mut buffer = [0; 64];
     while let Some(mut bytes) = transmitter.next_frame(&mut source, &mut buffer).unwrap() {
@@ -193,4 +199,163 @@ fn what_does_not_belong_is_counted() {
     assert_eq!((receiver.exact(0), receiver.exact(1)), (Some(2.0), None));
     assert_eq!((receiver.outside(), receiver.misfits()), (2, 1));
     assert_eq!(f32::from_bits32(2.0_f32.to_bits32()), 2.0);
+}
+
+/// A link of one bank, whose samples are frames of their own.
+struct Line<'a, P: Start, const N: usize> {
+    bank: Bank<&'a P, N>,
+    transmitter: Transmitter,
+    reader: Reader<MAX_FRAME>,
+    now: Tick,
+}
+
+impl<'a, P: Start, const N: usize> Line<'a, P, N> {
+    fn new(scheme: &'a P, slot_ticks: u32) -> Self {
+        Self {
+            bank: Bank::new(scheme).with_slot_ticks(slot_ticks),
+            transmitter: Transmitter::new(
+                Coding::for_channels(8, PERIOD as u16),
+                Session::counted(1),
+            ),
+            reader: Reader::new(),
+            now: Tick::from(77),
+        }
+    }
+
+    /// Sends a sample, with a heartbeat behind it, unless its frames are lost.
+    fn send(
+        &mut self,
+        sample: P::Sample,
+        is_lost: bool,
+        receiver: &mut Receiver<&'a P, N>,
+    ) -> Option<P::Sample> {
+        self.now += PERIOD;
+        let queue = EventQueue::<64>::new(Overflow::Refuse);
+        self.bank.encode_into(self.now, [sample; N], &queue);
+        self.bank.keyframe_into(self.now, &queue);
+        let (mut consumer, mut buffer) = (queue.consumer().unwrap(), [0; MAX_FRAME]);
+        while let Some(mut bytes) = self.transmitter.next_frame(&mut consumer, &mut buffer).unwrap()
+        {
+            while !is_lost && let Some(received) = self.reader.next_frame(&mut bytes) {
+                receiver.apply(&received, |_, _, _| ());
+            }
+        }
+        receiver.exact(0)
+    }
+}
+
+/// Even points have no value for silence: after a loss a sample that is not finite says nothing.
+#[test]
+fn silence_is_exact_only_where_it_has_a_value() {
+    static LINEAR: FirstSpike<f32, 10> = FirstSpike::linear(0.0..=9.0);
+    static ABOVE: FirstSpike<f32, 10> = FirstSpike::logarithmic(0.0..=9.0, 100.0);
+    let mut linear = Line::<_, 1>::new(&LINEAR, 100);
+    let mut receiver = Receiver::new(&LINEAR).with_slot_ticks(100);
+    linear.send(1.0, false, &mut receiver);
+    assert_eq!(linear.send(1.0, false, &mut receiver), Some(1.0));
+    linear.send(6.0, true, &mut receiver);
+    assert_eq!(linear.send(f32::NAN, false, &mut receiver), None);
+    assert_eq!(linear.send(f32::NAN, false, &mut receiver), None);
+    assert_eq!(receiver.withheld(0), Some(Withheld::Spike));
+    assert_eq!(linear.send(3.0, false, &mut receiver), Some(3.0));
+    assert_eq!(linear.send(f32::NAN, false, &mut receiver), Some(3.0), "it holds");
+
+    let mut above = Line::<_, 1>::new(&ABOVE, 100);
+    let mut receiver = Receiver::new(&ABOVE).with_slot_ticks(100);
+    above.send(0.0, true, &mut receiver);
+    above.send(0.0, false, &mut receiver);
+    let silence = spikewire::Scheme::decoder(&ABOVE).decode(None);
+    assert_eq!(above.send(0.0, false, &mut receiver), Some(silence));
+}
+
+/// Values that sub-timesteps tell are never exact where these are not known, and it is told why.
+#[test]
+fn without_its_sub_timesteps_a_code_has_no_value() {
+    static SLOTS: Slots<f32, 8, 50> = Slots::new(0.0..=2.0, 1.5);
+    let fly = |slot_ticks: u32| {
+        let mut line = Line::<_, 1>::new(&SLOTS, 20);
+        let mut receiver = Receiver::new(&SLOTS).with_slot_ticks(slot_ticks);
+        assert_eq!(line.send(0.7, true, &mut receiver), None);
+        for sample in [0.5, 1.0, 1.5, 0.2, 0.4] {
+            line.send(sample, false, &mut receiver);
+        }
+        (receiver.exact(0).is_some(), receiver.withheld(0))
+    };
+    assert_eq!(fly(20), (true, None));
+    assert_eq!(fly(0), (false, Some(Withheld::SlotTicks)));
+    let too_long = Withheld::Slots { slots: 50, slot_ticks: 21, period: PERIOD };
+    assert_eq!(fly(21), (false, Some(too_long)));
+    assert_eq!(
+        Receiver::<_, 1>::new(&SLOTS).with_slot_ticks(20).withheld(0),
+        Some(Withheld::Heartbeat)
+    );
+}
+
+/// A frame of events of channel 1 at these samples.
+fn spikes_at(transmitter: &mut Transmitter, micros: u64) -> Vec<u8> {
+    let event = spikewire::Event {
+        tick: Tick::from_micros(micros),
+        address: 1,
+        polarity: spikewire::Polarity::Up,
+    };
+    let mut source = spikewire::FromEvents([event].into_iter());
+    transmitter.next_frame(&mut source, &mut [0; 64]).unwrap().unwrap().to_vec()
+}
+
+/// Each channel's filter runs as empty as it is long, whichever is the first.
+#[test]
+fn filters_of_different_lengths_run_empty_each() {
+    let filter = |taps: &[f32]| {
+        dynamic::Hough::<f32>::try_new(dynamic::Taps::try_new(taps).unwrap()).unwrap()
+    };
+    let (short, long) = (filter(&[0.2; 3]), filter(&[0.1; 15]));
+    let mut receiver = Receiver::<_, 2>::per_channel([&short, &long]);
+    let mut reader = Reader::<MAX_FRAME>::new();
+    let mut transmitter = Transmitter::new(Coding::for_channels(2, 1_000), Session::counted(1));
+    let mut beside = spikewire::Scheme::decoder(&long);
+    let mut truth = Vec::new();
+    let mut exact = 0;
+    for sample in 0..200_usize {
+        let has_spike = sample % 8 == 0;
+        if has_spike {
+            let frame = spikes_at(&mut transmitter, sample as u64 * 1_000);
+            receiver.apply(&reader.next_frame(&mut &frame[..]).unwrap(), |_, _, _| ());
+            if let Some(value) = receiver.exact(1) {
+                assert_eq!(value, truth[sample - 1], "{sample}");
+                exact += 1;
+            }
+        }
+        truth.push(beside.decode(if has_spike { Spike::Up } else { Spike::None }));
+    }
+    assert!(exact > 15);
+}
+
+/// A filter is empty after any silence, of which the sender was told; and samples go on from there.
+#[test]
+fn a_rate_code_knows_how_long_it_was_silent() {
+    static HOUGH: Hough<f32, 7> = Hough::new(Taps::triangular(0.5));
+    const MINUTE: u64 = 60_000_000;
+    for minutes in [1, 35, 36, 40, 71, 72, 90, 143, 1_000, 100_000] {
+        let mut receiver = Receiver::<_, 2>::new(&HOUGH);
+        let mut reader = Reader::<MAX_FRAME>::new();
+        let mut transmitter = Transmitter::new(Coding::for_channels(2, 1_000), Session::counted(1));
+        let mut beside = spikewire::Scheme::decoder(&HOUGH);
+        let silent = minutes * MINUTE + (1 << 32) * (minutes / 90);
+        let times = (0..20).chain(silent / 1_000..silent / 1_000 + 20).map(|time| time * 1_000);
+        let mut before = (0, 0.0);
+        for time in times {
+            for now in (before.0..time).step_by(1 << 29) {
+                transmitter.observe(Tick::from_micros(now));
+            }
+            for _ in 0..(time.saturating_sub(before.0) / 1_000).saturating_sub(1).min(7) {
+                before.1 = beside.decode(Spike::None);
+            }
+            let frame = spikes_at(&mut transmitter, time);
+            receiver.apply(&reader.next_frame(&mut &frame[..]).unwrap(), |_, _, _| ());
+            if time > 10_000 {
+                assert_eq!(receiver.exact(1), Some(before.1), "{minutes} minutes, {time}");
+            }
+            before = (time, beside.decode(Spike::Up));
+        }
+    }
 }

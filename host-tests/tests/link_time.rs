@@ -10,6 +10,8 @@ fn up(tick: u32, address: u16) -> Event {
 }
 
 proptest! {
+    #![proptest_config(crate::common::cases(256))]
+
     #[test]
     fn a_tick_widens_to_its_time(now in any::<u64>(), away in -(1_i64 << 31)..1 << 31) {
         if let Some(time) = now.checked_add_signed(away) {

@@ -26,6 +26,7 @@ mod formats_peers;
 mod formats_pixels;
 mod frames;
 mod gaussian;
+mod heapless;
 mod histogram;
 mod hough;
 mod interleaving;
@@ -35,6 +36,7 @@ mod link_bytes;
 mod link_drift;
 mod link_frames;
 mod link_loss;
+mod link_outage;
 mod link_readout;
 mod link_receiver;
 mod link_time;
@@ -70,6 +72,13 @@ mod signal;
 #[allow(clippy::pedantic, dead_code, unreachable_pub)]
 #[path = "../../examples/camera/src/lib.rs"]
 mod camera;
+
+/// A check on another machine draws what it draws on this one.
+#[test]
+fn seeds_are_fixed() {
+    let seed = common::cases(1).rng_seed;
+    assert!(matches!(seed, proptest::test_runner::RngSeed::Fixed(_)), "run tests through cargo");
+}
 
 /// A file that is not in the list above would be no test.
 #[test]

@@ -280,7 +280,7 @@ fn companded_fields_are_regions() {
             let scheme = Gaussian::<f32, M>::try_companded(-4.0..=9.0, companding).unwrap();
             let expected = companded_centres(-4.0, 9.0, M, companding.into());
             for (&ours, exact) in scheme.centres().iter().zip(expected) {
-                assert!((f64::from(ours) - exact).abs() <= 1e-6, "{ours} for {exact}");
+                assert_eq!(ours, f32::nearest(exact));
             }
             let scheme = Gaussian::<I32F0, M>::try_companded(
                 I32F0::from_bits(-2_000_000_000)..=I32F0::from_bits(2_000_000_000),
@@ -289,7 +289,7 @@ fn companded_fields_are_regions() {
             let scheme = scheme.unwrap();
             let expected = companded_centres(-2e9, 2e9, M, companding.into());
             for (&ours, exact) in scheme.centres().iter().zip(expected) {
-                assert!((ours.to_num::<f64>() - exact).abs() <= 0.501, "{ours} for {exact}");
+                assert_eq!(ours, I32F0::nearest(exact));
             }
         }
     }
@@ -298,6 +298,28 @@ fn companded_fields_are_regions() {
     }
     sizes!(3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35
         36 37 38 39 40 41 42 43 44 45 46 47 48 49 50 51 52 53 54 55 56 57 58 59 60 61 62 63 64);
+}
+
+/// Companded centres in every type are exact centres, rounded once.
+fn companded_as_drawn<S: Wire + Drawn + PartialOrd>() {
+    let companding = prop_oneof![
+        crate::common::between(0.01, 999.0),
+        (0..=30_u8).prop_map(f32::from).prop_filter("above 0", |&companding| companding > 0.0),
+        (1e-30_f32..1e-3),
+        crate::common::positive_float(),
+    ];
+    proptest!(cases(32), |(a in S::value(), b in S::value(), companding in companding)| {
+        let [min, max] = if a < b { [a, b] } else { [b, a] };
+        if let Ok(scheme) = Gaussian::<S, 7>::try_companded(min..=max, companding) {
+            let exact = companded_centres(min.to_f64(), max.to_f64(), 7, companding.into());
+            assert_eq!(scheme.centres().map(S::to_f64), *exact.into_iter().map(|x| S::nearest(x).to_f64()).collect::<Vec<_>>());
+        }
+    });
+}
+
+#[test]
+fn companded_centres_are_exact() {
+    in_every_type!(companded_as_drawn);
 }
 
 /// From a flight to its quantiles to a code.

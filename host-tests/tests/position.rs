@@ -97,6 +97,24 @@ fn linear_centres() {
 }
 
 /// What is built at compile time is what is built in flight.
+/// Gaussian-spaced centres in 32 bits are exact centres, rounded once.
+#[test]
+fn gaussian_spaced_centres_are_exact() {
+    fn check<const M: usize>(min: I32F0, max: I32F0) {
+        let Ok(scheme) = Position::<I32F0, M>::try_gaussian_spaced(min..=max) else { return };
+        let exact = gaussian_centres(min.to_num(), max.to_num(), M);
+        for (&ours, exact) in scheme.centres().iter().zip(exact) {
+            assert_eq!(ours, I32F0::nearest(exact));
+        }
+    }
+    proptest!(cases(64), |(a in I32F0::value(), b in I32F0::value())| {
+        let (min, max) = if a < b { (a, b) } else { (b, a) };
+        check::<3>(min, max);
+        check::<20>(min, max);
+        check::<101>(min, max);
+    });
+}
+
 #[test]
 fn constants() {
     static LINEAR: Position<f32, 20> = Position::linear(-9.0..=9.1);

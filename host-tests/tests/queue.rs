@@ -82,6 +82,8 @@ impl Model {
 }
 
 proptest! {
+    #![proptest_config(crate::common::cases(256))]
+
     #[test]
     fn every_policy_does_what_it_says(
         overflow in prop::sample::select(&POLICIES[..]),

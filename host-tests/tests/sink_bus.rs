@@ -14,7 +14,7 @@ use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Level};
 use embedded_hal_mock::eh1::spi::{Mock, Transaction};
 use embedded_io::WriteReady;
 use spikewire::format::{Edvs, EdvsEncoder, EdvsTime};
-use spikewire::link::{Coding, MAX_FRAME, Reader, Transmitter};
+use spikewire::link::{Coding, MAX_FRAME, Reader, Session, Transmitter};
 use spikewire::out::{AsyncSpiSink, Formatted, SerialSink, SinkError, SpiSink};
 use spikewire::{Event, EventQueue, FromEvents, Overflow, Polarity, Tick};
 
@@ -144,7 +144,7 @@ fn a_queue_goes_out_as_frames() {
         queue.push(event).unwrap();
     }
     let mut port = [0; 64];
-    let transmitter = Transmitter::new(Coding::for_channels(32, 1_000), 0);
+    let transmitter = Transmitter::new(Coding::for_channels(32, 1_000), Session::counted(0));
     let mut sink = SerialSink::<_, _, MAX_FRAME>::new(&mut port[..], transmitter);
     let mut consumer = queue.consumer().unwrap();
     let sent = sink.send(&mut consumer).unwrap();

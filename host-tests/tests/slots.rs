@@ -4,7 +4,7 @@ use crate::common::fields::Fields;
 use crate::common::{Drawn, cases, flight_channels, float, hostile_recordings, in_every_type};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{assert_same_values, decode, encode, finite, reals};
-use host_tests::reference::slots_of_levels;
+use host_tests::reference::{Precise, slots_of_levels};
 use proptest::prelude::*;
 use spikewire::Scheme;
 use spikewire::population::{Position, SlotSpikes, Slots};
@@ -189,6 +189,31 @@ fn distances_about_32_bits_long() {
             .collect();
         let (min, max) = (I32F0::from_bits(min), I32F0::from_bits(min.saturating_add(range)));
         check_all(min, max, beta, &x);
+    });
+}
+
+/// Each neuron's farthest sample of each level, and the one beyond, in 32 bits.
+#[test]
+fn the_ends_of_levels() {
+    let end = || proptest::num::i32::ANY;
+    proptest!(cases(32), |(a in end(), b in end(), beta in crate::common::between(0.3, 4.0))| {
+        let [min, max] = if a < b { [a, b] } else { [b, a] };
+        let ends = [min, max].map(I32F0::from_bits);
+        let Ok(scheme) = Slots::<I32F0, 5, 10>::try_new(ends[0]..=ends[1], beta) else { return Ok(()) };
+        let third = (Precise::from(max) - f64::from(min)) / 3.0;
+        for (neuron, level) in (0..5_u16).flat_map(|neuron| (1..=10_u16).map(move |k| (neuron, k))) {
+            let centre = third.clone() * (f64::from(neuron) - 0.5) + f64::from(min);
+            let response = Precise::from(10.0) / (f64::from(level) - 0.5);
+            let radius = (response.ln() * 2.0).sqrt() * third.clone() / f64::from(beta);
+            let last = (centre + radius).to_f64().floor();
+            for (x, is_within) in [(last, true), (last + 1.0, false)] {
+                if x == f64::from(x as i32) {
+                    let spikes = listed(scheme.encoder().encode(I32F0::from_bits(x as i32)));
+                    let is_fired = spikes[usize::from(neuron)].is_some_and(|slot| 10 - slot >= level);
+                    assert_eq!(is_fired, is_within, "{neuron} {level} {x}");
+                }
+            }
+        }
     });
 }
 

@@ -4,15 +4,15 @@ use crate::common::cases;
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, check_rate, check_rate_decoder, reals};
 use host_tests::reference::{
-    ben_multiplicative, ben_subtractive, ben_toolbox, gaussian, hann, hough, scaled_to_peak,
-    scaled_to_sum, threshold_hough, triangular,
+    Precise, ben_multiplicative, ben_subtractive, ben_toolbox, doubles, gaussian, hann, hough,
+    scaled_to_peak, scaled_to_sum, threshold_hough, triangular,
 };
 use proptest::prelude::*;
 use spikewire::Scheme;
 use spikewire::rate::{Bsa, BsaToolbox, Hough, Scale, Shape, Taps, ThresholdHough};
 
 /// The reference's shape of `F` taps.
-fn shape<const F: usize>(shape: Shape) -> Vec<f64> {
+fn shape<const F: usize>(shape: Shape) -> Vec<Precise> {
     match shape {
         Shape::Triangular => triangular(F),
         Shape::Hann => hann(F),
@@ -20,30 +20,17 @@ fn shape<const F: usize>(shape: Shape) -> Vec<f64> {
     }
 }
 
-/// Asserts the tap that the reference gives, rounded once from `f64`.
-///
-/// The crate takes sines and exponentials by series of its own, which also run at compile time. Over
-/// all lengths to 101 either is off by some last places of `f64` (crate, reference; by an evaluation
-/// to 50 digits: Hann on average 2.4 and 3.1, at most 65 and 213; Gaussian 1.1 and 0.7, at most 7
-/// and 6). Where the true tap lies halfway between two samples, as `sin²(π/3) = 3/4` can, that much
-/// decides which one it becomes. So it is allowed for before rounding, and nothing after.
-fn assert_rounded<S: Wire>(ours: S, expected: f64) {
-    const LAST_PLACES: f64 = 5e-14;
-    let allowed = [1.0, 1.0 - LAST_PLACES, 1.0 + LAST_PLACES].map(|off| S::nearest(expected * off));
-    assert!(allowed.contains(&ours), "{ours:?} for {allowed:?}");
-}
-
-/// All shapes and scales against the reference, which are computed in `f64` and rounded once.
+/// All shapes and scales against the reference, rounded once.
 ///
 /// A shape of an even number of taps has no tap at its top, and its peak scales the top.
 fn check<S: Wire, const F: usize>(scale: S) {
     for name in [Shape::Triangular, Shape::Hann, Shape::Gaussian { alpha: 2.5 }] {
         let heights = shape::<F>(name);
-        let to_sum = scaled_to_sum(&heights, scale.to_f64());
-        let to_peak: Vec<_> = heights.iter().map(|tap| tap * scale.to_f64()).collect();
+        let to_sum = doubles(&scaled_to_sum(&heights, scale.to_f64()));
+        let top = |height: &Precise| (height.clone() * scale.to_f64()).to_f64();
+        let to_peak: Vec<_> = heights.iter().map(top).collect();
         if F % 2 == 1 {
-            let by_largest = scaled_to_peak(&heights, scale.to_f64());
-            assert!(to_peak.iter().zip(by_largest).all(|(a, b)| (a - b).abs() <= 1e-13 * b.abs()));
+            assert_eq!(to_peak, doubles(&scaled_to_peak(&heights, scale.to_f64())));
         }
         for (scale, expected) in [(Scale::Sum(scale), to_sum), (Scale::Peak(scale), to_peak)] {
             let Ok(taps) = Taps::<S, F>::try_shaped(name, scale) else {
@@ -53,7 +40,7 @@ fn check<S: Wire, const F: usize>(scale: S) {
                 continue;
             };
             for (&ours, expected) in taps.as_array().iter().zip(expected) {
-                assert_rounded(ours, expected);
+                assert_eq!(ours, S::nearest(expected));
             }
         }
     }
@@ -102,10 +89,10 @@ fn drawn_shapes() {
         check_all(I16F16::from_num(scale));
     });
     proptest!(cases(64), |(alpha in (1..90_u8).prop_map(|tenths| f64::from(tenths) / 10.0))| {
-        let expected = scaled_to_sum(&gaussian(15, alpha), 1.0);
+        let expected = doubles(&scaled_to_sum(&gaussian(15, alpha), 1.0));
         let taps = Taps::<f32, 15>::try_shaped(Shape::Gaussian { alpha }, Scale::Sum(1.0)).unwrap();
         for (&ours, expected) in taps.as_array().iter().zip(expected) {
-            assert_rounded(ours, expected);
+            assert_eq!(ours, expected as f32);
         }
     });
 }

@@ -33,7 +33,8 @@ pub trait Wire: Sample {
 
 /// The nearest integer, halves upwards.
 fn whole(value: f64) -> f64 {
-    (value + 0.5).floor()
+    let below = value.floor();
+    if value - below >= 0.5 { below + 1.0 } else { below }
 }
 
 impl Wire for f32 {

@@ -7,6 +7,10 @@
 //! distribution at `(2i+1)/(2m)`, and `mu[i] = middle + (max-min)/2 * z[i]/z[m-1]`; the first lies on
 //! the minimum, the last on the maximum.
 
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
+
+use super::Precise;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// `m` even centres.
@@ -23,18 +27,50 @@ pub fn receptive_field_width(min: f64, max: f64, m: usize, beta: f64) -> f64 {
     (max - min) / (beta * (m as f64 - 2.0))
 }
 
-/// `m` centres spaced as the quantiles of a normal distribution.
+/// `m` centres spaced as the quantiles of a normal distribution, exactly.
 ///
 /// # Panics
 /// If `m` is less than 2.
 pub fn gaussian_centres(min: f64, max: f64, m: usize) -> Vec<f64> {
     assert!(m >= 2, "Gaussian-spaced centres are at least two");
-    let z = |i: usize| {
-        let probability = (2.0 * i as f64 + 1.0) / (2.0 * m as f64);
-        Normal::standard().inverse_cdf(probability)
+    let half = (Precise::from(max) - min) / 2.0;
+    let offset = |part: &Precise| (half.clone() * part.clone() + (half.clone() + min)).to_f64();
+    spacings(m).iter().map(offset).collect()
+}
+
+/// `z[i]/z[m-1]`.
+fn spacings(m: usize) -> Arc<[Precise]> {
+    static KNOWN: Mutex<BTreeMap<usize, Arc<[Precise]>>> = Mutex::new(BTreeMap::new());
+    let mut known = KNOWN.lock().expect("no thread panicked");
+    let spaced = || {
+        let upper: Vec<_> = (m / 2..m).map(|i| upper_quantile(2 * i + 1, 2 * m)).collect();
+        let outermost = &upper[upper.len() - 1];
+        let part = |i: usize| upper[i.max(m - 1 - i) - m / 2].clone() / outermost.clone();
+        (0..m).map(|i| if 2 * i < m - 1 { -part(i) } else { part(i) }).collect()
     };
-    let middle = f64::midpoint(min, max);
-    (0..m).map(|i| middle + (max - min) / 2.0 * z(i) / z(m - 1)).collect()
+    known.entry(m).or_insert_with(spaced).clone()
+}
+
+/// The inverse of the normal distribution at a half or more, refined by Newton's steps from that of `statrs`.
+fn upper_quantile(part: usize, parts: usize) -> Precise {
+    let probability = Precise::from(part as f64) / parts as f64;
+    let mut z = Precise::from(Normal::standard().inverse_cdf(part as f64 / parts as f64));
+    if 2 * part == parts {
+        return Precise::from(0.0);
+    }
+    let turn = Precise::from(-1.0).acos() * 2.0;
+    for _ in 0..3 {
+        // The part between 0 and z is the density at z times `z + z^3/3 + z^5/(3*5) + ...`.
+        let square = z.clone() * z.clone();
+        let density = (square.clone() / -2.0).exp() / turn.sqrt();
+        let (mut term, mut sum) = (z.clone(), z.clone());
+        for n in 1..120 {
+            term = term * square.clone() / f64::from(2 * n + 1);
+            sum = sum + term.clone();
+        }
+        z = z + (probability.clone() - 0.5 - density.clone() * sum) / density;
+    }
+    z
 }
 
 #[cfg(test)]

@@ -23,6 +23,7 @@ mod line;
 mod moving_window;
 mod nonlinear;
 mod position;
+mod precise;
 mod probabilistic;
 mod rank_order;
 mod rate_decoder;
@@ -39,7 +40,7 @@ pub use ben::{ben_multiplicative, ben_subtractive, ben_toolbox};
 pub use calibration::{Calibration, Moments, calibrate};
 pub use centres::{even_centres, gaussian_centres, receptive_field_width};
 pub use contrast::temporal_contrast;
-pub use filter::{gaussian, hann, scaled_to_peak, scaled_to_sum, triangular};
+pub use filter::{doubles, gaussian, hann, scaled_to_peak, scaled_to_sum, triangular};
 pub use finite::{Finite, split_finite};
 pub use frames::{
     FrameLaw, FrameOutcome, frame_events, frame_intensity, frame_interpolated, frame_log,
@@ -54,6 +55,7 @@ pub use nonlinear::{
     integer_weighted_mean, level_radii, spacing_widths, strongest,
 };
 pub use position::{nearest, nearest_even};
+pub use precise::Precise;
 pub use probabilistic::{probabilistic, probabilistic_from_levels};
 pub use rank_order::{nearest_first, rank_order_value};
 pub use rate_decoder::rate_decode;

@@ -9,6 +9,8 @@
 //! Slots: `rho_k = √(2 ln(n/(k-½)))`; the level is how many `k` in `1..=n` have `|x-mu| s <= rho_k`: in `f32` with `s =
 //! 1/sigma` and `rho_k` rounded down; in integers `s = 2³²/sigma`, rounded half up, and `⌊2³² rho_k⌋`.
 
+use super::Precise;
+
 /// `2β sigma` of each field.
 pub fn spacing_widths(centres: &[f64]) -> Vec<f64> {
     let last = centres.len() - 1;
@@ -21,11 +23,13 @@ pub fn spacing_widths(centres: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// The edges between the winners' regions.
+/// The edges between the winners' regions, exactly.
 pub fn field_edges(centres: &[f64], widths: &[f64]) -> Vec<f64> {
     (0..centres.len() - 1)
         .map(|i| {
-            (widths[i + 1] * centres[i] + widths[i] * centres[i + 1]) / (widths[i] + widths[i + 1])
+            let [low, high] = [widths[i], widths[i + 1]].map(Precise::from);
+            let sum = low.clone() + high.clone();
+            ((high * centres[i] + low * centres[i + 1]) / sum).to_f64()
         })
         .collect()
 }
@@ -46,13 +50,15 @@ pub fn strongest(x: f64, edges: &[f64]) -> usize {
     edges.iter().filter(|&&edge| x > edge).count()
 }
 
-/// Companded centres, not rounded.
+/// Companded centres, exactly.
 pub fn companded_centres(min: f64, max: f64, m: usize, companding: f64) -> Vec<f64> {
     (0..m)
         .map(|i| {
-            let t = 2.0 * i as f64 / (m - 1) as f64 - 1.0;
-            let offset = (max - min) / 2.0 * ((1.0 + companding).powf(t.abs()) - 1.0) / companding;
-            f64::midpoint(min, max) + if t < 0.0 { -offset } else { offset }
+            let t = Precise::from(i.abs_diff(m - 1 - i) as f64) / (m - 1) as f64;
+            let power = (Precise::from(1.0) + companding).pow(&t);
+            let offset = (Precise::from(max) - min) * (power - 1.0) / companding;
+            let offset = if 2 * i < m - 1 { -offset } else { offset };
+            ((offset + min + max) / 2.0).to_f64()
         })
         .collect()
 }

@@ -4,6 +4,7 @@
 
 use core::ops::RangeInclusive;
 
+use super::Precise;
 use super::line::{Exact, Line, edge, even, points};
 
 /// The spikes of a sample.
@@ -51,11 +52,12 @@ pub fn first_spike_linear<T: Line>(x: T, min: T, max: T, n: u32) -> Cell<T, impl
     Cell { range: min..=max, number, own: cell as usize, ends, slot }
 }
 
-/// The thresholds of the logarithmic time to first spike: `min + R D^(c/n - 1)`.
+/// The thresholds of the logarithmic time to first spike, exactly: `min + R D^(c/n - 1)`.
 pub fn log_thresholds<T: Line>(min: T, max: T, n: u32, dynamic_range: f32) -> Vec<f64> {
     let (Exact(low), Exact(high)) = (min.into(), max.into());
-    let part = |c: u32| f64::from(dynamic_range).powf(f64::from(c) / f64::from(n) - 1.0);
-    (0..n).map(|c| low + (high - low) * part(c)).collect()
+    let width = Precise::from(high) - low;
+    let fall = |c: u32| Precise::from(dynamic_range).pow(&(Precise::from(n - c) / n));
+    (0..n).map(|c| (width.clone() / fall(c) + low).to_f64()).collect()
 }
 
 /// Time to first spike above thresholds: slot `n - cell`, and cell 0 is silent.

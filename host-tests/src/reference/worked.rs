@@ -1,7 +1,7 @@
 //! The printed check values of the schemes, worked in both number types.
 
 use super::{
-    Real, ben_subtractive, hann, levels_exp, rate_decode, rounded, scaled_to_sum,
+    Real, ben_subtractive, doubles, hann, levels_exp, rate_decode, rounded, scaled_to_sum,
     slots_by_distance, slots_exp,
 };
 
@@ -12,7 +12,7 @@ fn ben_on_a_sine<T: Real>(threshold: f64) -> (f64, usize) {
         .map(|i| 0.5 + 0.4 * (std::f64::consts::TAU * 0.01 * f64::from(i)).sin())
         .collect();
     let x: Vec<T> = rounded(&signal);
-    let taps: Vec<T> = rounded(&scaled_to_sum(&hann(24), 1.0));
+    let taps: Vec<T> = rounded(&doubles(&scaled_to_sum(&hann(24), 1.0)));
     let spikes = ben_subtractive(&x, &taps, T::ZERO, T::rounded(threshold), true);
     let decoded = rate_decode(&spikes, &taps, T::ZERO);
     let squares: f64 = (30..970)

@@ -9,6 +9,7 @@ use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::flight;
 use proptest::collection::vec;
 use proptest::prelude::*;
+use proptest::test_runner::FileFailurePersistence;
 
 /// Runs a check in every sample type.
 macro_rules! in_every_type {
@@ -23,10 +24,18 @@ macro_rules! in_every_type {
 }
 pub(crate) use in_every_type;
 
-/// How many cases a property is tried with: times `CASES_TIMES`, which `cargo verify sweeps` sets.
+/// How a property is tried: with this many cases, times `CASES_TIMES`. They are drawn from the seed that
+/// `.cargo/config.toml` fixes, after those that failed before, whose seeds are in `<test>.proptest-regressions`.
+/// `cargo verify sweeps` draws more, from a fresh seed.
 pub(crate) fn cases(count: u32) -> ProptestConfig {
     let times = std::env::var("CASES_TIMES").map_or(1, |times| times.parse().unwrap());
-    ProptestConfig { cases: count * times, failure_persistence: None, ..ProptestConfig::default() }
+    let failed = FileFailurePersistence::WithSource("proptest-regressions");
+    ProptestConfig {
+        cases: count.saturating_mul(times),
+        max_global_rejects: 1024_u32.saturating_mul(times),
+        failure_persistence: Some(Box::new(failed)),
+        ..ProptestConfig::default()
+    }
 }
 
 /// The floats that break things.

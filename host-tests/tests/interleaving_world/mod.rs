@@ -5,7 +5,7 @@ mod chooser;
 use std::cell::{Cell, RefCell};
 
 pub(crate) use chooser::Chooser;
-use spikewire::link::{Coding, MAX_FRAME, Reader, Receiver, Transmitter};
+use spikewire::link::{Coding, MAX_FRAME, Reader, Receiver, Session, Transmitter};
 use spikewire::temporal::StepForward;
 use spikewire::{Bank, Item, Keyframe, Overflow, Put, QueueView, Source, Taken, Tick};
 
@@ -195,6 +195,7 @@ impl<'a> World<'a> {
                 held.set(value);
             }
             Item::Break(_) => held.set(None),
+            Item::Heartbeat { .. } => {}
         }
         let held = self.channels.each_ref().map(|channel| channel.held.get());
         self.history.borrow_mut().push((item.tick(), held));
@@ -308,9 +309,9 @@ impl<'a> World<'a> {
     }
 
     fn transmitter(&self) -> Transmitter {
-        let boots = self.boots.get() as u16;
+        let boots = self.boots.get() as u32;
         let session = if self.case.fault == Some(Fault::SessionsAlike) { 0 } else { boots };
-        Transmitter::new(Coding::for_channels(2, 1_000), session)
+        Transmitter::new(Coding::for_channels(2, 1_000), Session::counted(session))
     }
 
     /// Main: sends all there is.

@@ -1,0 +1,526 @@
+//! A link that is down for a second or for years, senders that rest and that start again, clocks with jitter, receivers
+//! that join late: what a receiver calls exact is what a decoder beside the encoder holds, bit for bit.
+//!
+//! The truth is kept by time in 64 bits and by decoders that get every code. It knows nothing of frames.
+
+use std::collections::VecDeque;
+
+use catalogue::{Channel, Flight, State};
+use host_tests::flight;
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
+use spikewire::link::{Coding, MAX_FRAME, Reader, Receiver, Session, Transmitter};
+use spikewire::{
+    Bank, Calibration, Code, ConfigError, FromItems, Item, Output, Put, Recovery, Sample, Scheme,
+    Tick,
+};
+
+const CHANNELS: usize = 2;
+/// The most events of a sample, over both channels.
+const EVENTS: usize = 256;
+/// How many samples back a value may be.
+const REMEMBERED: usize = 12_000;
+const YEAR: u64 = 365 * 24 * 3_600 * 1_000_000;
+
+/// What an interrupt puts into a queue.
+#[derive(Default)]
+struct Items(Vec<Item>);
+
+impl Put for &mut Items {
+    fn put(&mut self, item: Item) {
+        self.0.push(item);
+    }
+}
+
+/// What was claimed, and how much of it was wrong.
+#[derive(Clone, Copy, Debug, Default)]
+struct Claims {
+    right: u64,
+    wrong: u64,
+    /// Channels without an exact value where one was due, of how many.
+    withheld: u64,
+    due: u64,
+}
+
+/// A sample of the truth.
+struct Truth<S> {
+    time: u64,
+    values: [S; CHANNELS],
+}
+
+/// Both ends of a link, and the truth beside them.
+struct World<'a, P: Scheme> {
+    scheme: &'a P,
+    start: Vec<u8>,
+    samples: &'a [P::Sample],
+    random: Pcg32,
+    period: u32,
+    slot_ticks: u32,
+    /// The most that a tick is early or late.
+    jitter: u32,
+    /// Samples from one keyframe or heartbeat to the next.
+    beat: u32,
+    session: u32,
+    is_counted: bool,
+    // The sender.
+    now: u64,
+    /// When the last sample was taken.
+    taken: u64,
+    at: usize,
+    bank: Bank<&'a P, CHANNELS>,
+    transmitter: Transmitter,
+    items: Items,
+    // The truth.
+    encoders: [P::EncoderState; CHANNELS],
+    decoders: [P::DecoderState; CHANNELS],
+    truth: VecDeque<Truth<P::Sample>>,
+    /// Samples since a channel had a spike.
+    silent: [u32; CHANNELS],
+    /// The first sample that main has not sent.
+    unsent: Option<u64>,
+    /// The time of the sample that a channel's next claim can be about at the earliest: ticks alone come again.
+    claimed: [u64; CHANNELS],
+    // The receiver.
+    reader: Reader<MAX_FRAME>,
+    receiver: Receiver<&'a P, CHANNELS, EVENTS>,
+    values: Vec<(u16, Tick, P::Sample)>,
+    claims: Claims,
+}
+
+fn again<T: State>(bytes: &[u8]) -> T {
+    postcard::from_bytes(bytes).unwrap()
+}
+
+impl<'a, P> World<'a, P>
+where
+    P: Scheme<EncoderState: State, DecoderState: State>,
+{
+    fn new(scheme: &'a P, start: &P::EncoderState, samples: &'a [P::Sample], seed: u64) -> Self {
+        let mut random = Pcg32::seed_from_u64(seed);
+        let start = postcard::to_allocvec(start).unwrap();
+        let period = [1_000, 2_500, 4_999][random.next_u32() as usize % 3];
+        let has_slots = scheme.slots() > 1 && P::RECOVERY != Recovery::Keyframe;
+        let slot_ticks = if has_slots { period / scheme.slots() as u32 } else { 0 };
+        let least = if has_slots { slot_ticks } else { period };
+        let jitter = [0, (least - 1) / 4][random.next_u32() as usize % 2];
+        let is_counted = random.next_u32().is_multiple_of(2);
+        let session = random.next_u32();
+        let mut world = Self {
+            scheme,
+            samples,
+            period,
+            slot_ticks,
+            jitter,
+            beat: 5 + random.next_u32() % 60,
+            session,
+            is_counted,
+            now: 0,
+            taken: 0,
+            at: random.next_u32() as usize % samples.len(),
+            bank: bank(scheme, &start, slot_ticks),
+            transmitter: transmitter(period, Session::counted(session)),
+            items: Items::default(),
+            encoders: [(); CHANNELS].map(|()| again(&start)),
+            decoders: [(); CHANNELS].map(|()| scheme.decoder_state()),
+            truth: VecDeque::new(),
+            silent: [0; CHANNELS],
+            unsent: None,
+            claimed: [0; CHANNELS],
+            reader: Reader::new(),
+            receiver: Receiver::new(scheme).with_slot_ticks(slot_ticks),
+            values: Vec::new(),
+            claims: Claims::default(),
+            start,
+            random,
+        };
+        world.restart();
+        world
+    }
+
+    fn draw(&mut self, below: u64) -> u64 {
+        self.random.next_u64() % below
+    }
+
+    /// A span of time: near a wrap of ticks, or anything up to years; in whole periods.
+    fn span(&mut self) -> u64 {
+        let wraps = [1 << 30, 1 << 31, 3 << 31, 1 << 32];
+        let wrap = wraps[self.draw(4) as usize];
+        let near = match self.draw(6) {
+            0 => self.draw(2_000_000),
+            1 => wrap,
+            2 => wrap * (1 + self.draw(40)),
+            3 => self.draw(1 << 33),
+            4 => 1 << 32,
+            _ => self.draw(YEAR),
+        };
+        let around = self.draw(9) * u64::from(self.period);
+        let near = (near + around).saturating_sub(4 * u64::from(self.period));
+        near - near % u64::from(self.period)
+    }
+
+    /// The sender starts again, after any time of which nobody knows.
+    fn restart(&mut self) {
+        self.session = self.session.wrapping_add(1);
+        let session = if self.is_counted {
+            Session::counted(self.session)
+        } else {
+            Session::random(self.random.next_u64())
+        };
+        self.transmitter = transmitter(self.period, session);
+        self.now = match self.draw(4) {
+            0 => self.draw(100_000),
+            1 => (self.draw(50) << 31) + self.draw(4_000_000),
+            _ => self.draw(10 * YEAR),
+        } + u64::from(self.period);
+        self.items.0.clear();
+        self.bank = bank(self.scheme, &self.start, self.slot_ticks);
+        self.encoders = [(); CHANNELS].map(|()| again(&self.start));
+        self.decoders = [(); CHANNELS].map(|()| self.scheme.decoder_state());
+        self.truth.clear();
+        self.silent = [0; CHANNELS];
+        self.unsent = None;
+        self.claimed = [0; CHANNELS];
+    }
+
+    /// Takes a sample, in the sender's interrupt.
+    fn sample(&mut self, samples: [P::Sample; CHANNELS]) {
+        self.now += u64::from(self.period);
+        let early = u64::from(self.jitter);
+        self.taken = self.now + self.draw(2 * early + 1) - early;
+        self.bank.encode_into(Tick::from_micros(self.taken), samples, &mut self.items);
+        let mut values =
+            self.truth.back().map_or([P::Sample::default(); CHANNELS], |last| last.values);
+        for channel in 0..CHANNELS {
+            let state = &mut self.encoders[channel];
+            if let Some(code) = self.scheme.encode(state, samples[channel]).code() {
+                let has_spike = code.firings().next().is_some();
+                self.silent[channel] = if has_spike { 0 } else { self.silent[channel] + 1 };
+                values[channel] = self.scheme.decode(&mut self.decoders[channel], code);
+            }
+        }
+        if self.truth.len() == REMEMBERED {
+            self.truth.pop_front();
+        }
+        self.truth.push_back(Truth { time: self.taken, values });
+        self.unsent.get_or_insert(self.taken);
+    }
+
+    fn next_samples(&mut self) -> [P::Sample; CHANNELS] {
+        self.at = (self.at + 1) % self.samples.len();
+        [self.samples[self.at], self.samples[self.samples.len() - 1 - self.at]]
+    }
+
+    /// A keyframe of each channel that has one, or a heartbeat, after the last sample.
+    fn beat(&mut self) {
+        self.bank.keyframe_into(Tick::from_micros(self.taken), &mut self.items);
+        let Some(last) = self.truth.back_mut() else { return };
+        for channel in 0..CHANNELS {
+            if let Some(value) = self.scheme.keyframe(&self.encoders[channel]) {
+                self.scheme.resync(&mut self.decoders[channel], value);
+                last.values[channel] = value;
+            }
+        }
+    }
+
+    /// Main sends all there is; a frame is lost with this chance.
+    fn send(&mut self, loss: f64) {
+        let items = std::mem::take(&mut self.items.0);
+        let mut source = FromItems(items.into_iter());
+        let mut buffer = [0; MAX_FRAME];
+        let mut is_last_here = false;
+        let unsent = self.unsent.take().unwrap_or(self.taken);
+        while let Some(mut bytes) = self.transmitter.next_frame(&mut source, &mut buffer).unwrap() {
+            is_last_here = f64::from(self.random.next_u32()) >= loss * f64::from(u32::MAX);
+            if !is_last_here {
+                continue;
+            }
+            while let Some(received) = self.reader.next_frame(&mut bytes) {
+                let exact = |receiver: &Receiver<_, CHANNELS, EVENTS>| {
+                    [0, 1].map(|channel| receiver.exact(channel))
+                };
+                let before = if received.is_after_break() {
+                    self.claimed = [unsent; CHANNELS];
+                    [None; CHANNELS]
+                } else {
+                    exact(&self.receiver)
+                };
+                let values = &mut self.values;
+                values.clear();
+                let on_value = |channel, tick, value| values.push((channel, tick, value));
+                self.receiver.apply(&received, on_value);
+                let after = exact(&self.receiver);
+                if !matches!(P::RECOVERY, Recovery::Keyframe) {
+                    self.check_samples(before, after);
+                }
+            }
+        }
+        if is_last_here && matches!(P::RECOVERY, Recovery::Keyframe) {
+            let Some(truth) = self.truth.back() else { return };
+            for channel in 0..CHANNELS {
+                if let Some(value) = self.receiver.exact(channel as u16) {
+                    self.claims.add(value, truth.values[channel]);
+                }
+            }
+        }
+    }
+
+    /// Compares the values of samples that the last frame brought: the last of a channel, and all of them where the
+    /// channel was exact throughout.
+    fn check_samples(
+        &mut self,
+        before: [Option<P::Sample>; CHANNELS],
+        after: [Option<P::Sample>; CHANNELS],
+    ) {
+        let are_all_told = matches!(P::RECOVERY, Recovery::Samples(_) | Recovery::Spike);
+        // Slots lie on a grid, which 2³² µs shift by less than half a period: its ticks are nearer to their samples.
+        let near = if self.slot_ticks > 0 { self.slot_ticks } else { self.period / 2 };
+        for channel in 0..CHANNELS {
+            let Some(value) = after[channel] else { continue };
+            let was_exact = before[channel].is_some();
+            let own: Vec<_> =
+                self.values.iter().filter(|told| usize::from(told.0) == channel).collect();
+            let first = if was_exact && are_all_told { 0 } else { own.len().saturating_sub(1) };
+            if let Some(last) = own.last() {
+                assert_eq!(last.2.to_bits32(), value.to_bits32());
+            }
+            for &&(_, tick, told) in &own[first..] {
+                let from = self.truth.partition_point(|truth| truth.time < self.claimed[channel]);
+                let truth = self.truth.range(from..).find(|truth| {
+                    let away = tick.since(Tick::from_micros(truth.time)).unsigned_abs();
+                    away <= near
+                });
+                if let Some(truth) = truth {
+                    self.claimed[channel] = truth.time;
+                    self.claims.add(told, truth.values[channel]);
+                } else {
+                    self.claims.wrong += 1;
+                }
+            }
+        }
+    }
+
+    /// Flies for so many samples.
+    fn fly(&mut self, samples: u32, loss: f64) {
+        let each = 1 + self.draw(20) as u32;
+        for sample in 1..=samples {
+            let next = self.next_samples();
+            self.sample(next);
+            if sample.is_multiple_of(self.beat) {
+                self.beat();
+            }
+            if sample.is_multiple_of(each) {
+                self.send(loss);
+            }
+        }
+        self.send(loss);
+    }
+
+    /// Time passes without a sample, of which the sender is told.
+    fn pass(&mut self, span: u64) {
+        let end = self.now + span;
+        while self.now < end {
+            self.now = end.min(self.now + (1 << 30) - 1_000_000);
+            self.transmitter.observe(Tick::from_micros(self.now));
+        }
+    }
+
+    /// The link is down for a while, in which the sender flies, sends up to two wraps of 16-bit sequences, or starts
+    /// again and again.
+    fn outage(&mut self) {
+        let samples = 1 + self.draw(50) as u32;
+        self.fly(samples, 1.0);
+        let frames = match self.draw(24) {
+            0 => 65_536 - self.draw(3),
+            1 => 65_280 + self.draw(260),
+            2 => 131_072 - self.draw(3),
+            3..12 => 1 + self.draw(300),
+            // At least one: without a lost frame a sender that takes no samples is none of a code with a period.
+            _ => 1,
+        };
+        for _ in 0..frames {
+            self.beat();
+            self.send(1.0);
+        }
+        for _ in 0..[0, 0, 0, 1, 2, 5][self.draw(6) as usize] {
+            self.restart();
+            let samples = self.draw(60) as u32;
+            self.fly(samples, 1.0);
+        }
+        let span = self.span();
+        self.pass(span);
+    }
+
+    /// The signal rests; if the code is then at rest too, for a long time without a sample.
+    fn rest(&mut self, loss: f64) {
+        let needed = self.recovery() as u32 + 40;
+        let all = self.samples;
+        let lowest = |a: &P::Sample, b: &P::Sample| if b < a { *b } else { *a };
+        let lowest = all.iter().fold(all[0], |a, b| lowest(&a, b));
+        let resting = [[lowest, all[0]][self.draw(2) as usize]; CHANNELS];
+        let settled = 8 * needed.min(1_000);
+        for _ in 0..settled {
+            self.sample(resting);
+        }
+        self.send(loss);
+        if self.silent.iter().all(|&silent| silent >= needed) {
+            let span = self.span();
+            self.pass(span);
+        }
+    }
+
+    fn recovery(&self) -> usize {
+        match self.scheme.recovery() {
+            Recovery::Samples(samples) | Recovery::TimedKeyframe(samples) => samples,
+            Recovery::Keyframe | Recovery::Spike | Recovery::Fading(_) => 0,
+        }
+    }
+
+    /// The link is whole again for as long as the code needs: then all is known.
+    fn whole(&mut self) {
+        let samples = 2 * self.beat + self.recovery() as u32 + 5;
+        let from = self.truth.len();
+        for sample in 1..=samples {
+            let next = self.next_samples();
+            self.sample(next);
+            if sample.is_multiple_of(self.beat) || sample == samples {
+                self.beat();
+                self.send(0.0);
+            }
+        }
+        for channel in 0..CHANNELS {
+            let is_due = match P::RECOVERY {
+                Recovery::Keyframe => true,
+                Recovery::TimedKeyframe(_) => {
+                    self.scheme.keyframe(&self.encoders[channel]).is_some()
+                }
+                Recovery::Samples(_) => {
+                    self.scheme.recovery() != Recovery::Spike || self.silent[channel] < self.beat
+                }
+                Recovery::Spike => self.silent[channel] < self.beat,
+                Recovery::Fading(_) => false,
+            };
+            let is_due = is_due && from > 0;
+            let is_there = self.receiver.exact(channel as u16).is_some();
+            self.claims.due += u64::from(is_due);
+            self.claims.withheld += u64::from(is_due && !is_there);
+        }
+    }
+
+    fn run(&mut self, turns: u32) {
+        for _ in 0..turns {
+            let loss = [0.0, 0.0, 0.02, 0.3][self.draw(4) as usize];
+            let samples = 20 + self.draw(600) as u32;
+            self.fly(samples, loss);
+            match self.draw(8) {
+                0 => self.restart(),
+                1 => {
+                    self.reader = Reader::new();
+                    self.receiver = Receiver::new(self.scheme).with_slot_ticks(self.slot_ticks);
+                }
+                2 | 3 => self.rest(loss),
+                _ => self.outage(),
+            }
+            if self.draw(3) == 0 {
+                self.whole();
+            }
+        }
+    }
+}
+
+impl Claims {
+    fn add<S: Sample>(&mut self, told: S, truth: S) {
+        if told.to_bits32() == truth.to_bits32() {
+            self.right += 1;
+        } else {
+            self.wrong += 1;
+        }
+    }
+}
+
+fn transmitter(period: u32, session: Session) -> Transmitter {
+    Transmitter::new(Coding::for_channels(CHANNELS as u16, period as u16), session)
+}
+
+fn bank<'a, P>(scheme: &'a P, start: &[u8], slot_ticks: u32) -> Bank<&'a P, CHANNELS>
+where
+    P: Scheme<EncoderState: State>,
+{
+    let states = [(); CHANNELS].map(|()| again(start));
+    Bank::with_states(scheme, states).with_slot_ticks(slot_ticks)
+}
+
+/// Takes every scheme through.
+struct Outages<S> {
+    samples: Vec<S>,
+    seeds: std::ops::Range<u64>,
+    turns: u32,
+    claims: u64,
+    schemes: usize,
+}
+
+impl<S: Sample> Flight for Outages<S> {
+    type Sample = S;
+    type Error = ConfigError;
+
+    fn visit<P>(
+        &mut self,
+        name: &'static str,
+        _: &'static str,
+        scheme: &P,
+        start: P::EncoderState,
+    ) -> Result<(), ConfigError>
+    where
+        P: Scheme<Sample = S, EncoderState: State, DecoderState: State>,
+    {
+        let mut sum = 0;
+        for seed in self.seeds.clone() {
+            let mut world = World::new(scheme, &start, &self.samples, seed);
+            world.run(self.turns);
+            let claims = world.claims;
+            assert_eq!(claims.wrong, 0, "{name}, seed {seed}: {claims:?}");
+            assert_eq!(claims.withheld, 0, "{name}, seed {seed}: {claims:?}");
+            sum += claims.right;
+        }
+        assert!(sum > 0 || matches!(P::RECOVERY, Recovery::Fading(_)), "{name} claims nothing");
+        println!("{name}: {sum}");
+        self.claims += sum;
+        self.schemes += 1;
+        Ok(())
+    }
+}
+
+/// How many values were called exact, in every scheme. All of them were.
+fn claims<S: Sample>(unit: f64, seeds: std::ops::Range<u64>, turns: u32) -> u64 {
+    let flight = flight::channel(&flight::hexarotor(), 0);
+    let samples: Vec<S> =
+        flight.into_iter().map(|value| S::from_f64(f64::from(value) * unit)).collect();
+    let mut calibration = Calibration::new();
+    for &sample in &samples {
+        calibration.observe(sample);
+    }
+    let mut visitor = Outages { samples, seeds, turns, claims: 0, schemes: 0 };
+    catalogue::fly(&Channel::new(0, calibration), &mut visitor).unwrap();
+    assert!(visitor.schemes >= catalogue::INFO.len());
+    visitor.claims
+}
+
+#[test]
+fn what_is_called_exact_is_so_after_any_outage() {
+    assert!(claims::<f32>(1.0, 0..1, 8) > 20_000);
+    assert!(claims::<i16>(1000.0, 1..2, 8) > 20_000);
+}
+
+/// The same for 10⁸ claims.
+#[test]
+#[ignore = "minutes"]
+fn what_is_called_exact_is_so_after_a_hundred_million() {
+    let mut sum = 0;
+    for round in (1_000..).step_by(20) {
+        sum += claims::<f32>(1.0, round..round + 10, 60);
+        sum += claims::<i16>(1000.0, round + 10..round + 20, 60);
+        println!("{sum} claims");
+        if sum > 100_000_000 {
+            break;
+        }
+    }
+}
