@@ -29,6 +29,13 @@ pub struct Info {
     pub parameters: &'static [Parameter],
 }
 
+impl Info {
+    /// The parameter of this name.
+    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
+        self.parameters.iter().find(|own| own.name == name)
+    }
+}
+
 /// A parameter of a scheme.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {

@@ -89,12 +89,12 @@ macro_rules! schemes {
         #[cfg(feature = "run")]
         pub fn visit<S: spikewire::Sample, V: run::Visit<S>>(
             name: &str,
-            given: &run::Given,
+            settings: &run::Settings,
             visitor: V,
         ) -> anyhow::Result<V::Output> {
             $(
                 if name == <schemes::$module::Scheme as Entry>::INFO.name {
-                    return <schemes::$module::Scheme as run::Build>::build(given, visitor);
+                    return <schemes::$module::Scheme as run::Build>::build(settings, visitor);
                 }
             )*
             anyhow::bail!("there is no scheme `{name}`")

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use catalogue::run::{Calibrated, Event, Known, Options, SampleType};
+use catalogue::run::{Asked, Calibrated, Event, Known, SampleType};
 use spikewire::{Code, NeuronSpike, Output, Sample, Start};
 
 /// Every constant, by its scheme, sample type and options: as it is written, and as the compiler takes it.
@@ -135,9 +135,10 @@ fn compare<P: Start>(
 ) {
     let sample: SampleType = sample.parse().unwrap();
     let scheme = catalogue::ALL.iter().find(|scheme| scheme.info().name == name).unwrap();
-    let mut options = Options::default();
-    for (option, text) in given {
-        options.set(option, text);
+    let mut options = Asked::default();
+    for (name, text) in given {
+        let parameter = scheme.info().parameter(name).unwrap();
+        options.set(parameter.name, parameter.read(text).unwrap());
     }
     let scale = if sample.step() == 1.0 { 1000.0 } else { 1.0 };
     let signal: Vec<f64> = (0..2000)
@@ -147,15 +148,14 @@ fn compare<P: Start>(
     let mut calibrated = Calibrated::new(sample);
     calibrated.observe(&signal);
     let known = Known { calibrated: Some(&calibrated), first: &signal, can_calibrate: true };
-    let settings = scheme.resolve(&options, &known).unwrap();
-    let (settings, _) = scheme.rounded(sample, &settings).unwrap();
+    let settings = scheme.resolve(sample, &options, &known).unwrap();
 
-    let constant = scheme.constant(sample, &settings).unwrap();
+    let constant = scheme.constant(&settings).unwrap();
     let bare = |text: &str| text.split_whitespace().collect::<String>();
     assert_eq!([bare(&constant.scheme), bare(&constant.value)], written.map(bare), "{name}");
 
     let mut events = Vec::new();
-    scheme.codec(sample, &settings).unwrap().encode(&signal, &mut events);
+    scheme.codec(&settings).unwrap().encode(&signal, &mut events);
     let mut state = P::START;
     own.prime(&mut state, &vec![P::Sample::from_f64(0.0); scheme.looks_back(&options)]);
     let codes = signal

@@ -3,7 +3,7 @@
 
 #![cfg(feature = "run")]
 
-use catalogue::run::{Calibrated, Event, Given, Known, Options, RunTime, SampleType, Settings};
+use catalogue::run::{Asked, Calibrated, Event, Known, RunTime, SampleType, Settings};
 use catalogue::{ALL, Found, Kind};
 
 const SAMPLES: [&str; 6] = ["f32", "i32", "q16.16", "q8.24", "q4.12", "q8.8"];
@@ -20,39 +20,34 @@ fn signal_for(sample: SampleType) -> Vec<f64> {
     signal().into_iter().map(|value| value * scale).collect()
 }
 
-fn paper() -> Options {
-    let mut options = Options::default();
-    options.paper = true;
-    options
+fn paper() -> Asked {
+    let mut asked = Asked::default();
+    asked.paper = true;
+    asked
 }
 
-fn resolve(
-    scheme: &dyn RunTime,
-    options: &Options,
-    sample: SampleType,
-) -> anyhow::Result<Settings> {
+fn resolve(scheme: &dyn RunTime, options: &Asked, sample: SampleType) -> anyhow::Result<Settings> {
     let signal = signal_for(sample);
     let mut calibrated = Calibrated::new(sample);
     calibrated.observe(&signal);
     let known = Known { calibrated: Some(&calibrated), first: &signal, can_calibrate: true };
-    scheme.resolve(options, &known)
+    scheme.resolve(sample, options, &known)
 }
 
 /// What a scheme makes of the signal: events, and the values that they decode to.
 fn there_and_back(
     scheme: &dyn RunTime,
-    sample: SampleType,
     settings: &Settings,
     piece: usize,
 ) -> (Vec<Event>, Vec<f64>) {
-    let signal = signal_for(sample);
-    let mut codec = scheme.codec(sample, settings).unwrap();
+    let signal = signal_for(settings.sample);
+    let mut codec = scheme.codec(settings).unwrap();
     let (mut events, mut values) = (Vec::new(), Vec::new());
     for samples in signal.chunks(piece) {
         codec.encode(samples, &mut events);
     }
     codec.finish(&mut events);
-    let mut codec = scheme.codec(sample, settings).unwrap();
+    let mut codec = scheme.codec(settings).unwrap();
     let mut done = 0;
     for samples in signal.chunks(piece) {
         let end = done + samples.len() as u64;
@@ -110,8 +105,7 @@ fn every_scheme_runs_with_the_papers_settings_in_every_sample_type() {
             let what = format!("{} {sample}", scheme.info().name);
             let sample: SampleType = sample.parse().unwrap();
             let settings = resolve(*scheme, &paper(), sample).unwrap();
-            let (settings, _) = scheme.rounded(sample, &settings).unwrap();
-            let (events, values) = there_and_back(*scheme, sample, &settings, 2000);
+            let (events, values) = there_and_back(*scheme, &settings, 2000);
             assert!(events.len() > 20, "{what}: {}", events.len());
             assert_eq!(values.len(), 2000, "{what}");
             let shape = scheme.shape(&settings).unwrap();
@@ -119,7 +113,7 @@ fn every_scheme_runs_with_the_papers_settings_in_every_sample_type() {
             assert!(events.iter().all(|event| usize::from(event.slot) < shape.slots), "{what}");
             // In pieces as in one.
             for piece in [1, 512] {
-                let again = there_and_back(*scheme, sample, &settings, piece);
+                let again = there_and_back(*scheme, &settings, piece);
                 assert!(again == (events.clone(), values.clone()), "{what} in pieces of {piece}");
             }
         }
@@ -132,22 +126,22 @@ fn settings_come_back_from_their_names_and_texts() {
         for sample in SAMPLES {
             let sample: SampleType = sample.parse().unwrap();
             let settings = resolve(*scheme, &paper(), sample).unwrap();
-            let (settings, _) = scheme.rounded(sample, &settings).unwrap();
             let keys = settings.entries().iter().rev();
             let mut keys: Vec<_> =
-                keys.map(|(name, text)| ((*name).to_owned(), text.clone())).collect();
+                keys.map(|(name, text)| ((*name).to_owned(), text.to_string())).collect();
             keys.push(("rate".to_owned(), "200".to_owned()));
-            let read = Settings::take(scheme.info(), &mut keys);
+            let read = Settings::take(scheme.info(), sample, &mut keys).unwrap();
             assert_eq!(read.entries(), settings.entries(), "{}", scheme.info().name);
             assert_eq!(keys, [("rate".to_owned(), "200".to_owned())]);
             // Decoding needs nothing else.
-            let (events, values) = there_and_back(*scheme, sample, &settings, 2000);
+            let (events, values) = there_and_back(*scheme, &settings, 2000);
             let mut again = Vec::new();
-            scheme.codec(sample, &read).unwrap().decode(2000, &events, &mut again).unwrap();
+            scheme.codec(&read).unwrap().decode(2000, &events, &mut again).unwrap();
             assert!(again == values, "{}", scheme.info().name);
             // Rounded once, they stay.
-            let (twice, told) = scheme.rounded(sample, &settings).unwrap();
-            assert_eq!((twice.entries(), told.len()), (settings.entries(), 0));
+            let twice = resolve(*scheme, &settings.to_asked(scheme.info()), sample).unwrap();
+            let again = twice.rounded.iter().find(|(name, _)| *name != "first");
+            assert_eq!(again, None, "{}", scheme.info().name);
         }
     }
 }
@@ -160,22 +154,23 @@ fn a_file_without_one_of_the_entries_is_refused_by_its_name() {
             // Without a moving window's width or anything else that decoding is built from.
             let others = settings.entries().iter().filter(|(other, _)| other != name);
             let mut keys: Vec<_> =
-                others.map(|(name, text)| ((*name).to_owned(), text.clone())).collect();
-            let lacking = Settings::take(scheme.info(), &mut keys);
+                others.map(|(name, text)| ((*name).to_owned(), text.to_string())).collect();
+            let lacking = Settings::take(scheme.info(), SampleType::F32, &mut keys).unwrap();
             let what = format!("{} {name}={text}", scheme.info().name);
-            let error = scheme.codec(SampleType::F32, &lacking).err().expect(&what).to_string();
+            let error = scheme.codec(&lacking).err().expect(&what).to_string();
             assert!(error.contains(&format!("`# {name}=`")), "{what}: {error}");
             // And one that makes no sense.
             let mut keys: Vec<_> = settings
                 .entries()
                 .iter()
                 .map(|(other, text)| {
-                    let text = if other == name { "1,x" } else { text };
-                    ((*other).to_owned(), text.to_owned())
+                    let text = if other == name { "1,x".to_owned() } else { text.to_string() };
+                    ((*other).to_owned(), text)
                 })
                 .collect();
-            let wrong = Settings::take(scheme.info(), &mut keys);
-            let error = scheme.codec(SampleType::F32, &wrong).err().unwrap().to_string();
+            let wrong = Settings::take(scheme.info(), SampleType::F32, &mut keys);
+            let error = wrong.and_then(|wrong| scheme.codec(&wrong).map(drop)).unwrap_err();
+            let error = format!("{error:#}");
             assert!(error.contains(name) && error.contains('x'), "{name}=1,x: {error}");
         }
     }
@@ -185,11 +180,11 @@ fn a_file_without_one_of_the_entries_is_refused_by_its_name() {
 fn events_that_no_encoder_emits_together_are_refused() {
     for scheme in ALL {
         let settings = resolve(*scheme, &paper(), SampleType::F32).unwrap();
-        let (events, _) = there_and_back(*scheme, SampleType::F32, &settings, 2000);
+        let (events, _) = there_and_back(*scheme, &settings, 2000);
         let event = events[events.len() / 2];
         let mut twice: Vec<Event> = events.clone();
         twice.insert(events.len() / 2, event);
-        let mut codec = scheme.codec(SampleType::F32, &settings).unwrap();
+        let mut codec = scheme.codec(&settings).unwrap();
         let refused = codec.decode(2000, &twice, &mut Vec::new()).unwrap_err();
         assert_eq!(refused.sample, event.sample, "{}", scheme.info().name);
     }
@@ -199,11 +194,12 @@ fn events_that_no_encoder_emits_together_are_refused() {
 fn what_is_wanted_of_a_signal_is_said() {
     for scheme in ALL {
         let info = scheme.info();
-        assert!(scheme.needs_signal(&paper()).is_some_and(|what| what.contains("--paper")));
-        let mut options = Options::default();
+        assert!(scheme.needs_signal(&paper()).is_some_and(|what| what.contains("`paper`")));
+        let mut options = Asked::default();
         for parameter in info.parameters {
             if parameter.is_recorded && !matches!(parameter.kind, Kind::Choice(_)) {
-                options.set(parameter.name, parameter.default.unwrap_or(parameter.example));
+                let text = parameter.default.unwrap_or(parameter.example);
+                options.set(parameter.name, parameter.read(text).unwrap());
             }
         }
         // Its ratio goes with logarithmic edges.
@@ -213,12 +209,12 @@ fn what_is_wanted_of_a_signal_is_said() {
         assert_eq!(scheme.needs_signal(&options), None, "{}", info.name);
         // With all given it needs none.
         let known = Known { calibrated: None, first: &[0.25], can_calibrate: false };
-        let settings = scheme.resolve(&options, &known).unwrap();
-        scheme.codec(SampleType::F32, &settings).unwrap();
+        let settings = scheme.resolve(SampleType::F32, &options, &known).unwrap();
+        scheme.codec(&settings).unwrap();
         options.set("colour", "blue");
-        let error = scheme.resolve(&options, &known).unwrap_err().to_string();
+        let error = scheme.resolve(SampleType::F32, &options, &known).unwrap_err().to_string();
         assert!(
-            error.starts_with(&format!("{} takes no --colour; it takes --", info.name)),
+            error.starts_with(&format!("{} takes no `colour`; it takes `", info.name)),
             "{error}"
         );
     }
@@ -231,7 +227,7 @@ fn centres_at_the_quantiles_of_the_signal() {
         let scheme = ALL.iter().find(|scheme| scheme.info().name == name).unwrap();
         let mut options = paper();
         options.set("centres", "quantiles");
-        options.set("neurons", "9");
+        options.set("neurons", 9_u64);
         assert!(scheme.needs_signal(&options).is_some());
         let settings = resolve(*scheme, &options, sample).unwrap();
         let mut sorted = signal();
@@ -242,11 +238,11 @@ fn centres_at_the_quantiles_of_the_signal() {
             let quantile = sorted[(2 * i + 1) * sorted.len() / 18];
             assert!((centre - quantile).abs() < 0.02, "{i}: {centre} for {quantile}");
         }
-        let (_, values) = there_and_back(*scheme, sample, &settings, 100);
+        let (_, values) = there_and_back(*scheme, &settings, 100);
         assert_eq!(values.len(), signal().len());
-        options.set("companding", "20");
+        options.set("companding", 20.0);
         let error = resolve(*scheme, &options, sample).unwrap_err().to_string();
-        assert_eq!(error, "--centres quantiles says it all; --companding contradicts it");
+        assert_eq!(error, "`centres` quantiles says it all; `companding` contradicts it");
     }
 }
 
@@ -256,9 +252,8 @@ fn the_spike_of_the_first_sample_changes_nothing() {
         for sample in SAMPLES {
             let sample: SampleType = sample.parse().unwrap();
             let settings = resolve(*scheme, &paper(), sample).unwrap();
-            let (settings, _) = scheme.rounded(sample, &settings).unwrap();
             let first = settings.first_value().unwrap();
-            let (_, values) = there_and_back(*scheme, sample, &settings, 2000);
+            let (_, values) = there_and_back(*scheme, &settings, 2000);
             assert_eq!(values[0], first, "{}", scheme.info().name);
             assert!((first - signal_for(sample)[0]).abs() <= sample.step());
         }
@@ -270,12 +265,13 @@ fn errors_name_what_is_allowed() {
     let mut keys = vec![("neurons".to_owned(), "2".to_owned())];
     let settings = Settings::take(
         ALL.iter().map(|scheme| scheme.info()).find(|info| info.name == "grf").unwrap(),
+        SampleType::F32,
         &mut keys,
-    );
-    let given = Given::new(&settings, 1.0);
+    )
+    .unwrap();
     assert_eq!(
-        given.neurons().unwrap_err().to_string(),
+        settings.neurons().unwrap_err().to_string(),
         "neurons 2 must be a whole number in 3..=1024"
     );
-    assert!(given.number("min").unwrap_err().to_string().contains("lacks `# min=`"));
+    assert!(settings.number("min").unwrap_err().to_string().contains("lacks `# min=`"));
 }

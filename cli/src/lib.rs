@@ -1,32 +1,11 @@
 //! What the laptop program does, for the program itself and for bindings to other languages.
 
-mod bank;
-mod bench;
-mod brief;
 mod commands;
-mod events;
-mod fit;
-mod frames;
-mod input;
+mod inputs;
 pub mod library;
 mod live;
-mod look;
-mod network;
 mod options;
-mod output;
-mod params;
-mod plot;
-mod port;
-#[cfg(any(test, feature = "capture"))]
-mod rtt;
-mod scheme;
-mod spikes;
-mod steep;
 mod stop;
-mod timeline;
-mod trial;
-mod tune;
-mod values;
 
 use clap::{Parser, Subcommand};
 use commands::{capture, convert, decode, encode, info, listen, score, signal};
@@ -87,7 +66,7 @@ pub fn run() -> ExitCode {
         // Whoever reads has read enough.
         Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            eprintln!("error: {}", options::spelled(&format!("{error:#}")));
             ExitCode::from(FAILURE)
         }
     }

@@ -1,7 +1,7 @@
 //! Counts while they grow, where somebody looks on.
 
-use crate::events::Stream;
 use indicatif::{ProgressBar, ProgressStyle};
+use lab::events::Stream;
 use std::fmt::Write;
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};

@@ -1,12 +1,12 @@
 //! The parameters of the catalogue's schemes as options.
 
-use crate::params::{self, Params};
-use crate::scheme::Scheme;
 use anyhow::{Result as Checked, bail};
-use catalogue::run::{Options, SampleType};
+use catalogue::run::{Asked, SET, SampleType, Value};
 use catalogue::{Found, Info, Kind, Parameter, Unit};
-use clap::builder::PossibleValuesParser;
+use clap::builder::{MapValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
+use lab::coding::Coding as File;
+use lab::scheme::Scheme;
 use std::fmt::Write;
 use std::ops::Deref;
 
@@ -14,16 +14,21 @@ use std::ops::Deref;
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Coding {
     /// The scheme, unless --params says which
-    #[arg(long)]
+    #[arg(long, value_parser = schemes(Scheme::all()))]
     scheme: Option<Scheme>,
     /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8; f32 unless given
     #[arg(long)]
     sample: Option<SampleType>,
     /// File of parameters, TOML, as `tune --emit toml` writes it; options override it
-    #[arg(long, value_name = "FILE", value_parser = params::parse)]
-    params: Option<Params>,
+    #[arg(long, value_name = "FILE", value_parser = read)]
+    params: Option<File>,
     #[command(flatten)]
     parameters: SchemeOptions,
+}
+
+/// The value of `--params`.
+pub(crate) fn read(path: &str) -> Result<File, String> {
+    File::read(path).map_err(|error| format!("{error:#}"))
 }
 
 /// A scheme if one was named, the sample type, and the parameters given.
@@ -38,9 +43,9 @@ impl Coding {
         let Self { scheme, sample, params, parameters } = self;
         let mut chosen = (*scheme, sample.unwrap_or_default(), parameters.clone());
         if let Some(params) = params {
-            let scheme = params.agreed(*scheme)?;
-            let sample = sample.or(params.sample).unwrap_or_default();
-            chosen = (Some(scheme), sample, SchemeOptions(parameters.or(&params.options)));
+            let scheme = agreed(params, *scheme)?;
+            let sample = sample.unwrap_or(params.sample);
+            chosen = (Some(scheme), sample, SchemeOptions(parameters.or(&params.asked)));
         }
         Ok(chosen)
     }
@@ -64,14 +69,38 @@ impl Coding {
     }
 }
 
+/// The scheme of a file, if that is the one named.
+///
+/// # Errors
+/// Another one is.
+pub(crate) fn agreed(file: &File, named: Option<Scheme>) -> Checked<Scheme> {
+    match named {
+        Some(named) if named != file.scheme => {
+            bail!("--params is of {}, --scheme says {}", file.scheme.name(), named.name())
+        }
+        _ => Ok(file.scheme),
+    }
+}
+
+/// Takes the name of one of these schemes.
+pub(crate) fn schemes(
+    schemes: impl Iterator<Item = Scheme>,
+) -> MapValueParser<PossibleValuesParser, fn(String) -> Scheme> {
+    let values = schemes.map(|scheme| PossibleValue::new(scheme.name()).help(scheme.info().words));
+    PossibleValuesParser::new(values.collect::<Vec<_>>()).map(|name| {
+        // The parser lets no other name pass.
+        Scheme::named(&name).unwrap_or_default()
+    })
+}
+
 /// What a user gave of the parameters of any scheme.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct SchemeOptions(pub Options);
+pub(crate) struct SchemeOptions(pub Asked);
 
 impl Deref for SchemeOptions {
-    type Target = Options;
+    type Target = Asked;
 
-    fn deref(&self) -> &Options {
+    fn deref(&self) -> &Asked {
         &self.0
     }
 }
@@ -116,16 +145,22 @@ pub(crate) fn augment(
     is_taken: fn(&Parameter) -> bool,
 ) -> Command {
     for (name, owners) in parameters(takes, is_taken) {
-        let Some((_, parameter)) = owners.first() else { continue };
+        let Some(&(_, parameter)) = owners.first() else { continue };
         let heading = if parameter.found.is_some() { CALIBRATION } else { PARAMETERS };
         let arg = Arg::new(name).long(name).help(help(&owners)).help_heading(heading);
         let arg = match parameter.kind {
             Kind::Number => arg.allow_negative_numbers(true).value_name("NUMBER"),
             Kind::Count => arg.value_name("COUNT"),
-            Kind::Choice(words) => arg.value_parser(PossibleValuesParser::new(words)),
+            Kind::Choice(words) => {
+                arg.value_parser(PossibleValuesParser::new(words).map(Value::from))
+            }
             Kind::Flag => arg.action(ArgAction::SetTrue),
             Kind::Text => arg.allow_hyphen_values(true).value_name("VALUE"),
             Kind::Filter => arg.value_name("FILTER"),
+        };
+        let arg = match parameter.kind {
+            Kind::Choice(_) | Kind::Flag => arg,
+            _ => arg.value_parser(move |text: &str| read_value(parameter, text)),
         };
         command = command.arg(arg);
     }
@@ -137,19 +172,30 @@ pub(crate) fn given(
     matches: &ArgMatches,
     takes: fn(&Info) -> bool,
     is_taken: fn(&Parameter) -> bool,
-) -> Options {
-    let mut options = Options::default();
+) -> Asked {
+    let mut asked = Asked::default();
     for (name, owners) in parameters(takes, is_taken) {
         if owners.first().is_some_and(|(_, parameter)| parameter.kind == Kind::Flag) {
             if matches.get_flag(name) {
-                options.set(name, "");
+                asked.set(name, SET);
             }
-        } else if let Some(text) = matches.get_one::<String>(name) {
-            options.set(name, text);
+        } else if let Some(value) = matches.get_one::<Value>(name) {
+            asked.set(name, value.clone());
         }
     }
-    options
+    asked
 }
+
+/// The value of an option; `tune` also takes a filter whose taps are free.
+fn read_value(parameter: &Parameter, text: &str) -> Result<Value, String> {
+    if parameter.kind == Kind::Filter && text == FREE {
+        return Ok(FREE.into());
+    }
+    parameter.read(text).map_err(|error| format!("{error:#}"))
+}
+
+/// The filter that asks for the taps themselves.
+pub(crate) const FREE: &str = "free";
 
 /// A name, and the schemes that have a parameter of it, with what it is there.
 type Owned = (&'static str, Vec<(&'static Info, &'static Parameter)>);
@@ -183,7 +229,7 @@ fn help(owners: &[(&'static Info, &'static Parameter)]) -> String {
 }
 
 fn meaning(parameter: &Parameter) -> String {
-    let mut text = parameter.help.to_owned();
+    let mut text = spelled(parameter.help);
     // Writing to a string cannot fail.
     let _ = match parameter.unit {
         Unit::Signal if parameter.kind == Kind::Number => write!(text, ", in the signal's unit"),
@@ -200,4 +246,61 @@ fn meaning(parameter: &Parameter) -> String {
         let _ = write!(text, "; {default} unless given");
     }
     text
+}
+
+/// A text of the library as the command line has it: the name of a setting in backticks becomes its option.
+pub(crate) fn spelled(text: &str) -> String {
+    /// What stands in backticks behind these words came from the user or a file.
+    const DATA: [&str; 8] =
+        ["column ", "core ", "field ", "format ", "scheme ", "topic ", "type ", "values of "];
+    let mut parts = text.split('`');
+    let mut all = parts.next().unwrap_or_default().to_owned();
+    while let Some(inside) = parts.next() {
+        let is_data = DATA.iter().any(|word| all.ends_with(word));
+        if parts.clone().next().is_some() && is_setting(inside) && !is_data {
+            all = all + "--" + &inside.replace('_', "-");
+        } else {
+            all = all + "`" + inside + if parts.clone().next().is_some() { "`" } else { "" };
+        }
+        all += parts.next().unwrap_or_default();
+    }
+    all
+}
+
+fn is_setting(name: &str) -> bool {
+    const OWN: [&str; 14] = [
+        "paper",
+        "anyway",
+        "below",
+        "blocks",
+        "evaluations",
+        "front",
+        "hold_out",
+        "max_instructions",
+        "max_latency",
+        "max_ram",
+        "max_rate",
+        "max_rmse",
+        "min_efficiency",
+        "seconds",
+    ];
+    OWN.contains(&name) || catalogue::INFO.iter().any(|info| info.parameter(name).is_some())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::spelled;
+
+    #[test]
+    fn settings_are_options() {
+        for (text, spelt) in [
+            ("sf needs `threshold` (or `paper`)", "sf needs --threshold (or --paper)"),
+            ("no column `min`", "no column `min`"),
+            ("2 values of `threshold` for 1 neurons", "2 values of `threshold` for 1 neurons"),
+            ("`linear` and `max`", "`linear` and --max"),
+            ("an open ` alone", "an open ` alone"),
+        ] {
+            assert_eq!(spelled(text), spelt);
+        }
+    }
 }

@@ -3,7 +3,6 @@
 use anyhow::{Context, Result};
 use spikewire::Tick;
 use std::process;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -13,8 +12,6 @@ static IS_WANTED: AtomicBool = AtomicBool::new(false);
 pub(crate) struct Stop {
     start: Instant,
     after: Option<Duration>,
-    /// Another's word that it is time.
-    word: Option<Arc<AtomicBool>>,
 }
 
 impl Stop {
@@ -31,21 +28,12 @@ impl Stop {
                 process::exit(INTERRUPTED);
             }
         })?;
-        Ok(Self { start: Instant::now(), after, word: None })
-    }
-
-    /// After this many seconds, or when somebody else says so.
-    ///
-    /// # Errors
-    /// The number is not above 0.
-    pub(crate) fn at_word(word: Arc<AtomicBool>, seconds: f64) -> Result<Self> {
-        Ok(Self { start: Instant::now(), after: Some(duration(seconds)?), word: Some(word) })
+        Ok(Self { start: Instant::now(), after })
     }
 
     /// Whether it is time.
     pub(crate) fn is_due(&self) -> bool {
         IS_WANTED.load(Ordering::Relaxed)
-            || self.word.as_ref().is_some_and(|word| word.load(Ordering::Relaxed))
             || self.after.is_some_and(|after| self.start.elapsed() >= after)
     }
 

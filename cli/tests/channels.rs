@@ -101,3 +101,19 @@ fn scores_and_pictures_take_one() {
     let (_directory, path) = file("x.csv", "a,b\n0,1\n1,2\n");
     refused(&format!("score --columns a,b {path}"), "", &["one column or field, not 2"]);
 }
+
+#[test]
+fn a_parameter_may_have_a_value_for_each_channel() {
+    let table = "a,b\n0,0\n1,1\n2,2\n0,0\n";
+    let encode = |options: &str| good(&format!("encode --scheme sf {options} -"), table).output;
+    let both = encode("--threshold 0.5,1.5 --columns a,b");
+    assert!(both.contains("# threshold@0=0.5\n") && both.contains("# threshold@1=1.5\n"));
+    let alone = |column: &str, threshold: &str| {
+        let output = encode(&format!("--threshold {threshold} --column {column}"));
+        output.lines().filter(|line| line.starts_with(|first: char| first.is_ascii_digit())).count()
+    };
+    let spikes = both.lines().filter(|line| line.starts_with(|first: char| first.is_ascii_digit()));
+    assert_eq!(spikes.count(), alone("a", "0.5") + alone("b", "1.5"));
+    let words = ["--threshold has 2 values, one a channel, for 1 channel"];
+    refused("encode --scheme sf --threshold 1,2 --column a -", table, &words);
+}

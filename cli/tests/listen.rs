@@ -6,7 +6,7 @@ use common::{good_bytes, refused, spikewire_bytes};
 use fixed::types::I8F8;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
-use spikewire::link::{Coding, Framer, MAX_FRAME, Transmitter};
+use spikewire::link::{Coding, Framer, MAX_FRAME, Session, Transmitter};
 use spikewire::population::{Position, Slots};
 use spikewire::rate::{Bsa, Hough, Taps, ThresholdHough};
 use spikewire::temporal::{MovingWindow, SendOnDelta, StepForward, TemporalContrast};
@@ -39,7 +39,7 @@ impl Put for &mut Items {
 fn board<P: Start<Code = Spike>>(schemes: &[P; CHANNELS]) -> Board<P::Sample> {
     let mut bank = Bank::<_, CHANNELS>::per_channel(schemes.each_ref());
     let mut decoders = schemes.each_ref().map(P::decoder);
-    let mut transmitter = Transmitter::new(Coding::for_channels(3, 1000), 7);
+    let mut transmitter = Transmitter::new(Coding::for_channels(3, 1000), Session::counted(7));
     let mut board = Board { frames: Vec::new(), values: Vec::new() };
     let mut buffer = [0; MAX_FRAME];
     for sample in 0..400_u32 {
@@ -62,6 +62,7 @@ fn board<P: Start<Code = Spike>>(schemes: &[P; CHANNELS]) -> Board<P::Sample> {
                 Item::Keyframe(keyframe) => {
                     decoders[usize::from(keyframe.address)].resync(keyframe.value().unwrap());
                 }
+                Item::Heartbeat { .. } => {}
                 Item::Break(_) => unreachable!(),
             }
         }
@@ -75,21 +76,35 @@ fn board<P: Start<Code = Spike>>(schemes: &[P; CHANNELS]) -> Board<P::Sample> {
 
 /// A board whose code is decoded a sample at a time: its values after each sample, by the address of each channel.
 fn sampled_board<P: Start>(scheme: &P, slot_ticks: u32) -> Board<P::Sample> {
+    board_since_boot(scheme, slot_ticks, 0, 100)
+}
+
+/// The same so many µs after its boot, with a heartbeat every so many samples.
+fn board_since_boot<P: Start>(
+    scheme: &P,
+    slot_ticks: u32,
+    uptime: u64,
+    beat: u32,
+) -> Board<P::Sample> {
     let mut bank = Bank::<_, CHANNELS>::new(scheme).with_slot_ticks(slot_ticks);
     let mut readout = Readout::<_, CHANNELS>::new(scheme).with_slot_ticks(slot_ticks);
-    let mut transmitter = Transmitter::new(Coding::for_channels(3, 1000), 7);
+    let mut transmitter = Transmitter::new(Coding::for_channels(3, 1000), Session::counted(7));
     let mut board = Board { frames: Vec::new(), values: Vec::new() };
     let mut buffer = [0; MAX_FRAME];
     for sample in 0..400_u32 {
         let wave = |pace: f64| P::Sample::from_f64((f64::from(sample) * pace).sin() * 100.0);
-        let tick = Tick::from(sample * 1000);
+        let tick = Tick::from_micros(uptime + u64::from(sample) * 1000);
         let mut events = Vec::new();
         bank.encode(tick, [wave(0.05), wave(0.07), wave(0.11)], |event| events.push(event));
         for (channel, value) in readout.decode(tick, &events).into_iter().enumerate() {
             let address = channel * <P as Scheme>::Code::NEURONS;
             board.values.push((tick.micros(), address as u16, value));
         }
-        let mut items = FromItems(events.into_iter().map(Item::Event));
+        let mut items = Items(events.into_iter().map(Item::Event).collect());
+        if sample.is_multiple_of(beat) {
+            bank.keyframe_into(tick, &mut items);
+        }
+        let mut items = FromItems(items.0.into_iter());
         while let Some(frame) = transmitter.next_frame(&mut items, &mut buffer).unwrap() {
             board.frames.push(frame.to_vec());
         }
@@ -233,7 +248,7 @@ fn after_a_lost_frame_rate_codes_are_estimates_for_as_long_as_the_filter() {
 fn send_on_delta_is_heard_spike_by_spike() {
     let scheme = SendOnDelta::<f32, 4>::new(3.1);
     let mut bank = Bank::<_, CHANNELS>::new(&scheme);
-    let mut transmitter = Transmitter::new(Coding::for_channels(3, 1000), 7);
+    let mut transmitter = Transmitter::new(Coding::for_channels(3, 1000), Session::counted(7));
     let mut items = Items::default();
     for sample in 0..400_u16 {
         let tick = Tick::from(u32::from(sample) * 1000);
@@ -296,7 +311,7 @@ fn damage_a_cut_end_and_a_start_in_the_middle_are_counted() {
 
     // A damaged length asks for more bytes than follow: the frames after it are not held back.
     let mut long = board.frames.clone();
-    long[frames - 3][13] = 0xFF;
+    long[frames - 3][17] = 0xFF;
     let told = listen(&long.concat());
     assert!(told.contains(&format!("{} frames: 1 lost in 1 gaps, ", frames - 1)), "{told}");
 
@@ -356,9 +371,30 @@ fn keyframes_of_step_forward_tell_wrong_parameters() {
     assert!(!told.contains("contradict"), "{told}");
 }
 
+/// However long a board has been on, its sub-timesteps are those that it sends, or it is told why there are none.
+#[test]
+fn slots_are_heard_after_any_uptime() {
+    let scheme = Slots::<f32, 15, 10>::new(-100.0..=100.0, 1.5);
+    let options = "--scheme grf-slots --neurons 15 --slots 10 --min=-100 --max 100 --slot-ticks";
+    for minutes in [0_u64, 36, 37, 71, 72, 83, 5_256_000] {
+        let uptime = minutes * 60_000_000 + 42_000_123;
+        let board = board_since_boot(&scheme, 50, uptime, 100);
+        assert_sampled(&board, &board.frames, &format!("{options} 50"));
+    }
+    let silent = board_since_boot(&scheme, 50, 83 * 60_000_000, u32::MAX);
+    // Without the first sample, and the only heartbeat.
+    let heard = good_bytes(&format!("listen {options} 50"), &silent.frames[2..].concat());
+    assert_eq!(values(&heard.output).len(), 0);
+    assert!(heard.told.contains("\nno value is exact: no heartbeat since"), "{}", heard.told);
+    let board = board_since_boot(&scheme, 50, 0, 100);
+    let heard = good_bytes(&format!("listen {options} 101"), &board.frames.concat());
+    let why = "\nno value is exact: 10 sub-timesteps of 101 µs are longer than the link's period of 1000 µs\n";
+    assert!(heard.told.contains(why), "{}", heard.told);
+}
+
 #[test]
 fn a_loss_at_the_sender_is_told() {
-    let mut framer = Framer::new(Coding::for_channels(1, 1000), 7);
+    let mut framer = Framer::new(Coding::for_channels(1, 1000), Session::counted(7));
     let mut buffer = [0; 64];
     let mut bytes = framer.start(Tick::from(0), &mut buffer).unwrap().finish().to_vec();
     framer.mark_loss();
@@ -465,12 +501,13 @@ fn lines(child: &mut Child, count: usize) -> String {
 fn a_serial_port_is_heard_until_its_time_is_over() {
     let (mut line, name, _open) = serial_line();
     let bytes = three_floats().frames.concat();
-    let (first, second) = bytes.split_at(bytes.len() / 2);
     let mut child =
         spawn(&format!("listen {THREE} --baud 115200 --seconds 2 {name}"), Stdio::piped());
-    line.write_all(first).unwrap();
-    std::thread::sleep(Duration::from_millis(100));
-    line.write_all(second).unwrap();
+    // The line takes 4095 bytes until they are heard.
+    for piece in bytes.chunks(bytes.len() / 3 + 1) {
+        line.write_all(piece).unwrap();
+        std::thread::sleep(Duration::from_millis(100));
+    }
     let mut output = Vec::new();
     child.stdout.take().unwrap().read_to_end(&mut output).unwrap();
     let done = child.wait_with_output().unwrap();

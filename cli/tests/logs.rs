@@ -157,7 +157,8 @@ fn the_files_of_a_directory_are_read_one_after_the_other() {
     for path in [path.to_string(), format!("{path}/metadata.yaml")] {
         let told = good(&format!("info {path}"), "").output;
         assert!(told.contains("/imu: 200 samples of t/msg/Imu"), "{told}");
-        assert!(told.contains("1 steps back in time: -495.000 ms after sample 99"), "{told}");
+        let anew = "starts anew 1 times, each a segment of its own: -495.000 ms after sample 99";
+        assert!(told.contains(anew), "{told}");
     }
     std::fs::remove_file(directory.path().join("b.db3")).unwrap();
     refused(&format!("info {path}"), "", &["b.db3: cannot be opened"]);
@@ -381,4 +382,21 @@ fn the_toolboxs_own_bag_decodes_as_its_script_does() {
         let (_directory, path) = file("encoding.bag", &bag);
         assert_eq!(values(&good(&format!("decode {path}"), "").output), expected, "{scheme}");
     }
+}
+
+#[test]
+fn messages_longer_than_their_definition_are_told() {
+    let long = |sample: u32| {
+        let stamp = common::logs::seconds(common::logs::time(sample)).concat();
+        let message = [Kind::Bag.message(sample), vec![0; (sample / 10) as usize]].concat();
+        record(&[("op", &[2]), ("conn", &[0; 4]), ("time", &stamp)], &message)
+    };
+    let chunk = Kind::Bag.chunk("none", &(0..30).flat_map(long).collect::<Vec<u8>>());
+    let (_directory, path) = file("x.bag", [Kind::Bag.start(), chunk, Kind::Bag.end()].concat());
+    let words = "20 messages are longer than their definition, the first at byte ";
+    let info = good(&format!("info {path}"), "").output;
+    assert!(info.contains(words), "{info}");
+    let score = format!("score --scheme sf --threshold 0.1 --topic imu --field rate {path}");
+    let told = good(&score, "").told;
+    assert!(told.contains(words), "{told}");
 }

@@ -65,6 +65,77 @@ fn a_network_that_the_chip_can_hold_costs_nothing() {
     assert!(!ran.output.contains("BIAS"));
 }
 
+/// As snnTorch and Norse write layers: graphs in the graph, one that leads back to itself.
+#[test]
+fn nested_and_recurrent_graphs_are_taken() {
+    let whole = good(&network(&peers("roll.nir").display().to_string()), "");
+    let nested = good(&network(&peers("nested.nir").display().to_string()), "");
+    let body = |output: &str| output.lines().skip(1).map(str::to_owned).collect::<Vec<_>>();
+    let named: Vec<_> = body(&nested.output);
+    let expected: Vec<_> = body(&whole.output)
+        .iter()
+        .map(|line| line.replace("node `lif2`", "node `lif2.lif`"))
+        .collect();
+    assert_eq!(named, expected);
+
+    let recurrent = good(&network(&peers("recurrent.nir").display().to_string()), "");
+    let rows = recurrent.output.split("recurrent: &[").nth(1).unwrap();
+    // From neuron 1 to neuron 0, below 0, as in the graph; none to itself.
+    let row: Vec<i32> = rows
+        .lines()
+        .nth(2)
+        .unwrap()
+        .trim_matches([' ', '[', ']', ','])
+        .split(", ")
+        .map(|weight| weight.parse().unwrap())
+        .collect();
+    assert!(row[0] < 0 && row[1] == 0, "{row:?}");
+    let [_, _, spikes, on_chip, _] = figures(&recurrent.told, "node `lif1.lif`: ")[..] else {
+        panic!("{}", recurrent.told)
+    };
+    assert!(spikes > 1_000.0 && (spikes - on_chip).abs() < 0.1 * spikes, "{}", recurrent.told);
+}
+
+/// JSON has its own weights back.
+#[test]
+fn a_recurrent_layer_that_the_chip_can_hold_costs_nothing() {
+    // The second neuron follows the first; its own spikes hold it back. One spike a sample.
+    let json = r#"{"layers": [{"name": "one", "weights": [[3, 3], [2, 1]],
+        "recurrent": [[0, 0], [-2, 0]], "threshold": [8.5, 30.5]}]}"#;
+    let (_directory, path) = file("recurrent.json", json);
+    let sf = format!("--scheme sf --threshold 0.05 --column gyro_x {}", flight("hexarotor.csv"));
+    let ran = good(&format!("network {path} {sf}"), "");
+    assert!(ran.output.contains("recurrent: &[\n        [0, -"), "{}", ran.output);
+    let [_, clipped, spikes, on_chip, distance] = figures(&ran.told, "one: ")[..] else {
+        panic!("{}", ran.told)
+    };
+    assert!(spikes > 100.0, "{}", ran.told);
+    assert_eq!((clipped, distance, on_chip), (0.0, 0.0, spikes), "{}", ran.told);
+}
+
+#[test]
+fn silent_and_low_agreement_are_told_and_a_recording_is_held_out() {
+    let json = r#"{"layers": [{"weights": [[1, 1]], "threshold": 1e9}]}"#;
+    let (_directory, path) = file("silent.json", json);
+    let sf = format!("--scheme sf --threshold 0.1 --column gyro_x {}", flight("hexarotor.csv"));
+    let silent = good(&format!("network {path} {sf}"), "");
+    assert!(silent.told.contains("warning: no output fires"), "{}", silent.told);
+    assert!(!silent.told.contains("100.0 %"), "{}", silent.told);
+
+    // Fires above 0.5 after a leak by halves: what the chip has not.
+    let json = r#"{"layers": [
+        {"weights": [[0.31, -0.29], [0.27, 0.33]], "keep": 0.5, "threshold": 0.5},
+        {"weights": [[0.61, -0.59]], "keep": 0.3, "threshold": 0.55}]}"#;
+    let (_directory, path) = file("low.json", json);
+    let low = good(&format!("network {path} {sf} --held-out {}", flight("vtol_at_rest.csv")), "");
+    let shares = figures(&low.told, "outputs agree in ");
+    assert_eq!(low.told.contains("warning: step by step"), shares[2] < 50.0, "{}", low.told);
+    let held_out = low.told.split("the recording that was held out:\n").nth(1).unwrap();
+    assert!(held_out.starts_with("layer 1: 2, "), "{}", low.told);
+    assert!(!low.told.contains("--held-out"), "{}", low.told);
+    assert!(silent.told.contains("--held-out shows another"), "{}", silent.told);
+}
+
 #[test]
 fn a_bias_becomes_an_input() {
     let json = r#"{"layers": [{"weights": [[0, 0]], "bias": [0.25], "threshold": 1.1}]}"#;
@@ -149,8 +220,7 @@ fn files_of_pypis_nir_are_read_and_what_is_wrong_is_named() {
     assert_eq!(fresh.output, kept.output);
     for (fault, words) in [
         ("cuba", "node `lif2` (CubaLIF): tinyODIN has nothing like it"),
-        ("recurrent", "node `lif1` leads back to `lif1`: recurrent networks are not taken"),
-        ("nested", "node `lif2` (NIRGraph): tinyODIN has nothing like it"),
+        ("back", "node `lif2` leads to 2 nodes"),
         ("deep", "4 layers, of which 3 at most"),
         ("nan", "node `lif2`: neuron 1 has a weight of NaN"),
         ("narrow", "node `lif2`: weights for 11 inputs, but node `lif1` has 12 neurons"),

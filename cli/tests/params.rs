@@ -62,5 +62,8 @@ fn what_does_not_fit_is_refused() {
     );
     refused(&format!("encode {flight}"), "", &["--scheme must say which, or --params", "t-hsa"]);
     let (_directory, table) = file("table.toml", "scheme = 7");
-    refused(&format!("score --params {table} -"), "", &["scheme = 7: it must be a text"]);
+    refused(&format!("score --params {table} -"), "", &[":1: scheme must be a text"]);
+    let (_directory, table) = file("abc.toml", "scheme = \"sf\"\nthreshold = \"abc\"\n");
+    let told = ["abc.toml:2: threshold = \"abc\": is not a number"];
+    refused(&format!("encode --params {table} -"), "", &told);
 }

@@ -237,3 +237,44 @@ fn a_decoded_table_can_be_encoded_again() {
         [0, 1, 1, 0]
     );
 }
+
+#[test]
+fn a_scheme_that_refuses_is_a_row() {
+    let values: Vec<f64> = (0..400).map(|sample| (f64::from(sample) * 0.05).sin() * 0.02).collect();
+    let (_directory, path) = common::file("small.csv", table(&values));
+    let ran = good(&format!("score --sample q8.8 --rate 100 {path}"), "");
+    let row = |name: &str| {
+        let mut lines = ran.output.lines();
+        lines.find(|line| line.starts_with(&format!("| {name} "))).unwrap().to_owned()
+    };
+    assert!(row("mw").contains("refused: ") && row("mw").contains("threshold"), "{}", ran.output);
+    assert!(row("weighted-phase").ends_with(" |") && !row("weighted-phase").contains("refused"));
+    let json = good(&format!("score --json --sample q8.8 --rate 100 {path}"), "").output;
+    let rows: Vec<serde_json::Value> = serde_json::from_str(&json).unwrap();
+    let refused = rows.iter().filter(|row| row["refused"].is_string()).count();
+    assert!((1..rows.len()).contains(&refused), "{json}");
+    refused_alone(&path);
+}
+
+/// One scheme that is asked for alone ends the command.
+fn refused_alone(path: &str) {
+    let words = ["threshold"];
+    common::refused(&format!("score --scheme mw --sample q8.8 --rate 100 {path}"), "", &words);
+    let (_directory, constant) = common::file("constant.csv", table(&[1.0; 50]));
+    common::refused(&format!("score --rate 100 {constant}"), "", &["the signal never leaves 1"]);
+}
+
+#[test]
+fn one_scheme_without_parameters_has_the_papers_settings() {
+    let flight = flight("hexarotor.csv");
+    let threshold = |command: &str| {
+        let ran = good(&format!("{command} --json --column gyro_x {flight}"), "").output;
+        let rows: Vec<serde_json::Value> = serde_json::from_str(&ran).unwrap();
+        let sf = rows.iter().find(|row| row["scheme"] == "sf").unwrap();
+        sf["parameters"]["threshold"].as_f64().unwrap()
+    };
+    assert_eq!(threshold("score --scheme sf"), threshold("score"));
+    let directory = tempfile::tempdir().unwrap();
+    let picture = directory.path().join("sf.svg");
+    good(&format!("plot --scheme sf --column gyro_x {flight} -o {}", picture.display()), "");
+}

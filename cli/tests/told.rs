@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{file, flight, good, refused, table};
+use common::{events, file, flight, good, refused, table};
 use serde_json::Value;
 
 fn wave() -> String {
@@ -67,7 +67,7 @@ fn a_type_or_threshold_that_does_not_suit_the_data_is_told() {
         table(&(0..500).map(|sample| (f64::from(sample) * 0.05).sin() * 2.0).collect::<Vec<_>>());
     let told = good("encode --scheme sf --threshold 120 --sample i16 -", &rates).told;
     assert!(told.contains("the signal's range, 3.9"), "{told}");
-    assert!(told.contains("steps of i16, whose step is 1:"), "{told}");
+    assert!(told.contains("i16 loses the column's own steps"), "{told}");
     assert!(told.contains("no spike: the threshold, 120, is above the signal's range"), "{told}");
     let told = good("encode --scheme sf --threshold 2 --sample i16 -", &wave()).told;
     assert!(!told.contains("steps of") && !told.contains("no spike"), "{told}");
@@ -122,4 +122,28 @@ fn conversions_tell_bytes_an_event_of_what_they_wrote() {
         let words = if format == "edvs:e4" { words.to_owned() } else { written };
         assert!(ran.told.contains(words.trim()), "{format}: {}", ran.told);
     }
+}
+
+/// Whole numbers that `f32` does not tell apart, and a wave far from 0.
+#[test]
+fn columns_that_a_sample_type_loses_are_told() {
+    let latitude: Vec<f64> =
+        (0..500).map(|sample| f64::from(473_977_419 + sample * sample % 97)).collect();
+    let encode = |sample: &str, values: &[f64]| {
+        let (_directory, path) = file("x.csv", table(values));
+        let options = format!("--scheme sf --threshold 20 --sample {sample} {path}");
+        (good(&format!("encode {options}"), ""), good(&format!("score {options}"), "").told)
+    };
+    let ((single, scored), (whole, _)) = (encode("f32", &latitude), encode("i32", &latitude));
+    for told in [&single.told, &scored] {
+        assert!(told.contains("f32 loses the column's own steps: "), "{told}");
+        assert!(told.contains("; i32 holds them"), "{told}");
+    }
+    assert!(!whole.told.contains("loses"), "{}", whole.told);
+    assert_ne!(events(&single.output), events(&whole.output));
+    let far: Vec<f64> = (0..2000).map(|sample| 1e9 + (f64::from(sample) * 0.01).sin()).collect();
+    let (_directory, path) = file("far.csv", table(&far));
+    let words = ["f32 loses", "once 1000000000 is taken from every value", "never leaves"];
+    refused(&format!("score --scheme sf {path}"), "", &words);
+    refused(&format!("encode --scheme sf --paper {path}"), "", &words);
 }

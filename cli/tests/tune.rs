@@ -6,8 +6,8 @@ use common::{file, flight, good, refused, spikewire, table};
 use serde_json::Value;
 use std::fmt::Write;
 
-/// A budget that a test build gets through in a second or two.
-const SHORT: &str = "--seconds 60 --evaluations 300";
+/// A budget that a test build gets through in a few seconds.
+const SHORT: &str = "--evaluations 100";
 
 /// The only channel's only row.
 fn row(arguments: &str) -> Value {
@@ -31,6 +31,7 @@ fn each_goal_is_reached_and_beats_the_paper() {
     let (_directory, signal) = paper_signal();
     for scheme in ["tbr", "mw", "sf", "bsa", "hsa", "t-hsa"] {
         let row = row(&format!("{signal} --channel signal --scheme {scheme} {SHORT}"));
+        assert!(number(&row, "/evaluated") <= 100.0, "{scheme}");
         let (tuned, paper) = (number(&row, "/tuned_on/rmse"), number(&row, "/paper/tuned_on/rmse"));
         assert!(tuned <= paper, "{scheme}: {tuned}, the paper {paper}");
         let (tuned, paper) =
@@ -47,7 +48,7 @@ fn no_threshold_on_a_grid_is_better() {
     let (_directory, signal) = paper_signal();
     for (scheme, window) in [("sf", ""), ("tbr", ""), ("mw", "--window 3")] {
         let tuned = row(&format!(
-            "{signal} --channel signal --scheme {scheme} {window} --hold-out 0 --min-efficiency 60 --seconds 60"
+            "{signal} --channel signal --scheme {scheme} {window} --hold-out 0 --min-efficiency 60"
         ));
         let least = number(&tuned, "/tuned_on/rmse");
         for threshold in (1..60).map(|step| f64::from(step) * 0.02) {
@@ -65,6 +66,60 @@ fn no_threshold_on_a_grid_is_better() {
             );
         }
     }
+}
+
+/// A goal that a setting meets to the last spike is met, whatever its percentage is rounded to.
+#[test]
+fn settings_exactly_at_the_goal_are_found() {
+    let flight = flight("hexarotor.csv");
+    for threshold in [0.3, 0.35, 0.41] {
+        let told = good(
+            &format!("score --json --column gyro_x --scheme sf --threshold {threshold} {flight}"),
+            "",
+        );
+        let scored: Value = serde_json::from_str(&told.output).unwrap();
+        let (efficiency, rmse) = (number(&scored, "/0/efficiency"), number(&scored, "/0/rmse"));
+        let tuned = row(&format!(
+            "{flight} --channel gyro_x --scheme sf --hold-out 0 --min-efficiency {efficiency} {SHORT}"
+        ));
+        let (own, least) =
+            (number(&tuned, "/tuned_on/efficiency"), number(&tuned, "/tuned_on/rmse"));
+        assert!(own >= efficiency && least <= rmse * (1.0 + 1e-6), "{threshold}: {least} {rmse}");
+    }
+}
+
+/// A search that time ends says so, and never that it has compared everything.
+#[test]
+fn what_time_ended_is_said() {
+    let flight = flight("hexarotor.csv");
+    let mw = format!("tune {flight} --channel gyro_x --scheme mw --min-efficiency 90 --hold-out 0");
+    let cut_short = good(&format!("{mw} --seconds 0.000001"), "").output;
+    assert!(cut_short.contains("cut short after") && !cut_short.contains("all of"), "{cut_short}");
+    let whole = good(&mw, "").output;
+    assert!(whole.contains("all of") && !whole.contains("cut short"), "{whole}");
+}
+
+/// Steps in the blocks that are tuned on, waves in those held out: few large steps fit the one and not the other, which
+/// the paper's many small ones follow.
+#[test]
+fn an_overfit_is_said_though_the_papers_settings_have_more_spikes() {
+    let before = |block: usize| (block as f64 * 0.3 + 0.35).floor();
+    let value = |place: usize| {
+        let block = place / 100;
+        if before(block + 1) > before(block) {
+            0.5 + 0.5 * (place as f64 * std::f64::consts::TAU / 50.0).sin()
+        } else {
+            (place / 50 % 2) as f64
+        }
+    };
+    let (_directory, log) = file("log.csv", table(&(0..2000).map(value).collect::<Vec<_>>()));
+    let sf = format!(
+        "tune {log} --column x --rate 100 --anyway --scheme sf --min-efficiency 97 {SHORT}"
+    );
+    let told = good(&sf, "").output;
+    assert!(told.contains("fits its own blocks: from them to those held out"), "{told}");
+    let steps = good(&sf.replace("--scheme sf", "--scheme tbr"), "").output;
+    assert!(steps.contains("not to be relied on in another flight"), "{steps}");
 }
 
 #[test]
@@ -134,9 +189,8 @@ fn a_front_is_drawn() {
     for (name, magic) in [("front.svg", "<svg "), ("front.png", "\u{fffd}PNG")] {
         let path = directory.path().join(name);
         let schemes = if name == "front.svg" { "all" } else { "sf" };
-        let arguments = format!(
-            "tune {signal} --channel signal --scheme {schemes} --seconds 60 --evaluations 150"
-        );
+        let arguments =
+            format!("tune {signal} --channel signal --scheme {schemes} --evaluations 150");
         good(&format!("{arguments} --front {}", path.display()), "");
         let drawn = std::fs::read(path).unwrap();
         assert!(String::from_utf8_lossy(&drawn).starts_with(magic));
@@ -209,7 +263,7 @@ fn what_says_nothing_is_refused() {
 fn options_that_make_no_sense_are_refused() {
     let flight = flight("hexarotor.csv");
     for (options, words) in [
-        ("--scheme all", "--scheme all needs one goal"),
+        ("--scheme all", "several schemes need one goal"),
         ("--scheme all --max-rmse 1 --threshold 2", "--scheme all searches all"),
         ("--scheme sf --window 5", "sf takes no --window"),
         ("--scheme snf", "there are tbr, "),

@@ -67,8 +67,6 @@ trait Erased {
 /// Starts a codec on a recording.
 pub(super) struct Start<'a> {
     pub(super) settings: &'a Settings,
-    /// What a 1 of the recording is in the unit of the sample type.
-    pub(super) one: f64,
     /// The first sample, or the value before it, of schemes whose decoders add up steps.
     pub(super) first: Option<f64>,
 }
@@ -81,7 +79,8 @@ impl<S: Sample> Visit<S> for Start<'_> {
         scheme: P,
         mut encoder: P::EncoderState,
     ) -> Result<Codec> {
-        let Self { settings, one, first } = self;
+        let Self { settings, first } = self;
+        let one = settings.sample.one();
         let sample = |value: f64| S::from_f64(value * one);
         let window: Vec<S> = settings.first.iter().copied().map(sample).collect();
         scheme.prime(&mut encoder, &window);

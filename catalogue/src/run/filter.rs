@@ -1,29 +1,48 @@
 //! Filters by name, or from a file.
 
-use anyhow::{Context, Result, bail};
-use spikewire::rate::Shape;
 use std::fs;
 
-/// The taps that `--filter` means.
+use anyhow::{Context, Result, bail};
+use spikewire::rate::Shape;
+
+use super::Value;
+
+/// Reads taps as listed, from a file, or the name of a shape, which must be one.
 ///
 /// # Errors
 /// There is no such shape or file, or something in it is not a number.
+pub(super) fn read(text: &str) -> Result<Value> {
+    if let Some(taps) = shape(text) {
+        return taps.map(|_| Value::Word(text.to_owned().into()));
+    }
+    let taps = listed(text).map_or_else(|| from_file(text), Ok)?;
+    Ok(Value::Numbers(taps))
+}
+
+/// The taps of a shape, such as `triang:15`.
+///
+/// # Errors
+/// There is no such shape.
 pub fn taps(text: &str) -> Result<Vec<f64>> {
+    shape(text).unwrap_or_else(|| bail!("there is no such shape; there are {SHAPES}"))
+}
+
+const SHAPES: &str = "triang:N, hann:N, gauss:N or gauss:N:ALPHA";
+
+/// The taps of a shape, if the text names one.
+fn shape(text: &str) -> Option<Result<Vec<f64>>> {
     let (shape, scale) =
         text.split_once(',').map_or((text, None), |(shape, scale)| (shape, Some(scale)));
-    match shape.split(':').collect::<Vec<_>>()[..] {
-        ["triang", length] => shaped(text, Shape::Triangular, length, scale),
-        ["hann", length] => shaped(text, Shape::Hann, length, scale),
-        ["gauss", length] => shaped(text, Shape::Gaussian { alpha: 2.5 }, length, scale),
-        ["gauss", length, alpha] => {
-            let alpha = positive(alpha).with_context(|| format!("--filter {text}: alpha"))?;
-            shaped(text, Shape::Gaussian { alpha }, length, scale)
-        }
-        _ => match listed(text) {
-            Some(taps) => Ok(taps),
-            None => from_file(text),
+    Some(match shape.split(':').collect::<Vec<_>>()[..] {
+        ["triang", length] => shaped(Shape::Triangular, length, scale),
+        ["hann", length] => shaped(Shape::Hann, length, scale),
+        ["gauss", length] => shaped(Shape::Gaussian { alpha: 2.5 }, length, scale),
+        ["gauss", length, alpha] => match positive(alpha) {
+            Ok(alpha) => shaped(Shape::Gaussian { alpha }, length, scale),
+            Err(error) => Err(error.context("alpha")),
         },
-    }
+        _ => return None,
+    })
 }
 
 /// Taps with commas between: `0.5,1,0.5`, and for a single one `1,`.
@@ -34,23 +53,21 @@ fn listed(text: &str) -> Option<Vec<f64>> {
     taps.collect()
 }
 
-fn shaped(text: &str, shape: Shape, length: &str, scale: Option<&str>) -> Result<Vec<f64>> {
+fn shaped(shape: Shape, length: &str, scale: Option<&str>) -> Result<Vec<f64>> {
     const LONGEST: usize = 4096;
     let Ok(length @ 1..=LONGEST) = length.parse() else {
-        bail!("--filter {text}: the length `{length}` must be 1 to {LONGEST}");
+        bail!("the length `{length}` must be 1 to {LONGEST}");
     };
     let taps = (0..length).map(|tap| shape.at(tap, length));
     let factor = match scale.map(|scale| scale.split_once('=')) {
         None => 1.0,
-        Some(Some(("peak", peak))) => {
-            positive(peak).with_context(|| format!("--filter {text}: peak"))?
-        }
+        Some(Some(("peak", peak))) => positive(peak).context("peak")?,
         Some(Some(("sum", sum))) => {
-            let sum = positive(sum).with_context(|| format!("--filter {text}: sum"))?;
+            let sum = positive(sum).context("sum")?;
             sum / taps.clone().sum::<f64>()
         }
         Some(_) => {
-            bail!("--filter {text}: what is after the comma must be peak=NUMBER or sum=NUMBER")
+            bail!("what is after the comma must be peak=NUMBER or sum=NUMBER")
         }
     };
     Ok(taps.map(|tap| tap * factor).collect())
@@ -65,7 +82,7 @@ fn positive(text: &str) -> Result<f64> {
 
 fn from_file(path: &str) -> Result<Vec<f64>> {
     let text = fs::read_to_string(path).with_context(|| {
-        format!("--filter {path}: neither triang:N, hann:N, gauss:N or gauss:N:ALPHA, nor taps such as 0.5,1,0.5, nor a file that can be read")
+        format!("neither {SHAPES}, nor taps such as 0.5,1,0.5, nor a file that can be read")
     })?;
     let mut taps = Vec::new();
     for (line, content) in (1..).zip(text.lines()) {
@@ -85,15 +102,15 @@ fn from_file(path: &str) -> Result<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::taps;
+    use super::{Value, read, taps};
 
     #[test]
     fn shapes_and_scales() {
         assert_eq!(taps("triang:3").unwrap(), [0.5, 1.0, 0.5]);
         assert_eq!(taps("triang:3,peak=4").unwrap(), [2.0, 4.0, 2.0]);
         assert_eq!(taps("triang:3,sum=1").unwrap(), [0.25, 0.5, 0.25]);
-        assert_eq!(taps("0.5,1,-2").unwrap(), [0.5, 1.0, -2.0]);
-        assert_eq!(taps("4,").unwrap(), [4.0]);
+        assert_eq!(read("0.5,1,-2").unwrap(), Value::from(vec![0.5, 1.0, -2.0]));
+        assert_eq!(read("4,").unwrap(), Value::from(vec![4.0]));
         assert!((taps("gauss:3:2").unwrap()[0] - (-2.0_f64).exp()).abs() < 1e-12);
         for bad in [
             "triang:0",
@@ -105,7 +122,7 @@ mod tests {
             "1,x",
             "1,inf",
         ] {
-            assert!(taps(bad).is_err(), "{bad}");
+            assert!(read(bad).is_err(), "{bad}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Schemes chosen at run time: from what a user gave and a signal tells to settings, and from settings to a codec.
 //!
 //! A scheme says in its file how it is built from settings, and where needed how these come about. All else is here:
-//! reading options and files, what the paper and the signal stand in for, what a sample type rounds, and the codec
+//! what the paper and the signal stand in for, what a sample type rounds, and the codec
 //! whose type says nothing of the scheme.
 
 mod asked;
@@ -9,26 +9,30 @@ mod calibrate;
 mod codec;
 mod exact;
 mod filter;
-mod given;
 mod quantiles;
+mod resolve;
 mod rust;
 mod sample_type;
 mod settings;
+mod sweep;
+mod value;
 
-pub use asked::{Asked, Known, Options, missing};
+pub use asked::{Asked, takes_no};
 pub use calibrate::Calibrated;
 pub use codec::{Codec, Event};
-pub use exact::{Outcome, Parabola, below, outcomes};
+pub use exact::{Outcome, Outcomes, Parabola, below, outcomes};
 pub use filter::taps;
-pub use given::{Given, Ran};
+pub use resolve::{Known, Resolve, missing};
 pub use rust::{Constant, Counted, Mean, Rust, lengthened, state};
 pub use sample_type::{Fixed32, SampleType};
-pub use settings::{Settings, is_list, number};
+pub use settings::Settings;
+pub use sweep::{LANES, Rule, sweep};
+pub use value::{SET, Value};
 
 use anyhow::{Result, bail};
 use spikewire::{Sample, Scheme, Spike};
 
-use crate::{Entry, Info, Parameter, Search, State, for_sample_type};
+use crate::{Entry, Info, Parameter, Search, State, Unit, for_sample_type};
 
 /// Populations up to this size have codes of this capacity, larger ones of the largest.
 const FEW: usize = 64;
@@ -84,21 +88,21 @@ pub trait Visit<S: Sample> {
 
 /// How a scheme comes about at run time.
 pub trait Build: Entry {
-    /// Complete settings from options, the paper's settings and the signal.
+    /// Complete settings from what is asked for, the paper's settings and the signal.
     ///
     /// # Errors
     /// A parameter is missing or makes no sense.
-    fn resolve(asked: &Asked) -> Result<Settings> {
+    fn resolve(asked: &Resolve) -> Result<Settings> {
         asked.all()
     }
 
-    /// The options that would make a calibration over the whole signal unnecessary.
-    fn needs_signal(options: &Options) -> Option<String> {
-        missing(&Self::INFO, options)
+    /// The parameters that would make a calibration over the whole signal unnecessary.
+    fn needs_signal(asked: &Asked) -> Option<String> {
+        missing(&Self::INFO, asked)
     }
 
     /// How many samples its encoder takes to start from.
-    fn looks_back(_: &Options) -> usize {
+    fn looks_back(_: &Asked) -> usize {
         1
     }
 
@@ -106,11 +110,14 @@ pub trait Build: Entry {
     ///
     /// # Errors
     /// The settings lack them, or they make no sense.
-    fn shape(given: &Given) -> Result<Shape> {
+    fn shape(settings: &Settings) -> Result<Shape> {
         let has = |name: &str| Self::INFO.parameters.iter().any(|own| own.name == name);
-        let neurons = if has("neurons") { given.neurons()? } else { 1 };
-        let slots =
-            if has("slots") { given.count("slots", 2..=spikewire::dynamic::LEVELS)? } else { 1 };
+        let neurons = if has("neurons") { settings.neurons()? } else { 1 };
+        let slots = if has("slots") {
+            settings.count("slots", 2..=spikewire::dynamic::LEVELS)?
+        } else {
+            1
+        };
         Ok(Shape { neurons, slots })
     }
 
@@ -118,7 +125,7 @@ pub trait Build: Entry {
     ///
     /// # Errors
     /// The settings lack its length, or it is not known.
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         bail!("the memory of {} is not known here", Self::INFO.name)
     }
 
@@ -126,13 +133,21 @@ pub trait Build: Entry {
     ///
     /// # Errors
     /// The settings lack its length, or none does.
-    fn counted(_: &Given) -> Result<Counted> {
+    fn counted(_: &Settings) -> Result<Counted> {
         bail!("{} is not among the codecs that were measured", Self::INFO.name)
     }
 
-    /// Every outcome that its threshold can have on stretches of a signal, each coded by itself; about so many at most.
-    /// The settings are of any threshold. `None`: it has no such list.
-    fn outcomes(_: &Given, _: &[&[f64]], _: usize) -> Option<Vec<Outcome>> {
+    /// Returns the outcomes that thresholds of a range can have on stretches of a signal, each coded by itself. Lists
+    /// about `most` of them, and says whether any is missing, if each takes a pass over the signal. The settings are
+    /// of any threshold. `None` if the scheme has no such list.
+    fn outcomes(_: &Settings, _: &[&[f64]], _: (f64, f64), _: usize) -> Option<Outcomes> {
+        None
+    }
+
+    /// Compares values of one parameter in one pass over stretches of a signal, and returns the spikes and squared errors
+    /// of each: values of the threshold, or factors on the filter where it has no threshold. The settings are of any
+    /// value. `None` if it takes a pass for each.
+    fn swept(_: &Settings, _: &[&[f64]], _: &[f64; LANES]) -> Option<[(usize, f64); LANES]> {
         None
     }
 
@@ -140,12 +155,17 @@ pub trait Build: Entry {
     ///
     /// # Errors
     /// The settings lack something, or it has no constant.
-    fn constant(_: &Given, _: &Rust) -> Result<Constant> {
+    fn constant(_: &Settings, _: &Rust) -> Result<Constant> {
         bail!("{} has no constant", Self::INFO.name)
     }
 
-    /// Where a good value of a parameter is looked for beside these options.
-    fn search(parameter: &Parameter, _: &Options) -> Option<Search> {
+    /// Whether the numbers of a parameter become samples, which rounds them to the sample type.
+    fn is_in_samples(parameter: &Parameter, _: &Settings) -> bool {
+        parameter.unit == Unit::Signal
+    }
+
+    /// Where a good value of a parameter is looked for beside these.
+    fn search(parameter: &Parameter, _: &Asked) -> Option<Search> {
         parameter.search
     }
 
@@ -153,7 +173,7 @@ pub trait Build: Entry {
     ///
     /// # Errors
     /// A parameter makes no sense, or the visitor's own.
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output>;
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output>;
 }
 
 /// A population code, built with codes of a capacity that holds its neurons.
@@ -163,7 +183,7 @@ pub trait BuildPopulation: Build {
     /// # Errors
     /// A parameter makes no sense, or the visitor's own.
     fn build_within<S: Sample, V: Visit<S>, const M: usize>(
-        given: &Given,
+        settings: &Settings,
         visitor: V,
     ) -> Result<V::Output>;
 
@@ -171,11 +191,14 @@ pub trait BuildPopulation: Build {
     ///
     /// # Errors
     /// A parameter makes no sense, or the visitor's own.
-    fn build_population<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        if Self::shape(given)?.neurons <= FEW {
-            Self::build_within::<S, V, FEW>(given, visitor)
+    fn build_population<S: Sample, V: Visit<S>>(
+        settings: &Settings,
+        visitor: V,
+    ) -> Result<V::Output> {
+        if Self::shape(settings)?.neurons <= FEW {
+            Self::build_within::<S, V, FEW>(settings, visitor)
         } else {
-            Self::build_within::<S, V, { spikewire::dynamic::NEURONS }>(given, visitor)
+            Self::build_within::<S, V, { spikewire::dynamic::NEURONS }>(settings, visitor)
         }
     }
 }
@@ -185,17 +208,17 @@ pub trait RunTime: Sync {
     /// What is known of it without running it.
     fn info(&self) -> &'static Info;
 
-    /// The options that would make a calibration over the whole signal unnecessary.
-    fn needs_signal(&self, options: &Options) -> Option<String>;
+    /// The parameters that would make a calibration over the whole signal unnecessary.
+    fn needs_signal(&self, asked: &Asked) -> Option<String>;
 
     /// How many samples its encoder takes to start from.
-    fn looks_back(&self, options: &Options) -> usize;
+    fn looks_back(&self, asked: &Asked) -> usize;
 
-    /// Complete settings from options, the paper's settings and the signal.
+    /// Complete settings from what is asked for, the paper's settings and the signal, as they run in a sample type.
     ///
     /// # Errors
-    /// A parameter is missing, not taken by the scheme, or makes no sense.
-    fn resolve(&self, options: &Options, known: &Known) -> Result<Settings>;
+    /// A parameter is missing, not taken by the scheme, makes no sense, or becomes 0 in the sample type and must not.
+    fn resolve(&self, sample: SampleType, asked: &Asked, known: &Known) -> Result<Settings>;
 
     /// How many neurons and sub-timesteps it has.
     ///
@@ -203,20 +226,14 @@ pub trait RunTime: Sync {
     /// The settings lack them, or they make no sense.
     fn shape(&self, settings: &Settings) -> Result<Shape>;
 
-    /// The settings as they run in a sample type, and which of them it rounded.
-    ///
-    /// # Errors
-    /// A parameter becomes 0 that must not, or makes no sense.
-    fn rounded(&self, sample: SampleType, settings: &Settings) -> Result<(Settings, Vec<Ran>)>;
-
-    /// Where a good value of a parameter is looked for beside these options.
-    fn search(&self, parameter: &Parameter, options: &Options) -> Option<Search>;
+    /// Where a good value of a parameter is looked for beside these.
+    fn search(&self, parameter: &Parameter, asked: &Asked) -> Option<Search>;
 
     /// The bytes of RAM of one channel's encoder, on a flight controller.
     ///
     /// # Errors
     /// The settings lack its length, or it is not known.
-    fn ram(&self, sample: SampleType, settings: &Settings) -> Result<usize>;
+    fn ram(&self, settings: &Settings) -> Result<usize>;
 
     /// Which codec of the measured table stands for its work.
     ///
@@ -224,26 +241,38 @@ pub trait RunTime: Sync {
     /// The settings lack its length, or none does.
     fn counted(&self, settings: &Settings) -> Result<Counted>;
 
-    /// Every outcome that its threshold can have on stretches of a signal, each coded by itself; about so many at most.
-    /// The settings are of any threshold. `None`: it has no such list.
+    /// Returns the outcomes that thresholds of a range can have on stretches of a signal, each coded by itself. Lists
+    /// about `most` of them, and says whether any is missing, if each takes a pass over the signal. The settings are
+    /// of any threshold. `None` if the scheme has no such list.
     fn outcomes(
         &self,
         settings: &Settings,
         stretches: &[&[f64]],
+        range: (f64, f64),
         most: usize,
-    ) -> Option<Vec<Outcome>>;
+    ) -> Option<Outcomes>;
 
-    /// It as a constant in Rust, of settings that are [rounded](Self::rounded).
+    /// Compares values of one parameter in one pass over stretches of a signal, and returns the spikes and squared errors
+    /// of each: values of the threshold, or factors on the filter where it has no threshold. The settings are of any
+    /// value. `None` if it takes a pass for each.
+    fn swept(
+        &self,
+        settings: &Settings,
+        stretches: &[&[f64]],
+        values: &[f64; LANES],
+    ) -> Option<[(usize, f64); LANES]>;
+
+    /// It as a constant in Rust, as the settings run.
     ///
     /// # Errors
     /// The settings lack something, or it has no constant.
-    fn constant(&self, sample: SampleType, settings: &Settings) -> Result<Constant>;
+    fn constant(&self, settings: &Settings) -> Result<Constant>;
 
     /// An encoder and its decoder, as they start on a recording.
     ///
     /// # Errors
     /// A parameter makes no sense.
-    fn codec(&self, sample: SampleType, settings: &Settings) -> Result<Codec>;
+    fn codec(&self, settings: &Settings) -> Result<Codec>;
 }
 
 impl<T: Build + Sync> RunTime for T {
@@ -251,100 +280,115 @@ impl<T: Build + Sync> RunTime for T {
         const { &T::INFO }
     }
 
-    fn needs_signal(&self, options: &Options) -> Option<String> {
-        if options.paper {
-            return Some("parameters in the place of --paper".to_owned());
+    fn needs_signal(&self, asked: &Asked) -> Option<String> {
+        if asked.paper {
+            return Some("parameters in the place of `paper`".to_owned());
         }
-        T::needs_signal(options)
+        T::needs_signal(asked)
     }
 
-    fn looks_back(&self, options: &Options) -> usize {
-        T::looks_back(options)
+    fn looks_back(&self, asked: &Asked) -> usize {
+        T::looks_back(asked)
     }
 
-    fn resolve(&self, options: &Options, known: &Known) -> Result<Settings> {
-        let asked = Asked::new(&T::INFO, options, known)?;
-        let mut settings = T::resolve(&asked)?;
+    fn resolve(&self, sample: SampleType, asked: &Asked, known: &Known) -> Result<Settings> {
+        let resolve = Resolve::new(&T::INFO, asked, known)?;
+        let mut settings = T::resolve(&resolve)?;
         if T::INFO.has_first_value {
-            settings.first = asked.first_window(T::looks_back(asked.options))?;
+            settings.first = resolve.first_window(T::looks_back(asked))?;
         }
-        Ok(settings)
+        if sample == SampleType::F32 { Ok(settings) } else { rounded::<T>(sample, &settings) }
     }
 
     fn shape(&self, settings: &Settings) -> Result<Shape> {
-        T::shape(&Given::new(settings, 1.0))
+        T::shape(settings)
     }
 
-    fn rounded(&self, sample: SampleType, settings: &Settings) -> Result<(Settings, Vec<Ran>)> {
-        if sample == SampleType::F32 {
-            return Ok((settings.clone(), Vec::new()));
-        }
-        let given = Given::new(settings, sample.one());
-        let built = for_sample_type!(sample, S => T::build::<S, _>(&given, Nothing));
-        let mut told = given.told();
-        if T::INFO.has_first_value
-            && let Some(name) = settings.first_key()
-        {
-            for_sample_type!(sample, S => given.signal::<S>(name).map(drop))?;
-            told = given.told();
-        }
-        let vanished =
-            |ran: &&Ran| matches!((&ran.asked[..], &ran.ran[..]), ([asked], [0.0]) if *asked > 0.0);
-        if let (Err(_), Some(ran)) = (&built, told.iter().find(vanished)) {
-            bail!(
-                "{} {} is 0 in {sample}, whose step is {}; a type with more bits after the point, or f32, would \
-                 hold it",
-                ran.name,
-                ran.asked[0],
-                sample.step()
-            );
-        }
-        built?;
-        let mut rounded = settings.clone();
-        for ran in &told {
-            rounded.set(ran.name, settings::list(&ran.ran));
-        }
-        told.retain(|ran| ran.asked != ran.ran);
-        Ok((rounded, told))
+    fn search(&self, parameter: &Parameter, asked: &Asked) -> Option<Search> {
+        T::search(parameter, asked)
     }
 
-    fn search(&self, parameter: &Parameter, options: &Options) -> Option<Search> {
-        T::search(parameter, options)
-    }
-
-    fn ram(&self, sample: SampleType, settings: &Settings) -> Result<usize> {
-        let given = Given::new(settings, sample.one());
-        for_sample_type!(sample, S => T::ram::<S>(&given))
+    fn ram(&self, settings: &Settings) -> Result<usize> {
+        for_sample_type!(settings.sample, S => T::ram::<S>(settings))
     }
 
     fn counted(&self, settings: &Settings) -> Result<Counted> {
-        T::counted(&Given::new(settings, 1.0))
+        T::counted(settings)
     }
 
     fn outcomes(
         &self,
         settings: &Settings,
         stretches: &[&[f64]],
+        range: (f64, f64),
         most: usize,
-    ) -> Option<Vec<Outcome>> {
-        T::outcomes(&Given::new(settings, 1.0), stretches, most)
+    ) -> Option<Outcomes> {
+        T::outcomes(settings, stretches, range, most)
     }
 
-    fn constant(&self, sample: SampleType, settings: &Settings) -> Result<Constant> {
-        T::constant(&Given::new(settings, sample.one()), &Rust::new(sample))
+    fn swept(
+        &self,
+        settings: &Settings,
+        stretches: &[&[f64]],
+        values: &[f64; LANES],
+    ) -> Option<[(usize, f64); LANES]> {
+        T::swept(settings, stretches, values)
     }
 
-    fn codec(&self, sample: SampleType, settings: &Settings) -> Result<Codec> {
-        let given = Given::new(settings, sample.one());
-        let mut visitor = codec::Start { settings, one: sample.one(), first: None };
+    fn constant(&self, settings: &Settings) -> Result<Constant> {
+        T::constant(settings, &Rust::new(settings.sample))
+    }
+
+    fn codec(&self, settings: &Settings) -> Result<Codec> {
+        let mut visitor = codec::Start { settings, first: None };
         if T::INFO.has_first_value {
             let Some(name) = settings.first_key() else {
                 bail!("the header lacks `# first=` or `# start=`; is it a file of spikes?")
             };
-            visitor.first = Some(given.number(name)?);
+            visitor.first = Some(settings.number(name)?);
         }
-        for_sample_type!(sample, S => T::build::<S, _>(&given, visitor))
+        for_sample_type!(settings.sample, S => T::build::<S, _>(settings, visitor))
     }
+}
+
+/// Settings as they run in a sample type that is not `f32`.
+fn rounded<T: Build>(sample: SampleType, asked: &Settings) -> Result<Settings> {
+    let one = sample.one();
+    let round =
+        |value: &f64| for_sample_type!(sample, S => S::from_f64(value * one).to_f64()) / one;
+    let mut ran = asked.clone();
+    ran.sample = sample;
+    let first = ran.first_key();
+    for (name, value) in ran.entries_mut() {
+        let own = T::INFO.parameters.iter().find(|own| own.key() == *name);
+        let is_rounded =
+            own.is_some_and(|own| T::is_in_samples(own, asked)) || first == Some(*name);
+        match value {
+            Value::Number(number) if is_rounded => *number = round(number),
+            Value::Numbers(numbers) if is_rounded => {
+                for number in numbers {
+                    *number = round(number);
+                }
+            }
+            _ => {}
+        }
+    }
+    let built = for_sample_type!(sample, S => T::build::<S, _>(&ran, Nothing));
+    let pairs = || asked.entries().iter().zip(ran.entries());
+    let vanished = pairs().find(|((_, asked), (_, ran))| {
+        asked.number().is_some_and(|number| number > 0.0) && ran.number() == Some(0.0)
+    });
+    if let (Err(_), Some(((name, asked), _))) = (&built, vanished) {
+        bail!(
+            "{name} {asked} is 0 in {sample}, whose step is {}; a type with more bits after the point, or f32, would \
+             hold it",
+            sample.step()
+        );
+    }
+    built?;
+    let changed = pairs().filter(|((_, asked), (_, ran))| asked != ran);
+    ran.rounded = changed.map(|(asked, _)| asked.clone()).collect();
+    Ok(ran)
 }
 
 /// Asks only whether a scheme can be built.

@@ -3,7 +3,7 @@
 use anyhow::{Result, bail};
 use spikewire::Scheme;
 
-use super::{Given, SampleType};
+use super::{SampleType, Settings};
 
 /// A scheme as a constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -60,10 +60,10 @@ impl Mean {
     ///
     /// # Errors
     /// They lack it, or it makes no sense.
-    pub fn of(given: &Given) -> Result<Self> {
-        let power = given.count("power", 0..=15)?;
-        Ok(if given.takes_window()? {
-            let words = given.window()?.samples().div_ceil(32);
+    pub fn of(settings: &Settings) -> Result<Self> {
+        let power = settings.count("power", 0..=15)?;
+        Ok(if settings.takes_window()? {
+            let words = settings.window()?.samples().div_ceil(32);
             Self {
                 scheme: format!("spikewire::rate::Window<{words}>"),
                 value: format!("spikewire::rate::Window::new({power})"),
@@ -117,25 +117,25 @@ impl Rust {
     ///
     /// # Errors
     /// There is none of this name, or it is no finite number.
-    pub fn signal(self, given: &Given, name: &str) -> Result<String> {
-        Ok(self.number(given.number(name)?))
+    pub fn signal(self, settings: &Settings, name: &str) -> Result<String> {
+        Ok(self.number(settings.number(name)?))
     }
 
     /// From `min` to `max`, as they run.
     ///
     /// # Errors
     /// As for [`signal`](Self::signal).
-    pub fn range(self, given: &Given) -> Result<String> {
-        Ok(format!("{}..={}", self.signal(given, "min")?, self.signal(given, "max")?))
+    pub fn range(self, settings: &Settings) -> Result<String> {
+        Ok(format!("{}..={}", self.signal(settings, "min")?, self.signal(settings, "max")?))
     }
 
     /// Numbers in the signal's unit, as an array.
     ///
     /// # Errors
     /// There are none of this name, or they are not finite.
-    pub fn signals(self, given: &Given, name: &str) -> Result<String> {
-        let numbers = given.numbers(name)?;
-        let numbers: Vec<String> = numbers.into_iter().map(|number| self.number(number)).collect();
+    pub fn signals(self, settings: &Settings, name: &str) -> Result<String> {
+        let numbers = settings.numbers(name)?;
+        let numbers: Vec<String> = numbers.iter().map(|number| self.number(*number)).collect();
         Ok(format!("[{}]", numbers.join(", ")))
     }
 
@@ -143,8 +143,8 @@ impl Rust {
     ///
     /// # Errors
     /// As for [`signals`](Self::signals).
-    pub fn taps(self, given: &Given) -> Result<String> {
-        Ok(format!("spikewire::rate::Taps::new({})", self.signals(given, "taps")?))
+    pub fn taps(self, settings: &Settings) -> Result<String> {
+        Ok(format!("spikewire::rate::Taps::new({})", self.signals(settings, "taps")?))
     }
 
     /// The constant of a scheme in the crate, with what its type takes besides the sample type, and its constructor.
@@ -168,14 +168,12 @@ impl Rust {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Settings;
     use super::*;
 
     #[test]
     fn numbers_keep_their_bits() {
         let mut settings = Settings::default();
-        settings.set("threshold", "0.1".to_owned());
-        let given = Given::new(&settings, 1.0);
+        settings.set("threshold", 0.1);
         for (sample, text) in [
             ("f32", "0.1"),
             ("q16.16", "fixed::types::I16F16::from_bits(6554)"),
@@ -183,7 +181,7 @@ mod tests {
             ("i16", "0"),
         ] {
             assert_eq!(
-                Rust::new(sample.parse().unwrap()).signal(&given, "threshold").unwrap(),
+                Rust::new(sample.parse().unwrap()).signal(&settings, "threshold").unwrap(),
                 text
             );
         }

@@ -1,65 +1,66 @@
 //! The parameters of a scheme, complete: all that encoding and decoding need.
 
-use anyhow::{Result, bail};
+use std::ops::RangeInclusive;
 
-use super::Options;
-use crate::{Found, Info, Kind};
+use anyhow::{Context, Result, bail};
+use spikewire::{Sample, dynamic, rate};
 
-/// Parameters in the signal's unit, as a file of spikes lists them.
+use super::{Asked, SampleType, Value};
+use crate::{Found, Info};
+
+/// Parameters in the signal's unit, as they run in a sample type and as a file of spikes lists them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
-    entries: Vec<(&'static str, String)>,
+    values: Vec<(&'static str, Value)>,
+    /// The sample type that they run in.
+    pub sample: SampleType,
     /// The samples that an encoder starts from: one, or a moving window's first. Decoding needs none.
     pub first: Vec<f64>,
+    /// What the sample type has rounded, as it was before.
+    pub rounded: Vec<(&'static str, Value)>,
 }
 
 /// What a file calls the first sample, where the decoder starts with the value of that very sample; the value before
-/// it is called as the option is.
+/// it is called as the parameter is.
 const FIRST: &str = "first";
 
 impl Settings {
-    /// The names and texts, in the order of a file.
-    pub fn entries(&self) -> &[(&'static str, String)] {
-        &self.entries
+    /// The names and values, in the order of a file.
+    pub fn entries(&self) -> &[(&'static str, Value)] {
+        &self.values
     }
 
-    /// The text of an entry.
-    pub fn get(&self, name: &str) -> Option<&str> {
-        self.entries.iter().find(|(own, _)| *own == name).map(|(_, text)| text.as_str())
+    pub(super) fn entries_mut(&mut self) -> &mut [(&'static str, Value)] {
+        &mut self.values
     }
 
-    /// A number, if there is such an entry and it is one.
-    pub fn number(&self, name: &str) -> Option<f64> {
-        number(name, self.get(name)?).ok()
-    }
-
-    /// Numbers, if there is such an entry and it is a list of them.
-    pub fn numbers(&self, name: &str) -> Option<Vec<f64>> {
-        numbers(name, self.get(name)?).ok()
+    /// The value of an entry.
+    pub fn get(&self, name: &str) -> Option<&Value> {
+        self.values.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
     }
 
     /// Sets an entry, in its place or at the end.
-    pub fn set(&mut self, name: &'static str, text: String) {
-        match self.entries.iter_mut().find(|(own, _)| *own == name) {
-            Some((_, old)) => *old = text,
-            None => self.entries.push((name, text)),
+    pub fn set(&mut self, name: &'static str, value: impl Into<Value>) {
+        match self.values.iter_mut().find(|(own, _)| *own == name) {
+            Some((_, old)) => *old = value.into(),
+            None => self.values.push((name, value.into())),
         }
     }
 
     /// Sets the value of the first sample, from which the decoder starts; its spike changes nothing.
     pub(super) fn set_first(&mut self, value: f64) {
-        self.set(FIRST, value.to_string());
+        self.set(FIRST, value);
     }
 
     /// The decoder's first value: the first sample's, or the one before it.
     pub fn first_value(&self) -> Option<f64> {
-        self.number(self.first_key()?)
+        self.get(self.first_key()?)?.number()
     }
 
     /// The entry with the decoder's first value: the first sample's, or the one before it.
     pub(super) fn first_key(&self) -> Option<&'static str> {
-        let names = self.entries.iter().map(|(name, _)| *name);
-        names.into_iter().find(|name| [FIRST, "start"].contains(name))
+        let mut names = self.values.iter().map(|(name, _)| *name);
+        names.find(|name| [FIRST, "start"].contains(name))
     }
 
     /// Whether the decoder's first value is that of the first sample, whose spike then changes nothing.
@@ -67,60 +68,182 @@ impl Settings {
         self.get(FIRST).is_some()
     }
 
-    /// These as options that bring them about again.
-    pub fn to_options(&self, info: &Info) -> Options {
-        let mut options = Options::default();
+    /// What brings these settings about again.
+    pub fn to_asked(&self, info: &Info) -> Asked {
+        let mut asked = Asked::default();
         for parameter in info.parameters.iter().filter(|parameter| parameter.is_recorded) {
-            if let Some(text) = self.get(parameter.key()) {
-                // A comma at the end, or one tap alone would be the name of a file.
-                let end = if parameter.kind == Kind::Filter { "," } else { "" };
-                options.set(parameter.name, &format!("{text}{end}"));
+            if let Some(value) = self.get(parameter.key()) {
+                asked.set(parameter.name, value.clone());
             }
         }
-        options
+        asked
     }
 
     /// The entries of a scheme among the keys of a file, which are taken from these.
-    pub fn take(info: &Info, keys: &mut Vec<(String, String)>) -> Self {
-        let mut settings = Self::default();
-        let mut take = |name: &'static str| {
-            if let Some(place) = keys.iter().position(|(key, _)| key == name) {
-                settings.set(name, keys.remove(place).1);
-            }
-        };
+    ///
+    /// # Errors
+    /// The text of a key is no value of its parameter.
+    pub fn take(info: &Info, sample: SampleType, keys: &mut Vec<(String, String)>) -> Result<Self> {
+        let mut settings = Self { sample, ..Self::default() };
         for parameter in info.parameters.iter().filter(|parameter| parameter.is_recorded) {
-            if parameter.found == Some(Found::First) {
-                take(FIRST);
+            let first = (parameter.found == Some(Found::First)).then_some(FIRST);
+            for name in first.into_iter().chain([parameter.key()]) {
+                if let Some(place) = keys.iter().position(|(key, _)| key == name) {
+                    let text = keys.remove(place).1;
+                    let value = parameter.read_recorded(&text);
+                    settings.set(name, value.with_context(|| format!("{name}={text}"))?);
+                }
             }
-            take(parameter.key());
         }
-        settings
+        Ok(settings)
     }
-}
 
-/// Whether a text is a list, or a number, and no word.
-pub fn is_list(text: &str) -> bool {
-    !text.chars().next().is_some_and(char::is_alphabetic)
-}
-
-/// A finite number.
-///
-/// # Errors
-/// It is none.
-pub fn number(name: &str, text: &str) -> Result<f64> {
-    match text.trim().parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        Ok(value) => bail!("{name}={value}: it must be finite"),
-        Err(_) => bail!("{name}={text} is not a number"),
+    /// A value.
+    ///
+    /// # Errors
+    /// There is none of this name, as in a file that is none of spikes.
+    pub fn value(&self, name: &str) -> Result<&Value> {
+        let value = self.get(name);
+        value.with_context(|| format!("the header lacks `# {name}=`; is it a file of spikes?"))
     }
-}
 
-/// Finite numbers with commas between.
-pub(super) fn numbers(name: &str, text: &str) -> Result<Vec<f64>> {
-    text.split(',').map(|text| number(name, text)).collect()
-}
+    /// The word in the place of a list; `None` where there is a list.
+    ///
+    /// # Errors
+    /// There is none of this name.
+    pub fn preset(&self, name: &str) -> Result<Option<&str>> {
+        Ok(self.value(name)?.word())
+    }
 
-/// Numbers with commas between.
-pub(super) fn list(values: &[f64]) -> String {
-    values.iter().map(f64::to_string).collect::<Vec<_>>().join(",")
+    /// A finite number.
+    ///
+    /// # Errors
+    /// There is none of this name, or it is no number.
+    pub fn number(&self, name: &str) -> Result<f64> {
+        let value = self.value(name)?;
+        value.number().with_context(|| format!("{name}={value} is not a number"))
+    }
+
+    /// Finite numbers.
+    ///
+    /// # Errors
+    /// There are none of this name, or it is a word.
+    pub fn numbers(&self, name: &str) -> Result<&[f64]> {
+        let value = self.value(name)?;
+        value.numbers().with_context(|| format!("{name}={value} is no list of numbers"))
+    }
+
+    /// A whole number within this range.
+    ///
+    /// # Errors
+    /// There is none of this name, or it is no whole number, or outside the range.
+    pub fn count(&self, name: &str, range: RangeInclusive<usize>) -> Result<usize> {
+        let value = self.value(name)?;
+        let (min, max) = (range.start(), range.end());
+        let count = match value {
+            Value::Count(count) => usize::try_from(*count).ok(),
+            _ => None,
+        };
+        match count {
+            Some(count) if range.contains(&count) => Ok(count),
+            _ if *max == usize::MAX => {
+                bail!("{name} {value} must be a whole number, {min} or more")
+            }
+            _ => bail!("{name} {value} must be a whole number in {min}..={max}"),
+        }
+    }
+
+    /// One of these words.
+    ///
+    /// # Errors
+    /// There is none of this name, or another word.
+    pub fn choice(&self, name: &str, words: &[&'static str]) -> Result<&'static str> {
+        let value = self.value(name)?;
+        match words.iter().find(|own| value.word() == Some(own)) {
+            Some(word) => Ok(word),
+            None => bail!("{name} {value}: there are {}", words.join(", ")),
+        }
+    }
+
+    /// How many neurons there are.
+    ///
+    /// # Errors
+    /// As for [`count`](Self::count).
+    pub fn neurons(&self) -> Result<usize> {
+        self.count("neurons", 3..=dynamic::NEURONS)
+    }
+
+    /// How many taps the filter has.
+    ///
+    /// # Errors
+    /// As for [`numbers`](Self::numbers).
+    pub fn length(&self) -> Result<usize> {
+        Ok(self.numbers("taps")?.len())
+    }
+
+    /// A number in the signal's unit, in the sample type.
+    ///
+    /// # Errors
+    /// As for [`number`](Self::number).
+    pub fn signal<S: Sample>(&self, name: &str) -> Result<S> {
+        Ok(S::from_f64(self.number(name)? * self.sample.one()))
+    }
+
+    /// Numbers in the signal's unit, in the sample type.
+    ///
+    /// # Errors
+    /// As for [`numbers`](Self::numbers).
+    pub fn signals<S: Sample>(&self, name: &str) -> Result<Vec<S>> {
+        let one = self.sample.one();
+        Ok(self.numbers(name)?.iter().map(|number| S::from_f64(number * one)).collect())
+    }
+
+    /// Numbers in the signal's unit, in that of the sample type, but not rounded to it.
+    ///
+    /// # Errors
+    /// As for [`numbers`](Self::numbers).
+    pub fn reals(&self, name: &str) -> Result<Vec<f32>> {
+        let one = self.sample.one();
+        Ok(self.numbers(name)?.iter().map(|number| (number * one) as f32).collect())
+    }
+
+    /// From `min` to `max`.
+    ///
+    /// # Errors
+    /// As for [`number`](Self::number).
+    pub fn range<S: Sample>(&self) -> Result<RangeInclusive<S>> {
+        Ok(self.signal("min")?..=self.signal("max")?)
+    }
+
+    /// Whether the mean of spikes is taken over a window, and not as an average.
+    ///
+    /// # Errors
+    /// There is no such setting, or it is another word.
+    pub fn takes_window(&self) -> Result<bool> {
+        Ok(self.choice("mean", &["average", "window"])? == "window")
+    }
+
+    /// A mean over a window, in the room of the largest.
+    ///
+    /// # Errors
+    /// As for [`count`](Self::count).
+    pub fn window(&self) -> Result<rate::Window<128>> {
+        Ok(rate::Window::try_new(self.count("power", 0..=12)? as u8)?)
+    }
+
+    /// A mean as an average.
+    ///
+    /// # Errors
+    /// As for [`count`](Self::count).
+    pub fn average(&self) -> Result<rate::Average> {
+        Ok(rate::Average::try_new(self.count("power", 1..=15)? as u8)?)
+    }
+
+    /// The filter.
+    ///
+    /// # Errors
+    /// There are too many taps or none, or they make no filter.
+    pub fn taps<S: Sample>(&self) -> Result<dynamic::Taps<S>> {
+        Ok(dynamic::Taps::try_new(&self.signals("taps")?)?)
+    }
 }

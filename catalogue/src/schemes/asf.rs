@@ -14,7 +14,7 @@ use crate::{
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Constant, Counted, Given, Rust, Visit, state},
+    crate::run::{Build, Constant, Counted, Rust, Settings, Visit, state},
     anyhow::Result,
     spikewire::Sample,
 };
@@ -98,25 +98,26 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<AdaptiveStepForward<S>>())
     }
 
-    fn counted(_: &Given) -> Result<Counted> {
+    fn counted(_: &Settings) -> Result<Counted> {
         Ok(Counted::exact("asf"))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let threshold = rust.signal(given, "threshold")?;
-        let (doublings, run) = (given.count("doublings", 0..=30)?, given.count("run", 1..=8)?);
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let threshold = rust.signal(settings, "threshold")?;
+        let (doublings, run) =
+            (settings.count("doublings", 0..=30)?, settings.count("run", 1..=8)?);
         let value = format!("new({threshold}, {doublings}).with_run({run})");
         rust.constant("temporal::AdaptiveStepForward", "", &value)
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let doublings = given.count("doublings", 0..=30)? as u8;
-        let run = given.count("run", 1..=8)? as u8;
-        let scheme = AdaptiveStepForward::try_new(given.signal("threshold")?, doublings)?;
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        let doublings = settings.count("doublings", 0..=30)? as u8;
+        let run = settings.count("run", 1..=8)? as u8;
+        let scheme = AdaptiveStepForward::try_new(settings.signal("threshold")?, doublings)?;
         visitor.visit(scheme.try_with_run(run)?, AdaptiveStepForward::<S>::START)
     }
 }

@@ -14,7 +14,7 @@ use crate::{
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Constant, Counted, Given, Rust, Visit, state},
+    crate::run::{Build, Constant, Counted, Rust, Settings, Visit, state},
     anyhow::Result,
     spikewire::Sample,
 };
@@ -90,23 +90,23 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<AdaptiveContrast<S>>())
     }
 
-    fn counted(_: &Given) -> Result<Counted> {
+    fn counted(_: &Settings) -> Result<Counted> {
         Ok(Counted::exact("atbr"))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let threshold = rust.signal(given, "threshold")?;
-        let value = format!("new({threshold}, {})", given.count("doublings", 0..=15)?);
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let threshold = rust.signal(settings, "threshold")?;
+        let value = format!("new({threshold}, {})", settings.count("doublings", 0..=15)?);
         rust.constant("temporal::AdaptiveContrast", "", &value)
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let doublings = given.count("doublings", 0..=15)? as u8;
-        let scheme = AdaptiveContrast::try_new(given.signal("threshold")?, doublings)?;
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        let doublings = settings.count("doublings", 0..=15)? as u8;
+        let scheme = AdaptiveContrast::try_new(settings.signal("threshold")?, doublings)?;
         visitor.visit(scheme, AdaptiveContrast::<S>::START)
     }
 }

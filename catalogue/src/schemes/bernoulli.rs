@@ -13,7 +13,7 @@ use crate::{Channel, Count, Entry, Flight, InC, Info, Kind, Parameter, Scaled, U
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Given, Visit},
+    crate::run::{Build, Settings, Visit},
     anyhow::Result,
     rand_chacha::ChaCha8Rng,
     rand_chacha::rand_core::SeedableRng,
@@ -79,15 +79,15 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
         type Random<S, A> = Bernoulli<S, ChaCha8Rng, A>;
-        let generator = ChaCha8Rng::seed_from_u64(given.count("seed", 0..=usize::MAX)? as u64);
-        let range = given.range()?;
-        if given.takes_window()? {
-            let scheme = Random::<S, _>::try_new(range, given.window()?)?;
+        let generator = ChaCha8Rng::seed_from_u64(settings.count("seed", 0..=usize::MAX)? as u64);
+        let range = settings.range()?;
+        if settings.takes_window()? {
+            let scheme = Random::<S, _>::try_new(range, settings.window()?)?;
             return visitor.visit(scheme, Random::<S, Window<128>>::state(generator));
         }
-        let scheme = Random::<S, _>::try_new(range, given.average()?)?;
+        let scheme = Random::<S, _>::try_new(range, settings.average()?)?;
         visitor.visit(scheme, Random::<S, Average>::state(generator))
     }
 }

@@ -14,7 +14,8 @@ use crate::{
 #[cfg(feature = "run")]
 use {
     crate::run::{
-        Asked, Build, Constant, Counted, Given, Options, Rust, Settings, Visit, lengthened, state,
+        Asked, Build, Constant, Counted, LANES, Resolve, Rule, Rust, Settings, Value, Visit,
+        lengthened, state, sweep,
     },
     anyhow::{Result, bail},
     spikewire::dynamic,
@@ -24,6 +25,10 @@ use {
 /// Ben's spiker.
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
+
+/// What `form` and `criterion` may be.
+const FORMS: &[&str] = &["aligned", "toolbox"];
+const CRITERIA: &[&str] = &["sub", "mul"];
 
 impl Entry for Scheme {
     const INFO: Info = Info {
@@ -42,7 +47,7 @@ impl Entry for Scheme {
             Parameter::SHIFT,
             Parameter::new(
                 "form",
-                Kind::Choice(&["aligned", "toolbox"]),
+                Kind::Choice(FORMS),
                 Unit::None,
                 "as published (aligned), or as in the paper's tables (toolbox)",
             )
@@ -50,7 +55,7 @@ impl Entry for Scheme {
             .with_paper(Paper::Text("toolbox")),
             Parameter::new(
                 "criterion",
-                Kind::Choice(&["sub", "mul"]),
+                Kind::Choice(CRITERIA),
                 Unit::None,
                 "aligned: e1 <= e2 - threshold (sub, unless given) or e1 <= e2 * threshold (mul)",
             ),
@@ -155,13 +160,15 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn resolve(asked: &Asked) -> Result<Settings> {
-        let form = asked.word("form")?;
-        let criterion = match (form.as_str(), asked.user("criterion")) {
-            ("toolbox", Some("sub")) => bail!("--form toolbox compares by --criterion mul only"),
-            ("toolbox", _) => "mul".to_owned(),
-            (_, Some(_)) => asked.word("criterion")?,
-            (_, None) => "sub".to_owned(),
+    fn resolve(asked: &Resolve) -> Result<Settings> {
+        let form = asked.needed("form")?;
+        let criterion = match (form.word(), asked.user("criterion").and_then(Value::word)) {
+            (Some("toolbox"), Some("sub")) => {
+                bail!("`form` toolbox compares by `criterion` mul only")
+            }
+            (Some("toolbox"), _) => "mul".into(),
+            (_, Some(_)) => asked.needed("criterion")?,
+            (_, None) => "sub".into(),
         };
         let mut settings = Settings::default();
         asked.settle("filter", &mut settings)?;
@@ -172,58 +179,81 @@ impl Build for Scheme {
         Ok(settings)
     }
 
+    /// A difference is a sample, a factor is none.
+    fn is_in_samples(parameter: &Parameter, settings: &Settings) -> bool {
+        let is_difference = settings.get("criterion").and_then(Value::word) == Some("sub");
+        parameter.unit == Unit::Signal || parameter.name == "threshold" && is_difference
+    }
+
     /// A factor has another range than a difference.
-    fn search(parameter: &Parameter, options: &Options) -> Option<Search> {
+    fn search(parameter: &Parameter, asked: &Asked) -> Option<Search> {
         let is_factor =
-            options.get("form") == Some("toolbox") || options.get("criterion") == Some("mul");
+            asked.word("form") == Some("toolbox") || asked.word("criterion") == Some("mul");
         match parameter.name {
             "threshold" if is_factor => Some(Search::Log(0.3, 3.9)),
             _ => parameter.search,
         }
     }
 
-    fn ram<S: Sample>(given: &Given) -> Result<usize> {
-        let sizes = match given.word("form")? {
+    fn ram<S: Sample>(settings: &Settings) -> Result<usize> {
+        let sizes = match settings.choice("form", FORMS)? {
             "toolbox" => [state::<BsaToolbox<S, 8>>(), state::<BsaToolbox<S, 16>>()],
             _ => [state::<Bsa<S, 8>>(), state::<Bsa<S, 16>>()],
         };
-        Ok(lengthened(sizes, given.length()?))
+        Ok(lengthened(sizes, settings.length()?))
     }
 
-    fn counted(given: &Given) -> Result<Counted> {
-        let length = given.length()? as f64;
-        Ok(match given.word("form")? {
+    fn counted(settings: &Settings) -> Result<Counted> {
+        let length = settings.length()? as f64;
+        Ok(match settings.choice("form", FORMS)? {
             "toolbox" => Counted::at_most("bsa-toolbox-9", length / 9.0),
             _ => Counted::at_most("bsa-24-busy", length / 24.0),
         })
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let (taps, shift) = (rust.taps(given)?, rust.signal(given, "shift")?);
-        let ratio = || given.number("threshold").map(|ratio| format!("{:?}", ratio as f32));
-        let (scheme, new) = match (given.word("form")?, given.word("criterion")?) {
-            ("toolbox", _) => ("rate::BsaToolbox", format!("new({taps}, {})", ratio()?)),
-            (_, "mul") => ("rate::Bsa", format!("multiplicative({taps}, {})", ratio()?)),
-            _ => {
-                ("rate::Bsa", format!("subtractive({taps}, {})", rust.signal(given, "threshold")?))
-            }
-        };
-        let value = format!("{new}.with_shift({shift})");
-        rust.constant(scheme, &format!("{}", given.length()?), &value)
+    fn swept(
+        settings: &Settings,
+        stretches: &[&[f64]],
+        values: &[f64; LANES],
+    ) -> Option<[(usize, f64); LANES]> {
+        let (form, criterion) = (settings.get("form")?.word(), settings.get("criterion")?.word());
+        if (form, criterion) != (Some("aligned"), Some("sub")) {
+            return None;
+        }
+        let filter = (settings.numbers("taps").ok()?, settings.number("shift").ok()?);
+        Some(sweep(Rule::Bsa, stretches, filter, &[1.0; LANES], values))
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let (form, criterion) = (given.word("form")?, given.word("criterion")?);
-        let (taps, shift) = (given.taps()?, given.signal("shift")?);
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let (taps, shift) = (rust.taps(settings)?, rust.signal(settings, "shift")?);
+        let ratio = || settings.number("threshold").map(|ratio| format!("{:?}", ratio as f32));
+        let (scheme, new) =
+            match (settings.choice("form", FORMS)?, settings.choice("criterion", CRITERIA)?) {
+                ("toolbox", _) => ("rate::BsaToolbox", format!("new({taps}, {})", ratio()?)),
+                (_, "mul") => ("rate::Bsa", format!("multiplicative({taps}, {})", ratio()?)),
+                _ => (
+                    "rate::Bsa",
+                    format!("subtractive({taps}, {})", rust.signal(settings, "threshold")?),
+                ),
+            };
+        let value = format!("{new}.with_shift({shift})");
+        rust.constant(scheme, &format!("{}", settings.length()?), &value)
+    }
+
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        let (form, criterion) =
+            (settings.choice("form", FORMS)?, settings.choice("criterion", CRITERIA)?);
+        let (taps, shift) = (settings.taps()?, settings.signal("shift")?);
         let criterion = match (form, criterion) {
             ("toolbox", "mul") => {
-                let scheme = dynamic::BsaToolbox::try_new(taps, given.number("threshold")? as f32)?;
+                let scheme =
+                    dynamic::BsaToolbox::try_new(taps, settings.number("threshold")? as f32)?;
                 let scheme = scheme.try_with_shift(shift)?;
                 let start = scheme.state();
                 return visitor.visit(scheme, start);
             }
-            ("aligned", "mul") => Criterion::Multiplicative(given.number("threshold")? as f32),
-            ("aligned", "sub") => Criterion::Subtractive(given.signal("threshold")?),
+            ("aligned", "mul") => Criterion::Multiplicative(settings.number("threshold")? as f32),
+            ("aligned", "sub") => Criterion::Subtractive(settings.signal("threshold")?),
             _ => bail!(
                 "form={form} with criterion={criterion}: there are aligned with sub or mul, and toolbox with mul"
             ),

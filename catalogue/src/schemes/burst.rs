@@ -12,7 +12,7 @@ use crate::{
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Constant, Counted, Given, Rust, Visit, state},
+    crate::run::{Build, Constant, Counted, Rust, Settings, Visit, state},
     anyhow::Result,
     spikewire::{Sample, dynamic},
 };
@@ -108,29 +108,29 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<Burst<S, 19>>())
     }
 
-    fn counted(_: &Given) -> Result<Counted> {
+    fn counted(_: &Settings) -> Result<Counted> {
         Ok(Counted::exact("burst-5"))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let range = rust.range(given)?;
-        let slots = given.count("slots", 2..=dynamic::LEVELS)?.to_string();
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let range = rust.range(settings)?;
+        let slots = settings.count("slots", 2..=dynamic::LEVELS)?.to_string();
         let [spikes, shortest, longest] =
-            ["spikes", "shortest", "longest"].map(|name| given.count(name, 1..=255));
+            ["spikes", "shortest", "longest"].map(|name| settings.count(name, 1..=255));
         let value = format!("new({range}, {}, {}..={})", spikes?, shortest?, longest?);
         rust.constant("timing::Burst", &slots, &value)
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let slots = given.count("slots", 2..=dynamic::LEVELS)?;
-        let byte = |name| given.count(name, 1..=255).map(|count| count as u8);
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        let slots = settings.count("slots", 2..=dynamic::LEVELS)?;
+        let byte = |name| settings.count(name, 1..=255).map(|count| count as u8);
         let intervals = byte("shortest")?..=byte("longest")?;
         let scheme =
-            dynamic::Burst::<S>::try_of(slots, &given.range()?, byte("spikes")?, &intervals)?;
+            dynamic::Burst::<S>::try_of(slots, &settings.range()?, byte("spikes")?, &intervals)?;
         visitor.visit(scheme, dynamic::Burst::<S>::START)
     }
 }

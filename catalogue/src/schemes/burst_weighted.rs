@@ -14,7 +14,7 @@ use crate::{
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Constant, Counted, Given, Mean, Rust, Visit, state},
+    crate::run::{Build, Constant, Counted, Mean, Rust, Settings, Visit, state},
     anyhow::Result,
     spikewire::{Sample, rate::Window},
 };
@@ -103,29 +103,30 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<WeightedBurst<S, Average>>())
     }
 
-    fn counted(_: &Given) -> Result<Counted> {
+    fn counted(_: &Settings) -> Result<Counted> {
         Ok(Counted::exact("burst-weighted"))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let (range, weight) = (rust.range(given)?, rust.signal(given, "weight")?);
-        let (doublings, mean) = (given.count("doublings", 0..=14)?, Mean::of(given)?);
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let (range, weight) = (rust.range(settings)?, rust.signal(settings, "weight")?);
+        let (doublings, mean) = (settings.count("doublings", 0..=14)?, Mean::of(settings)?);
         let value = format!("new({range}, {weight}, {doublings}, {})", mean.value);
         rust.constant("rate::WeightedBurst", &mean.scheme, &value)
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let (range, weight) = (given.range()?, given.signal("weight")?);
-        let doublings = given.count("doublings", 0..=14)? as u8;
-        if given.takes_window()? {
-            let scheme = WeightedBurst::<S, _>::try_new(range, weight, doublings, given.window()?)?;
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        let (range, weight) = (settings.range()?, settings.signal("weight")?);
+        let doublings = settings.count("doublings", 0..=14)? as u8;
+        if settings.takes_window()? {
+            let scheme =
+                WeightedBurst::<S, _>::try_new(range, weight, doublings, settings.window()?)?;
             return visitor.visit(scheme, WeightedBurst::<S, Window<128>>::START);
         }
-        let scheme = WeightedBurst::<S, _>::try_new(range, weight, doublings, given.average()?)?;
+        let scheme = WeightedBurst::<S, _>::try_new(range, weight, doublings, settings.average()?)?;
         visitor.visit(scheme, WeightedBurst::<S, Average>::START)
     }
 }

@@ -10,7 +10,7 @@ use crate::{Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter,
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, BuildPopulation, Constant, Counted, Given, Rust, Visit, state},
+    crate::run::{Build, BuildPopulation, Constant, Counted, Rust, Settings, Visit, state},
     anyhow::Result,
     spikewire::{Sample, dynamic},
 };
@@ -63,32 +63,37 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<Gaussian<S, 20>>())
     }
 
     /// Neurons are found by bisection.
-    fn counted(given: &Given) -> Result<Counted> {
-        Ok(Counted::at_most("grf-20", given.neurons()? as f64 / 20.0))
+    fn counted(settings: &Settings) -> Result<Counted> {
+        Ok(Counted::at_most("grf-20", settings.neurons()? as f64 / 20.0))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let neurons = given.neurons()?.to_string();
-        rust.constant("population::Gaussian", &neurons, &format!("linear({})", rust.range(given)?))
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let neurons = settings.neurons()?.to_string();
+        rust.constant(
+            "population::Gaussian",
+            &neurons,
+            &format!("linear({})", rust.range(settings)?),
+        )
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        Self::build_population(given, visitor)
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        Self::build_population(settings, visitor)
     }
 }
 
 #[cfg(feature = "run")]
 impl BuildPopulation for Scheme {
     fn build_within<S: Sample, V: Visit<S>, const M: usize>(
-        given: &Given,
+        settings: &Settings,
         visitor: V,
     ) -> Result<V::Output> {
-        let scheme = dynamic::Position::<S, M>::try_linear(given.neurons()?, &given.range()?)?;
+        let scheme =
+            dynamic::Position::<S, M>::try_linear(settings.neurons()?, &settings.range()?)?;
         let start = scheme.state();
         visitor.visit(scheme, start)
     }

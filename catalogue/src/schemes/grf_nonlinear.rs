@@ -13,7 +13,7 @@ use crate::{
 #[cfg(feature = "run")]
 use {
     crate::run::{
-        Asked, Build, BuildPopulation, Constant, Counted, Given, Options, Rust, Settings, Shape,
+        Asked, Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape, Value,
         Visit, missing, state,
     },
     anyhow::{Context, Result, bail},
@@ -119,8 +119,8 @@ impl Entry for Scheme {
 
 /// Settings of fields: a list of centres and widths says it all.
 #[cfg(feature = "run")]
-pub(super) fn resolve(asked: &Asked, info: &Info) -> Result<Settings> {
-    let has_quantiles = asked.text("centres").as_deref() == Some("quantiles");
+pub(super) fn resolve(asked: &Resolve, info: &Info) -> Result<Settings> {
+    let has_quantiles = asked.needed("centres")?.word() == Some("quantiles");
     let centres = if has_quantiles {
         Some(quantiles(asked)?)
     } else {
@@ -138,10 +138,10 @@ pub(super) fn resolve(asked: &Asked, info: &Info) -> Result<Settings> {
             // How many quantiles.
             ("neurons", ..) if has_quantiles => {}
             (name, Some("centres"), ..) if has_quantiles && asked.user(name).is_some() => {
-                bail!("--centres quantiles says it all; --{name} contradicts it")
+                bail!("`centres` quantiles says it all; `{name}` contradicts it")
             }
             (name, Some(by), ..) if asked.user(name).is_some() => {
-                bail!("--{by} is a list, which says it all; --{name} contradicts it")
+                bail!("`{by}` is a list, which says it all; `{name}` contradicts it")
             }
             (_, Some(_), ..) => {}
             ("centres", _, Some(list), _) | ("widths", _, _, Some(list)) => {
@@ -153,58 +153,57 @@ pub(super) fn resolve(asked: &Asked, info: &Info) -> Result<Settings> {
     Ok(settings)
 }
 
-/// Centres at the signal's quantiles, as a file holds them.
+/// Centres at the signal's quantiles.
 #[cfg(feature = "run")]
-fn quantiles(asked: &Asked) -> Result<String> {
+fn quantiles(asked: &Resolve) -> Result<Vec<f64>> {
     let mut settings = Settings::default();
     asked.settle("neurons", &mut settings)?;
-    let neurons = Given::new(&settings, 1.0).neurons()?;
-    let calibrated = asked.known.calibrated.context("--centres quantiles: no signal is known")?;
-    let centres = calibrated.quantiles(neurons).context("there is no sample")?;
-    Ok(centres.iter().map(f64::to_string).collect::<Vec<_>>().join(","))
+    let neurons = settings.neurons()?;
+    let calibrated = asked.known.calibrated.context("`centres` quantiles: no signal is known")?;
+    calibrated.quantiles(neurons).context("there is no sample")
 }
 
 /// The signal's range or its quantiles, unless there is a list of centres.
 #[cfg(feature = "run")]
-pub(super) fn needs_signal(options: &Options, info: &Info) -> Option<String> {
-    match options.get("centres") {
-        Some("quantiles") => Some("--centres as a list".to_owned()),
-        None | Some("companded") => missing(info, options),
-        Some(_) => None,
+pub(super) fn needs_signal(asked: &Asked, info: &Info) -> Option<String> {
+    match (asked.get("centres"), asked.word("centres")) {
+        (Some(Value::Numbers(_)), _) => None,
+        (_, Some("quantiles")) => Some("`centres` as a list".to_owned()),
+        _ => missing(info, asked),
     }
 }
 
 /// As many neurons as there are centres.
 #[cfg(feature = "run")]
-pub(super) fn neurons(given: &Given) -> Result<usize> {
-    match given.word("centres")? {
-        "companded" => given.neurons(),
-        _ => Ok(given.numbers("centres")?.len()),
+pub(super) fn neurons(settings: &Settings) -> Result<usize> {
+    match settings.preset("centres")? {
+        Some("companded") => settings.neurons(),
+        _ => Ok(settings.numbers("centres")?.len()),
     }
 }
 
 /// The centres, in the sample type.
 #[cfg(feature = "run")]
-pub(super) fn centres<S: Sample, const M: usize>(given: &Given) -> Result<Vec<S>> {
-    Ok(match given.word("centres")? {
-        "companded" => {
-            let companding = given.number("companding")? as f32;
-            let (neurons, range) = (given.neurons()?, given.range()?);
+pub(super) fn centres<S: Sample, const M: usize>(settings: &Settings) -> Result<Vec<S>> {
+    Ok(match settings.preset("centres")? {
+        Some("companded") => {
+            let companding = settings.number("companding")? as f32;
+            let (neurons, range) = (settings.neurons()?, settings.range()?);
             dynamic::Position::<S, M>::try_companded(neurons, &range, companding)?
                 .centres()
                 .to_vec()
         }
-        _ => given.signals("centres")?,
+        _ => settings.signals("centres")?,
     })
 }
 
 /// The widths, unless they are those of the spacing.
 #[cfg(feature = "run")]
-pub(super) fn widths(given: &Given, neurons: usize) -> Result<Option<Vec<f32>>> {
-    if given.word("widths")? == "spacing" {
+pub(super) fn widths(settings: &Settings, neurons: usize) -> Result<Option<Vec<f32>>> {
+    if settings.preset("widths")? == Some("spacing") {
         return Ok(None);
     }
-    Ok(Some(repeated(given.reals("widths")?, neurons)))
+    Ok(Some(repeated(settings.reals("widths")?, neurons)))
 }
 
 /// One width for all fields, or one each.
@@ -218,66 +217,71 @@ fn repeated(widths: Vec<f32>, neurons: usize) -> Vec<f32> {
 
 /// The constructor of companded centres, with what it takes besides.
 #[cfg(feature = "run")]
-pub(super) fn companded(given: &Given, rust: Rust, besides: &str) -> Result<String> {
-    let companding = given.number("companding")? as f32;
-    Ok(format!("companded({}, {companding:?}{besides})", rust.range(given)?))
+pub(super) fn companded(settings: &Settings, rust: Rust, besides: &str) -> Result<String> {
+    let companding = settings.number("companding")? as f32;
+    Ok(format!("companded({}, {companding:?}{besides})", rust.range(settings)?))
 }
 
 /// The constructor of fields with widths of their own.
 #[cfg(feature = "run")]
-pub(super) fn with_widths(given: &Given, rust: Rust, constructor: &str) -> Result<String> {
-    if given.word("centres")? == "companded" {
+pub(super) fn with_widths(settings: &Settings, rust: Rust, constructor: &str) -> Result<String> {
+    if settings.preset("centres")? == Some("companded") {
         bail!("companded centres with widths of their own have no constant; list the centres");
     }
-    let widths = given.numbers("widths")?.into_iter().map(|width| width as f32);
-    let widths: Vec<f32> = repeated(widths.collect(), neurons(given)?);
-    Ok(format!("{constructor}({}, {widths:?})", rust.signals(given, "centres")?))
+    let widths = settings.numbers("widths")?.iter().map(|width| *width as f32);
+    let widths: Vec<f32> = repeated(widths.collect(), neurons(settings)?);
+    Ok(format!("{constructor}({}, {widths:?})", rust.signals(settings, "centres")?))
 }
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn resolve(asked: &Asked) -> Result<Settings> {
+    fn resolve(asked: &Resolve) -> Result<Settings> {
         resolve(asked, &Self::INFO)
     }
 
-    fn needs_signal(options: &Options) -> Option<String> {
-        needs_signal(options, &Self::INFO)
+    fn needs_signal(asked: &Asked) -> Option<String> {
+        needs_signal(asked, &Self::INFO)
     }
 
-    fn shape(given: &Given) -> Result<Shape> {
-        Ok(Shape { neurons: neurons(given)?, slots: 1 })
+    /// Widths stay as they are.
+    fn is_in_samples(parameter: &Parameter, _: &Settings) -> bool {
+        parameter.unit == Unit::Signal && parameter.name != WIDTHS.name
     }
 
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn shape(settings: &Settings) -> Result<Shape> {
+        Ok(Shape { neurons: neurons(settings)?, slots: 1 })
+    }
+
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<Gaussian<S, 20>>())
     }
 
-    fn counted(given: &Given) -> Result<Counted> {
-        Ok(Counted::at_most("grf-nonlinear-20", neurons(given)? as f64 / 20.0))
+    fn counted(settings: &Settings) -> Result<Counted> {
+        Ok(Counted::at_most("grf-nonlinear-20", neurons(settings)? as f64 / 20.0))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let value = match (given.word("centres")?, given.word("widths")?) {
-            ("companded", "spacing") => companded(given, *rust, "")?,
-            (_, "spacing") => format!("spaced({})", rust.signals(given, "centres")?),
-            _ => with_widths(given, *rust, "with_widths")?,
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let value = match (settings.preset("centres")?, settings.preset("widths")?) {
+            (Some("companded"), Some("spacing")) => companded(settings, *rust, "")?,
+            (_, Some("spacing")) => format!("spaced({})", rust.signals(settings, "centres")?),
+            _ => with_widths(settings, *rust, "with_widths")?,
         };
-        rust.constant("population::Gaussian", &neurons(given)?.to_string(), &value)
+        rust.constant("population::Gaussian", &neurons(settings)?.to_string(), &value)
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        Self::build_population(given, visitor)
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        Self::build_population(settings, visitor)
     }
 }
 
 #[cfg(feature = "run")]
 impl BuildPopulation for Scheme {
     fn build_within<S: Sample, V: Visit<S>, const M: usize>(
-        given: &Given,
+        settings: &Settings,
         visitor: V,
     ) -> Result<V::Output> {
-        let centres = centres::<S, M>(given)?;
-        let scheme = match widths(given, centres.len())? {
+        let centres = centres::<S, M>(settings)?;
+        let scheme = match widths(settings, centres.len())? {
             None => dynamic::Position::<S, M>::try_spaced(&centres)?,
             Some(widths) => dynamic::Position::try_with_widths(&centres, &widths)?,
         };

@@ -15,8 +15,8 @@ use crate::{
 use {
     super::grf_nonlinear,
     crate::run::{
-        Asked, Build, BuildPopulation, Constant, Counted, Given, Options, Rust, Settings, Shape,
-        Visit, state,
+        Asked, Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape, Visit,
+        state,
     },
     anyhow::Result,
     spikewire::dynamic,
@@ -54,7 +54,7 @@ impl Entry for Scheme {
                 "floor",
                 Kind::Count,
                 Unit::None,
-                "neurons below this level of --slots are silent",
+                "neurons below this level of `slots` are silent",
             )
             .with_default("1")
             .searched(Search::Whole(1, 2)),
@@ -120,63 +120,68 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn resolve(asked: &Asked) -> Result<Settings> {
+    fn resolve(asked: &Resolve) -> Result<Settings> {
         grf_nonlinear::resolve(asked, &Self::INFO)
     }
 
-    fn needs_signal(options: &Options) -> Option<String> {
-        grf_nonlinear::needs_signal(options, &Self::INFO)
+    fn needs_signal(asked: &Asked) -> Option<String> {
+        grf_nonlinear::needs_signal(asked, &Self::INFO)
     }
 
-    fn shape(given: &Given) -> Result<Shape> {
-        let slots = given.count("slots", 2..=dynamic::LEVELS)?;
-        Ok(Shape { neurons: grf_nonlinear::neurons(given)?, slots })
+    /// Widths stay as they are.
+    fn is_in_samples(parameter: &Parameter, _: &Settings) -> bool {
+        parameter.unit == Unit::Signal && parameter.name != grf_nonlinear::WIDTHS.name
     }
 
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn shape(settings: &Settings) -> Result<Shape> {
+        let slots = settings.count("slots", 2..=dynamic::LEVELS)?;
+        Ok(Shape { neurons: grf_nonlinear::neurons(settings)?, slots })
+    }
+
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<NonLinearSlots<S, 15, 10>>())
     }
 
-    fn counted(given: &Given) -> Result<Counted> {
-        let neurons = grf_nonlinear::neurons(given)?;
+    fn counted(settings: &Settings) -> Result<Counted> {
+        let neurons = grf_nonlinear::neurons(settings)?;
         Ok(Counted::at_most("grf-nonlinear-slots-15x10", neurons as f64 / 15.0))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let Shape { neurons, slots } = Self::shape(given)?;
-        let value = if given.word("widths")? == "spacing" {
-            let beta = format!(", {:?}", given.number("beta")? as f32);
-            match given.word("centres")? {
-                "companded" => grf_nonlinear::companded(given, *rust, &beta)?,
-                _ => format!("spaced({}{beta})", rust.signals(given, "centres")?),
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let Shape { neurons, slots } = Self::shape(settings)?;
+        let value = if settings.preset("widths")? == Some("spacing") {
+            let beta = format!(", {:?}", settings.number("beta")? as f32);
+            match settings.preset("centres")? {
+                Some("companded") => grf_nonlinear::companded(settings, *rust, &beta)?,
+                _ => format!("spaced({}{beta})", rust.signals(settings, "centres")?),
             }
         } else {
-            grf_nonlinear::with_widths(given, *rust, "new")?
+            grf_nonlinear::with_widths(settings, *rust, "new")?
         };
-        let value = format!("{value}.with_floor({})", given.count("floor", 1..=slots)?);
+        let value = format!("{value}.with_floor({})", settings.count("floor", 1..=slots)?);
         rust.constant("population::NonLinearSlots", &format!("{neurons}, {slots}"), &value)
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        Self::build_population(given, visitor)
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        Self::build_population(settings, visitor)
     }
 }
 
 #[cfg(feature = "run")]
 impl BuildPopulation for Scheme {
     fn build_within<S: Sample, V: Visit<S>, const M: usize>(
-        given: &Given,
+        settings: &Settings,
         visitor: V,
     ) -> Result<V::Output> {
-        let slots = given.count("slots", 2..=dynamic::LEVELS)?;
-        let centres = grf_nonlinear::centres::<S, M>(given)?;
-        let scheme = if let Some(widths) = grf_nonlinear::widths(given, centres.len())? {
+        let slots = settings.count("slots", 2..=dynamic::LEVELS)?;
+        let centres = grf_nonlinear::centres::<S, M>(settings)?;
+        let scheme = if let Some(widths) = grf_nonlinear::widths(settings, centres.len())? {
             dynamic::NonLinearSlots::<S, M>::try_new(slots, &centres, &widths)?
         } else {
-            let beta = given.number("beta")? as f32;
+            let beta = settings.number("beta")? as f32;
             dynamic::NonLinearSlots::try_spaced(slots, &centres, beta)?
         };
-        let scheme = scheme.try_with_floor(given.count("floor", 1..=slots)? as u16)?;
+        let scheme = scheme.try_with_floor(settings.count("floor", 1..=slots)? as u16)?;
         let start = scheme.state();
         visitor.visit(scheme, start)
     }

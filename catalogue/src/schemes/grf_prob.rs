@@ -11,7 +11,7 @@ use crate::{Channel, Count, Entry, Flight, InC, Info, Kind, Parameter, Scaled, U
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, BuildPopulation, Given, Visit},
+    crate::run::{Build, BuildPopulation, Settings, Visit},
     anyhow::Result,
     rand_chacha::ChaCha8Rng,
     rand_chacha::rand_core::SeedableRng,
@@ -72,20 +72,20 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        Self::build_population(given, visitor)
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        Self::build_population(settings, visitor)
     }
 }
 
 #[cfg(feature = "run")]
 impl BuildPopulation for Scheme {
     fn build_within<S: Sample, V: Visit<S>, const M: usize>(
-        given: &Given,
+        settings: &Settings,
         visitor: V,
     ) -> Result<V::Output> {
-        let (neurons, beta) = (given.neurons()?, given.number("beta")? as f32);
-        let generator = ChaCha8Rng::seed_from_u64(given.count("seed", 0..=usize::MAX)? as u64);
-        let scheme = dynamic::Probabilistic::<S, _, M>::try_new(neurons, &given.range()?, beta)?;
+        let (neurons, beta) = (settings.neurons()?, settings.number("beta")? as f32);
+        let generator = ChaCha8Rng::seed_from_u64(settings.count("seed", 0..=usize::MAX)? as u64);
+        let scheme = dynamic::Probabilistic::<S, _, M>::try_new(neurons, &settings.range()?, beta)?;
         visitor.visit(scheme, dynamic::Probabilistic::<S, _, M>::state(generator))
     }
 }

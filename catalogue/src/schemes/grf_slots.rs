@@ -13,7 +13,7 @@ use crate::{
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, BuildPopulation, Constant, Counted, Given, Rust, Visit, state},
+    crate::run::{Build, BuildPopulation, Constant, Counted, Rust, Settings, Visit, state},
     anyhow::Result,
     spikewire::{Sample, dynamic},
 };
@@ -47,7 +47,7 @@ impl Entry for Scheme {
                 "floor",
                 Kind::Count,
                 Unit::None,
-                "neurons below this level of --slots are silent",
+                "neurons below this level of `slots` are silent",
             )
             .with_default("1")
             .searched(Search::Whole(1, 2)),
@@ -95,38 +95,38 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<Slots<S, 15, 10>>())
     }
 
-    fn counted(given: &Given) -> Result<Counted> {
-        Ok(Counted::at_most("grf-slots-15x10", given.neurons()? as f64 / 15.0))
+    fn counted(settings: &Settings) -> Result<Counted> {
+        Ok(Counted::at_most("grf-slots-15x10", settings.neurons()? as f64 / 15.0))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let (slots, beta) =
-            (given.count("slots", 2..=dynamic::LEVELS)?, given.number("beta")? as f32);
-        let shape = format!("{}, {slots}", given.neurons()?);
-        let floor = given.count("floor", 1..=slots)?;
-        let value = format!("new({}, {beta:?}).with_floor({floor})", rust.range(given)?);
+            (settings.count("slots", 2..=dynamic::LEVELS)?, settings.number("beta")? as f32);
+        let shape = format!("{}, {slots}", settings.neurons()?);
+        let floor = settings.count("floor", 1..=slots)?;
+        let value = format!("new({}, {beta:?}).with_floor({floor})", rust.range(settings)?);
         rust.constant("population::Slots", &shape, &value)
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        Self::build_population(given, visitor)
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        Self::build_population(settings, visitor)
     }
 }
 
 #[cfg(feature = "run")]
 impl BuildPopulation for Scheme {
     fn build_within<S: Sample, V: Visit<S>, const M: usize>(
-        given: &Given,
+        settings: &Settings,
         visitor: V,
     ) -> Result<V::Output> {
-        let (neurons, beta) = (given.neurons()?, given.number("beta")? as f32);
-        let slots = given.count("slots", 2..=dynamic::LEVELS)?;
-        let scheme = dynamic::Slots::<S, M>::try_new(neurons, slots, &given.range()?, beta)?;
-        let scheme = scheme.try_with_floor(given.count("floor", 1..=slots)? as u16)?;
+        let (neurons, beta) = (settings.neurons()?, settings.number("beta")? as f32);
+        let slots = settings.count("slots", 2..=dynamic::LEVELS)?;
+        let scheme = dynamic::Slots::<S, M>::try_new(neurons, slots, &settings.range()?, beta)?;
+        let scheme = scheme.try_with_floor(settings.count("floor", 1..=slots)? as u16)?;
         let start = scheme.state();
         visitor.visit(scheme, start)
     }

@@ -10,7 +10,9 @@ use crate::{Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Par
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Constant, Counted, Given, Rust, Visit, lengthened, state},
+    crate::run::{
+        Build, Constant, Counted, LANES, Rule, Rust, Settings, Visit, lengthened, state, sweep,
+    },
     anyhow::Result,
     spikewire::{Sample, dynamic},
 };
@@ -79,24 +81,33 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(given: &Given) -> Result<usize> {
+    fn ram<S: Sample>(settings: &Settings) -> Result<usize> {
         let sizes = [state::<Hough<S, 8>>(), state::<Hough<S, 16>>()];
-        Ok(lengthened(sizes, given.length()?))
+        Ok(lengthened(sizes, settings.length()?))
     }
 
-    fn counted(given: &Given) -> Result<Counted> {
-        Ok(Counted::at_most("hsa-15", given.length()? as f64 / 15.0))
+    fn counted(settings: &Settings) -> Result<Counted> {
+        Ok(Counted::at_most("hsa-15", settings.length()? as f64 / 15.0))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let (taps, shift) = (rust.taps(given)?, rust.signal(given, "shift")?);
+    fn swept(
+        settings: &Settings,
+        stretches: &[&[f64]],
+        values: &[f64; LANES],
+    ) -> Option<[(usize, f64); LANES]> {
+        let filter = (settings.numbers("taps").ok()?, settings.number("shift").ok()?);
+        Some(sweep(Rule::Hough, stretches, filter, values, &[0.0; LANES]))
+    }
+
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let (taps, shift) = (rust.taps(settings)?, rust.signal(settings, "shift")?);
         let value = format!("new({taps}).with_shift({shift})");
-        rust.constant("rate::Hough", &format!("{}", given.length()?), &value)
+        rust.constant("rate::Hough", &format!("{}", settings.length()?), &value)
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
         let scheme =
-            dynamic::Hough::try_new(given.taps()?)?.try_with_shift(given.signal("shift")?)?;
+            dynamic::Hough::try_new(settings.taps()?)?.try_with_shift(settings.signal("shift")?)?;
         let start = scheme.state();
         visitor.visit(scheme, start)
     }

@@ -14,7 +14,7 @@ use crate::{
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Constant, Counted, Given, Rust, Shape, Visit, state},
+    crate::run::{Build, Constant, Counted, Rust, Settings, Shape, Visit, state},
     anyhow::Result,
     spikewire::Sample,
 };
@@ -102,38 +102,39 @@ impl Entry for Scheme {
 
 /// The neuron, by its leak, as a constant.
 #[cfg(feature = "run")]
-pub(super) fn constant(given: &Given, rust: Rust, leak: &str) -> Result<Constant> {
+pub(super) fn constant(settings: &Settings, rust: Rust, leak: &str) -> Result<Constant> {
     let (threshold, reference) =
-        (rust.signal(given, "threshold")?, rust.signal(given, "reference")?);
+        (rust.signal(settings, "threshold")?, rust.signal(settings, "reference")?);
     let (power, most) =
-        (given.count("power", 1..=15)?, given.count("spikes", 1..=127)?.to_string());
+        (settings.count("power", 1..=15)?, settings.count("spikes", 1..=127)?.to_string());
     let value = format!("new({threshold}, {power}){leak}.with_reference({reference})");
     rust.constant("rate::IntegrateAndFire", &most, &value)
 }
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<IntegrateAndFire<S, 127>>())
     }
 
-    fn counted(_: &Given) -> Result<Counted> {
+    fn counted(_: &Settings) -> Result<Counted> {
         Ok(Counted::exact("if"))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        constant(given, *rust, "")
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        constant(settings, *rust, "")
     }
 
-    fn shape(given: &Given) -> Result<Shape> {
-        Ok(Shape { neurons: 1, slots: given.count("spikes", 1..=127)? })
+    fn shape(settings: &Settings) -> Result<Shape> {
+        Ok(Shape { neurons: 1, slots: settings.count("spikes", 1..=127)? })
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let power = given.count("power", 1..=15)? as u8;
-        let most = given.count("spikes", 1..=127)? as u8;
-        let scheme = IntegrateAndFire::<S, 127>::try_new(given.signal("threshold")?, power)?;
-        let scheme = scheme.try_with_reference(given.signal("reference")?)?.try_with_most(most)?;
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        let power = settings.count("power", 1..=15)? as u8;
+        let most = settings.count("spikes", 1..=127)? as u8;
+        let scheme = IntegrateAndFire::<S, 127>::try_new(settings.signal("threshold")?, power)?;
+        let scheme =
+            scheme.try_with_reference(settings.signal("reference")?)?.try_with_most(most)?;
         visitor.visit(scheme, IntegrateAndFire::<S, 127>::START)
     }
 }

@@ -12,7 +12,7 @@ use crate::{
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Constant, Counted, Given, Rust, Shape, Visit, state},
+    crate::run::{Build, Constant, Counted, Rust, Settings, Shape, Visit, state},
     anyhow::Result,
     spikewire::{Sample, dynamic},
 };
@@ -106,35 +106,35 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<LatencyPhase<S, 4, 32, 4>>())
     }
 
-    fn counted(given: &Given) -> Result<Counted> {
-        Ok(Counted::at_most("latency-phase-4x32", given.count("neurons", 1..=255)? as f64 / 4.0))
+    fn counted(settings: &Settings) -> Result<Counted> {
+        Ok(Counted::at_most("latency-phase-4x32", settings.count("neurons", 1..=255)? as f64 / 4.0))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let count = |name| given.count(name, 1..=255);
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let count = |name| settings.count(name, 1..=255);
         let shape = format!("{}, {}, {}", count("neurons")?, count("latencies")?, count("period")?);
-        let value = format!("new({}, {})", rust.range(given)?, count("spacing")?);
+        let value = format!("new({}, {})", rust.range(settings)?, count("spacing")?);
         rust.constant("timing::LatencyPhase", &shape, &value)
     }
 
-    fn shape(given: &Given) -> Result<Shape> {
-        let slots = given.count("latencies", 2..=255)? + given.count("period", 1..=255)? - 1;
-        Ok(Shape { neurons: given.count("neurons", 1..=255)?, slots })
+    fn shape(settings: &Settings) -> Result<Shape> {
+        let slots = settings.count("latencies", 2..=255)? + settings.count("period", 1..=255)? - 1;
+        Ok(Shape { neurons: settings.count("neurons", 1..=255)?, slots })
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let count = |name| given.count(name, 1..=255);
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        let count = |name| settings.count(name, 1..=255);
         let (latencies, period) = (count("latencies")?, count("period")?);
         let (neurons, spacing) = (count("neurons")?, count("spacing")? as u16);
         let scheme = dynamic::LatencyPhase::<S>::try_of(
             neurons,
             latencies,
             period,
-            &given.range()?,
+            &settings.range()?,
             spacing,
         )?;
         visitor.visit(scheme, dynamic::LatencyPhase::<S>::START)

@@ -10,7 +10,7 @@ use crate::{Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Sca
 #[cfg(feature = "run")]
 use {
     super::integrate,
-    crate::run::{Build, Constant, Counted, Given, Rust, Shape, Visit, state},
+    crate::run::{Build, Constant, Counted, Rust, Settings, Shape, Visit, state},
     anyhow::Result,
     spikewire::Sample,
 };
@@ -73,28 +73,29 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<IntegrateAndFire<S, 127>>())
     }
 
-    fn counted(_: &Given) -> Result<Counted> {
+    fn counted(_: &Settings) -> Result<Counted> {
         Ok(Counted::exact("lif"))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        integrate::constant(given, *rust, ".leaky()")
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        integrate::constant(settings, *rust, ".leaky()")
     }
 
-    fn shape(given: &Given) -> Result<Shape> {
-        Ok(Shape { neurons: 1, slots: given.count("spikes", 1..=127)? })
+    fn shape(settings: &Settings) -> Result<Shape> {
+        Ok(Shape { neurons: 1, slots: settings.count("spikes", 1..=127)? })
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let power = given.count("power", 1..=15)? as u8;
-        let most = given.count("spikes", 1..=127)? as u8;
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        let power = settings.count("power", 1..=15)? as u8;
+        let most = settings.count("spikes", 1..=127)? as u8;
         let scheme =
-            IntegrateAndFire::<S, 127>::try_new(given.signal("threshold")?, power)?.leaky();
-        let scheme = scheme.try_with_reference(given.signal("reference")?)?.try_with_most(most)?;
+            IntegrateAndFire::<S, 127>::try_new(settings.signal("threshold")?, power)?.leaky();
+        let scheme =
+            scheme.try_with_reference(settings.signal("reference")?)?.try_with_most(most)?;
         visitor.visit(scheme, IntegrateAndFire::<S, 127>::START)
     }
 }

@@ -14,7 +14,8 @@ use crate::{
 #[cfg(feature = "run")]
 use {
     crate::run::{
-        Build, Constant, Counted, Given, Options, Outcome, Rust, Visit, lengthened, outcomes, state,
+        Asked, Build, Constant, Counted, Outcomes, Rust, Settings, Visit, lengthened, outcomes,
+        state,
     },
     anyhow::Result,
     spikewire::{Sample, dynamic},
@@ -78,23 +79,28 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn looks_back(options: &Options) -> usize {
-        let window = options.get("window").and_then(|window| window.parse().ok()).unwrap_or(0);
-        window.min(dynamic::WIDEST - 1) + 1
+    fn looks_back(asked: &Asked) -> usize {
+        let window = asked.number("window").unwrap_or_default();
+        (window as usize).min(dynamic::WIDEST - 1) + 1
     }
 
-    fn ram<S: Sample>(given: &Given) -> Result<usize> {
+    fn ram<S: Sample>(settings: &Settings) -> Result<usize> {
         let sizes = [state::<MovingWindow<S, 8>>(), state::<MovingWindow<S, 16>>()];
-        Ok(lengthened(sizes, given.count("window", 0..=dynamic::WIDEST - 1)? + 1))
+        Ok(lengthened(sizes, settings.count("window", 0..=dynamic::WIDEST - 1)? + 1))
     }
 
     /// Long windows take no more: the sum is carried along.
-    fn counted(_: &Given) -> Result<Counted> {
+    fn counted(_: &Settings) -> Result<Counted> {
         Ok(Counted::exact("mw-5"))
     }
 
-    fn outcomes(given: &Given, stretches: &[&[f64]], most: usize) -> Option<Vec<Outcome>> {
-        let samples = given.count("window", 0..=dynamic::WIDEST - 1).ok()? + 1;
+    fn outcomes(
+        settings: &Settings,
+        stretches: &[&[f64]],
+        _: (f64, f64),
+        _: usize,
+    ) -> Option<Outcomes> {
+        let samples = settings.count("window", 0..=dynamic::WIDEST - 1).ok()? + 1;
         let distances = |values: &&[f64]| -> Vec<f64> {
             // The first samples stand before themselves.
             let past = &values[..samples.min(values.len())];
@@ -108,18 +114,18 @@ impl Build for Scheme {
             values.iter().zip(leaving).map(distance).collect()
         };
         let distances: Vec<Vec<f64>> = stretches.iter().map(distances).collect();
-        Some(outcomes(stretches, &distances, false, most))
+        Some(outcomes(stretches, &distances, false))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let samples = given.count("window", 0..=dynamic::WIDEST - 1)? + 1;
-        let threshold = rust.signal(given, "threshold")?;
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let samples = settings.count("window", 0..=dynamic::WIDEST - 1)? + 1;
+        let threshold = rust.signal(settings, "threshold")?;
         rust.constant("temporal::MovingWindow", &format!("{samples}"), &format!("new({threshold})"))
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let samples = given.count("window", 0..=dynamic::WIDEST - 1)? + 1;
-        let scheme = dynamic::MovingWindow::try_new(given.signal("threshold")?, samples)?;
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        let samples = settings.count("window", 0..=dynamic::WIDEST - 1)? + 1;
+        let scheme = dynamic::MovingWindow::try_new(settings.signal("threshold")?, samples)?;
         let start = scheme.state();
         visitor.visit_steps(scheme, start)
     }

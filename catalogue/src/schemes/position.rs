@@ -13,8 +13,8 @@ use crate::{
 #[cfg(feature = "run")]
 use {
     crate::run::{
-        Asked, Build, BuildPopulation, Constant, Counted, Given, Options, Rust, Settings, Shape,
-        Visit, is_list, missing, state,
+        Asked, Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape, Value,
+        Visit, missing, state,
     },
     anyhow::{Result, bail},
     spikewire::{Sample, dynamic},
@@ -108,73 +108,77 @@ impl Entry for Scheme {
 #[cfg(feature = "run")]
 impl Build for Scheme {
     /// A list of centres says it all.
-    fn resolve(asked: &Asked) -> Result<Settings> {
+    fn resolve(asked: &Resolve) -> Result<Settings> {
         let Some(centres) = asked.list("centres", &["linear", "gaussian"])? else {
             return asked.all();
         };
         if let Some(option) =
             ["neurons", "min", "max"].iter().find(|name| asked.user(name).is_some())
         {
-            bail!("--centres {centres} says it all; --{option} contradicts it");
+            bail!("`centres` {} says it all; `{option}` contradicts it", Value::from(centres));
         }
         let mut settings = Settings::default();
         settings.set("centres", centres);
         Ok(settings)
     }
 
-    fn needs_signal(options: &Options) -> Option<String> {
-        if options.get("centres").is_some_and(is_list) {
-            None
-        } else {
-            missing(&Self::INFO, options)
+    fn needs_signal(asked: &Asked) -> Option<String> {
+        match asked.get("centres") {
+            Some(Value::Numbers(_)) => None,
+            _ => missing(&Self::INFO, asked),
         }
     }
 
-    fn shape(given: &Given) -> Result<Shape> {
-        let neurons = match given.word("centres")? {
-            centres if is_list(centres) => given.numbers("centres")?.len(),
-            _ => given.neurons()?,
+    fn shape(settings: &Settings) -> Result<Shape> {
+        let neurons = match settings.preset("centres")? {
+            None => settings.numbers("centres")?.len(),
+            Some(_) => settings.neurons()?,
         };
         Ok(Shape { neurons, slots: 1 })
     }
 
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<Position<S, 20>>())
     }
 
     /// Neurons are found by bisection.
-    fn counted(given: &Given) -> Result<Counted> {
-        Ok(Counted::at_most("position-20", Self::shape(given)?.neurons as f64 / 20.0))
+    fn counted(settings: &Settings) -> Result<Counted> {
+        Ok(Counted::at_most("position-20", Self::shape(settings)?.neurons as f64 / 20.0))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let (name, neurons) = ("population::Position", Self::shape(given)?.neurons.to_string());
-        let centres = given.word("centres")?;
-        if is_list(centres) {
-            let value = format!("new({})", rust.signals(given, "centres")?);
-            return rust.constant(name, &neurons, &value);
-        }
-        let spaced = if centres == "gaussian" { "gaussian_spaced" } else { "linear" };
-        rust.constant(name, &neurons, &format!("{spaced}({})", rust.range(given)?))
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let (name, neurons) = ("population::Position", Self::shape(settings)?.neurons.to_string());
+        let spaced = match settings.preset("centres")? {
+            None => {
+                let value = format!("new({})", rust.signals(settings, "centres")?);
+                return rust.constant(name, &neurons, &value);
+            }
+            Some("gaussian") => "gaussian_spaced",
+            Some(_) => "linear",
+        };
+        rust.constant(name, &neurons, &format!("{spaced}({})", rust.range(settings)?))
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        Self::build_population(given, visitor)
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        Self::build_population(settings, visitor)
     }
 }
 
 #[cfg(feature = "run")]
 impl BuildPopulation for Scheme {
     fn build_within<S: Sample, V: Visit<S>, const M: usize>(
-        given: &Given,
+        settings: &Settings,
         visitor: V,
     ) -> Result<V::Output> {
-        let scheme = match given.word("centres")? {
-            "linear" => dynamic::Position::<S, M>::try_linear(given.neurons()?, &given.range()?)?,
-            "gaussian" => {
-                dynamic::Position::<S, M>::try_gaussian_spaced(given.neurons()?, &given.range()?)?
+        let scheme = match settings.preset("centres")? {
+            Some("linear") => {
+                dynamic::Position::<S, M>::try_linear(settings.neurons()?, &settings.range()?)?
             }
-            _ => dynamic::Position::<S, M>::try_new(&given.signals("centres")?)?,
+            Some("gaussian") => dynamic::Position::<S, M>::try_gaussian_spaced(
+                settings.neurons()?,
+                &settings.range()?,
+            )?,
+            _ => dynamic::Position::<S, M>::try_new(&settings.signals("centres")?)?,
         };
         let start = scheme.state();
         visitor.visit(scheme, start)

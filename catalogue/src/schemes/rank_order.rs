@@ -14,7 +14,7 @@ use crate::{
 #[cfg(feature = "run")]
 use {
     crate::run::{
-        Asked, Build, BuildPopulation, Constant, Counted, Given, Options, Rust, Settings, Shape,
+        Asked, Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape, Value,
         Visit, missing, state,
     },
     anyhow::{Result, bail},
@@ -105,14 +105,14 @@ impl Entry for Scheme {
 #[cfg(feature = "run")]
 impl Build for Scheme {
     /// A list of centres says which neurons there are.
-    fn resolve(asked: &Asked) -> Result<Settings> {
+    fn resolve(asked: &Resolve) -> Result<Settings> {
         let Some(centres) = asked.list("centres", &["linear"])? else {
             return asked.all();
         };
         if let Some(option) =
             ["neurons", "min", "max"].iter().find(|name| asked.user(name).is_some())
         {
-            bail!("--centres {centres} says it all; --{option} contradicts it");
+            bail!("`centres` {} says it all; `{option}` contradicts it", Value::from(centres));
         }
         let mut settings = Settings::default();
         settings.set("centres", centres);
@@ -120,59 +120,58 @@ impl Build for Scheme {
         Ok(settings)
     }
 
-    fn needs_signal(options: &Options) -> Option<String> {
-        if options.get("centres").is_some_and(|centres| centres != "linear") {
-            None
-        } else {
-            missing(&Self::INFO, options)
+    fn needs_signal(asked: &Asked) -> Option<String> {
+        match asked.get("centres") {
+            Some(Value::Numbers(_)) => None,
+            _ => missing(&Self::INFO, asked),
         }
     }
 
-    fn shape(given: &Given) -> Result<Shape> {
-        let neurons = match given.word("centres")? {
-            "linear" => given.neurons()?,
-            _ => given.numbers("centres")?.len(),
+    fn shape(settings: &Settings) -> Result<Shape> {
+        let neurons = match settings.preset("centres")? {
+            Some("linear") => settings.neurons()?,
+            _ => settings.numbers("centres")?.len(),
         };
-        Ok(Shape { neurons, slots: given.count("spikes", 1..=dynamic::LEVELS)? })
+        Ok(Shape { neurons, slots: settings.count("spikes", 1..=dynamic::LEVELS)? })
     }
 
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<RankOrder<S, 15, 3>>())
     }
 
-    fn counted(given: &Given) -> Result<Counted> {
-        let Shape { neurons, slots } = Self::shape(given)?;
+    fn counted(settings: &Settings) -> Result<Counted> {
+        let Shape { neurons, slots } = Self::shape(settings)?;
         let longer = (neurons as f64 / 15.0).max(slots as f64 / 3.0);
         Ok(Counted::at_most("rank-order-15x3", longer))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let Shape { neurons, slots } = Self::shape(given)?;
-        let value = match given.word("centres")? {
-            "linear" => format!("linear({})", rust.range(given)?),
-            _ => format!("new({})", rust.signals(given, "centres")?),
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let Shape { neurons, slots } = Self::shape(settings)?;
+        let value = match settings.preset("centres")? {
+            Some("linear") => format!("linear({})", rust.range(settings)?),
+            _ => format!("new({})", rust.signals(settings, "centres")?),
         };
         rust.constant("population::RankOrder", &format!("{neurons}, {slots}"), &value)
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        Self::build_population(given, visitor)
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        Self::build_population(settings, visitor)
     }
 }
 
 #[cfg(feature = "run")]
 impl BuildPopulation for Scheme {
     fn build_within<S: Sample, V: Visit<S>, const M: usize>(
-        given: &Given,
+        settings: &Settings,
         visitor: V,
     ) -> Result<V::Output> {
-        let spikes = given.count("spikes", 1..=dynamic::LEVELS)?;
-        let scheme = match given.word("centres")? {
-            "linear" => {
-                let (neurons, range) = (given.neurons()?, given.range()?);
+        let spikes = settings.count("spikes", 1..=dynamic::LEVELS)?;
+        let scheme = match settings.preset("centres")? {
+            Some("linear") => {
+                let (neurons, range) = (settings.neurons()?, settings.range()?);
                 dynamic::RankOrder::<S, M>::try_linear(neurons, spikes, &range)?
             }
-            _ => dynamic::RankOrder::try_new(spikes, &given.signals("centres")?)?,
+            _ => dynamic::RankOrder::try_new(spikes, &settings.signals("centres")?)?,
         };
         let start = scheme.state();
         visitor.visit(scheme, start)

@@ -10,7 +10,9 @@ use crate::{Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Par
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Constant, Counted, Given, Outcome, Parabola, Rust, Visit, below, state},
+    crate::run::{
+        Build, Constant, Counted, Outcome, Outcomes, Parabola, Rust, Settings, Visit, below, state,
+    },
     anyhow::Result,
     spikewire::Sample,
 };
@@ -69,43 +71,42 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<StepForward<S>>())
     }
 
-    fn counted(_: &Given) -> Result<Counted> {
+    fn counted(_: &Settings) -> Result<Counted> {
         Ok(Counted::exact("sf"))
     }
 
-    /// The spikes depend on those before, so from a threshold the run itself tells at which the next ones differ.
-    fn outcomes(_: &Given, stretches: &[&[f64]], most: usize) -> Option<Vec<Outcome>> {
-        const SMALLEST: f64 = 1e-3;
-        let range = |values: &&[f64]| {
-            let (low, high) =
-                values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-                    (low.min(*value), high.max(*value))
-                });
-            high - low
-        };
-        let range = stretches.iter().map(range).fold(0.0, f64::max);
-        // Narrower intervals are passed over together.
-        let ratio = (-SMALLEST.ln() / most as f64).exp();
-        let (mut found, mut low) = (Vec::new(), SMALLEST * range);
-        while low < range && low > 0.0 {
-            let (outcome, next) = outcome(stretches, low);
-            found.push(outcome);
-            low = next.max(low * ratio);
+    /// Lists the outcomes one by one: the spikes depend on those before, and a run at a threshold tells the next higher
+    /// one at which they differ. Passes over thresholds that lie closer than `most` of them fill the range.
+    fn outcomes(
+        _: &Settings,
+        stretches: &[&[f64]],
+        (low, high): (f64, f64),
+        most: usize,
+    ) -> Option<Outcomes> {
+        let ratio = (high / low).powf(1.0 / most.max(1) as f64);
+        let mut found = Outcomes { list: Vec::new(), is_complete: true };
+        let mut threshold = low;
+        while threshold < high && threshold > 0.0 {
+            let (outcome, next) = outcome(stretches, threshold);
+            found.list.push(outcome);
+            found.is_complete &= next >= threshold * ratio;
+            threshold = next.max(threshold * ratio);
         }
         Some(found)
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let threshold = rust.signal(given, "threshold")?;
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let threshold = rust.signal(settings, "threshold")?;
         rust.constant("temporal::StepForward", "", &format!("new({threshold})"))
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        visitor.visit_steps(StepForward::try_new(given.signal("threshold")?)?, StepForward::START)
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        visitor
+            .visit_steps(StepForward::try_new(settings.signal("threshold")?)?, StepForward::START)
     }
 }
 
@@ -135,7 +136,8 @@ fn outcome(stretches: &[&[f64]], threshold: f64) -> (Outcome, f64) {
     }
     let inside = if next.is_finite() { below(threshold, next) } else { threshold };
     let step = parabola.lowest().unwrap_or(threshold).clamp(threshold, inside);
-    (Outcome { threshold: step, step, spikes, squares: parabola.squares(step) }, next)
+    let squares = parabola.squares(step);
+    (Outcome { threshold: step, step, spikes, squares, apart: squares }, next)
 }
 
 /// The paper's algorithm 7.

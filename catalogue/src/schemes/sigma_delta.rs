@@ -11,7 +11,7 @@ use crate::{Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter,
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Constant, Counted, Given, Mean, Rust, Visit, state},
+    crate::run::{Build, Constant, Counted, Mean, Rust, Settings, Visit, state},
     anyhow::Result,
     spikewire::Sample,
 };
@@ -98,26 +98,26 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<SigmaDelta<S, Average>>())
     }
 
-    fn counted(_: &Given) -> Result<Counted> {
+    fn counted(_: &Settings) -> Result<Counted> {
         Ok(Counted::exact("sigma-delta"))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let (range, mean) = (rust.range(given)?, Mean::of(given)?);
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let (range, mean) = (rust.range(settings)?, Mean::of(settings)?);
         rust.constant("rate::SigmaDelta", &mean.scheme, &format!("new({range}, {})", mean.value))
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let range = given.range()?;
-        if given.takes_window()? {
-            let scheme = SigmaDelta::<S, _>::try_new(range, given.window()?)?;
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        let range = settings.range()?;
+        if settings.takes_window()? {
+            let scheme = SigmaDelta::<S, _>::try_new(range, settings.window()?)?;
             return visitor.visit(scheme, SigmaDelta::<S, Window<128>>::START);
         }
-        let scheme = SigmaDelta::<S, _>::try_new(range, given.average()?)?;
+        let scheme = SigmaDelta::<S, _>::try_new(range, settings.average()?)?;
         visitor.visit(scheme, SigmaDelta::<S, Average>::START)
     }
 }

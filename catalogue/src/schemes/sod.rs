@@ -12,7 +12,7 @@ use crate::{Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Par
 use {
     anyhow::Result,
     {
-        crate::run::{Build, Constant, Counted, Given, Rust, Shape, Visit, state},
+        crate::run::{Build, Constant, Counted, Rust, Settings, Shape, Visit, state},
         spikewire::Sample,
     },
 };
@@ -77,27 +77,28 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn shape(given: &Given) -> Result<Shape> {
-        Ok(Shape { neurons: 1, slots: given.count("spikes", 1..=127)? })
+    fn shape(settings: &Settings) -> Result<Shape> {
+        Ok(Shape { neurons: 1, slots: settings.count("spikes", 1..=127)? })
     }
 
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<SendOnDelta<S, 4>>())
     }
 
-    fn counted(given: &Given) -> Result<Counted> {
-        let most = given.count("spikes", 1..=127)?;
+    fn counted(settings: &Settings) -> Result<Counted> {
+        let most = settings.count("spikes", 1..=127)?;
         Ok(Counted::at_most("sod-4", most as f64 / 4.0))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let (threshold, most) = (rust.signal(given, "threshold")?, given.count("spikes", 1..=127)?);
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let (threshold, most) =
+            (rust.signal(settings, "threshold")?, settings.count("spikes", 1..=127)?);
         rust.constant("temporal::SendOnDelta", &format!("{most}"), &format!("new({threshold})"))
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let most = given.count("spikes", 1..=127)? as u8;
-        let scheme = SendOnDelta::<_, 127>::try_new(given.signal("threshold")?)?;
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        let most = settings.count("spikes", 1..=127)? as u8;
+        let scheme = SendOnDelta::<_, 127>::try_new(settings.signal("threshold")?)?;
         visitor.visit(scheme.try_with_most(most)?, SendOnDelta::<S, 127>::START)
     }
 }

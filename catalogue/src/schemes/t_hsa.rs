@@ -12,7 +12,9 @@ use crate::{
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Constant, Counted, Given, Rust, Visit, lengthened, state},
+    crate::run::{
+        Build, Constant, Counted, LANES, Rule, Rust, Settings, Visit, lengthened, state, sweep,
+    },
     anyhow::Result,
     spikewire::{Sample, dynamic},
 };
@@ -93,25 +95,35 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(given: &Given) -> Result<usize> {
+    fn ram<S: Sample>(settings: &Settings) -> Result<usize> {
         let sizes = [state::<ThresholdHough<S, 8>>(), state::<ThresholdHough<S, 16>>()];
-        Ok(lengthened(sizes, given.length()?))
+        Ok(lengthened(sizes, settings.length()?))
     }
 
-    fn counted(given: &Given) -> Result<Counted> {
-        Ok(Counted::at_most("t-hsa-15", given.length()? as f64 / 15.0))
+    fn counted(settings: &Settings) -> Result<Counted> {
+        Ok(Counted::at_most("t-hsa-15", settings.length()? as f64 / 15.0))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let (taps, shift) = (rust.taps(given)?, rust.signal(given, "shift")?);
-        let threshold = rust.signal(given, "threshold")?;
+    fn swept(
+        settings: &Settings,
+        stretches: &[&[f64]],
+        values: &[f64; LANES],
+    ) -> Option<[(usize, f64); LANES]> {
+        let filter = (settings.numbers("taps").ok()?, settings.number("shift").ok()?);
+        Some(sweep(Rule::ThresholdHough, stretches, filter, &[1.0; LANES], values))
+    }
+
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let (taps, shift) = (rust.taps(settings)?, rust.signal(settings, "shift")?);
+        let threshold = rust.signal(settings, "threshold")?;
         let value = format!("new({taps}, {threshold}).with_shift({shift})");
-        rust.constant("rate::ThresholdHough", &format!("{}", given.length()?), &value)
+        rust.constant("rate::ThresholdHough", &format!("{}", settings.length()?), &value)
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let scheme = dynamic::ThresholdHough::try_new(given.taps()?, given.signal("threshold")?)?;
-        let scheme = scheme.try_with_shift(given.signal("shift")?)?;
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        let scheme =
+            dynamic::ThresholdHough::try_new(settings.taps()?, settings.signal("threshold")?)?;
+        let scheme = scheme.try_with_shift(settings.signal("shift")?)?;
         let start = scheme.state();
         visitor.visit(scheme, start)
     }

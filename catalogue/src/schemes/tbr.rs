@@ -14,8 +14,7 @@ use crate::{
 #[cfg(feature = "run")]
 use {
     crate::run::{
-        Asked, Build, Constant, Counted, Given, Options, Outcome, Rust, Settings, Visit, number,
-        outcomes, state,
+        Asked, Build, Constant, Counted, Outcomes, Resolve, Rust, Settings, Visit, outcomes, state,
     },
     anyhow::{Context, Result, bail},
     spikewire::Sample,
@@ -50,7 +49,7 @@ impl Entry for Scheme {
                 "factor",
                 Kind::Number,
                 Unit::None,
-                "in the place of --threshold: the differences' mean and this many of their standard deviations",
+                "in the place of `threshold`: the differences' mean and this many of their standard deviations",
             )
             .with_paper(Paper::Text("0.5"))
             .with_example("0.5")
@@ -59,7 +58,7 @@ impl Entry for Scheme {
                 "magnitudes",
                 Kind::Flag,
                 Unit::None,
-                "with --factor: mean and deviation of the differences' magnitudes",
+                "with `factor`: mean and deviation of the differences' magnitudes",
             )
             .unrecorded(),
             Parameter::new(
@@ -120,17 +119,17 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    /// The threshold is given, or a number of deviations of the signal's differences.
-    fn resolve(asked: &Asked) -> Result<Settings> {
-        let threshold = match (asked.user("threshold"), asked.text("factor")) {
+    /// The threshold is settings, or a number of deviations of the signal's differences.
+    fn resolve(asked: &Resolve) -> Result<Settings> {
+        let threshold = match (asked.user("threshold"), asked.value("factor")?) {
             (Some(_), _) if asked.user("factor").is_some() => {
-                bail!("tbr takes --factor or --threshold, not both")
+                bail!("tbr takes `factor` or `threshold`, not both")
             }
             (Some(_), _) if asked.user("magnitudes").is_some() => {
-                bail!("--magnitudes goes with --factor")
+                bail!("`magnitudes` goes with `factor`")
             }
             (Some(_), _) => asked.number("threshold")?,
-            (None, None) => return Err(asked.needs("factor or --threshold")),
+            (None, None) => return Err(asked.needs("factor` or `threshold")),
             (None, Some(factor)) => {
                 let of_magnitudes = asked.user("magnitudes").is_some();
                 let calibrated = asked.known.calibrated.context("tbr: no calibration")?;
@@ -139,47 +138,51 @@ impl Build for Scheme {
                     let hint = if of_magnitudes {
                         ""
                     } else {
-                        " (--magnitudes takes that of the differences' magnitudes)"
+                        " (`magnitudes` takes that of the differences' magnitudes)"
                     };
-                    format!("tbr: --factor {factor} gives no threshold{hint}")
+                    format!("tbr: `factor` {factor} gives no threshold{hint}")
                 })?
             }
         };
-        let step = asked.text("step").unwrap_or_default();
-        let step = match step.strip_suffix('x') {
-            Some(times) => number("step", times)? * threshold,
-            None => number("step", &step)?,
+        let step = asked.needed("step")?;
+        let times = step.word().and_then(|word| word.strip_suffix('x')?.trim().parse::<f64>().ok());
+        let times = times.filter(|times| times.is_finite());
+        let step = match (times, step.number()) {
+            (Some(times), _) => times * threshold,
+            (None, Some(step)) => step,
+            (None, None) => bail!("`step` {step} is neither a number nor one of thresholds, `2x`"),
         };
         let mut settings = Settings::default();
-        settings.set("threshold", threshold.to_string());
-        settings.set("step", step.to_string());
+        settings.set("threshold", threshold);
+        settings.set("step", step);
         asked.settle("start", &mut settings)?;
         Ok(settings)
     }
 
-    fn needs_signal(options: &Options) -> Option<String> {
-        options.get("threshold").is_none().then(|| "--threshold".to_owned())
+    fn needs_signal(asked: &Asked) -> Option<String> {
+        asked.get("threshold").is_none().then(|| "`threshold`".to_owned())
     }
 
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<TemporalContrast<S>>())
     }
 
-    fn counted(_: &Given) -> Result<Counted> {
+    fn counted(_: &Settings) -> Result<Counted> {
         Ok(Counted::exact("tbr"))
     }
 
-    fn outcomes(_: &Given, stretches: &[&[f64]], most: usize) -> Option<Vec<Outcome>> {
+    fn outcomes(_: &Settings, stretches: &[&[f64]], _: (f64, f64), _: usize) -> Option<Outcomes> {
         let distances = |values: &&[f64]| {
             let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
             [0.0].into_iter().chain(steps).collect()
         };
         let distances: Vec<Vec<f64>> = stretches.iter().map(distances).collect();
-        Some(outcomes(stretches, &distances, true, most))
+        Some(outcomes(stretches, &distances, true))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let (threshold, step) = (rust.signal(given, "threshold")?, rust.signal(given, "step")?);
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let (threshold, step) =
+            (rust.signal(settings, "threshold")?, rust.signal(settings, "step")?);
         rust.constant(
             "temporal::TemporalContrast",
             "",
@@ -187,9 +190,9 @@ impl Build for Scheme {
         )
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let scheme = TemporalContrast::try_new(given.signal("threshold")?)?;
-        let scheme = scheme.try_with_step(given.signal("step")?)?;
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        let scheme = TemporalContrast::try_new(settings.signal("threshold")?)?;
+        let scheme = scheme.try_with_step(settings.signal("step")?)?;
         visitor.visit_steps(scheme, TemporalContrast::START)
     }
 }

@@ -12,9 +12,7 @@ use crate::{
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{
-        Asked, Build, Constant, Counted, Given, Rust, Settings, Shape, Visit, is_list, state,
-    },
+    crate::run::{Build, Constant, Counted, Resolve, Rust, Settings, Shape, Visit, state},
     anyhow::{Result, bail},
     spikewire::{Sample, dynamic},
 };
@@ -127,36 +125,37 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<FirstSpike<S, 16>>())
     }
 
     /// Slots are found by bisection.
-    fn counted(given: &Given) -> Result<Counted> {
-        let codec = if given.word("edges")? == "linear" { "ttfs-16" } else { "ttfs-log-16" };
-        Ok(Counted::at_most(codec, Self::shape(given)?.slots as f64 / 16.0))
+    fn counted(settings: &Settings) -> Result<Counted> {
+        let codec =
+            if settings.preset("edges")? == Some("linear") { "ttfs-16" } else { "ttfs-log-16" };
+        Ok(Counted::at_most(codec, Self::shape(settings)?.slots as f64 / 16.0))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let (range, slots) = (rust.range(given)?, Self::shape(given)?.slots.to_string());
-        let value = match given.word("edges")? {
-            "linear" => format!("linear({range})"),
-            "log" => format!("logarithmic({range}, {:?})", given.number("ratio")? as f32),
-            _ => format!("new({range}, {})", rust.signals(given, "edges")?),
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let (range, slots) = (rust.range(settings)?, Self::shape(settings)?.slots.to_string());
+        let value = match settings.preset("edges")? {
+            Some("linear") => format!("linear({range})"),
+            Some("log") => format!("logarithmic({range}, {:?})", settings.number("ratio")? as f32),
+            _ => format!("new({range}, {})", rust.signals(settings, "edges")?),
         };
         rust.constant("timing::FirstSpike", &slots, &value)
     }
 
     /// A list of edges says how many slots there are; a ratio goes with logarithmic edges.
-    fn resolve(asked: &Asked) -> Result<Settings> {
-        let edges = asked.text("edges").unwrap_or_default();
-        let unused: &[&str] = match edges.as_str() {
-            "log" => &[],
-            list if is_list(list) => &["slots", "ratio"],
-            _ => &["ratio"],
+    fn resolve(asked: &Resolve) -> Result<Settings> {
+        let edges = asked.needed("edges")?;
+        let unused: &[&str] = match edges.word() {
+            Some("log") => &[],
+            None => &["slots", "ratio"],
+            Some(_) => &["ratio"],
         };
         if let Some(option) = unused.iter().find(|name| asked.user(name).is_some()) {
-            bail!("--edges {edges} takes no --{option}");
+            bail!("`edges` {edges} takes no `{option}`");
         }
         let mut settings = Settings::default();
         for name in ["edges", "slots", "ratio", "min", "max"] {
@@ -167,26 +166,24 @@ impl Build for Scheme {
         Ok(settings)
     }
 
-    fn shape(given: &Given) -> Result<Shape> {
-        let slots = match given.word("edges")? {
-            edges if is_list(edges) => given.numbers("edges")?.len(),
-            _ => given.count("slots", 2..=dynamic::LEVELS)?,
+    fn shape(settings: &Settings) -> Result<Shape> {
+        let slots = match settings.preset("edges")? {
+            None => settings.numbers("edges")?.len(),
+            Some(_) => settings.count("slots", 2..=dynamic::LEVELS)?,
         };
         Ok(Shape { neurons: 1, slots })
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let (range, slots) = (given.range()?, Self::shape(given)?.slots);
-        let scheme = match given.word("edges")? {
-            "linear" => dynamic::FirstSpike::<S>::try_linear_of(slots, &range)?,
-            "log" => {
-                let ratio = given.number("ratio")? as f32;
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        let (range, slots) = (settings.range()?, Self::shape(settings)?.slots);
+        let scheme = match settings.preset("edges")? {
+            Some("linear") => dynamic::FirstSpike::<S>::try_linear_of(slots, &range)?,
+            Some("log") => {
+                let ratio = settings.number("ratio")? as f32;
                 dynamic::FirstSpike::try_logarithmic_of(slots, &range, ratio)?
             }
-            list if is_list(list) => {
-                dynamic::FirstSpike::try_new_of(&given.signals("edges")?, &range)?
-            }
-            word => bail!("edges {word}: there are linear, log, and lists of numbers"),
+            None => dynamic::FirstSpike::try_new_of(&settings.signals("edges")?, &range)?,
+            Some(word) => bail!("edges {word}: there are linear, log, and lists of numbers"),
         };
         visitor.visit(scheme, dynamic::FirstSpike::<S>::START)
     }

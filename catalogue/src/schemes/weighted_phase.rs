@@ -12,7 +12,7 @@ use crate::{
 
 #[cfg(feature = "run")]
 use {
-    crate::run::{Build, Constant, Counted, Given, Rust, Shape, Visit, state},
+    crate::run::{Build, Constant, Counted, Rust, Settings, Shape, Visit, state},
     anyhow::Result,
     spikewire::{Sample, dynamic},
 };
@@ -81,26 +81,26 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Given) -> Result<usize> {
+    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Ok(state::<WeightedPhase<S, 8>>())
     }
 
-    fn counted(given: &Given) -> Result<Counted> {
-        Ok(Counted::at_most("weighted-phase-8", given.count("slots", 2..=16)? as f64 / 8.0))
+    fn counted(settings: &Settings) -> Result<Counted> {
+        Ok(Counted::at_most("weighted-phase-8", settings.count("slots", 2..=16)? as f64 / 8.0))
     }
 
-    fn constant(given: &Given, rust: &Rust) -> Result<Constant> {
-        let slots = given.count("slots", 2..=16)?.to_string();
-        rust.constant("timing::WeightedPhase", &slots, &format!("new({})", rust.range(given)?))
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let slots = settings.count("slots", 2..=16)?.to_string();
+        rust.constant("timing::WeightedPhase", &slots, &format!("new({})", rust.range(settings)?))
     }
 
-    fn shape(given: &Given) -> Result<Shape> {
-        Ok(Shape { neurons: 1, slots: given.count("slots", 2..=16)? })
+    fn shape(settings: &Settings) -> Result<Shape> {
+        Ok(Shape { neurons: 1, slots: settings.count("slots", 2..=16)? })
     }
 
-    fn build<S: Sample, V: Visit<S>>(given: &Given, visitor: V) -> Result<V::Output> {
-        let slots = Self::shape(given)?.slots as u8;
-        let scheme = dynamic::WeightedPhase::<S>::try_new(given.range()?)?;
+    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+        let slots = Self::shape(settings)?.slots as u8;
+        let scheme = dynamic::WeightedPhase::<S>::try_new(settings.range()?)?;
         visitor.visit(scheme.try_with_slots(slots)?, dynamic::WeightedPhase::<S>::START)
     }
 }

@@ -1,9 +1,9 @@
 //! `spikewire bench`: the paper's Tables I and II.
 
-use crate::bench::{self, paper};
 use anyhow::{Result, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use lab::bench::{self, paper};
 use std::io::{Write, stdout};
 use std::time::Instant;
 

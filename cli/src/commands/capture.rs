@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// Read a channel of RTT through a debug probe: no cable but the probe's.
 ///
 /// Needs a build with `--features capture`. Pipe it on: `spikewire capture --chip STM32F405RG | spikewire listen`.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub(crate) struct Capture {
     /// The chip, as probe-rs calls it: STM32F405RG, RP2040
     #[arg(long)]
@@ -43,9 +43,12 @@ fn address(text: &str) -> Result<u64, String> {
 /// There is no such chip, probe, board or channel, or one of them went away.
 #[cfg(feature = "capture")]
 pub(crate) fn run(options: &Capture) -> Result<()> {
-    use crate::{output::Output, rtt, stop::Stop};
+    use crate::stop::Stop;
+    use lab::output::Output;
+    use lab::rtt::{self, Board};
     let stop = Stop::new(options.seconds)?;
-    rtt::with_channel(options, |channel| {
+    let Capture { chip, probe, channel, address, .. } = options.clone();
+    rtt::with_channel(&Board { chip, probe, channel, address }, |channel| {
         let mut output = Output::to(options.output.as_deref())?;
         let captured = rtt::capture(channel, &mut output, || stop.is_due());
         // What came before a channel failed is kept.

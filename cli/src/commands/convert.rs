@@ -1,10 +1,11 @@
 //! `spikewire convert`: events from any format to any other, in constant memory.
 
-use crate::events::{Format, Stream, StreamOptions};
-use crate::output::Output;
-use crate::port::{Bytes, Port};
+use crate::inputs::StreamOptions;
 use anyhow::Result;
 use clap::Args;
+use lab::events::{Format, Stream};
+use lab::output::Output;
+use lab::port::{Bytes, Port};
 use std::path::PathBuf;
 
 /// Convert events from one format to another.

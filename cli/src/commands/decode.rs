@@ -1,13 +1,13 @@
 //! `spikewire decode`: spikes back to values, in constant memory.
 
-use crate::bank::Bank;
-use crate::input::{LogKind, log_kind, text};
-use crate::output::Output;
-use crate::spikes::{Header, Item, Messages, Reader, Spikes};
-use crate::timeline::Timeline;
 use anyhow::{Context, Result, anyhow, bail};
 use catalogue::run::{Event, SampleType};
 use clap::Args;
+use lab::bank::Bank;
+use lab::input::{LogKind, log_kind, text};
+use lab::output::Output;
+use lab::spikes::{Header, Item, Messages, Reader, Spikes};
+use lab::timeline::Timeline;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
@@ -71,8 +71,7 @@ fn decode(
 ) -> Result<()> {
     /// How many events or times are taken together.
     const BATCH: usize = 4096;
-    let bank = Bank::new(header.scheme, header.sample, &header.channels)
-        .with_context(|| file.to_owned())?;
+    let bank = Bank::new(header.scheme, &header.channels).with_context(|| file.to_owned())?;
     let mut decoding = Decoding::new(bank, header, reader.is_timed(), open()?)?;
     let mut events: Vec<Event> = Vec::new();
     loop {

@@ -1,9 +1,9 @@
 //! `spikewire emit`: sources for firmware, from files of parameters.
 
-use crate::params::{self, Params};
 use anyhow::{Context, Result, bail};
 use catalogue::run::{Constant, Known};
 use clap::{Args, Subcommand};
+use lab::coding::Coding;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -88,22 +88,21 @@ fn codec_name(path: &Path) -> Result<String> {
 
 /// The declaration of a codec.
 fn codec(name: &str, path: &Path) -> Result<String> {
-    let Params { scheme, sample, options } = Params::read(&path.to_string_lossy())?;
+    let Coding { scheme, sample, asked } = Coding::read(&path.to_string_lossy())?;
     let info = scheme.info();
     let is_in_c =
         catalogue::IN_C.iter().any(|(own, codecs)| own.name == info.name && !codecs.is_empty());
     if !is_in_c {
         bail!("{} draws from a generator, which the library for C has not", info.name);
     }
-    if let Some(missing) = scheme.needs_signal(&options) {
+    if let Some(missing) = scheme.needs_signal(&asked) {
         bail!("{} needs {missing}, which a signal tells; `tune` writes it", info.name);
     }
-    let sample = sample.unwrap_or_default();
     let known = Known { calibrated: None, first: &[0.0], can_calibrate: false };
-    let (settings, _) = scheme.rounded(sample, &scheme.resolve(&options, &known)?)?;
-    scheme.codec(sample, &settings)?; // what makes no sense is told here, not by the compiler
-    let Constant { scheme: kind, value } = scheme.constant(sample, &settings)?;
-    let text = params::write(&[], scheme, sample, &settings.to_options(info));
+    let settings = scheme.resolve(sample, &asked, &known)?;
+    scheme.codec(&settings)?; // what makes no sense is told here, not by the compiler
+    let Constant { scheme: kind, value } = scheme.constant(&settings)?;
+    let text = Coding::of_settings(scheme, &settings).to_toml(&[]);
     let lines: Vec<String> = text.lines().map(|line| format!("    /// {line}\n")).collect();
     let text = lines.concat();
     Ok(format!(

@@ -1,14 +1,15 @@
 //! `spikewire encode`: a recording to spikes, in constant memory.
 
-use crate::bank::Bank;
-use crate::fit::{Fit, rounded};
-use crate::input::{Chunk, Clock, InputOptions, Source};
+use crate::inputs::InputOptions;
 use crate::options::Coding;
-use crate::output::Output;
-use crate::spikes::{Format, Header, Record, Recorder, Summary, Writer, unrecorded};
 use anyhow::{Result, bail};
-use catalogue::run::{Calibrated, Event, Known, SampleType, Settings};
+use catalogue::run::{Calibrated, Event, Known, SET, SampleType, Settings};
 use clap::Args;
+use lab::bank::Bank;
+use lab::fit::{Fit, explained, rounding};
+use lab::input::{Chunk, Clock, Source};
+use lab::output::Output;
+use lab::spikes::{Format, Header, Record, Recorder, Summary, Writer, unrecorded};
 use std::path::PathBuf;
 
 /// Encode channels of a recording: `index,address,polarity` and, where it has times, `time_us`.
@@ -61,27 +62,25 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
     if firsts.first().is_none_or(Vec::is_empty) {
         bail!("{}: none of the {count} samples is finite", input.name());
     }
-    let mut asked = Vec::new();
+    let mut told = Vec::new();
+    let mut channels: Vec<Settings> = Vec::new();
     for (channel, first) in firsts.iter().enumerate() {
         let calibrated = calibrated.as_ref().and_then(|all| all.get(channel));
         let known = Known { calibrated, first, can_calibrate: !input.is_stdin() };
-        asked.push(scheme.resolve(&parameters, &known)?);
-    }
-    let mut told = Vec::new();
-    let mut channels: Vec<Settings> = Vec::new();
-    for settings in &asked {
-        let (settings, rounding) = rounded(scheme, sample, settings)?;
-        told.extend(rounding.filter(|rounding| !told.contains(rounding)));
+        let own = parameters.channel(scheme.info(), channel, firsts.len())?;
+        let settings = scheme.resolve(sample, &own, &known);
+        let settings = settings.map_err(|error| explained(error, sample, first))?;
+        told.extend(rounding(&settings).filter(|rounding| !told.contains(rounding)));
         channels.push(settings);
     }
-    let mut bank = Bank::new(scheme, sample, &channels)?;
+    let mut bank = Bank::new(scheme, &channels)?;
 
     let mut notes = source.origin().to_vec();
     let made_from = unrecorded(scheme).into_iter().filter_map(|name| {
-        parameters.get(name).filter(|text| !text.is_empty()).map(|text| (name, text.to_owned()))
+        parameters.get(name).filter(|value| **value != SET).map(|value| (name, value.to_string()))
     });
     notes.extend(made_from);
-    let mut fits: Vec<Fit> = channels.iter().map(|own| Fit::new(scheme, sample, own)).collect();
+    let mut fits: Vec<Fit> = channels.iter().map(|own| Fit::new(scheme, own)).collect();
     let rate = clock.rate();
     let header = Header { scheme, sample, channels, rate, notes };
     let is_timed = !chunk.times.is_empty();

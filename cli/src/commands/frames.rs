@@ -1,9 +1,9 @@
 //! `spikewire frames`: a video to the events that an event camera would send, in constant memory.
 
-use crate::frames::{Preview, Rate, Sink, open};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use lab::frames::{Preview, Rate, Sink, open};
 use spikewire::frame::{DynamicFrameEncoder, Intensity, LogIntensity, PixelCode, Refractory};
 use spikewire::{Polarity, Tick};
 use std::io::{self, IsTerminal};

@@ -1,9 +1,9 @@
 //! `spikewire info`: what a log holds.
 
-use crate::input::messages::{Overview, overview};
-use crate::input::{Clock, Log, LogKind, Topic, above_zero, log_kind};
 use anyhow::{Result, bail};
 use clap::Args;
+use lab::input::messages::{Overview, overview};
+use lab::input::{Clock, Log, LogKind, Rollover, Topic, above_zero, log_kind};
 use std::io::{Write, stdout};
 use std::path::PathBuf;
 
@@ -52,10 +52,10 @@ pub(crate) fn run(options: &Info) -> Result<()> {
 fn of_ulog(options: &Info) -> Result<(Vec<Overview>, Vec<String>)> {
     let log = Log::read(&options.log, options.accept_cut)?;
     let overview = |(name, topic): (String, Topic)| {
-        let times = &topic.times;
-        let mut clock = Clock::new(times, None, options.gap);
-        clock.observe(times);
-        let end = |time: Option<&i64>| time.copied().unwrap_or_default();
+        let mut rollover = Rollover::default();
+        let times: Vec<i64> = topic.times.iter().map(|time| rollover.take(*time)).collect();
+        let mut clock = Clock::new(&times, None, options.gap);
+        clock.observe(&times);
         Overview {
             name,
             kind: String::new(),
@@ -63,8 +63,8 @@ fn of_ulog(options: &Info) -> Result<(Vec<Overview>, Vec<String>)> {
             texts: topic.texts,
             unread: None,
             count: times.len() as u64,
-            span: (end(times.first()), end(times.last())),
             clock,
+            rollover,
             missing: 0,
         }
     };
@@ -73,17 +73,20 @@ fn of_ulog(options: &Info) -> Result<(Vec<Overview>, Vec<String>)> {
 }
 
 fn write(topic: &Overview, output: &mut impl Write) -> Result<()> {
-    let Overview { name, kind, count, clock, span: (first, last), .. } = topic;
+    let Overview { name, kind, count, clock, rollover, .. } = topic;
     let of = if kind.is_empty() { String::new() } else { format!(" of {kind}") };
     match clock.rate() {
         Some(rate) => {
-            let seconds = last.saturating_sub(*first) as f64 * 1e-6;
+            let seconds = clock.seconds();
             writeln!(
                 output,
                 "{name}: {count} samples{of}, {seconds:.3} s, {rate:.2} Hz\n  {clock}"
             )?;
         }
         None => writeln!(output, "{name}: {count} samples{of}")?,
+    }
+    if let Some(note) = rollover.note() {
+        writeln!(output, "  {note}")?;
     }
     if topic.missing > 0 {
         writeln!(

@@ -1,22 +1,20 @@
 //! `spikewire listen`: what a board sends, as events or values, while it comes.
 
-use crate::events::{
-    EventReader, Format, LinkReader, Stream, StreamOptions, Values, values_writer,
-};
-use crate::fit::rounded;
+use crate::inputs::StreamOptions;
 use crate::live::Live;
-use crate::options::{augment, given};
-use crate::output::Output;
-use crate::params::{self, Params};
-use crate::port::{Bytes, Port};
-use crate::scheme::Scheme;
+use crate::options::{agreed, augment, given, schemes};
 use crate::stop::Stop;
-use crate::values::{SlotTicks, with_receiver};
 use anyhow::{Result, bail};
 use catalogue::Parameter;
-use catalogue::run::{Known, Options, SampleType, Settings};
+use catalogue::run::{Asked, Known, SampleType, Settings};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
-use spikewire::Tick;
+use lab::coding::Coding;
+use lab::events::{EventReader, Format, LinkReader, Stream, Values, values_writer};
+use lab::fit::rounding;
+use lab::output::Output;
+use lab::port::{Bytes, Port};
+use lab::scheme::Scheme;
+use lab::values::with_receiver;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -56,20 +54,17 @@ pub(crate) struct Listen {
     #[command(flatten)]
     stream: StreamOptions,
     /// Decode a link's frames by this scheme, the sender's
-    #[arg(long)]
+    #[arg(long, value_parser = schemes(Scheme::all()))]
     scheme: Option<Scheme>,
     /// Sample type of the sender: f32, i16, i32, or fixed point such as q16.16 or q8.8; f32 unless given
     #[arg(long)]
     sample: Option<SampleType>,
     /// File of the sender's parameters, TOML, as `tune --emit toml` writes it; options override it
-    #[arg(long, value_name = "FILE", value_parser = params::parse)]
-    params: Option<Params>,
+    #[arg(long, value_name = "FILE", value_parser = crate::options::read)]
+    params: Option<Coding>,
     /// Length of the sender's sub-timesteps in µs, of schemes that have them
     #[arg(long, value_name = "µs", value_parser = value_parser!(u32).range(1..))]
     slot_ticks: Option<u32>,
-    /// Tick in µs of one of the sender's samples, from which the others lie whole periods; 0 unless given
-    #[arg(long, value_name = "µs", requires = "slot_ticks")]
-    slot_start: Option<u32>,
     #[command(flatten)]
     parameters: DecoderOptions,
 }
@@ -80,11 +75,7 @@ fn is_recorded(parameter: &Parameter) -> bool {
 
 /// The parameters that decoding takes.
 #[derive(Clone, Debug, Default)]
-struct DecoderOptions {
-    options: Options,
-    /// Instead of `--threshold`, one for each channel from address 0 on.
-    thresholds: Vec<f64>,
-}
+struct DecoderOptions(Asked);
 
 impl Args for DecoderOptions {
     fn augment_args(command: Command) -> Command {
@@ -111,8 +102,11 @@ impl Args for DecoderOptions {
 impl FromArgMatches for DecoderOptions {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
         let thresholds = matches.get_many("thresholds").into_iter().flatten().copied();
-        let options = given(matches, |_| true, is_recorded);
-        Ok(Self { options, thresholds: thresholds.collect() })
+        let mut asked = given(matches, |_| true, is_recorded);
+        if matches.contains_id("thresholds") {
+            asked.set("threshold", thresholds.collect::<Vec<f64>>());
+        }
+        Ok(Self(asked))
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
@@ -126,13 +120,10 @@ impl FromArgMatches for DecoderOptions {
 /// # Errors
 /// The options, the port or the output are not good.
 pub(crate) fn run(options: &Listen) -> Result<()> {
-    let sample = options.params.as_ref().and_then(|params| params.sample);
+    let sample = options.params.as_ref().map(|params| params.sample);
     let sample = options.sample.or(sample).unwrap_or_default();
     let Some(scheme) = options.named()? else {
-        if !options.parameters.options.is_empty()
-            || !options.parameters.thresholds.is_empty()
-            || options.slot_ticks.is_some()
-        {
+        if !options.parameters.0.is_empty() || options.slot_ticks.is_some() {
             bail!("a scheme's parameters need --scheme");
         }
         return listen(options, None);
@@ -191,11 +182,11 @@ impl Listen {
     /// The scheme named, here or in the file of parameters.
     fn named(&self) -> Result<Option<Scheme>> {
         let Some(params) = &self.params else { return Ok(self.scheme) };
-        Ok(Some(params.agreed(self.scheme)?))
+        Ok(Some(agreed(params, self.scheme)?))
     }
 
     /// The sub-timesteps of the sender, of a scheme that has them.
-    fn slot_ticks(&self, scheme: Scheme, settings: &[Settings]) -> Result<Option<SlotTicks>> {
+    fn slot_ticks(&self, scheme: Scheme, settings: &[Settings]) -> Result<Option<u32>> {
         // The spikes of a temporal code are all alike, whatever their sub-timestep.
         let has_slots = !scheme.info().has_first_value
             && settings
@@ -203,7 +194,6 @@ impl Listen {
                 .map(|own| scheme.shape(own))
                 .transpose()?
                 .is_some_and(|shape| shape.slots > 1);
-        let start = Tick::from(self.slot_start.unwrap_or(0));
         match self.slot_ticks {
             None if has_slots => {
                 bail!(
@@ -214,7 +204,7 @@ impl Listen {
             Some(_) if !has_slots => {
                 bail!("{} has no sub-timesteps: it takes no --slot-ticks", scheme.name())
             }
-            length => Ok(length.map(|length| SlotTicks { length, start })),
+            length => Ok(length),
         }
     }
 
@@ -228,46 +218,30 @@ impl Listen {
         if self.to != Format::Csv {
             bail!("--scheme gives values, which only --to csv holds");
         }
-        let DecoderOptions { options, thresholds } = &self.parameters;
-        let options = &match &self.params {
-            Some(params) => options.or(&params.options),
-            None => options.clone(),
+        let mut asked = match &self.params {
+            Some(params) => self.parameters.0.or(&params.asked),
+            None => self.parameters.0.clone(),
         };
-        let each: Vec<Options> = match thresholds[..] {
-            [] => vec![options.clone()],
-            ref many => many
-                .iter()
-                .map(|threshold| {
-                    let mut options = options.clone();
-                    options.set("threshold", &threshold.to_string());
-                    options
-                })
-                .collect(),
-        };
+        // Any value will do of what is the encoder's alone.
+        for parameter in scheme.info().parameters.iter().filter(|own| own.is_of_encoder) {
+            if asked.get(parameter.name).is_none() {
+                asked.set(parameter.name, parameter.read(parameter.example)?);
+            }
+        }
+        if let Some(missing) = scheme.needs_signal(&asked) {
+            bail!("{} needs {missing}, as the sender has it", scheme.name());
+        }
+        let known = Known { calibrated: None, first: &[0.0], can_calibrate: false };
+        let channels = asked.channels(scheme.info())?.unwrap_or(1);
         let mut all = Vec::new();
-        for mut options in each {
-            // Any value will do of what is the encoder's alone.
-            for parameter in scheme.info().parameters.iter().filter(|own| own.is_of_encoder) {
-                if options.get(parameter.name).is_none() {
-                    options.set(parameter.name, parameter.example);
-                }
-            }
-            if let Some(missing) = scheme.needs_signal(&options) {
-                bail!("{} needs {missing}, as the sender has it", scheme.name());
-            }
-            let settings = settings(scheme, &options)?;
-            let (settings, rounding) = rounded(scheme, sample, &settings)?;
-            if let Some(rounding) = rounding {
+        for channel in 0..channels {
+            let own = asked.channel(scheme.info(), channel, channels)?;
+            let settings = scheme.resolve(sample, &own, &known)?;
+            if let Some(rounding) = rounding(&settings) {
                 eprintln!("{rounding}");
             }
             all.push(settings);
         }
         Ok(all)
     }
-}
-
-/// The settings of a channel, from its options alone.
-fn settings(scheme: Scheme, options: &Options) -> Result<Settings> {
-    let known = Known { calibrated: None, first: &[0.0], can_calibrate: false };
-    scheme.resolve(options, &known)
 }

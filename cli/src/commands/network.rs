@@ -1,17 +1,18 @@
 //! `spikewire network`: a trained network onto a chip, and what that costs.
 
-use crate::bank::Bank;
-use crate::fit::rounded;
-use crate::input::{Clock, InputOptions, above_zero};
-use crate::network::{Distance, File, Ran, Told, Trained, Trains, emit, quantise, run_on_chip};
-use crate::options::SchemeOptions;
-use crate::output::Output;
-use crate::scheme::Scheme;
+use crate::inputs::InputOptions;
+use crate::options::{SchemeOptions, schemes};
 use anyhow::{Result, bail, ensure};
-use catalogue::run::{Calibrated, Known, SampleType, Shape};
+use catalogue::run::{Calibrated, Known, SampleType, Settings, Shape};
 use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use lab::bank::Bank;
+use lab::fit::rounding;
+use lab::input::{Clock, above_zero};
+use lab::network::{Brought, Figures, File, Request, Told, Trains, WINDOW, bring, emit};
+use lab::output::Output;
+use lab::scheme::Scheme;
 use spikewire::Polarity;
-use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -19,9 +20,9 @@ use std::path::PathBuf;
 ///
 /// A recording's spikes run through the network in double precision and, with weights of 4 bits, through the chip's
 /// model, clock by clock. NETWORK is a NIR graph (an HDF5 file of snnTorch, Norse, Rockpool, Sinabs, Lava and
-/// others) that is a chain of up to three layers, each Linear or Affine and LIF or IF; or JSON:
-/// {"layers": [{"name": ..., "weights": [[...]], "bias": [...], "keep": 0.9, "threshold": 1.0}]}, with weights by
-/// neuron and then input, and the share of the potential that a step leaves.
+/// others) that is a chain of up to three layers, each Linear or Affine and LIF or IF, which may lead back to itself; or
+/// JSON: {"layers": [{"name": ..., "weights": [[...]], "recurrent": [[...]], "bias": [...], "keep": 0.9, "threshold":
+/// 1.0}]}, with weights by neuron and then input, and the share of the potential that a step leaves.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -32,7 +33,7 @@ pub(crate) struct Network {
     trained: PathBuf,
     /// The scheme that makes the inputs: one for each neuron of each column, of codes with a direction two, up and
     /// down
-    #[arg(long)]
+    #[arg(long, value_parser = schemes(Scheme::all()))]
     scheme: Scheme,
     /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8
     #[arg(long, default_value_t)]
@@ -45,6 +46,9 @@ pub(crate) struct Network {
     input: InputOptions,
     #[command(flatten)]
     parameters: SchemeOptions,
+    /// Another recording, which shows what the network is worth where it was not tuned
+    #[arg(long, value_name = "INPUT")]
+    held_out: Option<PathBuf>,
     /// File of Rust; standard output unless given
     #[arg(short, long)]
     output: Option<PathBuf>,
@@ -61,7 +65,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         !input.is_stdin(),
         "the recording calibrates scheme and chip, and is read as a whole: give a file"
     );
-    let driven = driven(options)?;
+    let driven = driven(options, input, None)?;
     let seconds = driven.step_us.map(|step| step * 1e-6);
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let trained = file.in_steps(dt.or(seconds)).map_err(|error| error.context(name.clone()))?;
@@ -73,25 +77,37 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         scheme.name(),
         driven.words()
     );
+    let held_out = options.held_out.as_ref().map(|path| {
+        let mut input = input.clone();
+        input.0.input.clone_from(path);
+        self::driven(options, &input, Some(&driven.settings))
+    });
+    let held_out = held_out.transpose()?;
 
-    let original = trained.run(&driven.steps);
-    let network = quantise(&trained, &driven.steps, &original)
-        .map_err(|error| error.context(name.clone()))?;
-    let ran = run_on_chip(&network, &driven.steps)?;
+    let bar = ProgressBar::new(0).with_style(ProgressStyle::with_template(
+        "{bar:40} {percent:>3} %  {human_pos} of {human_len} neurons",
+    )?);
+    let progress = |done: usize, total: usize| {
+        bar.set_length(total as u64);
+        bar.set_position(done as u64);
+    };
+    let brought = bring(&Request {
+        trained: &trained,
+        tuned: &driven.steps,
+        held_out: held_out.as_ref().map(|held_out| &held_out.steps),
+        progress: &progress,
+    });
+    bar.finish_and_clear();
+    let brought = brought.map_err(|error| error.context(name.clone()))?;
 
     let told = Told { source: name, inputs: driven.words(), step_us: driven.step_us };
     let mut output = Output::open(output.as_deref(), &input.input)?;
-    output.write_all(emit(&network, &told).as_bytes())?;
+    output.write_all(emit(&brought.network, &told).as_bytes())?;
     output.finish()?;
     for note in &driven.notes {
         eprintln!("{note}");
     }
-    let clipped: Vec<usize> = network
-        .layers
-        .iter()
-        .map(|layer| layer.neurons.iter().map(|neuron| neuron.clipped).sum())
-        .collect();
-    report(&trained, &original, &ran, &clipped, network.steps_a_leak);
+    report(&brought);
     Ok(())
 }
 
@@ -105,6 +121,8 @@ struct Driven {
     is_signed: bool,
     /// How long a step is, if that is known.
     step_us: Option<f64>,
+    /// Of the columns.
+    settings: Vec<Settings>,
     notes: Vec<String>,
 }
 
@@ -119,9 +137,9 @@ impl Driven {
     }
 }
 
-/// The recording as spikes.
-fn driven(options: &Network) -> Result<Driven> {
-    let Network { scheme, sample, input, parameters, .. } = options;
+/// The recording as spikes, with these settings or those that it calibrates.
+fn driven(options: &Network, input: &InputOptions, known: Option<&[Settings]>) -> Result<Driven> {
+    let Network { scheme, sample, parameters, .. } = options;
     parameters.check(scheme.info())?;
     let mut source = input.open()?;
     let all = source.rest()?;
@@ -140,16 +158,24 @@ fn driven(options: &Network) -> Result<Driven> {
     }
     notes.push(clock.to_string());
 
-    let mut settings = Vec::new();
-    for column in &columns {
+    let mut settings = known.unwrap_or_default().to_vec();
+    for (channel, column) in columns.iter().enumerate().skip(settings.len()) {
         let mut calibrated = Calibrated::new(*sample);
         calibrated.observe(column);
         let known = Known { calibrated: Some(&calibrated), first: column, can_calibrate: true };
-        let (own, rounding) = rounded(*scheme, *sample, &scheme.resolve(parameters, &known)?)?;
-        notes.extend(rounding);
+        let asked = parameters.channel(scheme.info(), channel, columns.len())?;
+        let own = scheme.resolve(*sample, &asked, &known)?;
+        notes.extend(rounding(&own));
         settings.push(own);
     }
-    let mut bank = Bank::new(*scheme, *sample, &settings)?;
+    ensure!(
+        columns.len() == settings.len(),
+        "{}: {} columns, where the network is tuned on {}",
+        input.name(),
+        columns.len(),
+        settings.len()
+    );
+    let mut bank = Bank::new(*scheme, &settings)?;
     let mut events = Vec::new();
     bank.encode(&columns, &mut events);
     bank.finish(&mut events);
@@ -171,116 +197,75 @@ fn driven(options: &Network) -> Result<Driven> {
         shape,
         channels: columns.len(),
         is_signed,
+        settings,
         step_us: clock.rate().map(|rate| 1e6 / rate / shape.slots as f64),
         notes,
     })
 }
 
+/// The share of agreeing steps below which a warning says so.
+const LOW: f64 = 0.5;
+
 /// What quantising costs, on standard error.
-fn report(
-    trained: &Trained,
-    original: &[Trains],
-    ran: &Ran,
-    clipped: &[usize],
-    steps_a_leak: usize,
-) {
-    let neurons: usize = trained.layers.iter().map(|layer| layer.neurons.len()).sum();
-    let steps = ran.clocks.len();
-    let every = if steps_a_leak == 1 { "step" } else { &format!("{steps_a_leak} steps") };
+fn report(brought: &Brought) {
+    let Brought { network, tuned, held_out } = brought;
+    let neurons: usize = tuned.layers.iter().map(|layer| layer.neurons).sum();
+    let every = match network.steps_a_leak {
+        1 => "step",
+        steps => &format!("{steps} steps"),
+    };
     eprintln!("{neurons} of the chip's 256 neurons; a leak every {every}");
     eprintln!("layer: neurons, weights clipped; spikes, on the chip, distance");
-    for (((layer, original), chip), clipped) in
-        trained.layers.iter().zip(original).zip(&ran.fired).zip(clipped)
-    {
-        let Cost { spikes, on_chip, distance } = cost(layer.neurons.len(), original, chip);
-        let (name, neurons) = (&layer.name, layer.neurons.len());
-        eprintln!("{name}: {neurons}, {clipped}; {spikes}, {on_chip}, {distance:.1}");
+    tell(tuned);
+    match held_out {
+        Some(held_out) => {
+            eprintln!("the recording that was held out:");
+            tell(held_out);
+        }
+        None => eprintln!(
+            "the figures are those of the recording that the network is tuned on: --held-out shows another"
+        ),
     }
-    if let (Some(original), Some(chip)) = (original.last(), ran.fired.last()) {
-        let Agreement { all, active, agreeing } = agreement(original, chip);
+}
+
+fn tell(figures: &Figures) {
+    for layer in &figures.layers {
+        eprintln!(
+            "{}: {}, {}; {}, {}, {:.1}",
+            layer.name, layer.neurons, layer.clipped, layer.spikes, layer.on_chip, layer.distance
+        );
+    }
+    let &Figures { steps, agreeing, active, windows, windows_agreeing, .. } = figures;
+    if let Some(agreement) = figures.agreement() {
         eprintln!(
             "outputs agree in {:.1} % of {steps} steps, in {:.1} % of the {active} in which any fires",
-            percent(all, steps),
-            percent(agreeing, active)
+            100.0 * agreeing as f64 / steps as f64,
+            100.0 * agreement
         );
-        let (windows, agreeing) = winners(original, chip);
         eprintln!(
             "the output that fires most is the same in {:.1} % of {windows} times {WINDOW} steps",
-            percent(agreeing, windows)
+            100.0 * windows_agreeing as f64 / windows as f64
+        );
+        if agreement < LOW {
+            eprintln!(
+                "warning: step by step the chip is another network than the trained one; compare the spikes of each \
+                 layer, and train with what costs most: weights of 4 bits, and thresholds that are looked at after \
+                 every spike"
+            );
+        }
+    } else {
+        eprintln!(
+            "warning: no output fires, neither in double precision nor on the chip: there is nothing to compare"
         );
     }
-    let most = ran.clocks.iter().max().copied().unwrap_or(0);
-    let mean = ran.clocks.iter().sum::<u64>() as f64 / steps.max(1) as f64;
-    eprintln!("a step takes the chip {mean:.0} clocks, {most} at most");
-    if ran.overflows > 0 {
-        eprintln!("the chip's queue of 128 was full, and {} spikes were lost", ran.overflows);
+    eprintln!(
+        "a step takes the chip {:.0} clocks, {} at most",
+        figures.mean_clocks, figures.most_clocks
+    );
+    if figures.overflows > 0 {
+        eprintln!(
+            "warning: the chip's queue of 128 was full, and {} spikes were lost",
+            figures.overflows
+        );
     }
-}
-
-fn percent(part: usize, of: usize) -> f64 {
-    if of == 0 { 100.0 } else { 100.0 * part as f64 / of as f64 }
-}
-
-struct Cost {
-    spikes: usize,
-    on_chip: usize,
-    distance: f64,
-}
-
-fn cost(neurons: usize, original: &Trains, chip: &Trains) -> Cost {
-    let mut distances = vec![Distance::default(); neurons];
-    let (mut spikes, mut on_chip) = (0, 0);
-    for (original, chip) in original.iter().zip(chip) {
-        spikes += original.len();
-        on_chip += chip.len();
-        for (neuron, distance) in distances.iter_mut().enumerate() {
-            let count = |fired: &[u16]| fired.iter().filter(|&&n| usize::from(n) == neuron).count();
-            distance.step(count(original), count(chip));
-        }
-    }
-    Cost { spikes, on_chip, distance: distances.into_iter().map(Distance::value).sum() }
-}
-
-/// The steps over which outputs are counted.
-const WINDOW: usize = 20;
-
-/// How many windows there are in which an output fires, and in how many of them those that fire most are the same.
-fn winners(original: &Trains, chip: &Trains) -> (usize, usize) {
-    let most = |steps: &[Vec<u16>]| {
-        let mut counts = BTreeMap::new();
-        for output in steps.iter().flatten() {
-            *counts.entry(*output).or_insert(0) += 1;
-        }
-        let most = counts.values().max().copied();
-        counts.retain(|_, count| Some(*count) == most);
-        counts.into_keys().collect::<Vec<_>>()
-    };
-    let windows = original.chunks(WINDOW).zip(chip.chunks(WINDOW));
-    let winners = windows.map(|(original, chip)| (most(original), most(chip)));
-    let active = winners.filter(|(original, chip)| !original.is_empty() || !chip.is_empty());
-    active.fold((0, 0), |(windows, agreeing), (original, chip)| {
-        (windows + 1, agreeing + usize::from(original == chip))
-    })
-}
-
-/// In how many steps the outputs are the same.
-struct Agreement {
-    all: usize,
-    /// Steps in which any fires, here or there.
-    active: usize,
-    /// Of those.
-    agreeing: usize,
-}
-
-fn agreement(original: &Trains, chip: &Trains) -> Agreement {
-    let mut counts = Agreement { all: 0, active: 0, agreeing: 0 };
-    for (original, chip) in original.iter().zip(chip) {
-        let sets = [original, chip].map(|fired| fired.iter().collect::<BTreeSet<_>>());
-        let agrees = sets[0] == sets[1];
-        let is_active = !original.is_empty() || !chip.is_empty();
-        counts.all += usize::from(agrees);
-        counts.active += usize::from(is_active);
-        counts.agreeing += usize::from(agrees && is_active);
-    }
-    counts
 }

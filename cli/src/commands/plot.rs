@@ -1,19 +1,20 @@
 //! `spikewire plot`: signal and reconstruction over spikes.
 
 use super::score::chosen;
-use crate::input::InputOptions;
+use crate::inputs::InputOptions;
 use crate::options::Coding;
-use crate::plot::{Picture, draw};
-use crate::scheme::Scheme;
-use crate::trial::{Recording, Trial};
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use lab::look::known_unit;
+use lab::plot::{Picture, draw};
+use lab::scheme::Scheme;
+use lab::trial::{Recording, Trial};
 use std::ops::Range;
 use std::path::PathBuf;
 
 /// Draw signal and reconstruction over spikes, as the paper's first figure.
 ///
-/// A long recording is thinned to what the picture can show. The decoded curve stands at the samples it belongs
+/// A scheme without parameters has the paper's settings, as with `--all`. A long recording is thinned to what the picture can show. The decoded curve stands at the samples it belongs
 /// to; what a rate code's look-ahead delays it by is told in the panel.
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -53,12 +54,22 @@ pub(crate) fn run(options: &Plot) -> Result<()> {
     let shown = shown(range.as_deref(), recording.values.len())?;
     // Of the population codes the paper draws GRF.
     let is_drawn = |scheme: &Scheme| !options.all || scheme.info().is_drawn;
-    let trials = schemes
-        .into_iter()
-        .filter(is_drawn)
-        .map(|scheme| Trial::new(scheme, &parameters, sample, &recording))
-        .collect::<Result<Vec<_>>>()?;
+    let mut trials = Vec::new();
+    let mut refused = Vec::new();
+    for scheme in schemes.into_iter().filter(is_drawn) {
+        match Trial::new(scheme, &parameters, sample, &recording) {
+            Ok(trial) => trials.push(trial),
+            Err(error) if options.all => refused.push(format!("{}: {error:#}", scheme.name())),
+            Err(error) => return Err(error),
+        }
+    }
+    if trials.is_empty() {
+        bail!("no scheme takes this recording: {}", refused.join("; "));
+    }
     eprint!("{}", recording.notes());
+    for words in &refused {
+        eprintln!("not drawn: {words}");
+    }
     for trial in &trials {
         for note in &trial.notes {
             eprintln!("{}: {note}", trial.scheme.name());
@@ -78,10 +89,4 @@ fn shown(range: Option<&str>, samples: usize) -> Result<Range<usize>> {
         (Ok(start), Ok(end)) if start + 1 < end && end <= samples => Ok(start..end),
         _ => bail!("--range {text}: two samples at least, within 0..{samples}"),
     }
-}
-
-/// The unit that a field's name in PX4 logs tells.
-pub(crate) fn known_unit(name: &str) -> Option<&'static str> {
-    let units = [("gyro_rad", "rad/s"), ("_m_s2", "m/s²"), ("_rad_s", "rad/s"), ("_m_s", "m/s")];
-    units.into_iter().find(|(part, _)| name.contains(part)).map(|(_, unit)| unit)
 }

@@ -1,20 +1,23 @@
 //! `spikewire score`: how few spikes, and how near to the signal.
 
-use crate::brief::brief;
-use crate::input::InputOptions;
+use crate::inputs::InputOptions;
 use crate::options::{Coding, SchemeOptions};
-use crate::scheme::Scheme;
-use crate::steep::Steep;
-use crate::trial::{Recording, Trial};
 use anyhow::{Result, bail};
 use catalogue::run::SampleType;
 use clap::Args;
+use lab::brief::brief;
+use lab::scheme::Scheme;
+use lab::steep::Steep;
+use lab::trial::{Recording, Trial};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::{self, Write, stdout};
 
 /// Score one scheme, or without `--scheme` all with the paper's settings, on one channel of a recording.
+///
+/// A scheme without parameters takes the paper's settings. Of all schemes, one that does not take the recording is a
+/// row that says why.
 ///
 /// Efficiency is the percentage of samples without a spike; RMSE is in the signal's unit and compares each
 /// decoded value with the sample it belongs to, so without a rate code's latency; SNR is in dB.
@@ -31,6 +34,18 @@ pub(crate) struct Score {
     /// Figures and parameters as JSON, for programs
     #[arg(long)]
     json: bool,
+}
+
+/// The outcome of one scheme.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+enum Scored {
+    Figures(Box<Figures>),
+    /// The scheme does not take this recording, and why.
+    Refused {
+        scheme: String,
+        refused: String,
+    },
 }
 
 /// The figures of one scheme.
@@ -64,13 +79,28 @@ pub(crate) fn run(options: &Score) -> Result<()> {
     let Score { coding, input, json } = options;
     let (schemes, sample, parameters) = chosen(coding)?;
     let recording = Recording::read(input)?;
-    let scored = schemes.into_iter().map(|scheme| {
-        let trial = Trial::new(scheme, &parameters, sample, &recording)?;
-        Ok(figures(&recording, &trial))
-    });
-    let figures = scored.collect::<Result<Vec<_>>>()?;
+    let is_single = schemes.len() == 1;
+    let mut scored = Vec::new();
+    for scheme in schemes {
+        scored.push(match Trial::new(scheme, &parameters, sample, &recording) {
+            Ok(trial) => Scored::Figures(Box::new(figures(&recording, &trial))),
+            Err(error) if is_single => return Err(error),
+            Err(error) => {
+                Scored::Refused { scheme: scheme.name().to_owned(), refused: format!("{error:#}") }
+            }
+        });
+    }
+    if let [Scored::Refused { refused, .. }, ..] = &scored[..]
+        && scored.iter().all(|own| matches!(own, Scored::Refused { .. }))
+    {
+        bail!("no scheme takes this recording: {refused}");
+    }
     eprint!("{}", recording.notes());
-    for Figures { scheme, slope, notes, .. } in &figures {
+    let figures = scored.iter().filter_map(|own| match own {
+        Scored::Figures(figures) => Some(figures),
+        Scored::Refused { .. } => None,
+    });
+    for Figures { scheme, slope, notes, .. } in figures.map(Box::as_ref) {
         for note in notes {
             eprintln!("{scheme}: {note}");
         }
@@ -79,21 +109,24 @@ pub(crate) fn run(options: &Score) -> Result<()> {
         }
     }
     if *json {
-        writeln!(stdout(), "{}", serde_json::to_string_pretty(&figures)?)?;
+        writeln!(stdout(), "{}", serde_json::to_string_pretty(&scored)?)?;
     } else {
-        print_table(&figures)?;
+        print_table(&scored)?;
     }
     Ok(())
 }
 
-/// One scheme with its parameters, or all with the paper's.
+/// One scheme with its parameters, or with the paper's where none are given; or all with the paper's.
 ///
 /// # Errors
 /// Parameters without a scheme to take them.
 pub(crate) fn chosen(coding: &Coding) -> Result<(Vec<Scheme>, SampleType, SchemeOptions)> {
     let (scheme, sample, mut parameters) = coding.chosen()?;
     match scheme {
-        Some(scheme) => Ok((vec![scheme], sample, parameters)),
+        Some(scheme) => {
+            parameters.0.paper |= parameters.is_empty();
+            Ok((vec![scheme], sample, parameters))
+        }
         None if !parameters.is_empty() => {
             bail!(
                 "all schemes run with the paper's settings; --scheme says which takes the parameters given"
@@ -128,7 +161,10 @@ pub(crate) fn figures(recording: &Recording, trial: &Trial) -> Figures {
             .filter(|seconds| *seconds > 0.0)
             .map(|seconds| trial.events.len() as f64 / seconds),
         brief: brief(parameters),
-        parameters: parameters.iter().map(|(key, value)| (*key, value_of(value))).collect(),
+        parameters: parameters
+            .iter()
+            .map(|(key, value)| (*key, value_of(&value.to_string())))
+            .collect(),
         slope: Steep::new(trial.scheme, recording, &trial.settings),
         notes: trial.notes.clone(),
     }
@@ -145,23 +181,33 @@ fn value_of(text: &str) -> Value {
     }
 }
 
-fn print_table(figures: &[Figures]) -> io::Result<()> {
+fn print_table(scored: &[Scored]) -> io::Result<()> {
     let mut output = stdout().lock();
     writeln!(
         output,
-        "| scheme    |  spikes | efficiency % |       RMSE |  SNR dB | spikes/s | parameters |"
+        "| scheme              |  spikes | efficiency % |       RMSE |  SNR dB | spikes/s | parameters |"
     )?;
     writeln!(
         output,
-        "|-----------|--------:|-------------:|-----------:|--------:|---------:|------------|"
+        "|---------------------|--------:|-------------:|-----------:|--------:|---------:|------------|"
     )?;
-    for figures in figures {
+    for own in scored {
         let Figures { scheme, spikes, efficiency, rmse, snr, spikes_per_second, brief, .. } =
-            figures;
+            match own {
+                Scored::Figures(figures) => figures.as_ref(),
+                Scored::Refused { scheme, refused } => {
+                    let empty = "-";
+                    writeln!(
+                        output,
+                        "| {scheme:19} | {empty:>7} | {empty:>12} | {empty:>10} | {empty:>7} | {empty:>8} | refused: {refused} |"
+                    )?;
+                    continue;
+                }
+            };
         let rate = spikes_per_second.map_or("-".to_owned(), |rate| format!("{rate:.1}"));
         writeln!(
             output,
-            "| {scheme:9} | {spikes:7} | {efficiency:12.2} | {rmse:10.5} | {snr:7.2} | {rate:>8} | {brief} |"
+            "| {scheme:19} | {spikes:7} | {efficiency:12.2} | {rmse:10.5} | {snr:7.2} | {rate:>8} | {brief} |"
         )?;
     }
     Ok(())

@@ -1,9 +1,9 @@
 //! `spikewire signal`: a signal of the paper's benchmark, to try things on.
 
-use crate::bench::signal::{RATE, Waveform};
-use crate::output::Output;
 use anyhow::{Result, bail};
 use clap::Args;
+use lab::bench::signal::{RATE, Waveform};
+use lab::output::Output;
 use std::io::Write;
 use std::path::PathBuf;
 

@@ -2,9 +2,9 @@
 
 use super::Coding;
 use crate::commands;
-use crate::tune::emit;
 use anyhow::Result;
 use catalogue::run::{Known, Settings};
+use lab::tune::emit;
 use std::fs;
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use std::path::Path;
 /// # Errors
 /// A parameter is missing or makes no sense, or the scheme has no constant.
 pub fn rust(coding: &Coding, name: &str, comments: &[String]) -> Result<String> {
-    emit::rust(comments, name, coding.scheme()?, coding.sample, &settings(coding)?)
+    emit::rust(comments, name, coding.scheme, &settings(coding)?)
 }
 
 /// A file of parameters for `spikewire … --params`, below these comments.
@@ -21,7 +21,7 @@ pub fn rust(coding: &Coding, name: &str, comments: &[String]) -> Result<String> 
 /// # Errors
 /// A parameter is missing or makes no sense.
 pub fn toml(coding: &Coding, comments: &[String]) -> Result<String> {
-    Ok(emit::toml(comments, coding.scheme()?, coding.sample, &settings(coding)?))
+    Ok(emit::toml(comments, coding.scheme, &settings(coding)?))
 }
 
 /// Writes a crate that makes the library for C of this codec, its parameters in flash, into a new directory.
@@ -37,12 +37,11 @@ pub fn c(coding: &Coding, name: &str, directory: &Path, spikewire: Option<&Path>
 
 /// As they run. Where a signal begins is no parameter of a codec that flies.
 fn settings(coding: &Coding) -> Result<Settings> {
-    let scheme = coding.scheme()?;
-    let past = vec![0.0; scheme.looks_back(&coding.options)];
+    let Coding { scheme, sample, asked } = coding;
+    let past = vec![0.0; scheme.looks_back(asked)];
     let known = Known { calibrated: None, first: &past, can_calibrate: false };
-    if let Some(what) = scheme.needs_signal(&coding.options) {
+    if let Some(what) = scheme.needs_signal(asked) {
         anyhow::bail!("{} needs {what}", scheme.name());
     }
-    let settings = scheme.resolve(&coding.options, &known)?;
-    Ok(scheme.rounded(coding.sample, &settings)?.0)
+    scheme.resolve(*sample, asked, &known)
 }

@@ -1,7 +1,7 @@
 //! Events from and to the bytes of every format.
 
-use crate::events::{Format, Item};
 use anyhow::{Result, bail};
+use lab::events::{Format, Item};
 use spikewire::Event;
 
 /// Events of a stream.

@@ -1,7 +1,7 @@
 //! Recordings from files: flight logs and tables.
 
 use super::Arguments;
-use crate::input::InputOptions;
+use crate::inputs::InputOptions;
 use anyhow::Result;
 
 /// Channels of a recording.

@@ -1,11 +1,10 @@
 //! Pictures of signals, spikes and what they decode to.
 
 use super::{Coding, Signal};
-use crate::commands::plot::known_unit;
-use crate::options::SchemeOptions;
-use crate::plot::{Picture, bytes};
-use crate::trial::Trial;
 use anyhow::{Result, bail};
+use lab::look::known_unit;
+use lab::plot::{Picture, bytes};
+use lab::trial::Trial;
 use std::ops::Range;
 
 /// What a picture shows, and how.
@@ -28,10 +27,9 @@ pub fn plot(signal: &Signal, codings: &[Coding], shown: &Shown, ending: &str) ->
     if range.start + 1 >= range.end || range.end > samples {
         bail!("range {}..{}: two samples at least, within 0..{samples}", range.start, range.end);
     }
-    let trials = codings.iter().map(|coding| {
-        let options = SchemeOptions(coding.options.clone());
-        Trial::new(coding.scheme()?, &options, coding.sample, &recording)
-    });
+    let trials = codings
+        .iter()
+        .map(|coding| Trial::new(coding.scheme, &coding.asked, coding.sample, &recording));
     let trials = trials.collect::<Result<Vec<_>>>()?;
     let unit = shown.unit.as_deref().or_else(|| known_unit(&recording.name));
     bytes(ending, &Picture { recording: &recording, trials: &trials, unit, shown: range })

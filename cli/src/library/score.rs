@@ -2,9 +2,8 @@
 
 use super::{Coding, Signal};
 use crate::commands::score::figures;
-use crate::options::SchemeOptions;
-use crate::trial::Trial;
 use anyhow::Result;
+use lab::trial::Trial;
 
 /// The figures of a coding on a signal, as `spikewire score --json` has those of one scheme.
 ///
@@ -12,7 +11,6 @@ use anyhow::Result;
 /// The signal or the parameters are not good.
 pub fn score(signal: &Signal, coding: &Coding) -> Result<String> {
     let recording = signal.recording()?;
-    let options = SchemeOptions(coding.options.clone());
-    let trial = Trial::new(coding.scheme()?, &options, coding.sample, &recording)?;
+    let trial = Trial::new(coding.scheme, &coding.asked, coding.sample, &recording)?;
     Ok(serde_json::to_string(&figures(&recording, &trial))?)
 }

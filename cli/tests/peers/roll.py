@@ -2,7 +2,8 @@
 
     roll.py FILE [FAULT]   20 neurons of a position code in, 12 LIF neurons, 3 LIF neurons out: falls, holds, rises
 
-FAULT is what is wrong with it: cuba, recurrent, nested, deep, nan, narrow, unweighted, reset, wide.
+FAULT is what is wrong with it: cuba, back, deep, nan, narrow, unweighted, reset, wide. Or what else is in it that is
+taken: nested, recurrent.
 """
 
 import sys
@@ -49,10 +50,26 @@ def spoil(fault, nodes, edges):
         nodes["lif2"] = nir.CubaLIF(
             tau_syn=each, tau_mem=each, r=each, v_leak=0 * each, v_threshold=each
         )
-    elif fault == "recurrent":
-        edges.append(("lif1", "lif1"))
+    elif fault == "back":
+        nodes["fc3"] = nir.Linear(numpy.ones((HIDDEN, OUTPUTS)))
+        edges += [("lif2", "fc3"), ("fc3", "lif1")]
     elif fault == "nested":
-        nodes["lif2"] = nir.NIRGraph(*graph())
+        # As snnTorch and Norse write a layer, here without a way back.
+        inner = {
+            "input": nir.Input({"input": numpy.array([OUTPUTS])}),
+            "lif": nodes["lif2"],
+            "output": nir.Output({"output": numpy.array([OUTPUTS])}),
+        }
+        nodes["lif2"] = nir.NIRGraph(inner, chain(*inner))
+    elif fault == "recurrent":
+        inner = {
+            "input": nir.Input({"input": numpy.array([HIDDEN])}),
+            "lif": nodes["lif1"],
+            "w_rec": nir.Linear(-0.3 * numpy.eye(HIDDEN, k=1)),
+            "output": nir.Output({"output": numpy.array([HIDDEN])}),
+        }
+        edges_back = [("lif", "w_rec"), ("w_rec", "lif")]
+        nodes["lif1"] = nir.NIRGraph(inner, chain("input", "lif", "output") + edges_back)
     elif fault == "deep":
         names = [f"{kind}{n}" for n in range(3, 5) for kind in ("fc", "lif")]
         for n in range(3, 5):

@@ -1,0 +1,259 @@
+//! Values of parameters, and how they are read from text.
+
+use std::borrow::Cow;
+use std::fmt;
+
+use anyhow::{Context, Result, bail};
+
+use super::filter;
+use crate::{Kind, Parameter};
+
+/// The value of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A finite number.
+    Number(f64),
+    /// A whole number, 0 or more.
+    Count(u64),
+    /// A word such as `linear`, a filter's shape such as `triang:15`, or a number of thresholds such as `2x`.
+    Word(Cow<'static, str>),
+    /// Finite numbers: centres, edges or taps. Of a parameter that takes one number, one for each channel.
+    Numbers(Vec<f64>),
+}
+
+impl Value {
+    /// The number, if it is one.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            Self::Count(count) => Some(*count as f64),
+            _ => None,
+        }
+    }
+
+    /// The numbers, if it is a list or a number.
+    pub fn numbers(&self) -> Option<&[f64]> {
+        match self {
+            Self::Numbers(numbers) => Some(numbers),
+            Self::Number(number) => Some(std::slice::from_ref(number)),
+            _ => None,
+        }
+    }
+
+    /// The word, if it is one.
+    pub fn word(&self) -> Option<&str> {
+        match self {
+            Self::Word(word) => Some(word),
+            _ => None,
+        }
+    }
+}
+
+/// As a file of spikes holds it: numbers have commas between.
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => number.fmt(f),
+            Self::Count(count) => count.fmt(f),
+            Self::Word(word) => f.write_str(word),
+            Self::Numbers(numbers) => {
+                for (place, number) in numbers.iter().enumerate() {
+                    let comma = if place > 0 { "," } else { "" };
+                    write!(f, "{comma}{number}")?;
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<u64> for Value {
+    fn from(count: u64) -> Self {
+        Self::Count(count)
+    }
+}
+
+impl From<&'static str> for Value {
+    fn from(word: &'static str) -> Self {
+        Self::Word(word.into())
+    }
+}
+
+impl From<String> for Value {
+    fn from(word: String) -> Self {
+        Self::Word(word.into())
+    }
+}
+
+impl From<Vec<f64>> for Value {
+    fn from(numbers: Vec<f64>) -> Self {
+        Self::Numbers(numbers)
+    }
+}
+
+/// The value of a flag that is set.
+pub const SET: Value = Value::Word(Cow::Borrowed("true"));
+
+impl Parameter {
+    /// Reads a value from text, as the command line and files hold it.
+    ///
+    /// # Errors
+    /// The text is no value of this parameter's kind. The error says what is allowed, and leaves the name to the caller.
+    pub fn read(&self, text: &str) -> Result<Value> {
+        let list = || -> Option<Vec<f64>> {
+            let numbers = text.strip_suffix(',').unwrap_or(text).split(',');
+            numbers.map(|number| number.trim().parse().ok()).collect()
+        };
+        let value = match self.kind {
+            Kind::Count => match text.trim().parse() {
+                Ok(count) => Value::Count(count),
+                Err(_) => bail!("must be a whole number, 0 or more"),
+            },
+            Kind::Filter => filter::read(text)?,
+            Kind::Number | Kind::Text => match list() {
+                Some(numbers) if !text.contains(',') => Value::Number(numbers[0]),
+                Some(numbers) => Value::Numbers(numbers),
+                None if self.kind == Kind::Number => bail!("is not a number"),
+                None => Value::Word(text.to_owned().into()),
+            },
+            Kind::Choice(words) => match words.iter().find(|word| **word == text) {
+                Some(word) => Value::Word((*word).into()),
+                None => bail!("there are {}", words.join(", ")),
+            },
+            Kind::Flag => Value::Word(text.to_owned().into()),
+        };
+        self.check(value)
+    }
+
+    /// Reads a value from a file of spikes, which holds a filter's taps and one value for each channel.
+    ///
+    /// # Errors
+    /// As for [`read`](Self::read).
+    pub(super) fn read_recorded(&self, text: &str) -> Result<Value> {
+        let value = match self.kind {
+            Kind::Filter => Self { kind: Kind::Text, ..*self }.read(text)?,
+            _ => self.read(text)?,
+        };
+        match (self.kind, value) {
+            (Kind::Filter, Value::Word(_)) => bail!("is no list of numbers"),
+            (Kind::Number, Value::Numbers(_)) => bail!("is not a number"),
+            (Kind::Filter, value) => self.check(value),
+            (_, value) => Ok(value),
+        }
+    }
+
+    /// Takes a value as its parameter has it: whole numbers become numbers where the parameter is one, and the reverse.
+    ///
+    /// # Errors
+    /// The value is none of this parameter's kind. The error says what is allowed, and leaves the name to the caller.
+    pub fn check(&self, value: Value) -> Result<Value> {
+        /// Above it, not every whole number has a number of its own.
+        const WHOLE: f64 = 9_007_199_254_740_992.0;
+        if let Some(number) =
+            value.numbers().and_then(|all| all.iter().find(|own| !own.is_finite()))
+        {
+            bail!("must be finite, not {number}");
+        }
+        Ok(match (self.kind, value) {
+            (Kind::Number | Kind::Text, Value::Count(count)) => Value::Number(count as f64),
+            (Kind::Count, Value::Number(number))
+                if number.fract() == 0.0 && (0.0..=WHOLE).contains(&number) =>
+            {
+                Value::Count(number as u64)
+            }
+            (Kind::Filter, Value::Number(tap)) => Value::Numbers(vec![tap]),
+            (Kind::Filter, Value::Count(tap)) => Value::Numbers(vec![tap as f64]),
+            (Kind::Choice(words), Value::Word(word)) if !words.contains(&word.as_ref()) => {
+                bail!("there are {}", words.join(", "))
+            }
+            (Kind::Number | Kind::Count | Kind::Text | Kind::Filter, Value::Numbers(numbers))
+                if numbers.is_empty() =>
+            {
+                bail!("must not be empty")
+            }
+            (Kind::Number | Kind::Text, value @ (Value::Number(_) | Value::Numbers(_)))
+            | (Kind::Count, value @ Value::Count(_))
+            | (Kind::Text | Kind::Filter | Kind::Choice(_), value @ Value::Word(_))
+            | (Kind::Filter, value @ Value::Numbers(_)) => value,
+            (Kind::Flag, value) if value == SET => value,
+            (kind, _) => bail!("must be {}", kind.words()),
+        })
+    }
+
+    /// Reads a text of the catalogue, whose words need no copy.
+    pub(super) fn read_own(&self, text: &'static str) -> Result<Value> {
+        match self.read(text).with_context(|| format!("the catalogue's {} {text}", self.name))? {
+            Value::Word(_) => Ok(Value::from(text)),
+            value => Ok(value),
+        }
+    }
+}
+
+impl Kind {
+    /// What its values are.
+    fn words(self) -> &'static str {
+        match self {
+            Self::Number => "a number",
+            Self::Count => "a whole number, 0 or more",
+            Self::Choice(_) => "a word",
+            Self::Flag => "`true`, or left out",
+            Self::Text => "a word, a number or a list of numbers",
+            Self::Filter => "a shape or a list of taps",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{SET, Value};
+    use crate::{Kind, Parameter, Unit};
+
+    const fn of(kind: Kind) -> Parameter {
+        Parameter::new("own", kind, Unit::None, "")
+    }
+
+    #[test]
+    fn texts_are_values() {
+        let word = |text: &str| Value::from(text.to_owned());
+        for (kind, text, value) in [
+            (Kind::Number, "0.5", Value::from(0.5)),
+            (Kind::Number, "0.5, 1", vec![0.5, 1.0].into()),
+            (Kind::Count, "7", 7_u64.into()),
+            (Kind::Choice(&["sub", "mul"]), "mul", word("mul")),
+            (Kind::Flag, "true", SET),
+            (Kind::Text, "linear", word("linear")),
+            (Kind::Text, "2x", word("2x")),
+            (Kind::Text, "-1,0,3", vec![-1.0, 0.0, 3.0].into()),
+            (Kind::Filter, "4,", vec![4.0].into()),
+            (Kind::Filter, "triang:3", word("triang:3")),
+        ] {
+            assert_eq!(of(kind).read(text).unwrap(), value, "{text}");
+        }
+        for (kind, text, words) in [
+            (Kind::Number, "abc", "is not a number"),
+            (Kind::Number, "inf", "must be finite"),
+            (Kind::Count, "-1", "must be a whole number"),
+            (Kind::Choice(&["sub", "mul"]), "div", "there are sub, mul"),
+            (Kind::Flag, "no", "must be `true`"),
+        ] {
+            let told = of(kind).read(text).unwrap_err().to_string();
+            assert!(told.contains(words), "{text}: {told}");
+        }
+    }
+
+    #[test]
+    fn whole_numbers_are_numbers_too() {
+        let check = |kind, value| of(kind).check(value);
+        assert_eq!(check(Kind::Number, 2_u64.into()).unwrap(), Value::from(2.0));
+        assert_eq!(check(Kind::Count, 2.0.into()).unwrap(), Value::from(2_u64));
+        assert_eq!(check(Kind::Filter, 2.0.into()).unwrap(), vec![2.0].into());
+        assert!(check(Kind::Count, 2.5.into()).is_err());
+        assert!(check(Kind::Number, vec![].into()).is_err());
+    }
+}

@@ -1,0 +1,100 @@
+//! Several channels of a recording, each with a codec of its own.
+
+use crate::scheme::Scheme;
+use anyhow::{Result, bail};
+use catalogue::run::{Codec, Event, Settings};
+
+/// Codecs of one scheme. The neurons of the second channel are numbered on from those of the first.
+pub struct Bank {
+    codecs: Vec<Codec>,
+    neurons: u16,
+    /// The events of one channel.
+    own: Vec<Event>,
+}
+
+impl Bank {
+    /// A codec for each channel, as they start on a recording.
+    ///
+    /// # Errors
+    /// A parameter that makes no sense, or too many neurons in all.
+    pub fn new(scheme: Scheme, channels: &[Settings]) -> Result<Self> {
+        let neurons = match channels.first() {
+            Some(settings) => scheme.shape(settings)?.neurons,
+            None => 1,
+        };
+        if channels.len() * neurons > usize::from(u16::MAX) + 1 {
+            bail!("{} channels of {neurons} neurons are too many addresses", channels.len());
+        }
+        let codecs = channels.iter().map(|settings| scheme.codec(settings));
+        let codecs = codecs.collect::<Result<_>>()?;
+        Ok(Self { codecs, neurons: neurons as u16, own: Vec::new() })
+    }
+
+    /// How many neurons each channel has.
+    pub fn neurons(&self) -> usize {
+        self.neurons.into()
+    }
+
+    /// How many samples after its own the code of a sample comes out.
+    pub fn latency(&self) -> usize {
+        self.codecs.first().map_or(0, Codec::latency)
+    }
+
+    /// Takes the next samples of all channels, all finite, and adds the events that they bring about.
+    pub fn encode(&mut self, columns: &[Vec<f64>], events: &mut Vec<Event>) {
+        let mut columns = columns.iter();
+        self.collect(events, |codec, own| {
+            if let Some(column) = columns.next() {
+                codec.encode(column, own);
+            }
+        });
+    }
+
+    /// Adds the events of the samples that still wait for their look-ahead.
+    pub fn finish(&mut self, events: &mut Vec<Event>) {
+        self.collect(events, Codec::finish);
+    }
+
+    /// The events of all channels by sample, and within one by slot and channel.
+    fn collect(
+        &mut self,
+        events: &mut Vec<Event>,
+        mut take: impl FnMut(&mut Codec, &mut Vec<Event>),
+    ) {
+        if let [codec] = self.codecs.as_mut_slice() {
+            return take(codec, events);
+        }
+        let before = events.len();
+        for (codec, channel) in self.codecs.iter_mut().zip(0..) {
+            take(codec, &mut self.own);
+            let first = channel * self.neurons;
+            let own = self.own.drain(..);
+            events.extend(own.map(|event| Event { neuron: first + event.neuron, ..event }));
+        }
+        events[before..].sort_by_key(|event| (event.sample, event.slot));
+    }
+
+    /// Decodes the next samples of all channels from the events that belong to them.
+    ///
+    /// # Errors
+    /// The first event of a sample whose events no encoder emits together.
+    pub fn decode(
+        &mut self,
+        samples: usize,
+        events: &[Event],
+        columns: &mut [Vec<f64>],
+    ) -> Result<(), Event> {
+        if let ([codec], [column]) = (self.codecs.as_mut_slice(), &mut *columns) {
+            return codec.decode(samples, events, column);
+        }
+        for ((codec, channel), column) in self.codecs.iter_mut().zip(0..).zip(columns) {
+            let first = channel * self.neurons;
+            self.own.clear();
+            let is_own = |event: &&Event| event.neuron / self.neurons == channel;
+            let own = events.iter().filter(is_own);
+            self.own.extend(own.map(|event| Event { neuron: event.neuron - first, ..*event }));
+            codec.decode(samples, &self.own, column)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,64 @@
+//! The paper's benchmark: Tables I and II, cell by cell.
+
+pub mod paper;
+mod recipe;
+mod report;
+pub mod signal;
+mod statistics;
+
+pub use report::{differing, json, print};
+
+use paper::CASES;
+use rayon::prelude::*;
+use recipe::{COLUMNS, Outcome};
+use signal::Waveform;
+use statistics::Statistics;
+
+/// Signals a case, each with a generator of its own.
+pub const MOST_TESTS: usize = 1_000_000;
+
+/// One case of the benchmark: what came out of all its tests, by scheme.
+pub struct CaseResult {
+    /// The signals' duration in seconds.
+    pub seconds: usize,
+    /// Spiking efficiency in percent, by column.
+    pub efficiency: [Statistics; COLUMNS],
+    /// Root mean square error, by column.
+    pub rmse: [Statistics; COLUMNS],
+}
+
+/// Runs the first cases with this many signals each. Every signal has its own generator, so that the
+/// outcome does not depend on the number of cores.
+pub fn run(cases: usize, tests: usize, seed: u64, tick: impl Fn(u64) + Sync) -> Vec<CaseResult> {
+    let cases = CASES.iter().take(cases).enumerate();
+    cases.map(|(case, &seconds)| run_case(case, seconds, tests, seed, &tick)).collect()
+}
+
+fn run_case(
+    case: usize,
+    seconds: usize,
+    tests: usize,
+    seed: u64,
+    tick: &(impl Fn(u64) + Sync),
+) -> CaseResult {
+    let waveform = Waveform::new(seconds);
+    let outcomes: Vec<[Outcome; COLUMNS]> = (0..tests)
+        .into_par_iter()
+        .map(|test| {
+            let signal = waveform.with_noise(seed, (case * MOST_TESTS + test) as u64);
+            let outcomes = recipe::run(&signal);
+            tick(signal.len() as u64);
+            outcomes
+        })
+        .collect();
+    let of = |value: fn(&Outcome) -> f64| {
+        std::array::from_fn(|column| {
+            Statistics::new(outcomes.iter().map(|outcomes| value(&outcomes[column])))
+        })
+    };
+    CaseResult {
+        seconds,
+        efficiency: of(|outcome| outcome.efficiency),
+        rmse: of(|outcome| outcome.rmse),
+    }
+}

@@ -1,0 +1,29 @@
+//! Mean and standard deviation over tests.
+
+use serde::Serialize;
+
+/// What is kept of a cell.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Statistics {
+    /// The mean.
+    pub mean: f64,
+    /// The standard deviation, with N-1.
+    pub deviation: f64,
+    /// How many tests.
+    pub count: usize,
+}
+
+impl Statistics {
+    /// Of these values.
+    pub fn new(values: impl ExactSizeIterator<Item = f64> + Clone) -> Self {
+        let count = values.len();
+        let mean = values.clone().sum::<f64>() / count as f64;
+        let squares: f64 = values.map(|value| (value - mean).powi(2)).sum();
+        Self { mean, deviation: (squares / (count as f64 - 1.0)).sqrt(), count }
+    }
+
+    /// The standard error of the difference to a mean over this many other tests, which vary alike.
+    pub fn error_against(&self, others: usize) -> f64 {
+        self.deviation * (1.0 / self.count as f64 + 1.0 / others as f64).sqrt()
+    }
+}

@@ -1,0 +1,61 @@
+//! Parameters in few words, for tables and pictures.
+
+use catalogue::run::Value;
+
+/// `threshold=0.1 start=0.001`; a filter by its length and sum.
+pub fn brief(parameters: &[(&'static str, Value)]) -> String {
+    let words = parameters.iter().map(|(key, value)| match list(value) {
+        Some(taps) if *key == "taps" => {
+            format!("{} taps, sum {}", taps.len(), short(taps.iter().sum()))
+        }
+        Some(many) if many.len() > 4 => {
+            format!("{key}={},..,{} ({})", short(many[0]), short(many[many.len() - 1]), many.len())
+        }
+        Some(few) => format!("{key}={}", few.into_iter().map(short).collect::<Vec<_>>().join(",")),
+        None => format!("{key}={value}"),
+    });
+    words.collect::<Vec<_>>().join(", ")
+}
+
+fn list(value: &Value) -> Option<Vec<f64>> {
+    value.number().map(|number| vec![number]).or_else(|| value.numbers().map(<[f64]>::to_vec))
+}
+
+/// At most six digits that mean anything.
+pub fn short(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{}", value + 0.0);
+    }
+    let decimals = (5 - value.abs().log10().floor() as i32).clamp(0, 17) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{brief, short};
+
+    #[test]
+    fn numbers_and_lists_are_short() {
+        for (value, text) in [
+            (0.1, "0.1"),
+            (0.000_965_071_8, "0.000965072"),
+            (1_234_567.0, "1234567"),
+            (-0.5, "-0.5"),
+            (0.0, "0"),
+            (100.0, "100"),
+        ] {
+            assert_eq!(short(value), text);
+        }
+        let parameters = [
+            ("taps", vec![0.5, 1.0, 0.5].into()),
+            ("form", "toolbox".into()),
+            ("seed", 7_u64.into()),
+        ];
+        assert_eq!(brief(&parameters), "3 taps, sum 2, form=toolbox, seed=7");
+    }
+}

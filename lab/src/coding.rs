@@ -1,0 +1,185 @@
+//! A scheme with what is asked of its parameters, and files of that: TOML, as tuning writes it.
+
+use crate::scheme::Scheme;
+use anyhow::{Context, Result, anyhow, bail};
+use catalogue::Parameter;
+use catalogue::run::{Asked, SET, SampleType, Settings, Value, takes_no};
+use std::fs;
+use toml::de::{DeTable, DeValue};
+use toml::{Spanned, Table};
+
+/// A scheme, the sample type that it runs in, and what is asked of its parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coding {
+    /// The scheme.
+    pub scheme: Scheme,
+    /// The sample type.
+    pub sample: SampleType,
+    /// The parameters given.
+    pub asked: Asked,
+}
+
+impl Coding {
+    /// What brings these settings about again.
+    pub fn of_settings(scheme: Scheme, settings: &Settings) -> Self {
+        Self { scheme, sample: settings.sample, asked: settings.to_asked(scheme.info()) }
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// There is none, it is no TOML, names no scheme, or holds what the scheme does not take. The error names file and
+    /// line.
+    pub fn read(path: &str) -> Result<Self> {
+        let text = fs::read_to_string(path).with_context(|| format!("{path}: cannot be opened"))?;
+        Self::parse(path, &text)
+    }
+
+    /// Reads the text of a file, whose name is for errors.
+    ///
+    /// # Errors
+    /// As for [`read`](Self::read).
+    pub fn parse(file: &str, text: &str) -> Result<Self> {
+        let table = DeTable::parse(text).map_err(|error| anyhow!("{file}: no TOML: {error}"))?;
+        let mut table = table.into_inner();
+        let place = |at: usize| {
+            format!("{file}:{}", 1 + text.bytes().take(at).filter(|byte| *byte == b'\n').count())
+        };
+        let mut word = |name: &str| match table.remove(name) {
+            None => Ok(None),
+            Some(value) => match value.get_ref() {
+                DeValue::String(word) => Ok(Some((word.to_string(), value.span().start))),
+                _ => bail!("{}: {name} must be a text", place(value.span().start)),
+            },
+        };
+        let Some((name, at)) = word("scheme")? else {
+            bail!("{file}: `scheme = \"...\"` is missing")
+        };
+        let Some(scheme) = Scheme::named(&name) else {
+            let names: Vec<&str> = Scheme::all().map(Scheme::name).collect();
+            bail!("{}: there is no scheme `{name}`; there are {}", place(at), names.join(", "))
+        };
+        let sample = match word("sample")? {
+            Some((name, at)) => name.parse().with_context(|| place(at))?,
+            None => SampleType::default(),
+        };
+        let mut asked = Asked::default();
+        for (name, value) in table {
+            let at = value.span().start;
+            let Some(parameter) = scheme.info().parameter(name.get_ref()) else {
+                bail!("{}: {}", place(at), takes_no(scheme.info(), name.get_ref()))
+            };
+            let value = read(parameter, &value).with_context(|| {
+                let said = text.get(value.span()).unwrap_or_default();
+                format!("{}: {} = {said}", place(at), parameter.name)
+            })?;
+            if let Some(value) = value {
+                asked.set(parameter.name, value);
+            }
+        }
+        Ok(Self { scheme, sample, asked })
+    }
+
+    /// The text of a file, below these comments.
+    pub fn to_toml(&self, comments: &[String]) -> String {
+        let mut table = Table::new();
+        for (name, value) in self.asked.iter() {
+            let value = match value {
+                value if *value == SET => true.into(),
+                Value::Number(value) => number(*value),
+                Value::Count(count) => toml::Value::from(*count as i64),
+                Value::Word(word) => word.as_ref().into(),
+                Value::Numbers(all) => {
+                    all.iter().map(|value| number(*value)).collect::<Vec<_>>().into()
+                }
+            };
+            table.insert(name.to_owned(), value);
+        }
+        let comments = comments.iter().map(|line| "# ".to_owned() + line);
+        let named = [
+            format!("scheme = \"{}\"", self.scheme.name()),
+            format!("sample = \"{}\"", self.sample),
+        ];
+        let lines: Vec<String> = comments.chain(named).collect();
+        lines.join("\n") + "\n" + &table.to_string()
+    }
+}
+
+/// A value of a file; `None` where a flag is off.
+fn read(parameter: &Parameter, value: &Spanned<DeValue>) -> Result<Option<Value>> {
+    let number = |value: &DeValue| -> Result<f64> {
+        let number = match value {
+            DeValue::Integer(number) if number.radix() == 10 => number.as_str().parse().ok(),
+            DeValue::Float(number) => number.as_str().parse().ok(),
+            _ => None,
+        };
+        number.context("must be a number")
+    };
+    let value = match value.get_ref() {
+        DeValue::Boolean(false) => return Ok(None),
+        DeValue::Boolean(true) => SET,
+        DeValue::String(text) => return parameter.read(text).map(Some),
+        DeValue::Array(all) => {
+            let all = all.iter().map(|value| number(value.get_ref()));
+            Value::Numbers(all.collect::<Result<_>>()?)
+        }
+        DeValue::Table(_) | DeValue::Datetime(_) => bail!("must be a number or a text"),
+        value => Value::Number(number(value)?),
+    };
+    parameter.check(value).map(Some)
+}
+
+/// A whole number without a point.
+fn number(value: f64) -> toml::Value {
+    match value.to_string().parse::<i64>() {
+        Ok(whole) => whole.into(),
+        Err(_) => value.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Coding;
+    use catalogue::run::{SET, Value};
+
+    fn read(text: &str) -> anyhow::Result<Coding> {
+        Coding::parse("own.toml", text)
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        let text = "scheme = \"hsa\"\nsample = \"q8.8\"\nfilter = [0.25, 1, 0.5]\nshift = -2.5\n";
+        let coding = read(text).unwrap();
+        assert_eq!(coding.asked.get("filter"), Some(&Value::from(vec![0.25, 1.0, 0.5])));
+        assert_eq!(coding.to_toml(&[]), text);
+        // One tap is no name of a file.
+        let one = text.replace("[0.25, 1, 0.5]", "[2]");
+        assert_eq!(read(&one).unwrap().to_toml(&[]), one);
+        let flag = read("scheme = \"tbr\"\nfactor = 0.5\nmagnitudes = true\n").unwrap();
+        assert_eq!(flag.asked.get("magnitudes"), Some(&SET));
+        let each = read("scheme = \"sf\"\nthreshold = [0.1, 0.2]\n").unwrap();
+        assert_eq!(each.asked.get("threshold"), Some(&Value::from(vec![0.1, 0.2])));
+    }
+
+    #[test]
+    fn what_is_none_is_told_with_file_and_line() {
+        for (text, words) in [
+            ("threshold = 1", "own.toml: `scheme = "),
+            ("scheme = \"snf\"", "own.toml:1: there is no scheme `snf`; there are tbr, "),
+            ("scheme = \"sf\"\nsample = \"f64\"", "own.toml:2: no sample type `f64`"),
+            ("scheme = \"sf\"\n\nwindow = 5", "own.toml:3: sf takes no `window`"),
+            (
+                "scheme = \"sf\"\n# half\nthreshold = \"abc\"",
+                "own.toml:3: threshold = \"abc\": is not a number",
+            ),
+            (
+                "scheme = \"sf\"\nthreshold = [\"a\"]",
+                "own.toml:2: threshold = [\"a\"]: must be a number",
+            ),
+            ("scheme = \"sf\"\nthreshold = 1979-05-27", "must be a number or a text"),
+        ] {
+            let told = format!("{:#}", read(text).unwrap_err());
+            assert!(told.contains(words), "{text}: {told}");
+        }
+    }
+}

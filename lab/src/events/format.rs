@@ -1,0 +1,199 @@
+//! Formats by name.
+
+use super::bytes::{self, Hooks};
+use super::eieio::{self, Board};
+use super::{EventReader, EventWriter, LinkReader, csv, link};
+use anyhow::{Context, Error, Result, anyhow, bail};
+use catalogue::run::SampleType;
+use spikewire::Tick;
+use spikewire::format::{Edvs, EdvsTime, EventStream, Evt2};
+use spikewire::link::Coding;
+use std::fmt;
+use std::num::NonZeroU32;
+use std::str::FromStr;
+
+/// A format and its settings, as options name it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// The crate's link.
+    Link(Coding),
+    /// eDVS, and how its events bring a time.
+    Edvs(Edvs, EdvsTime),
+    /// Event Stream, a file `.es`.
+    EventStream,
+    /// EVT2, a file `.raw`.
+    Evt2,
+    /// Datagrams of EIEIO.
+    Eieio(Board),
+    /// A table of events.
+    Csv,
+}
+
+impl Format {
+    /// What reads it; `file` is named in errors.
+    pub fn reader(self, file: &str) -> Box<dyn EventReader> {
+        match self {
+            Self::Link(_) => Box::new(LinkReader::new(None)),
+            Self::Edvs(edvs, time) => {
+                let is_timed = time != EdvsTime::None;
+                let set_arrival: fn(&mut _, Tick) = spikewire::format::EdvsDecoder::set_tick;
+                let hooks =
+                    Hooks { check: |_| Ok(()), set_arrival: (!is_timed).then_some(set_arrival) };
+                Box::new(bytes::Reader::new(edvs.decoder(), hooks))
+            }
+            Self::EventStream => {
+                let check: fn(&spikewire::format::EventStreamDecoder) -> Result<()> = |decoder| {
+                    if decoder.is_foreign() {
+                        bail!("not an Event Stream of version 2 and of generic events");
+                    }
+                    Ok(())
+                };
+                let hooks = Hooks { check, set_arrival: None };
+                Box::new(bytes::Reader::new(EventStream::decoder(), hooks))
+            }
+            Self::Evt2 => {
+                let hooks = Hooks { check: |_| Ok(()), set_arrival: None };
+                Box::new(bytes::Reader::new(Evt2::file_decoder(), hooks))
+            }
+            Self::Eieio(board) => Box::new(eieio::Reader::new(board)),
+            Self::Csv => Box::new(csv::Reader::new(file)),
+        }
+    }
+
+    /// What writes it. Events that it has no word for are an error, or dropped and counted.
+    pub fn writer(self, drops: bool) -> Box<dyn EventWriter> {
+        match self {
+            Self::Link(coding) => Box::new(link::Writer::new(coding)),
+            Self::Edvs(edvs, _) => {
+                Box::new(bytes::Writer::new(edvs.encoder(), edvs.decoder(), &[], drops))
+            }
+            Self::EventStream => Box::new(bytes::Writer::new(
+                EventStream::encoder(),
+                EventStream::decoder(),
+                &EventStream::HEADER,
+                drops,
+            )),
+            Self::Evt2 => Box::new(bytes::Writer::new(
+                Evt2::encoder(),
+                Evt2::file_decoder(),
+                Evt2::HEADER,
+                drops,
+            )),
+            Self::Eieio(board) => Box::new(eieio::Writer::new(board, drops)),
+            Self::Csv => Box::new(csv::Writer::new(None)),
+        }
+    }
+}
+
+/// What writes decoded values of a sample type.
+pub fn values_writer(sample: SampleType) -> Box<dyn EventWriter> {
+    Box::new(csv::Writer::new(Some(sample)))
+}
+
+/// Its name without settings.
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Link(_) => "link",
+            Self::Edvs(_, EdvsTime::None) => "edvs:e0",
+            Self::Edvs(_, EdvsTime::Delta) => "edvs:e1",
+            Self::Edvs(_, EdvsTime::Bits16) => "edvs:e2",
+            Self::Edvs(_, EdvsTime::Bits24) => "edvs:e3",
+            Self::Edvs(_, EdvsTime::Bits32) => "edvs:e4",
+            Self::EventStream => "es",
+            Self::Evt2 => "evt2",
+            Self::Eieio(_) => "eieio",
+            Self::Csv => "csv",
+        })
+    }
+}
+
+/// What `--from` and `--to` take.
+pub(crate) const NAMES: &str = "link, edvs:e0 to edvs:e4, es, evt2, eieio, csv";
+
+impl FromStr for Format {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let (name, settings) = text.split_once(',').unwrap_or((text, ""));
+        let mut settings = Settings::new(settings)?;
+        let format = match name {
+            "link" => {
+                let channels = settings.number("channels", 8)?;
+                let period = settings.number("period", 1_000)?;
+                let jitter: u8 = settings.number("jitter", 0)?;
+                if period == 0 || jitter > 15 {
+                    bail!("{text}: the period must be above 0 µs, the jitter at most 15 bits");
+                }
+                Self::Link(Coding::for_channels(channels, period).with_jitter_bits(jitter))
+            }
+            "edvs" => bail!("edvs: how it sends times must follow, edvs:e0 to edvs:e4"),
+            "edvs:e0" => edvs(EdvsTime::None, &mut settings)?,
+            "edvs:e1" => edvs(EdvsTime::Delta, &mut settings)?,
+            "edvs:e2" => edvs(EdvsTime::Bits16, &mut settings)?,
+            "edvs:e3" => edvs(EdvsTime::Bits24, &mut settings)?,
+            "edvs:e4" => edvs(EdvsTime::Bits32, &mut settings)?,
+            "es" => Self::EventStream,
+            "evt2" => Self::Evt2,
+            "eieio" => {
+                let base = settings.number("base", 0)?;
+                let step = NonZeroU32::new(settings.number("step", 1_000)?)
+                    .with_context(|| format!("{text}: the step must be above 0 µs"))?;
+                let is_signed = settings.bit("signed", false)?;
+                Self::Eieio(Board { base, step, is_signed })
+            }
+            "csv" => Self::Csv,
+            _ => bail!("no format `{name}`; there are {NAMES}"),
+        };
+        settings.end(name)?;
+        Ok(format)
+    }
+}
+
+fn edvs(time: EdvsTime, settings: &mut Settings) -> Result<Format> {
+    let edvs = Edvs::new(time);
+    let edvs = if settings.bit("up", true)? { edvs } else { edvs.with_up_as_zero() };
+    Ok(Format::Edvs(edvs, time))
+}
+
+/// `key=value` pairs that are not taken yet.
+struct Settings<'a>(Vec<(&'a str, &'a str)>);
+
+impl<'a> Settings<'a> {
+    fn new(text: &'a str) -> Result<Self> {
+        let pairs = text.split(',').filter(|pair| !pair.is_empty());
+        let pairs = pairs.map(|pair| {
+            pair.split_once('=').with_context(|| format!("`{pair}` must be KEY=NUMBER"))
+        });
+        Ok(Self(pairs.collect::<Result<_>>()?))
+    }
+
+    /// The number of this key, decimal or `0x` and hexadecimal.
+    fn number<N: TryFrom<u32>>(&mut self, key: &str, otherwise: N) -> Result<N> {
+        let Some(place) = self.0.iter().position(|pair| pair.0 == key) else {
+            return Ok(otherwise);
+        };
+        let (_, text) = self.0.remove(place);
+        let number = match text.strip_prefix("0x") {
+            Some(digits) => u32::from_str_radix(digits, 16),
+            None => text.parse(),
+        };
+        let number = number.ok().and_then(|number| number.try_into().ok());
+        number.ok_or_else(|| anyhow!("{key}={text} is no number of its range"))
+    }
+
+    /// The 0 or 1 of this key.
+    fn bit(&mut self, key: &str, otherwise: bool) -> Result<bool> {
+        match self.number::<u32>(key, otherwise.into())? {
+            bit @ 0..=1 => Ok(bit == 1),
+            other => bail!("{key}={other} must be 0 or 1"),
+        }
+    }
+
+    fn end(self, name: &str) -> Result<()> {
+        match self.0.first() {
+            Some((key, _)) => bail!("{name} takes no {key}="),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! The crate's link.
+
+use super::{EventReader, EventWriter, Held, Item, LinkTally, Tally};
+use anyhow::Result;
+use spikewire::link::{Coding, Framer, LinkError, MAX_FRAME, Reader, Received, Session, Withheld};
+use spikewire::{Event, Keyframe, Tick};
+use std::io::Write;
+
+/// What decodes the frames of a link.
+pub trait Values {
+    /// Decodes a frame, and adds a value for each keyframe and event, or for each sample that is over.
+    fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>);
+
+    /// Adds the values of the last sample, after the last frame.
+    fn finish(&mut self, items: &mut Vec<Item>);
+
+    /// How many events and keyframes had an address without a decoder.
+    fn outside(&self) -> u64;
+
+    /// How many keyframes were of another sample type.
+    fn misfits(&self) -> u64;
+
+    /// How many keyframes came for a scheme that has none.
+    fn unused_keyframes(&self) -> u64;
+
+    /// How keyframes compare with the values before them.
+    fn held(&self) -> Held;
+
+    /// Why no value was exact so far; `None` if one was.
+    fn withheld(&self) -> Option<Withheld>;
+}
+
+/// Reads a link: its events, or its values.
+pub struct LinkReader<'a> {
+    reader: Reader<MAX_FRAME>,
+    /// Zeros of our own that the reader skipped.
+    padding: u64,
+    values: Option<Box<dyn Values + 'a>>,
+    tally: LinkTally,
+}
+
+impl<'a> LinkReader<'a> {
+    /// A reader that gives values where there is something to decode them.
+    pub fn new(values: Option<Box<dyn Values + 'a>>) -> Self {
+        Self { reader: Reader::new(), padding: 0, values, tally: LinkTally::default() }
+    }
+}
+
+impl EventReader for LinkReader<'_> {
+    fn read(&mut self, mut bytes: &[u8], items: &mut Vec<Item>) -> Result<()> {
+        loop {
+            let is_first = self.reader.frames() == 0;
+            let Some(received) = self.reader.next_frame(&mut bytes) else { return Ok(()) };
+            take(&received, is_first, &mut self.tally, self.values.as_deref_mut(), items);
+        }
+    }
+
+    /// A frame whose length was damaged holds those after it back, until as many bytes follow as the
+    /// longest frame has.
+    fn finish(&mut self, items: &mut Vec<Item>) -> Result<()> {
+        self.read(&[0; MAX_FRAME], items)?;
+        self.padding = MAX_FRAME as u64;
+        if let Some(values) = &mut self.values {
+            values.finish(items);
+        }
+        Ok(())
+    }
+
+    fn tally(&self) -> Tally {
+        let reader = &self.reader;
+        let values = self.values.as_deref();
+        let link = LinkTally {
+            frames: reader.frames().into(),
+            lost: reader.lost_frames().into(),
+            bad_checksums: reader.bad_checksums().into(),
+            repeated: reader.repeated().into(),
+            outside: values.map_or(0, Values::outside),
+            misfits: values.map_or(0, Values::misfits),
+            unused_keyframes: values.map_or(0, Values::unused_keyframes),
+            held: values.map_or_else(Held::default, Values::held),
+            withheld: values.filter(|_| reader.frames() > 0).and_then(Values::withheld),
+            ..self.tally
+        };
+        let skipped = u64::from(reader.skipped()).saturating_sub(self.padding);
+        Tally { skipped, link: Some(link), ..Tally::default() }
+    }
+}
+
+/// Adds what a frame brings, in the order in which it holds.
+fn take(
+    received: &Received<'_>,
+    is_first: bool,
+    tally: &mut LinkTally,
+    values: Option<&mut (dyn Values + '_)>,
+    items: &mut Vec<Item>,
+) {
+    let Received { gap, is_start, frame } = received;
+    if let Some(gap) = gap {
+        tally.gaps += 1;
+        items.push(Item::LostFrames(gap.lost_frames));
+    }
+    if frame.is_after_loss() {
+        tally.after_loss += 1;
+        items.push(Item::LostEvents);
+    }
+    // What is heard from the middle on did not begin there.
+    if *is_start && (!is_first || frame.is_first()) {
+        tally.restarts += 1;
+        items.push(Item::Restart);
+    }
+    tally.keyframes += frame.keyframes().count() as u64;
+    let mut events = frame.events();
+    if let Some(values) = values {
+        values.apply(received, items);
+        events.by_ref().for_each(drop);
+    } else {
+        items.extend(frame.keyframes().map(Item::Keyframe));
+        let tick = frame.tick();
+        items.extend(frame.heartbeats().map(|address| Item::Heartbeat(tick, address)));
+        items.extend(events.by_ref().map(Item::Event));
+    }
+    tally.impossible += u64::from(!events.is_complete());
+}
+
+/// Writes a link, in frames as long as they may be.
+pub(super) struct Writer {
+    framer: Framer,
+    coding: Coding,
+    /// Of one tick and sample type.
+    keyframes: Vec<Keyframe>,
+    /// When what comes next happens, as far as it is known.
+    tick: Tick,
+    /// How often it restarted.
+    starts: u32,
+    /// Whether the session has no frame yet.
+    is_fresh: bool,
+    events: Vec<Event>,
+    /// Whether a loss or restart waits for a frame to say it.
+    owes_mark: bool,
+}
+
+/// How many events wait for their frames at most.
+const BATCH: usize = 1024;
+
+impl Writer {
+    pub(super) fn new(coding: Coding) -> Self {
+        let framer = Framer::new(coding, Session::counted(0));
+        Self {
+            framer,
+            coding,
+            keyframes: Vec::new(),
+            tick: Tick::from_micros(0),
+            starts: 0,
+            is_fresh: true,
+            events: Vec::new(),
+            owes_mark: false,
+        }
+    }
+
+    /// Writes all frames, and an empty one where none was left to say what was to be said.
+    fn all_frames(&mut self, output: &mut dyn Write) -> Result<()> {
+        self.frames(true, output)?;
+        if std::mem::take(&mut self.owes_mark) {
+            self.is_fresh = false;
+            output.write_all(self.framer.start(self.tick, &mut [0; MAX_FRAME])?.finish())?;
+        }
+        Ok(())
+    }
+
+    /// Writes frames; the last only if nothing may be added to it.
+    fn frames(&mut self, with_last: bool, output: &mut dyn Write) -> Result<()> {
+        let Self { framer, keyframes, events, owes_mark, is_fresh, .. } = self;
+        let mut buffer = [0; MAX_FRAME];
+        loop {
+            let start = match (keyframes.first(), events.first()) {
+                (Some(keyframe), _) => keyframe.tick,
+                (None, Some(event)) => event.tick,
+                (None, None) => return Ok(()),
+            };
+            let mut frame = framer.start(start, &mut buffer)?;
+            let keys = fitting(keyframes, |&keyframe| frame.keyframe(keyframe));
+            let fired = if keys == keyframes.len() {
+                fitting(events, |&event| frame.event(event))
+            } else {
+                0
+            };
+            let is_last = keys == keyframes.len() && fired == events.len();
+            if is_last && !with_last {
+                return Ok(());
+            }
+            output.write_all(frame.finish())?;
+            (*owes_mark, *is_fresh) = (false, false);
+            keyframes.drain(..keys);
+            events.drain(..fired);
+        }
+    }
+}
+
+/// How many items from the front the frame took.
+fn fitting<T>(items: &[T], put: impl FnMut(&T) -> Result<(), LinkError>) -> usize {
+    items.iter().map(put).take_while(Result::is_ok).count()
+}
+
+impl EventWriter for Writer {
+    fn write(&mut self, item: &Item, output: &mut dyn Write) -> Result<()> {
+        match *item {
+            Item::Event(event) => {
+                self.events.push(event);
+                if self.events.len() >= BATCH {
+                    self.frames(false, output)?;
+                }
+            }
+            Item::Keyframe(keyframe) => {
+                let is_other = self
+                    .keyframes
+                    .last()
+                    .is_some_and(|last| (last.tick, last.kind) != (keyframe.tick, keyframe.kind));
+                if is_other || !self.events.is_empty() {
+                    self.frames(true, output)?;
+                }
+                self.tick = keyframe.tick;
+                self.keyframes.push(keyframe);
+            }
+            Item::Heartbeat(tick, address) => {
+                self.all_frames(output)?;
+                let mut buffer = [0; MAX_FRAME];
+                let mut frame = self.framer.start(tick, &mut buffer)?;
+                frame.heartbeat(tick, address)?;
+                (self.owes_mark, self.is_fresh) = (false, false);
+                output.write_all(frame.finish())?;
+            }
+            Item::LostFrames(_) | Item::LostEvents => {
+                self.all_frames(output)?;
+                self.framer.mark_loss();
+                self.owes_mark = true;
+            }
+            Item::Restart => {
+                self.all_frames(output)?;
+                if !std::mem::replace(&mut self.is_fresh, true) {
+                    self.starts = self.starts.wrapping_add(1);
+                    self.framer = Framer::new(self.coding, Session::counted(self.starts));
+                }
+                self.owes_mark = true;
+            }
+            Item::Value { .. } => {}
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self, output: &mut dyn Write) -> Result<()> {
+        self.all_frames(output)
+    }
+
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
+}

@@ -1,0 +1,104 @@
+//! Streams of events in every format, there and back, in constant memory.
+//!
+//! The formats themselves are the crate's; here bytes are moved, and what a format cannot hold is counted.
+
+mod bytes;
+mod csv;
+mod eieio;
+mod format;
+mod link;
+mod omitted;
+mod stream;
+mod tally;
+mod told;
+
+pub use format::{Format, values_writer};
+pub use link::{LinkReader, Values};
+pub use stream::Stream;
+pub use tally::{Held, LinkTally, Tally};
+
+use anyhow::Result;
+use spikewire::{Event, Keyframe, Tick};
+use std::io::Write;
+
+/// What a stream brings, in its order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Item {
+    /// A spike.
+    Event(Event),
+    /// What the sender's encoder held.
+    Keyframe(Keyframe),
+    /// A sample of a code without keyframes, whose events are all told: its tick, and its bank's first address.
+    Heartbeat(Tick, u16),
+    /// What the decoder of an address holds after an event or keyframe.
+    Value {
+        /// When.
+        tick: Tick,
+        /// Where.
+        address: u16,
+        /// In the recording's unit.
+        value: f64,
+        /// How well it is known.
+        known: Known,
+    },
+    /// So many frames never arrived.
+    LostFrames(u32),
+    /// The sender lost events.
+    LostEvents,
+    /// The sender began anew.
+    Restart,
+}
+
+/// How well a decoded value is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Known {
+    /// It came as a keyframe.
+    Keyframe,
+    /// It is what the sender's own decoder holds, bit for bit.
+    Exact,
+    /// Something was lost since the last keyframe, or there was none yet.
+    Estimate,
+}
+
+/// Turns bytes into items.
+pub trait EventReader {
+    /// Takes bytes, cut anywhere, and adds what they complete.
+    ///
+    /// # Errors
+    /// They are of another format.
+    fn read(&mut self, bytes: &[u8], items: &mut Vec<Item>) -> Result<()>;
+
+    /// The end of the bytes; adds what was held back.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    fn finish(&mut self, _: &mut Vec<Item>) -> Result<()> {
+        Ok(())
+    }
+
+    /// What there was besides events.
+    fn tally(&self) -> Tally;
+
+    /// Tells a format without times the time of the bytes that come next.
+    fn set_arrival(&mut self, _: Tick) {}
+}
+
+/// Turns items into bytes.
+pub trait EventWriter {
+    /// Writes an item, or keeps it for later.
+    ///
+    /// # Errors
+    /// The format cannot hold it, or the output failed.
+    fn write(&mut self, item: &Item, output: &mut dyn Write) -> Result<()>;
+
+    /// Writes what was kept.
+    ///
+    /// # Errors
+    /// The output failed.
+    fn finish(&mut self, _: &mut dyn Write) -> Result<()> {
+        Ok(())
+    }
+
+    /// What the format could not hold, in sentences.
+    fn notes(&self) -> Vec<String>;
+}

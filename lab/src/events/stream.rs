@@ -1,0 +1,205 @@
+//! Bytes of one format in, bytes of another out.
+
+use super::{EventReader, EventWriter, Format, Item, Tally};
+use anyhow::{Result, bail};
+use spikewire::Tick;
+use std::fmt;
+use std::io::Write;
+
+/// A reader, a writer, and counts of what went through.
+pub struct Stream<'a> {
+    reader: Box<dyn EventReader + 'a>,
+    writer: Box<dyn EventWriter>,
+    /// What is taken off every tick, where they are to start at 0.
+    zero: Zero,
+    items: Vec<Item>,
+    bytes: u64,
+    events: u64,
+    values: u64,
+    addresses: Vec<u64>,
+    last: Option<Tick>,
+    wraps: u64,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Zero {
+    Keep,
+    Wanted,
+    At(Tick),
+}
+
+impl<'a> Stream<'a> {
+    /// Bytes are read by the one and written by the other, with the ticks as they are or from 0 on.
+    pub fn new(
+        reader: Box<dyn EventReader + 'a>,
+        writer: Box<dyn EventWriter>,
+        from_zero: bool,
+    ) -> Self {
+        Self {
+            reader,
+            writer,
+            zero: if from_zero { Zero::Wanted } else { Zero::Keep },
+            items: Vec::new(),
+            bytes: 0,
+            events: 0,
+            values: 0,
+            addresses: vec![0; 1 << 16],
+            last: None,
+            wraps: 0,
+        }
+    }
+
+    /// Takes bytes, cut anywhere, that arrive at this time if it means anything.
+    ///
+    /// # Errors
+    /// They cannot be read, or what they mean cannot be written.
+    pub fn push(
+        &mut self,
+        bytes: &[u8],
+        arrival: Option<Tick>,
+        output: &mut dyn Write,
+    ) -> Result<()> {
+        /// So many that their items stay small.
+        const PIECE: usize = 1 << 14;
+        if let Some(tick) = arrival {
+            self.reader.set_arrival(tick);
+        }
+        for piece in bytes.chunks(PIECE) {
+            self.bytes += piece.len() as u64;
+            // What came before an error is still written.
+            let read = self.reader.read(piece, &mut self.items);
+            self.write(output)?;
+            read?;
+        }
+        Ok(())
+    }
+
+    /// The end of the bytes.
+    ///
+    /// # Errors
+    /// As [`push`](Self::push).
+    pub fn finish(&mut self, output: &mut dyn Write) -> Result<()> {
+        let read = self.reader.finish(&mut self.items);
+        self.write(output)?;
+        read?;
+        self.writer.finish(output)
+    }
+
+    fn write(&mut self, output: &mut dyn Write) -> Result<()> {
+        let mut items = std::mem::take(&mut self.items);
+        for item in &mut items {
+            self.observe(item);
+            self.writer.write(item, output)?;
+        }
+        items.clear();
+        self.items = items;
+        Ok(())
+    }
+
+    fn observe(&mut self, item: &mut Item) {
+        let (now, address) = match item {
+            Item::Event(event) => {
+                self.events += 1;
+                (&mut event.tick, event.address)
+            }
+            Item::Value { tick, address, .. } => {
+                self.values += 1;
+                (tick, *address)
+            }
+            Item::Keyframe(keyframe) => {
+                self.start_at_zero(&mut keyframe.tick);
+                return;
+            }
+            Item::Heartbeat(tick, _) => {
+                self.start_at_zero(tick);
+                return;
+            }
+            _ => return,
+        };
+        self.addresses[usize::from(address)] += 1;
+        self.start_at_zero(now);
+        if self.last.is_some_and(|last| now.micros() < last.micros() && last.is_before(*now)) {
+            self.wraps += 1;
+        }
+        self.last = Some(*now);
+    }
+
+    fn start_at_zero(&mut self, tick: &mut Tick) {
+        match self.zero {
+            Zero::Keep => {}
+            Zero::Wanted => {
+                self.zero = Zero::At(*tick);
+                *tick = Tick::from_micros(0);
+            }
+            Zero::At(zero) => *tick = Tick::from(tick.micros().wrapping_sub(zero.micros())),
+        }
+    }
+
+    /// How many events, or values in their place, each address had.
+    pub fn addresses(&self) -> &[u64] {
+        &self.addresses
+    }
+
+    /// How many events, or values in their place.
+    pub fn count(&self) -> u64 {
+        self.events + self.values
+    }
+
+    /// How many bytes went in.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// Refuses bytes none of which meant anything in this format.
+    ///
+    /// # Errors
+    /// Some were skipped, and there was neither event nor frame.
+    pub fn check_format(&self, format: Format, file: &str) -> Result<()> {
+        let Tally { skipped, link, .. } = self.tally();
+        let frames = link.map_or(0, |link| link.frames);
+        if skipped > 0 && self.count() == 0 && frames == 0 {
+            let what = if link.is_some() { "frame" } else { "event" };
+            let bytes = self.bytes;
+            bail!("no {format} {what} in the {bytes} bytes of {file}; is it of another format?");
+        }
+        Ok(())
+    }
+
+    /// What so many bytes are for what was written, in words.
+    pub fn written(&self, bytes: u64) -> String {
+        match self.count() {
+            0 => format!("{bytes} bytes written"),
+            count => {
+                let what = if self.values > 0 { "a value" } else { "an event" };
+                format!("{bytes} bytes written, {:.2} {what}", bytes as f64 / count as f64)
+            }
+        }
+    }
+
+    /// What there was besides events.
+    pub fn tally(&self) -> Tally {
+        self.reader.tally()
+    }
+}
+
+/// What a user should know at the end.
+impl fmt::Display for Stream<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (count, what) =
+            if self.values > 0 { (self.values, "values") } else { (self.events, "events") };
+        let addresses = self.addresses.iter().filter(|&&count| count > 0).count();
+        write!(f, "{} bytes, {count} {what} at {addresses} addresses", self.bytes)?;
+        if count > 0 {
+            write!(f, ", {:.2} bytes each", self.bytes as f64 / count as f64)?;
+        }
+        writeln!(f)?;
+        write!(f, "{}", self.tally())?;
+        if let Zero::At(zero) = self.zero {
+            writeln!(f, "{} µs taken off every tick", zero.micros())?;
+        }
+        if self.wraps > 0 {
+            writeln!(f, "ticks wrapped {} times, after 71.6 minutes each", self.wraps)?;
+        }
+        self.writer.notes().iter().try_for_each(|note| writeln!(f, "{note}"))
+    }
+}

@@ -1,0 +1,114 @@
+//! Other containers, by way of `ffmpeg`.
+
+use super::video::{Rate, Video};
+use super::y4m::Y4m;
+use anyhow::{Context, Result, bail};
+use std::env;
+use std::io::{self, BufReader, Read};
+use std::path::Path;
+use std::process::{Child, ChildStdout, Command, Stdio};
+use std::thread::JoinHandle;
+
+/// The pixel format asked for: 8 bits of full-range brightness. Full-range and grey sources pass unchanged, a limited
+/// range is expanded as [`Y4m`] expands it.
+const GREY: &str = "gray";
+
+/// What `ffmpeg` makes of a file.
+pub(super) struct Converted {
+    video: Y4m<BufReader<ChildStdout>>,
+    child: Child,
+    said: Option<JoinHandle<String>>,
+    name: String,
+}
+
+impl Converted {
+    /// Starts the program, the one that the variable `FFMPEG` names or the one on the path.
+    ///
+    /// # Errors
+    /// It is not there, or cannot read the file.
+    pub(super) fn open(input: &Path) -> Result<Self> {
+        let name = input.display().to_string();
+        let program = env::var_os("FFMPEG").unwrap_or_else(|| "ffmpeg".into());
+        let started = Command::new(&program)
+            .args(["-nostdin", "-v", "error", "-i"])
+            .arg(input)
+            .args(["-map", "0:v:0", "-pix_fmt", GREY, "-f", "yuv4mpegpipe", "-"])
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn();
+        let mut child = match started {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => bail!(
+                "{name}: neither YUV4MPEG2 nor a picture, and {} is not there to read it; install it, or name it in \
+                 FFMPEG, or convert the video elsewhere: `ffmpeg -i VIDEO -pix_fmt gray video.y4m`",
+                program.display()
+            ),
+            started => {
+                started.with_context(|| format!("{} cannot be started", program.display()))?
+            }
+        };
+        let output = child.stdout.take().context("no output of ffmpeg")?;
+        let errors = child.stderr.take().context("no output of ffmpeg")?;
+        let mut said = Some(std::thread::spawn(move || {
+            let mut text = Vec::new();
+            let mut errors = errors;
+            let _ = errors.by_ref().take(1 << 16).read_to_end(&mut text);
+            // The rest is of no use, but must not block it.
+            let _ = io::copy(&mut errors, &mut io::sink());
+            String::from_utf8_lossy(&text).trim().to_owned()
+        }));
+        match Y4m::open(BufReader::new(output), name.clone(), None) {
+            Ok(video) => Ok(Self { video, child, said, name }),
+            Err(error) => {
+                let _ = child.kill();
+                let _ = child.wait();
+                match words(&mut said) {
+                    text if text.is_empty() => Err(error),
+                    text => bail!("{name}: ffmpeg says: {text}"),
+                }
+            }
+        }
+    }
+}
+
+/// What it said, in one line.
+fn words(said: &mut Option<JoinHandle<String>>) -> String {
+    let text = said.take().and_then(|said| said.join().ok()).unwrap_or_default();
+    text.lines().collect::<Vec<_>>().join("; ")
+}
+
+impl Video for Converted {
+    fn size(&self) -> (u16, u16) {
+        self.video.size()
+    }
+
+    fn rate(&self) -> Option<Rate> {
+        self.video.rate()
+    }
+
+    fn frames(&self) -> Option<u64> {
+        None
+    }
+
+    fn next(&mut self, frame: &mut Vec<u8>) -> Result<bool> {
+        let Self { video, child, said, name } = self;
+        if video.next(frame)? {
+            return Ok(true);
+        }
+        if said.is_some() {
+            let text = words(said);
+            let status = child.wait()?;
+            if !status.success() || !text.is_empty() {
+                bail!("{name}: ffmpeg says, {status}: {text}");
+            }
+        }
+        Ok(false)
+    }
+}
+
+impl Drop for Converted {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

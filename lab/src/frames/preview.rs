@@ -1,0 +1,167 @@
+//! A picture of a video and its events, in the paper's layout: the frame, then a panel for each threshold.
+
+use super::video::Rate;
+use crate::output::Output;
+use anyhow::{Result, bail};
+use gif::{Encoder, Frame, Repeat};
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder};
+use spikewire::frame::{DynamicFrameEncoder, Intensity};
+use spikewire::{Polarity, Tick};
+use std::borrow::Cow;
+use std::path::Path;
+
+/// Greys have the first colours of the palette, then come these.
+const GREYS: u16 = 253;
+const UP: u8 = 253;
+const DOWN: u8 = 254;
+const PAPER: u8 = 255;
+/// Beside and between the panels.
+const GAP: usize = 6;
+/// Small videos are shown larger, by whole numbers, up to this many columns in all.
+const WIDEST: usize = 1080;
+
+/// The frame of a picture, a second into a usual video.
+const USUAL: u64 = 30;
+
+/// A picture, or an animated one.
+pub struct Preview {
+    panels: Vec<DynamicFrameEncoder<Intensity>>,
+    size: (usize, usize),
+    scale: usize,
+    canvas: Vec<u8>,
+    /// The last frame to show.
+    last: u64,
+    file: Kind,
+}
+
+enum Kind {
+    Png(Output),
+    Gif(Box<Encoder<Output>>, Rate),
+}
+
+impl Preview {
+    /// Opens the file, `.png` or `.gif`, with a panel for each threshold in grey levels.
+    ///
+    /// # Errors
+    /// The name has another ending, or a threshold is 0 or 255.
+    pub fn open(
+        path: &Path,
+        input: &Path,
+        (width, height): (u16, u16),
+        rate: Rate,
+        thresholds: &[u8],
+        last: Option<u64>,
+    ) -> Result<Self> {
+        let panels = thresholds
+            .iter()
+            .map(|&threshold| {
+                let code = Intensity::try_new(threshold)?;
+                DynamicFrameEncoder::try_new(code, width, height)
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        let size = (usize::from(width), usize::from(height));
+        let count = panels.len() + 1;
+        let scale = (WIDEST / (count * size.0)).clamp(1, 4);
+        let (columns, rows) = (count * (scale * size.0 + GAP) + GAP, scale * size.1 + 2 * GAP);
+        let canvas = vec![PAPER; columns * rows];
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let file = match ending.as_str() {
+            "png" => Kind::Png(Output::open(Some(path), input)?),
+            "gif" => {
+                let (Ok(columns), Ok(rows)) = (u16::try_from(columns), u16::try_from(rows)) else {
+                    bail!("{}: {columns} x {rows} pixels are too many for a GIF", path.display());
+                };
+                let output = Output::open(Some(path), input)?;
+                let mut encoder = Encoder::new(output, columns, rows, &palette())?;
+                encoder.set_repeat(Repeat::Infinite)?;
+                Kind::Gif(Box::new(encoder), rate)
+            }
+            _ => bail!("{}: a preview is a .png, or animated a .gif", path.display()),
+        };
+        let last = last.unwrap_or(if matches!(file, Kind::Png(_)) { USUAL } else { u64::MAX });
+        Ok(Self { panels, size, scale, canvas, last, file })
+    }
+
+    /// Takes a frame.
+    ///
+    /// # Errors
+    /// The picture cannot be written.
+    pub fn frame(&mut self, index: u64, frame: &[u8]) -> Result<()> {
+        if index > self.last {
+            return Ok(());
+        }
+        self.fill(0, |place| (u16::from(frame[place]) * (GREYS - 1) / 255) as u8);
+        let mut shown = vec![PAPER; frame.len()];
+        for panel in 0..self.panels.len() {
+            shown.fill(PAPER);
+            let (width, encoder) = (self.size.0, &mut self.panels[panel]);
+            encoder.encode_frame(Tick::from(index as u32), frame, |event| {
+                let up = event.polarity == Polarity::Up;
+                shown[usize::from(event.y) * width + usize::from(event.x)] =
+                    if up { UP } else { DOWN };
+            })?;
+            self.fill(panel + 1, |place| shown[place]);
+        }
+        let columns = self.columns();
+        if let Kind::Gif(encoder, rate) = &mut self.file {
+            let hundredths = |index| rate.micros(index) / 10_000;
+            encoder.write_frame(&Frame {
+                width: columns as u16,
+                height: (self.canvas.len() / columns) as u16,
+                delay: (hundredths(index + 1) - hundredths(index)) as u16,
+                buffer: Cow::Borrowed(&self.canvas),
+                ..Frame::default()
+            })?;
+        }
+        Ok(())
+    }
+
+    fn columns(&self) -> usize {
+        (self.panels.len() + 1) * (self.scale * self.size.0 + GAP) + GAP
+    }
+
+    /// Draws a panel, a colour for each pixel.
+    fn fill(&mut self, panel: usize, colour: impl Fn(usize) -> u8) {
+        let (columns, scale, (width, height)) = (self.columns(), self.scale, self.size);
+        let left = GAP + panel * (scale * width + GAP);
+        for row in 0..scale * height {
+            let start = (GAP + row) * columns + left;
+            let source = row / scale * width;
+            for (place, pixel) in self.canvas[start..start + scale * width].iter_mut().enumerate() {
+                *pixel = colour(source + place / scale);
+            }
+        }
+    }
+
+    /// Puts the file in its place.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn finish(self) -> Result<()> {
+        let columns = self.columns();
+        match self.file {
+            Kind::Gif(encoder, _) => encoder.into_inner()?.finish(),
+            Kind::Png(mut output) => {
+                let palette = palette();
+                let colours = |&index: &u8| palette[3 * usize::from(index)..][..3].to_vec();
+                let pixels: Vec<u8> = self.canvas.iter().flat_map(colours).collect();
+                let rows = self.canvas.len() / columns;
+                let encoder = PngEncoder::new(&mut output);
+                encoder.write_image(
+                    &pixels,
+                    columns as u32,
+                    rows as u32,
+                    ExtendedColorType::Rgb8,
+                )?;
+                output.finish()
+            }
+        }
+    }
+}
+
+/// Red, green and blue of each colour: greys, ink for brighter, red for darker, and paper.
+fn palette() -> Vec<u8> {
+    let greys = (0..GREYS).flat_map(|grey| [(grey * 255 / (GREYS - 1)) as u8; 3]);
+    greys.chain([0x2b, 0x2f, 0x36, 0xc2, 0x3b, 0x4e, 0xff, 0xff, 0xff]).collect()
+}

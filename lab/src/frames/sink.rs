@@ -1,0 +1,98 @@
+//! Where the events of pixels go.
+
+use crate::output::Output;
+use anyhow::{Result, bail};
+use spikewire::format::{Dvs, DvsEncoder, EventFormat, Evt2Pixels, Evt2PixelsEncoder, FormatError};
+use spikewire::frame::PixelEvent;
+use spikewire::{Polarity, Tick};
+use std::io::Write;
+use std::path::Path;
+
+/// A file of events, in the format of its name's ending.
+pub struct Sink {
+    output: Output,
+    format: Kind,
+}
+
+enum Kind {
+    Dvs(DvsEncoder),
+    Evt2(Evt2PixelsEncoder),
+    Csv,
+}
+
+impl Sink {
+    /// Opens the file and writes its header.
+    ///
+    /// # Errors
+    /// It cannot be written, its name has another ending, or its format has no word for so large a picture.
+    pub fn open(path: &Path, input: &Path, (width, height): (u16, u16)) -> Result<Self> {
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let format = match ending.as_str() {
+            "es" => Kind::Dvs(Dvs::new(width, height).encoder()),
+            "raw" if width > 2048 || height > 2048 => {
+                bail!(
+                    "{}: EVT2 holds up to 2048 columns and rows, not {width} x {height}",
+                    path.display()
+                )
+            }
+            "raw" => Kind::Evt2(Evt2Pixels::encoder()),
+            "csv" => Kind::Csv,
+            _ => bail!(
+                "{}: events go into .es (Event Stream), .raw (EVT2) or .csv; other programs make EVT3 and AEDAT4 of these",
+                path.display()
+            ),
+        };
+        let mut output = Output::open(Some(path), input)?;
+        match format {
+            Kind::Dvs(_) => output.write_all(&Dvs::new(width, height).header())?,
+            Kind::Evt2(_) => write!(
+                output,
+                "% evt 2.0\n% format EVT2;height={height};width={width}\n% geometry {width}x{height}\n% end\n"
+            )?,
+            Kind::Csv => writeln!(output, "tick,x,y,polarity")?,
+        }
+        Ok(Self { output, format })
+    }
+
+    /// Writes an event.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn write(&mut self, event: PixelEvent) -> Result<()> {
+        let Self { output, format } = self;
+        match format {
+            Kind::Dvs(encoder) => encode(encoder, event, output),
+            Kind::Evt2(encoder) => encode(encoder, event, output),
+            Kind::Csv => {
+                let PixelEvent { tick, x, y, polarity } = event;
+                let sign = if polarity == Polarity::Up { 1 } else { -1 };
+                Ok(writeln!(output, "{},{x},{y},{sign}", Tick::micros(tick))?)
+            }
+        }
+    }
+
+    /// Puts the file in its place, and says how many bytes it has.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn finish(self) -> Result<u64> {
+        let bytes = self.output.bytes();
+        self.output.finish()?;
+        Ok(bytes)
+    }
+}
+
+fn encode(
+    encoder: &mut impl EventFormat<PixelEvent>,
+    event: PixelEvent,
+    output: &mut Output,
+) -> Result<()> {
+    let mut buffer = [0; 4096];
+    loop {
+        match encoder.encode(event, &mut buffer) {
+            Ok(length) => return Ok(output.write_all(&buffer[..length])?),
+            Err(FormatError::Full { written }) => output.write_all(&buffer[..written])?,
+            Err(error) => bail!("{error}"),
+        }
+    }
+}

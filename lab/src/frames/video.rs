@@ -1,0 +1,100 @@
+//! What a video is, whatever holds it.
+
+use super::{ffmpeg, pictures, y4m};
+use anyhow::{Context, Result, bail};
+use std::fs::File;
+use std::io::{self, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+/// Grey frames of one size, one after the other.
+pub trait Video {
+    /// Columns and rows.
+    fn size(&self) -> (u16, u16);
+
+    /// Frames a second, where the video tells.
+    fn rate(&self) -> Option<Rate>;
+
+    /// How many frames, where that is known before.
+    fn frames(&self) -> Option<u64>;
+
+    /// Puts the next frame into the buffer, row-major; false at the end.
+    ///
+    /// # Errors
+    /// It cannot be read, or has another size.
+    fn next(&mut self, frame: &mut Vec<u8>) -> Result<bool>;
+}
+
+/// Frames a second, as a fraction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rate {
+    frames: u64,
+    seconds: u64,
+}
+
+impl Rate {
+    /// So many frames in so many seconds; `None` if either is 0.
+    pub fn new(frames: u64, seconds: u64) -> Option<Self> {
+        (frames > 0 && seconds > 0).then_some(Self { frames, seconds })
+    }
+
+    /// The time of a frame in µs.
+    pub fn micros(self, frame: u64) -> u64 {
+        (u128::from(frame) * 1_000_000 * u128::from(self.seconds) / u128::from(self.frames)) as u64
+    }
+}
+
+impl FromStr for Rate {
+    type Err = anyhow::Error;
+
+    /// `25`, `29.97` or `30000/1001`.
+    fn from_str(text: &str) -> Result<Self> {
+        let rate = if let Some((frames, seconds)) = text.split_once('/') {
+            Self::new(frames.parse()?, seconds.parse()?)
+        } else {
+            let rate: f64 = text.parse()?;
+            Self::new((rate * 1e6).clamp(0.0, 1e15) as u64, 1_000_000)
+        };
+        rate.with_context(|| format!("{text} frames a second: must be above 0"))
+    }
+}
+
+/// Opens a video: YUV4MPEG2, a sequence of pictures, or whatever `ffmpeg` reads.
+///
+/// # Errors
+/// There is no such video, or it cannot be read.
+pub fn open(inputs: &[PathBuf]) -> Result<Box<dyn Video>> {
+    let [input] = inputs else { return Ok(Box::new(pictures::Pictures::open(inputs.to_vec())?)) };
+    if input == Path::new("-") {
+        let stdin = BufReader::new(io::stdin());
+        return Ok(Box::new(y4m::Y4m::open(stdin, "standard input".into(), None)?));
+    }
+    let name = input.display();
+    let cannot = || format!("{name}: cannot be opened");
+    if input.is_dir() {
+        let mut files = Vec::new();
+        for entry in input.read_dir().with_context(cannot)? {
+            let path = entry.with_context(cannot)?.path();
+            if pictures::is_picture(&path) {
+                files.push(path);
+            }
+        }
+        files.sort();
+        if files.is_empty() {
+            bail!("{name}: no pictures in this directory (.png, .jpg, .pgm, .ppm)");
+        }
+        return Ok(Box::new(pictures::Pictures::open(files)?));
+    }
+    let mut file = File::open(input).with_context(cannot)?;
+    let mut magic = Vec::new();
+    (&mut file).take(y4m::MAGIC.len() as u64).read_to_end(&mut magic).with_context(cannot)?;
+    if magic == y4m::MAGIC {
+        let file = File::open(input).with_context(cannot)?;
+        let length = file.metadata().ok().filter(std::fs::Metadata::is_file).map(|data| data.len());
+        return Ok(Box::new(y4m::Y4m::open(BufReader::new(file), name.to_string(), length)?));
+    }
+    if pictures::is_picture(input) {
+        return Ok(Box::new(pictures::Pictures::open(vec![input.clone()])?));
+    }
+    Ok(Box::new(ffmpeg::Converted::open(input)?))
+}

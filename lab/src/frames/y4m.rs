@@ -1,0 +1,140 @@
+//! YUV4MPEG2, of which the brightness is taken, in full range: black is 0 and white 255.
+//!
+//! Grey videos have full range. Those with colour have the limited one, 16 to 235, unless their header says
+//! `XCOLORRANGE=FULL`.
+
+use super::video::{Rate, Video};
+use anyhow::{Result, anyhow, bail};
+use std::cell::Cell;
+use std::io::{self, Read};
+use std::rc::Rc;
+use y4m::{Decoder, Error};
+
+/// What such a video begins with.
+pub(super) const MAGIC: &[u8] = b"YUV4MPEG2 ";
+
+/// A reader that counts what it has read.
+struct Counting<R> {
+    reader: R,
+    bytes: Rc<Cell<u64>>,
+}
+
+impl<R: Read> Read for Counting<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.reader.read(buffer)?;
+        self.bytes.set(self.bytes.get() + count as u64);
+        Ok(count)
+    }
+}
+
+/// A video of 8 bits a pixel.
+pub(super) struct Y4m<R: Read> {
+    decoder: Decoder<Counting<R>>,
+    is_limited: bool,
+    name: String,
+    size: (u16, u16),
+    /// What was read so far, and up to the end of the last frame.
+    bytes: Rc<Cell<u64>>,
+    end: u64,
+    index: u64,
+    frames: Option<u64>,
+}
+
+impl<R: Read> Y4m<R> {
+    /// Reads the header; the length in bytes tells the number of frames.
+    ///
+    /// # Errors
+    /// It is another format's, or its pixels have more than 8 bits.
+    pub(super) fn open(reader: R, name: String, length: Option<u64>) -> Result<Self> {
+        let bytes = Rc::new(Cell::new(0));
+        let counting = Counting { reader, bytes: Rc::clone(&bytes) };
+        let decoder = Decoder::new(counting).map_err(|error| match error {
+            Error::UnknownColorspace => anyhow!(
+                "{name}: byte {}: unknown pixel format in the header; 4:2:0, 4:2:2, 4:4:4 and mono of 8 bits are read",
+                bytes.get()
+            ),
+            Error::EOF => anyhow!("{name}: cut short at byte {}, within the header", bytes.get()),
+            error => anyhow!("{name}: byte {}: no header of YUV4MPEG2: {error}", bytes.get()),
+        })?;
+        if decoder.get_bytes_per_sample() != 1 {
+            bail!("{name}: pixels of {} bits, where 8 are taken", decoder.get_bit_depth());
+        }
+        let size = [decoder.get_width(), decoder.get_height()].map(u16::try_from);
+        let [Ok(width @ 1..), Ok(height @ 1..)] = size else {
+            bail!(
+                "{name}: {} x {} pixels, where 1 to 65535 columns and rows are taken",
+                decoder.get_width(),
+                decoder.get_height()
+            );
+        };
+        let end = bytes.get();
+        let frames = length.map(|length| {
+            let (pixels, colours) = colours(&decoder);
+            (length - end) / (b"FRAME\n".len() as u64 + pixels + colours)
+        });
+        let mut words = decoder.get_raw_params().split(|byte| *byte == b' ');
+        let is_limited = !matches!(decoder.get_colorspace(), y4m::Colorspace::Cmono)
+            && !words.any(|word| word == b"XCOLORRANGE=FULL");
+        let size = (width, height);
+        Ok(Self { decoder, is_limited, name, size, bytes, end, index: 0, frames })
+    }
+}
+
+/// Expands brightness of limited range, 16 to 235, to full range; beyond it is black or white.
+fn full_range(limited: u8) -> u8 {
+    const BLACK: u16 = 16;
+    const STEPS: u16 = 219;
+    let above = u16::from(limited).saturating_sub(BLACK).min(STEPS);
+    ((above * 255 + STEPS / 2) / STEPS) as u8
+}
+
+/// The bytes of a frame's brightness and of its colours.
+fn colours<R: Read>(decoder: &Decoder<R>) -> (u64, u64) {
+    use y4m::Colorspace;
+    let (width, height) = (decoder.get_width() as u64, decoder.get_height() as u64);
+    let colours = match decoder.get_colorspace() {
+        Colorspace::Cmono => 0,
+        Colorspace::C422 => 2 * width.div_ceil(2) * height,
+        Colorspace::C444 => 2 * width * height,
+        _ => 2 * width.div_ceil(2) * height.div_ceil(2),
+    };
+    (width * height, colours)
+}
+
+impl<R: Read> Video for Y4m<R> {
+    fn size(&self) -> (u16, u16) {
+        self.size
+    }
+
+    fn rate(&self) -> Option<Rate> {
+        let rate = self.decoder.get_framerate();
+        Rate::new(rate.num as u64, rate.den as u64)
+    }
+
+    fn frames(&self) -> Option<u64> {
+        self.frames
+    }
+
+    fn next(&mut self, frame: &mut Vec<u8>) -> Result<bool> {
+        let Self { decoder, is_limited, name, bytes, end, index, .. } = self;
+        match decoder.read_frame() {
+            Ok(read) => {
+                let plane = read.get_y_plane();
+                frame.clear();
+                if *is_limited {
+                    frame.extend(plane.iter().map(|own| full_range(*own)));
+                } else {
+                    frame.extend_from_slice(plane);
+                }
+            }
+            Err(Error::EOF) if bytes.get() == *end => return Ok(false),
+            Err(Error::EOF) => {
+                bail!("{name}: frame {index}: cut short at byte {}", bytes.get())
+            }
+            Err(error) => bail!("{name}: frame {index}, byte {end}: {error}"),
+        }
+        *end = bytes.get();
+        *index += 1;
+        Ok(true)
+    }
+}

@@ -1,0 +1,373 @@
+//! The rate of a recording, and steps in time that are not as usual.
+
+use std::fmt;
+
+/// What is unusual of a step in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// It is too long.
+    Gap,
+    /// It goes back: samples out of order.
+    Backward,
+    /// It goes back so far that the clock started anew, as after a reboot: what follows is a segment of its own.
+    Restart,
+}
+
+/// An unusual step in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// What it is.
+    pub kind: Kind,
+    /// The sample before it.
+    pub after: u64,
+    /// How long it is, in µs.
+    pub microseconds: i64,
+}
+
+impl fmt::Display for Step {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.3} ms after sample {}", self.microseconds as f64 / 1e3, self.after)
+    }
+}
+
+/// Another rate than before, for a while.
+#[derive(Clone, Debug)]
+struct Jump {
+    /// Samples a second.
+    rate: f64,
+    /// The sample that it was seen from.
+    from: u64,
+}
+
+impl fmt::Display for Jump {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.2} Hz from about sample {}", self.rate, self.from)
+    }
+}
+
+/// Watches the times of a recording.
+#[derive(Clone, Debug)]
+pub struct Clock {
+    usual_step: f64,
+    longest_step: f64,
+    /// A longer step back is a restart.
+    longest_back: f64,
+    /// Samples a step forward, more than 1 where most times repeat the one before.
+    samples_a_step: f64,
+    previous: Option<i64>,
+    seen: u64,
+    gaps: Told<Step>,
+    backward: Told<Step>,
+    restarts: Told<Step>,
+    repeated: u64,
+    /// The earliest and the latest time of this segment, and the length of those before it in µs.
+    span: Option<(i64, i64)>,
+    before: i64,
+    /// The last times, up to a run of them, and the step from sample to sample in the run before.
+    run: Vec<i64>,
+    run_step: f64,
+    jumps: Told<Jump>,
+    is_timed: bool,
+}
+
+/// So many steps tell a rate.
+const RUN: usize = 64;
+/// A clock that goes back by more than so many usual steps started anew.
+const RESTART: f64 = 10.0;
+/// A rate jumps where it changes by more than this factor.
+const JUMP: f64 = 1.5;
+
+/// How many there were, and the first of them.
+#[derive(Clone, Debug)]
+struct Told<T> {
+    count: u64,
+    first: Vec<T>,
+}
+
+impl<T> Default for Told<T> {
+    fn default() -> Self {
+        Self { count: 0, first: Vec::new() }
+    }
+}
+
+impl Clock {
+    /// A clock that takes the usual step from the first times, or else from a given rate.
+    pub fn new(first_times: &[i64], rate: Option<f64>, steps: f64) -> Self {
+        let are_sorted = !is_disordered(first_times);
+        let usual = if are_sorted {
+            usual_step(first_times)
+        } else {
+            let mut sorted = first_times.to_vec();
+            sorted.sort_unstable();
+            usual_step(&sorted)
+        };
+        let (usual_step, samples_a_step) =
+            usual.or_else(|| Some((1e6 / rate?, 1.0))).unwrap_or((f64::NAN, 1.0));
+        Self {
+            usual_step,
+            longest_step: usual_step * steps,
+            longest_back: if are_sorted { usual_step * RESTART } else { f64::INFINITY },
+            samples_a_step,
+            previous: None,
+            seen: 0,
+            gaps: Told::default(),
+            backward: Told::default(),
+            restarts: Told::default(),
+            repeated: 0,
+            span: None,
+            before: 0,
+            run: Vec::with_capacity(RUN + 1),
+            run_step: usual_step / samples_a_step,
+            jumps: Told::default(),
+            is_timed: !first_times.is_empty(),
+        }
+    }
+
+    /// Samples a second, if anything is known of it.
+    pub fn rate(&self) -> Option<f64> {
+        (self.usual_step > 0.0).then(|| 1e6 / self.usual_step * self.samples_a_step)
+    }
+
+    /// The length of all segments in seconds, without the unknown time between them.
+    pub fn seconds(&self) -> f64 {
+        self.before.saturating_add(self.segment()) as f64 * 1e-6
+    }
+
+    /// From sample to sample, in µs, as far as it is known.
+    pub fn period(&self) -> i64 {
+        (self.usual_step / self.samples_a_step).round() as i64
+    }
+
+    fn segment(&self) -> i64 {
+        self.span.map_or(0, |(first, last)| last.saturating_sub(first))
+    }
+
+    /// Takes the next times and gives the unusual steps among them.
+    pub fn observe(&mut self, times: &[i64]) -> Vec<Step> {
+        let mut steps = Vec::new();
+        for &time in times {
+            if let Some(previous) = self.previous {
+                let microseconds = time.saturating_sub(previous);
+                let kind = match microseconds {
+                    0 => {
+                        self.repeated += 1;
+                        None
+                    }
+                    ..0 if -(microseconds as f64) > self.longest_back => Some(Kind::Restart),
+                    ..0 => Some(Kind::Backward),
+                    _ => (microseconds as f64 > self.longest_step).then_some(Kind::Gap),
+                };
+                if let Some(kind) = kind {
+                    let step = Step { kind, after: self.seen - 1, microseconds };
+                    let told = match kind {
+                        Kind::Gap => &mut self.gaps,
+                        Kind::Backward => &mut self.backward,
+                        Kind::Restart => &mut self.restarts,
+                    };
+                    told.take(step);
+                    steps.push(step);
+                }
+                if kind == Some(Kind::Restart) {
+                    self.before = self.before.saturating_add(self.segment());
+                    self.span = None;
+                    self.run.clear();
+                }
+            }
+            let (first, last) = self.span.unwrap_or((time, time));
+            self.span = Some((first.min(time), last.max(time)));
+            self.previous = Some(time);
+            self.seen += 1;
+            self.run.push(time);
+            if self.run.len() > RUN {
+                self.end_run();
+                self.run.clear();
+                self.run.push(time);
+            }
+        }
+        steps
+    }
+
+    /// Takes the rate of a run. Both its median and its mean tell a jump: a gap moves only the mean, steps of two
+    /// lengths by turns only the median.
+    fn end_run(&mut self) {
+        let (Some((median, samples)), [first, .., last]) = (usual_step(&self.run), &*self.run)
+        else {
+            return;
+        };
+        // Batches too long for a run to hold several of them.
+        if samples > 8.0 {
+            return;
+        }
+        let step = median / samples;
+        let mean = last.saturating_sub(*first) as f64 / RUN as f64;
+        let is_longer = step.min(mean) > self.run_step * JUMP;
+        let is_shorter = step.max(mean) < self.run_step / JUMP && mean > 0.0;
+        if is_longer || is_shorter {
+            self.jumps.take(Jump { rate: 1e6 / step, from: self.seen - 1 - RUN as u64 });
+            self.run_step = step;
+        }
+    }
+}
+
+impl<T> Told<T> {
+    fn take(&mut self, step: T) {
+        const TOLD: usize = 5;
+        self.count += 1;
+        if self.first.len() < TOLD {
+            self.first.push(step);
+        }
+    }
+}
+
+impl<T: fmt::Display> fmt::Display for Told<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (place, step) in self.first.iter().enumerate() {
+            let before = if place == 0 { ": " } else { ", " };
+            write!(f, "{before}{step}")?;
+        }
+        let more = self.count - self.first.len() as u64;
+        if more > 0 { write!(f, ", and {more} more") } else { Ok(()) }
+    }
+}
+
+/// What there is to report.
+impl fmt::Display for Clock {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.is_timed {
+            return write!(f, "no times are recorded, so gaps cannot be seen");
+        }
+        if self.usual_step > 0.0 {
+            let (usual, longest) = (self.usual_step / 1e3, self.longest_step / 1e3);
+            let (count, gaps) = (self.gaps.count, &self.gaps);
+            write!(f, "{count} gaps above {longest:.3} ms where {usual:.3} ms are usual{gaps}")?;
+        } else {
+            write!(f, "no time comes after the one before, so gaps cannot be seen")?;
+        }
+        if self.jumps.count > 0 {
+            write!(f, "; the rate jumps {} times{}", self.jumps.count, self.jumps)?;
+        }
+        if self.restarts.count > 0 {
+            let (count, restarts) = (self.restarts.count, &self.restarts);
+            write!(
+                f,
+                "; the clock starts anew {count} times, each a segment of its own{restarts}"
+            )?;
+        }
+        if self.backward.count > 0 {
+            write!(f, "; {} steps back in time{}", self.backward.count, self.backward)?;
+        }
+        if self.repeated > 0 {
+            write!(f, "; {} times equal the one before, in whole µs", self.repeated)?;
+        }
+        Ok(())
+    }
+}
+
+/// Whether so many times go back that samples are out of order: a few, and more than a tenth of those that differ from the
+/// one before.
+fn is_disordered(times: &[i64]) -> bool {
+    const FEW: usize = 2;
+    let steps = |is: fn(&[i64]) -> bool| times.windows(2).filter(|pair| is(pair)).count();
+    let back = steps(|pair| pair[1] < pair[0]);
+    back > FEW && back * 10 > steps(|pair| pair[1] != pair[0])
+}
+
+/// The median of the steps forward, and how many samples there are for each.
+///
+/// A single step among many equal times tells nothing.
+fn usual_step(times: &[i64]) -> Option<(f64, f64)> {
+    const FEWEST: usize = 3;
+    let steps = times.windows(2).map(|pair| pair[1].saturating_sub(pair[0]));
+    let mut forward: Vec<i64> = steps.filter(|&step| step > 0).collect();
+    forward.sort_unstable();
+    let usual = *forward.get(forward.len() / 2)? as f64;
+    let samples = (times.len() - 1) as f64 / forward.len() as f64;
+    if samples >= 2.0 && forward.len() < FEWEST {
+        return None;
+    }
+    Some((usual, if samples >= 2.0 { samples } else { 1.0 }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Clock, Kind, Step};
+
+    #[test]
+    fn long_backward_and_repeated_steps_are_told_apart() {
+        let times = [0, 10, 20, 30, 60, 70, 65, 75, 75];
+        let mut clock = Clock::new(&times, None, 1.5);
+        let steps = clock.observe(&times);
+        let step = |kind, after, microseconds| Step { kind, after, microseconds };
+        assert_eq!(steps, [step(Kind::Gap, 3, 30), step(Kind::Backward, 5, -5)]);
+        assert_eq!(clock.rate(), Some(1e5));
+        let told = clock.to_string();
+        assert!(told.starts_with("1 gaps above 0.015 ms"), "{told}");
+        assert!(told.contains("; 1 steps back in time: -0.005 ms after sample 5"), "{told}");
+        assert!(told.ends_with("; 1 times equal the one before, in whole µs"), "{told}");
+    }
+
+    #[test]
+    fn a_clock_that_starts_anew_begins_a_segment() {
+        let times: Vec<i64> = (0..100).chain(0..50).map(|sample| sample * 5000).collect();
+        let mut clock = Clock::new(&times, None, 1.5);
+        let restart = Step { kind: Kind::Restart, after: 99, microseconds: -495_000 };
+        assert_eq!(clock.observe(&times), [restart]);
+        assert_eq!((clock.rate(), clock.seconds()), (Some(200.0), 0.74));
+        let told = clock.to_string();
+        assert!(told.contains("; the clock starts anew 1 times, each a segment of its own: -495.000 ms after sample 99"), "{told}");
+    }
+
+    #[test]
+    fn messages_out_of_order_have_a_rate_and_a_length() {
+        let mut times: Vec<i64> = (0..160).rev().map(|sample| sample * 6250).collect();
+        times[80] = times[79] + 1;
+        let mut clock = Clock::new(&times, None, 1.5);
+        let steps = clock.observe(&times);
+        assert!(steps.iter().all(|step| step.kind == Kind::Backward) && steps.len() == 158);
+        assert_eq!(clock.rate(), Some(160.0));
+        assert!((clock.seconds() - 0.99375).abs() < 1e-9);
+        // Nothing is known of the rate where all but one have the same time.
+        let mut same = vec![7; 160];
+        same[159] = 8;
+        assert_eq!(Clock::new(&same, None, 1.5).rate(), None);
+    }
+
+    #[test]
+    fn times_of_batches_are_no_gaps() {
+        for (batch, within) in [(4, 0.005), (100, 0.12)] {
+            let times: Vec<i64> = (0..1000).map(|sample| sample / batch * 5000 * batch).collect();
+            let mut clock = Clock::new(&times, None, 1.5);
+            assert_eq!(clock.observe(&times), []);
+            let rate = clock.rate().unwrap();
+            assert!((rate / 200.0 - 1.0).abs() < within, "{rate}");
+            assert!(!clock.to_string().contains("jumps"), "{clock}");
+        }
+    }
+
+    #[test]
+    fn rates_that_jump_for_a_while_are_told() {
+        let told = |steps: &[(usize, i64)]| {
+            let steps = steps.iter().flat_map(|&(count, step)| std::iter::repeat_n(step, count));
+            let mut time = 0;
+            let times: Vec<i64> = steps
+                .map(|step| {
+                    time += step;
+                    time
+                })
+                .collect();
+            let mut clock = Clock::new(&times, None, 1.5);
+            clock.observe(&times);
+            clock.to_string().split_once("; ").map(|(_, told)| told.to_owned())
+        };
+        let jumps = "the rate jumps 2 times: 2000.00 Hz from about sample 320, 1000.00 Hz from about sample 512";
+        assert_eq!(told(&[(321, 1000), (200, 500), (300, 1000)]).as_deref(), Some(jumps));
+        let slower = "the rate jumps 1 times: 400.00 Hz from about sample 640";
+        assert_eq!(told(&[(640, 1000), (100, 2500)]).as_deref(), Some(slower));
+        // Not for a while, not by much, and a gap.
+        for steady in
+            [[(500, 1000), (20, 500)], [(500, 1000), (200, 1400)], [(500, 1000), (1, 1_000_000)]]
+        {
+            assert_eq!(told(&[steady[0], steady[1], (300, 1000)]), None, "{steady:?}");
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Logs of messages on topics: ROS bags, MCAP files, Betaflight's blackbox.
+//!
+//! Each kind of log gives its messages one after the other, in the order of the file, so that memory does not grow.
+
+mod bag;
+mod blackbox;
+mod bytes;
+mod channel;
+mod chunk;
+mod definition;
+mod faults;
+mod known;
+#[cfg(test)]
+#[path = "../../../../cli/tests/common/logs.rs"]
+mod made;
+mod mcap;
+#[cfg(test)]
+mod mutated;
+mod reading;
+mod rosbag2;
+mod sqlite;
+mod topic;
+mod wire;
+
+pub use channel::Channel;
+pub use reading::Reading;
+pub use topic::{Overview, overview};
+
+use anyhow::Result;
+use bytes::Bytes;
+use faults::Faults;
+use std::path::Path;
+use topic::Topic;
+
+/// Which message came, of those of a log.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    /// Its topic's place among the log's.
+    topic: usize,
+    /// When it was recorded, in ns.
+    pub time: i64,
+    /// Where in the file it is, or its chunk.
+    pub at: u64,
+    /// Its number on its topic, where the log counts them.
+    pub sequence: Option<u32>,
+}
+
+/// A log that is read from its start to its end.
+trait Log {
+    /// Goes to the next message.
+    ///
+    /// # Errors
+    /// The log is damaged, and that was not accepted.
+    fn next(&mut self) -> Result<Option<Entry>>;
+
+    /// The topics that came up until now; entries say their places.
+    fn topics(&self) -> &[Topic];
+
+    /// The bytes of the message that came last.
+    fn message(&self) -> &[u8];
+
+    /// What is wrong with it, to add to and to tell; complete at the end.
+    fn faults(&mut self) -> &mut Faults;
+}
+
+/// What kinds of logs there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A ROS 1 bag.
+    Bag,
+    /// An MCAP file.
+    Mcap,
+    /// A ROS 2 bag of one file.
+    Sqlite,
+    /// A ROS 2 bag of several files.
+    Directory,
+    /// Betaflight's.
+    Blackbox,
+}
+
+impl Kind {
+    /// The topic that is meant unless another is named.
+    fn usual_topic(self) -> Option<&'static str> {
+        match self {
+            Self::Blackbox => Some(blackbox::MAIN),
+            Self::Bag | Self::Mcap | Self::Sqlite | Self::Directory => None,
+        }
+    }
+}
+
+/// What kind of log this is, by how it starts, also when it is packed.
+///
+/// # Errors
+/// It cannot be opened or read.
+pub fn kind_of(path: &Path) -> Result<Option<Kind>> {
+    const START: u64 = 32;
+    if path.is_dir() || path.file_name().is_some_and(|name| name == rosbag2::METADATA) {
+        return Ok(Some(Kind::Directory));
+    }
+    let mut start = Vec::new();
+    // What cannot be unpacked is no log.
+    if Bytes::open(path)?.take(START, &mut start).is_err() {
+        return Ok(None);
+    }
+    Ok(kind(&start))
+}
+
+/// What kind of log starts like this.
+fn kind(start: &[u8]) -> Option<Kind> {
+    let kinds = [
+        (bag::START, Kind::Bag),
+        (mcap::START, Kind::Mcap),
+        (sqlite::START, Kind::Sqlite),
+        (blackbox::START, Kind::Blackbox),
+    ];
+    kinds.into_iter().find(|(own, _)| start.starts_with(own)).map(|(_, kind)| kind)
+}
+
+/// Opens a log.
+///
+/// # Errors
+/// It cannot be opened, or its start is damaged.
+fn open(path: &Path, kind: Kind, accept_cut: bool) -> Result<Box<dyn Log>> {
+    let file = path.display().to_string();
+    let faults = Faults::new(&file, accept_cut);
+    Ok(match kind {
+        Kind::Bag => Box::new(bag::Bag::open(path, faults)?),
+        Kind::Mcap => Box::new(mcap::Mcap::open(path, faults)?),
+        Kind::Sqlite => Box::new(rosbag2::Sqlite::open(path, faults)?),
+        Kind::Blackbox => Box::new(blackbox::Blackbox::open(path, faults)?),
+        Kind::Directory => Box::new(rosbag2::Directory::open(path, faults)?),
+    })
+}

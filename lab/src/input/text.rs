@@ -1,0 +1,102 @@
+//! Tables as they come: compressed, or in another encoding than UTF-8.
+
+use anyhow::{Context, Result, bail};
+use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
+use encoding_rs_io::DecodeReaderBytesBuilder;
+use flate2::read::MultiGzDecoder;
+use std::io::{self, Cursor, Read};
+
+/// How far a file is looked at to tell what it is.
+const HEAD: usize = 16;
+
+/// What a file that starts like this is, and what to do with it.
+const OTHERS: [(&[u8], &str); 11] = [
+    (b"PK\x03\x04", "a zip archive or a spreadsheet; export it as CSV"),
+    (b"\xd0\xcf\x11\xe0", "an old spreadsheet; export it as CSV"),
+    (b"\xa3\x95", "an ArduPilot log; `mavlogdump.py --format csv --types IMU` exports it"),
+    (b"H Product:Blackbox", "a Betaflight log; it is read from a file only"),
+    (b"#ROSBAG", "a ROS bag; it is read from a file only"),
+    (b"SQLite format 3", "a database, perhaps a ROS 2 bag; those are read from a file only"),
+    (b"\x89MCAP", "an MCAP file; it is read from a file only"),
+    (b"PAR1", "a Parquet file; export it as CSV"),
+    (b"\x89HDF", "an HDF5 or MATLAB file; export it as CSV"),
+    (b"MATLAB", "a MATLAB file; export it as CSV"),
+    (b"ULog", "a flight log; it is read from a file only"),
+];
+
+/// The text of a file as UTF-8, or in bytes that extend ASCII.
+///
+/// # Errors
+/// It is no text.
+pub fn text(input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
+    let (head, input) = peek(input).with_context(|| name.to_owned())?;
+    if head.starts_with(&GZIP) {
+        let unpacked = peek(MultiGzDecoder::new(input));
+        let (head, input) = unpacked.with_context(|| format!("{name}: cannot be unpacked"))?;
+        return decode(&head, input, name);
+    }
+    decode(&head, input, name)
+}
+
+/// What gzip files start with.
+pub(crate) const GZIP: [u8; 2] = [0x1f, 0x8b];
+
+/// A name in a table, from UTF-8 or else from Latin-1.
+pub(super) fn name(bytes: &[u8]) -> String {
+    match str::from_utf8(bytes) {
+        Ok(text) => text.trim().to_owned(),
+        Err(_) => WINDOWS_1252.decode_without_bom_handling(bytes).0.trim().to_owned(),
+    }
+}
+
+/// Bytes as a message shows them: bytes that are no UTF-8 and control characters as escapes, the first of many only.
+pub fn shown(bytes: &[u8]) -> String {
+    const MOST: usize = 60;
+    let mut text = String::new();
+    for chunk in bytes.utf8_chunks() {
+        for own in chunk.valid().chars() {
+            if own.is_control() { text.extend(own.escape_default()) } else { text.push(own) }
+        }
+        text.extend(chunk.invalid().escape_ascii().map(char::from));
+    }
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text,
+    }
+}
+
+fn decode(head: &[u8], input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
+    let from = |encoding: &'static Encoding, input| -> Box<dyn Read> {
+        Box::new(DecodeReaderBytesBuilder::new().encoding(Some(encoding)).build(input))
+    };
+    let is_utf16 = head.len() >= 4 && head.len().is_multiple_of(2);
+    match *head {
+        [0xff, 0xfe, ..] => return Ok(from(UTF_16LE, Box::new(input) as Box<dyn Read>)),
+        [0xfe, 0xff, ..] => return Ok(from(UTF_16BE, Box::new(input) as Box<dyn Read>)),
+        [1..=255, 0, 1..=255, 0, ..] if is_utf16 => return Ok(from(UTF_16LE, Box::new(input))),
+        [0, 1..=255, 0, 1..=255, ..] if is_utf16 => return Ok(from(UTF_16BE, Box::new(input))),
+        [0xef, 0xbb, 0xbf, ..] => {
+            let mut input = input;
+            input.read_exact(&mut [0; 3])?;
+            return Ok(Box::new(input));
+        }
+        _ => {}
+    }
+    for (start, what) in OTHERS {
+        // Long names are cut to what was looked at.
+        if head.starts_with(&start[..start.len().min(HEAD)]) {
+            bail!("{name}: {what}");
+        }
+    }
+    if head.iter().any(|byte| matches!(byte, 0..=8 | 14..=31)) {
+        bail!("{name}: binary, no table");
+    }
+    Ok(Box::new(input))
+}
+
+/// The first bytes, and all of them again.
+fn peek<R: Read>(mut input: R) -> io::Result<(Vec<u8>, impl Read + use<R>)> {
+    let mut head = Vec::new();
+    input.by_ref().take(HEAD as u64).read_to_end(&mut head)?;
+    Ok((head.clone(), Cursor::new(head).chain(input)))
+}

@@ -1,0 +1,278 @@
+//! The messages of a log one by one, and which of them can be read.
+
+use super::format::{Format, Formats};
+use std::collections::HashMap;
+use std::fmt;
+use std::ops::Range;
+
+/// The length of the file's header.
+pub(super) const HEADER: usize = 16;
+
+/// What there is to say of a log besides its data.
+#[derive(Debug, Default)]
+pub struct Findings {
+    unregistered: Found,
+    formats: Found,
+    lengths: Found,
+    damaged: Found,
+    dropouts: Dropouts,
+    /// Where the last message begins that does not end.
+    pub(super) cut: Option<usize>,
+    /// Where the first damage is, and where messages go on.
+    pub(super) damage: Option<Range<usize>>,
+}
+
+/// Messages that were skipped.
+#[derive(Debug, Default)]
+struct Found {
+    count: u64,
+    first: usize,
+}
+
+/// Times in which the logger could not write.
+#[derive(Debug, Default)]
+struct Dropouts {
+    count: u64,
+    milliseconds: u64,
+    longest: u64,
+}
+
+impl Found {
+    fn at(&mut self, place: usize) {
+        if self.count == 0 {
+            self.first = place;
+        }
+        self.count += 1;
+    }
+}
+
+/// A line for each thing found.
+impl fmt::Display for Findings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Dropouts { count, milliseconds, longest } = self.dropouts;
+        if count > 0 {
+            writeln!(
+                f,
+                "{count} dropouts of the logger, {milliseconds} ms in all, {longest} ms the longest"
+            )?;
+        }
+        for (found, what) in [
+            (&self.unregistered, "messages with an id that is not registered"),
+            (&self.formats, "definitions that cannot be read"),
+            (&self.lengths, "messages longer or shorter than their format"),
+            (&self.damaged, "damaged stretches"),
+        ] {
+            let Found { count, first } = found;
+            if *count > 0 {
+                writeln!(f, "{count} {what} were skipped, the first at byte {first}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A message: where it begins, its kind, and its content.
+struct Message {
+    at: usize,
+    kind: u8,
+    content: Range<usize>,
+}
+
+/// The walk over a log.
+pub(super) struct Scan<'a> {
+    bytes: &'a [u8],
+    formats: Formats,
+    /// The format of each registered id, and the lengths of its messages.
+    registered: HashMap<u16, (String, (usize, usize))>,
+    definitions: Vec<u8>,
+    data: Vec<u8>,
+    findings: Findings,
+}
+
+/// What can be read of a log.
+pub(super) struct Scanned {
+    /// A log of the good messages.
+    pub bytes: Vec<u8>,
+    pub formats: Formats,
+    pub findings: Findings,
+}
+
+impl<'a> Scan<'a> {
+    /// Takes all messages of a log that is as long as its header at least.
+    pub(super) fn run(bytes: &'a [u8]) -> Scanned {
+        let mut scan = Self {
+            bytes,
+            formats: Formats::new(),
+            registered: HashMap::new(),
+            definitions: Vec::new(),
+            data: Vec::new(),
+            findings: Findings::default(),
+        };
+        let appended = scan.appended();
+        let before = appended.unwrap_or(bytes.len());
+        scan.part(HEADER..before, appended.is_some());
+        if let Some(start) = appended {
+            scan.part(start..bytes.len(), false);
+        }
+        let mut good = bytes[..HEADER].to_vec();
+        good.append(&mut scan.definitions);
+        good.append(&mut scan.data);
+        Scanned { bytes: good, formats: scan.formats, findings: scan.findings }
+    }
+
+    /// Where data was appended later, such as after a crash.
+    fn appended(&self) -> Option<usize> {
+        let first = self.header(HEADER, self.bytes.len()).filter(|first| first.kind == b'B')?;
+        let content = &self.bytes[first.content];
+        let is_appended = content.get(8)? & 1 == 1;
+        let place = u64::from_le_bytes(content.get(16..24)?.try_into().ok()?);
+        let place = usize::try_from(place).ok()?;
+        (is_appended && (HEADER..self.bytes.len()).contains(&place)).then_some(place)
+    }
+
+    fn part(&mut self, part: Range<usize>, may_be_cut: bool) {
+        let mut at = part.start;
+        while at < part.end {
+            if let Some(message) = self.accepted(at, part.end) {
+                at = message.content.end;
+                self.take(&message);
+                continue;
+            }
+            if let Some(next) = (at + 1..part.end).find(|&next| self.goes_on(next, part.end)) {
+                self.findings.damaged.at(at);
+                self.findings.damage.get_or_insert(at..next);
+                at = next;
+            } else {
+                if !may_be_cut {
+                    self.findings.cut = Some(at);
+                }
+                return;
+            }
+        }
+    }
+
+    fn header(&self, at: usize, end: usize) -> Option<Message> {
+        let &[low, high, kind] = self.bytes.get(at..at + 3)? else { return None };
+        let length = usize::from(u16::from_le_bytes([low, high]));
+        let content = at + 3..at + 3 + length;
+        (content.end <= end).then_some(Message { at, kind, content })
+    }
+
+    /// A message here that may be skipped but leads to the next.
+    fn accepted(&self, at: usize, end: usize) -> Option<Message> {
+        let message = self.header(at, end)?;
+        if self.is_good(&message) {
+            return Some(message);
+        }
+        let next = message.content.end;
+        let is_led = next == end || self.header(next, end).is_some_and(|next| is_known(&next));
+        let is_one = message.kind != 0 && !message.content.is_empty();
+        (is_one && is_led).then_some(message)
+    }
+
+    /// Whether good messages follow each other from here.
+    fn goes_on(&self, at: usize, end: usize) -> bool {
+        const ENOUGH: usize = 3;
+        let mut next = at;
+        for _ in 0..ENOUGH {
+            match self.header(next, end).filter(|message| self.is_good(message)) {
+                Some(message) => next = message.content.end,
+                None => return false,
+            }
+        }
+        true
+    }
+
+    fn is_good(&self, message: &Message) -> bool {
+        let fits = || {
+            let (id, length) = self.data_of(message)?;
+            let (_, (short, long)) = self.registered.get(&id)?;
+            (length == *short || length == *long).then_some(())
+        };
+        is_known(message) && (message.kind != b'D' || fits().is_some())
+    }
+
+    /// The id of a message of data, and how many bytes follow.
+    fn data_of(&self, message: &Message) -> Option<(u16, usize)> {
+        let id = self.bytes[message.content.clone()].first_chunk()?;
+        Some((u16::from_le_bytes(*id), message.content.len() - 2))
+    }
+
+    fn take(&mut self, message: &Message) {
+        let content = &self.bytes[message.content.clone()];
+        match message.kind {
+            b'F' => self.define(message.at, content),
+            b'A' => self.register(message.at, content),
+            b'D' => match self.data_of(message) {
+                Some((id, _)) if !self.registered.contains_key(&id) => {
+                    self.findings.unregistered.at(message.at);
+                }
+                Some(_) if self.is_good(message) => {
+                    self.data.extend(&self.bytes[message.at..message.content.end]);
+                }
+                _ => self.findings.lengths.at(message.at),
+            },
+            b'O' => {
+                if let Some(&milliseconds) = content.first_chunk() {
+                    let milliseconds = u64::from(u16::from_le_bytes(milliseconds));
+                    let dropouts = &mut self.findings.dropouts;
+                    dropouts.count += 1;
+                    dropouts.milliseconds += milliseconds;
+                    dropouts.longest = dropouts.longest.max(milliseconds);
+                }
+            }
+            // Parameters, messages in words and the like are not asked for.
+            _ => {}
+        }
+    }
+
+    fn define(&mut self, at: usize, content: &[u8]) {
+        let Some(format) = Format::parse(content) else {
+            self.findings.formats.at(at);
+            return;
+        };
+        add(&mut self.definitions, b'F', format.text().as_bytes());
+        self.formats.insert(format.name.clone(), format);
+    }
+
+    fn register(&mut self, at: usize, content: &[u8]) {
+        let registered = || {
+            let (&[_, low, high], name) = content.split_first_chunk()?;
+            let format = self.formats.get(str::from_utf8(name).ok()?)?;
+            let lengths = format.lengths(&self.formats).filter(|_| format.is_timed())?;
+            Some((u16::from_le_bytes([low, high]), (format.name.clone(), lengths)))
+        };
+        let Some((id, format)) = registered() else {
+            self.findings.formats.at(at);
+            return;
+        };
+        add(&mut self.data, b'A', content);
+        self.registered.insert(id, format);
+    }
+}
+
+fn add(bytes: &mut Vec<u8>, kind: u8, content: &[u8]) {
+    // Rewritten definitions may be longer than they were, but no message is near this length.
+    if let Ok(length) = u16::try_from(content.len()) {
+        bytes.extend(length.to_le_bytes());
+        bytes.push(kind);
+        bytes.extend(content);
+    }
+}
+
+/// Whether there is such a kind, of this length.
+fn is_known(message: &Message) -> bool {
+    let length = message.content.len();
+    match message.kind {
+        b'B' => length >= 40,
+        b'F' => length >= 3,
+        b'A' => length >= 4,
+        b'R' | b'O' => length == 2,
+        b'D' => length > 2,
+        b'S' => length == 8,
+        b'L' => length >= 9,
+        b'C' => length >= 11,
+        b'I' | b'M' | b'P' | b'Q' => length >= 2,
+        _ => false,
+    }
+}

@@ -1,0 +1,29 @@
+//! The laptop's library: recordings in; spikes, scores, parameters, advice, pictures and networks out.
+//!
+//! It knows no command line and prints nothing: the program `spikewire` and the Python bindings are built on it.
+
+pub mod advise;
+pub mod bank;
+pub mod bench;
+pub mod brief;
+pub mod coding;
+pub mod events;
+pub mod fit;
+pub mod frames;
+pub mod input;
+pub mod look;
+pub mod network;
+pub mod output;
+pub mod plot;
+pub mod port;
+pub mod resolution;
+#[cfg(any(test, feature = "capture"))]
+pub mod rtt;
+pub mod scheme;
+pub mod spikes;
+pub mod steep;
+pub mod timeline;
+pub mod trial;
+pub mod tune;
+pub mod values;
+pub mod watch;

@@ -1,0 +1,297 @@
+//! What a channel is like before anything is encoded: rate, noise, bandwidth, range, and whether it is worth tuning.
+
+use crate::brief::short;
+use crate::trial::Recording;
+use crate::tune::figures::power;
+use serde::Serialize;
+use std::f64::consts::PI;
+
+/// A channel at a glance.
+#[derive(Clone, Debug, Serialize)]
+pub struct Look {
+    /// Name of the channel.
+    pub name: String,
+    /// Number of finite samples.
+    pub samples: usize,
+    /// Samples that were missing or not finite.
+    pub rejected: usize,
+    /// Length in seconds, if known.
+    pub seconds: Option<f64>,
+    /// Samples a second.
+    pub rate: Option<f64>,
+    /// The deviation of the time from sample to sample, in ms, gaps left out.
+    pub jitter_ms: Option<f64>,
+    /// Steps in time above one and a half usual ones.
+    pub gaps: usize,
+    /// Smallest sample.
+    pub min: f64,
+    /// Largest sample.
+    pub max: f64,
+    /// The standard deviation.
+    pub deviation: f64,
+    /// The deviation of what changes from sample to sample without order, where the channel is quietest.
+    pub noise: f64,
+    /// Below it are 99 % of the power around the mean, in Hz.
+    pub bandwidth: Option<f64>,
+    /// Percent of the samples that stand at the lowest or highest value at least three in a row.
+    pub clipped: f64,
+    /// The range where it is quiet.
+    pub rest: Option<[f64; 2]>,
+    /// The range where it is not.
+    pub flight: Option<[f64; 2]>,
+    /// Percent of the samples where it is quiet.
+    pub resting: f64,
+    /// What speaks against tuning on it, if anything.
+    pub verdict: Verdict,
+}
+
+/// Whether there is something to tune on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Nothing speaks against it.
+    Good,
+    /// Too few samples.
+    TooShort,
+    /// All samples are equal.
+    Constant,
+    /// It moves no more than its own noise, which is white: all on the ground, or no signal at all.
+    OnlyNoise,
+    /// More is missing than a fifth.
+    FullOfHoles,
+    /// More stands at the ends of the range than a fiftieth.
+    Clipped,
+}
+
+/// Fewer samples say nothing.
+const FEWEST: usize = 200;
+/// A signal moves by more than so many times its noise, or is not white.
+const ABOVE_NOISE: f64 = 2.0;
+/// Spectral flatness from which a channel is white: sensors at rest have 0.67 to 0.95, flights with vibration 0.2 to 0.33.
+const WHITE: f64 = 0.6;
+/// Samples of a window in which it is looked at for noise and movement.
+const WINDOW: usize = 64;
+
+impl Look {
+    /// At a recording with one sample at least.
+    pub fn at(recording: &Recording) -> Self {
+        let values = &recording.values;
+        let samples = values.len();
+        let (min, max) =
+            values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), own| {
+                (min.min(*own), max.max(*own))
+            });
+        let deviation = deviation(values);
+        let noise = noise(values);
+        let (jitter_ms, gaps) = steps(&recording.times);
+        let quiet = quiet(values);
+        let range = |is_quiet: bool| {
+            let windows = values.chunks(WINDOW).zip(&quiet).filter(|(_, own)| **own == is_quiet);
+            let inside = windows.flat_map(|(window, _)| window);
+            let range = inside.fold(None, |range: Option<[f64; 2]>, own| {
+                let [low, high] = range.unwrap_or([*own; 2]);
+                Some([low.min(*own), high.max(*own)])
+            });
+            range.filter(|_| quiet.contains(&true) && quiet.contains(&false))
+        };
+        let resting = quiet.iter().filter(|own| **own).count() as f64 / quiet.len().max(1) as f64;
+        let clipped = clipped(values, min, max);
+        let rejected = recording.rejected();
+        let verdict = if min == max {
+            Verdict::Constant
+        } else if samples < FEWEST {
+            Verdict::TooShort
+        } else if rejected * 5 > samples + rejected {
+            Verdict::FullOfHoles
+        } else if deviation < ABOVE_NOISE * noise && flatness(values) > WHITE {
+            Verdict::OnlyNoise
+        } else if clipped > 2.0 {
+            Verdict::Clipped
+        } else {
+            Verdict::Good
+        };
+        Self {
+            name: recording.name.clone(),
+            samples,
+            rejected,
+            seconds: recording.seconds(),
+            rate: recording.rate,
+            jitter_ms,
+            gaps,
+            min,
+            max,
+            deviation,
+            noise,
+            bandwidth: recording.rate.map(|rate| bandwidth(values) * rate),
+            clipped,
+            rest: range(true),
+            flight: range(false),
+            resting: resting * 100.0,
+            verdict,
+        }
+    }
+
+    /// Why nothing should be tuned on it, if so.
+    pub fn objection(&self) -> Option<String> {
+        let Self { name, samples, min, rejected, deviation, noise, clipped, .. } = self;
+        match self.verdict {
+            Verdict::Good => None,
+            Verdict::TooShort => {
+                Some(format!("{name}: {samples} samples are too few; {FEWEST} say something"))
+            }
+            Verdict::Constant => {
+                Some(format!("{name} never leaves {}: there is nothing to encode", short(*min)))
+            }
+            Verdict::OnlyNoise => Some(format!(
+                "{name} is nothing but noise, or all on the ground: its deviation is {}, its noise {}; what is tuned on \
+                 it follows the noise",
+                short(*deviation),
+                short(*noise)
+            )),
+            Verdict::FullOfHoles => Some(format!(
+                "{name}: {rejected} of {} samples are missing or not finite",
+                samples + rejected
+            )),
+            Verdict::Clipped => Some(format!(
+                "{name}: {} % of the samples stand at the ends of the range: the sensor clips",
+                short((clipped * 10.0).round() / 10.0)
+            )),
+        }
+    }
+}
+
+/// The unit that a field's name in PX4 logs tells.
+pub fn known_unit(name: &str) -> Option<&'static str> {
+    let units = [("gyro_rad", "rad/s"), ("_m_s2", "m/s²"), ("_rad_s", "rad/s"), ("_m_s", "m/s")];
+    units.into_iter().find(|(part, _)| name.contains(part)).map(|(_, unit)| unit)
+}
+
+fn deviation(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    (values.iter().map(|own| (own - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+/// From second differences, which a slow signal does not have and white noise has √6 times as large: those of the
+/// quietest tenth of the windows.
+fn noise(values: &[f64]) -> f64 {
+    let of = |window: &[f64]| {
+        let second = window.windows(3).map(|own| (own[0] - 2.0 * own[1] + own[2]).powi(2));
+        let count = second.len();
+        (count > 0).then(|| (second.sum::<f64>() / count as f64 / 6.0).sqrt())
+    };
+    let mut all: Vec<f64> = values.chunks(WINDOW).filter_map(of).collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 10).copied().unwrap_or_default()
+}
+
+/// Spectral flatness: the geometric over the arithmetic mean of the power by frequency, as windows have it on average.
+/// White noise comes near 1; motors and manoeuvres, whose power stands at few frequencies, near 0.
+fn flatness(values: &[f64]) -> f64 {
+    let mut sums = vec![0.0; WINDOW / 2];
+    for start in (0..).step_by(WINDOW / 2) {
+        let Some(window) = values.get(start..start + WINDOW) else { break };
+        let mean = window.iter().sum::<f64>() / WINDOW as f64;
+        let hann = |place: usize| (PI * place as f64 / (WINDOW - 1) as f64).sin().powi(2);
+        let tapered: Vec<f64> =
+            window.iter().zip(0..).map(|(own, place)| (own - mean) * hann(place)).collect();
+        // Without the mean, which the window leaks.
+        for (sum, power) in sums.iter_mut().zip(power(&tapered).into_iter().skip(1)) {
+            *sum += power;
+        }
+    }
+    let count = sums.len() as f64;
+    let arithmetic = sums.iter().sum::<f64>() / count;
+    let logarithm = sums.iter().map(|sum| sum.max(f64::MIN_POSITIVE).ln()).sum::<f64>() / count;
+    if arithmetic > 0.0 { logarithm.exp() / arithmetic } else { 1.0 }
+}
+
+/// By window, whether it moves as little as where the channel is quietest: the channel rests there.
+fn quiet(values: &[f64]) -> Vec<bool> {
+    const QUIET: f64 = 4.0;
+    let deviations: Vec<f64> = values.chunks(WINDOW).map(deviation).collect();
+    let mut sorted = deviations.clone();
+    sorted.sort_by(f64::total_cmp);
+    let least = sorted.get(sorted.len() / 20).copied().unwrap_or_default();
+    deviations.into_iter().map(|own| own <= QUIET * least).collect()
+}
+
+/// Percent that stand at an end of the range three in a row or more.
+fn clipped(values: &[f64], min: f64, max: f64) -> f64 {
+    let is_same_end = |a: &f64, b: &f64| a == b && (*a == min || *a == max);
+    let runs = values.chunk_by(is_same_end).map(<[f64]>::len).filter(|length| *length >= 3);
+    100.0 * runs.sum::<usize>() as f64 / values.len() as f64
+}
+
+/// The part of the rate below which 99 % of the power around the mean lie.
+fn bandwidth(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let around: Vec<f64> = values.iter().map(|own| own - mean).collect();
+    let power = power(&around);
+    let most = 0.99 * power.iter().sum::<f64>();
+    let mut sum = 0.0;
+    let bin = power.iter().position(|own| {
+        sum += own;
+        sum >= most
+    });
+    bin.unwrap_or_default() as f64 / values.len() as f64
+}
+
+/// The deviation of the steps in ms without gaps, and how many gaps there are.
+fn steps(times: &[i64]) -> (Option<f64>, usize) {
+    let steps: Vec<f64> = times.windows(2).map(|pair| (pair[1] - pair[0]) as f64 * 1e-3).collect();
+    let mut sorted = steps.clone();
+    sorted.sort_by(f64::total_cmp);
+    let Some(usual) = sorted.get(sorted.len() / 2).copied() else { return (None, 0) };
+    let regular: Vec<f64> = steps.iter().copied().filter(|step| *step <= 1.5 * usual).collect();
+    (Some(deviation(&regular)), steps.len() - regular.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{bandwidth, clipped, flatness, noise, quiet};
+
+    fn white(count: usize) -> Vec<f64> {
+        let mut state = 1_u32;
+        let next = |_| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / f64::from(1 << 24) - 0.5
+        };
+        (0..count).map(next).collect()
+    }
+
+    /// Even numbers in a unit have a deviation of √(1/12).
+    #[test]
+    fn noise_is_found_under_a_wave() {
+        let noisy = white(6400);
+        let expected = (1.0_f64 / 12.0).sqrt();
+        assert!((noise(&noisy) / expected - 1.0).abs() < 0.25);
+        let wave = noisy.iter().zip(0..).map(|(own, i)| own + 40.0 * (f64::from(i) * 0.01).sin());
+        assert!((noise(&wave.collect::<Vec<_>>()) / expected - 1.0).abs() < 0.25);
+    }
+
+    #[test]
+    fn white_noise_is_flat_and_vibration_is_not() {
+        let noisy = white(6400);
+        assert!(flatness(&noisy) > 0.9);
+        let shaken: Vec<f64> = noisy
+            .iter()
+            .zip(0..)
+            .map(|(own, i)| {
+                own + 0.6 * (f64::from(i) * 2.3).sin() + 0.4 * (f64::from(i) * 1.9).sin()
+            })
+            .collect();
+        assert!(flatness(&shaken) < 0.6);
+    }
+
+    #[test]
+    fn bandwidth_clipping_and_rest() {
+        let wave: Vec<f64> =
+            (0..1000).map(|i| (f64::from(i) * std::f64::consts::TAU * 0.02).sin()).collect();
+        assert!((bandwidth(&wave) - 0.02).abs() < 1e-9);
+        let cut: Vec<f64> = wave.iter().map(|own| own.clamp(-0.5, 0.5)).collect();
+        assert!(clipped(&wave, -1.0, 1.0) == 0.0 && clipped(&cut, -0.5, 0.5) > 50.0);
+        let still = white(640).into_iter().map(|own| own * 0.01);
+        let both: Vec<f64> = still.chain(wave.iter().copied().take(640)).collect();
+        assert_eq!(quiet(&both), [[true; 10], [false; 10]].concat());
+    }
+}

@@ -1,0 +1,56 @@
+//! How far two spike trains are from each other.
+
+/// What a step leaves of an exponential of 5 steps: e to the -1/5.
+const KEPT: f64 = 0.818_730_753_077_981_8;
+
+/// The distance of van Rossum (2001), squared, with an exponential of 5 steps.
+///
+/// A spike too many or too few counts 1, one that comes `k` steps late `2 (1 - exp(-k / 5))`, so up to 2.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Distance {
+    difference: f64,
+    sum: f64,
+}
+
+impl Distance {
+    /// A step with so many spikes in the one train and in the other.
+    pub fn step(&mut self, one: usize, other: usize) {
+        self.difference = self.difference * KEPT + (one as f64 - other as f64);
+        self.sum += self.difference * self.difference;
+    }
+
+    /// What it is at least, whatever steps follow.
+    pub fn so_far(self) -> f64 {
+        (1.0 - KEPT * KEPT) * self.sum
+    }
+
+    /// What it is, with the time after the last step.
+    pub fn value(self) -> f64 {
+        let after = self.difference * self.difference * KEPT * KEPT / (1.0 - KEPT * KEPT);
+        (1.0 - KEPT * KEPT) * (self.sum + after)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(one: &[usize], other: &[usize]) -> f64 {
+        let mut distance = Distance::default();
+        one.iter().zip(other).for_each(|(&one, &other)| distance.step(one, other));
+        distance.value()
+    }
+
+    #[test]
+    fn a_spike_counts_one_and_a_late_one_by_how_late_it_is() {
+        assert_eq!(of(&[0, 1, 0, 2], &[0, 1, 0, 2]), 0.0);
+        for (train, other, expected) in [
+            (&[1, 0, 0, 0][..], &[0, 0, 0, 0][..], 1.0),
+            (&[0, 0, 0, 1], &[0, 0, 0, 0], 1.0),
+            (&[1, 0, 0, 0], &[0, 1, 0, 0], 2.0 * (1.0 - (-0.2_f64).exp())),
+            (&[1, 0, 0, 0], &[0, 0, 0, 1], 2.0 * (1.0 - (-0.6_f64).exp())),
+        ] {
+            assert!((of(train, other) - expected).abs() < 1e-12, "{train:?} {other:?}");
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! Trained networks: read, run in double precision, brought onto a chip and run there.
+
+mod bring;
+mod distance;
+mod emit;
+mod nir;
+mod on_chip;
+mod plain;
+mod quantise;
+mod trained;
+
+pub use bring::{Brought, Figures, LayerFigures, Request, WINDOW, bring};
+pub use distance::Distance;
+pub use emit::{Told, emit};
+pub use on_chip::{Ran, run_on_chip};
+pub use quantise::{Quantised, quantise};
+pub use trained::{Trained, Trains};
+
+use anyhow::{Context, Result, bail};
+use std::fs;
+use std::path::Path;
+
+/// How HDF5 files begin.
+const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
+
+/// A network as its file says it, whose time constants may be in seconds.
+pub enum File {
+    /// Per step already.
+    Plain(Trained),
+    /// In seconds.
+    Nir(nir::Chain),
+}
+
+impl File {
+    /// Reads a NIR graph or the plain form.
+    ///
+    /// # Errors
+    /// It cannot be read, or is neither.
+    pub fn read(path: &Path) -> Result<Self> {
+        let name = || path.display().to_string();
+        let bytes = fs::read(path).with_context(|| format!("{}: cannot be opened", name()))?;
+        if bytes.starts_with(HDF5) {
+            return Ok(Self::Nir(nir::read(bytes).with_context(name)?));
+        }
+        if bytes.trim_ascii_start().starts_with(b"{") {
+            return Ok(Self::Plain(plain::read(&bytes).with_context(name)?));
+        }
+        bail!("{}: neither a NIR graph, which is an HDF5 file, nor a network in JSON", name())
+    }
+
+    /// The network in steps of so many seconds.
+    ///
+    /// # Errors
+    /// A time constant is shorter than a step, or the step is needed and not known.
+    pub fn in_steps(self, step: Option<f64>) -> Result<Trained> {
+        match self {
+            Self::Plain(trained) => Ok(trained),
+            Self::Nir(chain) => chain.in_steps(step),
+        }
+    }
+}

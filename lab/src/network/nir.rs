@@ -1,0 +1,366 @@
+//! NIR, the Neuromorphic Intermediate Representation: a graph in an HDF5 file, as the Python package `nir` writes it.
+//!
+//! Source: J. E. Pedersen et al., *Neuromorphic intermediate representation*, Nature Communications 15 (2024), table 1.
+
+use super::Trained;
+use super::trained::{Layer, Neuron};
+use anyhow::{Context, Result, anyhow, bail, ensure};
+use hdf5_reader::group::Group;
+use hdf5_reader::messages::datatype::Datatype;
+use hdf5_reader::{Dataset, H5Type, Hdf5File, OpenOptions};
+use std::collections::BTreeMap;
+
+/// More than 256 neurons and rows can need, in a file that says it holds more.
+const MOST_BYTES: usize = 1 << 26;
+
+/// The layers from input to output, with time in seconds.
+pub struct Chain(Vec<Stage>);
+
+struct Stage {
+    weights: Weights,
+    /// From the neurons to themselves.
+    recurrent: Option<Weights>,
+    neurons: Neurons,
+}
+
+struct Weights {
+    rows: Vec<Vec<f64>>,
+    bias: Option<Vec<f64>>,
+}
+
+struct Neurons {
+    /// The node's.
+    name: String,
+    /// Perfect integrators have none.
+    leak: Option<Leak>,
+    resistance: Array,
+    threshold: Array,
+    reset: Option<Array>,
+}
+
+struct Leak {
+    tau: Array,
+    rest: Array,
+}
+
+/// Numbers, one for each neuron or one for all.
+struct Array(Vec<f64>);
+
+impl Array {
+    fn at(&self, neuron: usize) -> f64 {
+        if let [one] = self.0[..] { one } else { self.0[neuron] }
+    }
+}
+
+/// The nodes of a graph and of those in it, by their path.
+#[derive(Default)]
+struct Graph {
+    nodes: BTreeMap<String, Group>,
+    edges: Vec<(String, String)>,
+    /// Of each graph in it, by its path, the nodes through which it is entered and left.
+    inner: BTreeMap<String, (String, String)>,
+}
+
+/// How a layer leads back to itself.
+struct Loops<'a> {
+    /// Whether there is an edge without weights.
+    is_direct: bool,
+    weights: Vec<&'a str>,
+}
+
+/// Reads the graph, which must be a chain of Linear or Affine and LIF or IF, each of which may lead back to itself. Graphs
+/// in it are taken as their nodes.
+///
+/// # Errors
+/// The file is damaged, or the graph is another.
+pub(crate) fn read(bytes: Vec<u8>) -> Result<Chain> {
+    let options = OpenOptions::default().with_max_read_bytes(MOST_BYTES);
+    let file = Hdf5File::from_vec_with_options(bytes, options).context("damaged")?;
+    let no_graph = "an HDF5 file without a NIR graph";
+    let mut graph = Graph::default();
+    let (first, last) = graph.take(&file.group("/node").context(no_graph)?, "", 0)?;
+    graph.join();
+
+    let mut stages = Vec::new();
+    let mut weights: Option<Weights> = None;
+    for (name, loops) in graph.chain(&first, &last)? {
+        let node = &graph.nodes[name];
+        let kind = kind(node, name)?;
+        let mut read = || -> Result<()> {
+            match (kind.as_str(), weights.take()) {
+                ("Linear" | "Affine", None) => weights = Some(read_weights(node, &kind)?),
+                ("Linear" | "Affine", Some(_)) => {
+                    bail!("weights follow on weights; there must be LIF or IF neurons between them")
+                }
+                ("LIF" | "IF", Some(weights)) => {
+                    let neurons = read_neurons(node, name, &kind, weights.rows.len())?;
+                    let recurrent = graph.recurrent(&loops, weights.rows.len())?;
+                    stages.push(Stage { weights, recurrent, neurons });
+                }
+                ("LIF" | "IF", None) => bail!("no weights lead to it"),
+                // Spikes are in a row already.
+                ("Flatten" | "Input" | "Output", before) => weights = before,
+                _ => bail!("tinyODIN has nothing like it; Linear, Affine, LIF and IF are taken"),
+            }
+            Ok(())
+        };
+        read().with_context(|| format!("node `{name}` ({kind})"))?;
+    }
+    ensure!(weights.is_none(), "the last weights lead to no LIF or IF neurons");
+    Ok(Chain(stages))
+}
+
+fn kind(node: &Group, name: &str) -> Result<String> {
+    let kind = node.dataset("type").and_then(|kind| kind.read_string());
+    kind.with_context(|| format!("node `{name}`: no type"))
+}
+
+/// Graphs within graphs that are taken.
+const DEEPEST: usize = 8;
+
+impl Graph {
+    /// Adds the nodes and edges of a group, with `path` before their names. Returns its input and output.
+    fn take(&mut self, group: &Group, path: &str, depth: usize) -> Result<(String, String)> {
+        let of = || if path.is_empty() { String::new() } else { format!("node `{path}`: ") };
+        ensure!(depth < DEEPEST, "{}graphs in graphs, {DEEPEST} deep", of());
+        let no_graph = || format!("{}no NIR graph", of());
+        let under = |name: &str| {
+            if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") }
+        };
+        let groups = group.groups().with_context(no_graph)?;
+        let nodes = groups.iter().find(|group| group.name() == "nodes").with_context(no_graph)?;
+        let (mut inputs, mut outputs) = (Vec::new(), Vec::new());
+        for node in nodes.groups()? {
+            let name = under(node.name());
+            match kind(&node, &name)?.as_str() {
+                "NIRGraph" => {
+                    let ends = self.take(&node, &name, depth + 1)?;
+                    self.inner.insert(name, ends);
+                    continue;
+                }
+                "Input" => inputs.push(name.clone()),
+                "Output" => outputs.push(name.clone()),
+                _ => {}
+            }
+            self.nodes.insert(name, node);
+        }
+        let edges = group.dataset("edges").with_context(no_graph)?.read_strings()?;
+        let edges = edges.as_chunks().0.iter().map(|[from, to]| (under(from), under(to)));
+        self.edges.extend(edges);
+        let one = |kind: &str, mut found: Vec<String>| match found.pop() {
+            Some(one) if found.is_empty() => Ok(one),
+            last => {
+                found.extend(last);
+                let count = found.len();
+                bail!("{}{count} nodes are {kind}, where there must be one: {found:?}", of())
+            }
+        };
+        Ok((one("Input", inputs)?, one("Output", outputs)?))
+    }
+
+    /// Leads the edges of the graphs in it to their inputs and from their outputs.
+    fn join(&mut self) {
+        for (from, to) in &mut self.edges {
+            if let Some((_, output)) = self.inner.get(from) {
+                from.clone_from(output);
+            }
+            if let Some((input, _)) = self.inner.get(to) {
+                to.clone_from(input);
+            }
+        }
+    }
+
+    fn after(&self, name: &str) -> Vec<&str> {
+        let mut after: Vec<&str> = Vec::new();
+        for (from, to) in &self.edges {
+            if from == name && !after.contains(&to.as_str()) {
+                after.push(to);
+            }
+        }
+        after
+    }
+
+    /// The nodes' names from the input to the output, and how each leads back to itself.
+    fn chain(&self, first: &str, last: &str) -> Result<Vec<(&str, Loops<'_>)>> {
+        let node = |name: &str| self.nodes.get_key_value(name);
+        let (mut at, _) = node(first).context("no input")?;
+        let mut path: Vec<(&str, Loops)> = Vec::new();
+        loop {
+            let mut loops = Loops { is_direct: false, weights: Vec::new() };
+            let mut next = Vec::new();
+            let fires = matches!(kind(&self.nodes[at], at)?.as_str(), "LIF" | "IF");
+            for to in self.after(at) {
+                let (to, weights) = node(to)
+                    .with_context(|| format!("node `{at}` leads to `{to}`, which there is not"))?;
+                let is_weights = matches!(kind(weights, to)?.as_str(), "Linear" | "Affine");
+                if fires && to == at {
+                    loops.is_direct = true;
+                } else if fires && is_weights && self.after(to) == [at] {
+                    loops.weights.push(to);
+                } else {
+                    next.push(to);
+                }
+            }
+            path.push((at, loops));
+            if at == last {
+                break;
+            }
+            let is_back = |to: &&&String| path.iter().any(|(name, _)| *name == to.as_str());
+            if let Some(back) = next.iter().find(is_back) {
+                bail!("node `{at}` leads back to `{back}`: a layer may lead back to itself only");
+            }
+            let [one] = next[..] else {
+                bail!("node `{at}` leads to {} nodes, {next:?}: only a chain is taken", next.len());
+            };
+            at = one;
+        }
+        let is_on_it = |name: &str| {
+            path.iter().any(|(on, loops)| *on == name || loops.weights.contains(&name))
+        };
+        if let Some(name) = self.nodes.keys().find(|name| !is_on_it(name)) {
+            bail!("node `{name}` is not on the way from `{first}` to `{last}`");
+        }
+        Ok(path)
+    }
+
+    /// The weights from so many neurons to themselves, in all.
+    fn recurrent(&self, loops: &Loops, count: usize) -> Result<Option<Weights>> {
+        if !loops.is_direct && loops.weights.is_empty() {
+            return Ok(None);
+        }
+        let direct = |row: usize, column| f64::from(u8::from(loops.is_direct && row == column));
+        let row = |row| (0..count).map(|column| direct(row, column)).collect();
+        let mut sum = Weights { rows: (0..count).map(row).collect(), bias: None };
+        for &name in &loops.weights {
+            let node = &self.nodes[name];
+            let Weights { rows, bias } = read_weights(node, &kind(node, name)?)?;
+            let is_square = rows.len() == count && rows.iter().all(|row| row.len() == count);
+            ensure!(is_square, "its recurrent weights `{name}` are not {count} by {count}");
+            let sums = sum.rows.iter_mut().flatten();
+            sums.zip(rows.iter().flatten()).for_each(|(sum, weight)| *sum += weight);
+            if let Some(bias) = bias {
+                let sums = sum.bias.get_or_insert_with(|| vec![0.0; count]);
+                sums.iter_mut().zip(bias).for_each(|(sum, bias)| *sum += bias);
+            }
+        }
+        Ok(Some(sum))
+    }
+}
+
+fn read_weights(node: &Group, kind: &str) -> Result<Weights> {
+    let (shape, weights) = numbers(node, "weight")?;
+    let [outputs, inputs] = shape[..] else {
+        bail!("weights of {} dimensions, where there must be 2", shape.len());
+    };
+    ensure!(outputs > 0 && inputs > 0, "weights of shape {outputs} x {inputs}");
+    let bias = match kind {
+        "Affine" => {
+            let (_, bias) = numbers(node, "bias")?;
+            ensure!(bias.len() == outputs, "{} values of `bias` for {outputs} neurons", bias.len());
+            Some(bias)
+        }
+        _ => None,
+    };
+    Ok(Weights { rows: weights.chunks(inputs).map(<[f64]>::to_vec).collect(), bias })
+}
+
+fn read_neurons(node: &Group, name: &str, kind: &str, count: usize) -> Result<Neurons> {
+    let array = |what: &str| -> Result<Array> {
+        let (_, numbers) = numbers(node, what)?;
+        let told = numbers.len();
+        ensure!(told == 1 || told == count, "{told} values of `{what}` for {count} neurons");
+        if let Some(odd) = numbers.iter().find(|number| !number.is_finite()) {
+            bail!("`{what}` holds {odd}");
+        }
+        Ok(Array(numbers))
+    };
+    let leak = match kind {
+        "LIF" => Some(Leak { tau: array("tau")?, rest: array("v_leak")? }),
+        _ => None,
+    };
+    let has_reset = node.datasets()?.iter().any(|dataset| dataset.name() == "v_reset");
+    Ok(Neurons {
+        name: name.to_owned(),
+        leak,
+        resistance: array("r")?,
+        threshold: array("v_threshold")?,
+        reset: if has_reset { Some(array("v_reset")?) } else { None },
+    })
+}
+
+/// An array's shape and numbers, whatever their type.
+fn numbers(node: &Group, name: &str) -> Result<(Vec<usize>, Vec<f64>)> {
+    let dataset = node.dataset(name).map_err(|_| anyhow!("no `{name}`"))?;
+    let shape = dataset.shape().iter().map(|&length| length as usize).collect();
+    let numbers = match *dataset.dtype() {
+        Datatype::FloatingPoint { size: 4, .. } => read_as(&dataset, |n: f32| n.into()),
+        Datatype::FloatingPoint { size: 8, .. } => read_as(&dataset, |n: f64| n),
+        Datatype::FixedPoint { size: 4, signed: true, .. } => read_as(&dataset, |n: i32| n.into()),
+        Datatype::FixedPoint { size: 8, signed: true, .. } => read_as(&dataset, |n: i64| n as f64),
+        _ => bail!("`{name}` holds numbers of a type that is not taken: {:?}", dataset.dtype()),
+    };
+    Ok((shape, numbers.with_context(|| format!("`{name}` cannot be read"))?))
+}
+
+fn read_as<T: H5Type + Copy>(
+    dataset: &Dataset,
+    to_f64: impl Fn(T) -> f64,
+) -> hdf5_reader::error::Result<Vec<f64>> {
+    Ok(dataset.read_array::<T>()?.iter().map(|&number| to_f64(number)).collect())
+}
+
+impl Chain {
+    /// The network in steps of so many seconds, by Euler's rule: spikes are a current that lasts for their step.
+    /// `v += step / tau * (v_leak - v + r * I)` for LIF, `v += r * I` for IF, whose spikes are a step's charge.
+    ///
+    /// # Errors
+    /// A time constant is shorter than a step, or the step is needed and not known.
+    pub(super) fn in_steps(self, step: Option<f64>) -> Result<Trained> {
+        let layers = self.0.into_iter().map(|stage| {
+            let name = format!("node `{}`", stage.neurons.name);
+            stage.in_steps(name.clone(), step).context(name)
+        });
+        Trained::new(layers.collect::<Result<_>>()?)
+    }
+}
+
+impl Stage {
+    fn in_steps(self, name: String, step: Option<f64>) -> Result<Layer> {
+        let Self { weights: Weights { rows, bias }, recurrent, neurons } = self;
+        let mut biases = bias.unwrap_or_else(|| vec![0.0; rows.len()]);
+        let (recurrent, more) = recurrent.map_or((vec![], None), |own| (own.rows, own.bias));
+        biases.iter_mut().zip(more.iter().flatten()).for_each(|(bias, more)| *bias += more);
+        let mut layer = Layer { name, bias: biases, recurrent, weights: rows, neurons: Vec::new() };
+        for at in 0..layer.weights.len() {
+            let resistance = neurons.resistance.at(at);
+            let (part, rest) = match &neurons.leak {
+                None => (0.0, 0.0),
+                Some(Leak { tau, rest }) => {
+                    let step = step.context(
+                        "its time constants are in seconds, and neither --dt nor the recording's times say \
+                         how long a step is",
+                    )?;
+                    let tau = tau.at(at);
+                    ensure!(
+                        tau >= step * (1.0 - 1e-9),
+                        "a time constant of {tau} s is shorter than a step of {step} s; --dt gives the step \
+                         that its framework counts with (snnTorch: 1e-4)"
+                    );
+                    (step / tau, rest.at(at))
+                }
+            };
+            let returns = neurons.reset.as_ref().map_or(0.0, |reset| reset.at(at));
+            ensure!(
+                returns == rest,
+                "neuron {at} returns to {returns} when it fires and leaks to {rest}: the chip has one value for both"
+            );
+            let gain = if neurons.leak.is_some() { part * resistance } else { resistance };
+            let own = layer.recurrent.get_mut(at).into_iter().flatten();
+            layer.weights[at].iter_mut().chain(own).for_each(|weight| *weight *= gain);
+            layer.bias[at] *= gain;
+            let keep = (1.0 - part).max(0.0);
+            layer.neurons.push(Neuron { keep, threshold: neurons.threshold.at(at) - rest });
+        }
+        Ok(layer)
+    }
+}

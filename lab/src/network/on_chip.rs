@@ -1,0 +1,62 @@
+//! The network on the chip's model, clock by clock, through the crate's driver.
+
+use super::{Quantised, Trains};
+use anyhow::{Result, anyhow};
+use silicon::Board;
+use spikewire::chip::{ChipError, Describe, Input, TinyOdin, TinyOdinInput};
+use std::fmt::Debug;
+
+/// What came of it.
+pub struct Ran {
+    /// Who fired, by layer and step.
+    pub fired: Vec<Trains>,
+    /// The chip's clocks, by step.
+    pub clocks: Vec<u64>,
+    /// How often the chip's queue was full, and spikes were lost.
+    pub overflows: u32,
+}
+
+/// Loads the network, verifies it and runs it. Each step's leak comes first, then its bias, then its inputs in order.
+///
+/// # Errors
+/// The chip refuses something.
+pub fn run_on_chip(network: &Quantised, inputs: &Trains) -> Result<Ran> {
+    /// The chip's clocks to one of its SPI.
+    const RATIO: u32 = 4;
+    let board = Board::<silicon::TinyOdin>::new(RATIO, 1);
+    board.pins().has_full_pin = true;
+    let mut chip = TinyOdin::new(board.spi(), board.port(), TinyOdinInput::MAX_CLOCKS);
+    let mut gated = chip.reset(&mut board.clone()).map_err(|error| refused(&error))?;
+    gated.load(network, |_| ()).map_err(|error| refused(&error))?;
+    let mut running = gated.run(&network.registers()).map_err(|error| refused(&error))?;
+
+    let mut fired = vec![vec![vec![]; inputs.len()]; network.layers.len()];
+    let mut clocks = Vec::with_capacity(inputs.len());
+    let bias = network.has_bias.then(|| network.inputs() - 1);
+    for (step, inputs) in inputs.iter().enumerate() {
+        let before = board.pins().chip.clocks;
+        let mut on_output = |neuron: u8| {
+            if let Some((layer, place)) = network.place(neuron.into()) {
+                fired[layer][step].push(place as u16);
+            }
+        };
+        let leak = step > 0 && step.is_multiple_of(network.steps_a_leak);
+        let leak = leak.then_some(TinyOdinInput::LeakAll);
+        let driven = bias.into_iter().chain(inputs.iter().copied());
+        let words = leak.into_iter().chain(driven.filter_map(|input| network.input(input)));
+        for word in words {
+            running.send(word, &mut on_output).map_err(|error| refused(&error))?;
+        }
+        // The model says when it is at rest, where a chip has to be waited for.
+        while !board.pins().chip.is_idle() {
+            running.poll(&mut on_output).map_err(|error| refused(&error))?;
+        }
+        clocks.push(board.pins().chip.clocks - before);
+    }
+    let overflows = board.pins().chip.overflows;
+    Ok(Ran { fired, clocks, overflows })
+}
+
+fn refused<B: Debug, P: Debug>(error: &ChipError<B, P>) -> anyhow::Error {
+    anyhow!("the chip's model: {error}")
+}

@@ -1,0 +1,73 @@
+//! The plain form of a network, in JSON.
+
+use super::Trained;
+use super::trained::{Layer, Neuron};
+use anyhow::{Context, Result, bail};
+use serde::Deserialize;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Network {
+    layers: Vec<Written>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    name: Option<String>,
+    /// By neuron, then by input.
+    weights: Vec<Vec<f64>>,
+    /// By neuron, then by the neuron of the same layer that fired a step before.
+    #[serde(default)]
+    recurrent: Vec<Vec<f64>>,
+    #[serde(default)]
+    bias: Vec<f64>,
+    /// Unless given, neurons do not leak.
+    keep: Option<Numbers>,
+    threshold: Numbers,
+}
+
+/// One for all neurons, or one for each.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Numbers {
+    One(f64),
+    Each(Vec<f64>),
+}
+
+impl Numbers {
+    fn each(self, count: usize, what: &str) -> Result<Vec<f64>> {
+        match self {
+            Self::One(number) => Ok(vec![number; count]),
+            Self::Each(numbers) if numbers.len() == count => Ok(numbers),
+            Self::Each(numbers) => {
+                bail!("{} values of `{what}` for {count} neurons", numbers.len())
+            }
+        }
+    }
+}
+
+/// Reads it.
+///
+/// # Errors
+/// It is not of the form, or a number makes no sense.
+pub(crate) fn read(bytes: &[u8]) -> Result<Trained> {
+    let network: Network = serde_json::from_slice(bytes)?;
+    let layers = network.layers.into_iter().enumerate().map(|(at, written)| {
+        let name = written.name.clone().unwrap_or_else(|| format!("layer {}", at + 1));
+        layer(&name, written).with_context(|| name.clone())
+    });
+    Trained::new(layers.collect::<Result<_>>()?)
+}
+
+fn layer(name: &str, written: Written) -> Result<Layer> {
+    let count = written.weights.len();
+    let bias = if written.bias.is_empty() { vec![0.0; count] } else { written.bias };
+    let bias = Numbers::Each(bias).each(count, "bias")?;
+    let keep = written.keep.unwrap_or(Numbers::One(1.0)).each(count, "keep")?;
+    let thresholds = written.threshold.each(count, "threshold")?;
+    let neurons = keep.into_iter().zip(thresholds);
+    let neurons = neurons.map(|(keep, threshold)| Neuron { keep, threshold }).collect();
+    let Written { weights, recurrent, .. } = written;
+    Ok(Layer { name: name.to_owned(), weights, recurrent, bias, neurons })
+}

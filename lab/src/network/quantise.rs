@@ -1,0 +1,569 @@
+//! From numbers in double precision to what tinyODIN holds.
+
+use super::trained::{Layer, Neuron};
+use super::{Distance, Trained, Trains};
+use anyhow::{Result, ensure};
+use rayon::prelude::*;
+use spikewire::chip::{Describe, Input, TinyOdinInput, TinyOdinNeuron};
+use std::collections::{BTreeSet, VecDeque};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+const NEURONS: usize = 256;
+const ROWS: usize = 256;
+const MAX_THRESHOLD: f64 = 2047.0;
+const MAX_LEAK: f64 = 127.0;
+/// What the largest weight may become: above 7 it is clipped, for the sake of the others.
+const LARGEST: [f64; 20] = [
+    7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 10.0, 3.0, 12.0, 2.0, 14.0, 1.0, 16.0, 6.5, 5.5, 4.5, 3.5, 7.5,
+    8.5, 20.0,
+];
+/// From how many of them the search goes on.
+const CLIMBS: usize = 2;
+/// Of the leak at half the threshold, which parts are tried.
+const LEAKS: [f64; 7] = [1.0, 0.5, 0.75, 1.5, 2.0, 3.0, 0.0];
+/// Neurons of each layer that tell which steps suit it.
+const SURVEYED: usize = 32;
+/// Stands for a leak among weights.
+const LEAK: i8 = i8::MIN;
+/// The spikes of a layer in a step after which it counts as one that drives itself.
+const MOST_SPIKES: usize = 10_000;
+/// Steps from one leak to the next, of all neurons, that are tried.
+const STEPS: [usize; 6] = [1, 2, 3, 4, 8, 16];
+
+/// A network as tinyODIN holds it: the layers' neurons one after the other, then, if a layer has a bias, an input more
+/// that every step must be told.
+#[derive(Clone, Debug)]
+pub struct Quantised {
+    /// The layers.
+    pub layers: Vec<ChipLayer>,
+    /// Inputs without the bias.
+    inputs: usize,
+    /// Whether there is a bias.
+    pub has_bias: bool,
+    /// Whether neurons send spikes to neurons.
+    is_recurrent: bool,
+    /// How many steps go from one leak of all neurons to the next.
+    pub steps_a_leak: usize,
+}
+
+/// A layer's neurons.
+#[derive(Clone, Debug)]
+pub struct ChipLayer {
+    /// As its file calls it.
+    pub name: String,
+    /// How many spikes it takes from before it.
+    inputs: usize,
+    /// In order.
+    pub neurons: Vec<ChipNeuron>,
+}
+
+/// A neuron, and what leads to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChipNeuron {
+    /// By input, then in a recurrent layer by its neurons.
+    pub weights: Vec<i8>,
+    /// What every step adds.
+    pub bias: i8,
+    /// Where it fires.
+    pub threshold: u16,
+    /// What a leak takes.
+    pub leak: u8,
+    /// How many weights were larger than the chip's.
+    pub clipped: usize,
+}
+
+/// Brings a network onto the chip, layer by layer: for each neuron the scale of its weights, its threshold and its
+/// leak with which its spikes are nearest to the original's, driven by what the chip's layer before fires, in the chip's
+/// order. Calls `progress` with the neurons that are done and those in all.
+///
+/// # Errors
+/// It does not fit.
+pub fn quantise(
+    trained: &Trained,
+    inputs: &Trains,
+    fired: &[Trains],
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Quantised> {
+    let has_bias = trained.layers.iter().any(|layer| layer.bias.iter().any(|bias| *bias != 0.0));
+    check_room(trained, has_bias)?;
+    let leaks =
+        trained.layers.iter().flat_map(|layer| &layer.neurons).any(|neuron| neuron.keep < 1.0);
+    let tried = if leaks { &STEPS[..] } else { &STEPS[..1] };
+    let count = |layer: &Layer| layer.neurons.len();
+    // Of a layer's neurons so many, evenly spaced, tell how often the leak should come.
+    let some = |layer: &Layer| (0..count(layer)).step_by(count(layer).div_ceil(SURVEYED));
+    let surveyed: usize = trained.layers.iter().map(|layer| some(layer).len()).sum();
+    let all: usize = trained.layers.iter().map(count).sum();
+    let total = if tried.len() > 1 { surveyed * tried.len() } else { 0 } + all;
+    let done = AtomicUsize::new(0);
+    let searched = |layer: &Layer, neuron, aim: &Aim, climbs| {
+        let found = search(layer, neuron, aim, climbs);
+        progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
+        found
+    };
+
+    let mut steps_a_leak = 1;
+    if tried.len() > 1 {
+        let survey = |steps_a_leak: usize| -> f64 {
+            let drives = std::iter::once(inputs).chain(fired);
+            let layers = trained.layers.iter().zip(fired).zip(drives);
+            let of_layer = |((layer, fired), before): ((&Layer, &Trains), &Trains)| -> f64 {
+                let drive = Drive::new(before, layer, fired);
+                let targets = targets(fired, count(layer));
+                let surveyed: Vec<usize> = some(layer).collect();
+                let distance = |&neuron: &usize| {
+                    let aim = Aim { drive: &drive, target: &targets[neuron], steps_a_leak };
+                    searched(layer, neuron, &aim, 0).0
+                };
+                surveyed.par_iter().map(distance).collect::<Vec<_>>().iter().sum()
+            };
+            layers.map(of_layer).sum()
+        };
+        let rough = tried.iter().map(|&steps| (survey(steps), steps));
+        // The first of equals, so that leaks come often where it does not matter.
+        let best = rough.min_by(|(one, _), (other, _)| one.total_cmp(other));
+        steps_a_leak = best.map_or(1, |(_, steps)| steps);
+    }
+    let (mut layers, mut before) = (Vec::new(), inputs.clone());
+    for (layer, fired) in trained.layers.iter().zip(fired) {
+        let drive = Drive::new(&before, layer, fired);
+        let targets = targets(fired, count(layer));
+        let chosen = |neuron: usize| {
+            let aim = Aim { drive: &drive, target: &targets[neuron], steps_a_leak };
+            searched(layer, neuron, &aim, CLIMBS).1
+        };
+        let neurons: Vec<ChipNeuron> = (0..count(layer)).into_par_iter().map(chosen).collect();
+        let own = (!layer.recurrent.is_empty()).then(|| layer.inputs());
+        let layer = ChipLayer { name: layer.name.clone(), inputs: layer.inputs(), neurons };
+        before = layer.fired(&before, own, steps_a_leak);
+        layers.push(layer);
+    }
+    let is_recurrent =
+        layers.len() > 1 || trained.layers.iter().any(|layer| !layer.recurrent.is_empty());
+    Ok(Quantised { layers, inputs: trained.inputs(), has_bias, is_recurrent, steps_a_leak })
+}
+
+fn check_room(trained: &Trained, has_bias: bool) -> Result<()> {
+    let mut neurons = 0;
+    for layer in &trained.layers {
+        neurons += layer.neurons.len();
+        ensure!(
+            neurons <= NEURONS,
+            "{}: the chip has {NEURONS} neurons, and with this layer's {} the network has {neurons}",
+            layer.name,
+            layer.neurons.len()
+        );
+    }
+    let loops = trained.layers.iter().any(|layer| !layer.recurrent.is_empty());
+    let own = if trained.layers.len() > 1 || loops { neurons } else { 0 };
+    let inputs = trained.inputs() + usize::from(has_bias);
+    ensure!(
+        own + inputs <= ROWS,
+        "{}: the chip has {ROWS} rows of synapses, and {inputs} inputs{} with {own} neurons that send spikes to \
+         neurons need {}",
+        trained.layers[0].name,
+        if has_bias { ", one of them the bias," } else { "" },
+        own + inputs
+    );
+    Ok(())
+}
+
+/// The spikes that drive a layer, by step: its inputs, then in a recurrent layer its own neurons, counted on from them.
+struct Drive {
+    /// Where each step's spikes end.
+    ends: Vec<usize>,
+    spikes: Vec<u16>,
+}
+
+impl Drive {
+    /// As the chip's neurons see it: a spike of a neuron comes in its own step, behind the inputs. `fired` stands for
+    /// what the layer itself will do.
+    fn new(inputs: &Trains, layer: &Layer, fired: &Trains) -> Self {
+        let (mut ends, mut spikes) = (Vec::new(), Vec::new());
+        let first = layer.inputs() as u16;
+        for (inputs, fired) in inputs.iter().zip(fired) {
+            spikes.extend(inputs);
+            if !layer.recurrent.is_empty() {
+                spikes.extend(fired.iter().map(|own| first + own));
+            }
+            ends.push(spikes.len());
+        }
+        Self { ends, spikes }
+    }
+}
+
+/// How often each neuron fires, by step.
+fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<u16>> {
+    let mut counts = vec![vec![0; fired.len()]; neurons];
+    for (step, fired) in fired.iter().enumerate() {
+        for &neuron in fired {
+            counts[usize::from(neuron)][step] += 1;
+        }
+    }
+    counts
+}
+
+impl ChipLayer {
+    /// Who fires, by step, in the chip's order: after each spike every neuron looks at its threshold, and a neuron's
+    /// own spikes wait behind those that came before. `own` is the first index of the layer's own spikes.
+    fn fired(&self, inputs: &Trains, own: Option<usize>, steps_a_leak: usize) -> Trains {
+        let mut potentials = vec![0_i32; self.neurons.len()];
+        let mut act = |weight: &dyn Fn(&ChipNeuron) -> i8, out: &mut Vec<u16>| {
+            for ((at, neuron), potential) in (0..).zip(&self.neurons).zip(&mut potentials) {
+                *potential = neuron.driven(*potential, weight(neuron));
+                if *potential >= i32::from(neuron.threshold) {
+                    *potential = 0;
+                    out.push(at);
+                }
+            }
+        };
+        let has_bias = self.neurons.iter().any(|neuron| neuron.bias != 0);
+        let step = |(step, inputs): (usize, &Vec<u16>)| {
+            let mut out = Vec::new();
+            if step > 0 && step.is_multiple_of(steps_a_leak) {
+                act(&|_| LEAK, &mut out);
+            }
+            if has_bias {
+                act(&|neuron| neuron.bias, &mut out);
+            }
+            let (mut waiting, mut seen) = (VecDeque::new(), 0);
+            let mut inputs = inputs.iter().copied();
+            loop {
+                // The chip takes an input before it takes the next spike out of its queue.
+                waiting.extend(inputs.next());
+                if let Some(own) = own {
+                    waiting.extend(out[seen..].iter().map(|&neuron| own as u16 + neuron));
+                    seen = out.len();
+                }
+                let Some(spike) = waiting.pop_front() else { break };
+                act(&|neuron| neuron.weights[usize::from(spike)], &mut out);
+                if out.len() > MOST_SPIKES {
+                    break;
+                }
+            }
+            out
+        };
+        inputs.iter().enumerate().map(step).collect()
+    }
+}
+
+/// What of a neuron is searched.
+#[derive(Clone, Copy)]
+struct Choice {
+    /// What a weight of 1 on the chip stands for.
+    unit: f64,
+    threshold: u16,
+    leak: u8,
+}
+
+/// What a neuron is to do.
+struct Aim<'a> {
+    drive: &'a Drive,
+    /// How often it fires, by step.
+    target: &'a [u16],
+    steps_a_leak: usize,
+}
+
+/// The best neuron, and its distance from the original. From the best choices the search goes on, from so many.
+fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, ChipNeuron) {
+    let own = layer.recurrent.get(at).into_iter().flatten();
+    let weights: Vec<f64> = layer.weights[at].iter().chain(own).copied().collect();
+    let bias = layer.bias[at];
+    let neuron = |choice: Choice| ChipNeuron::new(&weights, bias, choice);
+    // Gives up where it is no nearer than `most`, as almost all are.
+    let distance = |choice, most| neuron(choice).distance(aim, most);
+    let mut best: Vec<(f64, Choice)> = Vec::new();
+    for choice in choices(layer, at, aim.steps_a_leak) {
+        let most = best.get(climbs.max(1) - 1).map_or(f64::INFINITY, |(distance, _)| *distance);
+        let distance = distance(choice, most);
+        if distance < most || best.is_empty() {
+            // Of equals the first.
+            let place = best.partition_point(|(other, _)| *other <= distance);
+            best.insert(place, (distance, choice));
+            best.truncate(climbs.max(1));
+        }
+    }
+    for (least, best) in best.iter_mut().take(climbs) {
+        // A step of scale, threshold or leak, for as long as it helps.
+        let mut is_better = *least > 0.0;
+        while is_better {
+            is_better = false;
+            for choice in best.neighbours() {
+                let distance = distance(choice, *least);
+                if distance < *least {
+                    (*least, *best, is_better) = (distance, choice, true);
+                }
+            }
+        }
+    }
+    let best = best.into_iter().min_by(|(one, _), (other, _)| one.total_cmp(other));
+    let (least, best) = best.expect("there is a choice at least");
+    (least, neuron(best))
+}
+
+/// Where the search starts: scales, with the threshold that belongs to them and some leaks.
+fn choices(layer: &Layer, at: usize, steps_a_leak: usize) -> Vec<Choice> {
+    let own = layer.recurrent.get(at).into_iter().flatten();
+    let weights = layer.weights[at].iter().chain(own).chain(&layer.bias[at..=at]);
+    let largest = weights.fold(0.0_f64, |most, weight| most.max(weight.abs()));
+    let Neuron { keep, threshold } = layer.neurons[at];
+    let mut choices = Vec::new();
+    for most in LARGEST {
+        let unit = if largest > 0.0 { largest / most } else { 1.0 };
+        // It fires at its threshold, where the original fires above; but for what rounding adds.
+        let threshold = ((threshold / unit + 1e-9).floor() + 1.0).min(MAX_THRESHOLD);
+        let lost = (1.0 - keep.powi(steps_a_leak as i32)) * threshold / 2.0;
+        let leaks = LEAKS.iter().map(|part| (part * lost).round().min(MAX_LEAK) as u8);
+        let leaks: BTreeSet<u8> = leaks.collect();
+        let of_leak = |leak| Choice { unit, threshold: threshold as u16, leak };
+        choices.extend(leaks.into_iter().map(of_leak));
+    }
+    choices
+}
+
+impl Choice {
+    fn neighbours(self) -> [Self; 10] {
+        let Self { unit, threshold, leak } = self;
+        let threshold = |by| threshold.saturating_add_signed(by).clamp(1, MAX_THRESHOLD as u16);
+        let leak = |by| leak.saturating_add_signed(by).min(MAX_LEAK as u8);
+        [
+            Self { threshold: threshold(1), ..self },
+            Self { threshold: threshold(-1), ..self },
+            Self { leak: leak(1), ..self },
+            Self { leak: leak(-1), ..self },
+            Self { threshold: threshold(2), ..self },
+            Self { threshold: threshold(-2), ..self },
+            Self { unit: unit * 1.05, ..self },
+            Self { unit: unit / 1.05, ..self },
+            Self { threshold: threshold(1), leak: leak(-1), ..self },
+            Self { threshold: threshold(-1), leak: leak(1), ..self },
+        ]
+    }
+}
+
+impl ChipNeuron {
+    fn new(weights: &[f64], bias: f64, choice: Choice) -> Self {
+        let Choice { unit, threshold, leak } = choice;
+        let mut clipped = 0;
+        let mut quantised = |weight: &f64| {
+            let rounded = (weight / unit).round();
+            clipped += usize::from(!(-8.0..=7.0).contains(&rounded));
+            rounded.clamp(-8.0, 7.0) as i8
+        };
+        let weights = weights.iter().map(&mut quantised).collect();
+        let bias = quantised(&bias);
+        Self { weights, bias, threshold, leak, clipped }
+    }
+
+    /// The potential after a weight, or after a [`LEAK`].
+    fn driven(&self, potential: i32, weight: i8) -> i32 {
+        if weight == LEAK {
+            potential.signum() * (potential.abs() - i32::from(self.leak)).max(0)
+        } else {
+            (potential + i32::from(weight)).clamp(-2048, 2047)
+        }
+    }
+
+    /// How far its spikes are from what they should be; infinite if that is `most` or more.
+    fn distance(&self, aim: &Aim, most: f64) -> f64 {
+        let mut distance = Distance::default();
+        let threshold = i32::from(self.threshold);
+        let (mut potential, mut until_leak, mut first) = (0_i32, aim.steps_a_leak, 0);
+        for (&end, &target) in aim.drive.ends.iter().zip(aim.target) {
+            if until_leak == 0 {
+                until_leak = aim.steps_a_leak;
+                potential = self.driven(potential, LEAK);
+            }
+            until_leak -= 1;
+            let mut fired = 0;
+            let mut act = |weight| {
+                potential = self.driven(potential, weight);
+                if potential >= threshold {
+                    potential = 0;
+                    fired += 1;
+                }
+            };
+            if self.bias != 0 {
+                act(self.bias);
+            }
+            for &spike in &aim.drive.spikes[first..end] {
+                act(self.weights[usize::from(spike)]);
+            }
+            first = end;
+            distance.step(fired, usize::from(target));
+            if fired != usize::from(target) && distance.so_far() >= most {
+                return f64::INFINITY;
+            }
+        }
+        distance.value()
+    }
+}
+
+impl Quantised {
+    /// The layer and the place in it of a neuron of the chip.
+    pub fn place(&self, neuron: usize) -> Option<(usize, usize)> {
+        let mut first = 0;
+        for (at, layer) in self.layers.iter().enumerate() {
+            if neuron < first + layer.neurons.len() {
+                return Some((at, neuron - first));
+            }
+            first += layer.neurons.len();
+        }
+        None
+    }
+
+    /// How many neurons.
+    pub fn count(&self) -> usize {
+        self.layers.iter().map(|layer| layer.neurons.len()).sum()
+    }
+
+    fn at(&self, neuron: usize) -> Option<(usize, &ChipNeuron)> {
+        let (layer, place) = self.place(neuron)?;
+        Some((layer, self.layers[layer].neurons.get(place)?))
+    }
+}
+
+impl Describe<TinyOdinInput> for Quantised {
+    fn neurons(&self) -> u16 {
+        self.count() as u16
+    }
+
+    fn neuron(&self, neuron: u8) -> TinyOdinNeuron {
+        match self.at(neuron.into()) {
+            Some((_, &ChipNeuron { threshold, leak, .. })) => {
+                TinyOdinNeuron { threshold, leak, ..TinyOdinNeuron::REST }
+            }
+            None => TinyOdinInput::DISABLED,
+        }
+    }
+
+    fn inputs(&self) -> u16 {
+        (self.inputs + usize::from(self.has_bias)) as u16
+    }
+
+    fn virtual_input(&self, _: u16) -> Option<(u8, i8)> {
+        None
+    }
+
+    fn input_weight(&self, input: u16, post: u8) -> i8 {
+        match self.at(post.into()) {
+            Some((_, neuron)) if usize::from(input) == self.inputs => neuron.bias,
+            Some((0, neuron)) if usize::from(input) < self.inputs => {
+                neuron.weights[usize::from(input)]
+            }
+            _ => 0,
+        }
+    }
+
+    fn is_recurrent(&self) -> bool {
+        self.is_recurrent
+    }
+
+    fn weight(&self, pre: u8, post: u8) -> i8 {
+        match (self.place(pre.into()), self.at(post.into())) {
+            (Some((from, place)), Some((to, neuron))) if from + 1 == to => neuron.weights[place],
+            (Some((from, place)), Some((to, neuron))) if from == to => {
+                neuron.weights.get(self.layers[to].inputs + place).copied().unwrap_or(0)
+            }
+            _ => 0,
+        }
+    }
+
+    fn output(&self, neuron: u8) -> Option<u16> {
+        let (layer, place) = self.place(neuron.into())?;
+        (layer + 1 == self.layers.len()).then_some(place as u16)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps of a spike at most: of several the chip's neuron may fire at the first, and keep what the others add.
+    fn some(inputs: u16, steps: u32) -> Trains {
+        let fires = |step: u32, input: u16| {
+            let mixed = (step * 257 + u32::from(input) * 7919).wrapping_mul(0x9E37_79B9);
+            mixed >> 24 < 70
+        };
+        let one = |step| (0..inputs).filter(|&input| fires(step, input)).take(1).collect();
+        (0..steps).map(one).collect()
+    }
+
+    fn layer(weights: Vec<Vec<f64>>, keep: f64, threshold: f64) -> Layer {
+        let count = weights.len();
+        Layer {
+            name: "one".to_owned(),
+            weights,
+            recurrent: vec![],
+            bias: vec![0.0; count],
+            neurons: vec![Neuron { keep, threshold }; count],
+        }
+    }
+
+    /// What the chip can hold comes out as it is: the neurons fire at the same steps.
+    #[test]
+    fn whole_weights_without_a_leak_lose_nothing() {
+        let weights = vec![vec![3.0, 7.0, 1.0], vec![2.0, 0.0, 5.0]];
+        let trained = Trained::new(vec![layer(weights, 1.0, 20.0)]).unwrap();
+        let inputs = some(3, 400);
+        let fired = trained.run(&inputs);
+        let quantised = quantise(&trained, &inputs, &fired, &|_, _| ()).unwrap();
+        for (at, neuron) in quantised.layers[0].neurons.iter().enumerate() {
+            let target = &targets(&fired[0], 2)[at];
+            assert!(target.iter().sum::<u16>() > 10);
+            let drive = &Drive::new(&inputs, &trained.layers[0], &fired[0]);
+            let aim = Aim { drive, target, steps_a_leak: quantised.steps_a_leak };
+            assert_eq!(neuron.distance(&aim, f64::INFINITY), 0.0, "{neuron:?}");
+            assert_eq!((neuron.leak, neuron.clipped), (0, 0));
+        }
+        assert_eq!(quantised.layers[0].neurons[0].weights, [3, 7, 1]);
+        assert_eq!(quantised.layers[0].neurons[0].threshold, 21, "fires at, not above");
+    }
+
+    #[test]
+    fn a_leak_by_shares_becomes_one_by_steps_that_is_nearer_than_none() {
+        let trained = Trained::new(vec![layer(vec![vec![0.4, 0.31, -0.12]], 0.9, 1.0)]).unwrap();
+        let inputs = some(3, 2_000);
+        let fired = trained.run(&inputs);
+        let quantised = quantise(&trained, &inputs, &fired, &|_, _| ()).unwrap();
+        let neuron = &quantised.layers[0].neurons[0];
+        let target = &targets(&fired[0], 1)[0];
+        let drive = &Drive::new(&inputs, &trained.layers[0], &fired[0]);
+        let aim = Aim { drive, target, steps_a_leak: quantised.steps_a_leak };
+        let distance = |leak| ChipNeuron { leak, ..neuron.clone() }.distance(&aim, f64::INFINITY);
+        assert!(neuron.leak > 0);
+        let (with, without) = (distance(neuron.leak), distance(0));
+        assert!(with < 0.8 * without, "{with}, {without}");
+    }
+
+    #[test]
+    fn all_that_the_chip_holds_is_within_its_ranges() {
+        for (weight, threshold) in [(1e-9, 1.0), (1e9, 1.0), (1.0, 1e9), (0.0, 1.0), (1.0, 1e-12)] {
+            let weights = vec![vec![weight, -weight]];
+            let trained = Trained::new(vec![layer(weights, 0.5, threshold)]).unwrap();
+            let inputs = some(2, 50);
+            let quantised = quantise(&trained, &inputs, &trained.run(&inputs), &|_, _| ()).unwrap();
+            assert!(TinyOdinInput::neuron_bytes::<(), ()>(&quantised.neuron(0)).is_ok());
+            assert!((0..2).all(|input| (-8..=7).contains(&quantised.input_weight(input, 0))));
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_by_name() {
+        let refused = |layers: Vec<Layer>| {
+            let trained = Trained::new(layers).unwrap();
+            let inputs = vec![vec![]];
+            let fired = trained.run(&inputs);
+            quantise(&trained, &inputs, &fired, &|_, _| ()).unwrap_err().to_string()
+        };
+        let wide = layer(vec![vec![1.0]; 257], 1.0, 1.0);
+        assert!(refused(vec![wide]).starts_with("one: the chip has 256 neurons"));
+        let one = layer(vec![vec![1.0; 200]; 50], 1.0, 1.0);
+        let two = layer(vec![vec![1.0; 50]; 10], 1.0, 1.0);
+        let said = refused(vec![one, two]);
+        assert!(
+            said.contains("200 inputs with 60 neurons that send spikes to neurons need 260"),
+            "{said}"
+        );
+    }
+}

@@ -1,0 +1,202 @@
+//! A trained network, and what it does in double precision.
+
+use anyhow::{Result, bail, ensure};
+
+/// Layers that a network may have.
+const LAYERS: usize = 3;
+
+/// By step, who fires; a step may name one several times.
+pub type Trains = Vec<Vec<u16>>;
+
+/// Layers of integrate-and-fire neurons, each fully connected to the one before.
+#[derive(Clone, Debug)]
+pub struct Trained {
+    /// From the input on.
+    pub layers: Vec<Layer>,
+}
+
+/// Neurons, and what leads to them.
+#[derive(Clone, Debug)]
+pub struct Layer {
+    /// As its file calls it.
+    pub name: String,
+    /// By neuron, what a spike of each input adds to the potential.
+    pub weights: Vec<Vec<f64>>,
+    /// By neuron, what a spike of each neuron of this layer adds to the potential in the next step; empty unless the layer
+    /// is recurrent.
+    pub recurrent: Vec<Vec<f64>>,
+    /// By neuron, what every step adds.
+    pub bias: Vec<f64>,
+    /// By neuron, the rest.
+    pub neurons: Vec<Neuron>,
+}
+
+/// A leaky integrate-and-fire neuron: at rest at 0, to which it returns when it fires.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neuron {
+    /// The share of the potential that is left after a step, 0 to 1; 1 for a perfect integrator.
+    pub keep: f64,
+    /// It fires above.
+    pub threshold: f64,
+}
+
+impl Layer {
+    /// How many spikes it takes.
+    pub fn inputs(&self) -> usize {
+        self.weights.first().map_or(0, Vec::len)
+    }
+
+    fn check(&self) -> Result<()> {
+        let Self { name, weights, recurrent, bias, neurons } = self;
+        ensure!(!weights.is_empty() && self.inputs() > 0, "{name}: no weights");
+        for (neuron, row) in weights.iter().enumerate() {
+            ensure!(
+                row.len() == self.inputs(),
+                "{name}: neuron {neuron} has {} weights where the first has {}",
+                row.len(),
+                self.inputs()
+            );
+            if let Some(weight) = row.iter().chain(&bias[neuron..=neuron]).find(|w| !w.is_finite())
+            {
+                bail!("{name}: neuron {neuron} has a weight of {weight}");
+            }
+        }
+        let count = neurons.len();
+        ensure!(
+            recurrent.is_empty()
+                || recurrent.len() == count && recurrent.iter().all(|row| row.len() == count),
+            "{name}: recurrent weights are not {count} by {count}"
+        );
+        if let Some(weight) = recurrent.iter().flatten().find(|weight| !weight.is_finite()) {
+            bail!("{name}: a recurrent weight of {weight}");
+        }
+        for (neuron, Neuron { keep, threshold }) in neurons.iter().enumerate() {
+            ensure!(
+                *threshold > 0.0 && threshold.is_finite(),
+                "{name}: neuron {neuron} fires at {threshold} above rest, which must be above 0 and finite"
+            );
+            ensure!(
+                (0.0..=1.0).contains(keep),
+                "{name}: neuron {neuron} keeps {keep} of its potential a step, which must lie in 0..=1"
+            );
+        }
+        Ok(())
+    }
+
+    /// Who fires, by step.
+    fn run(&self, inputs: &Trains) -> Trains {
+        let mut potentials = vec![0.0; self.neurons.len()];
+        let mut before: Vec<u16> = Vec::new();
+        let step = |fired: &Vec<u16>| {
+            let mut out = Vec::new();
+            for (at, potential) in potentials.iter_mut().enumerate() {
+                let Neuron { keep, threshold } = self.neurons[at];
+                let weights = &self.weights[at];
+                let driven: f64 = fired.iter().map(|&input| weights[usize::from(input)]).sum();
+                let back: f64 =
+                    before.iter().map(|&own| self.recurrent[at][usize::from(own)]).sum();
+                *potential = *potential * keep + driven + back + self.bias[at];
+                if *potential > threshold {
+                    *potential = 0.0;
+                    out.push(at as u16);
+                }
+            }
+            if !self.recurrent.is_empty() {
+                before.clone_from(&out);
+            }
+            out
+        };
+        inputs.iter().map(step).collect()
+    }
+}
+
+impl Trained {
+    /// These layers.
+    ///
+    /// # Errors
+    /// There are none or too many, they do not fit each other, or a number makes no sense.
+    pub fn new(layers: Vec<Layer>) -> Result<Self> {
+        ensure!(!layers.is_empty(), "the network has no layer of LIF or IF neurons");
+        ensure!(
+            layers.len() <= LAYERS,
+            "the network has {} layers, of which {LAYERS} at most are taken",
+            layers.len()
+        );
+        for layer in &layers {
+            layer.check()?;
+        }
+        for pair in layers.windows(2) {
+            let (before, after) = (&pair[0], &pair[1]);
+            ensure!(
+                after.inputs() == before.neurons.len(),
+                "{}: weights for {} inputs, but {} has {} neurons",
+                after.name,
+                after.inputs(),
+                before.name,
+                before.neurons.len()
+            );
+        }
+        Ok(Self { layers })
+    }
+
+    /// How many inputs it has.
+    pub fn inputs(&self) -> usize {
+        self.layers.first().map_or(0, Layer::inputs)
+    }
+
+    /// Who fires, by layer and step. A step passes through all layers.
+    pub fn run(&self, inputs: &Trains) -> Vec<Trains> {
+        let mut all: Vec<Trains> = Vec::new();
+        for layer in &self.layers {
+            let fired = layer.run(all.last().unwrap_or(inputs));
+            all.push(fired);
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn layer(weights: &[&[f64]], keep: f64, threshold: f64) -> Layer {
+        Layer {
+            name: "a layer".to_owned(),
+            weights: weights.iter().map(|row| row.to_vec()).collect(),
+            recurrent: vec![],
+            bias: vec![0.0; weights.len()],
+            neurons: vec![Neuron { keep, threshold }; weights.len()],
+        }
+    }
+
+    #[test]
+    fn a_neuron_leaks_adds_up_fires_above_its_threshold_and_starts_again() {
+        // Potentials: 0.6, 0.3 + 0.6 = 0.9, 0.45, 0.225 + 1.2 -> fires, 0.6.
+        let one = layer(&[&[0.6]], 0.5, 1.0);
+        let inputs = vec![vec![0], vec![0], vec![], vec![0, 0], vec![0]];
+        assert_eq!(one.run(&inputs), [vec![], vec![], vec![], vec![0], vec![]]);
+        // At its threshold it does not fire yet.
+        let exact = layer(&[&[0.5]], 1.0, 1.0);
+        let fired = exact.run(&vec![vec![0]; 6]);
+        assert_eq!(fired, [vec![], vec![], vec![0], vec![], vec![], vec![0]]);
+    }
+
+    #[test]
+    fn a_recurrent_spike_acts_in_the_next_step() {
+        let one = layer(&[&[2.0], &[0.0]], 1.0, 1.0);
+        let back = Layer { recurrent: vec![vec![0.0, 0.0], vec![1.5, 0.0]], ..one };
+        let fired = back.run(&vec![vec![0], vec![], vec![], vec![0], vec![0]]);
+        assert_eq!(fired, [vec![0], vec![1], vec![], vec![0], vec![0, 1]]);
+    }
+
+    #[test]
+    fn a_step_passes_through_all_layers() {
+        let network = Trained::new(vec![
+            layer(&[&[2.0, 0.0], &[0.0, 2.0]], 1.0, 1.0),
+            layer(&[&[2.0, -2.0]], 1.0, 1.0),
+        ]);
+        let fired = network.unwrap().run(&vec![vec![0], vec![1], vec![0], vec![0]]);
+        assert_eq!(fired[0], [vec![0], vec![1], vec![0], vec![0]]);
+        assert_eq!(fired[1], [vec![0], vec![], vec![], vec![0]]);
+    }
+}

@@ -1,0 +1,223 @@
+//! Spikes against error: the settings that no other one beats. The few schemes that make the front of all have a colour and
+//! a name at their line, the others are grey.
+
+use super::FONT;
+use super::palette::{GRID, INK, OTHERS, TOLD_APART};
+use super::title::Drawn;
+use crate::scheme::Scheme;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+/// One channel.
+pub struct Panel {
+    /// Its name.
+    pub title: String,
+    /// The signal's unit, if it is known.
+    pub unit: Option<String>,
+    /// A curve for each scheme.
+    pub curves: Vec<Curve>,
+}
+
+/// One scheme.
+pub struct Curve {
+    /// Which.
+    pub scheme: Scheme,
+    /// Efficiency and RMSE of each setting.
+    pub points: Vec<(f64, f64)>,
+    /// Those of the paper's setting.
+    pub paper: Option<(f64, f64)>,
+}
+
+/// Fonts that can be read where the picture is as narrow as a phone.
+const TITLE: i32 = 22;
+const TEXT: i32 = 19;
+const HEAD: i32 = 34;
+const LABELS: u32 = 84;
+/// The height of the legend, in lines.
+const LINE: i32 = 28;
+/// A population with several spikes a sample goes below; the axis ends where most codes do.
+const LOWEST: f64 = -100.0;
+/// The places along the efficiency at which schemes are compared.
+const PLACES: usize = 400;
+
+/// A scheme that makes part of the front, and its colour.
+pub(super) type Named = (Scheme, RGBColor);
+
+/// The efficiency of a place.
+fn place(number: usize) -> f64 {
+    let part = number as f64 / PLACES as f64;
+    LOWEST + part * (100.0 - LOWEST)
+}
+
+impl Panel {
+    /// At each place, the scheme of the least error among the settings of that efficiency or more, and that error.
+    fn front(&self) -> Vec<Option<(Scheme, f64, f64)>> {
+        let best = |number| {
+            let at = place(number);
+            let points = self.curves.iter().flat_map(|curve| {
+                let allowed = curve.points.iter().filter(move |point| point.0 >= at);
+                allowed.map(move |point| (curve.scheme, point.0, point.1))
+            });
+            points.filter(|point| point.2 > 0.0).min_by(|a, b| a.2.total_cmp(&b.2))
+        };
+        (0..=PLACES).map(best).collect()
+    }
+}
+
+/// The schemes that make most of the fronts, at most as many as there are colours, those first that make most.
+pub(super) fn named(panels: &[Panel]) -> Vec<Named> {
+    /// The part of all fronts that a scheme with a name makes.
+    const PART: f64 = 0.03;
+    let mut shares: Vec<(Scheme, usize)> = Vec::new();
+    for (scheme, ..) in panels.iter().flat_map(Panel::front).flatten() {
+        match shares.iter_mut().find(|(known, _)| *known == scheme) {
+            Some((_, share)) => *share += 1,
+            None => shares.push((scheme, 1)),
+        }
+    }
+    let all: usize = shares.iter().map(|(_, share)| share).sum();
+    shares.sort_by_key(|(_, share)| std::cmp::Reverse(*share));
+    let large = shares.into_iter().filter(|(_, share)| *share as f64 > PART * all as f64);
+    large.map(|(scheme, _)| scheme).zip(TOLD_APART).collect()
+}
+
+/// The height that the legend of so many schemes takes.
+pub(super) fn legend_height(named: &[Named], width: u32) -> u32 {
+    let columns = (width as i32 / ENTRY).max(1);
+    (((named.len() as i32 + 2 + columns - 1) / columns) * LINE + 12) as u32
+}
+
+/// The width of a legend's entry.
+const ENTRY: i32 = 260;
+
+/// Which line is which, once for all panels.
+pub(super) fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>, named: &[Named]) -> Drawn<B> {
+    let columns = (area.dim_in_pixel().0 as i32 / ENTRY).max(1);
+    let text = (FONT, TEXT).into_font().color(&INK);
+    let corner = |number: i32| (14 + number % columns * ENTRY, 8 + number / columns * LINE);
+    let lines = named.iter().map(|(scheme, colour)| (scheme.info().title, colour, 4));
+    for (number, (name, colour, width)) in (0..).zip(lines.chain([("other schemes", &OTHERS, 2)])) {
+        let (left, top) = corner(number);
+        let stroke = colour.stroke_width(width);
+        area.draw(&PathElement::new([(left, top + 11), (left + 30, top + 11)], stroke))?;
+        area.draw(&Text::new(name, (left + 40, top), text.clone()))?;
+    }
+    let (left, top) = corner(named.len() as i32 + 1);
+    area.draw(&Circle::new((left + 15, top + 11), 6, INK.stroke_width(2)))?;
+    area.draw(&Text::new("the paper's settings", (left + 40, top), text))?;
+    Ok(())
+}
+
+/// Draws one channel.
+pub(super) fn draw<B: DrawingBackend>(
+    area: &DrawingArea<B, Shift>,
+    panel: &Panel,
+    named: &[Named],
+) -> Drawn<B> {
+    let unit = panel.unit.as_ref().map_or(String::new(), |unit| format!(", {unit}"));
+    let title = (FONT, TITLE).into_font().color(&INK);
+    area.draw(&Text::new(format!("{}: RMSE{unit}", panel.title), (14, 6), title))?;
+    let colour = |scheme: Scheme| named.iter().find(|(own, _)| *own == scheme).map(|own| own.1);
+    let all = || panel.curves.iter().flat_map(|curve| &curve.points).filter(|own| own.0 >= LOWEST);
+    let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
+    for (_, error) in all().filter(|(_, error)| *error > 0.0) {
+        (low, high) = (low.min(*error), high.max(*error));
+    }
+    if low > high {
+        return Ok(());
+    }
+    let left = all().map(|(efficiency, _)| *efficiency).fold(0.0, f64::min);
+    let (low, high) = (low * 0.6, high * 1.25);
+    let text = (FONT, TEXT).into_font().color(&INK);
+    let mut chart = ChartBuilder::on(&area.margin(HEAD, 4, 4, 16))
+        .set_label_area_size(LabelAreaPosition::Left, LABELS)
+        .set_label_area_size(LabelAreaPosition::Bottom, 60)
+        .build_cartesian_2d(left..100.0, (low..high).log_scale())?;
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(GRID)
+        .axis_style(GRID)
+        .x_labels(5)
+        .y_labels(4)
+        .x_desc("samples without a spike, %")
+        .x_label_formatter(&|value| format!("{value:.0}"))
+        .y_label_formatter(&|value| crate::brief::short((value * 1e4).round() / 1e4))
+        .axis_desc_style(text.clone())
+        .label_style(text.clone())
+        .draw()?;
+    let inside = |point: &&(f64, f64)| point.0 >= left && point.1 > 0.0;
+    let mut sorted: Vec<&Curve> = panel.curves.iter().collect();
+    sorted.sort_by_key(|curve| colour(curve.scheme).is_some());
+    for curve in sorted {
+        let points: Vec<(f64, f64)> = curve.points.iter().filter(inside).copied().collect();
+        let stroke = colour(curve.scheme).map_or(OTHERS.stroke_width(1), |own| own.stroke_width(4));
+        if let Some(own) = colour(curve.scheme) {
+            let dot = |point: &(f64, f64)| Circle::new(*point, 3, own.filled());
+            chart.draw_series(points.iter().map(dot))?;
+        }
+        chart.draw_series(LineSeries::new(points, stroke))?;
+        let paper = curve.paper.as_ref().filter(inside).filter(|own| own.1 < high && own.1 > low);
+        if let (Some(paper), Some(own)) = (paper, colour(curve.scheme)) {
+            chart.draw_series([Circle::new(*paper, 6, own.filled())])?;
+            chart.draw_series([Circle::new(*paper, 6, INK.stroke_width(2))])?;
+        }
+    }
+    let (columns, rows) = chart.plotting_area().dim_in_pixel();
+    let mut taken: Vec<(i32, i32)> = Vec::new();
+    for (scheme, colour) in named {
+        let Some(at) = own_middle(panel, *scheme, left) else { continue };
+        let name = scheme.info().title;
+        let style = (FONT, TEXT).into_font().style(FontStyle::Bold).color(colour);
+        let (width, height) = area.estimate_text_size(name, &style)?;
+        let (mut x, mut y) = chart.plotting_area().map_coordinate(&at);
+        let (x_range, y_range) = chart.plotting_area().get_pixel_range();
+        // Below its line, where no better settings are; beside other names, and within the field.
+        x = (x + 6)
+            .clamp(x_range.start + 4, (x_range.start + columns as i32 - width as i32 - 4).max(0));
+        y += 6;
+        while taken.iter().any(|(_, other)| (other - y).abs() < height as i32) {
+            y += 2;
+        }
+        y = y.clamp(y_range.start, y_range.start + rows as i32 - height as i32);
+        taken.push((x, y));
+        let (left, top) = area.get_base_pixel();
+        area.draw(&Text::new(name, (x - left, y - top), style))?;
+    }
+    Ok(())
+}
+
+/// The middle of the places at which a scheme makes the front of a panel, on its own curve.
+fn own_middle(panel: &Panel, scheme: Scheme, left: f64) -> Option<(f64, f64)> {
+    let own = panel.front().into_iter().flatten().filter(|(own, ..)| *own == scheme);
+    let points: Vec<(f64, f64)> =
+        own.map(|(_, efficiency, error)| (efficiency, error)).filter(|own| own.0 >= left).collect();
+    points.get(points.len() / 2).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Curve, Panel, named};
+    use crate::scheme::Scheme;
+
+    #[test]
+    fn the_schemes_that_make_the_front_have_names() {
+        let curve = |name: &str, points: &[(f64, f64)]| Curve {
+            scheme: Scheme::named(name).unwrap(),
+            points: points.to_vec(),
+            paper: None,
+        };
+        let panel = Panel {
+            title: "x".to_owned(),
+            unit: None,
+            curves: vec![
+                curve("tbr", &[(0.0, 0.9), (90.0, 2.0)]),
+                curve("sf", &[(50.0, 0.2), (80.0, 0.3), (99.0, 0.8)]),
+                curve("weighted-phase", &[(-80.0, 0.001), (-10.0, 0.1)]),
+            ],
+        };
+        let named: Vec<&str> =
+            named(&[panel]).into_iter().map(|(scheme, _)| scheme.name()).collect();
+        assert_eq!(named, ["sf", "weighted-phase"]);
+    }
+}

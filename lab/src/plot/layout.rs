@@ -1,0 +1,69 @@
+//! Where the panels are.
+
+use super::title::Drawn;
+use super::{Picture, efficiencies, front, panel};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+const SINGLE: (u32, u32) = (960, 480);
+const PANEL: (u32, u32) = (480, 310);
+const COLUMNS: usize = 2;
+
+/// The picture's width and height.
+pub(super) fn size(picture: &Picture) -> (u32, u32) {
+    if picture.trials.len() == 1 {
+        return SINGLE;
+    }
+    let rows = (picture.trials.len() + 1).div_ceil(COLUMNS) as u32;
+    (PANEL.0 * COLUMNS as u32, PANEL.1 * rows)
+}
+
+/// One trial alone, or all in a grid with the efficiencies last.
+pub(super) fn fill<B: DrawingBackend>(area: &DrawingArea<B, Shift>, picture: &Picture) -> Drawn<B> {
+    area.fill(&WHITE)?;
+    if let [trial] = picture.trials {
+        return panel::draw(area, picture, trial, None);
+    }
+    let rows = (picture.trials.len() + 1).div_ceil(COLUMNS);
+    let areas = area.split_evenly((rows, COLUMNS));
+    for ((area, trial), letter) in areas.iter().zip(picture.trials).zip('A'..) {
+        panel::draw(area, picture, trial, Some(letter))?;
+    }
+    match areas.get(picture.trials.len()) {
+        Some(last) => {
+            let letter = ('A'..).nth(picture.trials.len()).unwrap_or('H');
+            efficiencies::draw(last, picture.trials, letter)
+        }
+        None => Ok(()),
+    }
+}
+
+const FRONT: (u32, u32) = (400, 340);
+
+/// The columns and rows of so many fronts.
+fn fronts_grid(panels: usize) -> (usize, usize) {
+    let columns = panels.clamp(1, COLUMNS);
+    (columns, panels.div_ceil(columns))
+}
+
+/// The size of fronts below their legend.
+pub(super) fn fronts_size(panels: &[front::Panel]) -> (u32, u32) {
+    let (_, rows) = fronts_grid(panels.len());
+    let width = FRONT.0 * COLUMNS as u32;
+    (width, front::legend_height(&front::named(panels), width) + FRONT.1 * rows as u32)
+}
+
+/// One front alone, or all in a grid, below one legend.
+pub(super) fn fill_fronts<B: DrawingBackend>(
+    area: &DrawingArea<B, Shift>,
+    panels: &[front::Panel],
+) -> Drawn<B> {
+    area.fill(&WHITE)?;
+    let named = front::named(panels);
+    let width = area.dim_in_pixel().0;
+    let (top, below) = area.split_vertically(front::legend_height(&named, width));
+    front::legend(&top, &named)?;
+    let (columns, rows) = fronts_grid(panels.len());
+    let areas = below.split_evenly((rows, columns));
+    areas.iter().zip(panels).try_for_each(|(area, panel)| front::draw(area, panel, &named))
+}

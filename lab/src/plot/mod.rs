@@ -1,0 +1,113 @@
+//! Pictures of trials, as SVG or PNG.
+
+mod bitmap;
+mod efficiencies;
+pub mod front;
+mod layout;
+mod palette;
+mod panel;
+mod thin;
+mod title;
+
+use crate::trial::{Recording, Trial};
+use anyhow::{Context, Result, anyhow, bail};
+use bitmap::Bitmap;
+use plotters::prelude::*;
+use plotters::style::{FontStyle, register_font};
+use std::io::Write;
+use std::ops::Range;
+use std::path::Path;
+use tiny_skia::{Color, Pixmap};
+
+use crate::output::Output;
+
+/// What is drawn.
+pub struct Picture<'a> {
+    /// The signal.
+    pub recording: &'a Recording,
+    /// One panel each.
+    pub trials: &'a [Trial],
+    /// The unit of the signal, if it is known.
+    pub unit: Option<&'a str>,
+    /// The samples to show.
+    pub shown: Range<usize>,
+}
+
+/// The name that the embedded font goes by. In an SVG the viewer takes its own of that kind.
+const FONT: &str = "sans-serif";
+
+/// Draws trials into a file, by its ending.
+///
+/// # Errors
+/// The ending is neither `.svg` nor `.png`, or the file cannot be written or is the input.
+pub fn draw(path: &Path, input: &Path, picture: &Picture) -> Result<()> {
+    write(path, input, layout::size(picture), Drawing::Trials(picture))
+}
+
+/// Draws fronts into a file, by its ending.
+///
+/// # Errors
+/// As for [`draw`].
+pub fn draw_fronts(path: &Path, input: &Path, panels: &[front::Panel]) -> Result<()> {
+    write(path, input, layout::fronts_size(panels), Drawing::Fronts(panels))
+}
+
+/// Whatever is drawn.
+#[derive(Clone, Copy)]
+enum Drawing<'a> {
+    Trials(&'a Picture<'a>),
+    Fronts(&'a [front::Panel]),
+}
+
+fn write(path: &Path, input: &Path, size: (u32, u32), drawing: Drawing) -> Result<()> {
+    let ending = path.extension().and_then(|extension| extension.to_str());
+    let bytes = drawn(ending.unwrap_or_default(), size, drawing)
+        .with_context(|| path.display().to_string())?;
+    let mut output = Output::open(Some(path), input)?;
+    output.write_all(&bytes)?;
+    output.finish()
+}
+
+/// A picture as the bytes of a file with this ending.
+///
+/// # Errors
+/// The ending is neither `svg` nor `png`.
+pub fn bytes(ending: &str, picture: &Picture) -> Result<Vec<u8>> {
+    drawn(ending, layout::size(picture), Drawing::Trials(picture))
+}
+
+fn drawn(ending: &str, size: (u32, u32), drawing: Drawing) -> Result<Vec<u8>> {
+    for style in [FontStyle::Normal, FontStyle::Bold] {
+        register_font(FONT, style, epaint_default_fonts::UBUNTU_LIGHT)
+            .map_err(|_| anyhow!("the font does not load"))?;
+    }
+    match ending {
+        "svg" => {
+            let mut text = String::new();
+            fill(&SVGBackend::with_string(&mut text, size).into_drawing_area(), drawing)?;
+            // As in PNG: a bend does not stick out beyond the data.
+            Ok(text.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1).into_bytes())
+        }
+        "png" => png(size, drawing),
+        _ => bail!("a picture ends in .svg or .png"),
+    }
+}
+
+fn png((width, height): (u32, u32), drawing: Drawing) -> Result<Vec<u8>> {
+    let mut pixels = Pixmap::new(width, height).context("the picture has no size")?;
+    pixels.fill(Color::WHITE);
+    fill(&Bitmap::new(&mut pixels).into_drawing_area(), drawing)?;
+    Ok(pixels.encode_png()?)
+}
+
+fn fill<B: DrawingBackend>(
+    area: &DrawingArea<B, plotters::coord::Shift>,
+    drawing: Drawing,
+) -> Result<()> {
+    let filled = match drawing {
+        Drawing::Trials(picture) => layout::fill(area, picture),
+        Drawing::Fronts(panels) => layout::fill_fronts(area, panels),
+    };
+    let drawn = filled.and_then(|()| area.present());
+    drawn.map_err(|error| anyhow!("the picture cannot be drawn: {error}"))
+}

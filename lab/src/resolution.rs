@@ -1,0 +1,204 @@
+//! Whether a sample type holds a column's own steps, and which types do.
+
+use crate::brief::short;
+use catalogue::run::SampleType;
+
+/// A type that changes the steps from sample to sample by more than this part of them loses them.
+const PART: f64 = 0.1;
+
+/// The steps of a column from sample to sample, and what a sample type makes of them.
+pub struct Resolution {
+    sample: SampleType,
+    previous: Option<f64>,
+    steps: u64,
+    /// The magnitudes of all steps, and of what they are off by in the type and in `f32`.
+    moved: f64,
+    off: f64,
+    off_single: f64,
+    min: f64,
+    max: f64,
+    are_whole: bool,
+}
+
+impl Resolution {
+    /// A column without samples.
+    pub fn new(sample: SampleType) -> Self {
+        let (min, max) = (f64::INFINITY, f64::NEG_INFINITY);
+        Self {
+            sample,
+            previous: None,
+            steps: 0,
+            moved: 0.0,
+            off: 0.0,
+            off_single: 0.0,
+            min,
+            max,
+            are_whole: true,
+        }
+    }
+
+    /// A column of these samples.
+    pub fn of(sample: SampleType, values: &[f64]) -> Self {
+        let mut own = Self::new(sample);
+        own.observe(values);
+        own
+    }
+
+    /// Takes the next samples, all finite.
+    pub fn observe(&mut self, values: &[f64]) {
+        for &value in values {
+            if let Some(previous) = self.previous.filter(|previous| *previous != value) {
+                let step = value - previous;
+                let off = |sample| (held(sample, value) - held(sample, previous) - step).abs();
+                self.steps += 1;
+                self.moved += step.abs();
+                self.off += off(self.sample);
+                self.off_single += off(SampleType::F32);
+            }
+            self.previous = Some(value);
+            self.min = self.min.min(value);
+            self.max = self.max.max(value);
+            self.are_whole &= value.fract() == 0.0;
+        }
+    }
+
+    /// Whether the type changes any step.
+    pub fn is_rounded(&self) -> bool {
+        self.off > 0.0
+    }
+
+    /// The column's steps that the type loses, and what holds them.
+    pub fn lost(&self) -> Option<String> {
+        let Self { sample, steps, moved, off, .. } = self;
+        (*off > PART * moved).then(|| {
+            let each = |sum: f64| short(sum / *steps as f64);
+            format!(
+                "{sample} loses the column's own steps: they are {} on average, and off by {} in {sample}; {}",
+                each(*moved),
+                each(*off),
+                self.holders()
+            )
+        })
+    }
+
+    /// Which types hold the steps.
+    pub fn holders(&self) -> String {
+        let names: Vec<String> = [self.single(), self.fixed()]
+            .into_iter()
+            .flatten()
+            .filter(|own| *own != self.sample)
+            .map(|own| own.to_string())
+            .collect();
+        if !names.is_empty() {
+            let verb = if names.len() == 1 { "holds" } else { "hold" };
+            return format!("{} {verb} them", names.join(" and "));
+        }
+        let center = f64::midpoint(self.min, self.max).round();
+        let largest = (self.max - center).max(center - self.min);
+        if self.is_fine(largest * f64::from(f32::EPSILON)) {
+            return format!(
+                "no type does, but f32 holds them once {center} is taken from every value"
+            );
+        }
+        "no type of 32 bits holds them".to_owned()
+    }
+
+    fn single(&self) -> Option<SampleType> {
+        (self.off_single <= PART * self.moved).then_some(SampleType::F32)
+    }
+
+    /// The fixed point of the fewest bits whose range holds the column, and whose step its steps; whole numbers are
+    /// held as they are.
+    fn fixed(&self) -> Option<SampleType> {
+        let holds = |own: &SampleType| {
+            let (low, high) = own.range();
+            low <= self.min && self.max <= high
+        };
+        let short = (0..16).rev().map(|fraction| SampleType::Fixed16 { fraction });
+        let long = (0..32).rev().map(|fraction| SampleType::Fixed32 { fraction });
+        let whole = [SampleType::Fixed16 { fraction: 0 }, SampleType::Fixed32 { fraction: 0 }];
+        if self.are_whole {
+            return whole.into_iter().find(holds);
+        }
+        let finest = [short.into_iter().find(holds), long.into_iter().find(holds)];
+        finest.into_iter().flatten().find(|own| self.is_fine(own.step()))
+    }
+
+    /// Whether rounding to steps of this length leaves the column's own. Two values are off by a third of it on average, or
+    /// somewhat more.
+    fn is_fine(&self, step: f64) -> bool {
+        step / 2.0 * self.steps as f64 <= PART * self.moved
+    }
+}
+
+/// A value as a type holds it, cut to its range.
+fn held(sample: SampleType, value: f64) -> f64 {
+    let (low, high) = sample.range();
+    match sample.step() {
+        0.0 => f64::from(value as f32),
+        step => ((value / step + 0.5).floor() * step).clamp(low, high),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Resolution;
+
+    fn lost(sample: &str, value: impl Fn(f64) -> f64) -> String {
+        let values: Vec<f64> = (0..2000).map(|sample| value(f64::from(sample))).collect();
+        Resolution::of(sample.parse().unwrap(), &values).lost().unwrap_or_default()
+    }
+
+    #[test]
+    fn steps_that_a_type_loses_are_told_with_what_holds_them() {
+        // Degrees of latitude in 1e-7.
+        let latitude = |sample: f64| 473_977_419.0 + (sample * 7.3).floor();
+        let told = lost("f32", latitude);
+        assert!(
+            told.starts_with("f32 loses the column's own steps: they are 7.29965 on average"),
+            "{told}"
+        );
+        assert!(told.ends_with("; i32 holds them"), "{told}");
+        assert_eq!(lost("i32", latitude), "");
+        // A wave far from 0.
+        let far = |sample: f64| 1e9 + (sample * 0.01).sin();
+        let taken = "no type does, but f32 holds them once 1000000000 is taken from every value";
+        assert!(lost("f32", far).ends_with(taken) && lost("i32", far).ends_with(taken));
+        assert!(lost("q16.16", far).ends_with(taken));
+        assert_eq!(lost("f32", |sample| far(sample) - 1e9), "");
+        // Counts, and decimals that fixed point is too coarse for.
+        assert_eq!(lost("i16", |sample| (sample * 1.7).floor()), "");
+        let fine = |sample: f64| (sample * 0.01).sin() * 0.1;
+        assert!(
+            lost("q8.8", fine).ends_with("; f32 and q1.15 hold them"),
+            "{}",
+            lost("q8.8", fine)
+        );
+        assert!(lost("q8.8", |sample| 100.0 * fine(sample)).is_empty());
+    }
+
+    /// What is named holds the column's steps, for columns of any size and step.
+    #[test]
+    fn a_type_that_is_named_holds_the_steps() {
+        for offset in [0.0, 3.7, 250.0, 4e4, 1e6, 3e8, 2e9, 7e12] {
+            for step in [1e-6, 1e-3, 0.25, 1.0, 40.0, 3e4] {
+                let value = |sample: f64| offset + (sample * 0.37).sin() * step;
+                for sample in ["f32", "i16", "i32", "q8.8", "q16.16"] {
+                    let told = lost(sample, value);
+                    let Some((_, holders)) = told.rsplit_once("; ") else { continue };
+                    let Some(names) = holders.strip_suffix(" them") else {
+                        continue;
+                    };
+                    let names = names.trim_end_matches(" holds").trim_end_matches(" hold");
+                    if names.starts_with("no type") {
+                        continue;
+                    }
+                    for name in names.split(" and ") {
+                        assert_ne!(name, sample);
+                        assert_eq!(lost(name, value), "", "{offset} {step} {sample}: {told}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! Real-Time Transfer: a board's ring buffer, read while it runs.
+
+#[cfg(feature = "capture")]
+mod probe;
+
+#[cfg(feature = "capture")]
+pub use probe::{Board, with_channel};
+
+use anyhow::{Context, Result};
+use std::io::Write;
+use std::thread;
+use std::time::Duration;
+
+/// A buffer that is read by asking for what is in it.
+pub trait Channel {
+    /// Takes what there is, up to the buffer's length; 0 if there is nothing.
+    ///
+    /// # Errors
+    /// The board or the probe is gone.
+    fn read(&mut self, buffer: &mut [u8]) -> Result<usize>;
+}
+
+/// What came of a capture.
+#[derive(Debug)]
+pub struct Captured {
+    /// How much was written.
+    pub bytes: u64,
+    /// Why it ended, unless as it should.
+    pub end: Result<()>,
+}
+
+/// Writes what a channel brings until it is time to stop, and then what is left in it.
+pub fn capture(
+    channel: &mut dyn Channel,
+    output: &mut dyn Write,
+    mut is_due: impl FnMut() -> bool,
+) -> Captured {
+    let mut bytes = 0;
+    let end = copy(channel, output, &mut is_due, &mut bytes);
+    Captured { bytes, end }
+}
+
+fn copy(
+    channel: &mut dyn Channel,
+    output: &mut dyn Write,
+    is_due: &mut dyn FnMut() -> bool,
+    bytes: &mut u64,
+) -> Result<()> {
+    /// A board's buffer of 1 KiB fills in 10 ms at 100 kB/s.
+    const PAUSE: Duration = Duration::from_millis(1);
+    /// So much may be left when it is time to stop: a board that never rests must not go on for ever.
+    const REST: u64 = 1 << 20;
+    let mut buffer = vec![0; 1 << 14];
+    let mut last = None;
+    while last.is_none_or(|last| *bytes < last) {
+        if last.is_none() && is_due() {
+            last = Some(*bytes + REST);
+        }
+        let count = channel.read(&mut buffer).context("the channel cannot be read any more")?;
+        if count > 0 {
+            output.write_all(&buffer[..count])?;
+            output.flush()?;
+            *bytes += count as u64;
+        } else if last.is_some() {
+            break;
+        } else {
+            thread::sleep(PAUSE);
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Captured, Channel, capture};
+    use anyhow::{Result, bail};
+    use std::collections::VecDeque;
+
+    /// What each read finds; after the last, the board is gone.
+    struct Fake(VecDeque<&'static [u8]>);
+
+    impl Channel for Fake {
+        fn read(&mut self, buffer: &mut [u8]) -> Result<usize> {
+            let Some(found) = self.0.pop_front() else { bail!("no board") };
+            buffer[..found.len()].copy_from_slice(found);
+            Ok(found.len())
+        }
+    }
+
+    /// Captures, with a stop after so many reads.
+    fn run(reads: &[&'static [u8]], stop: usize) -> (Vec<u8>, Captured) {
+        let (mut output, mut asked) = (Vec::new(), 0);
+        let captured = capture(&mut Fake(reads.iter().copied().collect()), &mut output, || {
+            asked += 1;
+            asked > stop
+        });
+        (output, captured)
+    }
+
+    #[test]
+    fn chunks_follow_each_other_over_reads_that_find_nothing() {
+        let (output, captured) = run(&[b"one ", b"", b"", b"two ", b"three", b""], 5);
+        assert_eq!((output.as_slice(), captured.bytes), (b"one two three".as_slice(), 13));
+        captured.end.unwrap();
+    }
+
+    #[test]
+    fn what_is_left_when_it_is_time_to_stop_is_taken_too() {
+        let (output, captured) = run(&[b"one ", b"two ", b"three", b"", b"never"], 1);
+        assert_eq!(output, b"one two three");
+        captured.end.unwrap();
+    }
+
+    #[test]
+    fn a_board_that_goes_away_is_an_error_after_what_it_said() {
+        let (output, captured) = run(&[b"one ", b"", b"two"], 99);
+        assert_eq!((output.as_slice(), captured.bytes), (b"one two".as_slice(), 7));
+        let error = format!("{:#}", captured.end.unwrap_err());
+        assert!(error.contains("cannot be read any more: no board"), "{error}");
+    }
+
+    #[test]
+    fn a_board_that_never_rests_is_left() {
+        struct Endless;
+        impl Channel for Endless {
+            fn read(&mut self, buffer: &mut [u8]) -> Result<usize> {
+                Ok(buffer.len())
+            }
+        }
+        let captured = capture(&mut Endless, &mut std::io::sink(), || true);
+        assert_eq!(captured.bytes, 1 << 20);
+        captured.end.unwrap();
+    }
+
+    #[test]
+    fn an_output_that_takes_no_more_ends_it() {
+        let mut output = [0; 3];
+        let mut board = Fake([b"one ".as_slice()].into());
+        let captured = capture(&mut board, &mut output.as_mut_slice(), || false);
+        captured.end.unwrap_err();
+    }
+}

@@ -1,0 +1,58 @@
+//! Schemes of the catalogue, by their names.
+
+use catalogue::run::RunTime;
+use std::fmt;
+use std::ops::Deref;
+
+/// A scheme of the catalogue.
+#[derive(Clone, Copy)]
+pub struct Scheme(&'static dyn RunTime);
+
+impl Scheme {
+    /// All of them, in the order of the catalogue.
+    pub fn all() -> impl Iterator<Item = Self> {
+        catalogue::ALL.iter().map(|scheme| Self(*scheme))
+    }
+
+    /// The scheme that options and files call so.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::all().find(|scheme| scheme.name() == name)
+    }
+
+    /// What options and files call it.
+    pub fn name(self) -> &'static str {
+        self.info().name
+    }
+}
+
+impl Deref for Scheme {
+    type Target = dyn RunTime;
+
+    fn deref(&self) -> &Self::Target {
+        self.0
+    }
+}
+
+impl From<&'static dyn RunTime> for Scheme {
+    fn from(scheme: &'static dyn RunTime) -> Self {
+        Self(scheme)
+    }
+}
+
+impl Default for Scheme {
+    fn default() -> Self {
+        Self(catalogue::ALL[0])
+    }
+}
+
+impl fmt::Debug for Scheme {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl PartialEq for Scheme {
+    fn eq(&self, other: &Self) -> bool {
+        self.name() == other.name()
+    }
+}

@@ -1,0 +1,292 @@
+//! Reads a file of spikes line by line.
+
+use super::{Header, Spikes};
+use crate::input::shown;
+use anyhow::{Context, Result, anyhow, bail};
+use catalogue::run::Event;
+use spikewire::Polarity;
+use std::io::{BufRead, Read};
+
+/// What follows the header.
+#[derive(Debug, PartialEq)]
+pub enum Item {
+    /// A spike; samples are counted as the file does.
+    Event {
+        /// What it is.
+        event: Event,
+        /// The time of its sample in µs.
+        time: Option<i64>,
+    },
+    /// When a sample was taken.
+    Time {
+        /// The sample.
+        sample: u64,
+        /// In µs.
+        time: i64,
+    },
+    /// Values that were not finite.
+    Rejected {
+        /// The first of them.
+        first: u64,
+        /// How many.
+        count: u64,
+    },
+    /// The end, after this many samples.
+    End {
+        /// All samples.
+        samples: u64,
+    },
+}
+
+/// A file of spikes behind its header.
+pub struct Reader<R> {
+    input: R,
+    file: String,
+    line: Vec<u8>,
+    number: u64,
+    slots: u64,
+    neurons: u64,
+    is_signed: bool,
+    columns: usize,
+    /// From sample to sample, in µs.
+    period: u64,
+    /// The last `# time=`.
+    noted: Option<(u64, i64)>,
+    previous: u64,
+    events: u64,
+    samples: Option<u64>,
+    told_events: Option<u64>,
+}
+
+impl<R: BufRead> Reader<R> {
+    /// Reads the header.
+    ///
+    /// # Errors
+    /// It is not complete, or contradicts itself.
+    pub fn open(input: R, file: &str) -> Result<(Self, Header)> {
+        let mut reader = Self {
+            input,
+            file: file.to_owned(),
+            line: Vec::new(),
+            number: 0,
+            slots: 1,
+            neurons: 1,
+            is_signed: false,
+            columns: 3,
+            period: 0,
+            noted: None,
+            previous: 0,
+            events: 0,
+            samples: None,
+            told_events: None,
+        };
+        let mut lines = Vec::new();
+        loop {
+            if !reader.next_line()? {
+                let what = if reader.number == 0 {
+                    "empty"
+                } else {
+                    "no events below the header, not even their names"
+                };
+                bail!("{file}: {what}; a file of spikes starts with `# key=value` lines");
+            }
+            let text = reader.text();
+            if let Some(note) = text.strip_prefix('#') {
+                let (key, value) = note.split_once('=').with_context(|| {
+                    format!("{}: `{text}` is not `# key=value`", reader.place())
+                })?;
+                lines.push((key.trim().to_owned(), value.trim().to_owned()));
+                continue;
+            }
+            reader.columns = match text.as_str() {
+                "index,address,polarity" => 3,
+                "index,address,polarity,time_us" => 4,
+                _ => bail!(
+                    "{}: `{text}`, where `index,address,polarity` should stand below `# key=value` lines; \
+                     is it a file of spikes?",
+                    reader.place()
+                ),
+            };
+            break;
+        }
+        let header = Header::parse(lines).with_context(|| file.to_owned())?;
+        let mut neurons = 0;
+        for settings in &header.channels {
+            let shape = header.scheme.shape(settings).with_context(|| file.to_owned())?;
+            reader.slots = shape.slots as u64;
+            neurons += shape.neurons as u64;
+        }
+        reader.neurons = neurons;
+        reader.period = header.rate.map_or(0, |rate| (1e6 / rate).round() as u64);
+        reader.is_signed = header.scheme.info().is_signed;
+        Ok((reader, header))
+    }
+
+    /// A sample and a number.
+    fn pair(&self, value: &str) -> Result<(u64, i64)> {
+        let (sample, number) = value.split_once(',').unwrap_or((value, ""));
+        let number = number.parse();
+        Ok((
+            self.count(sample)?,
+            number.map_err(|_| anyhow!("{}: `{value}` is not SAMPLE,µs", self.place()))?,
+        ))
+    }
+
+    fn event(&mut self) -> Result<Item> {
+        let mut fields = self.line.split(|&byte| byte == b',');
+        let (index, neuron, polarity) = (fields.next(), fields.next(), fields.next());
+        let time = fields.clone().next();
+        let (Some(index), Some(neuron), Some(polarity)) = (index, neuron, polarity) else {
+            bail!("{}: `{}` is not an event", self.place(), self.text());
+        };
+        if fields.count() + 3 != self.columns {
+            bail!(
+                "{}: `{}` has not the {} columns of the header",
+                self.place(),
+                self.text(),
+                self.columns
+            );
+        }
+        let (Some(index), Some(neuron)) = (digits(index), digits(neuron)) else {
+            bail!(
+                "{}: `{}` is not an event: index and address are whole numbers",
+                self.place(),
+                self.text()
+            );
+        };
+        let polarity = match polarity {
+            b"1" => Polarity::Up,
+            b"-1" if self.is_signed => Polarity::Down,
+            _ => bail!("{}: polarity `{}`", self.place(), shown(polarity)),
+        };
+        if neuron >= self.neurons {
+            bail!(
+                "{}: address {neuron} where the header says {} neurons",
+                self.place(),
+                self.neurons
+            );
+        }
+        let (sample, slot) = (index / self.slots, (index % self.slots) as u16);
+        self.rises(sample)?;
+        self.previous = sample;
+        self.events += 1;
+        let within = self.period.saturating_mul(slot.into()) / self.slots;
+        let time = match time {
+            Some(time) => {
+                let time: Option<i64> =
+                    str::from_utf8(time).ok().and_then(|time| time.parse().ok());
+                let Some(time) = time else {
+                    bail!("{}: `{}` has no time in µs", self.place(), self.text());
+                };
+                Some(time.saturating_sub_unsigned(within))
+            }
+            None => None,
+        };
+        let event = Event { sample, neuron: neuron as u16, slot, polarity };
+        Ok(Item::Event { event, time })
+    }
+
+    fn rises(&self, sample: u64) -> Result<()> {
+        if sample < self.previous {
+            bail!("{}: sample {sample} comes after sample {}", self.place(), self.previous);
+        }
+        Ok(())
+    }
+
+    fn count(&self, value: &str) -> Result<u64> {
+        value.parse().map_err(|_| anyhow!("{}: `{value}` is not a count", self.place()))
+    }
+
+    fn next_line(&mut self) -> Result<bool> {
+        const LONGEST: u64 = 1 << 20;
+        self.line.clear();
+        let mut input = (&mut self.input).take(LONGEST);
+        input.read_until(b'\n', &mut self.line).with_context(|| self.file.clone())?;
+        if self.line.iter().any(|byte| matches!(byte, 0..=8 | 14..=31)) {
+            bail!("{}: binary, not a file of spikes", self.file);
+        }
+        let is_some = !self.line.is_empty();
+        self.number += u64::from(is_some);
+        while self.line.last().is_some_and(u8::is_ascii_whitespace) {
+            self.line.pop();
+        }
+        Ok(is_some)
+    }
+
+    fn text(&self) -> String {
+        String::from_utf8_lossy(&self.line).into_owned()
+    }
+}
+
+impl<R: BufRead> Spikes for Reader<R> {
+    fn is_timed(&self) -> bool {
+        self.columns == 4
+    }
+
+    fn next(&mut self) -> Result<Item> {
+        while self.next_line()? {
+            if self.line.first() != Some(&b'#') {
+                return self.event();
+            }
+            let text = self.text();
+            let note = text.trim_start_matches('#').trim();
+            let (key, value) = note.split_once('=').unwrap_or((note, ""));
+            match key {
+                "samples" => self.samples = Some(self.count(value)?),
+                "events" => self.told_events = Some(self.count(value)?),
+                "time" => {
+                    let (sample, time) = self.pair(value)?;
+                    self.noted = Some((sample, time));
+                    return Ok(Item::Time { sample, time });
+                }
+                "gap" | "backward" => {
+                    let (after, step) = self.pair(value)?;
+                    if let Some((_, time)) = self.noted.filter(|&(sample, _)| sample == after) {
+                        let time = time.saturating_add(step);
+                        return Ok(Item::Time { sample: after.saturating_add(1), time });
+                    }
+                }
+                "rejected" => {
+                    let (first, count) = value.split_once(',').unwrap_or((value, ""));
+                    let (first, count) = (self.count(first)?, self.count(count)?);
+                    self.rises(first)?;
+                    self.previous = first.saturating_add(count);
+                    return Ok(Item::Rejected { first, count });
+                }
+                _ => bail!("{}: `# {key}=` has no meaning among the events", self.place()),
+            }
+        }
+        let (Some(samples), Some(events)) = (self.samples, self.told_events) else {
+            bail!(
+                "{}: ends after line {} without `# samples=` and `# events=`; is it cut short?",
+                self.file,
+                self.number
+            );
+        };
+        if events != self.events {
+            bail!("{}: holds {} events where its end says {events}", self.file, self.events);
+        }
+        if self.events > 0 && self.previous >= samples {
+            bail!(
+                "{}: has an event at sample {} where its end says {samples} samples",
+                self.file,
+                self.previous
+            );
+        }
+        Ok(Item::End { samples })
+    }
+
+    fn place(&self) -> String {
+        format!("{}: line {}", self.file, self.number)
+    }
+}
+
+/// A whole number that fits, without sign.
+fn digits(text: &[u8]) -> Option<u64> {
+    if text.is_empty() || text.len() > 18 {
+        return None;
+    }
+    text.iter().try_fold(0, |number, byte| {
+        byte.is_ascii_digit().then(|| 10 * number + u64::from(byte - b'0'))
+    })
+}

@@ -1,0 +1,115 @@
+//! What settings cost on a flight controller, from the measured counts.
+
+use crate::scheme::Scheme;
+use anyhow::{Result, bail};
+use catalogue::run::{SampleType, Settings};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+/// The counts that `cargo bench-target --baseline` writes and `cargo verify` holds the crate to; a link, so that source
+/// packages have them.
+const COUNTS: &str = include_str!("baseline.json");
+
+#[derive(Deserialize)]
+struct Counts {
+    instructions_mean: BTreeMap<String, f64>,
+}
+
+static MEASURED: LazyLock<BTreeMap<String, f64>> = LazyLock::new(|| {
+    serde_json::from_str::<Counts>(COUNTS)
+        .map(|counts| counts.instructions_mean)
+        .unwrap_or_default()
+});
+
+/// What one channel costs.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Costs {
+    /// How many samples after its own the code of a sample comes out.
+    pub latency: usize,
+    /// The bytes of the encoder's state, where they are known.
+    pub ram: Option<usize>,
+    /// Instructions a sample to encode, in the mean, where they were measured.
+    pub instructions: Option<f64>,
+    /// Whether those are a bound from above, from a shorter filter that was measured.
+    pub is_bound: bool,
+}
+
+impl Costs {
+    /// Of these settings, on a core of the measured table.
+    pub fn new(scheme: Scheme, settings: &Settings, latency: usize, core: &str) -> Self {
+        let counted = scheme.counted(settings).ok();
+        let measured = counted.and_then(|counted| {
+            let sample = measured_as(settings.sample);
+            let key = format!("{core} paper {} {sample} encode sample", counted.codec);
+            MEASURED.get(&key).map(|count| count * counted.times)
+        });
+        Self {
+            latency,
+            ram: scheme.ram(settings).ok(),
+            instructions: measured,
+            is_bound: counted.is_some_and(|counted| counted.times > 1.0),
+        }
+    }
+
+    /// Instructions a sample, in words.
+    pub fn instructions(&self) -> String {
+        match self.instructions {
+            Some(count) if self.is_bound => format!("at most {count:.0}"),
+            Some(count) => format!("{count:.1}"),
+            None => "not measured".to_owned(),
+        }
+    }
+}
+
+/// The measured sample type of the same width.
+fn measured_as(sample: SampleType) -> &'static str {
+    match sample {
+        SampleType::F32 => "f32",
+        SampleType::Fixed16 { .. } => "i16",
+        SampleType::Fixed32 { .. } => "q16.16",
+    }
+}
+
+/// The cores of the table.
+fn cores() -> Vec<&'static str> {
+    let mut cores: Vec<&str> = MEASURED.keys().filter_map(|key| key.split(' ').next()).collect();
+    cores.dedup();
+    cores
+}
+
+/// Finds the core of this name, in capitals or not.
+///
+/// # Errors
+/// No instructions were counted on such a core.
+pub fn core(name: &str) -> Result<String> {
+    let known = cores();
+    match known.iter().find(|core| core.eq_ignore_ascii_case(name)) {
+        Some(core) => Ok((*core).to_owned()),
+        None => bail!("no measured core `{name}`; there are {}", known.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Costs, core};
+    use crate::scheme::Scheme;
+    use catalogue::run::Settings;
+
+    #[test]
+    fn measured_figures_are_found() {
+        assert_eq!(core("m4f").unwrap(), "M4F");
+        assert!(core("M55").unwrap_err().to_string().contains("there are M0, M4F"));
+        let mut settings = Settings::default();
+        settings.set("taps", vec![1.0; 30]);
+        let hsa = Scheme::named("hsa").unwrap();
+        for sample in ["f32", "i16", "q8.8", "q16.16"] {
+            settings.sample = sample.parse().unwrap();
+            for core in ["M0", "M4F"] {
+                let costs = Costs::new(hsa, &settings, 29, core);
+                assert!(costs.instructions.is_some_and(|count| count > 100.0) && costs.is_bound);
+                assert!(costs.ram.is_some_and(|ram| ram >= 60));
+            }
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! Settings to paste into firmware, and to give to other commands.
+
+use crate::coding::Coding;
+use crate::scheme::Scheme;
+use anyhow::Result;
+use catalogue::run::{Constant, Settings};
+
+/// A constant in Rust, below these comments, that compiles where the crate is a dependency.
+///
+/// # Errors
+/// The scheme has no constant.
+pub fn rust(
+    comments: &[String],
+    channel: &str,
+    scheme: Scheme,
+    settings: &Settings,
+) -> Result<String> {
+    let Constant { scheme: kind, value } = scheme.constant(settings)?;
+    let comments: Vec<String> = comments.iter().map(|line| format!("/// {line}\n")).collect();
+    let name = constant_name(channel);
+    // One long line: whoever pastes it has a formatter.
+    Ok(format!("{}pub static {name}: {kind} = {value};\n", comments.concat()))
+}
+
+/// A file of parameters.
+pub fn toml(comments: &[String], scheme: Scheme, settings: &Settings) -> String {
+    Coding::of_settings(scheme, settings).to_toml(comments)
+}
+
+/// The name of a constant: `gyro_rad[0]` gives `GYRO_RAD_0`.
+fn constant_name(channel: &str) -> String {
+    let words = channel.split(|letter: char| !letter.is_ascii_alphanumeric());
+    let words: Vec<String> =
+        words.filter(|word| !word.is_empty()).map(str::to_ascii_uppercase).collect();
+    match words.join("_") {
+        name if name.is_empty() => "CHANNEL".to_owned(),
+        name if name.starts_with(|first: char| first.is_ascii_digit()) => format!("CHANNEL_{name}"),
+        name => name,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::constant_name;
+
+    #[test]
+    fn names_of_constants() {
+        for (channel, name) in [
+            ("gyro_x", "GYRO_X"),
+            ("gyro_rad[0]", "GYRO_RAD_0"),
+            ("gyro_x (rad/s)", "GYRO_X_RAD_S"),
+            ("2", "CHANNEL_2"),
+            ("µ", "CHANNEL"),
+        ] {
+            assert_eq!(constant_name(channel), name);
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! Differential evolution that adapts itself and has ever fewer parents: L-SHADE, after Tanabe and Fukunaga (2014).
+//!
+//! It is told how much of its budget is spent, so that a small budget ends as settled as a large one. Points are in the
+//! unit cube.
+
+use super::chance::Chance;
+
+/// Successful factors and rates that are remembered.
+const MEMORY: usize = 6;
+/// Parents at the end.
+const FEWEST: usize = 4;
+/// The best part of the parents, to which the others are drawn.
+const BEST: f64 = 0.15;
+
+/// Asks for points, and is told their values.
+pub(super) struct Evolution {
+    chance: Chance,
+    /// Points with their values, the best first when asked.
+    parents: Vec<(Vec<f64>, f64)>,
+    /// Points that better ones have replaced.
+    replaced: Vec<Vec<f64>>,
+    first_count: usize,
+    factors: [f64; MEMORY],
+    rates: [f64; MEMORY],
+    remembered: usize,
+    /// The factor and the rate of each point that was asked for.
+    asked: Vec<(f64, f64)>,
+}
+
+impl Evolution {
+    /// Starts from points whose values are known.
+    pub(super) fn new(seed: u64, parents: Vec<(Vec<f64>, f64)>) -> Self {
+        Self {
+            chance: Chance::new(seed),
+            first_count: parents.len(),
+            parents,
+            replaced: Vec::new(),
+            factors: [0.5; MEMORY],
+            rates: [0.7; MEMORY],
+            remembered: 0,
+            asked: Vec::new(),
+        }
+    }
+
+    /// Asks for the values of a generation of points, after so great a part of the budget.
+    pub(super) fn ask(&mut self, spent: f64) -> Vec<Vec<f64>> {
+        self.parents.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+        let (first, fewest) = (self.first_count as f64, FEWEST as f64);
+        let count = (first + (fewest - first) * spent).round().max(fewest) as usize;
+        self.parents.truncate(count);
+        self.asked.clear();
+        (0..self.parents.len()).map(|place| self.trial(place)).collect()
+    }
+
+    fn trial(&mut self, place: usize) -> Vec<f64> {
+        let chance = &mut self.chance;
+        let count = self.parents.len();
+        let memory = chance.below(MEMORY);
+        let factor = loop {
+            let factor = self.factors[memory] + 0.1 * chance.cauchy();
+            if factor > 0.0 {
+                break factor.min(1.0);
+            }
+        };
+        let rate = (self.rates[memory] + 0.1 * chance.normal()).clamp(0.0, 1.0);
+        self.asked.push((factor, rate));
+        let best = chance.below(((count as f64 * BEST).max(2.0) as usize).min(count));
+        let other = (place + 1 + chance.below((count - 1).max(1))) % count;
+        let third = chance.below(count + self.replaced.len());
+        let third = match self.replaced.get(third.wrapping_sub(count)) {
+            Some(point) => point,
+            None => &self.parents[third.min(count - 1)].0,
+        };
+        let (own, best, other) =
+            (&self.parents[place].0, &self.parents[best].0, &self.parents[other].0);
+        let always = chance.below(own.len());
+        let mut point = own.clone();
+        for (axis, value) in point.iter_mut().enumerate() {
+            if axis == always || chance.part() < rate {
+                let from = *value;
+                *value += factor * (best[axis] - from) + factor * (other[axis] - third[axis]);
+                // Halfway to the bound that it would pass.
+                if *value < 0.0 {
+                    *value = from / 2.0;
+                } else if *value > 1.0 {
+                    *value = f64::midpoint(1.0, from);
+                }
+            }
+        }
+        point
+    }
+
+    /// Takes the points asked for, in their order and perhaps moved, with their values; the last may be missing.
+    pub(super) fn tell(&mut self, points: Vec<(Vec<f64>, f64)>) {
+        /// What is not allowed has values far apart, which shall not outweigh all else.
+        const MOST: f64 = 1e5;
+        let mut successes = Vec::new();
+        let tried = points.into_iter().zip(&self.asked);
+        for (((point, value), (factor, rate)), parent) in tried.zip(&mut self.parents) {
+            if value > parent.1 {
+                continue;
+            }
+            let gain = (parent.1 - value).min(MOST);
+            let (old, _) = std::mem::replace(parent, (point, value));
+            if gain > 0.0 {
+                successes.push((*factor, *rate, gain));
+                self.replaced.push(old);
+            }
+        }
+        while self.replaced.len() > 2 * self.first_count {
+            let place = self.chance.below(self.replaced.len());
+            self.replaced.swap_remove(place);
+        }
+        let sum = |of: fn(&(f64, f64, f64)) -> f64| successes.iter().map(of).sum::<f64>();
+        let gains = sum(|own| own.2);
+        if gains > 0.0 {
+            self.factors[self.remembered] =
+                sum(|own| own.2 * own.0 * own.0) / sum(|own| own.2 * own.0);
+            self.rates[self.remembered] = sum(|own| own.2 * own.1) / gains;
+            self.remembered = (self.remembered + 1) % MEMORY;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Chance, Evolution};
+
+    /// A bowl in five dimensions: 400 points come nearer to its middle than chance would in a billion.
+    #[test]
+    fn a_bowl_is_descended() {
+        let value = |point: &[f64]| point.iter().map(|own| (own - 0.3).powi(2)).sum::<f64>();
+        let mut chance = Chance::new(1);
+        let mut draw = || (0..5).map(|_| chance.part()).collect::<Vec<f64>>();
+        let first: Vec<(Vec<f64>, f64)> = (0..20)
+            .map(|_| draw())
+            .map(|point| (value(&point), point))
+            .map(|(v, p)| (p, v))
+            .collect();
+        let mut least = f64::INFINITY;
+        let mut evolution = Evolution::new(1, first);
+        let mut spent = 20;
+        while spent < 400 {
+            let points = evolution.ask(f64::from(spent) / 400.0);
+            spent += points.len() as i32;
+            let told: Vec<(Vec<f64>, f64)> = points
+                .into_iter()
+                .map(|point| (value(&point), point))
+                .map(|(v, p)| (p, v))
+                .collect();
+            least = told.iter().map(|(_, value)| *value).fold(least, f64::min);
+            evolution.tell(told);
+        }
+        assert!(least < 1e-3, "{least}");
+    }
+}

@@ -1,0 +1,220 @@
+//! How good settings are, in all that is told of them.
+
+use super::{Problem, Stretch};
+use anyhow::Result;
+use catalogue::run::{Asked, Event, SampleType};
+use realfft::RealFftPlanner;
+use serde::Serialize;
+use std::collections::HashMap;
+
+/// Figures over stretches that were coded each by itself.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Figures {
+    /// Number of samples.
+    pub samples: usize,
+    /// Number of spikes.
+    pub spikes: usize,
+    /// Percent of samples without a spike, where each has one at most.
+    pub efficiency: f64,
+    /// Root mean square error, in the signal's unit.
+    pub rmse: f64,
+    /// Variance of the signal to mean square of the error, in dB.
+    pub snr: f64,
+    /// The largest error.
+    pub worst: f64,
+    /// By how many samples the decoded values come late, besides the latency: where they correlate best.
+    pub lag: i64,
+    /// The RMSE of what is below the band limit, if there is one.
+    pub below: Option<f64>,
+    /// Events a second, if a rate is known.
+    pub events_per_second: Option<f64>,
+    /// What the spikes tell: the entropy of a sample's code, a second.
+    pub bits_per_second: Option<f64>,
+    /// What samples would need that are rounded to as large an error.
+    pub raw_bits_per_second: Option<f64>,
+}
+
+impl Figures {
+    /// Of options on stretches, of which there is one at least.
+    ///
+    /// # Errors
+    /// The options make no sense.
+    pub fn new(
+        problem: &Problem,
+        options: &Asked,
+        sample: SampleType,
+        stretches: &[Stretch],
+        below: Option<f64>,
+    ) -> Result<Self> {
+        let mut sums = Sums::default();
+        let mut correlations = vec![0.0; 2 * FARTHEST + 1];
+        let mut codes: HashMap<Vec<Event>, usize> = HashMap::new();
+        for stretch in stretches {
+            let (events, decoded, _) = problem.run(options, sample, stretch)?;
+            sums.observe(stretch, &events, &decoded);
+            correlate(&stretch.values, &decoded, &mut correlations);
+            count_codes(&events, stretch.values.len(), &mut codes);
+            if let (Some(limit), Some(rate)) = (below, stretch.rate) {
+                let off: Vec<f64> =
+                    stretch.values.iter().zip(&decoded).map(|(value, own)| own - value).collect();
+                sums.below += squares_below(&off, limit / rate);
+            }
+        }
+        let samples = sums.samples as f64;
+        let mean_square = sums.squares / samples;
+        let mean = sums.values / samples;
+        let variance = sums.value_squares / samples - mean * mean;
+        let rate = sums.seconds.map(|seconds| samples / seconds);
+        let entropy: f64 = codes.values().map(|count| *count as f64 / samples).map(bits).sum();
+        // Steps of this size give as large an error, and as many of them the range.
+        let step = (12.0 * mean_square).sqrt();
+        let raw = ((sums.max - sums.min) / step + 1.0).log2();
+        let best = |(place, _): (usize, &f64)| place as i64 - FARTHEST as i64;
+        let lag = correlations.iter().enumerate().max_by(|a, b| {
+            // Of two alike the shorter one.
+            a.1.total_cmp(b.1).then(best(*b).abs().cmp(&best(*a).abs()))
+        });
+        Ok(Self {
+            samples: sums.samples,
+            spikes: sums.spikes,
+            efficiency: (1.0 - sums.spikes as f64 / samples) * 100.0,
+            rmse: mean_square.sqrt(),
+            snr: 10.0 * (variance / mean_square).log10(),
+            worst: sums.worst,
+            lag: lag.map_or(0, best),
+            below: below.filter(|_| rate.is_some()).map(|_| (sums.below / samples).sqrt()),
+            events_per_second: sums.seconds.map(|seconds| sums.spikes as f64 / seconds),
+            bits_per_second: rate.map(|rate| entropy * rate),
+            raw_bits_per_second: rate.filter(|_| raw.is_finite()).map(|rate| raw * rate),
+        })
+    }
+}
+
+/// How many samples a lag may have.
+const FARTHEST: usize = 100;
+
+#[derive(Default)]
+struct Sums {
+    samples: usize,
+    spikes: usize,
+    seconds: Option<f64>,
+    squares: f64,
+    below: f64,
+    worst: f64,
+    values: f64,
+    value_squares: f64,
+    min: f64,
+    max: f64,
+}
+
+impl Sums {
+    fn observe(&mut self, stretch: &Stretch, events: &[Event], decoded: &[f64]) {
+        let seconds = stretch.rate.map(|rate| stretch.values.len() as f64 / rate);
+        if self.samples == 0 {
+            (self.min, self.max) = (f64::INFINITY, f64::NEG_INFINITY);
+            self.seconds = seconds;
+        } else {
+            self.seconds = self.seconds.zip(seconds).map(|(all, own)| all + own);
+        }
+        self.samples += stretch.values.len();
+        self.spikes += events.len();
+        for (value, decoded) in stretch.values.iter().zip(decoded) {
+            let off = value - decoded;
+            self.squares += off * off;
+            self.worst = self.worst.max(off.abs());
+            self.values += value;
+            self.value_squares += value * value;
+            (self.min, self.max) = (self.min.min(*value), self.max.max(*value));
+        }
+    }
+}
+
+/// `-p log2 p`.
+fn bits(part: f64) -> f64 {
+    if part > 0.0 { -part * part.log2() } else { 0.0 }
+}
+
+/// Counts which code each sample has.
+fn count_codes(events: &[Event], samples: usize, codes: &mut HashMap<Vec<Event>, usize>) {
+    let groups = events.chunk_by(|a, b| a.sample == b.sample);
+    let mut silent = samples;
+    for group in groups {
+        let code = group.iter().map(|event| Event { sample: 0, ..*event }).collect();
+        *codes.entry(code).or_default() += 1;
+        silent = silent.saturating_sub(1);
+    }
+    *codes.entry(Vec::new()).or_default() += silent;
+}
+
+/// Adds how a stretch and what was decoded go together, by the lag of what was decoded.
+fn correlate(values: &[f64], decoded: &[f64], correlations: &mut [f64]) {
+    let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
+    let (center, middle) = (mean(values), mean(decoded));
+    let samples = values.len();
+    for (lag, sum) in (-(FARTHEST as i64)..).zip(correlations) {
+        let (from, to) = ((-lag).max(0) as usize, lag.max(0) as usize);
+        let count = samples.saturating_sub(from.max(to));
+        let pairs = values.iter().skip(from).zip(decoded.iter().skip(to)).take(count);
+        *sum += pairs.map(|(value, own)| (value - center) * (own - middle)).sum::<f64>();
+    }
+}
+
+/// The sum of the squares of what lies below a frequency, in parts of the rate: an ideal low pass.
+pub fn squares_below(values: &[f64], limit: f64) -> f64 {
+    let power = power(values);
+    let count = values.len();
+    let kept = power.iter().enumerate().take_while(|(bin, _)| *bin as f64 / count as f64 <= limit);
+    kept.map(|(_, power)| power).sum()
+}
+
+/// What each frequency adds to the sum of the squares, from 0 to half the rate.
+pub fn power(values: &[f64]) -> Vec<f64> {
+    let count = values.len();
+    if count < 2 {
+        return values.iter().map(|value| value * value).collect();
+    }
+    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(count);
+    let mut spectrum = transform.make_output_vec();
+    let mut input = values.to_vec();
+    if transform.process(&mut input, &mut spectrum).is_err() {
+        return Vec::new();
+    }
+    // Both halves of the spectrum count, but for the middle and the ends.
+    let times = |bin: usize| if bin == 0 || bin * 2 == count { 1.0 } else { 2.0 };
+    let bins = spectrum.iter().enumerate();
+    bins.map(|(bin, value)| times(bin) * value.norm_sqr() / count as f64).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FARTHEST, correlate, power, squares_below};
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn power_adds_up_to_the_squares() {
+        for count in [1, 2, 7, 100, 101] {
+            let values: Vec<f64> = (0..count).map(|i| f64::from(i * i % 17) - 3.0).collect();
+            let squares: f64 = values.iter().map(|value| value * value).sum();
+            assert!((power(&values).iter().sum::<f64>() - squares).abs() < 1e-9 * squares.max(1.0));
+        }
+    }
+
+    /// Waves of 5 and 40 cycles in 1000 samples; the limit lets one pass.
+    #[test]
+    fn a_limit_keeps_what_is_below() {
+        let wave = |cycles: f64| move |i: i32| (TAU * cycles * f64::from(i) / 1000.0).sin();
+        let both: Vec<f64> = (0..1000).map(|i| wave(5.0)(i) + 3.0 * wave(40.0)(i)).collect();
+        assert!((squares_below(&both, 0.02) - 500.0).abs() < 1e-6);
+        assert!((squares_below(&both, 0.5) - 5000.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_late_copy_has_a_lag() {
+        let signal: Vec<f64> = (0..500).map(|i| (f64::from(i) * 0.05).sin()).collect();
+        let late: Vec<f64> = [0.0; 7].into_iter().chain(signal.iter().copied()).take(500).collect();
+        let mut correlations = vec![0.0; 2 * FARTHEST + 1];
+        correlate(&signal, &late, &mut correlations);
+        let best = correlations.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap().0;
+        assert_eq!(best, FARTHEST + 7);
+    }
+}

@@ -1,0 +1,181 @@
+//! Step codes: the outcomes of their threshold, compared in exact arithmetic.
+
+use super::Scored;
+use super::problem::{Goal, most_spikes};
+use super::search::{BATCH, Run};
+use super::space::Space;
+use catalogue::run::{Asked, Outcome, Outcomes};
+use rayon::prelude::*;
+
+/// The smallest threshold that is looked at in exact arithmetic, in parts of the range.
+const SMALLEST: f64 = 1e-3;
+/// Samples passed over for a list of outcomes at most: seconds.
+const PASSES: usize = 4_000_000_000;
+/// The same for each setting of the budget, so that a small budget is a short search.
+const PASSES_A_SETTING: usize = 200_000;
+/// Neighbourhoods of good thresholds in which the outcomes are listed again, one by one.
+const NEIGHBOURHOODS: usize = 24;
+/// Combinations of what is whole that are listed before anybody is asked whether to go on.
+const COMBINATIONS: usize = 8;
+/// Of listed outcomes, what the codec scores at most.
+const MOST_SCORED: usize = 1000;
+
+/// The combinations of what is whole, and the outcomes of each that matter, with its place among them.
+type Listed = (Vec<Asked>, Vec<(Outcome, usize)>);
+
+impl Run<'_> {
+    /// Compares the outcomes of the scheme's threshold, for every combination of what is whole, and scores the best.
+    /// False if the scheme has no such list, or the user has decided on a part of it.
+    pub(super) fn exactly(&mut self, space: &Space) -> bool {
+        let problem = self.problem;
+        let decides = ["threshold", "step", "factor", "start"];
+        if decides.iter().any(|name| problem.fixed.get(name).is_some()) {
+            return false;
+        }
+        let Some((combinations, mut all)) = self.listed(space) else { return false };
+        let samples: usize = problem.train.iter().map(|stretch| stretch.values.len()).sum();
+        // The best by the goal, as rounding may move any over a limit, and what else no other one beats.
+        let most = MOST_SCORED.min(self.budget.evaluations - self.found.evaluated);
+        let best = if problem.goal == Goal::Front { 0 } else { most.div_ceil(2) };
+        let in_order = self.in_order(samples);
+        all.sort_by(|a, b| in_order(&a.0).total_cmp(&in_order(&b.0)));
+        let mut chosen: Vec<(Outcome, usize)> = all.iter().take(best).copied().collect();
+        unbeaten(&mut all);
+        let stride = all.len().div_ceil((most - best).max(1)).max(1);
+        chosen.extend(all.iter().step_by(stride));
+        let options = |(outcome, place): &(Outcome, usize)| of(outcome, &combinations[*place]);
+        let order: Vec<Asked> = chosen.iter().map(options).collect();
+        let mut first = None;
+        for batch in order.chunks(BATCH) {
+            if self.is_over() {
+                break;
+            }
+            let scored = self.try_all(batch).into_iter().flatten();
+            first = first.or_else(|| scored.into_iter().find(Scored::is_allowed));
+        }
+        // The list is in the order of what can be expected of other stretches, where a step fits these.
+        let is_fitted = |(own, _): &(Outcome, usize)| own.apart != own.squares;
+        if chosen.first().is_some_and(is_fitted) && matches!(problem.goal, Goal::LeastError(_)) {
+            self.found.best = first.or_else(|| self.found.best.take());
+        }
+        true
+    }
+
+    /// Lists the outcomes that matter; nothing if the scheme has no such list, or somebody ended it.
+    fn listed(&mut self, space: &Space) -> Option<Listed> {
+        let problem = self.problem;
+        let rounded = self.rounded;
+        let stretches: Vec<&[f64]> = rounded.iter().map(Vec::as_slice).collect();
+        let samples: usize = stretches.iter().map(|values| values.len()).sum();
+        let passes = self.budget.evaluations.saturating_mul(PASSES_A_SETTING).min(PASSES);
+        let most = (passes / samples.max(1) / 2).max(50);
+        let range = problem.extent.max - problem.extent.min;
+        let list_of = |combination: &Asked, span: (f64, f64), most: usize| -> Option<Outcomes> {
+            let mut options = combination.clone();
+            options.set("threshold", range * 0.1);
+            let first = problem.train.first()?;
+            let settings = problem.settings(&options, problem.sample, first).ok()?;
+            problem.scheme.outcomes(&settings, &stretches, span, most)
+        };
+        let in_order = self.in_order(samples);
+        let combined = |options: &Asked| -> Option<(Vec<Outcome>, usize, bool)> {
+            let Outcomes { mut list, is_complete } =
+                list_of(options, (range * SMALLEST, range), most)?;
+            if !is_complete {
+                let spans = neighbourhoods(&list, &in_order);
+                let share = most / spans.len().max(1);
+                let again = spans.par_iter().filter_map(|span| list_of(options, *span, share));
+                let again: Vec<Outcomes> = again.collect();
+                list.extend(again.into_iter().flat_map(|found| found.list));
+            }
+            let listed = list.len();
+            list.sort_by(|a, b| in_order(a).total_cmp(&in_order(b)));
+            let mut front: Vec<(Outcome, usize)> = list.iter().map(|own| (*own, 0)).collect();
+            unbeaten(&mut front);
+            list.truncate(MOST_SCORED);
+            let stride = front.len().div_ceil(MOST_SCORED).max(1);
+            list.extend(front.into_iter().step_by(stride).map(|(own, _)| own));
+            Some((list, listed, is_complete))
+        };
+        let combinations = space.combinations();
+        let combinations: Vec<Asked> =
+            combinations.iter().map(|own| own.or(&problem.fixed)).collect();
+        let mut all = Vec::new();
+        self.found.is_complete = true;
+        for (batch, start) in combinations.chunks(COMBINATIONS).zip((0..).step_by(COMBINATIONS)) {
+            if self.is_cut_short() {
+                self.found.is_complete = false;
+                break;
+            }
+            let found: Option<Vec<_>> = batch.par_iter().map(combined).collect();
+            for ((list, listed, is_complete), place) in found?.into_iter().zip(start..) {
+                self.found.listed += listed;
+                self.found.is_complete &= is_complete;
+                all.extend(list.into_iter().map(|outcome| (outcome, place)));
+            }
+        }
+        Some((combinations, all))
+    }
+
+    /// A number for outcomes on so many samples that is the smaller, the better.
+    fn in_order(&self, samples: usize) -> impl Fn(&Outcome) -> f64 + use<> {
+        const NOT_ALLOWED: f64 = 1e100;
+        let (goal, count) = (self.problem.goal, samples as f64);
+        let range = self.problem.extent.max - self.problem.extent.min;
+        move |own: &Outcome| match goal {
+            Goal::LeastError(efficiency) => {
+                let most = most_spikes(efficiency, samples);
+                let above = own.spikes.saturating_sub(most) as f64;
+                if above > 0.0 { NOT_ALLOWED * above } else { own.apart }
+            }
+            Goal::MostEfficient(rmse) => {
+                let part = own.squares / (rmse * rmse * count);
+                if part > 1.0 { NOT_ALLOWED * part } else { own.spikes as f64 }
+            }
+            Goal::Front => (own.squares / count).sqrt() / range + own.spikes as f64 / count,
+        }
+    }
+}
+
+/// An outcome as options, beside those of its combination.
+fn of(outcome: &Outcome, combination: &Asked) -> Asked {
+    let mut options = combination.clone();
+    options.set("threshold", outcome.threshold);
+    if outcome.step != outcome.threshold {
+        options.set("step", outcome.step);
+    }
+    options
+}
+
+/// Keeps the outcomes that no other one beats in both spikes and error, by their spikes.
+fn unbeaten(all: &mut Vec<(Outcome, usize)>) {
+    all.sort_by(|(a, _), (b, _)| a.spikes.cmp(&b.spikes).then(a.squares.total_cmp(&b.squares)));
+    let mut least = f64::INFINITY;
+    all.retain(|(own, _)| {
+        let is_better = own.squares < least;
+        least = least.min(own.squares);
+        is_better
+    });
+}
+
+/// The ranges of thresholds between the neighbours of the best outcomes.
+fn neighbourhoods(list: &[Outcome], in_order: &impl Fn(&Outcome) -> f64) -> Vec<(f64, f64)> {
+    let mut thresholds: Vec<f64> = list.iter().map(|own| own.threshold).collect();
+    thresholds.sort_by(f64::total_cmp);
+    let mut order: Vec<&Outcome> = list.iter().collect();
+    order.sort_by(|a, b| in_order(a).total_cmp(&in_order(b)));
+    let mut spans: Vec<(f64, f64)> = Vec::new();
+    for own in order {
+        if spans.len() == NEIGHBOURHOODS {
+            break;
+        }
+        if spans.iter().any(|(low, high)| (*low..=*high).contains(&own.threshold)) {
+            continue;
+        }
+        let place = thresholds.partition_point(|threshold| *threshold < own.threshold);
+        let low = thresholds.get(place.saturating_sub(1)).copied().unwrap_or(own.threshold);
+        let high = thresholds.get(place + 1).copied().unwrap_or(own.threshold * 1.01);
+        spans.push((low, high));
+    }
+    spans
+}

@@ -1,0 +1,22 @@
+//! Parameters for a goal: what is scored, where they are looked for, and how.
+
+mod chance;
+pub mod costs;
+pub mod emit;
+mod evolution;
+pub mod figures;
+mod listed;
+pub mod problem;
+pub mod report;
+mod request;
+pub mod search;
+mod space;
+mod strategy;
+pub mod stretch;
+
+pub use costs::Costs;
+pub use figures::Figures;
+pub use problem::{Goal, Limits, Problem, Scored};
+pub use request::{TuneRequest, Tuned, tune};
+use space::Extent;
+pub use stretch::Stretch;

@@ -1,0 +1,378 @@
+//! What is looked for: a goal, limits, and the score of settings by the codec that flies.
+
+use super::{Costs, Extent, Stretch};
+use crate::scheme::Scheme;
+use anyhow::{Result, anyhow, bail};
+use catalogue::run::{Asked, Calibrated, Event, Known, SampleType, Settings};
+
+/// What is best.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// The least RMSE at a spiking efficiency of at least so many percent.
+    LeastError(f64),
+    /// The greatest spiking efficiency at an RMSE of at most this.
+    MostEfficient(f64),
+    /// All settings that no other one beats in both.
+    Front,
+}
+
+/// What settings may cost at most.
+#[derive(Clone, Debug, Default)]
+pub struct Limits {
+    /// Bytes of a channel's encoder.
+    pub ram: Option<f64>,
+    /// Instructions a sample to encode, in the mean.
+    pub instructions: Option<f64>,
+    /// Samples until a code comes out.
+    pub latency: Option<f64>,
+    /// Events a second.
+    pub rate: Option<f64>,
+}
+
+/// Counts over stretches.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Tally {
+    /// Number of samples.
+    pub samples: usize,
+    /// Number of spikes.
+    pub spikes: usize,
+    /// Sum of the squared errors.
+    pub squares: f64,
+    /// How long they are, if that is known.
+    pub seconds: Option<f64>,
+}
+
+impl Tally {
+    /// Percent of samples without a spike.
+    pub fn efficiency(&self) -> f64 {
+        (1.0 - self.spikes as f64 / self.samples as f64) * 100.0
+    }
+
+    /// Root mean square error.
+    pub fn rmse(&self) -> f64 {
+        (self.squares / self.samples as f64).sqrt()
+    }
+
+    /// Events a second.
+    pub fn rate(&self) -> Option<f64> {
+        self.seconds.map(|seconds| self.spikes as f64 / seconds)
+    }
+}
+
+/// A quantity that settings are held to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limit {
+    /// Bytes of a channel's encoder.
+    Ram,
+    /// Instructions a sample.
+    Instructions,
+    /// Samples until a code comes out.
+    Latency,
+    /// Events a second.
+    Rate,
+    /// Percent of samples without a spike, from below.
+    Efficiency,
+    /// The error.
+    Rmse,
+}
+
+impl Limit {
+    /// The setting of a request that limits it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ram => "max_ram",
+            Self::Instructions => "max_instructions",
+            Self::Latency => "max_latency",
+            Self::Rate => "max_rate",
+            Self::Efficiency => "min_efficiency",
+            Self::Rmse => "max_rmse",
+        }
+    }
+}
+
+/// A limit, what settings come to, and what they may.
+#[derive(Clone, Debug)]
+pub struct Excess {
+    /// The limit.
+    pub limit: Limit,
+    /// What the settings come to.
+    pub is: f64,
+    /// What they may come to.
+    pub may_be: f64,
+    /// By how much it is too much, as a part of what it may be.
+    pub part: f64,
+}
+
+/// Settings with their score on the stretches to tune on.
+#[derive(Clone, Debug)]
+pub struct Scored {
+    /// The settings.
+    pub options: Asked,
+    /// Samples, spikes and errors.
+    pub tally: Tally,
+    /// What they cost on a microcontroller.
+    pub costs: Costs,
+    /// What they exceed, of limits and goal.
+    pub excess: Vec<Excess>,
+}
+
+impl Scored {
+    /// Whether they keep to all limits, and reach what the goal asks for.
+    pub fn is_allowed(&self) -> bool {
+        self.excess.is_empty()
+    }
+}
+
+/// What is looked for.
+pub struct Problem<'a> {
+    /// The scheme.
+    pub scheme: Scheme,
+    /// The sample type of the codec that is scored.
+    pub sample: SampleType,
+    /// What the user has decided.
+    pub fixed: Asked,
+    /// The stretches to tune on.
+    pub train: &'a [Stretch],
+    /// What is best.
+    pub goal: Goal,
+    /// What settings may cost at most.
+    pub limits: &'a Limits,
+    /// The core whose measured instructions count.
+    pub core: &'a str,
+    /// The range of the stretches to tune on.
+    pub extent: Extent,
+    calibrated: Calibrated,
+}
+
+impl<'a> Problem<'a> {
+    /// A problem on these stretches, of which there is one at least.
+    pub fn new(
+        scheme: Scheme,
+        sample: SampleType,
+        fixed: &Asked,
+        train: &'a [Stretch],
+        (goal, limits, core): (Goal, &'a Limits, &'a str),
+    ) -> Self {
+        let mut calibrated = Calibrated::new(sample);
+        for stretch in train {
+            calibrated.observe(&stretch.values);
+        }
+        let (min, max) = calibrated.range().unwrap_or_default();
+        let values = || train.iter().flat_map(|stretch| &stretch.values);
+        let mean = values().sum::<f64>() / values().count().max(1) as f64;
+        let extent = Extent { min, max, mean };
+        Self { scheme, sample, fixed: fixed.clone(), train, goal, limits, core, extent, calibrated }
+    }
+
+    /// Complete settings on a stretch, as they run.
+    ///
+    /// # Errors
+    /// The options make no sense.
+    pub fn settings(
+        &self,
+        options: &Asked,
+        sample: SampleType,
+        stretch: &Stretch,
+    ) -> Result<Settings> {
+        let known = Known {
+            calibrated: Some(&self.calibrated),
+            first: &stretch.values,
+            can_calibrate: true,
+        };
+        self.scheme.resolve(sample, options, &known)
+    }
+
+    /// Encodes and decodes a stretch, and hands on its events, decoded values and latency.
+    ///
+    /// # Errors
+    /// The options make no sense.
+    pub fn run(
+        &self,
+        options: &Asked,
+        sample: SampleType,
+        stretch: &Stretch,
+    ) -> Result<(Vec<Event>, Vec<f64>, usize)> {
+        self.coded(&self.settings(options, sample, stretch)?, stretch)
+    }
+
+    fn coded(
+        &self,
+        settings: &Settings,
+        stretch: &Stretch,
+    ) -> Result<(Vec<Event>, Vec<f64>, usize)> {
+        let mut codec = self.scheme.codec(settings)?;
+        let (mut events, mut decoded) = (Vec::new(), Vec::with_capacity(stretch.values.len()));
+        codec.encode(&stretch.values, &mut events);
+        codec.finish(&mut events);
+        codec
+            .decode(stretch.values.len(), &events, &mut decoded)
+            .map_err(|event| anyhow!("sample {} does not decode", event.sample))?;
+        Ok((events, decoded, codec.latency()))
+    }
+
+    /// What options come to on stretches, and the latency.
+    ///
+    /// # Errors
+    /// They make no sense.
+    pub fn tally(
+        &self,
+        options: &Asked,
+        sample: SampleType,
+        stretches: &[Stretch],
+    ) -> Result<(Tally, usize)> {
+        let (tally, latency, _) = self.tallied(options, sample, stretches)?;
+        Ok((tally, latency))
+    }
+
+    /// The same with the settings of the last stretch.
+    fn tallied(
+        &self,
+        options: &Asked,
+        sample: SampleType,
+        stretches: &[Stretch],
+    ) -> Result<(Tally, usize, Settings)> {
+        let Some(first) = stretches.first() else { bail!("there are no samples") };
+        let mut tally = Tally { seconds: Some(0.0), ..Tally::default() };
+        let mut latency = 0;
+        let mut settings = self.settings(options, sample, first)?;
+        // Only the first samples of a stretch can change them.
+        let is_shared = !self.scheme.info().has_first_value;
+        for (place, stretch) in stretches.iter().enumerate() {
+            if place > 0 && !is_shared {
+                settings = self.settings(options, sample, stretch)?;
+            }
+            let (events, decoded, own) = self.coded(&settings, stretch)?;
+            latency = own;
+            tally.samples += stretch.values.len();
+            tally.spikes += events.len();
+            let off = stretch.values.iter().zip(&decoded).map(|(value, own)| (value - own).powi(2));
+            tally.squares += off.sum::<f64>();
+            let seconds = stretch.rate.map(|rate| stretch.values.len() as f64 / rate);
+            tally.seconds = tally.seconds.zip(seconds).map(|(all, own)| all + own);
+        }
+        Ok((tally, latency, settings))
+    }
+
+    /// The score of options on the stretches to tune on.
+    ///
+    /// # Errors
+    /// They make no sense.
+    pub fn score(&self, options: &Asked) -> Result<Scored> {
+        let (tally, latency, settings) = self.tallied(options, self.sample, self.train)?;
+        let costs = Costs::new(self.scheme, &settings, latency, self.core);
+        Ok(Scored { options: options.clone(), tally, costs, excess: self.excess(&tally, &costs) })
+    }
+
+    fn excess(&self, tally: &Tally, costs: &Costs) -> Vec<Excess> {
+        let Limits { ram, instructions, latency, rate } = self.limits;
+        // What is not known may be anything.
+        let unknown = f64::INFINITY;
+        let ram_used = costs.ram.map_or(unknown, |bytes| bytes as f64);
+        let mut asked = vec![
+            (Limit::Ram, ram_used, *ram),
+            (Limit::Instructions, costs.instructions.unwrap_or(unknown), *instructions),
+            (Limit::Latency, costs.latency as f64, *latency),
+            (Limit::Rate, tally.rate().unwrap_or(unknown), *rate),
+        ];
+        if let Goal::MostEfficient(rmse) = self.goal {
+            asked.push((Limit::Rmse, tally.rmse(), Some(rmse)));
+        }
+        // Rounding is no excess.
+        let is_above = |is: f64, may_be: f64| is > may_be * (1.0 + 1e-12);
+        let part = |is: f64, may_be: f64| ((is - may_be) / may_be.max(1e-9)).min(1e6);
+        let excess = asked.into_iter().filter_map(|(limit, is, may_be)| {
+            let may_be = may_be.filter(|may_be| is_above(is, *may_be))?;
+            Some(Excess { limit, is, may_be, part: part(is, may_be) })
+        });
+        let mut excess: Vec<Excess> = excess.collect();
+        if let Goal::LeastError(efficiency) = self.goal {
+            // In whole spikes: percents are rounded.
+            let most = most_spikes(efficiency, tally.samples);
+            if tally.spikes > most {
+                let part = part(tally.spikes as f64, most.max(1) as f64);
+                let is = tally.efficiency();
+                excess.push(Excess { limit: Limit::Efficiency, is, may_be: efficiency, part });
+            }
+        }
+        excess
+    }
+
+    /// A number that is the smaller, the better a score is for a goal: any that is allowed is below any that is not.
+    pub fn value(&self, goal: Goal, scored: &Scored) -> f64 {
+        let Tally { samples, spikes, squares, .. } = scored.tally;
+        let limits = scored
+            .excess
+            .iter()
+            .filter(|own| !matches!(own.limit, Limit::Efficiency | Limit::Rmse));
+        let part: f64 = limits.map(|own| own.part).sum();
+        let value = self.value_of(goal, spikes, squares, samples);
+        if part > 0.0 { NOT_ALLOWED * (1.0 + part) + value } else { value }
+    }
+
+    /// The same of counts alone, without the limits.
+    pub fn value_of(&self, goal: Goal, spikes: usize, squares: f64, samples: usize) -> f64 {
+        let range = (self.extent.max - self.extent.min).max(f64::MIN_POSITIVE);
+        let rmse = (squares / samples as f64).sqrt();
+        let (error, part) = (rmse / range, spikes as f64 / samples as f64);
+        match goal {
+            Goal::LeastError(efficiency) => {
+                let most = most_spikes(efficiency, samples);
+                if spikes > most {
+                    let above = (spikes - most) as f64 / most.max(1) as f64;
+                    return NOT_ALLOWED * (1.0 + above);
+                }
+                // Of two alike the one with fewer spikes, or with less error.
+                error + 1e-9 * part
+            }
+            Goal::MostEfficient(most) if rmse > most * (1.0 + 1e-12) => {
+                NOT_ALLOWED * (rmse / most).min(1e6)
+            }
+            Goal::MostEfficient(_) => part + 1e-9 * error,
+            Goal::Front => error + part,
+        }
+    }
+}
+
+/// The value from which settings are not allowed.
+const NOT_ALLOWED: f64 = 1e12;
+
+/// The most spikes that have an efficiency of at least so many percent. A percentage that was computed from a count of
+/// spikes allows this very count.
+pub fn most_spikes(efficiency: f64, samples: usize) -> usize {
+    let spikes = (100.0 - efficiency) / 100.0 * samples as f64;
+    let nearest = spikes.round();
+    let is_count = (spikes - nearest).abs() < 1e-6;
+    (if is_count { nearest } else { spikes.floor() }).max(0.0) as usize
+}
+
+/// Those that no other one beats in both spikes and error, by their spikes.
+pub fn front(mut all: Vec<Scored>) -> Vec<Scored> {
+    let key = |one: &Scored| one.tally.spikes as f64 / one.tally.samples as f64;
+    all.sort_by(|a, b| key(a).total_cmp(&key(b)).then(a.tally.squares.total_cmp(&b.tally.squares)));
+    let mut least = f64::INFINITY;
+    all.retain(|one| {
+        let is_better = one.tally.squares < least;
+        least = least.min(one.tally.squares);
+        is_better
+    });
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Tally, most_spikes};
+
+    #[test]
+    fn an_efficiency_allows_the_count_it_was_computed_from() {
+        for samples in (1..4000).step_by(7) {
+            for spikes in 0..samples.min(500) {
+                let efficiency = Tally { samples, spikes, ..Tally::default() }.efficiency();
+                assert_eq!(most_spikes(efficiency, samples), spikes, "{samples}");
+            }
+        }
+        assert_eq!(
+            [most_spikes(90.0, 1009), most_spikes(100.0, 9), most_spikes(-50.0, 9)],
+            [100, 0, 13]
+        );
+    }
+}

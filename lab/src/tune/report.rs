@@ -1,0 +1,341 @@
+//! What is told of the settings that were found.
+
+use super::problem::{Goal, Tally};
+use super::search::Found;
+use super::{Costs, Figures, Problem, Scored, Stretch};
+use crate::brief::{brief, short};
+use anyhow::{Context, Result};
+use catalogue::run::{Asked, SampleType, Settings};
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// Recordings of one channel, cut.
+pub struct Cut {
+    /// The channel's name.
+    pub name: String,
+    /// The stretches to tune on.
+    pub train: Vec<Stretch>,
+    /// The stretches held out.
+    pub held_out: Vec<Stretch>,
+    /// Each recording in one piece.
+    pub whole: Vec<Stretch>,
+}
+
+/// The settings of one scheme, and all that is told of them.
+#[derive(Debug, Serialize)]
+pub struct Row {
+    /// Short name of the scheme.
+    pub scheme: &'static str,
+    /// The sample type.
+    pub sample: String,
+    /// The parameters, as the file of a figure lists them.
+    pub parameters: BTreeMap<&'static str, Value>,
+    /// On the blocks that they were tuned on.
+    pub tuned_on: Figures,
+    /// On the blocks that were held out.
+    pub held_out: Option<Figures>,
+    /// On whole recordings, coded in one piece.
+    pub whole: Figures,
+    /// The paper's settings on the same blocks.
+    pub paper: Option<Paper>,
+    /// What the settings cost on a microcontroller.
+    pub costs: Costs,
+    /// What the sample type adds to the RMSE of `f32`, in percent.
+    pub quantisation: Option<f64>,
+    /// Settings that the codec scored.
+    pub evaluated: usize,
+    /// Outcomes compared in exact arithmetic.
+    pub listed: usize,
+    /// Whether those are all that there are.
+    pub is_complete: bool,
+    /// Whether the search ended before its budget of settings.
+    pub is_cut_short: bool,
+    /// What a user should know.
+    pub notes: Vec<String>,
+    /// The settings.
+    #[serde(skip)]
+    pub settings: Settings,
+    #[serde(skip)]
+    brief: String,
+}
+
+/// The paper's settings.
+#[derive(Debug, Serialize)]
+pub struct Paper {
+    /// Figures on the stretches tuned on.
+    pub tuned_on: Figures,
+    /// Figures on the stretches held out.
+    pub held_out: Option<Figures>,
+}
+
+impl Row {
+    /// Of the settings that a search has found.
+    ///
+    /// # Errors
+    /// They make no sense, which those of a search do.
+    pub fn new(
+        problem: &Problem,
+        cut: &Cut,
+        found: &Found,
+        best: &Scored,
+        below: Option<f64>,
+    ) -> Result<Self> {
+        let sample = problem.sample;
+        let figures = |options: &Asked, sample, stretches: &[Stretch]| {
+            Figures::new(problem, options, sample, stretches, below)
+        };
+        let held_out = |options: &Asked| {
+            (!cut.held_out.is_empty()).then(|| figures(options, sample, &cut.held_out)).transpose()
+        };
+        let tuned_on = figures(&best.options, sample, &cut.train)?;
+        let mut paper = problem.fixed.clone();
+        paper.paper = true;
+        // A scheme or channel may have none.
+        let paper = figures(&paper, sample, &cut.train)
+            .and_then(|tuned_on| Ok(Paper { tuned_on, held_out: held_out(&paper)? }))
+            .ok();
+        let quantisation = (sample != SampleType::F32)
+            .then(|| figures(&best.options, SampleType::F32, &cut.train))
+            .transpose()?
+            .map(|plain| (tuned_on.rmse / plain.rmse - 1.0) * 100.0);
+        let first = cut.whole.first().context("there is no recording")?;
+        let settings = problem.settings(&best.options, sample, first)?;
+        let mut row = Self {
+            scheme: problem.scheme.name(),
+            sample: sample.to_string(),
+            parameters: settings
+                .entries()
+                .iter()
+                .map(|(key, value)| (*key, value_of(&value.to_string())))
+                .collect(),
+            tuned_on,
+            held_out: held_out(&best.options)?,
+            whole: figures(&best.options, sample, &cut.whole)?,
+            paper,
+            costs: best.costs,
+            quantisation,
+            evaluated: found.evaluated,
+            listed: found.listed,
+            is_complete: found.is_complete,
+            is_cut_short: found.is_cut_short,
+            notes: Vec::new(),
+            brief: brief(settings.entries()),
+            settings,
+        };
+        row.notes = row.flags(problem, cut, found);
+        Ok(row)
+    }
+
+    /// What speaks against the settings.
+    fn flags(&self, problem: &Problem, cut: &Cut, found: &Found) -> Vec<String> {
+        /// Others may be better on held-out blocks by chance.
+        const BY_CHANCE: f64 = 1.25;
+        let mut flags = Vec::new();
+        if found.is_cut_short {
+            flags.push(format!(
+                "the search was cut short after {} settings: how far it came depends on this machine's speed",
+                found.evaluated
+            ));
+        }
+        if problem.scheme.info().parameters.iter().any(|parameter| parameter.name == "step") {
+            flags.push(
+                "its step is fitted to how these recordings drift, and each drifts otherwise: not to be relied on \
+                 in another flight"
+                    .to_owned(),
+            );
+        }
+        let told = self.held_out.as_ref().unwrap_or(&self.tuned_on);
+        // Which of two nothings is nearer says nothing.
+        if told.spikes == 0 {
+            flags.push("never spikes: its value stays where it starts".to_owned());
+        } else if told.snr <= 0.0 {
+            flags.push(format!(
+                "no better than a constant: the error has {} of the signal's power",
+                short((10_f64.powf(-told.snr / 10.0) * 100.0).round() / 100.0)
+            ));
+        }
+        let Some(held_out) = &self.held_out else {
+            flags.push(
+                "nothing was held out: the figures are of the very blocks it was tuned on"
+                    .to_owned(),
+            );
+            return flags;
+        };
+        match problem.goal {
+            Goal::LeastError(efficiency) if held_out.efficiency < efficiency - 2.0 => {
+                flags.push(format!(
+                    "misses the goal on held-out blocks: {:.1} % efficiency, where {efficiency:.1} was asked for",
+                    held_out.efficiency
+                ));
+            }
+            Goal::MostEfficient(rmse) if held_out.rmse > rmse * BY_CHANCE => {
+                flags.push(format!(
+                    "misses the goal on held-out blocks: RMSE {}, where {} was asked for",
+                    short(held_out.rmse),
+                    short(rmse)
+                ));
+            }
+            _ => {}
+        }
+        // Of what was looked at, something may do far better there.
+        let stride = found.front.len().div_ceil(64).max(1);
+        let others = found.front.iter().step_by(stride).filter_map(|other| {
+            let (tally, _) = problem.tally(&other.options, problem.sample, &cut.held_out).ok()?;
+            let settings = problem.settings(&other.options, problem.sample, &cut.train[0]).ok()?;
+            (tally.spikes <= held_out.spikes).then(|| (tally, brief(settings.entries())))
+        });
+        let better = others.min_by(|a: &(Tally, String), b| a.0.squares.total_cmp(&b.0.squares));
+        if let Some((tally, brief)) =
+            better.filter(|(tally, _)| tally.rmse() * BY_CHANCE < held_out.rmse)
+        {
+            flags.push(format!(
+                "fits its own blocks only: on those held out {brief} has an RMSE of {} with no more spikes",
+                short(tally.rmse())
+            ));
+        }
+        if let Some(Paper { tuned_on: on_tuned, held_out: Some(paper) }) = &self.paper {
+            // Blocks may be harder for any settings.
+            let grown = (held_out.rmse / self.tuned_on.rmse) / (paper.rmse / on_tuned.rmse);
+            if paper.rmse < held_out.rmse && paper.spikes <= held_out.spikes {
+                flags.push("the paper's settings are better on held-out blocks".to_owned());
+            } else if paper.rmse * BY_CHANCE < held_out.rmse && grown > BY_CHANCE {
+                flags.push(format!(
+                    "fits its own blocks: from them to those held out its RMSE grows from {} to {}, that of the \
+                     paper's settings from {} to {}",
+                    short(self.tuned_on.rmse),
+                    short(held_out.rmse),
+                    short(on_tuned.rmse),
+                    short(paper.rmse)
+                ));
+            }
+        }
+        flags
+    }
+
+    /// What a file of settings says of them.
+    pub fn comments(&self, channel: &str) -> Vec<String> {
+        let Self { scheme, sample, tuned_on, held_out, .. } = self;
+        let held_out = held_out.map_or(String::new(), |own| {
+            format!("; on held-out blocks {:.2} % and {}", own.efficiency, short(own.rmse))
+        });
+        vec![
+            format!(
+                "`{channel}` through {scheme} in {sample}, by `spikewire tune`: {:.2} % of the samples without a spike,",
+                tuned_on.efficiency
+            ),
+            format!("RMSE {}{held_out}.", short(tuned_on.rmse)),
+        ]
+    }
+}
+
+/// A number, a list of numbers, or a word.
+fn value_of(text: &str) -> Value {
+    let numbers: Option<Vec<Value>> =
+        text.split(',').map(|number| serde_json::from_str(number).ok()).collect();
+    match numbers.as_deref() {
+        Some([number]) => number.clone(),
+        Some(numbers) => numbers.into(),
+        None => text.into(),
+    }
+}
+
+/// The table of all rows, and what is told below it.
+pub fn print(rows: &[&Row], core: &str, below: Option<f64>) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = table(&mut text, rows, below);
+    for row in rows {
+        let _ = details(&mut text, row, core);
+    }
+    text
+}
+
+fn table(text: &mut String, rows: &[&Row], below: Option<f64>) -> std::fmt::Result {
+    let limit = below.map_or(String::new(), |limit| format!(" RMSE < {limit} Hz |"));
+    let dashes = if below.is_some() { "--:|" } else { "" };
+    writeln!(
+        text,
+        "| scheme | settings | blocks | efficiency % | RMSE | SNR dB | worst | lag | events/s | bits/s | raw bits/s |{limit}"
+    )?;
+    writeln!(text, "|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|{dashes}")?;
+    for row in rows {
+        let mut line = |settings: &str, blocks: &str, own: &Figures| {
+            let rate =
+                |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.1}"));
+            write!(
+                text,
+                "| {} | {settings} | {blocks} | {:.2} | {} | {:.2} | {} | {} | {} | {} | {} |",
+                row.scheme,
+                own.efficiency,
+                short(own.rmse),
+                own.snr,
+                short(own.worst),
+                own.lag,
+                rate(own.events_per_second),
+                rate(own.bits_per_second),
+                rate(own.raw_bits_per_second),
+            )?;
+            if below.is_some() {
+                write!(text, " {} |", own.below.map_or("-".to_owned(), short))?;
+            }
+            writeln!(text)
+        };
+        line("tuned", "tuned on", &row.tuned_on)?;
+        if let Some(held_out) = &row.held_out {
+            line("tuned", "held out", held_out)?;
+        }
+        line("tuned", "whole log", &row.whole)?;
+        if let Some(paper) = &row.paper {
+            line("the paper's", "tuned on", &paper.tuned_on)?;
+            if let Some(held_out) = &paper.held_out {
+                line("the paper's", "held out", held_out)?;
+            }
+        }
+    }
+    writeln!(text)
+}
+
+fn details(text: &mut String, row: &Row, core: &str) -> std::fmt::Result {
+    let Row { scheme, sample, costs, quantisation, evaluated, brief, .. } = row;
+    writeln!(text, "{scheme}: {brief}")?;
+    let ram = costs.ram.map_or("unknown".to_owned(), |bytes| format!("{bytes} bytes"));
+    writeln!(
+        text,
+        "  on a Cortex-{core} in {sample}: {} instructions a sample, {ram} of RAM a channel; latency {} samples",
+        costs.instructions(),
+        costs.latency
+    )?;
+    if let Some(percent) = quantisation {
+        writeln!(text, "  {sample} changes the RMSE of f32 by {percent:+.2} %")?;
+    }
+    let listed = match row.listed {
+        0 => String::new(),
+        listed if row.is_complete => format!("; all of {listed} different outcomes compared"),
+        listed => format!("; {listed} outcomes compared, which are not all"),
+    };
+    writeln!(text, "  {evaluated} settings scored by the codec{listed}")?;
+    row.notes.iter().try_for_each(|note| writeln!(text, "  {note}"))
+}
+
+/// Why the best settings are not allowed, and how near they come.
+pub fn missed(problem: &Problem, best: &Scored) -> String {
+    let words = best.excess.iter().map(|one| {
+        let is = if one.is.is_finite() { short(one.is) } else { "not known".to_owned() };
+        format!("`{}` {} is {is}", one.limit.name(), short(one.may_be))
+    });
+    let words: Vec<String> = words.collect();
+    let settings = problem
+        .train
+        .first()
+        .and_then(|stretch| problem.settings(&best.options, problem.sample, stretch).ok());
+    format!(
+        "{}: nothing keeps to all limits; nearest, with an RMSE of {} at {:.2} % efficiency ({}): {}",
+        problem.scheme.name(),
+        short(best.tally.rmse()),
+        best.tally.efficiency(),
+        settings.map_or(String::new(), |settings| brief(settings.entries())),
+        words.join(", ")
+    )
+}

@@ -1,0 +1,270 @@
+//! A request for parameters, and what comes of it.
+
+use super::problem::front;
+use super::report::{Cut, Row, missed};
+use super::search::{Budget, Found, Method, search, share};
+use super::stretch::{HoldOut, cut};
+use super::{Goal, Limits, Problem, Scored, Stretch, costs};
+use crate::look::Look;
+use crate::plot::front::Curve;
+use crate::scheme::Scheme;
+use crate::trial::Recording;
+use crate::watch::{Progress, Watch};
+use anyhow::{Context, Result, bail};
+use catalogue::run::{Asked, SampleType};
+use std::time::{Duration, Instant};
+
+/// Logs, schemes and a goal, for [`tune`].
+pub struct TuneRequest {
+    /// Logs that are tuned on together, each with recordings of the same channels.
+    pub logs: Vec<Vec<Recording>>,
+    /// The schemes whose parameters are searched, each by itself.
+    pub schemes: Vec<Scheme>,
+    /// Sample type of the codec that is scored.
+    pub sample: SampleType,
+    /// Parameters that stay as they are given.
+    pub fixed: Asked,
+    /// Whether the single taps of a filter are searched, beyond its shape, length and sum.
+    pub free_taps: bool,
+    /// What is best; the least error at the efficiency of the paper's settings unless given.
+    pub goal: Option<Goal>,
+    /// What settings may cost.
+    pub limits: Limits,
+    /// Core of the measured table that tells instructions.
+    pub core: String,
+    /// What is held out of each recording, to score the settings on.
+    pub hold_out: HoldOut,
+    /// Frequency in Hz below which the error is told too.
+    pub below: Option<f64>,
+    /// Number of settings of each scheme and channel to score, 1 or more.
+    pub evaluations: usize,
+    /// Seconds after which the search ends, which makes the result depend on the machine's speed.
+    pub seconds: Option<f64>,
+    /// Seed of the search: the same seed and number of settings give the same result on every machine.
+    pub seed: u64,
+    /// Whether recordings are searched that say little: noise, too short, full of holes, clipped.
+    pub anyway: bool,
+}
+
+impl TuneRequest {
+    /// Settings of each scheme and channel to score unless said otherwise.
+    pub const EVALUATIONS: usize = 4000;
+
+    /// Asks for the parameters of schemes on logs: in `f32`, for the paper's efficiency, with three tenths of 20 blocks
+    /// held out.
+    pub fn new(logs: Vec<Vec<Recording>>, schemes: Vec<Scheme>) -> Self {
+        Self {
+            logs,
+            schemes,
+            sample: SampleType::F32,
+            fixed: Asked::default(),
+            free_taps: false,
+            goal: None,
+            limits: Limits::default(),
+            core: "M4F".to_owned(),
+            hold_out: HoldOut { blocks: 20, part: 0.3 },
+            below: None,
+            evaluations: Self::EVALUATIONS,
+            seconds: None,
+            seed: 1,
+            anyway: false,
+        }
+    }
+
+    /// Refuses what makes no sense together.
+    ///
+    /// # Errors
+    /// A setting is out of its range, or does not go with the schemes.
+    pub fn check(&self) -> Result<()> {
+        let HoldOut { blocks, part } = self.hold_out;
+        if !(0.0..1.0).contains(&part) {
+            bail!("`hold_out` {part} must be 0 or more and below 1");
+        }
+        if blocks < 2 && part > 0.0 {
+            bail!("`blocks` {blocks} must be 2 or more");
+        }
+        if self.evaluations == 0 {
+            bail!("`evaluations` 0 must be above 0");
+        }
+        if let Some(Goal::LeastError(efficiency)) = self.goal
+            && (efficiency.is_nan() || efficiency > 100.0)
+        {
+            bail!("`min_efficiency` {efficiency} must be 100 or less");
+        }
+        let Limits { ram, instructions, latency: _, rate } = self.limits;
+        let rmse = match self.goal {
+            Some(Goal::MostEfficient(rmse)) => Some(rmse),
+            _ => None,
+        };
+        for (name, value) in [
+            ("max_rmse", rmse),
+            ("max_ram", ram),
+            ("max_instructions", instructions),
+            ("max_rate", rate),
+            ("below", self.below),
+            ("seconds", self.seconds),
+        ] {
+            if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
+                bail!("`{name}` {value} must be above 0 and finite");
+            }
+        }
+        costs::core(&self.core)?;
+        match &self.schemes[..] {
+            [] => bail!("there is no scheme"),
+            [scheme] => self.fixed.check(scheme.info()),
+            _ if !self.fixed.is_empty() || self.free_taps => {
+                bail!("several schemes search all parameters; with one scheme those given stay")
+            }
+            _ if self.goal.is_none() => {
+                bail!(
+                    "several schemes need one goal for all: `min_efficiency`, `max_rmse` or `front`"
+                )
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The channels of all logs, cut, and what a user should know of them.
+    fn channels(&self) -> Result<(Vec<Cut>, Vec<String>)> {
+        let (mut cuts, mut notes): (Vec<Cut>, _) = (Vec::new(), Vec::new());
+        for log in &self.logs {
+            for (place, recording) in log.iter().enumerate() {
+                match Look::at(recording).objection() {
+                    Some(words) if self.anyway && recording.values.len() > 1 => notes.push(words),
+                    Some(words) => bail!("{words} (`anyway` searches all the same)"),
+                    None => {}
+                }
+                let (train, held_out) = cut(recording, self.hold_out)?;
+                let (name, whole) = (recording.name.clone(), Stretch::whole(recording));
+                match cuts.get_mut(place) {
+                    Some(known) if known.name == name => {
+                        known.train.extend(train);
+                        known.held_out.extend(held_out);
+                        known.whole.extend(whole);
+                    }
+                    Some(known) => bail!("the logs have other channels: {}, {name}", known.name),
+                    None => cuts.push(Cut { name, train, held_out, whole }),
+                }
+            }
+        }
+        if cuts.is_empty() {
+            bail!("there is no recording");
+        }
+        Ok((cuts, notes))
+    }
+}
+
+/// What was found for one channel.
+pub struct Tuned {
+    /// The channel, with its blocks.
+    pub channel: Cut,
+    /// The schemes that reach the goal, the best first; empty for [`Goal::Front`].
+    pub rows: Vec<(Scheme, Row)>,
+    /// The fronts, for [`Goal::Front`].
+    pub curves: Vec<Curve>,
+    /// Why the other schemes do not reach the goal, and how near they come.
+    pub missed: Vec<String>,
+    /// What speaks against the recordings, where they were searched anyway.
+    pub notes: Vec<String>,
+}
+
+/// Searches the parameters of schemes on the channels of logs.
+///
+/// # Errors
+/// The request or a recording is not good. That nothing reaches the goal is no error, but told in the result.
+pub fn tune(request: &TuneRequest, watch: &Watch) -> Result<Vec<Tuned>> {
+    request.check()?;
+    let (channels, notes) = request.channels()?;
+    let end = request.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
+    let searches = channels.len() * request.schemes.len();
+    let mut before = 0;
+    let mut all = Vec::new();
+    for channel in channels {
+        let (mut rows, mut curves, mut missed) = (Vec::new(), Vec::new(), Vec::new());
+        for &scheme in &request.schemes {
+            let tick = |evaluated: usize, best: Option<&Scored>| {
+                let words = best.map_or(String::new(), |best| so_far(&channel.name, scheme, best));
+                let done = before * request.evaluations + evaluated;
+                (watch.tell)(&Progress { done, total: searches * request.evaluations, words });
+            };
+            let budget = Budget {
+                evaluations: request.evaluations,
+                deadline: share(end, searches - before),
+                is_stopped: watch.is_stopped,
+                tick: &tick,
+            };
+            match one(request, scheme, &channel, &budget)? {
+                Outcome::Row(row) => rows.push((scheme, *row)),
+                Outcome::Curve(curve) => curves.push(curve),
+                Outcome::Missed(words) => missed.push(words),
+            }
+            before += 1;
+        }
+        rows.sort_by(|(_, a), (_, b)| match request.goal {
+            Some(Goal::MostEfficient(_)) => b.tuned_on.efficiency.total_cmp(&a.tuned_on.efficiency),
+            _ => a.tuned_on.rmse.total_cmp(&b.tuned_on.rmse),
+        });
+        all.push(Tuned { channel, rows, curves, missed, notes: notes.clone() });
+    }
+    Ok(all)
+}
+
+/// Describes the best settings so far.
+fn so_far(channel: &str, scheme: Scheme, best: &Scored) -> String {
+    let state = if best.is_allowed() { "best" } else { "nearest" };
+    let (efficiency, rmse) = (best.tally.efficiency(), best.tally.rmse());
+    format!("{channel} {}: {state} {efficiency:.2} %, RMSE {rmse:.4}", scheme.name())
+}
+
+/// What became of a scheme on a channel.
+enum Outcome {
+    Row(Box<Row>),
+    Curve(Curve),
+    Missed(String),
+}
+
+/// Searches one scheme on one channel.
+fn one(request: &TuneRequest, scheme: Scheme, channel: &Cut, budget: &Budget) -> Result<Outcome> {
+    let TuneRequest { sample, fixed, limits, .. } = request;
+    let core = costs::core(&request.core)?;
+    let known = (Goal::Front, limits, core.as_str());
+    let mut problem = Problem::new(scheme, *sample, fixed, &channel.train, known);
+    let mut paper = problem.fixed.clone();
+    paper.paper = true;
+    let paper = problem.score(&paper).ok();
+    problem.goal = if let Some(goal) = request.goal {
+        goal
+    } else {
+        let paper = paper.as_ref().context("the paper has no such setting; give a goal")?;
+        Goal::LeastError(paper.tally.efficiency())
+    };
+    let method = Method { seed: request.seed, free_taps: request.free_taps };
+    let found = search(&problem, method, budget);
+    let Some(best) = &found.best else {
+        return Ok(Outcome::Missed(format!("{} cannot be built", scheme.name())));
+    };
+    if problem.goal == Goal::Front && !found.front.is_empty() {
+        return Ok(Outcome::Curve(curve(&problem, channel, &found, paper.as_ref())));
+    }
+    if problem.goal == Goal::Front || !best.is_allowed() {
+        return Ok(Outcome::Missed(missed(&problem, best)));
+    }
+    Ok(Outcome::Row(Box::new(Row::new(&problem, channel, &found, best, request.below)?)))
+}
+
+/// The curve of a front, by its score on held-out blocks where there are any.
+fn curve(problem: &Problem, cut: &Cut, found: &Found, paper: Option<&Scored>) -> Curve {
+    let stretches = if cut.held_out.is_empty() { &cut.train } else { &cut.held_out };
+    let scored = |one: &Scored| {
+        let (tally, _) = problem.tally(&one.options, problem.sample, stretches).ok()?;
+        Some(Scored { tally, ..one.clone() })
+    };
+    let stride = found.front.len().div_ceil(400).max(1);
+    let all: Vec<Scored> = found.front.iter().step_by(stride).filter_map(scored).collect();
+    let point = |one: &Scored| (one.tally.efficiency(), one.tally.rmse());
+    Curve {
+        scheme: problem.scheme,
+        points: front(all).iter().map(point).collect(),
+        paper: paper.and_then(scored).map(|one| point(&one)),
+    }
+}

@@ -1,0 +1,267 @@
+//! The search: exact where a scheme lists its outcomes, by evolution elsewhere.
+//!
+//! How far it goes is a number of settings that the codec scores, so that the result is the same on every machine.
+
+use super::evolution::Evolution;
+use super::problem::{Goal, Problem, Scored, front};
+use super::space::{Inner, Space};
+use super::strategy::Strategy;
+use catalogue::run::{Asked, LANES, Value};
+use rayon::prelude::*;
+use std::time::{Duration, Instant};
+
+/// How long a search may take.
+pub struct Budget<'a> {
+    /// Settings to try at most.
+    pub evaluations: usize,
+    /// When to stop at the latest, which makes the result depend on how fast the machine is.
+    pub deadline: Option<Instant>,
+    /// Whether somebody wants it to stop.
+    pub is_stopped: &'a (dyn Fn() -> bool + Sync),
+    /// Told how many settings were tried, and the best so far.
+    pub tick: &'a (dyn Fn(usize, Option<&Scored>) + Sync),
+}
+
+/// What a search has found.
+pub struct Found {
+    /// The best settings, allowed or not.
+    pub best: Option<Scored>,
+    /// Those allowed that no other one beats in both spikes and error.
+    pub front: Vec<Scored>,
+    /// How many settings were scored by the codec.
+    pub evaluated: usize,
+    /// How many outcomes were compared in exact arithmetic, where the scheme lists them.
+    pub listed: usize,
+    /// Whether those are all that there are.
+    pub is_complete: bool,
+    /// Whether the search ended before its budget of settings, by its deadline or by somebody's wish.
+    pub is_cut_short: bool,
+}
+
+/// How a search is done.
+#[derive(Clone, Copy, Debug)]
+pub struct Method {
+    /// Seed of the generator.
+    pub seed: u64,
+    /// The taps of a filter themselves.
+    pub free_taps: bool,
+}
+
+/// Settings that are tried before anybody is asked whether to go on.
+pub(super) const BATCH: usize = 64;
+/// Parents that an evolution starts from, at least and at most.
+const PARENTS: (usize, usize) = (10, 100);
+/// Goals between which a front is spread, in percent of samples without a spike.
+const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
+/// The value of what cannot even be built.
+const NONE: f64 = 1e30;
+
+/// Looks for the best settings.
+pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
+    let rounded: Vec<Vec<f64>> =
+        problem.train.iter().map(|stretch| stretch.rounded(problem.sample)).collect();
+    let mut run = Run {
+        problem,
+        budget,
+        rounded: &rounded,
+        found: Found {
+            best: None,
+            front: Vec::new(),
+            evaluated: 0,
+            listed: 0,
+            is_complete: false,
+            is_cut_short: false,
+        },
+        least: f64::INFINITY,
+    };
+    let space = Space::new(problem.scheme, &problem.fixed, problem.extent);
+    // The paper's settings are a place to start from.
+    let mut paper = problem.fixed.clone();
+    paper.paper = true;
+    run.try_all(&[paper]);
+    if space.len() > 0 && !run.exactly(&space) {
+        let (seed, all) = (method.seed, budget.evaluations);
+        if method.free_taps {
+            run.evolve(&space, problem.goal, seed, all / 2);
+            run.free(&space, seed);
+        } else if problem.goal == Goal::Front {
+            for (place, efficiency) in SPREAD.into_iter().enumerate() {
+                let until = all * (place + 1) / SPREAD.len();
+                let seed = seed.wrapping_add(place as u64);
+                run.evolve(&space, Goal::LeastError(efficiency), seed, until);
+            }
+        } else {
+            run.evolve(&space, problem.goal, seed, all);
+        }
+    }
+    run.found.front = front(run.found.front);
+    run.found
+}
+
+/// A search under way.
+pub(super) struct Run<'a> {
+    pub problem: &'a Problem<'a>,
+    pub budget: &'a Budget<'a>,
+    /// The stretches to tune on, as the sample type holds them.
+    pub rounded: &'a [Vec<f64>],
+    pub found: Found,
+    least: f64,
+}
+
+impl Run<'_> {
+    pub(super) fn is_over(&mut self) -> bool {
+        self.found.evaluated >= self.budget.evaluations || self.is_cut_short()
+    }
+
+    pub(super) fn is_cut_short(&mut self) -> bool {
+        let is_late = self.budget.deadline.is_some_and(|deadline| Instant::now() >= deadline);
+        self.found.is_cut_short |= is_late || (self.budget.is_stopped)();
+        self.found.is_cut_short
+    }
+
+    /// Scores as many of these options as the budget has left.
+    pub(super) fn try_all(&mut self, all: &[Asked]) -> Vec<Option<Scored>> {
+        let problem = self.problem;
+        let left = self.budget.evaluations - self.found.evaluated;
+        let all = &all[..left.min(all.len())];
+        let scored: Vec<Option<Scored>> =
+            all.par_iter().map(|options| problem.score(options).ok()).collect();
+        for own in scored.iter().flatten() {
+            let value = problem.value(problem.goal, own);
+            if value < self.least {
+                self.least = value;
+                self.found.best = Some(own.clone());
+            }
+            if own.is_allowed() || problem.goal != Goal::Front {
+                self.found.front.push(own.clone());
+            }
+        }
+        // It is thinned now and then.
+        if self.found.front.len() > 4000 {
+            self.found.front = front(std::mem::take(&mut self.found.front));
+        }
+        self.found.evaluated += all.len();
+        (self.budget.tick)(self.found.evaluated, self.found.best.as_ref());
+        scored
+    }
+
+    /// Scores points of a space, as far as the budget goes, and gives each its value for a goal.
+    fn tried(&mut self, space: &Space, goal: Goal, points: Vec<Vec<f64>>) -> Vec<(Vec<f64>, f64)> {
+        let options: Vec<Asked> = points.iter().map(|point| space.options(point)).collect();
+        let scored = self.try_all(&options);
+        let value = |own: Option<Scored>| own.map_or(NONE, |own| self.problem.value(goal, &own));
+        points.into_iter().zip(scored.into_iter().map(value)).collect()
+    }
+
+    /// Evolves settings for a goal, until so many are scored.
+    fn evolve(&mut self, space: &Space, goal: Goal, seed: u64, until: usize) {
+        let own = until.saturating_sub(self.found.evaluated);
+        let before = self.found.evaluated;
+        let (fewest, most) = PARENTS;
+        // 18 for 100 settings, 57 for 1000.
+        let count = ((1.8 * (own as f64).sqrt()) as usize).clamp(fewest, most).min(own);
+        if count == 0 {
+            return;
+        }
+        let share = match goal {
+            Goal::LeastError(efficiency) => 1.0 - efficiency / 100.0,
+            Goal::MostEfficient(_) | Goal::Front => 0.5,
+        };
+        let first = space.starts(seed, count, share);
+        // All values of what a pass compares, and later those near the point's own.
+        let first = self.swept(space, goal, first, None);
+        let parents = self.tried(space, goal, first);
+        let mut evolution = Evolution::new(seed, parents);
+        while self.found.evaluated < until && !self.is_over() {
+            let spent = (self.found.evaluated - before) as f64 / own as f64;
+            let mut points = evolution.ask(spent);
+            points.truncate(until - self.found.evaluated);
+            let width = 0.4 * (1.0 - spent).max(0.1);
+            let points = self.swept(space, goal, points, Some(width));
+            let told = self.tried(space, goal, points);
+            evolution.tell(told);
+        }
+    }
+
+    /// Moves each point to the best value of the axis that a pass compares, where the scheme has one.
+    fn swept(
+        &self,
+        space: &Space,
+        goal: Goal,
+        mut points: Vec<Vec<f64>>,
+        width: Option<f64>,
+    ) -> Vec<Vec<f64>> {
+        let problem = self.problem;
+        let Some(inner) = space.inner(problem.scheme) else { return points };
+        let stretches: Vec<&[f64]> = self.rounded.iter().map(Vec::as_slice).collect();
+        let samples: usize = stretches.iter().map(|values| values.len()).sum();
+        let best = |point: &mut Vec<f64>| -> Option<()> {
+            let Inner { axis, is_factor } = inner;
+            let own = point[axis];
+            let places: [f64; LANES] = std::array::from_fn(|lane| match width {
+                None => (lane as f64 + 0.5) / LANES as f64,
+                Some(_) if lane == 0 => own,
+                Some(width) => {
+                    let off = (lane as f64 - 7.5) / 7.5;
+                    (own + 0.5 * width * off * off.abs()).clamp(0.0, 1.0)
+                }
+            });
+            let options = space.options(point);
+            let settings =
+                problem.settings(&options, problem.sample, problem.train.first()?).ok()?;
+            let number = |place: f64| space.number(axis, place);
+            let values = if is_factor {
+                places.map(|place| (number(place) - number(own)).exp())
+            } else {
+                let taps = settings.numbers("taps").ok()?;
+                let sum: f64 = taps.iter().map(|tap| tap.abs()).sum();
+                places.map(|place| number(place) * sum)
+            };
+            let found = problem.scheme.swept(&settings, &stretches, &values)?;
+            let value =
+                |(spikes, squares): (usize, f64)| problem.value_of(goal, spikes, squares, samples);
+            let all = places.into_iter().zip(found);
+            let (place, _) = all.min_by(|(_, a), (_, b)| value(*a).total_cmp(&value(*b)))?;
+            point[axis] = place;
+            Some(())
+        };
+        points.par_iter_mut().for_each(|point| {
+            best(point);
+        });
+        points
+    }
+
+    /// An evolution strategy on the taps of the best filter so far, again and again.
+    fn free(&mut self, space: &Space, seed: u64) {
+        /// Generations without progress after which it begins anew.
+        const PATIENCE: usize = 60;
+        for round in 0.. {
+            let Some(best) = self.found.best.clone() else { return };
+            let Some(own) = best.options.get("filter").and_then(Value::numbers) else { return };
+            let free = space.with_taps(&best.options, own);
+            let step = [0.01, 0.03, 0.003][round as usize % 3];
+            let steps = vec![step; free.len()];
+            let from = free.point(&best.options);
+            let mut strategy = Strategy::new(seed.wrapping_add(round), from, &steps);
+            let (mut since, mut least) = (0, self.least);
+            while since < PATIENCE {
+                if self.is_over() {
+                    return;
+                }
+                let points = strategy.ask();
+                let told = self.tried(&free, self.problem.goal, points);
+                strategy.tell(told);
+                since = if self.least < least * (1.0 - 1e-4) { 0 } else { since + 1 };
+                least = self.least;
+            }
+        }
+    }
+}
+
+/// The part of a time that is one scheme's, of so many that are still to come.
+pub fn share(end: Option<Instant>, left: usize) -> Option<Instant> {
+    let now = Instant::now();
+    let left = left.max(1) as u32;
+    let time = |end: Instant| end.saturating_duration_since(now).checked_div(left);
+    end.map(|end| now + time(end).unwrap_or(Duration::ZERO))
+}

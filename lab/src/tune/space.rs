@@ -1,0 +1,365 @@
+//! Where settings are looked for: the searched parameters of a scheme as numbers between bounds, and back to options.
+
+use super::chance::Chance;
+use crate::scheme::Scheme;
+use catalogue::run::{Asked, Value, taps};
+use catalogue::{Found, Parameter, Search, Unit};
+
+/// What of the signal the bounds hang on.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    /// Its smallest sample.
+    pub min: f64,
+    /// Its largest sample.
+    pub max: f64,
+    /// Its mean.
+    pub mean: f64,
+}
+
+impl Extent {
+    fn range(self) -> f64 {
+        self.max - self.min
+    }
+}
+
+/// One number of the search.
+#[derive(Clone, Debug)]
+struct Axis {
+    name: &'static str,
+    role: Role,
+    low: f64,
+    high: f64,
+}
+
+/// What a number becomes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Role {
+    /// The logarithm of a number in this unit.
+    Log(f64),
+    /// An offset from a value, in parts of a range.
+    Around(f64, f64),
+    /// A part of the filter's sum.
+    OfFilter,
+    /// The logarithm of a number of thresholds.
+    Thresholds,
+    Whole,
+    Words(&'static [&'static str]),
+    /// The logarithm of a number of taps.
+    Length,
+    Shape,
+    Alpha,
+    /// The logarithm of the filter's sum in this unit.
+    Sum(f64),
+    /// A tap in this unit.
+    Tap(f64),
+}
+
+/// The shapes of a filter; the last one takes an alpha.
+const SHAPES: [&str; 3] = ["triang", "hann", "gauss"];
+
+/// The numbers of a scheme's search.
+#[derive(Clone, Debug)]
+pub(crate) struct Space {
+    axes: Vec<Axis>,
+    fixed: Asked,
+    extent: Extent,
+}
+
+/// The axis whose values one pass over the signal compares.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Inner {
+    /// Its place among the axes.
+    pub axis: usize,
+    /// Whether it is the filter's sum, which factors change, and not the threshold.
+    pub is_factor: bool,
+}
+
+impl Space {
+    /// All that these options leave open.
+    pub(crate) fn new(scheme: Scheme, fixed: &Asked, extent: Extent) -> Self {
+        let mut axes = Vec::new();
+        for parameter in scheme.info().parameters {
+            if let (None, Some(search)) =
+                (fixed.get(parameter.name), scheme.search(parameter, fixed))
+            {
+                axes.extend(axes_of(parameter, search, extent));
+            }
+        }
+        Self { axes, fixed: fixed.clone(), extent }
+    }
+
+    /// The taps of a filter themselves, besides what is no filter and no whole number.
+    pub(crate) fn with_taps(&self, found: &Asked, taps: &[f64]) -> Self {
+        let peak = taps.iter().fold(0.0, |peak: f64, tap| peak.max(tap.abs()));
+        let mut fixed = self.fixed.clone();
+        let mut axes: Vec<Axis> = Vec::new();
+        for axis in &self.axes {
+            match axis.role {
+                Role::Length | Role::Shape | Role::Alpha | Role::Sum(_) => {}
+                Role::Whole | Role::Words(_) => {
+                    if let Some(value) = found.get(axis.name) {
+                        fixed.set(axis.name, value.clone());
+                    }
+                }
+                _ => axes.push(axis.clone()),
+            }
+        }
+        let tap = Axis { name: "filter", role: Role::Tap(peak), low: -1.0, high: 2.0 };
+        axes.extend(taps.iter().map(|_| tap.clone()));
+        Self { axes, fixed, extent: self.extent }
+    }
+
+    /// How many numbers there are.
+    pub(crate) fn len(&self) -> usize {
+        self.axes.len()
+    }
+
+    /// The number that a place in 0 to 1 means on an axis.
+    pub(crate) fn number(&self, axis: usize, place: f64) -> f64 {
+        let Axis { low, high, .. } = self.axes[axis];
+        low + place.clamp(0.0, 1.0) * (high - low)
+    }
+
+    /// The axis whose values a pass compares: the threshold as a part of the filter's sum, or the sum itself where the
+    /// scheme has no threshold.
+    pub(crate) fn inner(&self, scheme: Scheme) -> Option<Inner> {
+        let has_threshold =
+            scheme.info().parameters.iter().any(|parameter| parameter.name == "threshold");
+        let is_inner = |axis: &Axis| match axis.role {
+            Role::OfFilter => true,
+            Role::Sum(_) => !has_threshold,
+            _ => false,
+        };
+        let axis = self.axes.iter().position(is_inner)?;
+        Some(Inner { axis, is_factor: !has_threshold })
+    }
+
+    /// Points to start from, spread over each axis, for codes of which `share` of the samples may spike. Filters start
+    /// where the signal says that good ones are: their sum is what the code reaches if every sample spikes, so that it
+    /// reaches the largest sample, and the mean with as many spikes as may be.
+    pub(crate) fn starts(&self, seed: u64, count: usize, share: f64) -> Vec<Vec<f64>> {
+        let mut chance = Chance::new(seed);
+        let Extent { min, mean, .. } = self.extent;
+        let range = self.extent.range().max(f64::MIN_POSITIVE);
+        let reach = ((mean - min) / range / share.max(0.02)).max(1.0);
+        let has_filter = self.axes.iter().any(|axis| axis.role == Role::Length);
+        let mut points = vec![Vec::new(); count];
+        for axis in &self.axes {
+            let mut order: Vec<usize> = (0..count).collect();
+            if axis.role != Role::Length {
+                for place in (1..count).rev() {
+                    order.swap(place, chance.below(place + 1));
+                }
+            }
+            for (point, stratum) in points.iter_mut().zip(order) {
+                let even = (stratum as f64 + chance.part()) / count as f64;
+                let number = match axis.role {
+                    // 1.5 to 48 taps.
+                    Role::Length => (1.5_f64 * 32_f64.powf(even)).ln(),
+                    Role::Alpha => (0.8 + 2.0 * even).ln(),
+                    Role::Sum(_) => (reach * (0.75 + 0.6 * even)).ln(),
+                    // At the signal's minimum, or somewhat off it.
+                    Role::Around(..) if has_filter && stratum % 3 == 0 => 0.0,
+                    Role::Around(..) if has_filter => 0.4 * (even - 0.4),
+                    _ => axis.low + even * (axis.high - axis.low),
+                };
+                let place = (number - axis.low) / (axis.high - axis.low).max(f64::MIN_POSITIVE);
+                point.push(place.clamp(0.0, 1.0));
+            }
+        }
+        points
+    }
+
+    /// Every combination of the whole numbers and words, as options.
+    pub(crate) fn combinations(&self) -> Vec<Asked> {
+        let mut all = vec![Asked::default()];
+        for axis in
+            self.axes.iter().filter(|axis| matches!(axis.role, Role::Whole | Role::Words(_)))
+        {
+            let values = axis.low as u32..=axis.high as u32;
+            let values = values.map(|value| match axis.role {
+                Role::Words(words) => Value::from(words[value as usize]),
+                _ => Value::from(u64::from(value)),
+            });
+            let values: Vec<Value> = values.collect();
+            all = all
+                .iter()
+                .flat_map(|options| {
+                    values.iter().map(|value| {
+                        let mut options = options.clone();
+                        options.set(axis.name, value.clone());
+                        options
+                    })
+                })
+                .collect();
+        }
+        all
+    }
+
+    /// The options that a point of the unit cube means.
+    pub(crate) fn options(&self, point: &[f64]) -> Asked {
+        let numbers: Vec<f64> =
+            point.iter().enumerate().map(|(axis, place)| self.number(axis, *place)).collect();
+        let point = numbers.as_slice();
+        let mut options = self.fixed.clone();
+        let (mut filter, mut free) = (Shaped::default(), Vec::new());
+        for (axis, &value) in self.axes.iter().zip(point) {
+            let whole = value.round();
+            match axis.role {
+                Role::Log(unit) => options.set(axis.name, value.exp() * unit),
+                Role::Around(base, unit) => {
+                    options.set(axis.name, base + value * unit);
+                }
+                Role::Thresholds => options.set(axis.name, format!("{}x", value.exp())),
+                Role::Whole => options.set(axis.name, whole as u64),
+                Role::Words(words) => options.set(axis.name, words[whole as usize]),
+                Role::Length => filter.length = value.exp().round() as usize,
+                Role::Shape => filter.shape = SHAPES[whole as usize],
+                Role::Alpha => filter.alpha = value.exp(),
+                Role::Sum(unit) => filter.sum = value.exp() * unit,
+                Role::Tap(unit) => free.push(value * unit),
+                Role::OfFilter => {}
+            }
+        }
+        if !free.is_empty() {
+            options.set("filter", free);
+        } else if filter.length > 0 {
+            options.set("filter", filter.taps());
+        }
+        for (axis, value) in self.axes.iter().zip(point) {
+            if axis.role == Role::OfFilter {
+                let sum =
+                    taps_of(&options).map_or(1.0, |taps| taps.iter().map(|tap| tap.abs()).sum());
+                options.set(axis.name, value * sum);
+            }
+        }
+        options
+    }
+
+    /// The point that means these options, as far as there is one; the middle of an axis otherwise.
+    pub(crate) fn point(&self, options: &Asked) -> Vec<f64> {
+        let number = |name: &str| options.number(name);
+        let taps = taps_of(options).unwrap_or_default();
+        let mut next_tap = taps.iter();
+        let place = |axis: &Axis| {
+            let value = match axis.role {
+                Role::Log(unit) => number(axis.name).map(|value| (value / unit).ln()),
+                Role::Around(base, unit) => number(axis.name).map(|value| (value - base) / unit),
+                Role::OfFilter => {
+                    let sum: f64 = taps.iter().map(|tap| tap.abs()).sum();
+                    number(axis.name).map(|value| value / sum)
+                }
+                Role::Whole => number(axis.name),
+                // Given in thresholds, or found as a number.
+                Role::Thresholds => {
+                    match options.word(axis.name).and_then(|text| text.strip_suffix('x')) {
+                        Some(times) => times.parse::<f64>().ok().map(f64::ln),
+                        None => number(axis.name)
+                            .zip(number("threshold"))
+                            .map(|(step, own)| (step / own).ln()),
+                    }
+                }
+                Role::Tap(unit) => next_tap.next().map(|tap| tap / unit),
+                Role::Length => Some((taps.len() as f64).ln()),
+                Role::Sum(unit) => Some((taps.iter().sum::<f64>() / unit).ln()),
+                Role::Words(_) | Role::Shape | Role::Alpha => None,
+            };
+            let value = value.filter(|value| value.is_finite());
+            let value = value.unwrap_or(f64::midpoint(axis.low, axis.high));
+            let width = (axis.high - axis.low).max(f64::MIN_POSITIVE);
+            ((value - axis.low) / width).clamp(0.0, 1.0)
+        };
+        self.axes.iter().map(place).collect()
+    }
+}
+
+/// A filter by its shape.
+#[derive(Default)]
+struct Shaped {
+    shape: &'static str,
+    length: usize,
+    alpha: f64,
+    sum: f64,
+}
+
+impl Shaped {
+    fn taps(&self) -> Value {
+        let Self { shape, length, alpha, sum } = self;
+        let last = SHAPES[SHAPES.len() - 1];
+        let alpha = if *shape == last { format!(":{alpha}") } else { String::new() };
+        let word = format!("{shape}:{length}{alpha},sum={sum}");
+        // What makes no filter is refused where it is resolved, by its name.
+        taps(&word).map_or(Value::from(word), Value::from)
+    }
+}
+
+/// The taps of the filter, by its shape or as a list.
+fn taps_of(asked: &Asked) -> Option<Vec<f64>> {
+    match asked.get("filter")? {
+        Value::Word(shape) => taps(shape).ok(),
+        value => value.numbers().map(<[f64]>::to_vec),
+    }
+}
+
+fn axes_of(parameter: &'static Parameter, search: Search, extent: Extent) -> Vec<Axis> {
+    let name = parameter.name;
+    let unit = if parameter.unit == Unit::Signal { extent.range() } else { 1.0 };
+    let axis = |role, low, high| Axis { name, role, low, high };
+    match search {
+        Search::Log(low, high) => vec![axis(Role::Log(unit), low.ln(), high.ln())],
+        Search::Around(low, high) => {
+            let base = match parameter.found {
+                Some(Found::Max) => extent.max,
+                _ => extent.min,
+            };
+            vec![axis(Role::Around(base, extent.range()), low, high)]
+        }
+        Search::OfFilter(low, high) => vec![axis(Role::OfFilter, low, high)],
+        Search::Thresholds(low, high) => vec![axis(Role::Thresholds, low.ln(), high.ln())],
+        Search::Whole(low, high) => vec![axis(Role::Whole, low.into(), high.into())],
+        Search::Words(words) => vec![axis(Role::Words(words), 0.0, words.len() as f64 - 1.0)],
+        Search::Filter(longest, low, high) => vec![
+            axis(Role::Length, 0.0, f64::from(longest).ln()),
+            axis(Role::Shape, 0.0, SHAPES.len() as f64 - 1.0),
+            axis(Role::Alpha, 0.1_f64.ln(), 8_f64.ln()),
+            axis(Role::Sum(extent.range()), low.ln(), high.ln()),
+        ],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Extent, Space};
+    use crate::scheme::Scheme;
+    use catalogue::run::Asked;
+
+    /// Every corner and the middle of every scheme's space are options that the scheme takes.
+    #[test]
+    fn every_corner_is_understood() {
+        for scheme in Scheme::all() {
+            let fixed = Asked::default();
+            let space = Space::new(scheme, &fixed, Extent { min: -2.0, max: 3.0, mean: 0.5 });
+            for place in [0.0, 0.5, 1.0] {
+                let options = space.options(&vec![place; space.len()]);
+                options.check(scheme.info()).unwrap();
+            }
+        }
+    }
+
+    #[test]
+    fn a_point_comes_back() {
+        let scheme = Scheme::named("t-hsa").unwrap();
+        let space =
+            Space::new(scheme, &Asked::default(), Extent { min: -2.0, max: 3.0, mean: 0.5 });
+        let mut options = Asked::default();
+        let taps = [1.0, 2.0, 1.0];
+        options.set("filter", taps.to_vec());
+        options.set("shift", -2.5);
+        options.set("threshold", 1.0);
+        let free = space.with_taps(&options, &taps);
+        let again = free.options(&free.point(&options));
+        assert_eq!(again.get("filter"), Some(&taps.to_vec().into()));
+        assert_eq!(again.number("shift"), Some(-2.5));
+        assert_eq!(again.number("threshold"), Some(1.0));
+    }
+}

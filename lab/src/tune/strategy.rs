@@ -1,0 +1,126 @@
+//! An evolution strategy with a step for each axis: separable CMA-ES, after Ros and Hansen (2008), for filters' taps.
+
+use super::chance::Chance;
+
+/// Points asked for at once.
+const POINTS: usize = 16;
+/// Points of them that the next ones come from.
+const PARENTS: usize = POINTS / 2;
+
+/// Asks for points, and is told which are better.
+pub(super) struct Strategy {
+    chance: Chance,
+    mean: Vec<f64>,
+    /// The length of a step along all axes.
+    step: f64,
+    /// The variance along each axis.
+    variances: Vec<f64>,
+    /// The way of the mean, in steps.
+    path: Vec<f64>,
+    /// The same, to learn the variances from.
+    long_path: Vec<f64>,
+    weights: Vec<f64>,
+    mass: f64,
+    generation: i32,
+}
+
+impl Strategy {
+    /// Starts from a point, with a first step for each axis.
+    pub(super) fn new(seed: u64, from: Vec<f64>, steps: &[f64]) -> Self {
+        let weight = |place: usize| (PARENTS as f64 + 0.5).ln() - (place as f64 + 1.0).ln();
+        let sum: f64 = (0..PARENTS).map(weight).sum();
+        let weights: Vec<f64> = (0..PARENTS).map(|place| weight(place) / sum).collect();
+        let zeros = vec![0.0; from.len()];
+        Self {
+            chance: Chance::new(seed),
+            mass: 1.0 / weights.iter().map(|weight| weight * weight).sum::<f64>(),
+            mean: from,
+            step: 1.0,
+            variances: steps.iter().map(|step| step * step).collect(),
+            path: zeros.clone(),
+            long_path: zeros,
+            weights,
+            generation: 0,
+        }
+    }
+
+    /// Asks for the values of a generation of points.
+    pub(super) fn ask(&mut self) -> Vec<Vec<f64>> {
+        let Self { chance, mean, variances, step, .. } = self;
+        let mut point = || {
+            let axes = mean.iter().zip(variances.iter());
+            axes.map(|(mean, variance)| mean + *step * variance.sqrt() * chance.normal()).collect()
+        };
+        (0..POINTS).map(|_| point()).collect()
+    }
+
+    /// Takes the points asked for, with their values.
+    pub(super) fn tell(&mut self, mut points: Vec<(Vec<f64>, f64)>) {
+        points.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+        let axes = self.mean.len() as f64;
+        let (mass, best) = (self.mass, points.iter().zip(&self.weights));
+        let best: Vec<(&Vec<f64>, f64)> = best.map(|((point, _), own)| (point, *own)).collect();
+        let for_step = (mass + 2.0) / (axes + mass + 5.0);
+        let damping = 1.0 + for_step + 2.0 * (((mass - 1.0) / (axes + 1.0)).sqrt() - 1.0).max(0.0);
+        let for_path = (4.0 + mass / axes) / (axes + 4.0 + 2.0 * mass / axes);
+        // Axes of their own are learnt faster than all their correlations.
+        let faster = (axes + 2.0) / 3.0;
+        let from_path = (faster * 2.0 / ((axes + 1.3).powi(2) + mass)).min(0.5);
+        let from_points = (faster * 2.0 * (mass - 2.0 + 1.0 / mass)
+            / ((axes + 2.0).powi(2) + mass))
+            .min(1.0 - from_path);
+        let normal = axes.sqrt() * (1.0 - 1.0 / (4.0 * axes) + 1.0 / (21.0 * axes * axes));
+        self.generation += 1;
+        let old = self.mean.clone();
+        for (axis, mean) in self.mean.iter_mut().enumerate() {
+            *mean = best.iter().map(|(point, weight)| weight * point[axis]).sum();
+        }
+        for (axis, path) in self.path.iter_mut().enumerate() {
+            let moved = (self.mean[axis] - old[axis]) / self.step;
+            *path = (1.0 - for_step) * *path
+                + (for_step * (2.0 - for_step) * mass).sqrt() * moved / self.variances[axis].sqrt();
+        }
+        let length = self.path.iter().map(|own| own * own).sum::<f64>().sqrt();
+        let expected = (1.0 - (1.0 - for_step).powi(2 * self.generation)).sqrt();
+        let is_short = length / expected < (1.4 + 2.0 / (axes + 1.0)) * normal;
+        for (axis, path) in self.long_path.iter_mut().enumerate() {
+            let moved = (self.mean[axis] - old[axis]) / self.step;
+            let gain = (for_path * (2.0 - for_path) * mass).sqrt() * moved;
+            *path = (1.0 - for_path) * *path + if is_short { gain } else { 0.0 };
+        }
+        for (axis, variance) in self.variances.iter_mut().enumerate() {
+            let spread = best
+                .iter()
+                .map(|(point, weight)| weight * ((point[axis] - old[axis]) / self.step).powi(2));
+            *variance = (1.0 - from_path - from_points) * *variance
+                + from_path * self.long_path[axis].powi(2)
+                + from_points * spread.sum::<f64>();
+            *variance = variance.max(1e-30);
+        }
+        self.step *= ((for_step / damping) * (length / normal - 1.0)).exp().min(2.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Strategy;
+
+    #[test]
+    fn a_narrow_bowl_is_descended() {
+        let value = |point: &[f64]| -> f64 {
+            point.iter().zip(0..).map(|(own, axis)| 10_f64.powi(axis) * (own - 1.0).powi(2)).sum()
+        };
+        let mut strategy = Strategy::new(1, vec![0.0; 6], &[0.3; 6]);
+        let mut least = f64::INFINITY;
+        for _ in 0..250 {
+            let points = strategy.ask().into_iter().map(|point| {
+                let value = value(&point);
+                (point, value)
+            });
+            let points: Vec<(Vec<f64>, f64)> = points.collect();
+            least = points.iter().map(|(_, value)| *value).fold(least, f64::min);
+            strategy.tell(points);
+        }
+        assert!(least < 1e-6, "{least}");
+    }
+}

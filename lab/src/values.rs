@@ -1,0 +1,347 @@
+//! From frames to values, with the receiver that runs on boards, in any sample type.
+
+use crate::events::{Held, Item, Known, Values};
+use crate::scheme::Scheme as Chosen;
+use anyhow::{Context, Result, bail};
+use catalogue::for_sample_type;
+use catalogue::run::{SampleType, Settings, Visit};
+use spikewire::link::{Received, Receiver, Withheld};
+use spikewire::{Recovery, Sample, SampleKind, Scheme, Spike, Tick};
+use std::any::Any;
+
+/// The most channels of a code of one neuron.
+const MOST: usize = 256;
+
+/// The most channels of any code: with 1024 neurons each they have all addresses.
+const FEWER: usize = 64;
+
+/// The most events of one sample, over all channels.
+const EVENTS: usize = 1 << 14;
+
+/// What is done with a receiver.
+type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
+
+/// Makes a receiver with these settings, one for each channel, or one for all, and passes it to `then`.
+///
+/// # Errors
+/// A parameter out of its range, too many channels, or an error of `then`.
+pub fn with_receiver<'a>(
+    scheme: Chosen,
+    sample: SampleType,
+    settings: &'a [Settings],
+    slot_ticks: Option<u32>,
+    then: impl FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a,
+) -> Result<()> {
+    let first = settings.first().context("a receiver has at least one channel")?;
+    let visitor = Receive { scheme, sample, settings, slot_ticks, then: Box::new(then) };
+    for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.name(), first, visitor))
+}
+
+struct Receive<'a> {
+    scheme: Chosen,
+    sample: SampleType,
+    settings: &'a [Settings],
+    slot_ticks: Option<u32>,
+    then: Then<'a>,
+}
+
+impl<S: Sample> Visit<S> for Receive<'_> {
+    type Output = ();
+
+    fn visit<P: Scheme<Sample = S> + 'static>(self, _: P, _: P::EncoderState) -> Result<()> {
+        self.receive::<P, FEWER, EVENTS>()
+    }
+
+    fn visit_steps<P: Scheme<Sample = S, Code = Spike> + 'static>(
+        self,
+        _: P,
+        _: P::EncoderState,
+    ) -> Result<()> {
+        self.receive::<P, MOST, 0>()
+    }
+}
+
+impl Receive<'_> {
+    /// Makes a receiver of `N` channels for this scheme.
+    fn receive<P: Scheme + 'static, const N: usize, const EVENTS: usize>(self) -> Result<()> {
+        let Self { scheme, sample, settings, slot_ticks, then } = self;
+        if settings.len() > N {
+            bail!(
+                "{} channels are too many: {} has 1 to {N} channels",
+                settings.len(),
+                scheme.name()
+            );
+        }
+        let mut started = Vec::new();
+        for own in settings {
+            let built = catalogue::visit::<P::Sample, _>(scheme.name(), own, Boxed)?;
+            let start = own.first_value().map(|start| P::Sample::from_f64(start * sample.one()));
+            let Ok(scheme) = built.downcast::<P>() else {
+                bail!("channels of one scheme differ in more than numbers")
+            };
+            started.push(Started { scheme: *scheme, start });
+        }
+        let first = started.first().context("a receiver has at least one channel")?;
+        let channels = if started.len() == 1 { N } else { started.len() };
+        let schemes = std::array::from_fn(|channel| started.get(channel).unwrap_or(first));
+        let mut receiver = Receiver::<_, N, EVENTS>::per_channel(schemes);
+        if let Some(length) = slot_ticks {
+            receiver = receiver.with_slot_ticks(length);
+        }
+        then(Box::new(Receiving {
+            receiver,
+            channels,
+            neurons: first.neurons(),
+            has_fired: [P::RECOVERY == Recovery::Keyframe; N],
+            end: None,
+            unused_keyframes: 0,
+            one: sample.one(),
+            kind: kind(sample),
+            outside: 0,
+            are_held: scheme.info().climbs_by.is_some(),
+            held: Held::default(),
+            has_exact: false,
+            decoded: Vec::new(),
+        }))
+    }
+}
+
+/// Hands a scheme on by itself.
+struct Boxed;
+
+impl<S: Sample> Visit<S> for Boxed {
+    type Output = Box<dyn Any>;
+
+    fn visit<P: Scheme<Sample = S> + 'static>(
+        self,
+        scheme: P,
+        _: P::EncoderState,
+    ) -> Result<Box<dyn Any>> {
+        Ok(Box::new(scheme))
+    }
+}
+
+/// What a link calls a sample type.
+fn kind(sample: SampleType) -> SampleKind {
+    match sample {
+        SampleType::F32 => SampleKind::F32,
+        SampleType::Fixed16 { fraction } => SampleKind::Fixed16 { fraction },
+        SampleType::Fixed32 { fraction } => SampleKind::Fixed32 { fraction },
+    }
+}
+
+/// A scheme whose decoders start from a given value. Only the decoding half is of use.
+struct Started<P: Scheme> {
+    scheme: P,
+    start: Option<P::Sample>,
+}
+
+impl<P: Scheme> Scheme for Started<P> {
+    type Sample = P::Sample;
+    type Code = P::Code;
+    type Output = P::Output;
+    type EncoderState = P::EncoderState;
+    type DecoderState = P::DecoderState;
+
+    const LATENCY: usize = P::LATENCY;
+    const RECOVERY: Recovery = P::RECOVERY;
+
+    fn encode(&self, state: &mut P::EncoderState, sample: P::Sample) -> P::Output {
+        self.scheme.encode(state, sample)
+    }
+
+    fn rejected(state: &P::EncoderState) -> u32 {
+        P::rejected(state)
+    }
+
+    fn decoder_state(&self) -> P::DecoderState {
+        let mut state = self.scheme.decoder_state();
+        if let Some(start) = self.start {
+            self.scheme.resync(&mut state, start);
+        }
+        state
+    }
+
+    fn decode(&self, state: &mut P::DecoderState, code: P::Code) -> P::Sample {
+        self.scheme.decode(state, code)
+    }
+
+    fn held(&self, state: &P::DecoderState) -> Option<P::Sample> {
+        self.scheme.held(state)
+    }
+
+    fn resync(&self, state: &mut P::DecoderState, value: P::Sample) {
+        self.scheme.resync(state, value);
+    }
+
+    fn recovery(&self) -> Recovery {
+        self.scheme.recovery()
+    }
+
+    fn neurons(&self) -> usize {
+        self.scheme.neurons()
+    }
+
+    fn slots(&self) -> usize {
+        self.scheme.slots()
+    }
+}
+
+struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
+    receiver: Receiver<[&'a Started<P>; N], N, EVENTS>,
+    channels: usize,
+    /// How many neurons a channel has.
+    neurons: usize,
+    /// The channels that have values: those of temporal codes, and others from their first event on.
+    has_fired: [bool; N],
+    /// A tick at which the last sample heard is over.
+    end: Option<Tick>,
+    /// Keyframes for a code that has none.
+    unused_keyframes: u64,
+    /// What a 1 is in the unit of the decoders.
+    one: f64,
+    /// The sample type of the sender.
+    kind: SampleKind,
+    /// Beside what the receiver itself counts.
+    outside: u64,
+    /// Whether keyframes are what a decoder holds already.
+    are_held: bool,
+    held: Held,
+    /// Whether a value was exact.
+    has_exact: bool,
+    decoded: Vec<(u16, Tick, P::Sample)>,
+}
+
+impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS> {
+    /// The frame with keyframes of the sender's type as those of the decoders, which run all fixed point of one width
+    /// as one type; keyframes of any other type stay another.
+    fn in_our_type<'f>(&self, received: &Received<'f>) -> Received<'f> {
+        let ours = <P::Sample as Sample>::KIND;
+        let known = received.frame.keyframes().next().map(|keyframe| keyframe.kind);
+        let kind = match known {
+            Some(kind) if kind == self.kind => ours,
+            Some(kind) if kind == ours => self.kind,
+            _ => return *received,
+        };
+        let frame = received.frame.with_kind(kind).unwrap_or(received.frame);
+        Received { frame, ..*received }
+    }
+
+    /// Which channels are exact.
+    fn exact(&self) -> [bool; N] {
+        std::array::from_fn(|channel| self.receiver.exact(channel as u16).is_some())
+    }
+
+    /// Notes which channels fire, and when the last sample of a frame is over.
+    fn observe(&mut self, received: &Received<'_>) {
+        for event in received.frame.events() {
+            if let Some(has_fired) =
+                self.has_fired.get_mut(usize::from(event.address) / self.neurons)
+            {
+                *has_fired = true;
+            }
+            self.end = Some(event.tick + u32::from(received.frame.period().get()));
+        }
+    }
+
+    /// Adds the values decoded, of which the first so many are keyframes.
+    ///
+    /// A sample becomes exact amid a frame. Its values are called exact from the next frame on, so that no estimate is.
+    fn tell(&mut self, keyframes: usize, before: [bool; N], items: &mut Vec<Item>) {
+        let after = self.exact();
+        for (place, (channel, tick, value)) in self.decoded.drain(..).enumerate() {
+            let at = usize::from(channel);
+            let is_known = |exact: &[bool; N]| exact.get(at).is_some_and(|is_exact| *is_exact);
+            if at >= self.channels {
+                self.outside += 1;
+            } else if is_known(&self.has_fired) {
+                let by_keyframe = P::RECOVERY == Recovery::Keyframe;
+                let known = if place < keyframes {
+                    Known::Keyframe
+                } else if is_known(&after) && (by_keyframe || is_known(&before)) {
+                    Known::Exact
+                } else {
+                    Known::Estimate
+                };
+                self.has_exact |= known != Known::Estimate;
+                let address = (at * self.neurons) as u16;
+                items.push(Item::Value { tick, address, value: value.to_f64() / self.one, known });
+            }
+        }
+    }
+
+    /// Compares keyframes with what their channels hold before them, where that is exact.
+    fn compare(&mut self, received: &Received<'_>) {
+        if received.is_after_break() {
+            return;
+        }
+        for keyframe in received.frame.keyframes() {
+            let known = self.receiver.exact(keyframe.address); // of a code of one neuron
+            let told = keyframe.value::<P::Sample>();
+            if let (Some(value), Some(told)) = (known, told)
+                && usize::from(keyframe.address) < self.channels
+            {
+                self.held.compared += 1;
+                self.held.contradicted += u64::from(value.to_bits32() != told.to_bits32());
+            }
+        }
+    }
+}
+
+impl<P: Scheme, const N: usize, const EVENTS: usize> Values for Receiving<'_, P, N, EVENTS> {
+    fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>) {
+        let received = &self.in_our_type(received);
+        if self.are_held {
+            self.compare(received);
+        }
+        let keyframes = received.frame.keyframes().filter(|keyframe| {
+            usize::from(keyframe.address) < N * self.neurons
+                && keyframe.value::<P::Sample>().is_some()
+        });
+        let mut keyframes = keyframes.count();
+        match P::RECOVERY {
+            Recovery::Keyframe => {}
+            // Keyframes come among samples, and count as such.
+            Recovery::TimedKeyframe(_) => keyframes = 0,
+            _ => self.unused_keyframes += std::mem::take(&mut keyframes) as u64,
+        }
+        if P::RECOVERY != Recovery::Keyframe {
+            self.observe(received);
+        }
+        let before = if received.is_after_break() { [false; N] } else { self.exact() };
+        let decoded = &mut self.decoded;
+        self.receiver.apply(received, |channel, tick, value| decoded.push((channel, tick, value)));
+        self.tell(keyframes, before, items);
+    }
+
+    fn finish(&mut self, items: &mut Vec<Item>) {
+        if let Some(end) = self.end {
+            let before = self.exact();
+            let decoded = &mut self.decoded;
+            self.receiver.advance(end, |channel, tick, value| decoded.push((channel, tick, value)));
+            self.tell(0, before, items);
+        }
+    }
+
+    fn outside(&self) -> u64 {
+        self.outside + u64::from(self.receiver.outside())
+    }
+
+    fn misfits(&self) -> u64 {
+        u64::from(self.receiver.misfits()).saturating_sub(self.unused_keyframes)
+    }
+
+    fn unused_keyframes(&self) -> u64 {
+        self.unused_keyframes
+    }
+
+    fn held(&self) -> Held {
+        self.held
+    }
+
+    fn withheld(&self) -> Option<Withheld> {
+        let heard = self.has_fired.iter().position(|has_fired| *has_fired).unwrap_or(0);
+        let why = self.receiver.withheld(heard as u16);
+        why.filter(|_| !self.has_exact)
+    }
+}
