@@ -16,8 +16,9 @@ from spikewire_ros.encoding import Encoding, Event
 from spikewire_ros.fields import Field, FieldError, numeric
 from spikewire_ros.wave import wave
 
-PACKAGE = Path(__file__).parent.parent / "ros1" / "spikewire_ros"
-CONFIGS = {file.stem: yaml.safe_load(file.read_text()) for file in sorted((PACKAGE / "config").glob("*.yaml"))}
+DEFAULTS = Path(__file__).parent.parent / "ros1" / "spikewire_ros" / "config" / "defaults.yaml"
+TABLE = yaml.safe_load(DEFAULTS.read_text())
+CONFIGS = {name: {"encoding_scheme": name, **own} for name, own in TABLE.items()}
 STEP = 10_000_000
 
 
@@ -29,19 +30,11 @@ class Vector:
 
 
 class Scan:
-    """As ROS 2 has its messages: slots with an underscore, and one that is no field."""
-
-    __slots__ = ["_ranges", "_name", "_poses", "_is_new", "_bytes", "_check_fields"]
+    __slots__ = ["ranges", "name", "poses", "is_new", "bytes"]
 
     def __init__(self) -> None:
-        self._ranges, self._name, self._poses = np.array([4.0, 5.0], dtype=np.float32), "scan", [Vector()]
-        self._is_new, self._bytes = True, b"\x07"
-
-    ranges = property(lambda self: self._ranges)
-    name = property(lambda self: self._name)
-    poses = property(lambda self: self._poses)
-    is_new = property(lambda self: self._is_new)
-    bytes = property(lambda self: self._bytes)
+        self.ranges, self.name, self.poses = np.array([4.0, 5.0], dtype=np.float32), "scan", [Vector()]
+        self.is_new, self.bytes = True, b"\x07"
 
 
 class Fields(unittest.TestCase):
@@ -64,7 +57,6 @@ class Fields(unittest.TestCase):
             ("ranges[2]", "there are 2 elements, so [2] is none"),
             ("poses[0].z", "Vector has no `z`"),
             ("name[0]", "str has no [0]"),
-            ("check_fields", "Scan has no `check_fields`"),
         ):
             with self.assertRaises(FieldError) as caught:
                 Field(expression).of(Scan())
@@ -139,11 +131,14 @@ class Parameters(unittest.TestCase):
             Encoding(read, Counters(print))
         self.assertIn("min", str(caught.exception))
 
-    def test_every_scheme_has_a_launch_file_and_a_config(self) -> None:
-        named = {schemes.of_catalogue(given["encoding_scheme"]) for given in CONFIGS.values()}
-        self.assertEqual(named, set(spikewire.schemes))
-        launched = {file.stem for file in (PACKAGE / "launch").glob("encode_*.launch")}
-        self.assertEqual(launched, {f"encode_{name}" for name in CONFIGS})
+    def test_every_scheme_has_defaults(self) -> None:
+        self.assertEqual(set(TABLE), set(spikewire.schemes))
+        given = {"topic": "/imu", "encoding_scheme": "hough", "defaults": True}
+        with self.assertRaises(ValueError):
+            Encoding(settings.read(given, {}, TABLE), Counters(print))
+        given = {"topic": "/imu", "encoding_scheme": "grf_slots", "defaults": True, "slots": 5}
+        read = settings.read(given, {}, TABLE)
+        self.assertEqual((read.options, read.calibrate), ({"neurons": 15, "slots": 5}, 100))
         for name in spikewire.schemes:
             self.assertEqual(schemes.of_catalogue(schemes.published(name)), name)
 
@@ -192,15 +187,15 @@ class Coding(unittest.TestCase):
 
     def test_what_is_not_finite_emits_nothing_and_is_counted(self) -> None:
         samples = self.samples[:100] + [math.nan, math.inf, -1e39] + self.samples[100:]
-        events = encoded(CONFIGS["step_forward"], samples, self.told)
-        without = encoded(CONFIGS["step_forward"], self.samples, Counters(lambda text: None))
+        events = encoded(CONFIGS["sf"], samples, self.told)
+        without = encoded(CONFIGS["sf"], self.samples, Counters(lambda text: None))
         self.assertEqual([event.spikes for event in events], [event.spikes for event in without])
         self.assertEqual(self.told.counts, {"samples not finite": 3})
 
     def test_a_signal_too_short_to_start_is_told(self) -> None:
-        self.assertEqual(encoded(CONFIGS["gaussian_fields"], self.samples[:99], self.told), [])
+        self.assertEqual(encoded(CONFIGS["grf"], self.samples[:99], self.told), [])
         self.assertEqual(self.told.counts, {"samples that came too few to start": 99})
-        self.assertEqual(len(encoded(CONFIGS["moving_window"], self.samples[:3], self.told)), 3)
+        self.assertEqual(len(encoded(CONFIGS["mw"], self.samples[:3], self.told)), 3)
 
     def test_the_toolbox_numbers_its_fields_from_0(self) -> None:
         row = [0] * 20
@@ -212,7 +207,7 @@ class Coding(unittest.TestCase):
         self.assertAlmostEqual(ours, -1.0 + (2 * 8 - 3) / 2 * 2.0 / 18, places=6)
 
     def test_messages_of_another_scheme_are_refused_and_counted(self) -> None:
-        events = [message(event) for event in encoded(CONFIGS["step_forward"], self.samples, self.told)]
+        events = [message(event) for event in encoded(CONFIGS["sf"], self.samples, self.told)]
         decoding = Decoding(settings.read({}, {}), self.told)
         self.assertIsNotNone(decoding.take(events[0]))
         before = decoding.take(events[1])
@@ -224,13 +219,13 @@ class Coding(unittest.TestCase):
     def test_an_encoder_that_starts_anew(self) -> None:
         decoding = Decoding(settings.read({}, {}), self.told)
         for part in (self.samples, self.samples[50:]):
-            events = encoded(CONFIGS["step_forward"], part, self.told)
+            events = encoded(CONFIGS["sf"], part, self.told)
             last = [decoding.take(message(event)) for event in events]
             self.assertEqual(last, [event.decoded for event in events])
         self.assertEqual(self.told.counts, {"steps back in time": 1, "new starts of the encoder": 1})
 
     def test_a_decoder_that_starts_late_says_so(self) -> None:
-        events = [message(event) for event in encoded(CONFIGS["step_forward"], self.samples, self.told)]
+        events = [message(event) for event in encoded(CONFIGS["sf"], self.samples, self.told)]
         Decoding(settings.read({}, {}), self.told).take(events[50])
         self.assertEqual(self.told.counts, {"starts in the middle": 1})
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import rospy
 import spikewire
+import yaml
 from diagnostic_msgs.msg import DiagnosticArray
 from ros import Ros, node_path, stop, until
 from roslaunch.config import load_config_default
@@ -34,15 +35,18 @@ GOOD = {"topic": "/imu", "field": "angular_velocity.x", "encoding_scheme": "step
 
 
 def launch_files() -> None:
-    """Each starts the toolbox's signal and a node with parameters that are good, and records where asked to."""
-    files = sorted((Path(node_path("encode")).parents[2] / "share/spikewire_ros/launch").glob("encode_*.launch"))
-    for file in files:
-        config = load_config_default([(str(file), ["bag:=spikes.bag"])], None)
-        assert sorted(node.type for node in config.nodes) == ["encode", "record", "signal"], file
+    """With any scheme it starts the toolbox's signal and a node with parameters that are good, and records if asked to."""
+    share = Path(node_path("encode")).parents[2] / "share/spikewire_ros"
+    table = yaml.safe_load((share / "config/defaults.yaml").read_text())
+    for scheme in spikewire.schemes:
+        arguments = [f"scheme:={scheme}", "parameters:={gap: 2.5}", "bag:=spikes.bag"]
+        config = load_config_default([(str(share / "launch/encode.launch"), arguments)], None)
+        assert sorted(node.type for node in config.nodes) == ["encode", "record", "signal"], scheme
         own = {name.rsplit("/", 1)[1]: one.value for name, one in config.params.items() if name.startswith("/encode/")}
-        Encoding(settings.to_encode(settings.read(own, {})), Counters(print))
-    assert len(files) == len(spikewire.schemes), files
-    print(f"{len(files)} launch files")
+        read = settings.to_encode(settings.read(own, {}, table))
+        assert read.gap == 2.5
+        Encoding(read, Counters(print))
+    print(f"encode.launch with {len(spikewire.schemes)} schemes")
 
 
 def bad_parameters(ros: Ros, imu: rospy.Publisher, words: rospy.Publisher) -> None:

@@ -17,7 +17,7 @@ def main() -> None:
     bag = directory / "encoding.bag"
     with Ros(directory) as ros:
         arguments = ("T_max:=4", "hertz:=[1.0, 2.0, 5.0]", f"bag:={bag}")
-        launched = ros.start("launch", "roslaunch", "spikewire_ros", "encode_step_forward.launch", *arguments)
+        launched = ros.start("launch", "roslaunch", "spikewire_ros", "encode.launch", "scheme:=step_forward", *arguments)
         until(lambda: "[signal-" in ros.said("launch") and "finished cleanly" in ros.said("launch"), "the signal")
         stop(launched)
         until(bag.exists, "the bag's end")

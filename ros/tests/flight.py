@@ -16,6 +16,7 @@ from typing import Any
 import flown as expected
 import rosbag
 import rospy
+import spikewire
 from ros import Ros, stop, until
 from sensor_msgs.msg import Imu
 
@@ -23,21 +24,6 @@ from sensor_msgs.msg import Imu
 EPOCH = 1_000_000_000
 # So many samples, then a wait for all nodes: `rosbag record` keeps 100 messages a topic, and drops more without a word.
 AT_ONCE = 50
-# What the decoding node finds in the messages.
-IN_MESSAGES = ("encoding_scheme", "min", "max", "shift")
-# How many neurons lie side by side in an array.
-NEURONS = {
-    "position": 20,
-    "position-gauss": 20,
-    "grf": 20,
-    "grf-nonlinear": 20,
-    "grf-slots": 15,
-    "grf-prob": 15,
-    "grf-nonlinear-slots": 15,
-    "rank-order": 15,
-    "latency-phase": 4,
-}
-
 # Times in µs and yaw rates.
 Flight = tuple[list[int], list[float]]
 
@@ -71,7 +57,7 @@ def fly(ros: Ros, flight: Flight, schemes: dict[str, dict[str, Any]]) -> Path:
     encoders, decoders = {}, {}
     for name, given in schemes.items():
         of_encoder = {**given, "topic": "/imu", "field": "angular_velocity.z"}
-        of_decoder = {option: value for option, value in given.items() if option not in IN_MESSAGES}
+        of_decoder = {option: value for option, value in given.items() if option not in expected.IN_MESSAGES}
         encoders[name] = ros.node(place(name), "encode", of_encoder)
         decoders[name] = ros.node(place(name), "decode", of_decoder)
     topics = ("event", "encode/decoded", "decode/decoded")
@@ -112,7 +98,7 @@ def compare(bag: Path, flight: Flight, wanted: dict[str, expected.Flown]) -> Non
         assert [event.timestamp.to_nsec() for event in events] == stamps, f"{name}: {len(events)} events"
         assert [event.input for event in events] == rates, name
         for sample, (event, firings) in enumerate(zip(events, own.firings)):
-            assert is_as_wanted(event.spike, firings, name), f"{name}, sample {sample}: {event.spike}, not {firings}"
+            assert expected.is_as_wanted(event.spike, firings, name), f"{name}, sample {sample}: {event.spike}, not {firings}"
         for topic in ("encode/decoded", "decode/decoded"):
             values = found[f"/{place(name)}/{topic}"]
             assert [value.timestamp.to_nsec() for value in values] == stamps, f"{name}: {len(values)} of {topic}"
@@ -123,19 +109,11 @@ def compare(bag: Path, flight: Flight, wanted: dict[str, expected.Flown]) -> Non
         print(f"{name:20} {spikes:6} spikes, {len(events)} values: every bit agrees; by the firmware: {by_firmware}")
 
 
-def is_as_wanted(spike: Any, firings: list[expected.NeuronSpike], name: str) -> bool:
-    """A number of `spyke`, or those of `spyke_array`: sub-timestep after sub-timestep, in each neuron by neuron."""
-    found = list(spike) if hasattr(spike, "__len__") else [spike]
-    row = [0] * len(found)
-    for neuron, slot, sign in firings:
-        row[slot * NEURONS.get(name, 1) + neuron] = sign
-    return found == row
-
-
 def main() -> None:
     table, demo, program, directory = map(Path, sys.argv[1:])
     flight = expected.flight(table)
-    schemes = expected.schemes(flight[1])
+    contrast = spikewire.TemporalContrast(factor=0.5, magnitudes=True).fit(flight[1]).parameters["threshold"]
+    schemes = expected.schemes(flight[1], contrast)
     wanted = expected.by_firmware(demo)
     for name in expected.BY_PROGRAM + expected.MEANS_BY_PROGRAM:
         by_program = expected.by_program(program, table, schemes[name], len(flight[0]))

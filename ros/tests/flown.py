@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import spikewire
 from spikewire_ros.schemes import of_catalogue
 
 # Neuron, sub-timestep, sign.
@@ -44,8 +43,11 @@ def flight(table: Path) -> tuple[list[int], list[float]]:
     return [time for time, _ in read], [rate for _, rate in read]
 
 
-def schemes(rates: list[float]) -> dict[str, dict[str, Any]]:
-    """The nodes' parameters by the names that the firmware has: parts of the signal's range, as its constants are."""
+def schemes(rates: list[float], contrast: float) -> dict[str, dict[str, Any]]:
+    """The nodes' parameters by the names that the firmware has: parts of the signal's range, as its constants are.
+
+    `contrast`: the threshold of `tbr`, which differences tell.
+    """
     low, high = min(rates), max(rates)
 
     def part(of_range: float) -> float:
@@ -58,7 +60,6 @@ def schemes(rates: list[float]) -> dict[str, dict[str, Any]]:
         return f"triang:{taps},peak={part(peak)!r}"
 
     shift = {"shift": low}
-    contrast = spikewire.TemporalContrast(factor=0.5, magnitudes=True).fit(rates).parameters["threshold"]
     return {
         "tbr": {"encoding_scheme": "temporal_contrast", "threshold": contrast},
         "atbr": {"encoding_scheme": "atbr", "threshold": part(0.001), "doublings": 5},
@@ -110,12 +111,35 @@ def schemes(rates: list[float]) -> dict[str, dict[str, Any]]:
     }
 
 
+# How many neurons lie side by side in an array.
+NEURONS = {
+    "position": 20,
+    "position-gauss": 20,
+    "grf": 20,
+    "grf-nonlinear": 20,
+    "grf-slots": 15,
+    "grf-prob": 15,
+    "grf-nonlinear-slots": 15,
+    "rank-order": 15,
+    "latency-phase": 4,
+}
+# What the decoding node finds in the messages.
+IN_MESSAGES = ("encoding_scheme", "min", "max", "shift")
 # Those that the firmware starts in another way: with another generator, or a window that is still empty.
 BY_PROGRAM = ("mw", "bernoulli", "grf-prob")
 # Those whose means it starts from the first sample, which neither the program nor the node knows of.
 MEANS_BY_PROGRAM = ("if", "lif", "sigma-delta", "burst-weighted")
 # In samples, where it is not 0.
 LOOK_AHEAD = {"bsa": 23, "bsa-mul": 23, "bsa-toolbox": 9, "hsa": 14, "t-hsa": 14}
+
+
+def is_as_wanted(spike: Any, firings: list[NeuronSpike], name: str) -> bool:
+    """A number of `spyke`, or those of `spyke_array`: sub-timestep after sub-timestep, in each neuron by neuron."""
+    found = list(spike) if hasattr(spike, "__len__") else [spike]
+    row = [0] * len(found)
+    for neuron, slot, sign in firings:
+        row[slot * NEURONS.get(name, 1) + neuron] += sign
+    return found == row
 
 
 def by_firmware(program: Path) -> dict[str, Flown]:

@@ -1,13 +1,13 @@
 //! A companion computer at the end of a serial line: link frames in, a command back for each.
 //!
 //! `far-end-linux /dev/ttyAMA0 921600`; a board over USB has no baud rate, so that any will do. After the rate, the
-//! milliseconds of silence after which nothing is known: 1500 unless given.
+//! milliseconds without a frame after which nothing is known: 120 unless given.
 
 use std::{
     env,
     io::{self, ErrorKind, Read, Write},
     process::ExitCode,
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use far_end::{FarEnd, SILENCE_MS};
@@ -18,6 +18,8 @@ use linux_embedded_hal::{
 
 const USAGE: &str = "far-end-linux PORT [BAUD [SILENCE]]";
 const BAUD: u32 = 921_600;
+/// How often the silence is looked at.
+const LOOK: Duration = Duration::from_millis(5);
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
@@ -33,9 +35,9 @@ fn main() -> ExitCode {
         eprintln!("BAUD and SILENCE are numbers\n{USAGE}");
         return ExitCode::from(2);
     };
-    match open(path, baud, silence) {
+    match open(path, baud) {
         Ok(mut port) => {
-            let error = run(&mut port);
+            let error = run(&mut port, FarEnd::with_silence(silence));
             eprintln!("{path}: {error}");
             ExitCode::FAILURE
         }
@@ -46,29 +48,29 @@ fn main() -> ExitCode {
     }
 }
 
-fn open(path: &str, baud: u32, silence: u32) -> Result<TTYPort, serialport::Error> {
+fn open(path: &str, baud: u32) -> Result<TTYPort, serialport::Error> {
     let Serial(mut port) = Serial::open(path.into(), baud)?;
-    port.set_timeout(Duration::from_millis(silence.into()))?;
+    port.set_timeout(LOOK)?;
     Ok(port)
 }
 
 /// Listens until the port fails.
-fn run(port: &mut (impl Read + Write)) -> io::Error {
-    let mut far = FarEnd::default();
+fn run(port: &mut (impl Read + Write), mut far: FarEnd) -> io::Error {
+    let start = Instant::now();
     let mut bytes = [0; 512];
     loop {
-        let mut commands = Vec::new();
-        match port.read(&mut bytes) {
+        let length = match port.read(&mut bytes) {
             Ok(0) => return ErrorKind::UnexpectedEof.into(),
-            Ok(length) => {
-                far.take(&bytes[..length], |_, _, _| (), |command| commands.extend(command.bytes()))
+            Ok(length) => length,
+            Err(error) if [ErrorKind::TimedOut, ErrorKind::Interrupted].contains(&error.kind()) => {
+                0
             }
-            Err(error) if error.kind() == ErrorKind::TimedOut => {
-                commands.extend(far.silence().bytes());
-            }
-            Err(error) if error.kind() == ErrorKind::Interrupted => {}
             Err(error) => return error,
-        }
+        };
+        let now = start.elapsed().as_millis() as u32;
+        let mut commands = Vec::new();
+        far.take(now, &bytes[..length], |_, _, _| (), |command| commands.extend(command.bytes()));
+        commands.extend(far.silence(now).map(|command| command.bytes()).into_iter().flatten());
         if let Err(error) = port.write_all(&commands) {
             return error;
         }

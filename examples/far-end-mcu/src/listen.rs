@@ -7,7 +7,7 @@ use core::{
 
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::exception;
-use far_end::{FarEnd, SILENCE_MS};
+use far_end::FarEnd;
 
 use crate::uart::{Listener, Speaker};
 
@@ -32,11 +32,15 @@ pub fn run(out: &mut impl Write) -> fmt::Result {
     let (mut line, mut actuators) = (Listener::new(), Speaker::new());
     let mut far = FarEnd::default();
     let (mut values, mut hash, mut commands) = (0_u32, 0xcbf2_9ce4_8422_2325_u64, 0_u32);
-    let mut heard = MILLISECONDS.load(Relaxed);
-    while MILLISECONDS.load(Relaxed).wrapping_sub(heard) < SILENCE_MS {
+    loop {
+        let now = MILLISECONDS.load(Relaxed);
+        if let Some(command) = far.silence(now) {
+            actuators.send(command.bytes());
+            break; // a vehicle goes on listening
+        }
         let Some(byte) = line.byte() else { continue };
-        heard = MILLISECONDS.load(Relaxed);
         far.take(
+            now,
             &[byte],
             |channel, tick, value| {
                 values += 1;
@@ -52,7 +56,6 @@ pub fn run(out: &mut impl Write) -> fmt::Result {
             },
         );
     }
-    actuators.send(far.silence().bytes());
     writeln!(out, "{values} values and keyframes hash={hash:016x}")?;
     writeln!(out, "{commands} commands, {} frames lost", far.lost_frames())
 }

@@ -2,8 +2,7 @@
 //!
 //! The command damps the vehicle's rotation, and stands for whatever you do with the values. What matters is when it is
 //! neutral: before the first keyframe, after a loss or a break until the next one, when the sender starts again, and when
-//! nothing comes any more. A signal at rest has no events, so that only [`SILENCE_MS`], longer than from keyframe to
-//! keyframe, is silence.
+//! no frame was accepted for [`SILENCE_MS`]. Bytes that are no frame are silence too.
 
 #![no_std]
 
@@ -22,8 +21,16 @@ pub const SCHEMES: Schemes = [&RATE, &RATE, &RATE, &ACCELERATION, &ACCELERATION,
 /// One for each channel.
 pub type Schemes = [&'static StepForward<f32>; CHANNELS];
 
-/// The sender has a keyframe every second.
-pub const SILENCE_MS: u32 = 1_500;
+/// From one keyframe of the sender to the next. A signal at rest has no events, so that keyframes alone say that the link
+/// lives; of six channels in `f32` they are 56 bytes, 1.1 kB a second.
+pub const KEYFRAME_MS: u32 = 50;
+
+/// How long the last command may stand without a frame: two keyframes' time, so that one may be lost, and 20 ms for the
+/// gathering, the line and the tasks on both ends.
+///
+/// A multirotor that turns with 100 rad/s² under an old torque, as a nimble one can, turns by half of that times the time
+/// squared: 0.72 rad or 41° in 120 ms, from which it can right itself, and more than a whole turn in 0.4 s.
+pub const SILENCE_MS: u32 = 2 * KEYFRAME_MS + 20;
 
 /// Thousandths of the greatest torque for 1 rad/s.
 const DAMPING: f32 = 120.0;
@@ -50,36 +57,53 @@ impl Command {
     }
 }
 
-/// The far end's state.
+/// The far end's state. Times are milliseconds of any clock that goes on, and may wrap.
 pub struct FarEnd {
     reader: Reader<MAX_FRAME>,
     receiver: Receiver<Schemes, CHANNELS>,
+    silence: u32,
+    /// When the last frame was accepted, or the last silence told.
+    heard: Option<u32>,
 }
 
 impl Default for FarEnd {
     fn default() -> Self {
-        Self { reader: Reader::new(), receiver: Receiver::per_channel(SCHEMES) }
+        Self::with_silence(SILENCE_MS)
     }
 }
 
 impl FarEnd {
+    /// A far end whose last command stands for this many milliseconds without a frame.
+    pub fn with_silence(silence: u32) -> Self {
+        let receiver = Receiver::per_channel(SCHEMES);
+        Self { reader: Reader::new(), receiver, silence, heard: None }
+    }
+
     /// Takes bytes as they come, cut anywhere: each value, with its channel and tick, and a command after each frame.
     pub fn take(
         &mut self,
+        now: u32,
         mut bytes: &[u8],
         mut on_value: impl FnMut(u16, Tick, f32),
         mut on_command: impl FnMut(Command),
     ) {
         while let Some(received) = self.reader.next_frame(&mut bytes) {
+            self.heard = Some(now);
             self.receiver.apply(&received, &mut on_value);
             on_command(self.command());
         }
     }
 
-    /// Nothing came for [`SILENCE_MS`]: what is known is old, until the next keyframe.
-    pub fn silence(&mut self) -> Command {
+    /// Returns the neutral command if there was no frame for too long: what is known is old, until the next keyframe. To be
+    /// asked all the time, with or without bytes; it answers again after each further silence.
+    pub fn silence(&mut self, now: u32) -> Option<Command> {
+        let heard = *self.heard.get_or_insert(now);
+        if now.wrapping_sub(heard) < self.silence {
+            return None;
+        }
+        self.heard = Some(now);
         self.receiver.mark_stale();
-        Command::Neutral
+        Some(Command::Neutral)
     }
 
     /// Frames that were lost on the way, so far.

@@ -1,9 +1,9 @@
 //! When the command is neutral, and when it is not.
 
-use far_end::{CHANNELS, Command, FarEnd, SCHEMES};
+use far_end::{CHANNELS, Command, FarEnd, KEYFRAME_MS, SCHEMES, SILENCE_MS};
 use spikewire::{
     Bank, EventQueue, Overflow, Tick,
-    link::{Coding, MAX_FRAME, Transmitter},
+    link::{Coding, MAX_FRAME, Session, Transmitter},
 };
 
 /// A sender, and what it has sent: one frame each.
@@ -15,11 +15,14 @@ struct Sender {
 }
 
 impl Sender {
-    fn new(session: u16) -> Self {
+    fn new(starts: u32) -> Self {
         Self {
             bank: Bank::per_channel(SCHEMES),
             queue: EventQueue::new(Overflow::DropOldest),
-            transmitter: Transmitter::new(Coding::for_channels(CHANNELS as u16, 1_000), session),
+            transmitter: Transmitter::new(
+                Coding::for_channels(CHANNELS as u16, 1_000),
+                Session::counted(starts),
+            ),
             now: Tick::from(0),
         }
     }
@@ -54,7 +57,7 @@ impl Sender {
 fn after(far: &mut FarEnd, bytes: &[u8]) -> Option<Command> {
     let mut last = None;
     for byte in bytes.chunks(1) {
-        far.take(byte, |_, _, _| (), |command| last = Some(command));
+        far.take(0, byte, |_, _, _| (), |command| last = Some(command));
     }
     last
 }
@@ -122,9 +125,50 @@ fn neutral_when_the_sender_starts_again() {
 #[test]
 fn neutral_after_silence_to_the_next_keyframe() {
     let (mut sender, mut far) = running();
-    assert_eq!(far.silence(), Command::Neutral);
+    assert_eq!(far.silence(SILENCE_MS - 1), None);
+    assert_eq!(far.silence(SILENCE_MS), Some(Command::Neutral));
     assert_eq!(after(&mut far, &sender.sample(0.5)), Some(Command::Neutral));
     assert!(matches!(after(&mut far, &sender.keyframe()), Some(Command::Damp(_))));
+}
+
+/// A loose wire brings bytes for ever: they must not keep the last command alive.
+#[test]
+fn bytes_that_are_no_frame_are_silence() {
+    let (mut sender, mut far) = running();
+    assert!(matches!(after(&mut far, &sender.sample(0.5)), Some(Command::Damp(_))));
+    let whole = sender.keyframe();
+    for (noise, what) in [(vec![0x55], "junk"), (whole[..whole.len() - 1].to_vec(), "a cut frame")]
+    {
+        let (_, mut far) = running();
+        let mut neutral = None;
+        for now in (0..1_000).step_by(10) {
+            far.take(now, &noise, |_, _, _| (), |command| panic!("{what}: {command:?}"));
+            neutral = neutral.or(far.silence(now).map(|command| (now, command)));
+        }
+        assert_eq!(neutral, Some((SILENCE_MS, Command::Neutral)), "{what}");
+    }
+}
+
+#[test]
+fn keyframes_alone_keep_a_sender_at_rest_alive_and_one_may_be_lost() {
+    let (mut sender, mut far) = running();
+    for now in 1..2_000 {
+        let is_lost = now % (2 * KEYFRAME_MS) == 0;
+        if now % KEYFRAME_MS == 0 {
+            let frame = sender.keyframe();
+            let bytes = if is_lost { &[][..] } else { &frame };
+            far.take(now, bytes, |_, _, _| (), |_| ());
+        }
+        assert_eq!(far.silence(now), None, "{now} ms");
+    }
+}
+
+/// The vehicle of [`SILENCE_MS`]: it must come to rest from where an old torque left it.
+#[test]
+fn an_old_torque_turns_a_nimble_multirotor_by_less_than_45_degrees() {
+    let seconds = f64::from(SILENCE_MS) / 1e3;
+    let turned = 0.5 * 100.0 * seconds * seconds;
+    assert!(turned < std::f64::consts::FRAC_PI_4, "{turned} rad");
 }
 
 #[test]

@@ -16,15 +16,12 @@ use core::{
 
 use board::stopwatch::instructions;
 use embassy_futures::block_on;
-use flight::Sampler;
-use icm42688p::{
-    CHANNELS, Icm42688p, NEW_BUFFER, PERIOD, PLAN, Pace, SAMPLE_RATE, SCHEMES, Sender, WATERMARK,
-    encode,
-};
-use sensor::{Bus, Sensor};
+use flight::{Alignment, CHANNELS, Imu as _, Pace, Sampler, Sender, encode};
+use icm42688p::{Icm42688p, NEW_BUFFER, SAMPLE_RATE, WATERMARK};
+use sensor::{Bus, PERIOD, Sensor};
 use spikewire::{
     Bank, EventQueue, Overflow, Tick,
-    link::{MAX_FRAME, Reader, Receiver},
+    link::{MAX_FRAME, Reader, Receiver, Session},
 };
 
 /// The hardest of the flight lies in them.
@@ -32,19 +29,21 @@ const SECONDS: u32 = 18;
 /// From one round of main to the next, in bursts: 5 ms.
 const GATHER: u32 = 5;
 
+type Imu<'a> = Icm42688p<'a, Bus<'a>>;
+
 static EVENTS: EventQueue<256> = EventQueue::new(Overflow::DropOldest);
 
 fn run(out: &mut impl Write) -> fmt::Result {
     let mut bytes = NEW_BUFFER;
     let (mut sensor, fifo) = (Sensor::new(), RefCell::new([0; _]));
     let mut imu = Icm42688p::new(Bus(&fifo), &mut bytes);
-    let mut sampler = Sampler::new(Bank::per_channel(SCHEMES), PLAN);
+    let mut sampler = Sampler::new(Bank::per_channel(Imu::SCHEMES), Imu::PLAN);
     sampler.started(Tick::from_micros(0));
-    let mut pace = Pace::new();
-    let mut sender = Sender::new(1);
+    let mut pace = Pace::new(PERIOD);
+    let mut sender = Sender::new::<Imu>(Session::counted(1));
     let mut events = EVENTS.consumer().ok_or(fmt::Error)?;
     let mut reader = Reader::<MAX_FRAME>::new();
-    let mut receiver = Receiver::<_, CHANNELS>::per_channel(SCHEMES);
+    let mut receiver = Receiver::<_, CHANNELS>::per_channel(Imu::SCHEMES);
 
     let mut now = Tick::from_micros(0);
     let (mut read_in_all, mut encoded_in_all, mut framed_in_all, mut worst) = (0, 0, 0, 0);
@@ -55,7 +54,10 @@ fn run(out: &mut impl Write) -> fmt::Result {
         let mut read = None;
         let reading = instructions(|| read = block_on(imu.read()).ok());
         let read = read.ok_or(fmt::Error)?;
-        let encoding = instructions(|| encode(&mut sampler, &mut pace, now, &read, &EVENTS));
+        // As on a board whose sensor is turned.
+        let encoding = instructions(|| {
+            encode::<Imu>(&mut sampler, &mut pace, Alignment::Cw90, now, read, &EVENTS);
+        });
         read_in_all += u64::from(reading);
         encoded_in_all += u64::from(encoding);
         worst = worst.max(reading + encoding);

@@ -3,7 +3,10 @@
 use core::{cell::RefCell, convert::Infallible};
 
 use embedded_hal_async::spi::{ErrorType, Operation, SpiDevice};
-use icm42688p::{PACKET, PERIOD, WATERMARK};
+use icm42688p::{PACKET, SAMPLE_RATE, WATERMARK};
+
+/// From one sample to the next, in µs.
+pub const PERIOD: u16 = (1_000_000 / SAMPLE_RATE as u32) as u16;
 
 /// A time stamp in µs, then rates in rad/s and accelerations in m/s², four bytes each.
 const RECORD: usize = 4 + 4 * 6;

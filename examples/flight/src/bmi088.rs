@@ -4,31 +4,25 @@
 
 use core::fmt;
 
-#[cfg(feature = "blocking")]
-use embedded_hal::{delay::DelayNs, i2c::I2c};
-#[cfg(not(feature = "blocking"))]
 use embedded_hal_async::{delay::DelayNs, i2c::I2c};
 
-use crate::Plan;
+use crate::{
+    Burst, CHANNELS, Fault, Imu, Plan, Sample,
+    code::{Jumps, MOST, threshold},
+};
 
-/// The addresses that the Crazyflie has: SDO1 low, SDO2 high.
+/// Address of the accelerometer, as the Crazyflie has it: SDO1 low.
 pub const ACCEL: u8 = 0x18;
+/// Address of the gyroscope: SDO2 high.
 pub const GYRO: u8 = 0x69;
 
-/// A second's samples.
+/// Number of samples a second.
 pub const SAMPLE_RATE: u16 = 1_000;
 
-/// Ten periods of silence, or twenty equal samples, are no accident; 100 ms to settle.
-pub const fn plan(most_spikes: u8) -> Plan {
-    Plan {
-        period: (1_000_000 / SAMPLE_RATE as u32) as u16,
-        settle: SAMPLE_RATE / 10,
-        keyframe_every: SAMPLE_RATE,
-        patience: 10_000,
-        most_alike: 20,
-        most_spikes,
-    }
-}
+/// A spike for every 6 °/s, of ±2000 °/s.
+static RATE: Jumps = threshold(6.0, 2000.0);
+/// A spike for every 0.1 g, of ±24 g.
+static ACCELERATION: Jumps = threshold(0.1, 24.0);
 
 /// A register's sensor and address, what is written, and what is then read: a bit is always 1.
 type Setting = (u8, u8, u8, u8);
@@ -56,15 +50,6 @@ const RESET_MS: u32 = 50;
 /// From one setting to the next; the accelerometer, once it is on, takes 5 ms for the next.
 const SETTING_MS: u32 = 5;
 
-/// Why the sensor could not be started.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StartError<E> {
-    /// The bus failed; nobody at an address is such a failure too.
-    Bus(E),
-    /// A register of the sensor at this address does not hold what was written, or another sensor's identity.
-    Differs { address: u8, register: u8, expected: u8, found: u8 },
-}
-
 /// The sensor on its bus.
 pub struct Bmi088<B> {
     bus: B,
@@ -76,75 +61,78 @@ impl<B> fmt::Debug for Bmi088<B> {
     }
 }
 
-#[maybe_async::maybe_async]
 impl<B: I2c> Bmi088<B> {
+    /// A sensor that was not started.
     pub fn new(bus: B) -> Self {
         Self { bus }
     }
 
-    /// Resets both sensors, configures them, and reads back what they were told: 0.1 s. May be called again.
-    ///
-    /// # Errors
-    /// One of them is not there, or not as it was told to be.
-    pub async fn start(&mut self, delay: &mut impl DelayNs) -> Result<(), StartError<B::Error>> {
-        for (address, register) in SOFT_RESETS {
-            self.write(address, register, SOFT_RESET).await?;
+    async fn axes(&mut self, die: u8, register: u8) -> Result<[i16; 3], Fault> {
+        let mut bytes = [0; 6];
+        self.bus.write_read(die, &[register], &mut bytes).await.map_err(|_| Fault::Bus)?;
+        let [xl, xh, yl, yh, zl, zh] = bytes;
+        Ok([[xl, xh], [yl, yh], [zl, zh]].map(i16::from_le_bytes))
+    }
+
+    async fn write(&mut self, die: u8, register: u8, value: u8) -> Result<(), Fault> {
+        self.bus.write(die, &[register, value]).await.map_err(|_| Fault::Bus)
+    }
+
+    async fn register(&mut self, die: u8, register: u8) -> Result<u8, Fault> {
+        let mut found = [0];
+        self.bus.write_read(die, &[register], &mut found).await.map_err(|_| Fault::Bus)?;
+        Ok(found[0])
+    }
+}
+
+/// A start takes 0.1 s. In [`Fault::Register`] the die's address is the upper byte.
+impl<B: I2c> Imu for Bmi088<B> {
+    type Scheme = Jumps;
+
+    const SCHEMES: [&'static Jumps; CHANNELS] =
+        [&RATE, &RATE, &RATE, &ACCELERATION, &ACCELERATION, &ACCELERATION];
+
+    /// Ten periods of silence, or twenty equal samples, are no accident; 100 ms to settle.
+    const PLAN: Plan = Plan {
+        period: (1_000_000 / SAMPLE_RATE as u32) as u16,
+        settle: SAMPLE_RATE / 10,
+        keyframe_every: SAMPLE_RATE / crate::KEYFRAMES,
+        patience: 10_000,
+        burst: 1,
+        most_alike: 20,
+        most_spikes: MOST as u8,
+    };
+
+    async fn start(&mut self, delay: &mut impl DelayNs) -> Result<(), Fault> {
+        for (die, register) in SOFT_RESETS {
+            self.write(die, register, SOFT_RESET).await?;
         }
         delay.delay_ms(RESET_MS).await;
-        for (address, identity) in IDENTITIES {
-            self.expect(address, 0x00, identity).await?;
+        for (die, identity) in IDENTITIES {
+            let found = self.register(die, 0x00).await?;
+            if found != identity {
+                return Err(Fault::Identity(found.into()));
+            }
         }
-        for (address, register, value, _) in SETTINGS {
-            self.write(address, register, value).await?;
+        for (die, register, value, _) in SETTINGS {
+            self.write(die, register, value).await?;
             delay.delay_ms(SETTING_MS).await;
         }
-        for (address, register, _, expected) in SETTINGS {
-            self.expect(address, register, expected).await?;
+        for (die, register, _, expected) in SETTINGS {
+            let read = self.register(die, register).await?;
+            if read != expected {
+                let address = u16::from_be_bytes([die, register]);
+                return Err(Fault::Register { address, wrote: expected.into(), read: read.into() });
+            }
         }
         Ok(())
     }
 
-    /// Rates in °/s, then accelerations in g.
-    ///
-    /// # Errors
-    /// The bus failed.
-    pub async fn read(&mut self) -> Result<[f32; 6], B::Error> {
-        let [rx, ry, rz] = self.axes(GYRO, GYRO_DATA, 2000.0).await?;
-        let [ax, ay, az] = self.axes(ACCEL, ACCEL_DATA, 24.0).await?;
-        Ok([rx, ry, rz, ax, ay, az])
-    }
-
-    async fn axes(&mut self, address: u8, register: u8, range: f32) -> Result<[f32; 3], B::Error> {
-        let mut bytes = [0; 6];
-        self.bus.write_read(address, &[register], &mut bytes).await?;
-        let [xl, xh, yl, yh, zl, zh] = bytes;
-        let counts = [[xl, xh], [yl, yh], [zl, zh]].map(i16::from_le_bytes);
-        Ok(counts.map(|count| f32::from(count) / 32_768.0 * range))
-    }
-
-    async fn write(
+    async fn read(
         &mut self,
-        address: u8,
-        register: u8,
-        value: u8,
-    ) -> Result<(), StartError<B::Error>> {
-        self.bus.write(address, &[register, value]).await.map_err(StartError::Bus)
-    }
-
-    async fn expect(
-        &mut self,
-        address: u8,
-        register: u8,
-        expected: u8,
-    ) -> Result<(), StartError<B::Error>> {
-        let mut found = [0];
-        let read = self.bus.write_read(address, &[register], &mut found).await;
-        read.map_err(StartError::Bus)?;
-        let [found] = found;
-        if found == expected {
-            Ok(())
-        } else {
-            Err(StartError::Differs { address, register, expected, found })
-        }
+    ) -> Result<Burst<impl ExactSizeIterator<Item = Option<Sample>>>, Fault> {
+        let [rx, ry, rz] = self.axes(GYRO, GYRO_DATA).await?;
+        let [ax, ay, az] = self.axes(ACCEL, ACCEL_DATA).await?;
+        Ok(Burst { held: 1, samples: [Some([rx, ry, rz, ax, ay, az])].into_iter() })
     }
 }

@@ -5,9 +5,13 @@
 pub struct Stm32F405 {
     /// What the board has, in Hz.
     pub crystal: u32,
+    /// Divider before the PLL.
     pub m: u32,
+    /// Multiplier of the PLL.
     pub n: u32,
+    /// Divider to the core's clock.
     pub p: u32,
+    /// Divider to 48 MHz.
     pub q: u32,
 }
 
@@ -44,6 +48,7 @@ impl Stm32F405 {
         self
     }
 
+    /// Returns the core's clock in Hz.
     pub const fn sysclk(&self) -> u32 {
         self.crystal / self.m * self.n / self.p
     }

@@ -1,9 +1,9 @@
-//! The code of the six channels, chosen by what a flight needs.
+//! The codes of the six channels, chosen by what a flight needs.
 //!
 //! Step forward, with one spike a sample, falls behind in flight: at 800 Hz and thresholds of 6 °/s and 0.05 g it follows
 //! 4800 °/s² and 40 g/s. The recorded hexarotor, which ends in a crash, has up to 62 300 °/s² and 1116 g/s, and 1 g of
-//! vibration at 200 Hz is 1257 g/s. So a sample has up to sixteen spikes here. Of that flight, between its samples along
-//! straight lines to 800 a second (`tests/all/code.rs`):
+//! vibration at 200 Hz is 1257 g/s. So a sensor with 800 or 1000 samples a second has up to sixteen spikes a sample. Of
+//! that flight, between its samples along straight lines to 800 a second (`tests/all/code.rs`):
 //!
 //! | | spikes a second | RMSE of rates, °/s | of accelerations, g | samples left behind | most spikes of all channels in a sample |
 //! |---|--:|--:|--:|--:|--:|
@@ -15,14 +15,10 @@ use spikewire::temporal::SendOnDelta;
 /// The most spikes that a channel has for a sample.
 pub const MOST: usize = 16;
 
-/// A spike for every 6 °/s; up to 76 800 °/s² at 800 samples a second.
-pub static RATE: SendOnDelta<f32, MOST> = SendOnDelta::new(6.0);
+/// The code of a channel.
+pub type Jumps = SendOnDelta<i16, MOST>;
 
-/// A spike for every 0.1 g; up to 1280 g/s at 800 samples a second.
-pub static ACCELERATION: SendOnDelta<f32, MOST> = SendOnDelta::new(0.1);
-
-/// Those of six channels.
-pub type Schemes<S = f32> = [&'static SendOnDelta<S, MOST>; 6];
-
-/// Rates about x, y and z, in °/s, then accelerations along them, in g.
-pub const SCHEMES: Schemes = [&RATE, &RATE, &RATE, &ACCELERATION, &ACCELERATION, &ACCELERATION];
+/// A channel whose threshold is the sensor's count nearest to `value`, where `range` is what 2¹⁵ counts are.
+pub const fn threshold(value: f32, range: f32) -> Jumps {
+    SendOnDelta::new((value / range * 32_768.0 + 0.5) as i16)
+}

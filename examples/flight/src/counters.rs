@@ -10,7 +10,7 @@ pub struct Counters {
     pub discarded: u32,
     /// Samples that never came: a data-ready edge was later than a period.
     pub missed: u32,
-    /// Reads that failed, or brought no data.
+    /// Samples that a read did not bring: it failed, or what it brought was none.
     pub failed: u32,
     /// How often a channel had as many spikes in a sample as its code can, or of a code with one spike a sample had it in
     /// two samples in a row: there the signal may have outrun it.

@@ -3,9 +3,6 @@
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::{ErrorType, Operation};
-#[cfg(feature = "blocking")]
-use embedded_hal::spi::{SpiBus, SpiDevice};
-#[cfg(not(feature = "blocking"))]
 use embedded_hal_async::spi::{SpiBus, SpiDevice};
 use embedded_hal_bus::spi::DeviceError;
 
@@ -19,8 +16,8 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// The same for a bus of this clock in Hz. For constants. Not every HAL waits for the last half of a clock before it
-    /// says that a transfer is done (stm32f4xx-hal does not): chip select rises behind it by the guard time alone.
+    /// Returns the same times, for a bus with this clock in Hz. For constants. Not every HAL waits for the last half of a clock
+    /// before it says that a transfer is done: chip select then rises behind it by the guard time alone.
     ///
     /// # Panics
     /// The guard time is shorter than half a period of the clock.
@@ -34,7 +31,8 @@ impl Timing {
 
 /// A device that has its bus for itself, as `ExclusiveDevice` of `embedded-hal-bus`, with guard times and a pause.
 ///
-/// - **Waiting:** spins, as the times are short; `W` may wait longer than it is asked for.
+/// - **Waiting:** spins, as the times are short; [`Spin`](crate::Spin) never waits less than it is asked for, where a HAL's
+///   own delay may.
 /// - **Errors:** chip select rises, and the pause is kept, whatever happened. The first error is returned.
 /// - **Dropped futures:** chip select rises at once.
 #[derive(Debug)]
@@ -65,7 +63,6 @@ impl<B: ErrorType, S: OutputPin, W> ErrorType for Device<B, S, W> {
     type Error = DeviceError<B::Error, S::Error>;
 }
 
-#[maybe_async::maybe_async(AFIT)]
 impl<B: SpiBus, S: OutputPin, W: DelayNs> SpiDevice for Device<B, S, W> {
     async fn transaction(
         &mut self,
@@ -86,7 +83,6 @@ impl<B: SpiBus, S: OutputPin, W: DelayNs> SpiDevice for Device<B, S, W> {
     }
 }
 
-#[maybe_async::maybe_async]
 async fn transfer<B: SpiBus>(
     bus: &mut B,
     wait: &mut impl DelayNs,

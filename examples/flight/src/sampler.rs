@@ -15,11 +15,23 @@ pub struct Plan {
     pub keyframe_every: u16,
     /// How long the sensor may be silent, in µs.
     pub patience: u32,
-    /// How many samples in a row may be alike in all bits of all channels, and how many reads in a row may fail. Noise
-    /// changes some bit of a living sensor's sample all the time; a bus that nobody drives reads the same for ever.
+    /// Samples for each data-ready edge: 1, or a FIFO's watermark.
+    pub burst: u8,
+    /// How many samples in a row may be alike in all bits of the three rates, or of the three accelerations. Noise changes
+    /// some bit of a living sensor's sample all the time; one of two dies may freeze alone. As many samples in a row may
+    /// be missing from what was read.
     pub most_alike: u8,
     /// The most spikes that the code has for a channel and sample.
     pub most_spikes: u8,
+}
+
+impl Plan {
+    /// Number of samples a second, rounded down.
+    pub const fn samples_a_second(&self) -> u16 {
+        let period = if self.period == 0 { 1 } else { self.period as u32 };
+        let samples = 1_000_000 / period;
+        if samples > u16::MAX as u32 { u16::MAX } else { samples as u16 }
+    }
 }
 
 /// Why the sensor must be started.
@@ -30,7 +42,7 @@ pub enum Why {
     NotStarted,
     /// No data-ready edge within the plan's patience.
     Silent,
-    /// Sample after sample is the same in every bit.
+    /// Sample after sample has the same rates, or the same accelerations, in every bit.
     Stuck,
     /// Read after read failed.
     Failing,
@@ -56,7 +68,8 @@ pub struct Sampler<T: Schemes<N>, const N: usize> {
     to_settle: u16,
     to_keyframe: u16,
     bits: [u32; N],
-    alike: u8,
+    /// Samples in a row with the same first half of the channels, and with the same second half.
+    alike: [u8; 2],
     failed: u8,
     /// Which channels were at the limit of their code, by their addresses.
     at_limit: u32,
@@ -88,7 +101,7 @@ where
             to_settle: 0,
             to_keyframe: 0,
             bits: [0; N],
-            alike: 0,
+            alike: [0; 2],
             failed: 0,
             at_limit: 0,
             counters,
@@ -112,9 +125,13 @@ where
         };
         self.failed = 0;
         let bits = sample.map(S::to_bits32);
-        self.alike = if bits.iter().eq(&self.bits) { self.alike.saturating_add(1) } else { 0 };
+        let halves = [0..N / 2, N / 2..N];
+        for (alike, half) in self.alike.iter_mut().zip(halves) {
+            let is_alike = !half.is_empty() && bits.get(half.clone()) == self.bits.get(half);
+            *alike = if is_alike { alike.saturating_add(1) } else { 0 };
+        }
         self.bits = bits;
-        if self.alike >= self.plan.most_alike {
+        if self.alike.iter().any(|&alike| alike >= self.plan.most_alike) {
             return self.end(Why::Stuck, edge, queue);
         }
         if self.to_settle > 0 {
@@ -178,7 +195,7 @@ where
     pub fn started(&mut self, now: Tick) {
         self.dead = None;
         (self.last, self.has_come) = (now, false);
-        (self.alike, self.failed) = (0, 0);
+        (self.alike, self.failed) = ([0; 2], 0);
         (self.to_settle, self.to_keyframe) = (self.plan.settle, 0);
         self.counters.starts = self.counters.starts.wrapping_add(1);
     }

@@ -1,9 +1,11 @@
-//! What one read of the FIFO brings.
+//! The packets of the FIFO.
 
-/// Bytes of a packet: header, accelerations, rates, temperature, time.
+use flight::Sample;
+
+/// Number of bytes of a packet: header, accelerations, rates, temperature, time.
 pub const PACKET: usize = 16;
 
-/// Packets from one interrupt to the next, and in a burst: a millisecond.
+/// Number of packets from one interrupt to the next, and in a burst: a millisecond.
 pub const WATERMARK: usize = 8;
 
 /// The header of a packet with both sensors in 16 bits; its low bits tell of a time stamp and of changed rates.
@@ -13,39 +15,14 @@ const HEADER_MASK: u8 = 0xF0;
 /// A channel that the sensor has no sample of.
 const NONE: i16 = i16::MIN;
 
-/// The oldest packets of the FIFO, up to [`WATERMARK`].
-#[derive(Clone, Copy, Debug)]
-pub struct Burst<'a> {
-    packets: &'a [[u8; PACKET]],
-    in_fifo: usize,
-}
-
-impl<'a> Burst<'a> {
-    /// Packets as they came, and how many the FIFO held before they were read.
-    pub fn new(packets: &'a [[u8; PACKET]], in_fifo: usize) -> Self {
-        Self { packets: &packets[..in_fifo.min(packets.len())], in_fifo }
-    }
-
-    /// How many packets the FIFO held. The last of them is the sensor's newest sample.
-    pub fn in_fifo(&self) -> usize {
-        self.in_fifo
-    }
-
-    /// How many packets the FIFO holds now.
-    pub fn left(&self) -> usize {
-        self.in_fifo - self.packets.len()
-    }
-
-    /// The samples, oldest first: rates about x, y and z, then accelerations along them, in counts. `None` is a packet
-    /// without all six, as there are some after the start.
-    #[inline]
-    pub fn samples(&self) -> impl ExactSizeIterator<Item = Option<[i16; 6]>> + use<'a> {
-        self.packets.iter().map(parse)
-    }
+/// The samples of packets, oldest first. `None` is a packet without all six channels, as there are some after the start.
+#[inline]
+pub(crate) fn samples(packets: &[[u8; PACKET]]) -> impl ExactSizeIterator<Item = Option<Sample>> {
+    packets.iter().map(parse)
 }
 
 #[inline]
-fn parse(packet: &[u8; PACKET]) -> Option<[i16; 6]> {
+fn parse(packet: &[u8; PACKET]) -> Option<Sample> {
     let [header, ax1, ax0, ay1, ay0, az1, az0, rx1, rx0, ry1, ry0, rz1, rz0, ..] = *packet;
     let sample = [[rx1, rx0], [ry1, ry0], [rz1, rz0], [ax1, ax0], [ay1, ay0], [az1, az0]]
         .map(i16::from_be_bytes);
@@ -78,15 +55,6 @@ mod tests {
             let mut packet = WHOLE;
             packet[1 + 2 * channel..][..2].copy_from_slice(&[0x80, 0]);
             assert_eq!(parse(&packet), None, "channel {channel}");
-        }
-    }
-
-    #[test]
-    fn a_burst_has_no_more_than_the_fifo_held() {
-        let packets = [WHOLE; WATERMARK];
-        for (in_fifo, read, left) in [(0, 0, 0), (3, 3, 0), (8, 8, 0), (11, 8, 3)] {
-            let burst = Burst::new(&packets, in_fifo);
-            assert_eq!((burst.samples().len(), burst.left()), (read, left), "{in_fifo}");
         }
     }
 }

@@ -1,8 +1,8 @@
-//! An ICM-42688-P at 8 kHz: six channels through the sensor's FIFO into spikes, and frames out of any port.
+//! An ICM-42688-P at 8 kHz, on SPI, through its FIFO.
 //!
-//! - [`Icm42688p`] starts the sensor, reads its configuration back, and reads bursts of eight packets.
-//! - [`Watch`] runs for ever: it samples and encodes, and starts the sensor again when it falls silent.
-//! - [`Sender`] writes frames to a UART or a USB port.
+//! The sensor raises INT1 for every eighth sample, and one transfer brings the eight: a thousand interrupts a second in place
+//! of eight thousand, for up to a millisecond of latency. The FIFO holds 16 ms, so that a late task loses nothing.
+//! [`Icm42688p`] keeps the contract of [`flight::Imu`]: give it to a [`flight::Watch`].
 //!
 //! A part whose DMA does not reach every memory gives the driver a [`Buffer`] in one that it reaches: every transfer goes
 //! through that buffer.
@@ -11,13 +11,7 @@
 
 mod burst;
 mod driver;
-mod pace;
 mod registers;
-mod sender;
-mod watch;
 
-pub use burst::{Burst, PACKET, WATERMARK};
-pub use driver::{Buffer, Fault, Icm42688p, NEW_BUFFER};
-pub use pace::Pace;
-pub use sender::Sender;
-pub use watch::{CHANNELS, PERIOD, PLAN, SAMPLE_RATE, SCHEMES, Schemes, Watch, encode};
+pub use burst::{PACKET, WATERMARK};
+pub use driver::{Buffer, Icm42688p, NEW_BUFFER, SAMPLE_RATE, TIMING};

@@ -7,7 +7,7 @@ use cortex_m_rt::exception;
 use critical_section::Mutex;
 use spikewire::{
     Bank, Decoder, EventQueue, Overflow, Scheme,
-    link::{Coding, MAX_FRAME, Transmitter},
+    link::{Coding, MAX_FRAME, Session, Transmitter},
     out::SerialSink,
     temporal::StepForward,
 };
@@ -21,14 +21,14 @@ static ACCELERATION: StepForward<f32> = StepForward::new(0.5);
 const SCHEMES: Schemes = [&RATE, &RATE, &RATE, &ACCELERATION, &ACCELERATION, &ACCELERATION];
 type Schemes = [&'static StepForward<f32>; CHANNELS];
 
-/// Samples from one keyframe to the next: a second of the recording.
-const KEYFRAME_EVERY: usize = 200;
+/// Samples from one keyframe to the next: 50 ms of the recording, as the far end's silence counts on.
+const KEYFRAME_EVERY: usize = 10;
 /// The recording's, in µs; its ticks come up to 32 µs early or late.
 const PERIOD: u16 = 5_000;
 /// From one sample to the next: some 1000 a second at QEMU's 168 MHz.
 const TIMER_RELOAD: u32 = 168_000;
 /// The board starts once; one that may start again counts its starts.
-const SESSION: u16 = 1;
+const SESSION: Session = Session::counted(0);
 
 static EVENTS: EventQueue<64> = EventQueue::new(Overflow::DropOldest);
 static SAMPLER: Mutex<RefCell<Sampler>> = Mutex::new(RefCell::new(Sampler::new()));

@@ -6,7 +6,7 @@ use defmt_semihosting as _;
 use fixed::{FixedI32, types::extra::U16};
 use spikewire::{
     Bank, Event, EventQueue, Overflow, Polarity, Scheme, Spike, Tick,
-    link::{Coding, FrameView, Framer, Gap},
+    link::{Coding, FrameView, Framer, Gap, Session},
     population::Gaussian,
     temporal::{StepForward, TemporalContrast},
 };
@@ -45,7 +45,7 @@ pub fn run() -> fmt::Result {
         error!("{}", wrong);
     }
 
-    let mut framer = Framer::new(Coding::for_channels(6, 1_000), 1);
+    let mut framer = Framer::new(Coding::for_channels(6, 1_000), Session::counted(1));
     let mut buffer = [0; 64];
     let frame = framer.start(second, &mut buffer).map_err(|_| fmt::Error)?.finish();
     for bytes in [&frame[..5], &frame[1..]] {

@@ -90,7 +90,7 @@ pub fn ends<P: Scheme>(scheme: &P) {
         readout.reset();
         hide(readout);
     }
-    let receiver = Receiver::<_, 2>::new(scheme).with_slot_ticks(black_box(10), tick());
+    let receiver = Receiver::<_, 2>::new(scheme).with_slot_ticks(black_box(10));
     let Ok(mut receiver) = black_box(receiver).try_with_first_address(black_box(3)) else { return };
     let mut reader = black_box(Reader::<MAX_FRAME>::new());
     let mut input = black_box(&[0_u8; 9][..]);

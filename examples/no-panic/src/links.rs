@@ -22,7 +22,7 @@ use spikewire::{
         TinyOdin, TinyOdinInput, Xylo, XyloMap,
     },
     format::{Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, eieio},
-    link::{Coding, FrameView, Framer, MAX_FRAME, Reader, Receiver, Transmitter},
+    link::{Coding, FrameView, Framer, MAX_FRAME, Reader, Receiver, Session, Transmitter},
     out::{AsyncSpiSink, Batch, Formatted, SerialSink, SpiSink},
     temporal::StepForward,
 };
@@ -52,10 +52,11 @@ fn time() {
     hide(SampleKind::from_byte(black_box(7)).map(|kind| (kind.to_byte(), kind.size())));
 }
 
-fn items() -> [Item; 3] {
+fn items() -> [Item; 4] {
     let keyframe = Keyframe::new(tick(), black_box(1), black_box(0.5_f32));
     hide((keyframe.value::<f32>(), keyframe.value::<i16>()));
-    black_box([event().into(), keyframe.into(), Item::Break(tick())])
+    let heartbeat = Item::Heartbeat { tick: tick(), address: black_box(1) };
+    black_box([event().into(), keyframe.into(), heartbeat, Item::Break(tick())])
 }
 
 /// Takes all that a source has.
@@ -110,7 +111,9 @@ fn framed<S: Sample>(scheme: &'static StepForward<S>) -> Option<()> {
     bank.reset_into(tick(), &EVENTS);
 
     let mut events = EVENTS.consumer()?;
-    let mut transmitter = black_box(Transmitter::new(coding, black_box(1)));
+    let mut transmitter = black_box(Transmitter::new(coding, Session::counted(black_box(1))));
+    transmitter.observe(tick());
+    hide(transmitter.leaps());
     let mut reader = black_box(Reader::<MAX_FRAME>::new());
     let mut receiver = black_box(Receiver::<_, 3, 0>::per_channel([scheme; 3]));
     let mut buffer = black_box([0; 300]);
@@ -125,9 +128,10 @@ fn framed<S: Sample>(scheme: &'static StepForward<S>) -> Option<()> {
     }
     hide((reader.frames(), reader.lost_frames(), reader.bad_checksums(), reader.skipped()));
     hide((reader.repeated(), reader.late(), receiver.exact(black_box(1))));
+    hide(receiver.withheld(black_box(1)));
     hide(black_box(Readout::<_, 3>::per_channel([scheme; 3])).decode(tick(), &[event()]));
 
-    let mut framer = black_box(Framer::new(coding, black_box(1)));
+    let mut framer = black_box(Framer::new(coding, Session::counted(black_box(1))));
     framer.mark_loss();
     let mut frame = framer.start(tick(), &mut buffer).ok()?;
     let keyframe = Keyframe::new(tick(), black_box(0), S::default());
@@ -135,7 +139,8 @@ fn framed<S: Sample>(scheme: &'static StepForward<S>) -> Option<()> {
     let bytes = black_box(frame.finish());
     hide(FrameView::length(bytes));
     let (view, length) = FrameView::new(bytes).ok()?;
-    hide((view.session(), view.sequence(), view.tick(), view.period(), view.is_after_loss()));
+    hide((view.number(), view.micros(), view.is_first(), view.tick(), view.period()));
+    hide((view.is_after_loss(), view.heartbeats().count()));
     let mut events = view.events();
     events.by_ref().for_each(hide);
     view.keyframes().for_each(hide);
@@ -181,7 +186,8 @@ fn sinks() -> Option<()> {
     hide(sink.release());
     let mut sink = black_box(AsyncSpiSink::<_, _, 32>::new(Bus, Formatted::new(Evt2::encoder())));
     hide(poll(pin!(sink.send(&mut events))).map(|sent| sent.is_ok()));
-    let transmitter = Transmitter::new(black_box(Coding::for_channels(3, 1)), black_box(1));
+    let session = black_box(Session::random(black_box(1)));
+    let transmitter = Transmitter::new(black_box(Coding::for_channels(3, 1)), session);
     let mut sink = black_box(SerialSink::<_, _, 64>::new(Bus, transmitter));
     hide((sink.send(&mut events).is_ok(), sink.try_send(&mut events).is_ok()));
     hide((sink.flush().is_ok(), sink.waiting()));

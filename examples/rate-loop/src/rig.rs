@@ -15,7 +15,7 @@ use spikewire::{
 type Chip = TinyOdin<silicon::Spi<silicon::TinyOdin>, Recording<silicon::Port<silicon::TinyOdin>>>;
 type Twin = TinyOdin<Repeating, Repeating>;
 
-/// Of the chip to one of SCK: 10 MHz and 656 kHz, as on the STM32F405 of `stm32f405-rtic`.
+/// Of the chip to one of SCK: 10 MHz and 656 kHz, as an STM32F405 has it from 42 MHz.
 const RATIO: u32 = 16;
 /// Of the chip to a look at its pins: some 34 instructions of a core at 168 MHz.
 const LOOK: u32 = 2;

@@ -37,7 +37,9 @@ impl Account {
         self.lost += lost;
         match item {
             Item::Break(_) => ensure(lost > 0, "nothing was lost before a break"),
-            Item::Keyframe(_) => Err("a keyframe that nobody pushed"),
+            Item::Keyframe(_) | Item::Heartbeat { .. } => {
+                Err("a keyframe or heartbeat that nobody pushed")
+            }
             Item::Event(event) => {
                 let (source, number) = read(event).ok_or("an event is torn")?;
                 let [upper, lower] = &mut self.of;

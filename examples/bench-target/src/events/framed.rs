@@ -10,7 +10,7 @@ use board::stopwatch::{instructions, keep};
 use fixed::{FixedI32, types::extra::U16};
 use spikewire::{
     Decoder, Event, FromEvents, Sample, Scheme,
-    link::{Coding, FrameView, MAX_FRAME, Reader, Receiver, Transmitter},
+    link::{Coding, FrameView, MAX_FRAME, Reader, Receiver, Session, Transmitter},
     temporal::StepForward,
 };
 
@@ -74,7 +74,10 @@ struct Values<'a, S: Sample> {
 impl<'a> Link<'a> {
     fn new(floats: &'a Schemes<f32>, fixed: &'a Schemes<FixedI32<U16>>) -> Self {
         Self {
-            transmitter: Transmitter::new(Coding::for_channels(CHANNELS as u16, PERIOD), 1),
+            transmitter: Transmitter::new(
+                Coding::for_channels(CHANNELS as u16, PERIOD),
+                Session::counted(1),
+            ),
             reader: Reader::new(),
             floats: Values::new(floats),
             fixed: Values::new(fixed),

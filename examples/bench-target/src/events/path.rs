@@ -8,7 +8,7 @@ use core::{
 use board::stopwatch::instructions;
 use spikewire::{
     Bank, Consumer, Event, EventQueue, Overflow, Source as _, SpscQueue, Tick,
-    link::{Coding, MAX_FRAME, Reader, Receiver, Transmitter},
+    link::{Coding, MAX_FRAME, Reader, Receiver, Session, Transmitter},
 };
 
 use super::{
@@ -108,7 +108,10 @@ impl<'a, S: Measured> Way<'a, S> {
     fn new(schemes: &'a Schemes<S>, period: u16) -> Self {
         Self {
             bank: schemes.bank(),
-            transmitter: Transmitter::new(Coding::for_channels(CHANNELS as u16, period), 1),
+            transmitter: Transmitter::new(
+                Coding::for_channels(CHANNELS as u16, period),
+                Session::counted(1),
+            ),
             reader: Reader::new(),
             receiver: Receiver::per_channel(schemes.each()),
             interrupt: Cost::default(),

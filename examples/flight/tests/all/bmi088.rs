@@ -2,7 +2,10 @@
 
 use embedded_hal::i2c::ErrorKind;
 use embedded_hal_mock::eh1::{delay::NoopDelay, i2c::Mock, i2c::Transaction};
-use flight::bmi088::{ACCEL, Bmi088, GYRO, StartError};
+use flight::{
+    Fault, Imu,
+    bmi088::{ACCEL, Bmi088, GYRO},
+};
 
 use crate::finish;
 
@@ -42,7 +45,7 @@ fn transactions() -> Vec<Transaction> {
     ]
 }
 
-fn start(transactions: &[Transaction]) -> Result<(), StartError<ErrorKind>> {
+fn start(transactions: &[Transaction]) -> Result<(), Fault> {
     let mut bus = Mock::new(transactions);
     let started = finish(Bmi088::new(bus.clone()).start(&mut NoopDelay));
     bus.done();
@@ -61,20 +64,22 @@ fn an_error_at_every_access_ends_the_start() {
         until.truncate(access + 1);
         let failing = until.pop().map(|one| one.with_error(ErrorKind::Other));
         until.extend(failing);
-        assert_eq!(start(&until), Err(StartError::Bus(ErrorKind::Other)), "{access}");
+        assert_eq!(start(&until), Err(Fault::Bus), "{access}");
     }
 }
 
 #[test]
-fn a_setting_that_is_not_kept_ends_the_start() {
-    for (access, address, register, expected) in
-        [(2, ACCEL, 0x00, 0x1E), (15, ACCEL, 0x40, 0x8C), (18, GYRO, 0x10, 0x82)]
-    {
+fn another_identity_or_a_setting_that_is_not_kept_ends_the_start() {
+    let register = |address, wrote| Fault::Register { address, wrote, read: 0x55 };
+    for (access, die, address, fault) in [
+        (2, ACCEL, 0x00, Fault::Identity(0x55)),
+        (15, ACCEL, 0x40, register(0x1840, 0x8C)),
+        (18, GYRO, 0x10, register(0x6910, 0x82)),
+    ] {
         let mut until = transactions();
         until.truncate(access);
-        until.push(reads(address, register, 0x55));
-        let differs = StartError::Differs { address, register, expected, found: 0x55 };
-        assert_eq!(start(&until), Err(differs), "{access}");
+        until.push(reads(die, address, 0x55));
+        assert_eq!(start(&until), Err(fault), "{access}");
     }
 }
 
@@ -86,8 +91,8 @@ fn samples_are_rates_then_accelerations() {
         Transaction::write_read(GYRO, vec![0x02], vec![0; 6]).with_error(ErrorKind::Other),
     ]);
     let mut imu = Bmi088::new(bus.clone());
-    let step = 2000.0 / 32_768.0;
-    assert_eq!(finish(imu.read()), Ok([1000.0, -1000.0, step, -24.0, 0.0, 6.0]));
-    assert_eq!(finish(imu.read()), Err(ErrorKind::Other));
+    let sample = finish(imu.read()).unwrap().samples.next().unwrap();
+    assert_eq!(sample, Some([0x4000, -0x4000, 1, i16::MIN, 0, 0x2000]));
+    assert_eq!(finish(imu.read()).map(|_| ()), Err(Fault::Bus));
     bus.done();
 }

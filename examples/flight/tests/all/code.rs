@@ -1,7 +1,11 @@
 //! The code of the channels, on the recorded flight.
 
-use flight::code::{self, MOST};
+use flight::code::{Jumps, MOST, threshold};
 use spikewire::{Scheme, temporal::SendOnDelta};
+
+/// The table's code in °/s and g, which the sensors have in counts.
+static RATES: SendOnDelta<f32, MOST> = SendOnDelta::new(6.0);
+static ACCELERATIONS: SendOnDelta<f32, MOST> = SendOnDelta::new(0.1);
 
 const RATE: u32 = 800;
 const STANDARD_GRAVITY: f32 = 9.80665;
@@ -51,7 +55,8 @@ fn follow<const K: usize>(scheme: &SendOnDelta<f32, K>, signal: &[f32]) -> Follo
 #[test]
 fn no_sample_of_the_flight_outruns_the_code() {
     let mut together = Vec::new();
-    for (channel, scheme) in code::SCHEMES.into_iter().enumerate() {
+    for channel in 0..6 {
+        let scheme = if channel < 3 { &RATES } else { &ACCELERATIONS };
         let signal = flown(channel);
         let followed = follow(scheme, &signal);
         assert_eq!(followed.behind, 0, "channel {channel}");
@@ -85,6 +90,13 @@ fn vibration_of_one_g_at_200_hz_is_followed() {
             (turns * std::f64::consts::TAU).sin() as f32
         };
         let signal: Vec<f32> = (0..RATE).map(wave).collect();
-        assert_eq!(follow(&code::ACCELERATION, &signal).behind, 0, "{phase}");
+        assert_eq!(follow(&ACCELERATIONS, &signal).behind, 0, "{phase}");
     }
+}
+
+#[test]
+fn thresholds_in_counts_are_the_nearest_to_those_of_the_table() {
+    let counts = |scheme: Jumps| scheme.threshold();
+    assert_eq!((counts(threshold(6.0, 2000.0)), counts(threshold(0.1, 16.0))), (98, 205));
+    assert_eq!(counts(threshold(0.1, 24.0)), 137);
 }

@@ -3,10 +3,7 @@
 use std::{cell::RefCell, rc::Rc};
 
 use embedded_hal::spi::Operation;
-#[cfg(feature = "blocking")]
-use embedded_hal::spi::{SpiBus, SpiDevice};
 use embedded_hal::{delay, digital, spi};
-#[cfg(not(feature = "blocking"))]
 use embedded_hal_async::spi::{SpiBus, SpiDevice};
 use flight::{Device, Timing};
 
@@ -56,7 +53,6 @@ impl spi::ErrorType for Bench {
     type Error = Broken;
 }
 
-#[maybe_async::maybe_async(AFIT)]
 impl SpiBus for Bench {
     async fn read(&mut self, bytes: &mut [u8]) -> Result<(), Broken> {
         self.does(Read(bytes.len()))
@@ -139,7 +135,6 @@ fn chip_select_rises_whatever_fails() {
 }
 
 #[test]
-#[cfg(not(feature = "blocking"))]
 fn chip_select_rises_when_the_future_is_dropped() {
     use std::{pin::pin, task::Context, task::Waker};
 

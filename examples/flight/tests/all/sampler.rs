@@ -13,6 +13,7 @@ const PLAN: Plan = Plan {
     settle: 2,
     keyframe_every: 5,
     patience: 4_500,
+    burst: 1,
     most_alike: 3,
     most_spikes: 4,
 };
@@ -41,7 +42,7 @@ fn sampler() -> Two {
 
 /// A sample that differs from the one before, as noise has it.
 fn noise(sample: u32) -> Result<[i16; 2], ()> {
-    Ok([(sample % 2) as i16, 0])
+    Ok([(sample % 2) as i16; 2])
 }
 
 fn fly(sampler: &mut Two, samples: std::ops::Range<u32>, log: &mut Log) {
@@ -126,6 +127,21 @@ fn a_sensor_that_says_the_same_is_stuck() {
         }
         assert_eq!(sampler.look(at(20), &mut log), Some(Why::Stuck));
         assert_eq!(breaks(&log), 1);
+    }
+}
+
+/// An accelerometer of its own die, whose rates go on.
+#[test]
+fn one_frozen_half_of_the_channels_is_stuck() {
+    for half in [0, 1] {
+        let (mut sampler, mut log) = (sampler(), Log::default());
+        fly(&mut sampler, 1..11, &mut log);
+        for sample in 11..15 {
+            let mut values = noise(sample).unwrap();
+            values[half] = 1;
+            sampler.take(at(sample), Ok::<_, ()>(values), &mut log);
+        }
+        assert_eq!(sampler.look(at(15), &mut log), Some(Why::Stuck), "{half}");
     }
 }
 

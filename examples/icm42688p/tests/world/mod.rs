@@ -26,6 +26,8 @@ const BYTE_NS: u64 = 800;
 pub enum Fate {
     /// It loses its supply, and its line floats to this byte.
     Dies(u8),
+    /// It samples on and raises its interrupt line, but MISO is stuck at this byte.
+    Stuck(u8),
     /// It has its supply again, with its registers as after a reset.
     Revives,
     /// It samples on, but its interrupt line is broken, or whole.
@@ -41,6 +43,7 @@ pub struct World {
     pub fates: Vec<(u64, Fate)>,
     pub is_alive: bool,
     floats_to: u8,
+    stuck_at: Option<u8>,
     has_line: bool,
     registers: [u8; 128],
     fifo: Vec<u8>,
@@ -77,6 +80,7 @@ impl Handle {
             fates: Vec::new(),
             is_alive: true,
             floats_to: 0,
+            stuck_at: None,
             has_line: true,
             registers: reset(),
             fifo: Vec::new(),
@@ -135,6 +139,7 @@ impl World {
             self.fates.remove(0);
             match fate {
                 Fate::Dies(floats_to) => (self.is_alive, self.floats_to) = (false, floats_to),
+                Fate::Stuck(byte) => self.stuck_at = Some(byte),
                 Fate::Revives => self.power_on(),
                 Fate::Line(is_whole) => self.has_line = is_whole,
                 Fate::Stall(time) => to += time * 1_000_000,
@@ -187,16 +192,27 @@ impl World {
         if !self.is_alive {
             return bytes.fill(self.floats_to);
         }
+        self.answer(bytes);
+        if let Some(byte) = self.stuck_at {
+            bytes.fill(byte);
+        }
+    }
+
+    fn answer(&mut self, bytes: &mut [u8]) {
         let address = bytes[0] & 0x7F;
         if bytes[0] & 0x80 == 0 {
             assert_eq!(bytes.len(), 2, "a write of one register");
             match (address, bytes[1]) {
                 (0x11, 1) => self.power_on(),
-                (0x4B, 2) => (self.fifo, self.is_full) = (Vec::new(), false),
+                // The status stays until somebody looks.
+                (0x4B, 2) => self.fifo.clear(),
                 (address, value) => self.registers[usize::from(address)] = value,
             }
         } else if address == 0x2D {
             bytes[1] = 0x04 | u8::from(std::mem::take(&mut self.is_full)) << 1;
+            if bytes.len() == 2 {
+                return;
+            }
             bytes[2..4].copy_from_slice(&(self.fifo.len() as u16).to_be_bytes());
             let read = self.fifo.len().min(bytes.len() - 4);
             bytes[4..].fill(0xFF);
@@ -273,6 +289,7 @@ impl Wait for Line {
     }
 }
 
+#[derive(Clone)]
 pub struct Pause(pub Handle);
 
 impl DelayNs for Pause {

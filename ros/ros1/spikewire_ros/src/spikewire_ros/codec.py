@@ -27,7 +27,7 @@ class Codec:
         given = scheme.parameters
         self.name = scheme.name
         # Whether the value of the first sample is known, so that its spike changes nothing.
-        self.starts_at_first = "start" in _names(scheme) and "start" not in given
+        self.starts_at_first = "start" in parameters(scheme) and "start" not in given
         # What messages say of it.
         self.first = values[0] if self.starts_at_first else float(given.get("start", 0.0))
         self.threshold = float(given.get("threshold", 0.0))
@@ -77,10 +77,12 @@ class Request:
     def __init__(self, settings: Settings) -> None:
         """`ValueError`: a parameter is not good."""
         self._settings = settings
-        self._class = spikewire.schemes.get(settings.scheme)
-        if self._class is None:
-            raise ValueError(f"encoding_scheme {settings.scheme}: there are {', '.join(spikewire.schemes)}")
-        _check(self._class, settings.options)
+        taken = names(settings.scheme)
+        self._class = spikewire.schemes[settings.scheme]
+        for name in settings.options:
+            if name not in taken:
+                kind = self._class.__name__
+                raise ValueError(f"{name}: no parameter of {kind}; it takes {', '.join(taken)}")
 
     @property
     def enough(self) -> int:
@@ -110,7 +112,7 @@ class Request:
 
     def receive(self, told: Mapping[str, float], length: int, first: float) -> Codec:
         """As it decodes messages of so many numbers that tell these parameters."""
-        names = _names(self._class)
+        names = parameters(self._class)
         options: dict[str, Any] = {name: value for name, value in told.items() if name in names}
         if self._settings.scheme in _NEURON_BY_NEURON:
             options["neurons"] = length
@@ -122,14 +124,15 @@ class Request:
         return self._class(sample=self._settings.sample, **options)
 
 
-def _names(scheme: Any) -> list[str]:
+def names(scheme: str) -> list[str]:
+    """The parameters that the scheme of this name takes. `ValueError`: there is no such scheme."""
+    kind = spikewire.schemes.get(scheme)
+    if kind is None:
+        raise ValueError(f"encoding_scheme {scheme}: there are {', '.join(spikewire.schemes)}")
+    return parameters(kind)
+
+
+def parameters(scheme: Any) -> list[str]:
     """The parameters that a scheme, or its class, takes."""
     kind = scheme if isinstance(scheme, type) else type(scheme)
     return [name for name in signature(kind).parameters if name not in ("sample", "paper")]
-
-
-def _check(kind: type, options: Mapping[str, Any]) -> None:
-    names = _names(kind)
-    for name in options:
-        if name not in names:
-            raise ValueError(f"{name}: no parameter of {kind.__name__}; it takes {', '.join(names)}")

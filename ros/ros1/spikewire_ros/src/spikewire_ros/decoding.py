@@ -63,9 +63,7 @@ class Decoding:
             settings = replace(settings, scheme=schemes.of_catalogue(message.scheme))
         low, high = message.min_input, message.max_input
         if message.scheme == schemes.GAUSSIAN_FIELDS:
-            # The range in which our neurons have the centres of the toolbox's.
-            field = (high - low) / max(len(message.spikes) - 2, 1)
-            low, high = low - field, high - field
+            low, high = schemes.toolbox_range(low, high, len(message.spikes))
         known = {"threshold": message.threshold, "min": low, "max": high, "shift": low}
         codec = Request(settings).receive(known, len(message.spikes), message.start)
         self._encoder = (message.scheme, message.start)

@@ -77,9 +77,8 @@ def _numeric(value: Any, before: str) -> Iterator[str]:
 
 
 def _names(value: Any) -> list[str]:
-    """A message's fields: in ROS 2 its slots have an underscore before, and one more that is no field."""
-    slots = [slot.lstrip("_") for slot in getattr(value, "__slots__", ())]
-    return [slot for slot in slots if slot != "check_fields"]
+    """A message's fields."""
+    return list(getattr(value, "__slots__", ()))
 
 
 def _kind(value: Any) -> str:

@@ -4,9 +4,12 @@ import sys
 import threading
 import time
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any, Callable, Optional
 
+import rospkg
 import rospy
+import yaml
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from genpy import DeserializationError
 from genpy.dynamic import MsgGenerationException, generate_dynamic
@@ -22,9 +25,9 @@ from .settings import Settings
 from .wave import HERTZ, wave
 
 # Of publishers: nothing is dropped when a subscriber is slow.
-_NO_LIMIT = 0
+NO_LIMIT = 0
 # Seconds that publishers have for what is left when a node ends: they send in threads of their own.
-_TO_SEND = 0.5
+TO_SEND = 0.5
 
 
 class Node:
@@ -37,13 +40,15 @@ class Node:
         # How many messages came and how many went.
         self.taken = self.given = 0
         self._failure: Optional[str] = None
-        self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=_NO_LIMIT)
+        self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=NO_LIMIT)
 
-    def settings(self) -> Settings:
-        """The parameters: the node's own, and the toolbox's."""
-        own = rospy.get_param("~", {})
+    def settings(self, **more: Any) -> Settings:
+        """The parameters: the node's own and these, and the toolbox's."""
+        own = {**more, **rospy.get_param("~", {})}
         names = ("encoding_scheme", "factor", "threshold", "window", "neurons")
-        return parameters.read(own, {name: rospy.get_param(name) for name in names if rospy.has_param(name)})
+        shared = {name: rospy.get_param(name) for name in names if rospy.has_param(name)}
+        table = Path(rospkg.RosPack().get_path("spikewire_ros")) / "config" / "defaults.yaml"
+        return parameters.read(own, shared, yaml.safe_load(table.read_text()))
 
     def fail(self, why: str) -> None:
         """Ends the node with exit status 2."""
@@ -137,11 +142,11 @@ class Encode(Node):
         self._numbers = Sequence(self.counters)
         self._encoding = Encoding(settings, self.counters)
         kind = spyke_array if self._encoding.is_array else spyke
-        self._event = rospy.Publisher("event", kind, queue_size=_NO_LIMIT)
+        self._event = rospy.Publisher("event", kind, queue_size=NO_LIMIT)
         # For those who come later, too.
-        self._header = rospy.Publisher("event_header", String, queue_size=_NO_LIMIT, latch=True)
+        self._header = rospy.Publisher("event_header", String, queue_size=NO_LIMIT, latch=True)
         self._is_header_sent = False
-        self._decoded = rospy.Publisher("~decoded", spyke_value, queue_size=_NO_LIMIT)
+        self._decoded = rospy.Publisher("~decoded", spyke_value, queue_size=NO_LIMIT)
         rospy.on_shutdown(self.guarded(self._end))
         self._topic = rospy.Subscriber(settings.topic, rospy.AnyMsg, self.guarded(self._take))
 
@@ -157,7 +162,7 @@ class Encode(Node):
 
     def _end(self) -> None:
         self._publish(self._encoding.end())
-        time.sleep(_TO_SEND)
+        time.sleep(TO_SEND)
 
     def _publish(self, events: Iterable[Event]) -> None:
         for event in events:
@@ -176,7 +181,7 @@ class Decode(Node):
         super().__init__("decode")
         self._any = AnyMessage()
         self._decoding = Decoding(self.settings(), self.counters)
-        self._decoded = rospy.Publisher("~decoded", spyke_value, queue_size=_NO_LIMIT)
+        self._decoded = rospy.Publisher("~decoded", spyke_value, queue_size=NO_LIMIT)
         self._topic = rospy.Subscriber("event", rospy.AnyMsg, self.guarded(self._take))
 
     def _take(self, raw: rospy.AnyMsg) -> None:
@@ -200,7 +205,7 @@ class Signal(Node):
         self._samples = wave(dt, t_max, rospy.get_param("~seed", 0), rospy.get_param("~hertz", HERTZ))
         self._subscribers = rospy.get_param("~subscribers", 1)
         self._rate = rospy.Rate(1.0 / dt)
-        self._publisher = rospy.Publisher("signal", Float64, queue_size=_NO_LIMIT)
+        self._publisher = rospy.Publisher("signal", Float64, queue_size=NO_LIMIT)
 
     def run(self) -> int:
         # The first samples would be lost on those that are still to subscribe, or to record the spikes.

@@ -15,6 +15,12 @@ GAUSSIAN_FIELDS = "gaussian_fields"
 _SAME = {name: word for word, name in _OF_TOOLBOX.items() if word != GAUSSIAN_FIELDS}
 
 
+def toolbox_range(low: float, high: float, neurons: int) -> tuple[float, float]:
+    """The range in which our neurons have the centres that the toolbox's have for this one: a field lower."""
+    field = (high - low) / max(neurons - 2, 1)
+    return low - field, high - field
+
+
 def of_catalogue(name: str) -> str:
     """The catalogue's name of a scheme that is called by either name, or by the catalogue's with underscores."""
     return _OF_TOOLBOX.get(name, name.replace("_", "-"))

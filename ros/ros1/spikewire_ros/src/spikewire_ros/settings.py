@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, Optional
 
 from . import schemes
 
 # What every node takes; all else is the scheme's.
-_OWN = ("encoding_scheme", "sample", "topic", "field", "calibrate", "gap")
+_OWN = ("encoding_scheme", "sample", "topic", "field", "calibrate", "gap", "defaults")
 # The toolbox sets these for all schemes, at 0 where a scheme has no use for them.
 _OF_TOOLBOX = ("factor", "threshold", "window", "neurons")
 
@@ -30,8 +31,12 @@ class Settings:
     options: dict[str, Any]
 
 
-def read(private: Mapping[str, Any], shared: Mapping[str, Any]) -> Settings:
+def read(
+    private: Mapping[str, Any], shared: Mapping[str, Any], table: Mapping[str, Any] = MappingProxyType({})
+) -> Settings:
     """From a node's own parameters and, where those lack something, from the toolbox's, which are set for all nodes.
+
+    Where `defaults` is set, a scheme's own in the table stand in for what both lack.
 
     Raises `ValueError` that says which parameter, what it was and what is allowed.
     """
@@ -39,6 +44,8 @@ def read(private: Mapping[str, Any], shared: Mapping[str, Any]) -> Settings:
     given.update({name: shared[name] for name in _OF_TOOLBOX if shared.get(name)})
     given.update(private)
     scheme = given.get("encoding_scheme")
+    if given.get("defaults"):
+        given = {**table.get(schemes.of_catalogue(str(scheme)), {}), **given}
     gap, calibrate = given.get("gap", 1.5), given.get("calibrate", 0)
     if not isinstance(gap, (int, float)) or not gap > 1:
         raise ValueError(f"gap {gap}: it must be a number above 1, in usual steps")

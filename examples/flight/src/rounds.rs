@@ -1,0 +1,25 @@
+//! Signs of life of a task, for a watchdog.
+
+use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+/// A count that one task raises and another one looks at.
+#[derive(Debug, Default)]
+pub struct Rounds(AtomicU32);
+
+impl Rounds {
+    /// No round so far.
+    pub const fn new() -> Self {
+        Self(AtomicU32::new(0))
+    }
+
+    /// Counts a round. Only one task may call it, as a Cortex-M0 has no atomic addition.
+    pub fn count(&self) {
+        self.0.store(self.0.load(Relaxed).wrapping_add(1), Relaxed);
+    }
+
+    /// Returns whether there was a round since the last call with the same `seen`.
+    pub fn went_on(&self, seen: &mut u32) -> bool {
+        let now = self.0.load(Relaxed);
+        core::mem::replace(seen, now) != now
+    }
+}

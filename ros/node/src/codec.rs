@@ -1,0 +1,250 @@
+//! The run-time codecs of the catalogue, a sample at a time. All use of them is here.
+
+use crate::settings::Settings;
+use anyhow::{Context, Result, anyhow, bail};
+use catalogue::run::{
+    Asked, Calibrated, Event, Known, RunTime, SampleType, Settings as Complete, Value,
+};
+use spikewire::Polarity;
+
+/// Schemes whose messages have a number for each neuron.
+const NEURON_BY_NEURON: [&str; 4] = ["position", "grf", "grf-prob", "grf-nonlinear"];
+/// Parameters from which an encoder finds its threshold, which messages tell.
+const OF_THRESHOLD: [&str; 2] = ["factor", "magnitudes"];
+
+/// A scheme with what was given of its parameters; samples or messages may tell the rest.
+#[derive(Clone)]
+pub(crate) struct Request {
+    scheme: &'static dyn RunTime,
+    sample: SampleType,
+    asked: Asked,
+    calibrate: usize,
+}
+
+impl Request {
+    /// Takes the settings' parameters for a scheme.
+    ///
+    /// # Errors
+    /// There is no such scheme, or it takes no such parameter.
+    pub(crate) fn new(scheme: &str, settings: &Settings) -> Result<Self> {
+        let own = catalogue::ALL.iter().find(|own| own.info().name == scheme);
+        let own = own.with_context(|| {
+            let names: Vec<&str> = catalogue::ALL.iter().map(|own| own.info().name).collect();
+            format!("encoding_scheme {scheme}: there are {}", names.join(", "))
+        })?;
+        let asked = settings.asked(own.info()).map_err(plain)?;
+        let Settings { sample, calibrate, .. } = *settings;
+        Ok(Self { scheme: *own, sample, asked, calibrate })
+    }
+
+    /// How many samples it takes to start: to calibrate on, or to fill a window.
+    pub(crate) fn enough(&self) -> usize {
+        self.least().max(self.scheme.looks_back(&self.asked))
+    }
+
+    /// How many it takes where there will be no more.
+    pub(crate) fn least(&self) -> usize {
+        self.calibrate.max(1)
+    }
+
+    /// Returns whether a sample has several numbers: of several neurons, or of several sub-timesteps.
+    ///
+    /// # Errors
+    /// A parameter is missing or not good.
+    pub(crate) fn is_array(&self) -> Result<bool> {
+        // Neither depends on what the samples are.
+        let samples = if self.calibrate > 0 { &[0.0, 1.0, 0.5][..] } else { &[0.0] };
+        Ok(self.codec(samples)?.width() > 1)
+    }
+
+    /// Returns the codec as it starts on these samples, which stand in for what is not given if `calibrate` is set.
+    ///
+    /// # Errors
+    /// A parameter is missing or not good.
+    pub(crate) fn codec(&self, samples: &[f64]) -> Result<Codec> {
+        let needs = self.scheme.needs_signal(&self.asked);
+        let calibrated = match needs {
+            None => None,
+            Some(what) if self.calibrate == 0 => {
+                let name = self.scheme.info().name;
+                let what = what.replace('`', "");
+                bail!("{name} needs {what}, or calibrate: as many samples as tell it");
+            }
+            Some(_) => {
+                let mut calibrated = Calibrated::new(self.sample);
+                calibrated.observe(samples);
+                Some(calibrated)
+            }
+        };
+        let known = Known { calibrated: calibrated.as_ref(), first: samples, can_calibrate: false };
+        Codec::new(self.scheme, self.sample, &self.asked, &known)
+    }
+
+    /// Returns the codec that decodes messages of so many numbers which tell these parameters, from a first value on.
+    ///
+    /// # Errors
+    /// A parameter is missing or not good.
+    pub(crate) fn receive(&self, told: &[(&str, f64)], length: usize, first: f64) -> Result<Codec> {
+        let info = self.scheme.info();
+        let mut asked = Asked::default();
+        for (name, value) in told {
+            if let Some(own) = info.parameter(name) {
+                asked.set(own.name, own.check(Value::Number(*value)).map_err(plain)?);
+            }
+        }
+        if NEURON_BY_NEURON.contains(&info.name) {
+            asked.set("neurons", length as u64);
+        }
+        for (name, value) in self.asked.iter().filter(|(name, _)| !OF_THRESHOLD.contains(name)) {
+            asked.set(name, value.clone());
+        }
+        let past = vec![first; self.scheme.looks_back(&asked)];
+        let known = Known { calibrated: None, first: &past, can_calibrate: false };
+        Codec::new(self.scheme, self.sample, &asked, &known)
+    }
+}
+
+/// An encoder and its decoder. The spikes of a sample are cells: a number for each neuron of each sub-timestep.
+pub(crate) struct Codec {
+    scheme: &'static dyn RunTime,
+    sample: SampleType,
+    settings: Complete,
+    running: catalogue::run::Codec,
+    neurons: usize,
+    slots: usize,
+    events: Vec<Event>,
+    /// How many samples were taken, how many of them are coded, and how many rows were decoded.
+    taken: u64,
+    coded: u64,
+    decoded: u64,
+}
+
+impl Codec {
+    fn new(
+        scheme: &'static dyn RunTime,
+        sample: SampleType,
+        asked: &Asked,
+        known: &Known,
+    ) -> Result<Self> {
+        let settings = scheme.resolve(sample, asked, known).map_err(plain)?;
+        let shape = scheme.shape(&settings).map_err(plain)?;
+        let running = scheme.codec(&settings).map_err(plain)?;
+        let (neurons, slots) = (shape.neurons, shape.slots);
+        let events = Vec::new();
+        Ok(Self {
+            scheme,
+            sample,
+            settings,
+            running,
+            neurons,
+            slots,
+            events,
+            taken: 0,
+            coded: 0,
+            decoded: 0,
+        })
+    }
+
+    pub(crate) fn name(&self) -> &'static str {
+        self.scheme.info().name
+    }
+
+    fn width(&self) -> usize {
+        self.neurons * self.slots
+    }
+
+    /// Whether decoding starts from the first sample's value, whose spike then changes nothing.
+    pub(crate) fn starts_at_first(&self) -> bool {
+        self.settings.starts_at_first()
+    }
+
+    /// The value that decoding starts from; 0 where the scheme has none.
+    pub(crate) fn first(&self) -> f64 {
+        self.settings.first_value().unwrap_or(0.0)
+    }
+
+    /// 0 where the scheme has none.
+    pub(crate) fn threshold(&self) -> f64 {
+        self.settings.number("threshold").unwrap_or(0.0)
+    }
+
+    /// Returns the range that it codes, or that of the samples where it has none.
+    pub(crate) fn range(&self, (lowest, highest): (f64, f64)) -> (f64, f64) {
+        let number = |name| self.settings.number(name);
+        (
+            number("min").or_else(|| number("shift")).unwrap_or(lowest),
+            number("max").unwrap_or(highest),
+        )
+    }
+
+    /// Returns the header of a file of spikes: all that decoding needs.
+    pub(crate) fn header(&self) -> String {
+        let mut lines = vec![
+            "spikewire=1".to_owned(),
+            format!("scheme={}", self.name()),
+            format!("sample={}", self.sample),
+        ];
+        lines.extend(self.settings.entries().iter().map(|(name, value)| format!("{name}={value}")));
+        lines.join("\n") + "\n"
+    }
+
+    /// Takes finite samples, and returns the cells of those that these complete.
+    pub(crate) fn encode(&mut self, samples: &[f64]) -> Vec<Vec<i8>> {
+        self.running.encode(samples, &mut self.events);
+        self.taken += samples.len() as u64;
+        self.rows(self.taken.saturating_sub(self.running.latency() as u64))
+    }
+
+    /// Returns the cells of the samples that wait for later ones.
+    pub(crate) fn finish(&mut self) -> Vec<Vec<i8>> {
+        self.running.finish(&mut self.events);
+        self.rows(self.taken)
+    }
+
+    fn rows(&mut self, coded: u64) -> Vec<Vec<i8>> {
+        let first = self.coded;
+        let mut rows = vec![vec![0_i8; self.width()]; coded.saturating_sub(first) as usize];
+        for event in self.events.drain(..) {
+            let cell = usize::from(event.slot) * self.neurons + usize::from(event.neuron);
+            let row = rows.get_mut((event.sample - first) as usize);
+            if let Some(cell) = row.and_then(|row| row.get_mut(cell)) {
+                *cell = cell.saturating_add(if event.polarity == Polarity::Up { 1 } else { -1 });
+            }
+        }
+        self.coded = self.coded.max(coded);
+        rows
+    }
+
+    /// Decodes the next sample's cells.
+    ///
+    /// # Errors
+    /// No encoder of the scheme sends them; the decoder stays as it was.
+    pub(crate) fn decode(&mut self, cells: &[i8]) -> Result<f64> {
+        let (name, width) = (self.name(), self.width());
+        if cells.len() != width {
+            bail!("{} numbers a message, where {name} has {width}", cells.len());
+        }
+        let events: Vec<Event> = cells
+            .iter()
+            .enumerate()
+            .flat_map(|(place, cell)| {
+                let polarity = if *cell > 0 { Polarity::Up } else { Polarity::Down };
+                let (neuron, slot) = ((place % self.neurons) as u16, (place / self.neurons) as u16);
+                let event = Event { sample: self.decoded, neuron, slot, polarity };
+                std::iter::repeat_n(event, cell.unsigned_abs().into())
+            })
+            .collect();
+        let mut values = Vec::with_capacity(1);
+        if self.running.decode(1, &events, &mut values).is_err() {
+            bail!("{cells:?} is no code of {name}");
+        }
+        self.decoded += 1;
+        values.first().copied().context("a sample has a value")
+    }
+}
+
+/// Names parameters as YAML does, without the dashes of the command line.
+#[allow(clippy::needless_pass_by_value)] // as `map_err` gives it
+fn plain(error: anyhow::Error) -> anyhow::Error {
+    anyhow!("{}", format!("{error:#}").replace("--", ""))
+}
