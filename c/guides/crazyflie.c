@@ -8,6 +8,7 @@
  * where SPIKEWIRE is target/c-library/cortex-m4. The ground feeds what arrives to sw_reader_take, or to
  * `spikewire listen --from link`.
  */
+#include <string.h>
 #include "FreeRTOS.h"
 #include "app.h"
 #include "app_channel.h"
@@ -27,7 +28,7 @@ static uintptr_t storage[SW_QUEUE_WORDS(128)];
 static sw_queue queue;
 static sw_writer writer;
 
-static sw_status start(uint16_t session)
+static sw_status start(uint64_t session)
 {
     sw_error error;
     sw_status status = sw_step_forward_f32_init(&codec, THRESHOLD, &error);
@@ -50,7 +51,19 @@ void appMain(void)
     TickType_t woken = xTaskGetTickCount();
     const logVarId_t gyro[CHANNELS] = {
         logGetVarId("gyro", "x"), logGetVarId("gyro", "y"), logGetVarId("gyro", "z")};
-    sw_status status = start((uint16_t)woken);
+    uint64_t session = 0;
+    sw_status status;
+
+    /* The noise of 64 samples, as no other start has it. */
+    for (uint32_t sample = 0; sample < 64u; ++sample) {
+        const float rate = logGetFloat(gyro[sample % CHANNELS]);
+        uint32_t bits;
+
+        memcpy(&bits, &rate, sizeof bits);
+        session = (session ^ bits) * 0x9E3779B97F4A7C15u;
+        vTaskDelayUntil(&woken, M2T(PERIOD_MS));
+    }
+    status = start(session);
 
     if (status != SW_OK) {
         DEBUG_PRINT("spikes: %s\n", sw_status_text(status));

@@ -31,7 +31,7 @@
  *                            events into a queue, in the order of time; channel c has the addresses from
  *                            first_address + c * SW_NAME_NEURONS on
  *   sw_NAME_keyframes        puts a keyframe of each channel that has one into a queue, after the events of the samples
- *                            so far
+ *                            so far; where none has one, a heartbeat, which tells a receiver the time
  *
  * The caller keeps to this:
  *
@@ -128,14 +128,16 @@ typedef struct sw_stamp {
 #define SW_EVENT ((uint8_t)0)
 #define SW_KEYFRAME ((uint8_t)1)
 #define SW_BREAK ((uint8_t)2)
+#define SW_HEARTBEAT ((uint8_t)3)
 
-/* An event, a keyframe, or a break: items were lost, or the encoders changed without events. */
+/* An event, a keyframe, a break (items were lost, or the encoders changed without events), or a heartbeat (a sample was
+ * taken, and its events come before). */
 typedef struct sw_item {
     uint32_t tick;       /* microseconds, wrapping */
     uint32_t bits;       /* of a keyframe's sample; of 16 bits in the low half */
     uint32_t lost;       /* items that were lost before this one */
-    uint16_t address;    /* the neuron; of a keyframe the channel's first */
-    uint8_t kind;        /* SW_EVENT, SW_KEYFRAME or SW_BREAK */
+    uint16_t address;    /* the neuron; of a keyframe the channel's first, of a heartbeat the bank's first */
+    uint8_t kind;        /* SW_EVENT, SW_KEYFRAME, SW_BREAK or SW_HEARTBEAT */
     uint8_t sample_kind; /* of a keyframe: 0 float, 1 + bits of fraction for 16 bits, 18 + those for 32 bits */
     int8_t polarity;     /* of an event: 1 or -1 */
 } sw_item;
@@ -160,23 +162,26 @@ sw_status sw_queue_take(sw_queue *queue, sw_item *item);
 sw_status sw_queue_counts(sw_queue *queue, uint32_t *length, uint32_t *lost);
 
 /* The longest frame of a link, in bytes. */
-#define SW_MAX_FRAME 273u
+#define SW_MAX_FRAME 277u
 
 /* Turns the items of a queue into frames for a UART, USB or radio. */
-#define SW_WRITER_SIZE 32u
+#define SW_WRITER_SIZE 56u
 typedef struct sw_writer {
-    uint32_t storage[SW_WRITER_SIZE / 4u];
+    uint64_t storage[SW_WRITER_SIZE / 8u];
 } sw_writer;
 
-/* For so many channels, a sample every `period` microseconds, and a session that differs at each start. */
-sw_status sw_writer_init(sw_writer *writer, uint16_t channels, uint16_t period, uint16_t session);
+/* For so many channels, a sample every `period` microseconds, and a session that no other start has: the starts so far,
+ * counted in flash, or 64 random bits. A constant would let a receiver go on from the values of an earlier start. */
+sw_status sw_writer_init(sw_writer *writer, uint16_t channels, uint16_t period, uint64_t session);
+/* Tells the time in microseconds, wrapping. Needed at least every 17.9 minutes in which no item is written. */
+sw_status sw_writer_observe(sw_writer *writer, uint32_t now);
 /* Writes a frame of what the queue holds, or SW_NOTHING. SW_MAX_FRAME bytes are room enough. */
 sw_status sw_writer_next_frame(sw_writer *writer, sw_queue *queue, uint8_t *bytes, size_t capacity, size_t *length);
 
 /* Finds frames in bytes that are cut anywhere, damaged, or begin in the middle. */
 #define SW_READER_SIZE 400u
 typedef struct sw_reader {
-    uintptr_t storage[SW_READER_SIZE / sizeof(uintptr_t)];
+    uint64_t storage[SW_READER_SIZE / 8u];
 } sw_reader;
 
 /* What a reader has seen. */

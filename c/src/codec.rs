@@ -496,14 +496,20 @@ pub unsafe fn keyframes<P: Exported>(
         let (encoders, stamp, queue) = unsafe {
             (pointer::slice_mut(encoders, channels)?, pointer::shared(stamp)?, producer(queue)?)
         };
+        let tick = Tick::from(stamp.tick);
         let mut address = stamp.first_address;
+        let mut has_keyframe = false;
         for encoder in encoders {
             // SAFETY: it is a reference; whether it is started is checked.
             let (scheme, state) = unsafe { Running::parts(encoder) }?;
             if let Some(value) = scheme.keyframe(state) {
-                queue.put(Item::Keyframe(Keyframe::new(Tick::from(stamp.tick), address, value)));
+                queue.put(Item::Keyframe(Keyframe::new(tick, address, value)));
+                has_keyframe = true;
             }
             address = address.wrapping_add(P::Code::NEURONS as u16);
+        }
+        if !has_keyframe {
+            queue.put(Item::Heartbeat { tick, address: stamp.first_address });
         }
         Ok(Status::OK)
     };

@@ -31,9 +31,10 @@ pub(crate) mod kind {
     pub(crate) const EVENT: u8 = 0;
     pub(crate) const KEYFRAME: u8 = 1;
     pub(crate) const BREAK: u8 = 2;
+    pub(crate) const HEARTBEAT: u8 = 3;
 }
 
-/// An event, a keyframe or a break.
+/// An event, a keyframe, a break or a heartbeat.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct CItem {
@@ -98,6 +99,7 @@ impl From<Taken> for CItem {
             Item::Keyframe(Keyframe { address, kind, bits, .. }) => {
                 Self { kind: kind::KEYFRAME, address, bits, sample_kind: kind.to_byte(), ..none }
             }
+            Item::Heartbeat { address, .. } => Self { kind: kind::HEARTBEAT, address, ..none },
             Item::Break(_) => none,
         }
     }
@@ -114,6 +116,7 @@ impl CItem {
                 let kind = SampleKind::from_byte(self.sample_kind)?;
                 Item::Keyframe(Keyframe { tick, address, kind, bits })
             }
+            kind::HEARTBEAT => Item::Heartbeat { tick, address },
             kind::BREAK => Item::Break(tick),
             _ => return None,
         })

@@ -2,7 +2,7 @@
 
 use core::ffi::c_void;
 
-use spikewire::link::{Coding, MAX_FRAME, Reader, Transmitter};
+use spikewire::link::{Coding, MAX_FRAME, Reader, Session, Transmitter};
 use spikewire::{Item, Taken};
 
 use crate::event::CItem;
@@ -12,17 +12,29 @@ use crate::{Status, pointer};
 
 pub(crate) type CReader = Reader<MAX_FRAME>;
 
-/// Prepares a writer for so many channels, a sample every `period` µs, and a session that differs at each start.
+/// Prepares a writer for so many channels, a sample every `period` µs, and a session.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn sw_writer_init(
     writer: *mut Kept<Transmitter>,
     channels: u16,
     period: u16,
-    session: u16,
+    session: u64,
 ) -> Status {
     let coding = Coding::for_channels(channels, period);
     // SAFETY: C's promise.
-    unsafe { Kept::keep(writer, Transmitter::new(coding, session)) }.into()
+    unsafe { Kept::keep(writer, Transmitter::new(coding, Session::random(session))) }.into()
+}
+
+/// Tells a writer the time.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn sw_writer_observe(writer: *mut Kept<Transmitter>, now: u32) -> Status {
+    let observe = || {
+        // SAFETY: C's promise.
+        let writer = unsafe { Kept::exclusive(writer)? };
+        writer.observe(now.into());
+        Ok(Status::OK)
+    };
+    observe().into()
 }
 
 /// Writes a frame of what the queue holds.
@@ -82,7 +94,10 @@ unsafe extern "C" fn sw_reader_take(
             if received.is_after_break() {
                 give(Item::Break(received.frame.tick()));
             }
-            received.frame.keyframes().map(Item::Keyframe).for_each(give);
+            let frame = &received.frame;
+            frame.keyframes().map(Item::Keyframe).for_each(give);
+            let tick = frame.tick();
+            frame.heartbeats().map(|address| Item::Heartbeat { tick, address }).for_each(give);
             received.frame.events().map(Item::Event).for_each(give);
         }
         Ok(Status::OK)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native, _progress
-from ._scheme import Scheme, _text
+from ._scheme import Scheme, _plain, _text
 
 
 def score(x: ArrayLike, scheme: Scheme, rate: float | None = None) -> dict[str, Any]:
@@ -88,7 +88,8 @@ def tune(
 
     `rate`: samples a second. `max_ram` in bytes a channel, `max_instructions` a sample on `core`, `max_latency` in
     samples and `max_rate` in events a second limit what may be found. A part `hold_out` of `blocks` is kept back to
-    score on. It ends after so many `seconds` or `evaluations`; the same `seed` and evaluations give the same.
+    score on. It scores `evaluations` settings; the same number and `seed` give the same result, unless it is cut short
+    after so many `seconds`.
     What is not given is as in ``spikewire tune``. `kept` are parameters that stay as given.
     """
     of_one = scheme != "all"
@@ -110,11 +111,11 @@ def tune(
         "below": below,
         "sample": sample,
         "scheme": scheme,
-        **kept,
+        "kept": dict(_plain({name: value for name, value in kept.items() if value is not None})),
     }
     signals = [_one(own) for own in x] if isinstance(x, (list, tuple)) and np.ndim(x[0]) else [_one(x)]
     with _progress.bar(progress, "tune") as tell:
-        told, _ = _native.tune(signals, _rate(rate), name, _given(options), tell)
+        told, _ = _native.tune(signals, _rate(rate), name, options, tell)
     found = [Tuned(own, sample) for own in told]
     return found[0] if of_one else found
 
@@ -166,7 +167,7 @@ def advise(
     x = np.asarray(x)
     signals = [(name, _one(x))] if x.ndim == 1 else [(f"{name}[{i}]", _one(own)) for i, own in enumerate(x)]
     with _progress.bar(progress, "advise") as tell:
-        told = [Advice(own, sample) for own in _native.advise(signals, _rate(rate), _given(options), tell)]
+        told = [Advice(own, sample) for own in _native.advise(signals, _rate(rate), options, tell)]
     return told[0] if x.ndim == 1 else told
 
 

@@ -29,8 +29,7 @@ class Scheme:
     def __init__(self, sample: str = "f32", paper: bool = False, **parameters: Any):
         given = {name: value for name, value in parameters.items() if value is not None and value is not False}
         self._sample, self._paper, self._given = str(sample), bool(paper), given
-        options = {name: _text(value) for name, value in given.items()}
-        self._coder = _native.Coder(self._info["name"], self._sample, options, self._paper)
+        self._coder = _native.Coder(self._info["name"], self._sample, _plain(given), self._paper)
 
     @property
     def name(self) -> str:
@@ -74,18 +73,14 @@ class Scheme:
         >>> sw.Hough(filter="triang:3").fit([[-2.0, 1.0], [0.5, 3.0]]).parameters["shift"]
         -2.0
         """
-        options = dict(self._coder.fit(samples(x), True).options(0))
+        options = dict(self._coder.fit(samples(x), True).keywords(0))
         return self._of(options, self._sample, {name: self._given[name] for name in ("start",) if name in self._given})
 
     @classmethod
     def _of(cls, options: dict, sample: str, given: dict | None = None) -> Scheme:
-        """Of the catalogue's texts; where a signal begins is no parameter of what flies."""
+        """Of the catalogue's values; where a signal begins is no parameter of what flies."""
         named = {own["name"]: own for own in cls._info["parameters"]}
-        own = {
-            name: _value(named[name]["kind"], text)
-            for name, text in options.items()
-            if named[name]["found"] != "the first sample"
-        }
+        own = {name: value for name, value in options.items() if named[name]["found"] != "the first sample"}
         return cls(sample=sample, **own, **(given or {}))
 
     def to_rust(self, name: str = "CHANNEL") -> str:
@@ -157,8 +152,8 @@ class Scheme:
         return f"{type(self).__name__}({told})"
 
     def _key(self) -> tuple:
-        given = {name: _text(value) for name, value in self._given.items()}
-        return self.name, self._sample, self._paper, tuple(sorted(given.items()))
+        given = [(name, tuple(own) if isinstance(own, list) else own) for name, own in _plain(self._given)]
+        return self.name, self._sample, self._paper, tuple(sorted(given, key=lambda own: own[0]))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Scheme) and self._key() == other._key()
@@ -176,27 +171,29 @@ def _again(name, keywords):
     return schemes[name](**keywords)
 
 
+def _plain(given):
+    """Keywords with their values as bool, text, number or list of floats."""
+    return [(name, _plain_value(value)) for name, value in given.items()]
+
+
+def _plain_value(value):
+    if isinstance(value, (bool, str, int)):
+        return value
+    return float(value) if np.ndim(value) == 0 else [float(number) for number in np.ravel(value)]
+
+
 def _text(value):
-    """A keyword's value as the catalogue takes it."""
+    """A keyword's value as the laptop program takes it."""
     if value is True:
         return ""
     if isinstance(value, (str, int)):
         return str(value)
     if np.ndim(value) == 0:
         return _number(value)
-    # A comma at the end, or one number alone would be the name of a file.
+    # A comma at the end makes a list of one number.
     return ",".join(_number(number) for number in np.ravel(value)) + ","
 
 
 def _number(value):
     number = float(value)
     return str(int(number)) if number.is_integer() and abs(number) < 2**53 else repr(number)
-
-
-def _value(kind, text):
-    """What a text of the catalogue is in Python."""
-    if kind == "flag":
-        return True
-    if kind in ("number", "count"):
-        return float(text) if kind == "number" else int(text)
-    return [float(tap) for tap in text.split(",") if tap] if kind == "filter" else text

@@ -4,7 +4,7 @@
 //! up less how many went down: -1, 0 or 1, or more where a code sends several spikes a sample.
 
 use anyhow::{Context, Result, ensure};
-use catalogue::run::{Given, RunTime, SampleType, Settings, Visit};
+use catalogue::run::{RunTime, Settings, Visit};
 use catalogue::{State, for_sample_type};
 use spikewire::{Code, NeuronSpike, Output, Polarity, Sample, SampleKind, Scheme};
 
@@ -57,15 +57,13 @@ pub(crate) trait Channel: Send + Sync {
 /// A parameter makes no sense.
 pub(crate) fn start(
     scheme: &'static dyn RunTime,
-    sample: SampleType,
     settings: &Settings,
     first: Option<f64>,
 ) -> Result<Box<dyn Channel>> {
     let shape = scheme.shape(settings)?;
-    let one = sample.one();
-    let given = Given::new(settings, one);
+    let one = settings.sample.one();
     let start = Start { settings, one, first, neurons: shape.neurons, slots: shape.slots };
-    for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.info().name, &given, start))
+    for_sample_type!(settings.sample, S => catalogue::visit::<S, _>(scheme.info().name, settings, start))
 }
 
 struct Start<'a> {

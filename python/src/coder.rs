@@ -1,17 +1,17 @@
 //! A scheme with what was given of its parameters, and with all of them.
 
 use anyhow::{Result, anyhow, bail};
-use catalogue::run::{Calibrated, Known, Options, RunTime, SampleType, Settings, missing};
+use catalogue::run::{Asked, Calibrated, Known, RunTime, SampleType, Settings, missing};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 
 use crate::array::{Lane, Samples, Values};
 use crate::channel::{self, Bad, Channel};
 use crate::error::value;
 use crate::stream::{Decoder, Encoder};
+use crate::values::{self, Given};
 use crate::work::{self, Meter};
 
 /// What was given of a scheme's parameters; a signal may tell the rest.
@@ -20,7 +20,7 @@ use crate::work::{self, Meter};
 pub(crate) struct Coder {
     pub(crate) scheme: &'static dyn RunTime,
     pub(crate) sample: SampleType,
-    pub(crate) options: Options,
+    pub(crate) asked: Asked,
 }
 
 impl Coder {
@@ -34,35 +34,48 @@ impl Coder {
         calibrated: Option<&Calibrated>,
     ) -> Result<Settings> {
         if calibrated.is_none()
-            && let Some(what) = self.scheme.needs_signal(&self.options)
+            && let Some(what) = self.scheme.needs_signal(&self.asked)
         {
             bail!("{} needs {what} before it has seen a signal; fit(x) finds it", self.name());
         }
         let known = Known { calibrated, first, can_calibrate: calibrated.is_some() };
-        let settings = self.scheme.resolve(&self.options, &known)?;
-        Ok(self.scheme.rounded(self.sample, &settings)?.0)
+        self.scheme.resolve(self.sample, &self.asked, &known)
+    }
+
+    /// The same for one channel of so many, which may have values of its own.
+    ///
+    /// # Errors
+    /// A parameter has another number of values.
+    pub(crate) fn channel(&self, channel: usize, channels: usize) -> Result<Self> {
+        let asked = self.asked.channel(self.scheme.info(), channel, channels)?;
+        Ok(Self { asked, ..self.clone() })
+    }
+
+    /// Any channel, for what is the same of all.
+    fn any(&self) -> Result<Self> {
+        self.channel(0, self.asked.channels(self.scheme.info())?.unwrap_or(1))
     }
 
     /// How many samples an encoder takes to start from.
     pub(crate) fn looks_back(&self) -> usize {
-        self.scheme.looks_back(&self.options)
+        self.scheme.looks_back(&self.asked)
     }
 
     /// Refuses what makes no sense whatever the signal is.
     fn check(&self) -> Result<()> {
         let past = vec![0.0; self.looks_back()];
-        let Some(what) = self.scheme.needs_signal(&self.options) else {
+        let Some(what) = self.scheme.needs_signal(&self.asked) else {
             let settings = self.settle(&past, None)?;
-            return channel::start(self.scheme, self.sample, &settings, None).map(drop);
+            return channel::start(self.scheme, &settings, None).map(drop);
         };
-        let is_end_given = ["min", "max"].iter().any(|name| self.options.get(name).is_some());
-        if missing(self.scheme.info(), &self.options) == Some(what) && !is_end_given {
+        let is_end_given = ["min", "max"].iter().any(|name| self.asked.get(name).is_some());
+        if missing(self.scheme.info(), &self.asked) == Some(what) && !is_end_given {
             // Any range will do, in a type that rounds none of it.
             let mut calibrated = Calibrated::new(SampleType::F32);
             calibrated.observe(&[0.0, 1.0]);
             let plain = Self { sample: SampleType::F32, ..self.clone() };
             let settings = plain.settle(&past, Some(&calibrated))?;
-            channel::start(self.scheme, SampleType::F32, &settings, None)?;
+            channel::start(self.scheme, &settings, None)?;
         }
         Ok(())
     }
@@ -82,17 +95,17 @@ impl Coder {
         }
         let groups: Vec<&[Lane]> =
             if is_shared { vec![lanes] } else { lanes.iter().map(std::slice::from_ref).collect() };
-        let settle = |group: &&[Lane]| {
-            let calibrated = self.scheme.needs_signal(&self.options).map(|_| {
+        let settle = |(place, group): (usize, &&[Lane])| {
+            let calibrated = self.scheme.needs_signal(&self.asked).map(|_| {
                 let mut calibrated = Calibrated::new(self.sample);
                 group.iter().for_each(|lane| calibrated.observe(&lane.to_vec()));
                 calibrated
             });
             let lane = group.first().ok_or_else(|| anyhow!("there is no channel"))?;
             let first = lane.part(0..lane.len().min(self.looks_back())).to_vec();
-            self.settle(&first, calibrated.as_ref())
+            self.channel(place, groups.len())?.settle(&first, calibrated.as_ref())
         };
-        let channels = groups.par_iter().map(settle).collect::<Result<Vec<_>>>()?;
+        let channels = groups.par_iter().enumerate().map(settle).collect::<Result<Vec<_>>>()?;
         Ok(Fitted { scheme: self.scheme, sample: self.sample, channels })
     }
 }
@@ -100,22 +113,12 @@ impl Coder {
 #[pymethods]
 impl Coder {
     #[new]
-    fn new(
-        scheme: &str,
-        sample: &str,
-        options: BTreeMap<String, String>,
-        paper: bool,
-    ) -> PyResult<Self> {
+    fn new(scheme: &str, sample: &str, given: Vec<(String, Given)>, paper: bool) -> PyResult<Self> {
         let scheme = named(scheme)?;
-        let mut given = Options::default();
-        given.paper = paper;
-        for (name, text) in &options {
-            given.set(name, text);
-        }
-        given.check(scheme.info()).map_err(|error| value(&error))?;
+        let asked = values::asked(scheme.info(), given, paper).map_err(|error| value(&error))?;
         let sample = sample.parse().map_err(|error| value(&error))?;
-        let coder = Self { scheme, sample, options: given };
-        coder.check().map_err(|error| value(&error))?;
+        let coder = Self { scheme, sample, asked };
+        coder.any().and_then(|any| any.check()).map_err(|error| value(&error))?;
         Ok(coder)
     }
 
@@ -123,19 +126,20 @@ impl Coder {
     fn shape(&self) -> PyResult<(usize, usize)> {
         // They do not depend on what a signal tells.
         let ramp = [0.0, 1.0, 0.5];
-        let calibrated = self.scheme.needs_signal(&self.options).map(|_| {
+        let calibrated = self.scheme.needs_signal(&self.asked).map(|_| {
             let mut calibrated = Calibrated::new(self.sample);
             calibrated.observe(&ramp);
             calibrated
         });
-        let settings = self.settle(&ramp, calibrated.as_ref()).map_err(|error| value(&error))?;
+        let settings = self.any().and_then(|any| any.settle(&ramp, calibrated.as_ref()));
+        let settings = settings.map_err(|error| value(&error))?;
         let shape = self.scheme.shape(&settings).map_err(|error| value(&error))?;
         Ok((shape.neurons, shape.slots))
     }
 
     /// What a signal must tell, if anything.
     fn needs_signal(&self) -> Option<String> {
-        self.scheme.needs_signal(&self.options).map(|text| crate::error::keywords(&text))
+        self.scheme.needs_signal(&self.asked).map(|text| crate::error::keywords(&text))
     }
 
     /// With what these samples tell: each channel by itself, or one scheme for all.
@@ -146,7 +150,7 @@ impl Coder {
 
     /// An encoder of this many channels that keeps its state.
     fn encoder(&self, channels: usize) -> PyResult<Encoder> {
-        if let Some(what) = self.scheme.needs_signal(&self.options) {
+        if let Some(what) = self.scheme.needs_signal(&self.asked) {
             let error = anyhow!("{} needs {what} to begin a stream; fit(x) finds it", self.name());
             return Err(value(&error));
         }
@@ -155,9 +159,10 @@ impl Coder {
 
     /// A decoder that keeps its state, of as many channels as there are first values or none of these.
     fn decoder(&self, first: Vec<Option<f64>>) -> PyResult<Decoder> {
-        let channels = first.iter().map(|first| {
-            let past = vec![first.unwrap_or_default(); self.looks_back()];
-            channel::start(self.scheme, self.sample, &self.settle(&past, None)?, *first)
+        let channels = first.iter().enumerate().map(|(place, own)| {
+            let past = vec![own.unwrap_or_default(); self.looks_back()];
+            let settings = self.channel(place, first.len())?.settle(&past, None)?;
+            channel::start(self.scheme, &settings, *own)
         });
         let channels = channels.collect::<Result<Vec<_>>>();
         Ok(Decoder::new(channels.map_err(|error| value(&error))?, self.sample))
@@ -181,7 +186,7 @@ impl Fitted {
     }
 
     fn start(&self, channel: usize) -> Result<Box<dyn Channel>> {
-        channel::start(self.scheme, self.sample, self.settings(channel)?, None)
+        channel::start(self.scheme, self.settings(channel)?, None)
     }
 
     /// How many cells a row has.
@@ -193,6 +198,11 @@ impl Fitted {
 
 /// A channel's parameters by name, and its first samples.
 type Parts = (Vec<(String, String)>, Vec<f64>);
+
+/// Parameters as a file lists them.
+fn texts(settings: &Settings) -> Vec<(&'static str, String)> {
+    settings.entries().iter().map(|(name, value)| (*name, value.to_string())).collect()
+}
 
 /// The scheme of a short name.
 fn named(name: &str) -> PyResult<&'static dyn RunTime> {
@@ -219,14 +229,13 @@ impl Fitted {
 
     /// The parameters of each channel, as a file lists them.
     fn parameters(&self) -> Vec<Vec<(&'static str, String)>> {
-        self.channels.iter().map(|settings| settings.entries().to_vec()).collect()
+        self.channels.iter().map(texts).collect()
     }
 
-    /// The parameters of a channel as options that bring them about again.
-    fn options(&self, channel: usize) -> PyResult<Vec<(String, String)>> {
+    /// The parameters of a channel as keywords that bring them about again.
+    fn keywords(&self, channel: usize) -> PyResult<Vec<(&'static str, Given)>> {
         let settings = self.settings(channel).map_err(|error| value(&error))?;
-        let options = settings.to_options(self.scheme.info());
-        Ok(options.iter().map(|(name, text)| (name.to_owned(), text.to_owned())).collect())
+        Ok(values::keywords(&settings.to_asked(self.scheme.info())))
     }
 
     /// The cells of all samples, and of those that wait for later ones at the end.
@@ -304,8 +313,8 @@ impl Fitted {
     /// The scheme, the sample type, and each channel's parameters and first samples, from which it is made again.
     fn parts(&self) -> (&'static str, String, Vec<Parts>) {
         let parts = |settings: &Settings| {
-            let entries = settings.entries().iter();
-            let texts = entries.map(|(name, text)| ((*name).to_owned(), text.clone())).collect();
+            let texts = texts(settings).into_iter();
+            let texts = texts.map(|(name, text)| (name.to_owned(), text)).collect();
             (texts, settings.first.clone())
         };
         let channels = self.channels.iter().map(parts).collect();
@@ -316,13 +325,14 @@ impl Fitted {
     #[staticmethod]
     fn of_parts(scheme: &str, sample: &str, channels: Vec<Parts>) -> PyResult<Self> {
         let scheme = named(scheme)?;
-        let settings = |(mut texts, first): Parts| {
-            let mut settings = Settings::take(scheme.info(), &mut texts);
-            settings.first = first;
-            settings
-        };
         let sample = sample.parse().map_err(|error| value(&error))?;
-        Ok(Self { scheme, sample, channels: channels.into_iter().map(settings).collect() })
+        let settings = |(mut texts, first): Parts| {
+            let mut settings = Settings::take(scheme.info(), sample, &mut texts)?;
+            settings.first = first;
+            Ok(settings)
+        };
+        let channels = channels.into_iter().map(settings).collect::<Result<_>>();
+        Ok(Self { scheme, sample, channels: channels.map_err(|error| value(&error))? })
     }
 }
 

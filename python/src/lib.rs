@@ -9,6 +9,7 @@ mod error;
 mod fingerprint;
 mod library;
 mod stream;
+mod values;
 mod work;
 
 use pyo3::prelude::*;

@@ -1,28 +1,36 @@
 //! What the laptop program does, on arrays.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use anyhow::Result;
+use anyhow::{Context, Result, anyhow, bail};
+use lab::advise::AdviseRequest;
+use lab::scheme::Scheme;
+use lab::trial::Recording;
+use lab::tune::report::Row;
+use lab::tune::{Goal, Limits, TuneRequest};
+use lab::watch::{Progress, Watch};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use spikewire::{Event, Polarity, Tick};
-use spikewire_cli::library::{self, Arguments, Coding, Shown, Signal, Tuned, Watch};
+use spikewire_cli::library::{self, Arguments, Coding, Shown, Signal};
 
 use crate::coder::Coder;
 use crate::error::value;
+use crate::values::{self, Given, keywords};
 use crate::work;
 
 /// Options by name; a value of `None` is a flag.
-type Given = Vec<(String, Option<String>)>;
+type Options = Vec<(String, Option<String>)>;
 
-/// A tuned scheme: its name, its options, its figures as JSON, and what a file says of it.
-type Told = (&'static str, Vec<(String, String)>, String, Vec<String>);
+/// A tuned scheme: its name, its keywords, its figures as JSON, and what a file says of it.
+type Told = (&'static str, Vec<(&'static str, Given)>, String, Vec<String>);
 
 /// Long work tells this many parts.
 const PARTS: usize = 1_000_000;
 
-fn arguments(given: Given) -> Arguments {
+fn arguments(given: Options) -> Arguments {
     let mut arguments = Arguments::default();
     for (name, value) in given {
         match value {
@@ -33,8 +41,9 @@ fn arguments(given: Given) -> Arguments {
     arguments
 }
 
-fn told(tuned: Tuned) -> Told {
-    (tuned.scheme, tuned.options, tuned.figures, tuned.comments)
+fn told(scheme: Scheme, row: &Row, channel: &str) -> Result<Told> {
+    let given = keywords(&row.settings.to_asked(scheme.info()));
+    Ok((scheme.name(), given, serde_json::to_string(row)?, row.comments(channel)))
 }
 
 fn signal(name: String, values: &PyReadonlyArray1<f64>, rate: Option<f64>) -> Signal {
@@ -43,8 +52,7 @@ fn signal(name: String, values: &PyReadonlyArray1<f64>, rate: Option<f64>) -> Si
 
 impl Coder {
     fn coding(&self) -> Coding {
-        let scheme = self.scheme.info().name.to_owned();
-        Coding { scheme, sample: self.sample, options: self.options.clone() }
+        Coding { scheme: self.scheme.into(), sample: self.sample, asked: self.asked.clone() }
     }
 }
 
@@ -55,8 +63,9 @@ fn watched<T: Send>(
     job: impl FnOnce(&Watch) -> Result<T> + Send,
 ) -> PyResult<T> {
     let done = work::run(py, PARTS, progress.as_ref(), |meter| {
-        let tell = |part: f64| meter.set((part * PARTS as f64) as usize);
-        job(&Watch { stop: meter.stop(), tell: &tell })
+        let tell = |now: &Progress| meter.set(now.done * PARTS / now.total.max(1));
+        let done = job(&Watch { is_stopped: &|| meter.is_stopped(), tell: &tell });
+        if meter.is_stopped() { Err(anyhow!("stopped")) } else { done }
     })?;
     done.map_err(|error| value(&error))
 }
@@ -94,6 +103,73 @@ pub(crate) fn plot<'py>(
     Ok(PyBytes::new(py, &bytes.map_err(|error| value(&error))?))
 }
 
+/// Keywords of `tune`; what is `None` is as the library has it.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Tune {
+    scheme: String,
+    sample: String,
+    min_efficiency: Option<f64>,
+    max_rmse: Option<f64>,
+    max_ram: Option<f64>,
+    max_instructions: Option<f64>,
+    max_latency: Option<f64>,
+    max_rate: Option<f64>,
+    core: Option<String>,
+    hold_out: Option<f64>,
+    blocks: Option<usize>,
+    seconds: Option<f64>,
+    evaluations: Option<usize>,
+    seed: Option<u64>,
+    anyway: bool,
+    below: Option<f64>,
+    kept: BTreeMap<String, Given>,
+}
+
+impl Tune {
+    fn request(self, recordings: Vec<Recording>) -> Result<TuneRequest> {
+        let schemes = match self.scheme.as_str() {
+            "all" => Scheme::all().collect(),
+            name => {
+                vec![Scheme::named(name).with_context(|| format!("there is no scheme `{name}`"))?]
+            }
+        };
+        let logs = recordings.into_iter().map(|recording| vec![recording]).collect();
+        let mut request = TuneRequest::new(logs, schemes);
+        let mut kept = self.kept;
+        if matches!(kept.get("filter"), Some(Given::Word(word)) if word == "free") {
+            request.free_taps = true;
+            kept.remove("filter");
+        }
+        match request.schemes[..] {
+            [scheme] => {
+                request.fixed = values::asked(scheme.info(), kept.into_iter().collect(), false)?;
+            }
+            _ if !kept.is_empty() => bail!("all schemes are searched with all their parameters"),
+            _ => {}
+        }
+        request.goal = match (self.min_efficiency, self.max_rmse) {
+            (Some(_), Some(_)) => bail!("`min_efficiency` and `max_rmse`: one of them is the goal"),
+            (Some(efficiency), None) => Some(Goal::LeastError(efficiency)),
+            (None, rmse) => rmse.map(Goal::MostEfficient),
+        };
+        request.sample = self.sample.parse()?;
+        request.limits = Limits {
+            ram: self.max_ram,
+            instructions: self.max_instructions,
+            latency: self.max_latency,
+            rate: self.max_rate,
+        };
+        (request.seconds, request.below, request.anyway) = (self.seconds, self.below, self.anyway);
+        request.core = self.core.unwrap_or(request.core);
+        request.hold_out.part = self.hold_out.unwrap_or(request.hold_out.part);
+        request.hold_out.blocks = self.blocks.unwrap_or(request.hold_out.blocks);
+        request.evaluations = self.evaluations.unwrap_or(request.evaluations);
+        request.seed = self.seed.unwrap_or(request.seed);
+        Ok(request)
+    }
+}
+
 /// The settings found for signals of one channel, the best first, and what reached no goal.
 #[pyfunction]
 pub(crate) fn tune(
@@ -101,15 +177,50 @@ pub(crate) fn tune(
     signals: Vec<PyReadonlyArray1<f64>>,
     rate: Option<f64>,
     name: &str,
-    given: Given,
+    keywords: Tune,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Vec<Told>, Vec<String>)> {
     let signals: Vec<Signal> =
         signals.iter().map(|values| signal(name.to_owned(), values, rate)).collect();
-    let arguments = arguments(given);
-    let (tuned, missed) =
-        watched(py, progress, |watch| library::tune(&signals, &arguments, watch))?;
-    Ok((tuned.into_iter().map(told).collect(), missed))
+    watched(py, progress, |watch| {
+        let recordings = signals.iter().map(Signal::recording).collect::<Result<Vec<_>>>()?;
+        let all = lab::tune::tune(&keywords.request(recordings)?, watch)?;
+        let Some(tuned) = all.first() else { bail!("there is no signal") };
+        if tuned.rows.is_empty() {
+            bail!("{name}: no settings keep to all limits: {}", tuned.missed.join("; "));
+        }
+        let rows = tuned.rows.iter().map(|(scheme, row)| told(*scheme, row, name));
+        Ok((rows.collect::<Result<_>>()?, tuned.missed.clone()))
+    })
+}
+
+/// Keywords of `advise`; what is `None` is as the library has it.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Advise {
+    sample: String,
+    max_rmse: Option<f64>,
+    max_latency: Option<f64>,
+    core: Option<String>,
+    seconds: Option<f64>,
+    evaluations: Option<usize>,
+    seed: Option<u64>,
+}
+
+impl Advise {
+    fn request(self, recordings: Vec<Recording>) -> Result<AdviseRequest> {
+        let request = AdviseRequest::new(recordings);
+        Ok(AdviseRequest {
+            sample: self.sample.parse()?,
+            max_rmse: self.max_rmse,
+            max_latency: self.max_latency,
+            core: self.core.unwrap_or(request.core),
+            seconds: self.seconds,
+            evaluations: self.evaluations.unwrap_or(request.evaluations),
+            seed: self.seed.unwrap_or(request.seed),
+            recordings: request.recordings,
+        })
+    }
 }
 
 /// What is said of each signal: a page, figures as JSON, and the scheme advised.
@@ -118,14 +229,20 @@ pub(crate) fn advise(
     py: Python,
     signals: Vec<(String, PyReadonlyArray1<f64>)>,
     rate: Option<f64>,
-    given: Given,
+    keywords: Advise,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Vec<(String, String, Option<Told>)>> {
     let signals: Vec<Signal> =
         signals.into_iter().map(|(name, values)| signal(name, &values, rate)).collect();
-    let arguments = arguments(given);
-    let all = watched(py, progress, |watch| library::advise(&signals, &arguments, watch))?;
-    Ok(all.into_iter().map(|own| (own.page, own.figures, own.best.map(told))).collect())
+    watched(py, progress, |watch| {
+        let recordings = signals.iter().map(Signal::recording).collect::<Result<Vec<_>>>()?;
+        let all = lab::advise::advise(&keywords.request(recordings)?, watch)?;
+        let said = all.iter().zip(&signals).map(|(own, signal)| {
+            let best = own.best().map(|(scheme, row)| told(scheme, row, &signal.name));
+            Ok((own.page(), serde_json::to_string(own)?, best.transpose()?))
+        });
+        said.collect()
+    })
 }
 
 /// A scheme as a constant in Rust.
@@ -158,7 +275,7 @@ type Read<'py> =
 
 /// Reads channels of a flight log or a table.
 #[pyfunction]
-pub(crate) fn read<'py>(py: Python<'py>, path: &str, given: Given) -> PyResult<Read<'py>> {
+pub(crate) fn read<'py>(py: Python<'py>, path: &str, given: Options) -> PyResult<Read<'py>> {
     let arguments = arguments(given);
     let log = py.detach(|| library::read(path, &arguments)).map_err(|error| value(&error))?;
     let columns = log.columns.into_iter().map(|column| column.into_pyarray(py)).collect();

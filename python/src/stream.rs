@@ -55,13 +55,12 @@ impl Encoder {
 
     /// Starts on the samples that wait, and encodes them.
     fn begin(&mut self) -> Result<Vec<Vec<i8>>> {
-        let Coder { scheme, sample, .. } = self.coder;
         let looks_back = self.coder.looks_back();
         let mut running = Vec::new();
-        for waiting in &self.waiting {
+        for (place, waiting) in self.waiting.iter().enumerate() {
             let first = &waiting[..waiting.len().min(looks_back)];
-            let settings = self.coder.settle(first, None)?;
-            running.push(channel::start(scheme, sample, &settings, None)?);
+            let settings = self.coder.channel(place, self.waiting.len())?.settle(first, None)?;
+            running.push(channel::start(self.coder.scheme, &settings, None)?);
         }
         self.running = running;
         let waiting: Vec<Vec<f64>> = self.waiting.iter_mut().map(std::mem::take).collect();
@@ -77,9 +76,10 @@ impl Encoder {
         if !states.is_empty() {
             // They come from their states, whatever they would have started from.
             let first = vec![0.0; self.coder.looks_back()];
-            let settings = self.coder.settle(&first, None)?;
-            let Coder { scheme, sample, .. } = self.coder;
-            let start = |_| channel::start(scheme, sample, &settings, None);
+            let start = |place| {
+                let settings = self.coder.channel(place, channels)?.settle(&first, None)?;
+                channel::start(self.coder.scheme, &settings, None)
+            };
             running = (0..channels).map(start).collect::<Result<_>>()?;
         }
         set_states(&mut running, pickled)?;

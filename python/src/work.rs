@@ -1,6 +1,5 @@
 //! Work without the interpreter's lock, which Ctrl-C ends and whose progress is told.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
@@ -11,7 +10,7 @@ use pyo3::prelude::*;
 /// What work tells of itself, and is told.
 #[derive(Default)]
 pub(crate) struct Meter {
-    is_stopped: Arc<AtomicBool>,
+    is_stopped: AtomicBool,
     done: AtomicUsize,
 }
 
@@ -19,11 +18,6 @@ impl Meter {
     /// Whether the work should end.
     pub(crate) fn is_stopped(&self) -> bool {
         self.is_stopped.load(Ordering::Relaxed)
-    }
-
-    /// What is set when the work should end.
-    pub(crate) fn stop(&self) -> Arc<AtomicBool> {
-        self.is_stopped.clone()
     }
 
     /// Sets what is done.

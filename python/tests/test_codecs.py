@@ -86,14 +86,15 @@ def test_counts_are_coded_as_they_are():
     "call, words",
     [
         (lambda: sw.StepForward(threshold=0), "threshold 0 must be above 0 and finite"),
-        (lambda: sw.StepForward(threshold=float("nan")), "threshold NaN must be finite"),
-        (lambda: sw.StepForward(threshold="high"), "threshold high: it is not a number"),
-        (lambda: sw.StepForward(), "sf needs threshold"),
-        (lambda: sw.MovingWindow(threshold=1, window=-1), "window -1: it must be a whole number, 0 or more"),
+        (lambda: sw.StepForward(threshold=float("nan")), "threshold=NaN: must be finite"),
+        (lambda: sw.StepForward(threshold="high"), "threshold=high: is not a number"),
+        (lambda: sw.StepForward(threshold=[0.1, 0.2]).encode([1, 2]), "`threshold` has 2 values, one a channel, for 1 channel"),
+        (lambda: sw.StepForward(), "sf needs `threshold`"),
+        (lambda: sw.MovingWindow(threshold=1, window=-1), "window=-1: must be a whole number, 0 or more"),
         (lambda: sw.SendOnDelta(threshold=1, spikes=128), "spikes 128 must be a whole number in 1..=127"),
         (lambda: sw.Gaussian(neurons=2), "neurons 2 must be a whole number in 3..=1024"),
         (lambda: sw.Hough(filter="triang:0"), "the length `0` must be 1 to 4096"),
-        (lambda: sw.Bernoulli(mean="median"), "mean median: there are average, window"),
+        (lambda: sw.Bernoulli(mean="median"), "mean=median: there are average, window"),
         (lambda: sw.StepForward(threshold=1, sample="f64"), "no sample type `f64`"),
         (lambda: sw.StepForward(threshold=1).encode([1, np.nan]), "channel 0, sample 1: NaN is not finite"),
         (lambda: sw.StepForward(threshold=1).encode([[]]), "channel 0 has no samples"),
@@ -102,13 +103,38 @@ def test_counts_are_coded_as_they_are():
         (lambda: sw.StepForward(threshold=1).decode([0, 1]), "a first value: first="),
         (lambda: sw.StepForward(threshold=1).decode([0, 2], first=0), r"channel 0, sample 1: \[2\] is no code"),
         (lambda: sw.StepForward(threshold=1).decode([0.5], first=0), "whole numbers"),
-        (lambda: sw.Hough(filter="triang:3").encoder(), r"hsa needs shift to begin a stream; fit\(x\) finds it"),
-        (lambda: sw.Position(neurons=20).decode(np.zeros((5, 20), np.int8)), "needs min and max"),
+        (lambda: sw.Hough(filter="triang:3").encoder(), r"hsa needs `shift` to begin a stream; fit\(x\) finds it"),
+        (lambda: sw.Position(neurons=20).decode(np.zeros((5, 20), np.int8)), "needs `min` and `max`"),
     ],
 )
 def test_what_is_bad_is_named_with_its_value_and_range(call, words):
     with pytest.raises(ValueError, match=words):
         call()
+
+
+def test_a_parameter_may_have_a_value_for_each_channel():
+    x = np.sin(np.arange(400).reshape(2, 200) * 0.1)
+    both = sw.StepForward(threshold=[0.1, 0.3])
+    each = [sw.StepForward(threshold=threshold).encode(own) for threshold, own in zip([0.1, 0.3], x)]
+    codes = np.stack([own.array for own in each])
+    assert np.array_equal(both.encode(x).array, codes)
+    assert np.array_equal(both.encoder(2).encode(x), codes)
+    assert np.array_equal(both.encode(x).decode(), [own.decode() for own in each])
+
+
+@pytest.mark.parametrize(
+    "scheme",
+    [
+        sw.Position(centres=[0, 1, 3]),
+        sw.Position(centres=np.array([0.0, 1.0, 3.0])),
+        sw.NonLinearGaussian(centres=[0, 1, 3], widths=[1, 1, 2]),
+        sw.FirstSpike(edges=[0.5, 1, 3], min=0, max=4),
+        sw.Hough(filter=[2], shift=0),
+    ],
+)
+def test_lists_are_values(scheme):
+    x = np.array([0.2, 1.1, 2.9, 0.9])
+    assert np.abs(scheme.decode(scheme.encode(x)) - x).max() < 1.5
 
 
 def test_events_are_in_the_order_of_time():

@@ -47,9 +47,9 @@ def test_what_is_tuned_keeps_to_its_goal(log):
     kept = sw.tune(log.x[0], sw.SendOnDelta, spikes=3, min_efficiency=50, evaluations=40)
     assert kept.scheme.parameters["spikes"] == 3
     for keywords, words in [
-        ({"hold_out": 2}, "hold_out 2 must be 0 or more and below 1"),
-        ({"max_rmse": 0}, "must be a number above 0 and finite"),
-        ({"window": 5}, "sf takes no window"),
+        ({"hold_out": 2}, "`hold_out` 2 must be 0 or more and below 1"),
+        ({"max_rmse": 0}, "`max_rmse` 0 must be above 0 and finite"),
+        ({"window": 5}, "sf takes no `window`"),
         ({"max_ram": 1}, "no settings keep to all limits"),
     ]:
         with pytest.raises(ValueError, match=words):
@@ -57,7 +57,7 @@ def test_what_is_tuned_keeps_to_its_goal(log):
 
 
 def test_advice_names_a_scheme(log):
-    advice = sw.advise(log.x[0][2000:2600], rate=log.rate, evaluations=12, seconds=60, name="gyro_x")
+    advice = sw.advise(log.x[0][2000:2600], rate=log.rate, evaluations=12, name="gyro_x")
     assert "take " in advice.page and advice.best.scheme.name in advice.page
     assert json.dumps(advice.figures)
 
