@@ -41,14 +41,16 @@ pub fn peers() -> Result<()> {
     crate::peers::peers()
 }
 
-/// The README is the documentation of an item named `Readme`, which exists for doctests only.
+/// Each page with code is the documentation of an item in `pages`, which exists for doctests only.
 pub fn readme() -> Result<()> {
-    let said = output(&mut tests("--doc -- Readme")?)?;
+    let said = output(&mut tests("--doc -- pages")?)?;
     print!("{said}");
-    ensure!(
-        said.contains(" - Readme (line "),
-        "no doctest named `Readme`: is README.md included in src/lib.rs?"
-    );
+    for page in ["Readme", "Usage", "Frames"] {
+        ensure!(
+            said.contains(&format!(" - pages::{page} (line ")),
+            "no doctest of `pages::{page}`: is the page included in src/lib.rs?"
+        );
+    }
     Ok(())
 }
 

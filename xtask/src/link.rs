@@ -3,7 +3,7 @@
 
 use crate::{
     boards::{BOARDS, Board},
-    host, image, parts, paths, qemu,
+    host, image, paths, qemu, real_boards,
     shell::{self, cargo, run},
 };
 use anyhow::{Context, Result, bail, ensure};
@@ -61,7 +61,7 @@ fn far_ends(board: &Board, heard: &Path, values: &str) -> Result<()> {
 
     let of_companion = paths::target().join("far-end-linux.bytes");
     run(cargo("fmt --check").current_dir(paths::examples().join(COMPANION)))?;
-    let (elsewhere, patch) = parts::copied(COMPANION, &["far-end"])?;
+    let (elsewhere, patch) = real_boards::copied(COMPANION, &["far-end"])?;
     let mut test = cargo("test --quiet --test pty --config");
     shell::lint(&mut test)
         .args([&patch, "--", "--ignored"])

@@ -6,7 +6,10 @@ use crate::{
     toolchain::cargo_for,
 };
 use anyhow::{Context, Result, ensure};
-use std::fs;
+use std::{
+    fs,
+    time::{SystemTime, UNIX_EPOCH},
+};
 
 /// The recordings, and what they are extracted into for the comparison.
 const RECORDINGS: [&str; 2] = ["hexarotor.csv", "vtol_at_rest.csv"];
@@ -29,12 +32,18 @@ pub fn recordings() -> Result<()> {
     Ok(())
 }
 
-/// Every test, optimised and with many more cases. Those against other people's programs have a check of their own.
+/// Every test, optimised, with many more cases, drawn from a fresh seed unless `SWEEPS_SEED` is set. Those against
+/// other people's programs have a check of their own.
 pub fn sweeps() -> Result<()> {
-    let tests =
-        "test --release --package spikewire --package host-tests --package spikewire-cli --tests";
-    let mut cargo = cargo(&format!("{tests} -- --include-ignored --skip formats_peers"));
-    run(cargo.env("CASES_TIMES", "20"))
+    let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH)?;
+    let seed = std::env::var("SWEEPS_SEED").unwrap_or_else(|_| since_1970.as_micros().to_string());
+    println!("SWEEPS_SEED={seed} draws these cases again.");
+    let tests = "test --release --package spikewire --package host-tests --package lab --package spikewire-cli --tests";
+    let mut all =
+        cargo(&format!("{tests} --no-fail-fast -- --include-ignored --skip formats_peers"));
+    run(all.env("CASES_TIMES", "20").env("PROPTEST_RNG_SEED", &seed))?;
+    let mut catalogue = cargo("test --release --package catalogue --lib");
+    run(catalogue.env("PROPTEST_CASES", "5120").env("PROPTEST_RNG_SEED", &seed))
 }
 
 /// What `clippy` and the builds of firmware lint, and what they leave out.

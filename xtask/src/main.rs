@@ -10,6 +10,7 @@ mod cpu;
 mod demo;
 mod distribution;
 mod drawing;
+mod emulator;
 mod fifo;
 mod firmware;
 mod flown;
@@ -24,6 +25,7 @@ mod markdown;
 mod modules;
 mod names;
 mod needs;
+mod new_firmware;
 mod package;
 mod packages;
 mod parts;
@@ -34,7 +36,7 @@ mod progress;
 mod python;
 mod qemu;
 mod rate_loop;
-mod recipe;
+mod real_boards;
 mod ros;
 mod ros_figure;
 mod schemes;
@@ -42,7 +44,6 @@ mod setup;
 mod shell;
 mod signal;
 mod size;
-mod speed;
 mod storm;
 mod toolchain;
 mod tuned;
@@ -59,12 +60,14 @@ cargo xtask <command>
 
   setup                 compiler targets, QEMU and binutils for Cortex-M; does only what is missing
   firmware [PROGRAM]... runs the example programs on every emulated board and compares with the host
-  schemes [--write]     what each scheme makes of a flight and of the paper's signal; --write puts it into README.md
+  schemes [--write]     what each scheme makes of a flight and of the paper's signal; --write puts it into docs/schemes.md
   jumps [--write]       draws the flight's hardest second in three step codes; --write puts it into docs/jumps.svg
   ros-figure [--write]  draws what a ROS node records of the paper's signal; --write puts it into docs/ros.svg
   firmware --write      puts the spike counts of flight-log, and which bits agree, into docs/bits.md
   c-library [--target]  the library for C: archive, header, CMake package and pkg-config file for each core
   c-library --write     writes its header and declarations from the catalogue; --sizes, the table in c/README.md
+  new-firmware DIR --board NAME
+                        writes a firmware project for a board, which builds as it comes; without arguments, the boards
   demo                  real flight data through encoder, emulated flight controller and decoder
   bench-target          what every codec costs on every emulated board, in instructions and bytes
   verify [STEP]...      every check, or the named ones; `cargo verify --help` lists them
@@ -95,6 +98,7 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "schemes" => schemes::schemes(args),
         "jumps" => jumps::jumps(args),
         "c-library" => c_library::library(args),
+        "new-firmware" => new_firmware::new_firmware(args),
         "ros-figure" => ros::figure(args),
         "demo" => demo::demo(args),
         "verify" => verify::verify(args),

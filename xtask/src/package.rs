@@ -48,7 +48,8 @@ pub fn unpacked() -> Result<PathBuf> {
     let packed = paths::target().join("package");
     let version = version()?;
     let archive = packed.join(format!("spikewire-{version}.crate"));
-    run(command("tar").arg("-xzf").arg(&archive).arg("-C").arg(&packed))?;
+    // With the time of now: those in the archive never change, and cargo would take the last version's build for this one's.
+    run(command("tar").arg("-xzmf").arg(&archive).arg("-C").arg(&packed))?;
     Ok(packed.join(format!("spikewire-{version}")))
 }
 

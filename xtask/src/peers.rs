@@ -26,6 +26,17 @@ pub fn logs() -> Result<()> {
     run(command(&python).arg(check).args([program, recording, place]))
 }
 
+/// `spikewire tune` beside other people's optimisers, at equal numbers of settings.
+pub fn tuner() -> Result<()> {
+    let python = environment("tuner", "cli/python/tune_requirements.txt")?;
+    run(&mut cargo("build --release --package spikewire-cli"))?;
+    let program = paths::target().join("release/spikewire");
+    let results = paths::target().join("tuner/peers.json");
+    let recording = paths::root().join("data/hexarotor.csv");
+    let check = paths::root().join("cli/python/tune_peers.py");
+    run(command(&python).arg(check).args([program, recording, results]))
+}
+
 /// The Python of an environment of this name, with these packages.
 fn environment(name: &str, requirements: &str) -> Result<PathBuf> {
     let environment = paths::target().join(name);

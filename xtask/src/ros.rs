@@ -1,12 +1,16 @@
-//! `cargo verify ros`: the nodes in a ROS 1 of the distribution, and those of ROS 2 as far as they run without one.
+//! `cargo verify ros`: the nodes in a ROS 1 of the distribution; `cargo verify ros2`: those of ROS 2 against another DDS.
 
 use crate::{
     host, paths, ros_figure, setup,
-    shell::{command, output, run},
+    shell::{cargo, command, output, run},
     usage::usage,
 };
 use anyhow::Result;
-use std::{env, fs, path::PathBuf, process::Command};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
 
 /// ROS 1, what builds its packages, and what its nodes and their tests import.
 const PACKAGES: [&str; 11] = [
@@ -25,20 +29,66 @@ const PACKAGES: [&str; 11] = [
 /// The programs of the distribution, and no others: its Python has its ROS.
 const PATH: &str = "/usr/bin:/bin";
 
-/// A flight through every scheme, what goes wrong, the toolbox's bags, the figure, and the wire format of ROS 2.
+/// A flight through every scheme, what goes wrong, the toolbox's bags and launch files, and the figure.
 pub fn ros() -> Result<()> {
     let ros = Ros::ready()?;
     run(&mut ros.test("core.py"))?;
-    ros.ros2()?;
     let (demo, mut spikewire) = (host::example("demo")?, host::spikewire("")?);
     let mut flight = ros.test("flight.py");
     flight.arg(paths::root().join("data/hexarotor.csv")).arg(demo).arg(spikewire.get_program());
     run(flight.arg(ros.room("flight")?))?;
     run(ros.test("faults.py").arg(ros.room("faults")?))?;
     run(ros.test("toolbox.py").arg(spikewire.get_program()).arg(ros.room("toolbox")?))?;
+    run(ros.test("old_launch.py").arg(ros.room("old_launch")?))?;
     ros_figure::ensure_drawn(&ros.figure()?)?;
     let bag = ros.room("figure")?.join("encoding.bag");
     ros_figure::ensure_decoded(&output(spikewire.arg("decode").arg(bag))?, &ros.table()?)
+}
+
+/// Tests the Rust nodes, installs them as colcon does, and runs them against Eclipse Cyclone DDS.
+///
+/// All that they send stays in a network namespace with nothing but loopback in it.
+pub fn ros2() -> Result<()> {
+    setup::packages("what installs the nodes, and a network of their own", &["cmake", "iproute2"])?;
+    let top = paths::target().join("ros2");
+    let manifest = "--locked --manifest-path ros/node/Cargo.toml --target-dir";
+    for command in ["test", "clippy --all-targets"] {
+        let mut cargo = cargo(&format!("{command} {manifest}"));
+        cargo.arg(&top);
+        if command != "test" {
+            cargo.args(["--", "-D", "warnings"]);
+        }
+        run(&mut cargo)?;
+    }
+    run(cargo("fmt --check --manifest-path ros/node/Cargo.toml").current_dir(paths::root()))?;
+    let (build, prefix) = (top.join("build"), top.join("install"));
+    let define = |name: &str, path: &Path| format!("-D{name}={}", path.display());
+    let mut cmake = command("cmake");
+    cmake.args(["-S", "ros/ros2/spikewire_ros", "-DCARGO_PROFILE=dev", "-B"]).arg(&build);
+    output(cmake.args([define("BUILT", &top), define("CMAKE_INSTALL_PREFIX", &prefix)]))?;
+    output(command("cmake").arg("--build").arg(&build))?;
+    output(command("cmake").arg("--install").arg(&build))?;
+
+    let python = environment(&top.join("cyclone"))?;
+    let install = "-m pip install --quiet --disable-pip-version-check --requirement";
+    run(command(&python).args(install.split(' ')).arg(tests().join("ros2.txt")))?;
+    let room = top.join("room");
+    fs::create_dir_all(&room)?;
+    let mut test = command("unshare");
+    test.args(["--map-root-user", "--net", "--pid", "--fork", "--kill-child"])
+        .arg(python)
+        .arg(tests().join("ros2.py"));
+    test.arg(prefix).arg(paths::root().join("data/hexarotor.csv")).arg(host::example("demo")?);
+    run(test.arg(room).env("PYTHONPATH", sources()).env("PYTHONDONTWRITEBYTECODE", "1"))
+}
+
+/// The Python of an environment of its own.
+fn environment(directory: &Path) -> Result<PathBuf> {
+    let python = directory.join("bin/python");
+    if !python.is_file() {
+        run(command("python3").args(["-m", "venv"]).arg(directory))?;
+    }
+    Ok(python)
 }
 
 /// `cargo xtask ros-figure`
@@ -66,7 +116,7 @@ impl Ros {
         setup::packages("ROS 1 and what builds its packages", &PACKAGES)?;
         let top = paths::target().join("ros");
         let ros = Self { site: top.join("site"), top };
-        let pip = ros.environment("pip")?;
+        let pip = environment(&ros.top.join("pip"))?;
         let install = "-m pip install --quiet --disable-pip-version-check --no-deps --upgrade";
         let mut pip = command(pip);
         pip.args(install.split(' ')).arg("--target").arg(&ros.site).arg("./python");
@@ -82,16 +132,6 @@ impl Ros {
         Ok(ros)
     }
 
-    /// The Python of an environment of its own.
-    fn environment(&self, name: &str) -> Result<PathBuf> {
-        let environment = self.top.join(name);
-        let python = environment.join("bin/python");
-        if !python.is_file() {
-            run(command("python3").args(["-m", "venv"]).arg(&environment))?;
-        }
-        Ok(python)
-    }
-
     /// A directory for what a test leaves behind.
     fn room(&self, name: &str) -> Result<PathBuf> {
         let room = self.top.join(name);
@@ -105,17 +145,6 @@ impl Ros {
         test.arg("python3").arg(tests().join(name));
         test.env("PATH", PATH).env("PYTHONPATH", &self.site).env("PYTHONDONTWRITEBYTECODE", "1");
         test
-    }
-
-    /// The nodes of ROS 2, with other people's readers of what they send.
-    fn ros2(&self) -> Result<()> {
-        let python = self.environment("ros2")?;
-        let install = "-m pip install --quiet --disable-pip-version-check --requirement";
-        run(command(&python).args(install.split(' ')).arg(tests().join("ros2.txt")))?;
-        let path = env::join_paths([&self.site, &sources()])?;
-        let mut test = command(&python);
-        test.arg(tests().join("ros2.py"));
-        run(test.env("PYTHONPATH", path).env("PYTHONDONTWRITEBYTECODE", "1"))
     }
 
     /// Records the figure's bag and draws it.

@@ -4,7 +4,7 @@ use crate::{host::spikewire, markdown, paths, shell::output};
 use anyhow::{Context, Result};
 use serde::Deserialize;
 
-const PAGE: &str = "README.md";
+const PAGE: &str = "docs/schemes.md";
 const MARKER: &str = "schemes";
 
 /// A line of `spikewire score --json`.
@@ -25,7 +25,7 @@ pub fn schemes(args: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Fails if the README has other figures.
+/// Fails if the page has other figures.
 pub fn ensure_written() -> Result<()> {
     markdown::ensure_written(PAGE, MARKER, &table()?, "cargo xtask schemes --write")
 }

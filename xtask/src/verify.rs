@@ -1,8 +1,8 @@
 //! `cargo verify`: every check, in order, each with its time. A failure does not hide the next one.
 
 use crate::{
-    checks, cpu, fifo, link, logging, long, needs, package, parts, python, rate_loop, recipe,
-    storm, tuned, usage::usage,
+    checks, cpu, fifo, link, logging, long, needs, package, python, rate_loop, real_boards, storm,
+    tuned, usage::usage,
 };
 use anyhow::{Result, bail};
 use std::time::Instant;
@@ -31,15 +31,18 @@ const STEPS: &[Step] = &[
     step("clippy", "clippy on host code, which builds the tests, and on firmware", checks::clippy),
     step("test", "host tests and doctests", checks::test),
     step("peers", "event formats against other programs", checks::peers),
-    step("readme", "the README's code runs", checks::readme),
+    step("readme", "the code of README and docs runs", checks::readme),
     step("doc", "documentation without warnings", checks::doc),
     step("package", "what is published has all that its pages show", package::package),
     step("features", "every feature alone, on the host", checks::each_feature),
     step("targets", "the crate for every Cortex-M", checks::targets),
     step("no-panic", "every codec links without a panic handler", checks::no_panic),
     step("c", "the library for C, on the host and on a Cortex-M4F", crate::c_library::verify),
-    step("recipe", "the guide's firmware, outside this workspace, in QEMU", recipe::recipe),
-    step("parts", "the examples for an STM32F405's boards", parts::parts),
+    step(
+        "boards",
+        "a Pico's firmware as it is flashed, in an emulator, and all that breaks",
+        real_boards::boards,
+    ),
     step("fifo", "a sensor at 8 kHz: driver, and instructions", fifo::fifo),
     step("demo", "the demo's table and picture", checks::demo),
     step("firmware", "emulated boards against the host", checks::firmware),
@@ -57,7 +60,11 @@ const STEPS: &[Step] = &[
 /// Those that take too long for every change.
 const LONG: &[Step] = &[
     step("recordings", "the flights come out of the published logs again", long::recordings),
-    step("sweeps", "all tests, optimised, with twenty times as many cases", long::sweeps),
+    step(
+        "sweeps",
+        "all tests, optimised, with twenty times as many cases, from a fresh seed",
+        long::sweeps,
+    ),
     step("lints", "clippy on all at once: every feature, firmware on host and core", long::lints),
     step("capture", "the laptop program with a debug probe's driver", long::capture),
     step("c-cores", "the library for C on the other four cores", crate::c_library::cores),
@@ -66,9 +73,15 @@ const LONG: &[Step] = &[
         "ROS nodes in the distribution's ROS, a flight through every scheme",
         crate::ros::ros,
     ),
+    step("ros2", "ROS 2 nodes against Cyclone DDS, on loopback alone", crate::ros::ros2),
     step("logs", "logs of every kind, read as independent readers do", crate::peers::logs),
+    step(
+        "tuner",
+        "`spikewire tune` beside other optimisers, at equal numbers of settings",
+        crate::peers::tuner,
+    ),
     step("py-speed", "the Python package from its source package, and its speed", python::speed),
-    step("more-parts", "the examples for other parts", parts::more),
+    step("all-boards", "the other boards' firmware, compiled and linked", real_boards::more),
     step("c-cost", "what the calls of C take beside the crate's", crate::c_library::cost),
     step("panic-free", "every codec without a panic handler, on two cores", checks::no_panic_all),
     step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", checks::bench_m0),

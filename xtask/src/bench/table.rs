@@ -14,17 +14,7 @@ const EVENTS: (&str, &str) = ("docs/costs.md", "bench-target events");
 const BRIEF: (&str, &str) = ("README.md", "bench-target brief");
 
 /// The codecs of the short table.
-const FEW: [&str; 9] = [
-    "tbr",
-    "sf",
-    "mw-5",
-    "hsa-15",
-    "t-hsa-15",
-    "bsa-24",
-    "position-20",
-    "grf-20",
-    "grf-slots-15x10",
-];
+const FEW: [&str; 6] = ["tbr", "sf", "sod-4", "t-hsa-15", "position-20", "weighted-phase-8"];
 
 /// What a line of a table tells: one codec, in one sample type, on one core and signal.
 struct Line<'a> {
@@ -194,6 +184,8 @@ fn name(codec: &str) -> &str {
     match codec {
         "tbr" => "TBR",
         "sf" => "SF",
+        "sod-4" => "send-on-delta, 4 spikes",
+        "weighted-phase-8" => "weighted phase, 8 digits",
         "mw-5" => "MW, W = 5",
         "mw-63" => "MW, W = 63",
         "hsa-15" => "HSA, 15 taps",

@@ -1,0 +1,355 @@
+//! Images for a Pico, flown in rp2040js from their reset vector, with a sensor that breaks in every way that it can.
+
+use crate::{
+    host,
+    parts::{BMI323, Part},
+    paths, setup,
+    shell::{self, command, output, run},
+};
+use anyhow::{Context, Result, ensure};
+use serde::Deserialize;
+use spikewire::{
+    Scheme,
+    link::{MAX_FRAME, Reader, Receiver},
+    temporal::{SendOnDelta, StepForward},
+};
+use std::{
+    fs::{self, File},
+    path::{Path, PathBuf},
+};
+
+/// From the beginning to the first fate, and from one to the next, in ms.
+const FIRST: u64 = 600;
+const EACH: u64 = 700;
+/// From a fate to its mend, in ms.
+const LASTS: u64 = 250;
+/// How long the far end may take to know everything again after a mend, in ms: the page says 0.3 s.
+const BACK: u64 = 300;
+
+/// What breaks, and what mends it.
+const BREAKS: [(&str, &str); 9] = [
+    ("miso-cut", "mend"),
+    ("miso-noise", "mend"),
+    ("miso-low", "mend"),
+    ("miso-high", "mend"),
+    ("ready-cut", "mend"),
+    ("clock-cut", "mend"),
+    ("supply-gone", "supply-back"),
+    ("freeze", "thaw"),
+    ("freeze-accelerometer", "thaw"),
+];
+
+/// What an emulation has seen.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Seen {
+    starts: Vec<Start>,
+    instructions: u64,
+    cycles: u64,
+    /// In ns.
+    shortest_pause: f64,
+    shortest_guard: f64,
+    spi_hz: u32,
+    baud: u32,
+    clk_sys: u32,
+    configured: bool,
+    pulled_up: bool,
+}
+
+#[derive(Deserialize)]
+struct Start {
+    /// In ms.
+    at: f64,
+    /// 1: the watchdog.
+    reason: u32,
+}
+
+/// What the far end knew.
+struct Heard {
+    /// Times in ms at which all channels became exact, or ceased to be.
+    exact: Vec<(u64, bool)>,
+    /// Times in ms of each start of the sender that a frame told of.
+    starts: Vec<u64>,
+    /// Frames that tell of items that the queue dropped.
+    after_loss: u32,
+    /// Values that were exact and further than a threshold from the sensor's sample.
+    wrong: Vec<(u32, u16, i16)>,
+    values: u32,
+}
+
+/// A sensor's name, the limits of its timing in ns and Hz, and how soon a dead one is told, in ms.
+struct Limits {
+    sensor: &'static str,
+    pause: f64,
+    guard: f64,
+    spi_hz: u32,
+    noticed: u64,
+    samples_a_second: usize,
+}
+
+/// Flies the image, and looks at all that it did.
+pub fn fly(part: &Part, image: &Path) -> Result<()> {
+    let limits = if part.listen == BMI323 {
+        // Twenty samples at 800 Hz, 5 ms to gather, and the line.
+        Limits {
+            sensor: "bmi323",
+            pause: 2_000.0,
+            guard: 200.0,
+            spi_hz: 10_000_000,
+            noticed: 35,
+            samples_a_second: 800,
+        }
+    } else {
+        Limits {
+            sensor: "icm42688p",
+            pause: 0.0,
+            guard: 100.0,
+            spi_hz: 24_000_000,
+            noticed: 20,
+            samples_a_second: 8_000,
+        }
+    };
+    whole(part, image, &limits)?;
+    broken(part, image, &limits)?;
+    without_a_crystal(part, image, &limits)
+}
+
+/// A second and a half in which nothing happens: clocks, configuration, rate, values.
+fn whole(part: &Part, image: &Path, limits: &Limits) -> Result<()> {
+    let (seen, directory) = emulate(part, image, limits.sensor, 1.5, &[])?;
+    ensure!(seen.clk_sys == 125_000_000, "the core runs at {} Hz", seen.clk_sys);
+    ensure!(seen.configured && seen.pulled_up, "the sensor is not configured, or its line floats");
+    ensure!(seen.spi_hz <= limits.spi_hz, "SPI runs at {} Hz", seen.spi_hz);
+    ensure!(seen.baud.abs_diff(part.baud) * 50 < part.baud, "{} baud", seen.baud);
+    let (pause, guard) = (seen.shortest_pause, seen.shortest_guard);
+    ensure!(pause >= limits.pause && guard >= limits.guard, "pause {pause} ns, guard {guard} ns");
+    let heard = hear(part, &directory)?;
+    ensure!(heard.wrong.is_empty(), "values that the sensor did not have: {:?}", heard.wrong);
+    ensure!(heard.exact.len() == 2 && heard.after_loss == 0, "{:?}", heard.exact);
+    let table = listened(part, &directory)?;
+    let exact = table.lines().filter(|line| line.ends_with(",exact")).count();
+    ensure!(exact > 100, "spikewire listen has {exact} exact values");
+    let log = log(image, &directory)?;
+    let counted = log.lines().filter_map(|line| number(line, "samples: ")).next_back().unwrap_or(0);
+    ensure!(counted as usize >= limits.samples_a_second, "no second of samples in the log:\n{log}");
+    ensure!(log.contains("reset by PowerOrPin"), "the log does not say why it started:\n{log}");
+    println!(
+        "{}: 125 MHz, SPI {} Hz, {} baud, pauses of {pause:.0} ns and more; {} values, {} instructions and {} cycles a second",
+        part.name,
+        seen.spi_hz,
+        seen.baud,
+        heard.values,
+        seen.instructions * 2 / 3,
+        seen.cycles * 2 / 3,
+    );
+    Ok(())
+}
+
+/// Everything that breaks, one after the other; then a queue that runs over, a hang and a second start.
+fn broken(part: &Part, image: &Path, limits: &Limits) -> Result<()> {
+    let mut fates = Vec::new();
+    let mut at = FIRST;
+    for (breaks, mends) in BREAKS {
+        fates.extend([(at, breaks), (at + LASTS, mends)]);
+        at += EACH;
+    }
+    let slow = at;
+    let (mended, hang, reset, end) = (slow + 1_500, slow + 2_000, slow + 3_000, slow + 3_600);
+    fates.extend([(slow, "uart-slow"), (mended, "mend"), (hang, "hang"), (reset, "reset")]);
+    let (seen, directory) = emulate(part, image, limits.sensor, end as f64 / 1e3, &fates)?;
+    let heard = hear(part, &directory)?;
+    ensure!(heard.wrong.is_empty(), "values that the sensor did not have: {:?}", heard.wrong);
+
+    let is_exact = |at: u64| heard.exact.iter().rfind(|one| one.0 <= at).is_some_and(|one| one.1);
+    let next = |from: u64, is: bool| {
+        if is_exact(from) == is {
+            return Some(0);
+        }
+        heard.exact.iter().find(|one| one.0 > from && one.1 == is).map(|one| one.0 - from)
+    };
+    for (index, (breaks, _)) in BREAKS.into_iter().enumerate() {
+        let at = FIRST + EACH * index as u64;
+        ensure!(is_exact(at), "before {breaks} the far end knew nothing: {:?}", heard.exact);
+        let (noticed, back) = (next(at, false), next(at + LASTS, true));
+        println!("  {breaks:20} noticed within {noticed:?} ms, recovered within {back:?} ms");
+        ensure!(noticed.is_some_and(|ms| ms <= limits.noticed), "{breaks} was noticed too late");
+        ensure!(back.is_some_and(|ms| ms <= BACK), "{breaks}: not exact in time again");
+    }
+    let queue = next(mended, true);
+    println!(
+        "  {:20} {} frames tell of it, recovered within {queue:?} ms",
+        "a queue full", heard.after_loss
+    );
+    ensure!(heard.after_loss > 0 && queue.is_some_and(|ms| ms <= BACK), "a queue that ran over");
+
+    let starts: Vec<_> = seen.starts.iter().map(|start| (start.at as u64, start.reason)).collect();
+    let [(0, 0), (bitten, 1), (again, 0)] = starts[..] else {
+        anyhow::bail!("one hang, one reset: {starts:?}");
+    };
+    let [_, after_hang, after_reset] = heard.starts[..] else {
+        anyhow::bail!("the far end heard of these starts: {:?}", heard.starts);
+    };
+    // From each start on, until the far end has heard of it and knows all channels.
+    let [back, second] = [(bitten, after_hang), (again, after_reset)]
+        .map(|(from, heard_of)| next(heard_of, true).map(|ms| heard_of + ms - from));
+    println!("  {:20} reset within {} ms, recovered within {back:?} ms", "a hang", bitten - hang);
+    println!("  {:20} recovered within {second:?} ms", "a second start");
+    ensure!((400..=510).contains(&(bitten - hang)), "the watchdog took {} ms", bitten - hang);
+    ensure!(back.is_some_and(|ms| ms <= BACK), "after a hang");
+    ensure!(second.is_some_and(|ms| ms <= BACK), "after a second start");
+    ensure!(log(image, &directory)?.contains("reset by Watchdog"), "the log knows of no watchdog");
+    Ok(())
+}
+
+/// A crystal that does not start ends in resets until it does.
+fn without_a_crystal(part: &Part, image: &Path, limits: &Limits) -> Result<()> {
+    let fates = [(0, "crystal-dead"), (700, "mend")];
+    let (seen, directory) = emulate(part, image, limits.sensor, 1.6, &fates)?;
+    let bites = seen.starts.iter().filter(|start| start.reason == 1).count();
+    println!("  {:20} {bites} resets by the watchdog", "a dead crystal");
+    ensure!(bites >= 1, "a dead crystal hangs the board");
+    let heard = hear(part, &directory)?;
+    ensure!(heard.exact.last().is_some_and(|one| one.1), "it never recovered");
+    Ok(())
+}
+
+/// Runs an image, and returns what was seen and where the rest lies.
+fn emulate(
+    part: &Part,
+    image: &Path,
+    sensor: &str,
+    seconds: f64,
+    fates: &[(u64, &str)],
+) -> Result<(Seen, PathBuf)> {
+    let (home, directory) = (installed()?, paths::target().join("emulated").join(part.name));
+    fs::create_dir_all(&directory)?;
+    let mut node = command("node");
+    node.arg(home.join("pico.mjs")).args([image, Path::new(sensor)]);
+    node.arg(seconds.to_string()).arg(&directory);
+    node.args(fates.iter().map(|(at, name)| format!("{at}:{name}")));
+    let seen = serde_json::from_str(&output(&mut node)?).context("what the emulator says")?;
+    Ok((seen, directory))
+}
+
+/// The emulator beside the package that it needs.
+fn installed() -> Result<PathBuf> {
+    let (from, home) =
+        (paths::examples().join("boards/emulator"), paths::target().join("emulator"));
+    fs::create_dir_all(&home)?;
+    for file in ["package.json", "pico.mjs", "sensors.mjs"] {
+        fs::copy(from.join(file), home.join(file))?;
+    }
+    if !home.join("node_modules/rp2040js").is_dir() {
+        if !shell::has("npm") {
+            setup::packages("Node.js, which runs the emulated board", &["nodejs", "npm"])?;
+        }
+        let npm = "install --silent --no-audit --no-fund";
+        run(command("npm").args(npm.split(' ')).current_dir(&home))
+            .context("npm and Node.js 18 or newer are needed")?;
+    }
+    Ok(home)
+}
+
+/// What `spikewire listen` makes of the UART's bytes.
+fn listened(part: &Part, directory: &Path) -> Result<String> {
+    output(host::spikewire("listen")?.args(part.listen.split(' ')).arg(directory.join("uart")))
+}
+
+/// The log, in words.
+fn log(image: &Path, directory: &Path) -> Result<String> {
+    let mut decode = command(host::example("logging")?);
+    output(decode.arg(image).stdin(File::open(directory.join("log"))?))
+}
+
+fn number(line: &str, after: &str) -> Option<u32> {
+    let (_, rest) = line.split_once(after)?;
+    rest.split(|at: char| !at.is_ascii_digit()).next()?.parse().ok()
+}
+
+/// Hears the bytes as they came, and compares each exact value with the sensor's sample.
+fn hear(part: &Part, directory: &Path) -> Result<Heard> {
+    if part.listen == BMI323 {
+        let (rate, acceleration) = (SendOnDelta::<i16, 16>::new(98), SendOnDelta::new(205));
+        hear_with(directory, [&rate, &acceleration], [98, 205])
+    } else {
+        let (rate, acceleration) = (StepForward::<i16>::new(98), StepForward::new(328));
+        hear_with(directory, [&rate, &acceleration], [98, 328])
+    }
+}
+
+/// How long a far end takes a silence for life, in µs: the crate `far-end` derives it.
+const SILENCE: u64 = 120_000;
+
+fn hear_with<P: Scheme<Sample = i16>>(
+    directory: &Path,
+    [rate, acceleration]: [&P; 2],
+    thresholds: [u16; 2],
+) -> Result<Heard> {
+    let bytes = fs::read(directory.join("uart"))?;
+    let times = numbers(directory, "times")?;
+    let samples = numbers(directory, "samples")?;
+    let schemes = [rate, rate, rate, acceleration, acceleration, acceleration];
+    let mut receiver = Receiver::<_, 6>::per_channel(schemes);
+    let mut reader = Reader::<MAX_FRAME>::new();
+    let mut heard = Heard {
+        exact: vec![(0, false)],
+        starts: Vec::new(),
+        after_loss: 0,
+        wrong: Vec::new(),
+        values: 0,
+    };
+    let mut last = 0;
+    for (byte, time) in bytes.chunks(1).zip(&times) {
+        let now = time.first().copied().unwrap_or_default() as u64;
+        let mut byte = byte;
+        while let Some(received) = reader.next_frame(&mut byte) {
+            if now - last > SILENCE {
+                receiver.mark_stale();
+                note(&mut heard, (last + SILENCE) / 1_000, false);
+            }
+            last = now;
+            if received.is_start {
+                heard.starts.push(now / 1_000);
+            }
+            heard.after_loss += u32::from(received.frame.is_after_loss());
+            let mut values = Vec::new();
+            receiver.apply(&received, |channel, tick, value| {
+                values.push((tick.micros(), channel, value))
+            });
+            let is_exact = (0..6).all(|channel| receiver.exact(channel).is_some());
+            note(&mut heard, now / 1_000, is_exact);
+            heard.values += values.len() as u32;
+            let wrong = values
+                .into_iter()
+                .filter(|&value| is_exact && !is_near(value, &samples, thresholds));
+            heard.wrong.extend(wrong);
+        }
+    }
+    Ok(heard)
+}
+
+fn note(heard: &mut Heard, at: u64, is_exact: bool) {
+    if heard.exact.last().is_none_or(|last| last.1 != is_exact) {
+        heard.exact.push((at, is_exact));
+    }
+}
+
+/// Whether a value is within two thresholds of what the sensor had at its tick: one that the code may be behind, and one for
+/// the noise and a sample's time.
+fn is_near(
+    (tick, channel, value): (u32, u16, i16),
+    samples: &[Vec<i64>],
+    thresholds: [u16; 2],
+) -> bool {
+    let later = samples.partition_point(|sample| sample[0] <= i64::from(tick) + 20);
+    let threshold = thresholds[usize::from(channel >= 3)];
+    let near = later.checked_sub(1).and_then(|at| samples[at].get(1 + usize::from(channel)));
+    near.is_some_and(|&sample| sample.abs_diff(value.into()) <= 2 * u64::from(threshold))
+}
+
+/// A file's lines of numbers, separated by commas.
+fn numbers(directory: &Path, name: &str) -> Result<Vec<Vec<i64>>> {
+    let text = fs::read_to_string(directory.join(name))?;
+    let line = |line: &str| line.split(',').map(str::parse).collect::<Result<Vec<i64>, _>>();
+    Ok(text.lines().map(line).collect::<Result<_, _>>()?)
+}

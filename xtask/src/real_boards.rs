@@ -1,0 +1,156 @@
+//! The firmware for real boards: each built in a project of its own, as its reader would build it.
+
+use crate::{
+    emulator,
+    new_firmware::{self, Origin},
+    package,
+    parts::{BOARDS, Part},
+    paths,
+    shell::{cargo, command, lint, output, run},
+    toolchain::cargo_for,
+};
+use anyhow::{Context, Result, ensure};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+use tempfile::TempDir;
+
+/// How many lines a board's file may have.
+const MOST_LINES: usize = 150;
+
+/// The sensors' drivers on the host, and the images of the boards that an emulator has, built as they are flashed and flown.
+pub fn boards() -> Result<()> {
+    let bodies =
+        "test --quiet --manifest-path examples/Cargo.toml --package flight --package icm42688p";
+    run(cargo(&format!("{bodies} --features flight/bmi323"))
+        .env("CARGO_TARGET_DIR", paths::target()))?;
+    run(cargo("fmt --check").current_dir(paths::examples().join("boards")))?;
+    for part in BOARDS.iter().filter(|part| part.memory == "rp2040") {
+        emulator::fly(part, &build(part, false)?)?;
+    }
+    Ok(())
+}
+
+/// The boards that no emulator here has: compiled and linked, and looked at.
+pub fn more() -> Result<()> {
+    BOARDS
+        .iter()
+        .filter(|part| part.memory != "rp2040")
+        .try_for_each(|part| build(part, true).map(drop))
+}
+
+/// Builds a board's image in a project that `new-firmware` writes, with the crate as it would be published. `quickly` is for
+/// images that nobody runs: whether all fits together needs no optimised code.
+fn build(part: &Part, quickly: bool) -> Result<PathBuf> {
+    let file = paths::examples().join(format!("boards/src/board/{}.rs", part.board));
+    let lines = fs::read_to_string(&file)?.lines().count();
+    println!("{}: {lines} lines of its own", part.name);
+    ensure!(lines <= MOST_LINES, "{}: a board's file has {MOST_LINES} lines at most", part.name);
+
+    let elsewhere = tempfile::tempdir()?;
+    let project = elsewhere.path().join(part.name);
+    new_firmware::write(&project, part, &Origin::Path(paths::root()))?;
+    let patch =
+        format!("patch.crates-io.spikewire.path={:?}", package::unpacked()?.display().to_string());
+    let target = paths::thumb_target().join(if quickly { "parts" } else { "boards" });
+    let mut cargo = cargo_for(part.target, "build --release")?;
+    cargo.current_dir(&project).args(["--config", &patch]).env("CARGO_TARGET_DIR", &target);
+    if quickly {
+        cargo.env("CARGO_PROFILE_RELEASE_LTO", "off");
+        cargo.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1");
+        cargo.env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16");
+    }
+    run(lint(&mut cargo))?;
+    let image = target.join(part.target).join("release").join(part.name);
+    stack_ends_the_memory(&image)?;
+    match part.memory {
+        "stm32h743" => dma_has_its_memory(&image)?,
+        "crazyflie" => the_bootloader_stays(&image)?,
+        _ => {}
+    }
+    Ok(image)
+}
+
+/// A copy of an example and of what is copied beside it, and what tells cargo of the crate as it would be published.
+pub fn copied(name: &str, shared: &[&str]) -> Result<(TempDir, String)> {
+    const PATCH: &str = "[patch.crates-io]\nspikewire = { path = \"../..\" }\n";
+
+    let elsewhere = tempfile::tempdir()?;
+    for name in shared.iter().chain([&name]) {
+        copy(&paths::examples().join(name), &elsewhere.path().join(name))?;
+    }
+    let manifest = elsewhere.path().join(name).join("Cargo.toml");
+    let text = fs::read_to_string(&manifest)?;
+    ensure!(text.contains(PATCH), "{} does not patch the crate", manifest.display());
+    fs::write(manifest, text.replace(PATCH, ""))?;
+    let crate_ = package::unpacked()?;
+    Ok((elsewhere, format!("patch.crates-io.spikewire.path={:?}", crate_.display().to_string())))
+}
+
+/// Copies a directory's files, without what cargo has built there.
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
+        let (entry, target) = (entry?, to);
+        let target = target.join(entry.file_name());
+        match entry.file_type()? {
+            kind if !kind.is_dir() => drop(fs::copy(entry.path(), target)?),
+            _ if entry.file_name() == "target" => {}
+            _ => copy(&entry.path(), &target)?,
+        }
+    }
+    Ok(())
+}
+
+/// The lowest address, and length, of each section.
+fn section(image: &Path, name: &str) -> Result<(u32, u32)> {
+    let sections = output(command("arm-none-eabi-objdump").arg("-h").arg(image))?;
+    let mut lines = sections.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
+    let line = lines.find(|words| words.get(1) == Some(&name));
+    let line = line.with_context(|| format!("no section `{name}`"))?;
+    let number = |at: usize| u32::from_str_radix(line.get(at).unwrap_or(&""), 16);
+    Ok((number(3)?, number(2)?))
+}
+
+/// What DMA moves lies where DMA reaches, and where `part.rs` keeps the cache out.
+fn dma_has_its_memory(image: &Path) -> Result<()> {
+    let (start, length) = section(image, ".dma")?;
+    println!("DMA: {length} bytes from {start:#x} on");
+    ensure!(start == 0x3000_0000 && length >= 132, "the buffer is not in SRAM1");
+    Ok(())
+}
+
+/// The Crazyflie's radio bootloader has the first 16 KiB.
+fn the_bootloader_stays(image: &Path) -> Result<()> {
+    let (start, _) = section(image, ".vector_table")?;
+    ensure!(start == 0x0800_4000, "the image begins at {start:#x}, over the bootloader");
+    Ok(())
+}
+
+/// The stack ends where the memory does: one that overflows meets no static, but a fault.
+fn stack_ends_the_memory(image: &Path) -> Result<()> {
+    let symbols = output(command("arm-none-eabi-nm").arg(image))?;
+    let [start, end, statics] = ["_stack_start", "_stack_end", "__sdata"].map(|name| {
+        let line = symbols.lines().find(|line| line.ends_with(&format!(" {name}")))?;
+        u32::from_str_radix(line.split(' ').next()?, 16).ok()
+    });
+    let (start, end) = (start.context("no stack")?, end.context("no stack's end")?);
+    println!("stack: {} bytes from {end:#x} on", start - end);
+    ensure!(end == 0x2000_0000, "below the stack is memory");
+    ensure!(statics.context("no statics")? >= start, "statics lie in the stack's way");
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A log that waits for a debug probe stops the firmware when somebody pulls the probe.
+    #[test]
+    fn no_log_waits_for_a_probe() {
+        let text = fs::read_to_string(paths::examples().join("boards/Cargo.toml")).unwrap();
+        let log = text.lines().find(|line| line.starts_with("defmt-rtt = ")).unwrap();
+        assert!(log.contains("\"disable-blocking-mode\""), "{log}");
+    }
+}
