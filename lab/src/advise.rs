@@ -313,7 +313,10 @@ impl Advice {
 }
 
 /// What the crate's link takes for all events, in full frames, with a keyframe a second where a decoder needs them.
-fn link_bytes(trial: &Trial, rate: f64) -> Result<f64> {
+///
+/// # Errors
+/// The link cannot hold the rate or the events.
+pub fn link_bytes(trial: &Trial, rate: f64) -> Result<f64> {
     let period = (1e6 / rate).round().max(1.0);
     let format: Format = format!("link,period={period}").parse()?;
     let mut writer = format.writer(true);

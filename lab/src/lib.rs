@@ -7,19 +7,24 @@ pub mod bank;
 pub mod bench;
 pub mod brief;
 pub mod coding;
+pub mod encode;
 pub mod events;
+pub mod files;
 pub mod fit;
 pub mod frames;
 pub mod input;
 pub mod look;
 pub mod network;
 pub mod output;
+#[cfg(not(target_family = "wasm"))]
 pub mod plot;
+#[cfg(not(target_family = "wasm"))]
 pub mod port;
 pub mod resolution;
 #[cfg(any(test, feature = "capture"))]
 pub mod rtt;
 pub mod scheme;
+pub mod score;
 pub mod spikes;
 pub mod steep;
 pub mod timeline;

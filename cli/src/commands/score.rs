@@ -5,13 +5,10 @@ use crate::options::{Coding, SchemeOptions};
 use anyhow::{Result, bail};
 use catalogue::run::SampleType;
 use clap::Args;
-use lab::brief::brief;
 use lab::scheme::Scheme;
-use lab::steep::Steep;
+use lab::score::Figures;
 use lab::trial::{Recording, Trial};
 use serde::Serialize;
-use serde_json::Value;
-use std::collections::BTreeMap;
 use std::io::{self, Write, stdout};
 
 /// Score one scheme, or without `--scheme` all with the paper's settings, on one channel of a recording.
@@ -48,29 +45,6 @@ enum Scored {
     },
 }
 
-/// The figures of one scheme.
-#[derive(Debug, Serialize)]
-pub(crate) struct Figures {
-    scheme: String,
-    samples: usize,
-    spikes: usize,
-    /// Percent of samples without a spike, where each has one at most.
-    efficiency: f64,
-    /// Root mean square error, in the signal's unit.
-    rmse: f64,
-    /// Signal to noise in dB: variance of the signal to mean square of the error.
-    snr: f64,
-    spikes_per_second: Option<f64>,
-    /// What it ran with.
-    parameters: BTreeMap<&'static str, Value>,
-    /// Of step forward only.
-    slope: Option<Steep>,
-    /// What a user should know.
-    notes: Vec<String>,
-    #[serde(skip)]
-    brief: String,
-}
-
 /// Runs the command.
 ///
 /// # Errors
@@ -83,7 +57,7 @@ pub(crate) fn run(options: &Score) -> Result<()> {
     let mut scored = Vec::new();
     for scheme in schemes {
         scored.push(match Trial::new(scheme, &parameters, sample, &recording) {
-            Ok(trial) => Scored::Figures(Box::new(figures(&recording, &trial))),
+            Ok(trial) => Scored::Figures(Box::new(Figures::of(&recording, &trial))),
             Err(error) if is_single => return Err(error),
             Err(error) => {
                 Scored::Refused { scheme: scheme.name().to_owned(), refused: format!("{error:#}") }
@@ -136,48 +110,6 @@ pub(crate) fn chosen(coding: &Coding) -> Result<(Vec<Scheme>, SampleType, Scheme
             parameters.0.paper = true;
             Ok((Scheme::all().collect(), sample, parameters))
         }
-    }
-}
-
-/// What a trial comes to.
-pub(crate) fn figures(recording: &Recording, trial: &Trial) -> Figures {
-    let samples = recording.values.len();
-    let mean = recording.values.iter().sum::<f64>() / samples as f64;
-    let mean_square = |differences: &mut dyn Iterator<Item = f64>| {
-        differences.map(|difference| difference * difference).sum::<f64>() / samples as f64
-    };
-    let noise = mean_square(&mut recording.values.iter().zip(&trial.decoded).map(|(x, y)| x - y));
-    let variance = mean_square(&mut recording.values.iter().map(|x| x - mean));
-    let parameters = trial.settings.entries();
-    Figures {
-        scheme: trial.scheme.name().to_owned(),
-        samples,
-        spikes: trial.events.len(),
-        efficiency: trial.efficiency(),
-        rmse: noise.sqrt(),
-        snr: 10.0 * (variance / noise).log10(),
-        spikes_per_second: recording
-            .seconds()
-            .filter(|seconds| *seconds > 0.0)
-            .map(|seconds| trial.events.len() as f64 / seconds),
-        brief: brief(parameters),
-        parameters: parameters
-            .iter()
-            .map(|(key, value)| (*key, value_of(&value.to_string())))
-            .collect(),
-        slope: Steep::new(trial.scheme, recording, &trial.settings),
-        notes: trial.notes.clone(),
-    }
-}
-
-/// A number, a list of numbers, or a word.
-fn value_of(text: &str) -> Value {
-    let numbers: Option<Vec<Value>> =
-        text.split(',').map(|number| serde_json::from_str(number).ok()).collect();
-    match numbers.as_deref() {
-        Some([number]) => number.clone(),
-        Some(numbers) => numbers.into(),
-        None => text.into(),
     }
 }
 

@@ -294,7 +294,7 @@ impl Tune {
         }
     }
 
-    fn panel(cut: &Cut, curves: Vec<lab::plot::front::Curve>) -> Panel {
+    fn panel(cut: &Cut, curves: Vec<lab::tune::Curve>) -> Panel {
         Panel { title: cut.name.clone(), unit: known_unit(&cut.name).map(str::to_owned), curves }
     }
 

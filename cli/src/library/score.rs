@@ -1,8 +1,8 @@
 //! How few spikes, and how near to the signal.
 
 use super::{Coding, Signal};
-use crate::commands::score::figures;
 use anyhow::Result;
+use lab::score::Figures;
 use lab::trial::Trial;
 
 /// The figures of a coding on a signal, as `spikewire score --json` has those of one scheme.
@@ -12,5 +12,5 @@ use lab::trial::Trial;
 pub fn score(signal: &Signal, coding: &Coding) -> Result<String> {
     let recording = signal.recording()?;
     let trial = Trial::new(coding.scheme, &coding.asked, coding.sample, &recording)?;
-    Ok(serde_json::to_string(&figures(&recording, &trial))?)
+    Ok(serde_json::to_string(&Figures::of(&recording, &trial))?)
 }

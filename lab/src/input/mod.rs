@@ -15,9 +15,9 @@ pub use rollover::Rollover;
 pub use text::{shown, text};
 pub use ulog::{Log, Topic};
 
+use crate::files::{self, File};
 use anyhow::{Context, Result, bail};
 use flate2::read::MultiGzDecoder;
-use std::fs::File;
 use std::io::{self, Cursor, Read};
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
@@ -328,7 +328,7 @@ pub enum LogKind {
 /// # Errors
 /// It cannot be opened.
 pub fn log_kind(path: &Path) -> Result<Option<LogKind>> {
-    if path.is_dir() {
+    if files::is_dir(path) {
         return Ok(messages::kind_of(path)?.map(LogKind::Messages));
     }
     let start = |input: &mut dyn Read| {
@@ -346,7 +346,7 @@ pub fn log_kind(path: &Path) -> Result<Option<LogKind>> {
         return Ok(Some(LogKind::Ulog));
     }
     // What can be read only once is no log.
-    if !path.is_file() {
+    if !files::is_file(path) {
         return Ok(None);
     }
     Ok(messages::kind_of(path)?.map(LogKind::Messages))

@@ -5,6 +5,7 @@ use super::FONT;
 use super::palette::{GRID, INK, OTHERS, TOLD_APART};
 use super::title::Drawn;
 use crate::scheme::Scheme;
+use crate::tune::Curve;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
@@ -16,16 +17,6 @@ pub struct Panel {
     pub unit: Option<String>,
     /// A curve for each scheme.
     pub curves: Vec<Curve>,
-}
-
-/// One scheme.
-pub struct Curve {
-    /// Which.
-    pub scheme: Scheme,
-    /// Efficiency and RMSE of each setting.
-    pub points: Vec<(f64, f64)>,
-    /// Those of the paper's setting.
-    pub paper: Option<(f64, f64)>,
 }
 
 /// Fonts that can be read where the picture is as narrow as a phone.

@@ -17,6 +17,6 @@ pub mod stretch;
 pub use costs::Costs;
 pub use figures::Figures;
 pub use problem::{Goal, Limits, Problem, Scored};
-pub use request::{TuneRequest, Tuned, tune};
+pub use request::{Curve, TuneRequest, Tuned, tune};
 use space::Extent;
 pub use stretch::Stretch;

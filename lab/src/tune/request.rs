@@ -6,7 +6,6 @@ use super::search::{Budget, Found, Method, search, share};
 use super::stretch::{HoldOut, cut};
 use super::{Goal, Limits, Problem, Scored, Stretch, costs};
 use crate::look::Look;
-use crate::plot::front::Curve;
 use crate::scheme::Scheme;
 use crate::trial::Recording;
 use crate::watch::{Progress, Watch};
@@ -166,6 +165,16 @@ pub struct Tuned {
     pub missed: Vec<String>,
     /// What speaks against the recordings, where they were searched anyway.
     pub notes: Vec<String>,
+}
+
+/// The front of one scheme: the settings that no other ones beat in spikes and error.
+pub struct Curve {
+    /// The scheme.
+    pub scheme: Scheme,
+    /// Efficiency and RMSE of each setting.
+    pub points: Vec<(f64, f64)>,
+    /// Those of the paper's setting.
+    pub paper: Option<(f64, f64)>,
 }
 
 /// Searches the parameters of schemes on the channels of logs.

@@ -260,8 +260,9 @@ impl Run<'_> {
 
 /// The part of a time that is one scheme's, of so many that are still to come.
 pub fn share(end: Option<Instant>, left: usize) -> Option<Instant> {
+    let end = end?;
+    // A browser's WebAssembly has no clock to ask, and no deadline either.
     let now = Instant::now();
-    let left = left.max(1) as u32;
-    let time = |end: Instant| end.saturating_duration_since(now).checked_div(left);
-    end.map(|end| now + time(end).unwrap_or(Duration::ZERO))
+    let time = end.saturating_duration_since(now).checked_div(left.max(1) as u32);
+    Some(now + time.unwrap_or(Duration::ZERO))
 }

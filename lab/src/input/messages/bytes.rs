@@ -1,10 +1,10 @@
 //! The bytes of a log from its start to its end, and where one is among them.
 
+use crate::files::File;
 use crate::input::text::GZIP;
 use anyhow::{Context, Result};
 use flate2::read::MultiGzDecoder;
 use ruzstd::decoding::StreamingDecoder;
-use std::fs::File;
 use std::io::{self, BufReader, Cursor, Read};
 use std::path::Path;
 

@@ -26,6 +26,7 @@ pub use channel::Channel;
 pub use reading::Reading;
 pub use topic::{Overview, overview};
 
+use crate::files;
 use anyhow::Result;
 use bytes::Bytes;
 use faults::Faults;
@@ -94,7 +95,7 @@ impl Kind {
 /// It cannot be opened or read.
 pub fn kind_of(path: &Path) -> Result<Option<Kind>> {
     const START: u64 = 32;
-    if path.is_dir() || path.file_name().is_some_and(|name| name == rosbag2::METADATA) {
+    if files::is_dir(path) || path.file_name().is_some_and(|name| name == rosbag2::METADATA) {
         return Ok(Some(Kind::Directory));
     }
     let mut start = Vec::new();

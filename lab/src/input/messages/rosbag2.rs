@@ -8,9 +8,9 @@ use super::mcap::LARGEST_MESSAGE;
 use super::sqlite::{Database, Rows};
 use super::topic::Topic;
 use super::{Entry, Log, open};
+use crate::files;
 use anyhow::{Context, Result, bail};
 use std::collections::{HashMap, VecDeque};
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What a directory that is a bag holds.
@@ -38,7 +38,7 @@ impl Sqlite {
         let mut database = Database::open(path)?;
         let mut wal = path.as_os_str().to_owned();
         wal.push("-wal");
-        if fs::metadata(&wal).is_ok_and(|wal| wal.len() > 0) {
+        if files::has_bytes(Path::new(&wal)) {
             let wal = wal.to_string_lossy();
             faults.skip(0, format!("{wal} holds messages that are not in the file yet"))?;
         }
@@ -145,8 +145,8 @@ pub(super) struct Directory {
 impl Directory {
     /// A directory, or the file in it that lists others.
     pub(super) fn open(path: &Path, faults: Faults) -> Result<Self> {
-        let metadata = if path.is_dir() { path.join(METADATA) } else { path.to_owned() };
-        let text = fs::read_to_string(&metadata)
+        let metadata = if files::is_dir(path) { path.join(METADATA) } else { path.to_owned() };
+        let text = files::read_to_string(&metadata)
             .with_context(|| format!("{}: cannot be read", metadata.display()))?;
         let directory = metadata.parent().unwrap_or(Path::new(""));
         let files: VecDeque<PathBuf> = files(&text).map(|name| directory.join(name)).collect();

@@ -2,8 +2,8 @@
 
 use super::bytes::{Bytes, is_packed};
 use super::faults::Faults;
+use crate::files::{self, File};
 use anyhow::{Context, Result, bail};
-use std::fs::File;
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::Path;
 
@@ -68,7 +68,7 @@ impl Database {
         let mut file = File::open(path).with_context(|| format!("{name}: cannot be opened"))?;
         if is_packed(path)? {
             // Pages are read in any order, so from a file that is not packed.
-            let mut unpacked = tempfile::tempfile().context("a place to unpack")?;
+            let mut unpacked = files::scratch().context("a place to unpack")?;
             Bytes::open(path)?
                 .copy(&mut unpacked)
                 .with_context(|| format!("{name}: cannot be unpacked"))?;

@@ -7,12 +7,12 @@ pub(crate) use scan::Findings;
 
 use super::text::GZIP;
 use super::{CHUNK, Chunk, InputOptions, Source, near};
+use crate::files;
 use anyhow::{Context, Result, anyhow, bail};
 use flate2::read::MultiGzDecoder;
 use format::{Field, Formats};
 use scan::{HEADER, Scan};
 use std::collections::BTreeMap;
-use std::fs;
 use std::io::Read;
 use std::path::Path;
 use yule_log::builder::ULogParserBuilder;
@@ -46,7 +46,7 @@ impl Log {
     /// It is not a flight log, or cut short and that was not accepted.
     pub fn read(path: &Path, accept_cut: bool) -> Result<Self> {
         let file = path.display().to_string();
-        let mut bytes = fs::read(path).with_context(|| format!("{file}: cannot be read"))?;
+        let mut bytes = files::read(path).with_context(|| format!("{file}: cannot be read"))?;
         if bytes.starts_with(&GZIP) {
             let mut unpacked = Vec::new();
             MultiGzDecoder::new(bytes.as_slice())

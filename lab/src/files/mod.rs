@@ -1,0 +1,41 @@
+//! Files that are read: the system's, or in WebAssembly those that the page lent by name.
+//!
+//! WebAssembly in a browser has no file system. A page lends what its user dropped, and all readers open it here by its name.
+
+#[cfg(target_family = "wasm")]
+mod lent;
+#[cfg(not(target_family = "wasm"))]
+mod system;
+
+#[cfg(target_family = "wasm")]
+pub use lent::{Bytes, File, is_dir, is_file, lend, scratch, take_back};
+#[cfg(not(target_family = "wasm"))]
+pub use system::{File, is_dir, is_file, scratch};
+
+use std::io::{self, Read};
+use std::path::Path;
+
+/// Returns whether there is a file of this name that is not empty.
+pub fn has_bytes(path: &Path) -> bool {
+    File::open(path).is_ok_and(|mut file| file.read(&mut [0]).is_ok_and(|read| read > 0))
+}
+
+/// Reads a whole file.
+///
+/// # Errors
+/// There is no such file, or it cannot be read.
+pub fn read(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// Reads a whole file of text.
+///
+/// # Errors
+/// There is no such file, it cannot be read, or is not UTF-8.
+pub fn read_to_string(path: &Path) -> io::Result<String> {
+    let mut text = String::new();
+    File::open(path)?.read_to_string(&mut text)?;
+    Ok(text)
+}

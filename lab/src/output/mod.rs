@@ -1,0 +1,168 @@
+//! Files that appear whole or not at all, standard output, and memory.
+
+#[cfg(not(target_family = "wasm"))]
+mod beside;
+
+use anyhow::{Result, bail};
+#[cfg(not(target_family = "wasm"))]
+use std::io::BufWriter;
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Standard output, a file that is written beside its place and then moved there, or memory.
+pub struct Output {
+    place: Place,
+    bytes: u64,
+}
+
+enum Place {
+    /// Standard output, or a device.
+    #[cfg(not(target_family = "wasm"))]
+    Direct(BufWriter<Box<dyn Write>>),
+    /// A file in the making.
+    #[cfg(not(target_family = "wasm"))]
+    Beside(beside::Beside),
+    /// For [`into_bytes`](Output::into_bytes).
+    Memory(Vec<u8>),
+}
+
+#[cfg(not(target_family = "wasm"))]
+const BUFFER: usize = 1 << 18;
+
+impl Output {
+    /// Writes into memory.
+    pub fn memory() -> Self {
+        Self { place: Place::Memory(Vec::new()), bytes: 0 }
+    }
+
+    /// Opens the output; without a path it is standard output. A link is followed.
+    ///
+    /// # Errors
+    /// Nothing can be written there, or it is the input.
+    #[cfg(not(target_family = "wasm"))]
+    pub fn open(path: Option<&Path>, input: &Path) -> Result<Self> {
+        if let Some(path) = path.filter(|path| beside::is_same(path, input)) {
+            bail!("{}: the input itself; it would be lost", path.display());
+        }
+        Self::to(path)
+    }
+
+    /// Opens the output where there is no input.
+    ///
+    /// # Errors
+    /// Nothing can be written there.
+    #[cfg(not(target_family = "wasm"))]
+    pub fn to(path: Option<&Path>) -> Result<Self> {
+        use anyhow::Context;
+        use std::fs::{File, metadata};
+
+        let Some(path) = path.filter(|path| *path != Path::new("-")) else {
+            return Ok(Self::direct(Box::new(io::stdout().lock())));
+        };
+        // Nothing is moved onto a device.
+        if metadata(path).is_ok_and(|data| !data.is_file()) {
+            let name = path.display();
+            let device =
+                File::create(path).with_context(|| format!("{name}: cannot be written"))?;
+            return Ok(Self::direct(Box::new(device)));
+        }
+        Ok(Self { place: Place::Beside(beside::Beside::new(path)?), bytes: 0 })
+    }
+
+    #[cfg(not(target_family = "wasm"))]
+    fn direct(output: Box<dyn Write>) -> Self {
+        Self { place: Place::Direct(BufWriter::with_capacity(BUFFER, output)), bytes: 0 }
+    }
+
+    /// Refuses: a browser has no files to write.
+    ///
+    /// # Errors
+    /// Always.
+    #[cfg(target_family = "wasm")]
+    pub fn open(path: Option<&Path>, _: &Path) -> Result<Self> {
+        Self::to(path)
+    }
+
+    /// Refuses: a browser has no files to write.
+    ///
+    /// # Errors
+    /// Always.
+    #[cfg(target_family = "wasm")]
+    pub fn to(path: Option<&Path>) -> Result<Self> {
+        bail!("{}: a browser writes no files", path.unwrap_or(Path::new("-")).display())
+    }
+
+    /// How many bytes were written.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// Returns what was written into memory; empty if it went elsewhere.
+    pub fn into_bytes(self) -> Vec<u8> {
+        match self.place {
+            Place::Memory(bytes) => bytes,
+            #[cfg(not(target_family = "wasm"))]
+            _ => Vec::new(),
+        }
+    }
+
+    /// Writes again what stands at a place of the file.
+    ///
+    /// # Errors
+    /// It cannot be written, or it went to standard output or a device.
+    pub fn overwrite(&mut self, place: u64, bytes: &[u8]) -> Result<()> {
+        match &mut self.place {
+            #[cfg(not(target_family = "wasm"))]
+            Place::Beside(file) => file.overwrite(place, bytes)?,
+            Place::Memory(all) => {
+                let own = usize::try_from(place).ok().and_then(|place| all.get_mut(place..));
+                match own.and_then(|own| own.get_mut(..bytes.len())) {
+                    Some(own) => own.copy_from_slice(bytes),
+                    None => bail!("nothing stands there yet"),
+                }
+            }
+            #[cfg(not(target_family = "wasm"))]
+            Place::Direct(_) => bail!("its start is written last, so it goes to a file only"),
+        }
+        Ok(())
+    }
+
+    /// Writes what is left and puts the file in its place.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn finish(self) -> Result<()> {
+        match self.place {
+            #[cfg(not(target_family = "wasm"))]
+            Place::Direct(mut output) => output.flush()?,
+            #[cfg(not(target_family = "wasm"))]
+            Place::Beside(file) => file.finish()?,
+            Place::Memory(_) => {}
+        }
+        Ok(())
+    }
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = match &mut self.place {
+            #[cfg(not(target_family = "wasm"))]
+            Place::Direct(output) => output.write(bytes),
+            #[cfg(not(target_family = "wasm"))]
+            Place::Beside(file) => file.write(bytes),
+            Place::Memory(all) => all.write(bytes),
+        }?;
+        self.bytes += written as u64;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.place {
+            #[cfg(not(target_family = "wasm"))]
+            Place::Direct(output) => output.flush(),
+            #[cfg(not(target_family = "wasm"))]
+            Place::Beside(file) => file.flush(),
+            Place::Memory(_) => Ok(()),
+        }
+    }
+}

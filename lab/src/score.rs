@@ -1,0 +1,81 @@
+//! How few spikes a trial has, and how near they come to the signal.
+
+use crate::brief::brief;
+use crate::steep::Steep;
+use crate::trial::{Recording, Trial};
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// The figures of one scheme.
+#[derive(Debug, Serialize)]
+pub struct Figures {
+    /// Short name of the scheme.
+    pub scheme: String,
+    /// Number of samples.
+    pub samples: usize,
+    /// Number of spikes.
+    pub spikes: usize,
+    /// Percent of samples without a spike, where each has one at most.
+    pub efficiency: f64,
+    /// Root mean square error, in the signal's unit.
+    pub rmse: f64,
+    /// Signal to noise in dB: variance of the signal to mean square of the error.
+    pub snr: f64,
+    /// Spikes a second, if the length is known.
+    pub spikes_per_second: Option<f64>,
+    /// What it ran with.
+    pub parameters: BTreeMap<&'static str, Value>,
+    /// How steep the signal is for step forward, of which scheme alone it is told.
+    pub slope: Option<Steep>,
+    /// What a user should know.
+    pub notes: Vec<String>,
+    /// The parameters in a few words.
+    #[serde(skip)]
+    pub brief: String,
+}
+
+impl Figures {
+    /// Scores a trial on its recording.
+    pub fn of(recording: &Recording, trial: &Trial) -> Self {
+        let samples = recording.values.len();
+        let mean = recording.values.iter().sum::<f64>() / samples as f64;
+        let mean_square = |differences: &mut dyn Iterator<Item = f64>| {
+            differences.map(|difference| difference * difference).sum::<f64>() / samples as f64
+        };
+        let noise =
+            mean_square(&mut recording.values.iter().zip(&trial.decoded).map(|(x, y)| x - y));
+        let variance = mean_square(&mut recording.values.iter().map(|x| x - mean));
+        let parameters = trial.settings.entries();
+        Self {
+            scheme: trial.scheme.name().to_owned(),
+            samples,
+            spikes: trial.events.len(),
+            efficiency: trial.efficiency(),
+            rmse: noise.sqrt(),
+            snr: 10.0 * (variance / noise).log10(),
+            spikes_per_second: recording
+                .seconds()
+                .filter(|seconds| *seconds > 0.0)
+                .map(|seconds| trial.events.len() as f64 / seconds),
+            brief: brief(parameters),
+            parameters: parameters
+                .iter()
+                .map(|(key, value)| (*key, value_of(&value.to_string())))
+                .collect(),
+            slope: Steep::new(trial.scheme, recording, &trial.settings),
+            notes: trial.notes.clone(),
+        }
+    }
+}
+
+/// A number, a list of numbers, or a word.
+fn value_of(text: &str) -> Value {
+    let numbers: Option<Vec<Value>> =
+        text.split(',').map(|number| serde_json::from_str(number).ok()).collect();
+    match numbers.as_deref() {
+        Some([number]) => number.clone(),
+        Some(numbers) => numbers.into(),
+        None => text.into(),
+    }
+}
