@@ -106,7 +106,7 @@ const LARGE: Case = Case {
 
 fn draw_all(seeds: std::ops::Range<u64>) {
     for overflow in POLICIES {
-        for room in [24, 64] {
+        for room in [32, 64] {
             let case = Case { overflow, room, ..LARGE };
             let calm = Case { line_faults: 2, reboots: 1, resets: 1, ..case };
             for case in [case, calm] {

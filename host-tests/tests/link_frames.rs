@@ -353,14 +353,23 @@ fn sessions_do_not_meet() {
     assert!(nearest > 1_900_000_000, "{nearest}");
 }
 
-/// The first frame of a session says so, and is never taken for a late one.
+/// A session that is not the sender's last one goes on after sixteen frames in a row, from a start.
 #[test]
-fn a_first_frame_is_a_start_even_if_the_session_was_there_before() {
-    let (three, five) = (session(3, 40), session(5, 40));
+fn an_earlier_session_that_goes_on_is_a_start() {
+    let (three, five) = (session(3, 60), session(5, 40));
+    let (told, reader) = read(three[..35].iter().chain(&five[..2]).chain(&three[35..]));
+    assert_eq!(told.len(), 35 + 2 + 10);
+    assert_eq!(told[37], (3, 35 + 15, 0, true));
+    assert_eq!(reader.late(), 15);
+
     let (told, reader) = read(three[..35].iter().chain(&five[..2]).chain(&three));
-    assert_eq!(told.len(), 35 + 2 + 40);
-    assert_eq!(told[37], (3, 0, 0, true));
-    assert_eq!(reader.late(), 0);
+    assert_eq!(told.len(), 35 + 2 + 45);
+    assert_eq!(told[37], (3, 15, 0, true), "a session that is used again, too");
+    assert_eq!(reader.late(), 15);
+
+    let between = (0..30).flat_map(|n| [&three[n], &five[n]]);
+    let (told, reader) = read(between);
+    assert_eq!((told.len(), reader.late()), (1 + 30, 29), "never while the present one goes on");
 }
 
 #[test]

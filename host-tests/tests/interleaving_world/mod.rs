@@ -278,19 +278,24 @@ impl<'a> World<'a> {
             self.send(&mut transmitter, &mut far)?;
         }
 
-        // Quiet from here on: everything arrives, and keyframes make all exact.
+        // Quiet from here on: everything arrives, and keyframes make all exact. The first frame of a session that came
+        // after the next session's is told from another start by 16 frames at most.
+        let most_rounds = if self.case.reboots > 1 { 16 / 2 } else { 0 };
         *self.left.borrow_mut() =
             Case { interrupts: 0, nested: 0, line_faults: 0, resets: 0, ..self.case };
         self.send(&mut transmitter, &mut far)?;
-        for channel in 0..2 {
-            self.sample(channel);
-            self.keyframe(channel);
-            self.send(&mut transmitter, &mut far)?;
-        }
-        for (channel, sender) in self.channels.iter().enumerate() {
-            let held = sender.bank.borrow().keyframe(0);
-            let exact = far.receiver.exact(channel as u16);
-            if held != exact {
+        for round in 0.. {
+            for channel in 0..2 {
+                self.sample(channel);
+                self.keyframe(channel);
+                self.send(&mut transmitter, &mut far)?;
+            }
+            let held = self.channels.each_ref().map(|sender| sender.bank.borrow().keyframe(0));
+            let exact = [0, 1].map(|channel| far.receiver.exact(channel));
+            if held == exact {
+                break;
+            }
+            if round == most_rounds {
                 return Err(self.report(&format!("at the end {exact:?} instead of {held:?}")));
             }
         }

@@ -34,8 +34,8 @@ impl Received<'_> {
 /// Finds frames of up to `N` bytes; [`MAX_FRAME`](super::MAX_FRAME) takes all.
 ///
 /// - **Order:** a frame that was already delivered, or that comes up to 256 frames late, is left out. So is a late
-///   frame of the three sessions before, until the present one has delivered 256 frames. The first frame of a session
-///   is late in that session alone.
+///   frame of the three sessions before, until the present one has delivered 256 frames. Sixteen such frames in a row
+///   show that their session goes on, and the sixteenth is a start.
 /// - **Memory:** `N + 104` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
 ///   the first of a frame.
 /// - **Delay:** none; a frame whose length was damaged may delay the frames in the 255 bytes after it.
@@ -51,6 +51,8 @@ pub struct Reader<const N: usize> {
     handed_out: usize,
     /// The sender's last sessions, the present one first.
     sessions: [Run; 4],
+    /// How many frames of earlier sessions came in a row.
+    strays: u8,
     frames: u32,
     lost_frames: u32,
     bad_checksums: u32,
@@ -61,6 +63,9 @@ pub struct Reader<const N: usize> {
 
 /// A frame counts as late up to this many frames back, and beyond that as one after a long gap.
 const LATE: u16 = 256;
+
+/// So many frames of earlier sessions in a row are not late: the present session was the late one.
+const RETURN: u8 = 16;
 
 /// The frames of one session.
 #[derive(Clone, Copy, Debug)]
@@ -89,8 +94,10 @@ enum Standing {
     After(u32),
     /// The frame delivered last.
     Repeated,
-    /// An earlier frame.
+    /// An earlier frame of its session.
     Late,
+    /// A frame of an earlier session.
+    Stray,
 }
 
 impl<const N: usize> Default for Reader<N> {
@@ -109,6 +116,7 @@ impl<const N: usize> Reader<N> {
             end: 0,
             handed_out: 0,
             sessions: [Run::NONE; 4],
+            strays: 0,
             frames: 0,
             lost_frames: 0,
             bad_checksums: 0,
@@ -140,6 +148,7 @@ impl<const N: usize> Reader<N> {
             *earlier = [Run::NONE; 3];
         }
         *present = Run { next, delivered };
+        self.strays = 0;
 
         let lost_frames = if let Standing::After(lost) = standing { lost } else { 0 };
         self.lost_frames = self.lost_frames.saturating_add(lost_frames);
@@ -189,6 +198,10 @@ impl<const N: usize> Reader<N> {
                     let counter = match self.standing(&frame) {
                         Standing::Repeated => &mut self.repeated,
                         Standing::Late => &mut self.late,
+                        Standing::Stray => {
+                            self.strays = self.strays.wrapping_add(1);
+                            &mut self.late
+                        }
                         standing => return Some((length, standing)),
                     };
                     *counter = counter.saturating_add(1);
@@ -218,17 +231,16 @@ impl<const N: usize> Reader<N> {
         let [present, earlier @ ..] = &self.sessions;
         match present.ahead(frame) {
             Some(-1) => Standing::Repeated,
-            // The present session's own first frame, too, where later ones overtook it.
             Some(LATEST..0) => Standing::Late,
-            _ if frame.is_first() => Standing::First,
             ahead => {
-                if let Some(Ok(lost)) = ahead.map(u32::try_from) {
+                if let (Some(Ok(lost)), false) = (ahead.map(u32::try_from), frame.is_first()) {
                     return Standing::After(lost);
                 }
                 // A frame that was on its way when the sender restarted is late.
                 let is_near = |ahead: i64| ahead.unsigned_abs() < u64::from(LATE);
                 let mut earlier = earlier.iter().filter_map(|run| run.ahead(frame));
-                if earlier.any(is_near) { Standing::Late } else { Standing::First }
+                let is_stray = earlier.any(is_near) && self.strays.wrapping_add(1) < RETURN;
+                if is_stray { Standing::Stray } else { Standing::First }
             }
         }
     }
