@@ -140,7 +140,8 @@ fn framed<S: Sample>(scheme: &'static StepForward<S>) -> Option<()> {
     hide(FrameView::length(bytes));
     let (view, length) = FrameView::new(bytes).ok()?;
     hide((view.number(), view.micros(), view.is_first(), view.tick(), view.period()));
-    hide((view.is_after_loss(), view.heartbeats().count()));
+    hide(view.is_after_loss());
+    view.heartbeats().for_each(|heartbeat| hide(heartbeat));
     let mut events = view.events();
     events.by_ref().for_each(hide);
     view.keyframes().for_each(hide);
