@@ -5,6 +5,7 @@
 use super::DoubleDouble;
 
 /// `exp(x)`, 0 below -690.
+#[inline(never)]
 pub(crate) const fn exp(x: DoubleDouble) -> DoubleDouble {
     if x.nearest() < -690.0 {
         return DoubleDouble::ZERO;
@@ -20,6 +21,7 @@ const fn power_of_two(exponent: i64) -> f64 {
 }
 
 /// `exp(x) - 1`, for `x` up to 1: all its digits also near 0.
+#[inline(never)]
 const fn exp_less_one(x: DoubleDouble) -> DoubleDouble {
     let part = x.scaled(1.0 / 256.0);
     let mut term = part;
@@ -57,6 +59,7 @@ const fn ln_parts(x: DoubleDouble) -> (f64, DoubleDouble) {
 }
 
 /// `ln(1 + x)` for `x` within -0.3 to 0.42: all its digits also near 0.
+#[inline(never)]
 const fn ln_one_and(x: DoubleDouble) -> DoubleDouble {
     let s = x.over(x.plus(DoubleDouble::new(2.0)));
     let square = s.times(s);

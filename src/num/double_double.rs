@@ -5,6 +5,8 @@
 /// Only with `+ - * /`: the same bits at compile time, on the host and on the target. Each operation is off by a few
 /// units of 2⁻¹⁰⁶ of its result, which `plus` has of its larger operand. For magnitudes from 1e-200 to 1e200, and 0.
 ///
+/// The operations stay out of line: without an FPU for doubles each of them is a dozen calls.
+///
 /// Source: Dekker, *A floating-point technique for extending the available precision*, 1971; Joldes, Muller, Popescu,
 /// *Tight and rigorous error bounds for basic building blocks of double-word arithmetic*, 2017.
 #[derive(Clone, Copy)]
@@ -47,6 +49,7 @@ impl DoubleDouble {
         Self { high, low: rest_of_product(a, b, high) }
     }
 
+    #[inline(never)]
     pub(crate) const fn plus(self, other: Self) -> Self {
         // The exact sums of both parts, without calls: what is evaluated at compile time counts them.
         let high = self.high + other.high;
@@ -70,6 +73,7 @@ impl DoubleDouble {
         self.plus(other.negated())
     }
 
+    #[inline(never)]
     pub(crate) const fn times(self, other: Self) -> Self {
         let first = self.high * other.high;
         let rest = self.high * other.low + self.low * other.high;
@@ -78,6 +82,7 @@ impl DoubleDouble {
         Self { high, low: rest - (high - first) }
     }
 
+    #[inline(never)]
     pub(crate) const fn over(self, other: Self) -> Self {
         let first = self.high / other.high;
         let rest = self.minus(other.times(Self::new(first)));
@@ -88,6 +93,7 @@ impl DoubleDouble {
     }
 
     /// This value over a double, quicker.
+    #[inline(never)]
     pub(crate) const fn over_double(self, other: f64) -> Self {
         let first = self.high / other;
         let product = first * other;
