@@ -172,7 +172,7 @@ impl Codec {
     pub(crate) fn range(&self, (lowest, highest): (f64, f64)) -> (f64, f64) {
         let number = |name| self.settings.number(name);
         (
-            number("min").or_else(|| number("shift")).unwrap_or(lowest),
+            number("min").or_else(|_| number("shift")).unwrap_or(lowest),
             number("max").unwrap_or(highest),
         )
     }
@@ -243,8 +243,8 @@ impl Codec {
     }
 }
 
-/// Names parameters as YAML does, without the dashes of the command line.
+/// Names parameters as YAML does, without the backticks of the catalogue.
 #[allow(clippy::needless_pass_by_value)] // as `map_err` gives it
 fn plain(error: anyhow::Error) -> anyhow::Error {
-    anyhow!("{}", format!("{error:#}").replace("--", ""))
+    anyhow!("{}", format!("{error:#}").replace('`', ""))
 }
