@@ -1,8 +1,7 @@
-//! What the laptop program does, for the program itself and for bindings to other languages.
+//! The laptop program: arguments in, text out. What it does is in `lab`.
 
 mod commands;
 mod inputs;
-pub mod library;
 mod live;
 mod options;
 mod stop;

@@ -7,7 +7,7 @@ use clap::builder::{MapValueParser, PossibleValue, PossibleValuesParser, TypedVa
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
 use lab::coding::Coding as File;
 use lab::scheme::Scheme;
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 use std::ops::Deref;
 
 /// What is run, and how: from the command line, and from a file for what that leaves open.
@@ -251,8 +251,17 @@ fn meaning(parameter: &Parameter) -> String {
 /// A text of the library as the command line has it: the name of a setting in backticks becomes its option.
 pub(crate) fn spelled(text: &str) -> String {
     /// What stands in backticks behind these words came from the user or a file.
-    const DATA: [&str; 8] =
-        ["column ", "core ", "field ", "format ", "scheme ", "topic ", "type ", "values of "];
+    const DATA: [&str; 9] = [
+        "channel ",
+        "column ",
+        "core ",
+        "field ",
+        "format ",
+        "scheme ",
+        "topic ",
+        "type ",
+        "values of ",
+    ];
     let mut parts = text.split('`');
     let mut all = parts.next().unwrap_or_default().to_owned();
     while let Some(inside) = parts.next() {
@@ -267,13 +276,33 @@ pub(crate) fn spelled(text: &str) -> String {
     all
 }
 
+/// Writes what the library says to standard error.
+pub(crate) fn tell(text: impl Display) {
+    eprint!("{}", spelled(&text.to_string()));
+}
+
+/// Writes notes of the library to standard error, a line each.
+pub(crate) fn tell_each<'a>(notes: impl IntoIterator<Item = &'a String>) {
+    notes.into_iter().for_each(|note| tell(format_args!("{note}\n")));
+}
+
 fn is_setting(name: &str) -> bool {
-    const OWN: [&str; 14] = [
-        "paper",
+    const OWN: [&str; 33] = [
+        "accept_cut",
         "anyway",
+        "baud",
         "below",
         "blocks",
+        "channel",
+        "chip",
+        "column",
+        "columns",
+        "delimiter",
+        "drop",
+        "dt",
         "evaluations",
+        "field",
+        "fields",
         "front",
         "hold_out",
         "max_instructions",
@@ -282,7 +311,16 @@ fn is_setting(name: &str) -> bool {
         "max_rate",
         "max_rmse",
         "min_efficiency",
+        "paper",
+        "probe",
+        "rate",
+        "sample",
+        "scheme",
         "seconds",
+        "skip_non_finite",
+        "time",
+        "time_unit",
+        "topic",
     ];
     OWN.contains(&name) || catalogue::INFO.iter().any(|info| info.parameter(name).is_some())
 }

@@ -13,7 +13,8 @@ pub struct Bank {
 }
 
 impl Bank {
-    /// A codec for each channel, as they start on a recording.
+    /// A codec for each channel, as they start on a recording. Codes by chance draw from a stream of its own for each
+    /// channel.
     ///
     /// # Errors
     /// A parameter that makes no sense, or too many neurons in all.
@@ -25,7 +26,9 @@ impl Bank {
         if channels.len() * neurons > usize::from(u16::MAX) + 1 {
             bail!("{} channels of {neurons} neurons are too many addresses", channels.len());
         }
-        let codecs = channels.iter().map(|settings| scheme.codec(settings));
+        let codecs = (0..)
+            .zip(channels)
+            .map(|(stream, settings)| scheme.codec(&settings.with_stream(stream)));
         let codecs = codecs.collect::<Result<_>>()?;
         Ok(Self { codecs, neurons: neurons as u16, own: Vec::new() })
     }
@@ -96,5 +99,37 @@ impl Bank {
             codec.decode(samples, &self.own, column)?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Bank, Scheme};
+    use catalogue::run::{Asked, Known, SampleType};
+
+    /// Four channels of one value, by chance: had they the same draws, they would fire together.
+    #[test]
+    fn channels_draw_apart() {
+        for name in ["bernoulli", "grf-prob"] {
+            let scheme = Scheme::named(name).unwrap();
+            let mut asked = Asked::default();
+            asked.set("min", 0.0);
+            asked.set("max", 1.0);
+            if scheme.info().parameter("neurons").is_some() {
+                asked.set("neurons", 15_u64);
+            }
+            let known = Known { calibrated: None, first: &[0.5], can_calibrate: false };
+            let settings = scheme.resolve(SampleType::F32, &asked, &known).unwrap();
+            let mut bank = Bank::new(scheme, &vec![settings; 4]).unwrap();
+            let (mut events, neurons) = (Vec::new(), bank.neurons() as u16);
+            bank.encode(&vec![vec![0.43; 200]; 4], &mut events);
+            let own = |channel| -> Vec<(u64, u16)> {
+                let of = events.iter().filter(|event| event.neuron / neurons == channel);
+                of.map(|event| (event.sample, event.neuron % neurons)).collect()
+            };
+            for channel in 1..4 {
+                assert_ne!(own(channel), own(0), "{name}");
+            }
+        }
     }
 }

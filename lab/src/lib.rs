@@ -7,6 +7,7 @@ pub mod bank;
 pub mod bench;
 pub mod brief;
 pub mod coding;
+pub mod emit;
 pub mod encode;
 pub mod events;
 pub mod files;

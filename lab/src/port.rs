@@ -43,7 +43,7 @@ impl Port {
         }
         let cannot = || format!("{name}: cannot be opened");
         if is_device(&fs::metadata(path).with_context(cannot)?) {
-            bail!("{name}: a device; `listen --baud` says how fast it is");
+            bail!("{name}: a device; `baud` says how fast it is");
         }
         let bytes = Box::new(File::open(path).with_context(cannot)?);
         Ok(Self { bytes, name, is_file: true })

@@ -12,14 +12,20 @@ Spikes of StepForward: (200,), 33 spikes of 200 samples
 True
 """
 
+from . import _native
 from ._bank import EVENTS, Bank
 from ._files import Log, read, read_events, read_ulog, write_events
+from ._filters import low_pass
 from ._laptop import Advice, Picture, Tuned, advise, plot, score, tune
 from ._scheme import Scheme
 from ._schemes import *  # noqa: F403: the classes, by the catalogue
 from ._schemes import NAMES, schemes
 from ._spikes import Spikes
 from ._stream import Decoder, Encoder
+from ._transform import ToSpikes
+
+#: The version of the package and of the code that flies.
+__version__: str = _native.__version__
 
 __all__ = [
     "EVENTS",
@@ -31,8 +37,10 @@ __all__ = [
     "Picture",
     "Scheme",
     "Spikes",
+    "ToSpikes",
     "Tuned",
     "advise",
+    "low_pass",
     "plot",
     "read",
     "read_events",

@@ -30,6 +30,9 @@ class Bank:
         self.scheme, self.channels = scheme, channels
         self._done = 0
 
+    def __repr__(self) -> str:
+        return f"Bank({self.scheme!r}, channels={self.channels})"
+
     def encode(self, x: ArrayLike, period: float) -> NDArray:
         """The events of the next samples, (channels, samples), one every `period` µs; the bank goes on from there."""
         return self._events(self._encoder.encode(x), period)

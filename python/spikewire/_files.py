@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, Optional
 
@@ -10,7 +11,6 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._bank import EVENTS
-from ._laptop import _given
 
 
 class Log(NamedTuple):
@@ -32,20 +32,46 @@ class Log(NamedTuple):
             return None
         return 1e6 / float(np.median(np.diff(self.t)))
 
+    def __repr__(self) -> str:
+        return f"Log of {', '.join(self.names)}: {self.x.shape}"
+
     def __getitem__(self, place: Any) -> Any:
         return self.x[self.names.index(place)] if isinstance(place, str) else tuple.__getitem__(self, place)
 
 
-def read(path: str | Path, *channels: str | int, **options: Any) -> Log:
+def read(
+    path: str | Path,
+    *channels: str | int,
+    topic: str | None = None,
+    field: str | Sequence[str] = (),
+    time: str | None = None,
+    time_unit: str | None = None,
+    delimiter: str | None = None,
+    rate: float | None = None,
+    gap: float | None = None,
+    skip_non_finite: bool = False,
+    accept_cut: bool = False,
+) -> Log:
     """Channels of a flight log or table, by name; all of a table unless some are named: :class:`Log`.
 
-    `options` are those of the laptop program's input, such as ``topic``, ``field``, ``time``, ``rate``, ``accept_cut``.
+    Of a log, `topic` and one `field` of it or several. `time` is the column of times and `time_unit` ``"s"``, ``"ms"``,
+    ``"us"`` or ``"ns"``, both found unless given; without times, `rate` says how many samples a second there are. Steps
+    in time above `gap` usual ones are noted. `skip_non_finite` goes on over values that are missing, and `accept_cut`
+    over what is damaged.
     """
-    given = [("columns", name) for name in map(str, channels)]
-    for name, value in options.items():
-        many = value if isinstance(value, (list, tuple)) else [value]
-        given += [pair for own in many for pair in _given({name: own})]
-    names, columns, times, notes = _native.read(str(Path(path)), given)
+    keywords = {
+        "columns": [str(name) for name in channels],
+        "fields": [field] if isinstance(field, str) else list(field),
+        "topic": topic,
+        "time": None if time is None else str(time),
+        "time_unit": time_unit,
+        "delimiter": delimiter,
+        "rate": rate,
+        "gap": gap,
+        "skip_non_finite": skip_non_finite,
+        "accept_cut": accept_cut,
+    }
+    names, columns, times, notes = _native.read(str(Path(path)), keywords)
     return Log(np.array(columns), times if len(times) else None, names, notes)
 
 
@@ -54,7 +80,7 @@ def read_ulog(path: str | Path, topic: str, *fields: str, accept_cut: bool = Fal
 
     ``read_ulog("flight.ulg", "sensor_combined", "gyro_rad[0]")``; ``topic`` with ``:1`` is its second instance.
     """
-    return read(path, topic=topic, field=list(fields), accept_cut=accept_cut)
+    return read(path, topic=topic, field=fields, accept_cut=accept_cut)
 
 
 def read_events(source: str | Path | bytes, format: str) -> NDArray:

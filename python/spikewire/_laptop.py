@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native, _progress
-from ._scheme import Scheme, _plain, _text
+from ._arrays import unmasked
+from ._scheme import Scheme, _plain
 
 
 def score(x: ArrayLike, scheme: Scheme, rate: float | None = None) -> dict[str, Any]:
@@ -56,6 +57,10 @@ class Tuned:
         return f"Tuned({self.scheme!r}, rmse={own['rmse']:.4g}, efficiency={own['efficiency']:.1f})"
 
 
+@overload
+def tune(x: ArrayLike | list[ArrayLike], scheme: Literal["all"] = "all", **keywords: Any) -> list[Tuned]: ...
+@overload
+def tune(x: ArrayLike | list[ArrayLike], scheme: str | type[Scheme], **keywords: Any) -> Tuned: ...
 def tune(
     x: ArrayLike | list[ArrayLike],
     scheme: str | type[Scheme] = "all",
@@ -79,7 +84,7 @@ def tune(
     name: str = "x",
     progress: bool | Callable[[int, int], object] | None = None,
     **kept: Any,
-) -> Any:
+) -> Tuned | list[Tuned]:
     """The parameters of `scheme`, its short name or class, for the signal `x`: :class:`Tuned`.
 
     `x` is an array (samples,), or a list of them that are tuned on together. Looked for is the least RMSE at
@@ -149,7 +154,7 @@ def advise(
     sample: str = "f32",
     name: str = "x",
     progress: bool | Callable[[int, int], object] | None = None,
-) -> Any:
+) -> Advice | list[Advice]:
     """What the signal `x`, (samples,), is like and which scheme suits it: :class:`Advice`, for (channels, samples) a list.
 
     All schemes are tuned for a moment. Of those within `max_rmse`, a fifth of the signal's deviation unless given, the
@@ -174,8 +179,11 @@ def advise(
 class Picture:
     """A picture, which a notebook shows."""
 
-    def __init__(self, drawn: Callable[[str], bytes]):
-        self._drawn = drawn
+    def __init__(self, drawn: Callable[[str], bytes], words: str):
+        self._drawn, self._words = drawn, words
+
+    def __repr__(self) -> str:
+        return f"Picture of {self._words}"
 
     def save(self, path: str | Path) -> None:
         """Writes it as ``.svg`` or ``.png``, by the ending of `path`."""
@@ -206,11 +214,11 @@ def plot(
         return _native.plot(coders, x, _rate(rate), name, unit, samples, ending)
 
     drawn("svg")  # what is wrong is told at once
-    return Picture(drawn)
+    return Picture(drawn, f"{name} by {', '.join(repr(scheme) for scheme in schemes)}")
 
 
 def _one(x: ArrayLike) -> NDArray[np.float64]:
-    x = np.asarray(x, dtype=np.float64)
+    x = unmasked(x).astype(np.float64)
     if x.ndim != 1:
         raise ValueError(f"a signal is an array (samples,), not {x.shape}")
     return x
@@ -218,9 +226,3 @@ def _one(x: ArrayLike) -> NDArray[np.float64]:
 
 def _rate(rate: float | None) -> float | None:
     return None if rate is None else float(rate)
-
-
-def _given(options: dict[str, Any]) -> list[tuple[str, str | None]]:
-    """Keywords as options: nothing where there is none, and a flag without value."""
-    given = {name: value for name, value in options.items() if value is not None and value is not False}
-    return [(name, None if value is True else _text(value)) for name, value in given.items()]

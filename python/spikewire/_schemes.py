@@ -4,19 +4,18 @@ import inspect
 import textwrap
 
 from . import _native
-from ._scheme import Scheme
+from ._scheme import KINDS, Scheme
 
-KINDS = {
-    "number": "a number",
-    "count": "a whole number",
-    "flag": "True or False",
-    "text": "a text, a number or numbers",
-    "filter": "a text, or the taps",
-}
+#: What is not given of a code by chance.
+FRESH = "fresh draws in each call"
 
 
 def _told(own):
+    if own["name"] == "seed":
+        own = {**own, "default": FRESH}
     kind = " or ".join(f'"{word}"' for word in own["words"]) or KINDS[own["kind"]]
+    if own["name"] == "seed":
+        kind = "a whole number, or a numpy.random.Generator"
     unit = f", in {own['unit']}" if own["unit"] else ""
     text = f"{own['help']} ({kind}{unit}"
     if own["example"]:

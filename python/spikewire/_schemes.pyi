@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from typing import Literal
 
+from numpy.random import Generator
+
 from ._scheme import Scheme
 
 class TemporalContrast(Scheme):
@@ -31,11 +33,11 @@ class TemporalContrast(Scheme):
     def __init__(
         self,
         *,
-        threshold: float | None = None,
-        factor: float | None = None,
+        threshold: float | Sequence[float] | None = None,
+        factor: float | Sequence[float] | None = None,
         magnitudes: bool | None = None,
         step: str | float | Sequence[float] | None = None,
-        start: float | None = None,
+        start: float | Sequence[float] | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -61,9 +63,9 @@ class AdaptiveContrast(Scheme):
     def __init__(
         self,
         *,
-        threshold: float | None = None,
+        threshold: float | Sequence[float] | None = None,
         doublings: int | None = None,
-        start: float | None = None,
+        start: float | Sequence[float] | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -90,9 +92,9 @@ class MovingWindow(Scheme):
     def __init__(
         self,
         *,
-        threshold: float | None = None,
+        threshold: float | Sequence[float] | None = None,
         window: int | None = None,
-        start: float | None = None,
+        start: float | Sequence[float] | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -116,8 +118,8 @@ class StepForward(Scheme):
     def __init__(
         self,
         *,
-        threshold: float | None = None,
-        start: float | None = None,
+        threshold: float | Sequence[float] | None = None,
+        start: float | Sequence[float] | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -143,9 +145,9 @@ class SendOnDelta(Scheme):
     def __init__(
         self,
         *,
-        threshold: float | None = None,
+        threshold: float | Sequence[float] | None = None,
         spikes: int | None = None,
-        start: float | None = None,
+        start: float | Sequence[float] | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -173,10 +175,10 @@ class AdaptiveStepForward(Scheme):
     def __init__(
         self,
         *,
-        threshold: float | None = None,
+        threshold: float | Sequence[float] | None = None,
         doublings: int | None = None,
         run: int | None = None,
-        start: float | None = None,
+        start: float | Sequence[float] | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -208,10 +210,10 @@ class Bsa(Scheme):
         self,
         *,
         filter: str | Sequence[float] | None = None,
-        shift: float | None = None,
+        shift: float | Sequence[float] | None = None,
         form: Literal["aligned", "toolbox"] | None = None,
         criterion: Literal["sub", "mul"] | None = None,
-        threshold: float | None = None,
+        threshold: float | Sequence[float] | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -237,7 +239,7 @@ class Hough(Scheme):
         self,
         *,
         filter: str | Sequence[float] | None = None,
-        shift: float | None = None,
+        shift: float | Sequence[float] | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -266,8 +268,8 @@ class ThresholdHough(Scheme):
         self,
         *,
         filter: str | Sequence[float] | None = None,
-        shift: float | None = None,
-        threshold: float | None = None,
+        shift: float | Sequence[float] | None = None,
+        threshold: float | Sequence[float] | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -294,8 +296,8 @@ class IntegrateAndFire(Scheme):
     def __init__(
         self,
         *,
-        threshold: float | None = None,
-        reference: float | None = None,
+        threshold: float | Sequence[float] | None = None,
+        reference: float | Sequence[float] | None = None,
         power: int | None = None,
         spikes: int | None = None,
         sample: str = "f32",
@@ -324,8 +326,8 @@ class LeakyIntegrateAndFire(Scheme):
     def __init__(
         self,
         *,
-        threshold: float | None = None,
-        reference: float | None = None,
+        threshold: float | Sequence[float] | None = None,
+        reference: float | Sequence[float] | None = None,
         power: int | None = None,
         spikes: int | None = None,
         sample: str = "f32",
@@ -356,8 +358,8 @@ class SigmaDelta(Scheme):
     def __init__(
         self,
         *,
-        min: float | None = None,
-        max: float | None = None,
+        min: float | Sequence[float] | None = None,
+        max: float | Sequence[float] | None = None,
         mean: Literal["average", "window"] | None = None,
         power: int | None = None,
         sample: str = "f32",
@@ -379,7 +381,8 @@ class Bernoulli(Scheme):
     power:
         the mean is over about 2^POWER samples: 1 to 15, of a window 0 to 12 (a whole number; 4 unless given)
     seed:
-        where the generator starts (a whole number; 0 unless given)
+        where the generator starts; each channel draws from a stream of its own (a whole number, or a
+        numpy.random.Generator; fresh draws in each call unless given)
     sample:
         the type that it computes in: "f32", "i16", "i32", or fixed point such as "q8.8" and "q16.16"; samples are
         rounded to it
@@ -390,11 +393,11 @@ class Bernoulli(Scheme):
     def __init__(
         self,
         *,
-        min: float | None = None,
-        max: float | None = None,
+        min: float | Sequence[float] | None = None,
+        max: float | Sequence[float] | None = None,
         mean: Literal["average", "window"] | None = None,
         power: int | None = None,
-        seed: int | None = None,
+        seed: int | Generator | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -428,9 +431,9 @@ class WeightedBurst(Scheme):
     def __init__(
         self,
         *,
-        min: float | None = None,
-        max: float | None = None,
-        weight: float | None = None,
+        min: float | Sequence[float] | None = None,
+        max: float | Sequence[float] | None = None,
+        weight: float | Sequence[float] | None = None,
         doublings: int | None = None,
         mean: Literal["average", "window"] | None = None,
         power: int | None = None,
@@ -464,8 +467,8 @@ class Position(Scheme):
         *,
         centres: str | float | Sequence[float] | None = None,
         neurons: int | None = None,
-        min: float | None = None,
-        max: float | None = None,
+        min: float | Sequence[float] | None = None,
+        max: float | Sequence[float] | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -492,8 +495,8 @@ class Gaussian(Scheme):
         self,
         *,
         neurons: int | None = None,
-        min: float | None = None,
-        max: float | None = None,
+        min: float | Sequence[float] | None = None,
+        max: float | Sequence[float] | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -526,10 +529,10 @@ class Slots(Scheme):
         self,
         *,
         neurons: int | None = None,
-        min: float | None = None,
-        max: float | None = None,
+        min: float | Sequence[float] | None = None,
+        max: float | Sequence[float] | None = None,
         slots: int | None = None,
-        beta: float | None = None,
+        beta: float | Sequence[float] | None = None,
         floor: int | None = None,
         sample: str = "f32",
         paper: bool = False,
@@ -549,7 +552,8 @@ class Probabilistic(Scheme):
     beta:
         distance of the centres in widths of a field, so the smaller, the wider, above 0 (a number; 1.5 unless given)
     seed:
-        where the generator starts (a whole number; 0 unless given)
+        where the generator starts; each channel draws from a stream of its own (a whole number, or a
+        numpy.random.Generator; fresh draws in each call unless given)
     sample:
         the type that it computes in: "f32", "i16", "i32", or fixed point such as "q8.8" and "q16.16"; samples are
         rounded to it
@@ -561,10 +565,10 @@ class Probabilistic(Scheme):
         self,
         *,
         neurons: int | None = None,
-        min: float | None = None,
-        max: float | None = None,
-        beta: float | None = None,
-        seed: int | None = None,
+        min: float | Sequence[float] | None = None,
+        max: float | Sequence[float] | None = None,
+        beta: float | Sequence[float] | None = None,
+        seed: int | Generator | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -600,10 +604,10 @@ class NonLinearGaussian(Scheme):
         *,
         centres: str | float | Sequence[float] | None = None,
         widths: str | float | Sequence[float] | None = None,
-        companding: float | None = None,
+        companding: float | Sequence[float] | None = None,
         neurons: int | None = None,
-        min: float | None = None,
-        max: float | None = None,
+        min: float | Sequence[float] | None = None,
+        max: float | Sequence[float] | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -645,12 +649,12 @@ class NonLinearSlots(Scheme):
         *,
         centres: str | float | Sequence[float] | None = None,
         widths: str | float | Sequence[float] | None = None,
-        companding: float | None = None,
+        companding: float | Sequence[float] | None = None,
         neurons: int | None = None,
-        min: float | None = None,
-        max: float | None = None,
+        min: float | Sequence[float] | None = None,
+        max: float | Sequence[float] | None = None,
         slots: int | None = None,
-        beta: float | None = None,
+        beta: float | Sequence[float] | None = None,
         floor: int | None = None,
         sample: str = "f32",
         paper: bool = False,
@@ -684,8 +688,8 @@ class RankOrder(Scheme):
         *,
         centres: str | float | Sequence[float] | None = None,
         neurons: int | None = None,
-        min: float | None = None,
-        max: float | None = None,
+        min: float | Sequence[float] | None = None,
+        max: float | Sequence[float] | None = None,
         spikes: int | None = None,
         sample: str = "f32",
         paper: bool = False,
@@ -719,9 +723,9 @@ class FirstSpike(Scheme):
         *,
         edges: str | float | Sequence[float] | None = None,
         slots: int | None = None,
-        ratio: float | None = None,
-        min: float | None = None,
-        max: float | None = None,
+        ratio: float | Sequence[float] | None = None,
+        min: float | Sequence[float] | None = None,
+        max: float | Sequence[float] | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -757,8 +761,8 @@ class LatencyPhase(Scheme):
         latencies: int | None = None,
         period: int | None = None,
         spacing: int | None = None,
-        min: float | None = None,
-        max: float | None = None,
+        min: float | Sequence[float] | None = None,
+        max: float | Sequence[float] | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -785,8 +789,8 @@ class WeightedPhase(Scheme):
         self,
         *,
         slots: int | None = None,
-        min: float | None = None,
-        max: float | None = None,
+        min: float | Sequence[float] | None = None,
+        max: float | Sequence[float] | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -822,8 +826,8 @@ class Burst(Scheme):
         spikes: int | None = None,
         shortest: int | None = None,
         longest: int | None = None,
-        min: float | None = None,
-        max: float | None = None,
+        min: float | Sequence[float] | None = None,
+        max: float | Sequence[float] | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...

@@ -24,10 +24,20 @@ class Spikes:
     these before it.
     """
 
-    def __init__(self, scheme: Scheme, fitted: Any, flat: NDArray[np.int8], shape: tuple, cell_shape: tuple):
+    def __init__(
+        self, scheme: Scheme, fitted: Any, flat: NDArray[np.int8], shape: tuple, cell_shape: tuple, axis: int = -1
+    ):
         self._scheme, self._fitted, self._shape = scheme, fitted, cell_shape
+        self._axes, self._axis = len(shape), axis % len(shape)
         #: The spikes, ``int8``.
-        self.array: NDArray[np.int8] = flat.reshape(*shape, *row(cell_shape))
+        self.array: NDArray[np.int8] = np.moveaxis(
+            flat.reshape(*shape, *row(cell_shape)), self._axes - 1, self._axis
+        )
+
+    def _flat(self) -> tuple[NDArray[np.int8], tuple[int, ...]]:
+        """The cells, flat, one channel after the other, and the shape of what they decode to, with time last."""
+        by_time = np.moveaxis(self.array, self._axis, self._axes - 1)
+        return cells(by_time, self._shape, type(self._scheme).__name__)
 
     @property
     def scheme(self) -> Scheme:
@@ -52,12 +62,12 @@ class Spikes:
     @property
     def latency(self) -> int:
         """How many samples after its own a spike comes out in flight. ``array`` has it at its own sample."""
-        return self._fitted.latency()
+        return (self._fitted or self._scheme._coder).latency()
 
     @property
     def parameters(self) -> list[dict[str, str]]:
         """The parameters of each channel as they ran, in the sample type, texts by name."""
-        return [dict(own) for own in self._fitted.parameters()]
+        return [dict(own) for own in self._fitted.parameters()] if self._fitted else []
 
     @property
     def count(self) -> int:
@@ -76,10 +86,15 @@ class Spikes:
 
     def decode(self, progress: bool | Callable[[int, int], object] | None = None) -> NDArray:
         """What a decoder makes of them: ``float32`` of ``f32``, ``int16`` of ``i16``, else ``float64``."""
-        flat, outer = cells(self.array, self._shape, type(self._scheme).__name__)
+        flat, outer = self._flat()
         channels = int(np.prod(outer[:-1]))
-        with _progress.bar(progress, "decode") as tell:
-            return self._fitted.decode(flat, channels, tell).reshape(outer)
+        if self._fitted is None:
+            types = {"f32": np.float32, "i16": np.int16}
+            values = np.zeros(outer, types.get(self._scheme.sample, np.float64))
+        else:
+            with _progress.bar(progress, "decode") as tell:
+                values = self._fitted.decode(flat, channels, tell).reshape(outer)
+        return np.moveaxis(values, -1, self._axis)
 
     def events(self, period: float = 1, times: ArrayLike | None = None) -> NDArray:
         """The spikes as a structured array, in the order of time; see :data:`~spikewire.EVENTS`.
@@ -87,10 +102,33 @@ class Spikes:
         A sample lasts `period` µs, or `times` has each sample's time in µs. Channels count their neurons on: the
         address of the second channel's first neuron is ``neurons``.
         """
-        from ._bank import events
+        from ._bank import EVENTS, events
 
-        flat, outer = cells(self.array, self._shape, type(self._scheme).__name__)
+        if self._fitted is None:
+            return np.zeros(0, EVENTS)
+        flat, outer = self._flat()
         return events(flat.reshape(-1, outer[-1], self.slots, self.neurons), period, times)
+
+    def raster(self, axes: Any = None, rate: float | None = None, **style: Any) -> Any:
+        """Draws the spikes on `axes` of matplotlib, its current ones unless given, and returns them.
+
+        Each address is a row; a spike down is of another colour than one up. Time is in seconds if `rate`, in samples a
+        second, is given, and else in samples. `style` goes to ``scatter``.
+        """
+        if axes is None:
+            from matplotlib import pyplot
+
+            axes = pyplot.gca()
+        flat, outer = self._flat()
+        slots, neurons = self.slots, self.neurons
+        codes = flat.reshape(-1, outer[-1], slots, neurons)
+        channel, sample, slot, neuron = np.nonzero(codes)
+        times = (sample + slot / slots) / (rate or 1)
+        colours = np.where(codes[channel, sample, slot, neuron] > 0, "C0", "C3")
+        axes.scatter(times, channel * neurons + neuron, **{"c": colours, "marker": "|", **style})
+        axes.set_xlabel("time in s" if rate else "sample")
+        axes.set_ylabel("address" if neurons > 1 else "channel")
+        return axes
 
     def fingerprint(self, before: int = 0xCBF29CE484222325, values: ArrayLike | None = None) -> int:
         """The hash of all spikes and decoded bits, channel after channel, that the firmware prints of a flight.
@@ -98,14 +136,15 @@ class Spikes:
         FNV-1a of 64 bits; `before` is the hash of the channels before these, if there are any. `values` is what
         another decoder made of the spikes.
         """
-        flat, _ = cells(self.array, self._shape, type(self._scheme).__name__)
-        values = self.decode(progress=False) if values is None else values
-        values = np.asarray(values, dtype=np.float64).reshape(-1)
+        flat, _ = self._flat()
+        values = self.decode(progress=False) if values is None else np.asarray(values)
+        values = np.moveaxis(values, self._axis, -1).astype(np.float64).reshape(-1)
         return _native.fingerprint(flat, values, self.neurons, self.slots, before)
 
     def __reduce__(self) -> Any:
-        outer = self.array.shape[: self.array.ndim - len(row(self._shape))]
-        return _again, (self._scheme, self._fitted.parts(), self.array.reshape(-1), outer, self._shape)
+        flat, outer = self._flat()
+        parts = self._fitted.parts() if self._fitted else None
+        return _again, (self._scheme, parts, flat, outer, self._shape, self._axis)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray:
         if copy is False and dtype not in (None, self.array.dtype):
@@ -124,5 +163,6 @@ class Spikes:
         return f"Spikes of {of}: {self.shape}, {self.count} spikes of {self.samples} samples"
 
 
-def _again(scheme, parts, flat, shape, cell_shape):
-    return Spikes(scheme, _native.Fitted.of_parts(*parts), flat, shape, cell_shape)
+def _again(scheme, parts, flat, shape, cell_shape, axis):
+    fitted = _native.Fitted.of_parts(*parts) if parts else None
+    return Spikes(scheme, fitted, flat, shape, cell_shape, axis)

@@ -34,7 +34,7 @@ class Encoder:
         if channels is not None and channels < 1:
             raise ValueError(f"channels {channels} must be 1 or more")
         self._scheme, self._channels = scheme, channels
-        self._native = scheme._coder.encoder(channels or 1)
+        self._native = scheme._seeded().encoder(channels or 1)
 
     def encode(self, x: ArrayLike) -> NDArray[np.int8]:
         """The codes that the next samples, (samples,) or (channels, samples), complete: ``int8``, as ``Spikes.array``.
@@ -42,7 +42,7 @@ class Encoder:
         Those of a rate code are as many samples late as it looks ahead. Where one is not finite it is an error, and
         none is taken.
         """
-        x = samples(x)
+        x = samples(x, self._scheme.sample)
         if x.ndim != (1 if self._channels is None else 2):
             told = "(samples,)" if self._channels is None else f"({self._channels}, samples)"
             raise ValueError(f"a chunk is an array {told}, not {x.shape}")
@@ -56,6 +56,9 @@ class Encoder:
         inner = row(self._native.shape())
         outer = () if self._channels is None else (self._channels,)
         return flat.reshape(*outer, flat.size // (int(np.prod(inner)) * (self._channels or 1)), *inner)
+
+    def __repr__(self) -> str:
+        return f"{self._scheme!r}.encoder({'' if self._channels is None else f'channels={self._channels}'})"
 
     def __reduce__(self) -> Any:
         return type(self), (self._scheme, self._channels), self._native.state()
@@ -89,11 +92,17 @@ class Decoder:
         self._shape = scheme._coder.shape()
 
     def decode(self, codes: ArrayLike) -> NDArray:
-        """The values of the next codes, an array as :meth:`Encoder.encode` returns it."""
+        """The values of the next codes, an array as :meth:`Encoder.encode` returns it.
+
+        A code that no encoder sends is an error, and none of the rows is taken.
+        """
         flat, outer = cells(codes, self._shape, type(self._scheme).__name__)
         if outer[:-1] != (() if self._channels is None else (self._channels,)):
             raise ValueError(f"there are {self._channels or 1} channels, not codes of the shape {np.shape(codes)}")
         return self._native.decode(flat, outer[-1]).reshape(outer)
+
+    def __repr__(self) -> str:
+        return f"{self._scheme!r}.decoder({'' if self._channels is None else f'channels={self._channels}'})"
 
     def __reduce__(self) -> Any:
         # Where the decoder began does not matter to one that goes on.

@@ -2,9 +2,12 @@
 
 use std::ops::Range;
 
+use catalogue::run::SampleType;
 use numpy::ndarray::{ArrayView1, ArrayViewD, Axis, Ix1, Slice};
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+
+use crate::channel::Bad;
 
 /// Samples; time runs along the last axis, and what is before it are channels.
 #[derive(FromPyObject)]
@@ -57,16 +60,22 @@ impl Lane<'_> {
         }
     }
 
-    /// The first sample that is not finite, and its place.
-    pub(crate) fn not_finite(&self) -> Option<(usize, f64)> {
+    /// The first sample that an encoder of this type does not take: it is not finite, or becomes so in the type.
+    pub(crate) fn bad(&self, sample: SampleType) -> Option<Bad> {
         match self {
             Self::F32(lane) => {
                 let place = lane.iter().position(|value| !value.is_finite())?;
-                Some((place, lane[place].into()))
+                Some(Bad { sample: place, what: format!("{} is not finite", lane[place]) })
             }
             Self::F64(lane) => {
-                let place = lane.iter().position(|value| !value.is_finite())?;
-                Some((place, lane[place]))
+                let is_single = sample == SampleType::F32;
+                let is_good = |value: &f64| {
+                    if is_single { (*value as f32).is_finite() } else { value.is_finite() }
+                };
+                let place = lane.iter().position(|value| !is_good(value))?;
+                let value = lane[place];
+                let what = if value.is_finite() { "beyond f32" } else { "not finite" };
+                Some(Bad { sample: place, what: format!("{value:?} is {what}") })
             }
             Self::I16(_) => None,
         }

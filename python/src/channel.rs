@@ -4,7 +4,7 @@
 //! up less how many went down: -1, 0 or 1, or more where a code sends several spikes a sample.
 
 use anyhow::{Context, Result, ensure};
-use catalogue::run::{RunTime, Settings, Visit};
+use catalogue::run::{RunTime, SampleType, Settings, Visit};
 use catalogue::{State, for_sample_type};
 use spikewire::{Code, NeuronSpike, Output, Polarity, Sample, SampleKind, Scheme};
 
@@ -26,7 +26,7 @@ pub(crate) trait Channel: Send + Sync {
     /// Encodes samples into rows of cells, which are all 0, and returns how many rows that made.
     ///
     /// # Errors
-    /// A sample is not finite.
+    /// A sample is not finite, or not so in the sample type.
     fn encode(&mut self, samples: Lane, cells: &mut [i8]) -> Result<usize, Bad>;
 
     /// The rows of the samples that still wait for later ones.
@@ -101,6 +101,7 @@ impl<S: Sample> Visit<S> for Start<'_> {
             decoder,
             silent: P::Code::assemble(std::iter::empty()),
             is_first_held: settings.starts_at_first(),
+            sample: settings.sample,
             one,
             neurons,
             slots,
@@ -119,6 +120,7 @@ struct Running<P: Scheme> {
     silent: P::Code,
     /// Whether the decoder holds the value of the sample that comes next, whose spike then changes nothing.
     is_first_held: bool,
+    sample: SampleType,
     /// What a 1 of the signal is in the unit of the sample type.
     one: f64,
     neurons: usize,
@@ -233,8 +235,8 @@ where
     }
 
     fn encode(&mut self, samples: Lane, cells: &mut [i8]) -> Result<usize, Bad> {
-        if let Some((sample, value)) = samples.not_finite() {
-            return Err(Bad { sample, what: format!("{value} is not finite") });
+        if let Some(bad) = samples.bad(self.sample) {
+            return Err(bad);
         }
         let one = self.one;
         let sample = |value: f64| P::Sample::from_f64(value * one);

@@ -1,6 +1,6 @@
 //! A scheme with what was given of its parameters, and with all of them.
 
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use catalogue::run::{Asked, Calibrated, Known, RunTime, SampleType, Settings, missing};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -80,6 +80,17 @@ impl Coder {
         Ok(())
     }
 
+    /// Settings of some signal, for what does not depend on what a signal tells.
+    fn of_ramp(&self) -> Result<Settings> {
+        let ramp = [0.0, 1.0, 0.5];
+        let calibrated = self.scheme.needs_signal(&self.asked).map(|_| {
+            let mut calibrated = Calibrated::new(self.sample);
+            calibrated.observe(&ramp);
+            calibrated
+        });
+        self.any()?.settle(&ramp, calibrated.as_ref())
+    }
+
     fn name(&self) -> &'static str {
         self.scheme.info().name
     }
@@ -89,8 +100,8 @@ impl Coder {
             if lane.len() == 0 {
                 bail!("channel {channel} has no samples");
             }
-            if let Some((sample, value)) = lane.not_finite() {
-                bail!("channel {channel}, sample {sample}: {value} is not finite");
+            if let Some(bad) = lane.bad(self.sample) {
+                return Err(told(channel, 0, &bad));
             }
         }
         let groups: Vec<&[Lane]> =
@@ -103,9 +114,18 @@ impl Coder {
             });
             let lane = group.first().ok_or_else(|| anyhow!("there is no channel"))?;
             let first = lane.part(0..lane.len().min(self.looks_back())).to_vec();
-            self.channel(place, groups.len())?.settle(&first, calibrated.as_ref())
+            let settled = self.channel(place, groups.len())?.settle(&first, calibrated.as_ref());
+            if lanes.len() > 1 && !is_shared {
+                settled.with_context(|| format!("channel {place}"))
+            } else {
+                settled
+            }
         };
-        let channels = groups.par_iter().enumerate().map(settle).collect::<Result<Vec<_>>>()?;
+        let channels = if is_wide(lanes.len(), lanes.iter().map(Lane::len).sum()) {
+            groups.par_iter().enumerate().map(settle).collect::<Result<Vec<_>>>()?
+        } else {
+            groups.iter().enumerate().map(settle).collect::<Result<Vec<_>>>()?
+        };
         Ok(Fitted { scheme: self.scheme, sample: self.sample, channels })
     }
 }
@@ -124,28 +144,36 @@ impl Coder {
 
     /// How many neurons and sub-timesteps a channel has.
     fn shape(&self) -> PyResult<(usize, usize)> {
-        // They do not depend on what a signal tells.
-        let ramp = [0.0, 1.0, 0.5];
-        let calibrated = self.scheme.needs_signal(&self.asked).map(|_| {
-            let mut calibrated = Calibrated::new(self.sample);
-            calibrated.observe(&ramp);
-            calibrated
-        });
-        let settings = self.any().and_then(|any| any.settle(&ramp, calibrated.as_ref()));
-        let settings = settings.map_err(|error| value(&error))?;
+        let settings = self.of_ramp().map_err(|error| value(&error))?;
         let shape = self.scheme.shape(&settings).map_err(|error| value(&error))?;
         Ok((shape.neurons, shape.slots))
     }
 
     /// What a signal must tell, if anything.
     fn needs_signal(&self) -> Option<String> {
-        self.scheme.needs_signal(&self.asked).map(|text| crate::error::keywords(&text))
+        self.scheme.needs_signal(&self.asked)
     }
 
     /// With what these samples tell: each channel by itself, or one scheme for all.
     fn fit(&self, py: Python, samples: Samples, is_shared: bool) -> PyResult<Fitted> {
         let lanes = samples.lanes();
-        py.detach(|| self.fitted(&lanes, is_shared)).map_err(|error| value(&error))
+        let is_wide = is_wide(lanes.len(), lanes.iter().map(Lane::len).sum());
+        work::detached(py, is_wide, || self.fitted(&lanes, is_shared))?
+            .map_err(|error| value(&error))
+    }
+
+    /// It with draws that start from this seed.
+    fn seeded(&self, seed: u64) -> Self {
+        let mut own = self.clone();
+        own.asked.set("seed", seed);
+        own
+    }
+
+    /// How many samples after its own the code of a sample comes out.
+    fn latency(&self) -> PyResult<usize> {
+        let settings = self.of_ramp().map_err(|error| value(&error))?;
+        let channel = channel::start(self.scheme, &settings, None);
+        channel.map(|channel| channel.latency()).map_err(|error| value(&error))
     }
 
     /// An encoder of this many channels that keeps its state.
@@ -186,7 +214,8 @@ impl Fitted {
     }
 
     fn start(&self, channel: usize) -> Result<Box<dyn Channel>> {
-        channel::start(self.scheme, self.settings(channel)?, None)
+        let settings = self.settings(channel)?.with_stream(channel as u64);
+        channel::start(self.scheme, &settings, None)
     }
 
     /// How many cells a row has.
@@ -213,6 +242,13 @@ fn named(name: &str) -> PyResult<&'static dyn RunTime> {
 
 /// So many samples are coded before anybody asks whether to stop.
 const PIECE: usize = 1 << 16;
+
+/// Returns whether so many channels of so many numbers in all are worth more threads than one.
+pub(crate) fn is_wide(channels: usize, numbers: usize) -> bool {
+    /// About what one thread does while another wakes up.
+    const FEW: usize = 1 << 13;
+    channels > 1 && numbers > FEW
+}
 
 #[pymethods]
 impl Fitted {
@@ -252,11 +288,18 @@ impl Fitted {
         let output = PyArray1::zeros(py, total * width, false);
         let mut access = output.readwrite();
         let cells = access.as_slice_mut()?;
-        let done = work::run(py, total, progress.as_ref(), |meter| {
-            let rooms = cells.par_chunks_mut((length * width).max(1));
-            lanes.par_iter().zip(rooms).enumerate().try_for_each(|(place, (lane, room))| {
+        let is_wide = is_wide(lanes.len(), total * width);
+        let done = work::run(py, is_wide, total, progress.as_ref(), |meter| {
+            let encode = |(place, (lane, room)): (usize, (&Lane, &mut [i8]))| {
                 self.encode_lane(place, *lane, room, width, meter)
-            })
+            };
+            let size = (length * width).max(1);
+            if is_wide {
+                let rooms = cells.par_chunks_mut(size);
+                lanes.par_iter().zip(rooms).enumerate().try_for_each(encode)
+            } else {
+                lanes.iter().zip(cells.chunks_mut(size)).enumerate().try_for_each(encode)
+            }
         })?;
         done.map_err(|error| value(&error))?;
         drop(access);
@@ -280,11 +323,10 @@ impl Fitted {
                 let output = PyArray1::<$type>::zeros(py, total, false);
                 let mut access = output.readwrite();
                 let values = access.as_slice_mut()?;
-                let done = work::run(py, total, progress, |meter| {
+                let is_wide = is_wide(channels, total * width);
+                let done = work::run(py, is_wide, total, progress, |meter| {
                     let length = (total / channels.max(1)).max(1);
-                    let rooms = values.par_chunks_mut(length);
-                    let rows = cells.par_chunks(length * width);
-                    rows.zip(rooms).enumerate().try_for_each(|(place, (rows, room))| {
+                    let decode = |(place, (rows, room)): (usize, (&[i8], &mut [$type]))| {
                         let mut channel = self.start(place)?;
                         let pieces = rows.chunks(PIECE * width).zip(room.chunks_mut(PIECE));
                         for (piece, (rows, room)) in pieces.enumerate() {
@@ -296,7 +338,16 @@ impl Fitted {
                             meter.add(room.len());
                         }
                         Ok(())
-                    })
+                    };
+                    if is_wide {
+                        let rooms = values.par_chunks_mut(length);
+                        let rows = cells.par_chunks(length * width);
+                        rows.zip(rooms).enumerate().try_for_each(decode)
+                    } else {
+                        let rooms = values.chunks_mut(length);
+                        let rows = cells.chunks(length * width);
+                        rows.zip(rooms).enumerate().try_for_each(decode)
+                    }
                 })?;
                 done.map_err(|error: anyhow::Error| value(&error))?;
                 drop(access);
@@ -345,7 +396,7 @@ impl Fitted {
         width: usize,
         meter: &Meter,
     ) -> Result<()> {
-        let mut channel = self.start(place)?;
+        let mut channel = self.start(place).with_context(|| format!("channel {place}"))?;
         let mut made = 0;
         for start in (0..lane.len()).step_by(PIECE) {
             if meter.is_stopped() {

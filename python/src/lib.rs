@@ -29,6 +29,12 @@ mod _native {
     };
     #[pymodule_export]
     use super::stream::{Decoder, Encoder};
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
 }
 
 /// What is known of each scheme.
@@ -75,7 +81,7 @@ mod info {
             Unit::Samples => "samples",
         };
         told.set_item("unit", unit)?;
-        told.set_item("help", crate::error::keywords(own.help))?;
+        told.set_item("help", own.help)?;
         told.set_item("default", own.default)?;
         let found = own.found.map(|found| match found {
             Found::First => "the first sample",

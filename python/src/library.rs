@@ -1,28 +1,33 @@
 //! What the laptop program does, on arrays.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use anyhow::{Context, Result, anyhow, bail};
 use lab::advise::AdviseRequest;
+use lab::coding::Coding;
+use lab::emit::Codec;
+use lab::input::{ChannelOptions, InputOptions};
+use lab::look::known_unit;
+use lab::plot::Picture;
 use lab::scheme::Scheme;
-use lab::trial::Recording;
+use lab::score::Figures;
+use lab::trial::{Recording, Trial};
 use lab::tune::report::Row;
 use lab::tune::{Goal, Limits, TuneRequest};
 use lab::watch::{Progress, Watch};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use spikewire::{Event, Polarity, Tick};
-use spikewire_cli::library::{self, Arguments, Coding, Shown, Signal};
 
 use crate::coder::Coder;
 use crate::error::value;
 use crate::values::{self, Given, keywords};
 use crate::work;
-
-/// Options by name; a value of `None` is a flag.
-type Options = Vec<(String, Option<String>)>;
 
 /// A tuned scheme: its name, its keywords, its figures as JSON, and what a file says of it.
 type Told = (&'static str, Vec<(&'static str, Given)>, String, Vec<String>);
@@ -30,29 +35,34 @@ type Told = (&'static str, Vec<(&'static str, Given)>, String, Vec<String>);
 /// Long work tells this many parts.
 const PARTS: usize = 1_000_000;
 
-fn arguments(given: Options) -> Arguments {
-    let mut arguments = Arguments::default();
-    for (name, value) in given {
-        match value {
-            Some(value) => arguments.set(&name, &value),
-            None => arguments.flag(&name),
-        }
-    }
-    arguments
-}
-
 fn told(scheme: Scheme, row: &Row, channel: &str) -> Result<Told> {
     let given = keywords(&row.settings.to_asked(scheme.info()));
     Ok((scheme.name(), given, serde_json::to_string(row)?, row.comments(channel)))
 }
 
-fn signal(name: String, values: &PyReadonlyArray1<f64>, rate: Option<f64>) -> Signal {
-    Signal { name, values: values.as_array().to_vec(), rate }
+/// A signal as the library has recordings.
+fn recording(name: &str, values: &PyReadonlyArray1<f64>, rate: Option<f64>) -> PyResult<Recording> {
+    let values = values.as_array().to_vec();
+    let refused = |text: String| Err(PyValueError::new_err(text));
+    if values.is_empty() {
+        return refused(format!("{name}: there is no sample"));
+    }
+    if let Some(place) = values.iter().position(|value| !value.is_finite()) {
+        return refused(format!("{name}, sample {place}: {} is not finite", values[place]));
+    }
+    if let Some(rate) = rate.filter(|rate| !(rate.is_finite() && *rate > 0.0)) {
+        return refused(format!("rate {rate} must be above 0 and finite"));
+    }
+    Ok(Recording::of(name.to_owned(), values, rate))
 }
 
 impl Coder {
     fn coding(&self) -> Coding {
         Coding { scheme: self.scheme.into(), sample: self.sample, asked: self.asked.clone() }
+    }
+
+    fn trial(&self, recording: &Recording) -> Result<Trial> {
+        Trial::new(self.scheme.into(), &self.asked, self.sample, recording)
     }
 }
 
@@ -62,7 +72,7 @@ fn watched<T: Send>(
     progress: Option<Py<PyAny>>,
     job: impl FnOnce(&Watch) -> Result<T> + Send,
 ) -> PyResult<T> {
-    let done = work::run(py, PARTS, progress.as_ref(), |meter| {
+    let done = work::run(py, true, PARTS, progress.as_ref(), |meter| {
         let tell = |now: &Progress| meter.set(now.done * PARTS / now.total.max(1));
         let done = job(&Watch { is_stopped: &|| meter.is_stopped(), tell: &tell });
         if meter.is_stopped() { Err(anyhow!("stopped")) } else { done }
@@ -78,8 +88,9 @@ pub(crate) fn score(
     values: PyReadonlyArray1<f64>,
     rate: Option<f64>,
 ) -> PyResult<String> {
-    let (signal, coding) = (signal("x".to_owned(), &values, rate), coder.coding());
-    py.detach(|| library::score(&signal, &coding)).map_err(|error| value(&error))
+    let recording = recording("x", &values, rate)?;
+    let scored = || Ok(serde_json::to_string(&Figures::of(&recording, &coder.trial(&recording)?))?);
+    work::detached(py, true, scored)?.map_err(|error| value(&error))
 }
 
 /// A picture of a signal through schemes, as the bytes of a file.
@@ -96,10 +107,22 @@ pub(crate) fn plot<'py>(
     range: Option<(usize, usize)>,
     ending: &str,
 ) -> PyResult<Bound<'py, PyBytes>> {
-    let signal = signal(name, &values, rate);
-    let codings: Vec<Coding> = coders.iter().map(Coder::coding).collect();
-    let shown = Shown { unit, range: range.map(|(start, end)| start..end) };
-    let bytes = py.detach(|| library::plot(&signal, &codings, &shown, ending));
+    let recording = recording(&name, &values, rate)?;
+    let samples = recording.values.len();
+    let shown = range.map_or(0..samples, |(start, end)| start..end);
+    if shown.start + 1 >= shown.end || shown.end > samples {
+        let Range { start, end } = shown;
+        let text = format!("samples {start}..{end}: two samples at least, within 0..{samples}");
+        return Err(PyValueError::new_err(text));
+    }
+    let drawn = || {
+        let trials = coders.iter().map(|coder| coder.trial(&recording));
+        let trials = trials.collect::<Result<Vec<_>>>()?;
+        let unit = unit.as_deref().or_else(|| known_unit(&recording.name));
+        let picture = Picture { recording: &recording, trials: &trials, unit, shown };
+        lab::plot::bytes(ending, &picture)
+    };
+    let bytes = work::detached(py, true, drawn)?;
     Ok(PyBytes::new(py, &bytes.map_err(|error| value(&error))?))
 }
 
@@ -180,10 +203,9 @@ pub(crate) fn tune(
     keywords: Tune,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Vec<Told>, Vec<String>)> {
-    let signals: Vec<Signal> =
-        signals.iter().map(|values| signal(name.to_owned(), values, rate)).collect();
+    let recordings = signals.iter().map(|values| recording(name, values, rate));
+    let recordings = recordings.collect::<PyResult<Vec<_>>>()?;
     watched(py, progress, |watch| {
-        let recordings = signals.iter().map(Signal::recording).collect::<Result<Vec<_>>>()?;
         let all = lab::tune::tune(&keywords.request(recordings)?, watch)?;
         let Some(tuned) = all.first() else { bail!("there is no signal") };
         if tuned.rows.is_empty() {
@@ -232,13 +254,13 @@ pub(crate) fn advise(
     keywords: Advise,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Vec<(String, String, Option<Told>)>> {
-    let signals: Vec<Signal> =
-        signals.into_iter().map(|(name, values)| signal(name, &values, rate)).collect();
+    let recordings = signals.iter().map(|(name, values)| recording(name, values, rate));
+    let recordings = recordings.collect::<PyResult<Vec<_>>>()?;
+    let names: Vec<&str> = signals.iter().map(|(name, _)| name.as_str()).collect();
     watched(py, progress, |watch| {
-        let recordings = signals.iter().map(Signal::recording).collect::<Result<Vec<_>>>()?;
         let all = lab::advise::advise(&keywords.request(recordings)?, watch)?;
-        let said = all.iter().zip(&signals).map(|(own, signal)| {
-            let best = own.best().map(|(scheme, row)| told(scheme, row, &signal.name));
+        let said = all.iter().zip(&names).map(|(own, name)| {
+            let best = own.best().map(|(scheme, row)| told(scheme, row, name));
             Ok((own.page(), serde_json::to_string(own)?, best.transpose()?))
         });
         said.collect()
@@ -248,7 +270,7 @@ pub(crate) fn advise(
 /// A scheme as a constant in Rust.
 #[pyfunction]
 pub(crate) fn to_rust(coder: &Coder, name: &str, comments: Vec<String>) -> PyResult<String> {
-    library::rust(&coder.coding(), name, &comments).map_err(|error| value(&error))
+    lab::emit::rust(&coder.coding(), name, &comments).map_err(|error| value(&error))
 }
 
 /// A crate that makes the library for C of a scheme, in a new directory.
@@ -259,27 +281,79 @@ pub(crate) fn to_c(
     directory: PathBuf,
     spikewire: Option<PathBuf>,
 ) -> PyResult<()> {
-    library::c(&coder.coding(), name, &directory, spikewire.as_deref())
-        .map_err(|error| value(&error))
+    let named = Codec { name: name.to_owned(), coding: coder.coding() };
+    lab::emit::c_crate(&[named], &directory, spikewire.as_deref()).map_err(|error| value(&error))
 }
 
 /// A scheme as a file of parameters.
 #[pyfunction]
 pub(crate) fn to_toml(coder: &Coder, comments: Vec<String>) -> PyResult<String> {
-    library::toml(&coder.coding(), &comments).map_err(|error| value(&error))
+    lab::emit::toml(&coder.coding(), &comments).map_err(|error| value(&error))
 }
 
 /// Channels of a file: names, samples, times in µs, notes.
 type Read<'py> =
     (Vec<String>, Vec<Bound<'py, PyArray1<f64>>>, Bound<'py, PyArray1<i64>>, Vec<String>);
 
+/// Keywords of `read`; what is `None` is as the library has it.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Input {
+    columns: Vec<String>,
+    time: Option<String>,
+    time_unit: Option<String>,
+    delimiter: Option<String>,
+    topic: Option<String>,
+    fields: Vec<String>,
+    rate: Option<f64>,
+    gap: Option<f64>,
+    skip_non_finite: bool,
+    accept_cut: bool,
+}
+
+impl Input {
+    fn options(self, path: &str) -> Result<InputOptions> {
+        for (name, value) in [("rate", self.rate), ("gap", self.gap)] {
+            if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
+                bail!("{name} {value} must be above 0 and finite");
+            }
+        }
+        let usual = ChannelOptions::default();
+        let channel = ChannelOptions {
+            columns: self.columns,
+            time: self.time,
+            time_unit: parsed("time_unit", self.time_unit)?,
+            delimiter: parsed("delimiter", self.delimiter)?,
+            topic: self.topic,
+            fields: self.fields,
+            rate: self.rate,
+            gap: self.gap.unwrap_or(usual.gap),
+            skip_non_finite: self.skip_non_finite,
+            accept_cut: self.accept_cut,
+            ..usual
+        };
+        InputOptions { input: path.into(), channel }.or_all()
+    }
+}
+
+/// Reads the text of a keyword.
+fn parsed<T: FromStr<Err = String>>(name: &str, text: Option<String>) -> Result<Option<T>> {
+    text.map(|text| text.parse().map_err(|error| anyhow!("{name}={text}: {error}"))).transpose()
+}
+
 /// Reads channels of a flight log or a table.
 #[pyfunction]
-pub(crate) fn read<'py>(py: Python<'py>, path: &str, given: Options) -> PyResult<Read<'py>> {
-    let arguments = arguments(given);
-    let log = py.detach(|| library::read(path, &arguments)).map_err(|error| value(&error))?;
-    let columns = log.columns.into_iter().map(|column| column.into_pyarray(py)).collect();
-    Ok((log.names, columns, log.times.into_pyarray(py), log.notes))
+pub(crate) fn read<'py>(py: Python<'py>, path: &str, keywords: Input) -> PyResult<Read<'py>> {
+    let done = work::detached(py, true, || {
+        let mut source = keywords.options(path)?.open()?;
+        let all = source.rest()?;
+        let names = source.origin().last().map_or("", |(_, names)| names.as_str());
+        let names = names.split(',').map(str::to_owned).collect();
+        anyhow::Ok((names, all, source.notes().to_vec()))
+    })?;
+    let (names, all, notes) = done.map_err(|error| value(&error))?;
+    let columns = all.columns.into_iter().map(|column| column.into_pyarray(py)).collect();
+    Ok((names, columns, all.times.into_pyarray(py), notes))
 }
 
 /// Times in µs, addresses, polarities, notes.
@@ -293,7 +367,8 @@ pub(crate) fn read_events<'py>(
     bytes: &[u8],
     format: &str,
 ) -> PyResult<Events<'py>> {
-    let read = py.detach(|| library::read_events(bytes, format)).map_err(|error| value(&error))?;
+    let read =
+        py.detach(|| lab::events::read_events(bytes, format)).map_err(|error| value(&error))?;
     let ticks: Vec<u32> = read.events.iter().map(|event| event.tick.micros()).collect();
     let addresses: Vec<u16> = read.events.iter().map(|event| event.address).collect();
     let are_up: Vec<bool> =
@@ -319,7 +394,7 @@ pub(crate) fn write_events<'py>(
             polarity: if *is_up { Polarity::Up } else { Polarity::Down },
         })
         .collect();
-    let written = py.detach(|| library::write_events(&events, format));
+    let written = py.detach(|| lab::events::write_events(&events, format));
     let (bytes, notes) = written.map_err(|error| value(&error))?;
     Ok((PyBytes::new(py, &bytes), notes))
 }

@@ -1,16 +1,19 @@
 //! Encoders and decoders that keep their state from one call to the next.
 
+use std::sync::{Mutex, MutexGuard, TryLockError};
+
 use anyhow::{Context, Result, ensure};
 use catalogue::run::SampleType;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use crate::array::{Lane, Samples, Values};
 use crate::channel::{self, Channel};
-use crate::coder::{Coder, told};
+use crate::coder::{Coder, is_wide, told};
 use crate::error::value;
+use crate::work;
 
 /// What a stream pickles as: the package's version, the samples that wait for the encoder to start, and the states of the
 /// channels that run. No version reads another's.
@@ -31,9 +34,34 @@ fn set_states(running: &mut [Box<dyn Channel>], (version, _, states): &Pickled) 
     Ok(())
 }
 
+/// Takes what a call works on, unless a call of another thread works on it.
+fn taken<'a, T>(state: &'a Mutex<T>, what: &str) -> PyResult<MutexGuard<'a, T>> {
+    match state.try_lock() {
+        Ok(guard) => Ok(guard),
+        Err(TryLockError::Poisoned(error)) => Ok(error.into_inner()),
+        Err(TryLockError::WouldBlock) => Err(PyRuntimeError::new_err(format!(
+            "this {what} is at work in another thread; chunks go through one after the other, and threads take an \
+             {what} each"
+        ))),
+    }
+}
+
 /// Encoders of several channels.
-#[pyclass(module = "spikewire._native")]
-pub(crate) struct Encoder {
+#[pyclass(frozen, module = "spikewire._native")]
+pub(crate) struct Encoder(Mutex<Encoding>);
+
+impl Encoder {
+    pub(crate) fn new(coder: Coder, channels: usize, shape: (usize, usize)) -> Self {
+        let waiting = vec![Vec::new(); channels];
+        Self(Mutex::new(Encoding { coder, running: Vec::new(), waiting, shape }))
+    }
+
+    fn taken(&self) -> PyResult<MutexGuard<'_, Encoding>> {
+        taken(&self.0, "encoder")
+    }
+}
+
+struct Encoding {
     coder: Coder,
     /// None before as many samples have come as the encoder starts from.
     running: Vec<Box<dyn Channel>>,
@@ -43,11 +71,7 @@ pub(crate) struct Encoder {
     shape: (usize, usize),
 }
 
-impl Encoder {
-    pub(crate) fn new(coder: Coder, channels: usize, shape: (usize, usize)) -> Self {
-        Self { coder, running: Vec::new(), waiting: vec![Vec::new(); channels], shape }
-    }
-
+impl Encoding {
     /// How many cells a row has.
     fn width(&self) -> usize {
         self.shape.0 * self.shape.1
@@ -59,7 +83,9 @@ impl Encoder {
         let mut running = Vec::new();
         for (place, waiting) in self.waiting.iter().enumerate() {
             let first = &waiting[..waiting.len().min(looks_back)];
-            let settings = self.coder.channel(place, self.waiting.len())?.settle(first, None)?;
+            let mut settings =
+                self.coder.channel(place, self.waiting.len())?.settle(first, None)?;
+            settings.stream = place as u64;
             running.push(channel::start(self.coder.scheme, &settings, None)?);
         }
         self.running = running;
@@ -95,13 +121,17 @@ impl Encoder {
             cells.truncate(made * width);
             Ok(cells)
         };
-        self.running.par_iter_mut().zip(lanes).enumerate().map(code).collect()
+        if is_wide(lanes.len(), lanes.iter().map(Lane::len).sum::<usize>() * width) {
+            self.running.par_iter_mut().zip(lanes).enumerate().map(code).collect()
+        } else {
+            self.running.iter_mut().zip(lanes).enumerate().map(code).collect()
+        }
     }
 
     fn encode_all(&mut self, lanes: &[Lane]) -> Result<Vec<Vec<i8>>> {
         for (channel, lane) in lanes.iter().enumerate() {
-            if let Some((sample, value)) = lane.not_finite() {
-                anyhow::bail!("channel {channel}, sample {sample}: {value} is not finite");
+            if let Some(bad) = lane.bad(self.coder.sample) {
+                return Err(told(channel, 0, &bad));
             }
         }
         if !self.running.is_empty() {
@@ -136,89 +166,120 @@ impl Encoder {
 #[pymethods]
 impl Encoder {
     /// How many neurons and sub-timesteps a channel has.
-    fn shape(&self) -> (usize, usize) {
-        self.shape
+    fn shape(&self) -> PyResult<(usize, usize)> {
+        Ok(self.taken()?.shape)
     }
 
     /// Takes the next samples of all channels; the cells that are complete, one channel after the other.
-    fn encode<'py>(
-        &mut self,
-        py: Python<'py>,
-        samples: Samples,
-    ) -> PyResult<Bound<'py, PyArray1<i8>>> {
+    fn encode<'py>(&self, py: Python<'py>, samples: Samples) -> PyResult<Bound<'py, PyArray1<i8>>> {
         let lanes = samples.lanes();
-        if lanes.len() != self.waiting.len() {
+        let mut own = self.taken()?;
+        let own = &mut *own;
+        if lanes.len() != own.waiting.len() {
             return Err(PyValueError::new_err(format!(
                 "there are {} channels, not {}",
-                self.waiting.len(),
+                own.waiting.len(),
                 lanes.len()
             )));
         }
-        let cells = py.detach(|| self.encode_all(&lanes)).map_err(|error| value(&error))?;
-        Ok(cells.concat().into_pyarray(py))
+        let held: usize = own.waiting.iter().map(Vec::len).sum();
+        let count = held + lanes.iter().map(Lane::len).sum::<usize>();
+        let is_wide = is_wide(lanes.len(), count * own.width());
+        let cells = work::detached(py, is_wide, || own.encode_all(&lanes))?;
+        Ok(cells.map_err(|error| value(&error))?.concat().into_pyarray(py))
     }
 
     /// All that it keeps from chunk to chunk.
     fn state(&self) -> PyResult<Pickled> {
-        pickled(&self.waiting, &self.running).map_err(|error| value(&error))
+        let own = self.taken()?;
+        pickled(&own.waiting, &own.running).map_err(|error| value(&error))
     }
 
     /// Goes on from a state of an encoder of the same scheme and as many channels.
-    fn set_state(&mut self, state: Pickled) -> PyResult<()> {
-        self.set(&state).map_err(|error| value(&error))
+    fn set_state(&self, state: Pickled) -> PyResult<()> {
+        self.taken()?.set(&state).map_err(|error| value(&error))
     }
 
     /// The cells of the samples that wait for later ones; the encoder is as at its start then.
-    fn finish<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i8>>> {
-        let cells = self.finish_all().map_err(|error| value(&error))?;
-        Ok(cells.concat().into_pyarray(py))
+    fn finish<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i8>>> {
+        let mut own = self.taken()?;
+        let own = &mut *own;
+        let held: usize = own.waiting.iter().map(Vec::len).sum();
+        let is_wide = is_wide(own.waiting.len(), held * own.width());
+        let cells = work::detached(py, is_wide, || own.finish_all())?;
+        Ok(cells.map_err(|error| value(&error))?.concat().into_pyarray(py))
     }
 }
 
 /// Decoders of several channels.
-#[pyclass(module = "spikewire._native")]
+#[pyclass(frozen, module = "spikewire._native")]
 pub(crate) struct Decoder {
-    channels: Vec<Box<dyn Channel>>,
+    channels: Mutex<Vec<Box<dyn Channel>>>,
     sample: SampleType,
 }
 
 impl Decoder {
     pub(crate) fn new(channels: Vec<Box<dyn Channel>>, sample: SampleType) -> Self {
-        Self { channels, sample }
+        Self { channels: Mutex::new(channels), sample }
     }
+
+    fn taken(&self) -> PyResult<MutexGuard<'_, Vec<Box<dyn Channel>>>> {
+        taken(&self.channels, "decoder")
+    }
+}
+
+/// Decodes rows of cells, all or none: a bad one leaves the channels as they were.
+fn decode_all<T: Copy + Default>(
+    channels: &mut [Box<dyn Channel>],
+    cells: &[i8],
+    rows: usize,
+    as_values: impl Fn(&mut [T]) -> Values<'_>,
+) -> Result<Vec<T>> {
+    let before = channels.iter().map(|channel| channel.state()).collect::<Result<Vec<_>>>()?;
+    let own = (cells.len() / channels.len().max(1)).max(1);
+    let mut values = vec![T::default(); rows * channels.len()];
+    let mut rooms = values.chunks_mut(rows.max(1));
+    let mut failed = None;
+    for (place, (channel, cells)) in channels.iter_mut().zip(cells.chunks(own)).enumerate() {
+        let Some(room) = rooms.next() else { break };
+        if let Err(bad) = channel.decode(cells, &mut as_values(room)) {
+            failed = Some(told(place, 0, &bad));
+            break;
+        }
+    }
+    let Some(error) = failed else { return Ok(values) };
+    for (channel, state) in channels.iter_mut().zip(&before) {
+        channel.set_state(state)?;
+    }
+    Err(error)
 }
 
 #[pymethods]
 impl Decoder {
     /// All that it keeps from chunk to chunk.
     fn state(&self) -> PyResult<Pickled> {
-        pickled(&[], &self.channels).map_err(|error| value(&error))
+        pickled(&[], &self.taken()?).map_err(|error| value(&error))
     }
 
     /// Goes on from a state of a decoder of the same scheme and as many channels.
-    fn set_state(&mut self, state: Pickled) -> PyResult<()> {
-        set_states(&mut self.channels, &state).map_err(|error| value(&error))
+    fn set_state(&self, state: Pickled) -> PyResult<()> {
+        set_states(&mut self.taken()?, &state).map_err(|error| value(&error))
     }
 
     /// The values of the next rows of cells, this many of each channel, one channel after the other.
     fn decode<'py>(
-        &mut self,
+        &self,
         py: Python<'py>,
         cells: PyReadonlyArray1<i8>,
         rows: usize,
     ) -> PyResult<Bound<'py, PyAny>> {
         let cells = cells.as_slice()?;
-        let own = cells.len() / self.channels.len().max(1);
+        let mut own = self.taken()?;
+        let own = &mut own[..];
         macro_rules! decoded {
             ($type:ty, $kind:ident) => {{
-                let mut values = vec![<$type>::default(); rows * self.channels.len()];
-                let rooms = values.chunks_mut(rows.max(1));
-                let all = self.channels.iter_mut().zip(cells.chunks(own.max(1))).zip(rooms);
-                for (place, ((channel, cells), room)) in all.enumerate() {
-                    let done = channel.decode(cells, &mut Values::$kind(room));
-                    done.map_err(|bad| value(&told(place, 0, &bad)))?;
-                }
-                Ok(values.into_pyarray(py).into_any())
+                let values = decode_all::<$type>(own, cells, rows, |room| Values::$kind(room));
+                Ok(values.map_err(|error| value(&error))?.into_pyarray(py).into_any())
             }};
         }
         match self.sample {

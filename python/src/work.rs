@@ -1,11 +1,16 @@
 //! Work without the interpreter's lock, which Ctrl-C ends and whose progress is told.
 
+use std::mem;
+use std::process;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// What work tells of itself, and is told.
 #[derive(Default)]
@@ -37,25 +42,75 @@ const PERIOD: Duration = Duration::from_millis(100);
 /// So much is over before anybody could press a key.
 const SHORT: usize = 1 << 18;
 
-/// Works until the job is done, or Ctrl-C is pressed. `progress` is called with what is done of the total.
+/// The threads of a process.
+struct Pool {
+    process: u32,
+    threads: Arc<ThreadPool>,
+}
+
+/// Returns the threads of this process. A fork copies a pool without its threads, on which the child would wait for
+/// ever; so a child makes its own at its first call.
+///
+/// # Errors
+/// The system has no more threads.
+fn pool(_: Python) -> PyResult<Arc<ThreadPool>> {
+    /// Locked by who holds the interpreter's lock, and so by nobody while Python forks.
+    static POOL: Mutex<Option<Pool>> = Mutex::new(None);
+    let mut known = POOL.lock().unwrap_or_else(PoisonError::into_inner);
+    let own = process::id();
+    if let Some(pool) = known.as_ref().filter(|pool| pool.process == own) {
+        return Ok(Arc::clone(&pool.threads));
+    }
+    let threads = ThreadPoolBuilder::new().thread_name(|number| format!("spikewire {number}"));
+    let threads = threads.build().map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+    let threads = Arc::new(threads);
+    // The parent's threads are not here to be ended.
+    mem::forget(known.replace(Pool { process: own, threads: Arc::clone(&threads) }));
+    Ok(threads)
+}
+
+/// Works without the interpreter's lock: on all threads of the process if `is_wide`, where alone rayon may be used.
+///
+/// # Errors
+/// The system has no more threads.
+pub(crate) fn detached<T: Send>(
+    py: Python,
+    is_wide: bool,
+    job: impl FnOnce() -> T + Send,
+) -> PyResult<T> {
+    if !is_wide {
+        return Ok(py.detach(job));
+    }
+    let pool = pool(py)?;
+    Ok(py.detach(|| pool.install(job)))
+}
+
+/// Works until the job is done, or Ctrl-C is pressed. `progress` is called with what is done of the total. The job runs
+/// as that of [`detached`] does.
 ///
 /// # Errors
 /// Those of Ctrl-C and of `progress`.
 pub(crate) fn run<T: Send>(
     py: Python,
+    is_wide: bool,
     total: usize,
     progress: Option<&Py<PyAny>>,
     job: impl FnOnce(&Meter) -> T + Send,
 ) -> PyResult<T> {
     let meter = Meter::default();
     if total < SHORT {
-        return Ok(py.detach(|| job(&meter)));
+        return detached(py, is_wide, || job(&meter));
     }
     let meter = &meter;
+    let pool = if is_wide { Some(pool(py)?) } else { None };
+    let job = || match &pool {
+        Some(pool) => pool.install(|| job(meter)),
+        None => job(meter),
+    };
     py.detach(|| {
         let (sender, receiver) = channel();
         thread::scope(|scope| {
-            scope.spawn(move || sender.send(job(meter)));
+            scope.spawn(move || sender.send(job()));
             let mut failed = None;
             loop {
                 match receiver.recv_timeout(PERIOD) {

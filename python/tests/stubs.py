@@ -7,6 +7,8 @@ HEAD = '''"""The classes of the schemes. Generated from the catalogue; a test sa
 from collections.abc import Sequence
 from typing import Literal
 
+from numpy.random import Generator
+
 from ._scheme import Scheme
 
 '''
@@ -23,6 +25,10 @@ TYPES = {
 def argument(own):
     words = ", ".join(f'"{word}"' for word in own["words"])
     kind = f"Literal[{words}]" if words else TYPES[own["kind"]]
+    if own["name"] == "seed":
+        kind = "int | Generator"
+    elif own["kind"] == "number":
+        kind = "float | Sequence[float]"
     return f"        {own['name']}: {kind} | None = None,"
 
 

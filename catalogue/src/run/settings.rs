@@ -3,6 +3,8 @@
 use std::ops::RangeInclusive;
 
 use anyhow::{Context, Result, bail};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
 use spikewire::{Sample, dynamic, rate};
 
 use super::{Asked, SampleType, Value};
@@ -16,6 +18,9 @@ pub struct Settings {
     pub sample: SampleType,
     /// The samples that an encoder starts from: one, or a moving window's first. Decoding needs none.
     pub first: Vec<f64>,
+    /// The stream of the generator that codes by chance draw from: channels of one seed have one each, by their
+    /// number.
+    pub stream: u64,
     /// What the sample type has rounded, as it was before.
     pub rounded: Vec<(&'static str, Value)>,
 }
@@ -151,6 +156,22 @@ impl Settings {
             }
             _ => bail!("{name} {value} must be a whole number in {min}..={max}"),
         }
+    }
+
+    /// The same, with draws from this stream.
+    #[must_use]
+    pub fn with_stream(&self, stream: u64) -> Self {
+        Self { stream, ..self.clone() }
+    }
+
+    /// Starts the generator of a code by chance, on the settings' seed and stream.
+    ///
+    /// # Errors
+    /// There is no seed, or it is no whole number.
+    pub fn generator(&self) -> Result<ChaCha8Rng> {
+        let mut generator = ChaCha8Rng::seed_from_u64(self.count("seed", 0..=usize::MAX)? as u64);
+        generator.set_stream(self.stream);
+        Ok(generator)
     }
 
     /// One of these words.

@@ -16,7 +16,6 @@ use {
     crate::run::{Build, Settings, Visit},
     anyhow::Result,
     rand_chacha::ChaCha8Rng,
-    rand_chacha::rand_core::SeedableRng,
     spikewire::{Sample, rate::Window},
 };
 
@@ -41,7 +40,7 @@ impl Entry for Scheme {
             Parameter::MAX,
             Parameter::MEAN,
             Parameter::POWER,
-            Parameter::new("seed", Kind::Count, Unit::None, "where the generator starts")
+            Parameter::new("seed", Kind::Count, Unit::None, "where the generator starts; each channel draws from a stream of its own")
                 .with_default("0"),
         ],
     };
@@ -81,7 +80,7 @@ impl Entry for Scheme {
 impl Build for Scheme {
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
         type Random<S, A> = Bernoulli<S, ChaCha8Rng, A>;
-        let generator = ChaCha8Rng::seed_from_u64(settings.count("seed", 0..=usize::MAX)? as u64);
+        let generator = settings.generator()?;
         let range = settings.range()?;
         if settings.takes_window()? {
             let scheme = Random::<S, _>::try_new(range, settings.window()?)?;

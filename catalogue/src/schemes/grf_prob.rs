@@ -13,8 +13,6 @@ use crate::{Channel, Count, Entry, Flight, InC, Info, Kind, Parameter, Scaled, U
 use {
     crate::run::{Build, BuildPopulation, Settings, Visit},
     anyhow::Result,
-    rand_chacha::ChaCha8Rng,
-    rand_chacha::rand_core::SeedableRng,
     spikewire::{Sample, dynamic},
 };
 
@@ -39,7 +37,7 @@ impl Entry for Scheme {
             Parameter::MIN,
             Parameter::MAX,
             Parameter::BETA,
-            Parameter::new("seed", Kind::Count, Unit::None, "where the generator starts")
+            Parameter::new("seed", Kind::Count, Unit::None, "where the generator starts; each channel draws from a stream of its own")
                 .with_default("0"),
         ],
     };
@@ -84,7 +82,7 @@ impl BuildPopulation for Scheme {
         visitor: V,
     ) -> Result<V::Output> {
         let (neurons, beta) = (settings.neurons()?, settings.number("beta")? as f32);
-        let generator = ChaCha8Rng::seed_from_u64(settings.count("seed", 0..=usize::MAX)? as u64);
+        let generator = settings.generator()?;
         let scheme = dynamic::Probabilistic::<S, _, M>::try_new(neurons, &settings.range()?, beta)?;
         visitor.visit(scheme, dynamic::Probabilistic::<S, _, M>::state(generator))
     }

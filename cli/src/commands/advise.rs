@@ -1,6 +1,7 @@
 //! `spikewire advise`: what a log is like, and which scheme suits each of its channels.
 
 use crate::inputs::InputOptions;
+use crate::options::tell;
 use crate::stop::Stop;
 use anyhow::{Result, bail};
 use catalogue::run::SampleType;
@@ -71,7 +72,7 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
         bail!("--picture draws one channel; --channel says which");
     }
     if let Some(first) = recordings.first() {
-        eprint!("{}", first.notes());
+        tell(first.notes());
     }
     let request = AdviseRequest {
         recordings,

@@ -1,6 +1,7 @@
 //! `spikewire convert`: events from any format to any other, in constant memory.
 
 use crate::inputs::StreamOptions;
+use crate::options::tell;
 use anyhow::Result;
 use clap::Args;
 use lab::events::{Format, Stream};
@@ -57,7 +58,7 @@ pub(crate) fn run(options: &Convert) -> Result<()> {
         }
     }
     stream.finish(&mut output)?;
-    eprint!("{stream}");
+    tell(&stream);
     eprintln!("{}", stream.written(output.bytes()));
     stream.check_format(*from, port.name())?;
     output.finish()

@@ -1,5 +1,6 @@
 //! `spikewire decode`: spikes back to values, in constant memory.
 
+use crate::options::tell_each;
 use anyhow::{Context, Result, anyhow, bail};
 use catalogue::run::{Event, SampleType};
 use clap::Args;
@@ -102,6 +103,7 @@ fn decode(
                 decoding.advance(first, &mut events).and_then(|()| decoding.skip(count))
             }
             Item::End { samples } => {
+                tell_each(&reader.notes());
                 decoding
                     .advance(samples, &mut events)
                     .map_err(|error| error.at(&reader.place()))?;

@@ -1,7 +1,7 @@
 //! `spikewire encode`: a recording to spikes, in constant memory.
 
 use crate::inputs::InputOptions;
-use crate::options::Coding;
+use crate::options::{Coding, tell_each};
 use anyhow::Result;
 use clap::Args;
 use lab::encode::encode;
@@ -41,8 +41,6 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
     let open = || Output::open(output.as_deref(), &input.input);
     let (output, notes) = encode(input, scheme, sample, &parameters, format, open)?;
     output.finish()?;
-    for note in notes {
-        eprintln!("{note}");
-    }
+    tell_each(&notes);
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use crate::inputs::StreamOptions;
 use crate::live::Live;
-use crate::options::{agreed, augment, given, schemes};
+use crate::options::{agreed, augment, given, schemes, tell};
 use crate::stop::Stop;
 use anyhow::{Result, bail};
 use catalogue::Parameter;
@@ -168,10 +168,10 @@ fn listen(options: &Listen, values: Option<(Box<dyn Values + '_>, SampleType)>) 
     // What came before a port failed is kept.
     stream.finish(&mut output)?;
     live.clear();
-    eprint!("{stream}");
+    tell(&stream);
     match stream.check_format(options.from, port.name()) {
         // It may yet speak, or at another speed.
-        Err(error) if options.baud.is_some() => eprintln!("{error}"),
+        Err(error) if options.baud.is_some() => tell(format_args!("{error}\n")),
         checked => checked?,
     }
     output.finish()?;
@@ -238,7 +238,7 @@ impl Listen {
             let own = asked.channel(scheme.info(), channel, channels)?;
             let settings = scheme.resolve(sample, &own, &known)?;
             if let Some(rounding) = rounding(&settings) {
-                eprintln!("{rounding}");
+                tell(format_args!("{rounding}\n"));
             }
             all.push(settings);
         }

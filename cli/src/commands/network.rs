@@ -1,7 +1,7 @@
 //! `spikewire network`: a trained network onto a chip, and what that costs.
 
 use crate::inputs::InputOptions;
-use crate::options::{SchemeOptions, schemes};
+use crate::options::{SchemeOptions, schemes, tell_each};
 use anyhow::{Result, bail, ensure};
 use catalogue::run::{Calibrated, Known, SampleType, Settings, Shape};
 use clap::Args;
@@ -104,9 +104,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     let mut output = Output::open(output.as_deref(), &input.input)?;
     output.write_all(emit(&brought.network, &told).as_bytes())?;
     output.finish()?;
-    for note in &driven.notes {
-        eprintln!("{note}");
-    }
+    tell_each(&driven.notes);
     report(&brought);
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use super::score::chosen;
 use crate::inputs::InputOptions;
-use crate::options::Coding;
+use crate::options::{Coding, tell};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use lab::look::known_unit;
@@ -66,13 +66,13 @@ pub(crate) fn run(options: &Plot) -> Result<()> {
     if trials.is_empty() {
         bail!("no scheme takes this recording: {}", refused.join("; "));
     }
-    eprint!("{}", recording.notes());
+    tell(recording.notes());
     for words in &refused {
-        eprintln!("not drawn: {words}");
+        tell(format_args!("not drawn: {words}\n"));
     }
     for trial in &trials {
         for note in &trial.notes {
-            eprintln!("{}: {note}", trial.scheme.name());
+            tell(format_args!("{}: {note}\n", trial.scheme.name()));
         }
     }
     let unit = options.unit.as_deref().or_else(|| known_unit(&recording.name));

@@ -1,7 +1,7 @@
 //! `spikewire score`: how few spikes, and how near to the signal.
 
 use crate::inputs::InputOptions;
-use crate::options::{Coding, SchemeOptions};
+use crate::options::{Coding, SchemeOptions, tell};
 use anyhow::{Result, bail};
 use catalogue::run::SampleType;
 use clap::Args;
@@ -69,14 +69,14 @@ pub(crate) fn run(options: &Score) -> Result<()> {
     {
         bail!("no scheme takes this recording: {refused}");
     }
-    eprint!("{}", recording.notes());
+    tell(recording.notes());
     let figures = scored.iter().filter_map(|own| match own {
         Scored::Figures(figures) => Some(figures),
         Scored::Refused { .. } => None,
     });
     for Figures { scheme, slope, notes, .. } in figures.map(Box::as_ref) {
         for note in notes {
-            eprintln!("{scheme}: {note}");
+            tell(format_args!("{scheme}: {note}\n"));
         }
         if let Some(slope) = slope {
             eprintln!("{}", slope.words());

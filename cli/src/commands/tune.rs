@@ -1,7 +1,7 @@
 //! `spikewire tune`: the parameters of a scheme, from flight logs.
 
 use crate::inputs::ChannelOptions;
-use crate::options::{FREE, SchemeOptions, augment, given, spelled};
+use crate::options::{FREE, SchemeOptions, augment, given, spelled, tell};
 use crate::stop::Stop;
 use anyhow::{Context, Result, bail};
 use catalogue::Parameter;
@@ -275,7 +275,7 @@ impl Tune {
             let input = InputOptions { input: input.clone(), channel: self.channel.0.clone() };
             let recordings = Recording::read_all(&input)?;
             if let Some(first) = recordings.first() {
-                eprint!("{}", first.notes());
+                tell(first.notes());
             }
             logs.push(recordings);
         }

@@ -75,7 +75,7 @@ impl<E: EventFormat, D: EventDecoder> Writer<E, D> {
                     self.omitted.drop_event();
                     return Ok(());
                 }
-                Err(error) => bail!("event {}: {error}; --drop goes on", self.events),
+                Err(error) => bail!("event {}: {error}; `drop` goes on", self.events),
             };
             let bytes = &buffer[..written];
             output.write_all(bytes)?;

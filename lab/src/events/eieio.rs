@@ -144,7 +144,7 @@ impl Writer {
                 return Ok(());
             }
             bail!(
-                "event {} at address {}: a key of 32 bits has no direction; signed=1 gives an address two keys, --drop goes on",
+                "event {} at address {}: a key of 32 bits has no direction; signed=1 gives an address two keys, `drop` goes on",
                 self.events,
                 event.address
             );

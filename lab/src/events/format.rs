@@ -108,7 +108,7 @@ impl fmt::Display for Format {
     }
 }
 
-/// What `--from` and `--to` take.
+/// Names of formats, as [`Format`] reads them.
 pub(crate) const NAMES: &str = "link, edvs:e0 to edvs:e4, es, evt2, eieio, csv";
 
 impl FromStr for Format {

@@ -11,11 +11,13 @@ mod omitted;
 mod stream;
 mod tally;
 mod told;
+mod whole;
 
 pub use format::{Format, values_writer};
 pub use link::{LinkReader, Values};
 pub use stream::Stream;
 pub use tally::{Held, LinkTally, Tally};
+pub use whole::{Events, read_events, write_events};
 
 use anyhow::Result;
 use spikewire::{Event, Keyframe, Tick};

@@ -79,7 +79,7 @@ impl fmt::Display for Tally {
                 (link.misfits, "keyframes of another sample type"),
                 (
                     link.unused_keyframes,
-                    "keyframes, which this scheme does not have: is --scheme the sender's?",
+                    "keyframes, which this scheme does not have: is `scheme` the sender's?",
                 ),
             ];
             for (count, what) in rare.into_iter().filter(|(count, _)| *count > 0) {
@@ -93,7 +93,7 @@ impl fmt::Display for Tally {
                 writeln!(
                     f,
                     "{contradicted} of {compared} keyframes contradict the values before them: \
-                     are --scheme, --threshold and --sample the sender's?"
+                     are `scheme`, `threshold` and `sample` the sender's?"
                 )?;
             }
         }

@@ -91,12 +91,12 @@ impl Table {
         if let Some((column, named)) = time.filter(|(time, _)| !table.columns.contains(time)) {
             if let Some(rate) = options.rate {
                 let name = &column.name;
-                bail!("{file}: --rate {rate} contradicts the times that column {name} records");
+                bail!("{file}: `rate` {rate} contradicts the times that column {name} records");
             }
             table.read_times(column, named, &names, options);
         } else if let Some(unit) = options.time_unit {
             bail!(
-                "{file}: --time-unit {unit}: no column is known to hold times; --time says which"
+                "{file}: `time_unit` {unit}: no column is known to hold times; `time` says which"
             );
         }
         let columns = table.columns.iter().map(|column| column.name.as_str());
@@ -155,7 +155,7 @@ impl Table {
         let name = &time.column.name;
         let doubt = times.and_then(|times| implausible(&times));
         let doubt =
-            doubt.map_or(String::new(), |what| format!(": {what}; is --time-unit another?"));
+            doubt.map_or(String::new(), |what| format!(": {what}; is `time_unit` another?"));
         self.notes.push(format!("times {how} from column `{name}`{doubt}"));
         self.time = Some(time);
     }
@@ -194,7 +194,7 @@ impl Table {
                 shown if is_missing(field) => format!("`{shown}` is a missing value"),
                 shown => format!("{shown} is not finite"),
             };
-            bail!("{}: {what}; --skip-non-finite goes on over such values", self.place(column));
+            bail!("{}: {what}; `skip_non_finite` goes on over such values", self.place(column));
         }
         Ok(value)
     }
@@ -347,6 +347,6 @@ fn only(names: &[String], time: Option<&Column>, file: &str) -> Result<Column> {
     let mut signals = signals(names, time);
     match (signals.next(), signals.next()) {
         (Some(column), None) => Ok(column),
-        _ => bail!("{file}: --column must say which; there are {}", names.join(", ")),
+        _ => bail!("{file}: `column` must say which; there are {}", names.join(", ")),
     }
 }

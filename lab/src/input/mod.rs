@@ -81,6 +81,25 @@ pub struct ChannelOptions {
     pub accept_cut: bool,
 }
 
+impl Default for ChannelOptions {
+    fn default() -> Self {
+        Self {
+            column: Vec::new(),
+            columns: Vec::new(),
+            time: None,
+            time_unit: None,
+            delimiter: None,
+            topic: None,
+            field: Vec::new(),
+            fields: Vec::new(),
+            rate: None,
+            gap: 1.5,
+            skip_non_finite: false,
+            accept_cut: false,
+        }
+    }
+}
+
 /// What stands between the columns of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Delimiter(pub u8);
@@ -195,18 +214,18 @@ impl InputOptions {
 
     fn open_as_is(&self) -> Result<Box<dyn Source>> {
         let of_logs = [
-            ("--topic", self.topic.is_some()),
-            ("--field", !self.field.is_empty()),
-            ("--fields", !self.fields.is_empty()),
-            ("--accept-cut", self.accept_cut),
+            ("topic", self.topic.is_some()),
+            ("field", !self.field.is_empty()),
+            ("fields", !self.fields.is_empty()),
+            ("accept_cut", self.accept_cut),
         ];
         let of_tables = [
-            ("--column", !self.column.is_empty()),
-            ("--columns", !self.columns.is_empty()),
-            ("--delimiter", self.delimiter.is_some()),
-            ("--rate", self.rate.is_some()),
+            ("column", !self.column.is_empty()),
+            ("columns", !self.columns.is_empty()),
+            ("delimiter", self.delimiter.is_some()),
+            ("rate", self.rate.is_some()),
         ];
-        let of_times = [("--time", self.time.is_some()), ("--time-unit", self.time_unit.is_some())];
+        let of_times = [("time", self.time.is_some()), ("time_unit", self.time_unit.is_some())];
         if self.is_stdin() {
             self.refuse(&of_logs, "a CSV table")?;
             return Ok(Box::new(csv::Table::open(io::stdin(), "standard input", self)?));
@@ -230,7 +249,7 @@ impl InputOptions {
         Ok(Box::new(csv::Table::open(file, &name, self)?))
     }
 
-    /// With `--columns TOPIC.FIELD` as `--topic TOPIC --field FIELD`.
+    /// Splits columns `TOPIC.FIELD` of one topic into the topic and its fields.
     fn named_by_topic(&self) -> Option<Self> {
         let names: Option<Vec<_>> = self.columns.iter().map(|name| name.split_once('.')).collect();
         let names = names.filter(|_| self.topic.is_none() && self.field.is_empty())?;
@@ -297,7 +316,7 @@ impl InputOptions {
 
     fn refuse(&self, options: &[(&str, bool)], kind: &str) -> Result<()> {
         match options.iter().find(|(_, is_given)| *is_given) {
-            Some((name, _)) => bail!("{}: {kind} takes no {name}", self.input.display()),
+            Some((name, _)) => bail!("{}: {kind} takes no `{name}`", self.input.display()),
             None => Ok(()),
         }
     }

@@ -2,6 +2,7 @@
 
 use speedate::{DateTime, Duration};
 use std::fmt;
+use std::str::FromStr;
 
 /// A unit of time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +40,14 @@ impl TimeUnit {
             }
             _ => return None,
         })
+    }
+}
+
+impl FromStr for TimeUnit {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::of_word(text).ok_or_else(|| "must be `s`, `ms`, `us` or `ns`".to_owned())
     }
 }
 

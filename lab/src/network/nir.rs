@@ -337,13 +337,13 @@ impl Stage {
                 None => (0.0, 0.0),
                 Some(Leak { tau, rest }) => {
                     let step = step.context(
-                        "its time constants are in seconds, and neither --dt nor the recording's times say \
+                        "its time constants are in seconds, and neither `dt` nor the recording's times say \
                          how long a step is",
                     )?;
                     let tau = tau.at(at);
                     ensure!(
                         tau >= step * (1.0 - 1e-9),
-                        "a time constant of {tau} s is shorter than a step of {step} s; --dt gives the step \
+                        "a time constant of {tau} s is shorter than a step of {step} s; `dt` gives the step \
                          that its framework counts with (snnTorch: 1e-4)"
                     );
                     (step / tau, rest.at(at))

@@ -34,10 +34,10 @@ pub fn with_channel(
     let Board { chip, probe, channel: number, address } = board;
     let target = Registry::from_builtin_families()
         .get_target_by_name(chip)
-        .with_context(|| format!("--chip {chip}"))?;
+        .with_context(|| format!("`chip` {chip}"))?;
     let selector = probe
         .as_deref()
-        .map(|text| text.parse::<DebugProbeSelector>().with_context(|| format!("--probe {text}")));
+        .map(|text| text.parse::<DebugProbeSelector>().with_context(|| format!("`probe` {text}")));
     let probes = Lister::new().list(selector.transpose()?.as_ref());
     let probe = match probes.as_slice() {
         [] => bail!("no debug probe found{}", hint()),
@@ -45,7 +45,7 @@ pub fn with_channel(
         several => {
             let names: Vec<String> =
                 several.iter().map(|probe| DebugProbeSelector::from(probe).to_string()).collect();
-            bail!("{} debug probes found; --probe says which: {}", names.len(), names.join(", "))
+            bail!("{} debug probes found; `probe` says which: {}", names.len(), names.join(", "))
         }
     };
     let probe = probe.open().with_context(|| format!("{probe}"))?;
@@ -58,7 +58,7 @@ pub fn with_channel(
         .context("the board has no RTT, or it is not set up yet")?;
     if rtt.up_channel(*number).is_none() {
         let count = rtt.up_channels().len();
-        bail!("--channel {number}: the board has {count}, numbered from 0");
+        bail!("`channel` {number}: the board has {count}, numbered from 0");
     }
     use_it(&mut Probed { core, rtt, number: *number })
 }

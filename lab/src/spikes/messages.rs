@@ -101,9 +101,6 @@ impl Spikes for Messages {
                 return Ok(item);
             }
             if !self.log.advance()? {
-                for note in self.log.notes() {
-                    eprintln!("{note}");
-                }
                 let samples = self.channels.first().map_or(0, |(_, samples)| *samples);
                 return Ok(Item::End { samples });
             }
@@ -116,6 +113,10 @@ impl Spikes for Messages {
 
     fn place(&self) -> String {
         self.log.place()
+    }
+
+    fn notes(&mut self) -> Vec<String> {
+        self.log.notes()
     }
 }
 

@@ -59,4 +59,9 @@ pub trait Spikes {
 
     /// Where the last item is, for an error.
     fn place(&self) -> String;
+
+    /// What a user should know of the file, complete after the last item.
+    fn notes(&mut self) -> Vec<String> {
+        Vec::new()
+    }
 }

@@ -65,7 +65,7 @@ impl Format {
 
 /// Samples must have times, in a log.
 const UNTIMED: &str =
-    "messages have times, and these samples none; --rate says how many there are a second";
+    "messages have times, and these samples none; `rate` says how many there are a second";
 
 /// A log of spikes in the making.
 pub struct Recorder {

@@ -254,12 +254,12 @@ pub fn print(rows: &[&Row], core: &str, below: Option<f64>) -> String {
 
 fn table(text: &mut String, rows: &[&Row], below: Option<f64>) -> std::fmt::Result {
     let limit = below.map_or(String::new(), |limit| format!(" RMSE < {limit} Hz |"));
-    let dashes = if below.is_some() { "--:|" } else { "" };
+    let dashes = if below.is_some() { "|--:" } else { "" };
     writeln!(
         text,
         "| scheme | settings | blocks | efficiency % | RMSE | SNR dB | worst | lag | events/s | bits/s | raw bits/s |{limit}"
     )?;
-    writeln!(text, "|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|{dashes}")?;
+    writeln!(text, "|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:{dashes}|")?;
     for row in rows {
         let mut line = |settings: &str, blocks: &str, own: &Figures| {
             let rate =

@@ -113,9 +113,17 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
         self.fields.centres()
     }
 
-    /// The state of an encoder that draws from this generator, for a bank.
+    /// The state of an encoder that draws from this generator, for a bank. Each channel takes a generator of its own:
+    /// another stream, or another seed; with copies of one, channels spike together.
     pub const fn state(generator: G) -> ProbabilisticState<G> {
         ProbabilisticState::new(generator)
+    }
+
+    /// The states of a bank's channels, each with the generator that `generator` makes of the channel's number.
+    pub fn states<const CHANNELS: usize>(
+        mut generator: impl FnMut(usize) -> G,
+    ) -> [ProbabilisticState<G>; CHANNELS] {
+        core::array::from_fn(|channel| Self::state(generator(channel)))
     }
 
     /// An encoder that draws from this generator.
@@ -167,7 +175,9 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Encoder<'_, Probabilisti
 }
 
 /// The state of a [`Probabilistic`] encoder: the generator, and the count of rejected samples.
-#[derive(Clone, Copy, Debug)]
+///
+/// It is no `Copy`: copies would draw the same, and all channels spike together.
+#[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ProbabilisticState<G> {
     pub(super) generator: G,

@@ -46,7 +46,7 @@ impl Channel {
         let fields: Vec<String> = options.fields().map(str::to_owned).collect();
         let topic = options.topic.clone().or_else(|| kind.usual_topic().map(str::to_owned));
         let Some(topic) = topic.filter(|_| !fields.is_empty()) else {
-            bail!("{file}: a log needs --topic and --field; `spikewire info` lists them");
+            bail!("{file}: a log needs `topic` and `field`; `spikewire info` lists them");
         };
         Ok(Self {
             log: open(&options.input, kind, options.accept_cut)?,
@@ -136,7 +136,7 @@ impl Channel {
         if let Some(odd) = odd.filter(|_| !self.skip_non_finite) {
             bail!(
                 "{}: byte {}: topic {}, field {}: {} at {time} µs (sample {}) is missing or not finite; \
-                 --skip-non-finite goes on over such values",
+                 `skip_non_finite` goes on over such values",
                 self.file,
                 entry.at,
                 self.topic,

@@ -42,7 +42,7 @@ impl Faults {
     /// It was not accepted.
     pub(super) fn skip(&mut self, at: u64, what: impl Display) -> Result<()> {
         if !self.is_accepted {
-            bail!("{}: byte {at}: {what}; --accept-cut goes on behind it", self.file);
+            bail!("{}: byte {at}: {what}; `accept_cut` goes on behind it", self.file);
         }
         self.skipped += 1;
         if self.skipped == 1 {
@@ -57,7 +57,7 @@ impl Faults {
     /// It was not accepted.
     pub(super) fn end(&mut self, at: u64, what: impl Display) -> Result<()> {
         if !self.is_accepted {
-            bail!("{}: byte {at}: {what}; --accept-cut takes what is before", self.file);
+            bail!("{}: byte {at}: {what}; `accept_cut` takes what is before", self.file);
         }
         self.note(format!("nothing is read from byte {at} on: {what}"));
         Ok(())

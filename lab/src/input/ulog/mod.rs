@@ -65,14 +65,14 @@ impl Log {
         if !accept_cut {
             if let Some(damage) = &findings.damage {
                 bail!(
-                    "{file}: damaged at byte {} of {length}; --accept-cut goes on at byte {}",
+                    "{file}: damaged at byte {} of {length}; `accept_cut` goes on at byte {}",
                     damage.start,
                     damage.end
                 );
             }
             if let Some(cut) = findings.cut {
                 bail!(
-                    "{file}: cut short within the message at byte {cut} of {length}; --accept-cut takes what is before"
+                    "{file}: cut short within the message at byte {cut} of {length}; `accept_cut` takes what is before"
                 );
             }
         }
@@ -170,7 +170,7 @@ impl Channel {
         let file = &log.file;
         let asked: Vec<&str> = options.fields().collect();
         let Some(topic) = options.topic.as_ref().filter(|_| !asked.is_empty()) else {
-            bail!("{file}: a flight log needs --topic and --field; `spikewire info` lists them");
+            bail!("{file}: a flight log needs `topic` and `field`; `spikewire info` lists them");
         };
         let name = topic.strip_suffix(":0").unwrap_or(topic);
         let mut all = Chunk::default();
@@ -214,7 +214,7 @@ impl Channel {
             if let Some(at) = not_finite.filter(|_| !options.skip_non_finite) {
                 bail!(
                     "{file}: topic {name}, field {field}: {} at {} µs (sample {at}) is not finite; \
-                     --skip-non-finite goes on over such values",
+                     `skip_non_finite` goes on over such values",
                     column[at],
                     all.times[at]
                 );

@@ -102,8 +102,32 @@ impl<S: Sample, G: Rng, A: Averaging> Bernoulli<S, G, A> {
     }
 
     /// The state of an encoder that draws from this generator, for a bank.
+    ///
+    /// Each channel takes a generator of its own: another stream, or another seed. Channels with copies of one
+    /// generator spike together, which a network mistakes for a correlation of their signals. So no array repeats it:
+    ///
+    /// ```compile_fail
+    /// # use spikewire::rate::{Average, BernoulliState};
+    /// fn six<G: Copy>(state: BernoulliState<G>) -> [BernoulliState<G>; 6] {
+    ///     [state; 6]
+    /// }
+    /// ```
     pub const fn state(generator: G) -> BernoulliState<G> {
         BernoulliState { generator, tally: Tally::NONE }
+    }
+
+    /// The states of a bank's channels, each with the generator that `generator` makes of the channel's number.
+    ///
+    /// ```
+    /// # use rand_core::Rng;
+    /// # use spikewire::rate::{Average, Bernoulli, BernoulliState};
+    /// # fn of<Pcg32: Rng>(pcg32: fn(u64, u64) -> Pcg32) {
+    /// type Light<G> = Bernoulli<i16, G, Average>;
+    /// let states: [BernoulliState<_>; 6] = Light::states(|channel| pcg32(2026, channel as u64));
+    /// # }
+    /// ```
+    pub fn states<const N: usize>(mut generator: impl FnMut(usize) -> G) -> [BernoulliState<G>; N] {
+        core::array::from_fn(|channel| Self::state(generator(channel)))
     }
 
     /// An encoder that draws from this generator.
@@ -120,7 +144,9 @@ impl<S: Sample, G: Rng, A: Averaging> Encoder<'_, Bernoulli<S, G, A>> {
 }
 
 /// The state of a [`Bernoulli`] encoder: the generator, and the count of rejected samples.
-#[derive(Clone, Copy, Debug)]
+///
+/// It is no `Copy`: copies would draw the same, and all channels spike together.
+#[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BernoulliState<G> {
     generator: G,

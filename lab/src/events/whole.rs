@@ -1,7 +1,7 @@
-//! Events from and to the bytes of every format.
+//! Whole recordings of events in memory.
 
+use super::{Format, Item};
 use anyhow::{Result, bail};
-use lab::events::{Format, Item};
 use spikewire::Event;
 
 /// Events of a stream.
@@ -13,7 +13,7 @@ pub struct Events {
     pub notes: Vec<String>,
 }
 
-/// The events in bytes of a format, as `spikewire convert --from` names it: `es`, `evt2`, `link`, `edvs:e2`…
+/// Reads the events in bytes of a format by its name: `es`, `evt2`, `link`, `edvs:e2`…
 ///
 /// # Errors
 /// There is no such format, or the bytes are of another.
@@ -36,7 +36,7 @@ pub fn read_events(bytes: &[u8], format: &str) -> Result<Events> {
     Ok(Events { events: items.iter().filter_map(event).collect(), notes })
 }
 
-/// Events as bytes of a format, as `spikewire convert --to` names it, and what it could not hold.
+/// Writes events as bytes of a format by its name; returns the bytes, and notes of what the format could not hold.
 ///
 /// # Errors
 /// There is no such format, or it has no word for an event.

@@ -1,0 +1,41 @@
+"""A step of a data pipeline."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from ._scheme import Scheme
+
+
+class ToSpikes:
+    """A transform from samples to spikes, as data sets of torchvision and tonic take them.
+
+    `axis` is the one of time: 0 for (time, channels), as tonic and snnTorch lay out data. The spikes are an array
+    of `dtype`, or a tensor if the samples are one of torch; that array and tensor share their memory.
+
+    >>> import numpy as np, spikewire as sw
+    >>> transform = sw.ToSpikes(sw.StepForward(threshold=0.5), axis=0)
+    >>> transform(np.array([[0.0, 0.0], [1.0, -1.0], [1.0, -1.0]]))
+    array([[ 0,  0],
+           [ 1, -1],
+           [ 0,  0]], dtype=int8)
+    """
+
+    def __init__(self, scheme: Scheme, axis: int = -1, dtype: Any = np.int8):
+        self.scheme, self.axis, self.dtype = scheme, axis, np.dtype(dtype)
+
+    def __call__(self, x: Any) -> Any:
+        is_tensor = type(x).__module__.partition(".")[0] == "torch"
+        samples = x.detach().cpu().numpy() if is_tensor else x
+        spikes = self.scheme.encode(samples, progress=False, axis=self.axis).array.astype(self.dtype, copy=False)
+        if not is_tensor:
+            return spikes
+        import torch
+
+        return torch.from_numpy(spikes)
+
+    def __repr__(self) -> str:
+        return f"ToSpikes({self.scheme!r}, axis={self.axis}, dtype={self.dtype.name!r})"
