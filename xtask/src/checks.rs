@@ -18,6 +18,7 @@ pub fn fmt() -> Result<()> {
     run(&mut cargo("fmt --all --check"))?;
     run(&mut cargo("fmt --all --check --manifest-path examples/Cargo.toml"))?;
     run(&mut cargo("fmt --check --manifest-path c/Cargo.toml"))?;
+    run(&mut cargo("fmt --check --manifest-path page/Cargo.toml"))?;
     // Modules that a macro declares are unknown to `cargo fmt`.
     let mut schemes = Command::new("rustfmt");
     schemes.args(["--edition", "2024", "--check"]);

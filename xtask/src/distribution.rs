@@ -22,6 +22,7 @@ pub const PACKAGES: [&str; 6] = [
 
 pub const CARGO: &str = "/usr/bin/cargo";
 pub const RUSTC: &str = "/usr/bin/rustc";
+pub const CLIPPY: &str = "/usr/bin/clippy-driver";
 
 /// Says which compiler built the core library beside it.
 pub const STAMP: &str = ".built-by";

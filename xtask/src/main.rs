@@ -28,6 +28,7 @@ mod needs;
 mod new_firmware;
 mod package;
 mod packages;
+mod page;
 mod parts;
 mod paths;
 mod peers;
@@ -68,6 +69,7 @@ cargo xtask <command>
   c-library --write     writes its header and declarations from the catalogue; --sizes, the table in c/README.md
   new-firmware DIR --board NAME
                         writes a firmware project for a board, which builds as it comes; without arguments, the boards
+  page [--serve]        a page to look at signals and their spikes, as one HTML file; serves it on this machine alone
   demo                  real flight data through encoder, emulated flight controller and decoder
   bench-target          what every codec costs on every emulated board, in instructions and bytes
   verify [STEP]...      every check, or the named ones; `cargo verify --help` lists them
@@ -100,6 +102,7 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "c-library" => c_library::library(args),
         "new-firmware" => new_firmware::new_firmware(args),
         "ros-figure" => ros::figure(args),
+        "page" => page::page(args),
         "demo" => demo::demo(args),
         "verify" => verify::verify(args),
         "" | "help" | "-h" | "--help" => {

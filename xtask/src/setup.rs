@@ -5,7 +5,7 @@
 use crate::{
     core_library, distribution,
     needs::{Missing, missing},
-    packages, shell,
+    packages, shell, toolchain,
 };
 use anyhow::Result;
 use std::env;
@@ -35,6 +35,20 @@ pub fn packages(what: &str, wanted: &[&str]) -> Result<()> {
         packages::install(&missing)?;
     }
     Ok(())
+}
+
+/// Gets what builds for WebAssembly, where it is missing, and says so first.
+pub fn wasm(target: &str) -> Result<()> {
+    if toolchain::has_core(target)? {
+        return Ok(());
+    }
+    if rustup_may_fetch() {
+        println!(
+            "Missing: the standard library for {target}\nTo do:\n  rustup target add {target}"
+        );
+        return shell::run(shell::command("rustup").args(["target", "add", target]));
+    }
+    packages("a compiler for WebAssembly", &distribution::PACKAGES)
 }
 
 /// With `RUSTUP_AUTO_INSTALL=0` a machine says that rustup must fetch nothing.

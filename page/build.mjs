@@ -1,0 +1,25 @@
+// Makes one file of the page: style, scripts and the library, packed, within. So it opens from a disk as well.
+// usage: node build.mjs MODULE.wasm OUTPUT.html, with NODE_PATH where npm installed
+
+import { build } from "esbuild";
+import { readFileSync, writeFileSync } from "node:fs";
+import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
+
+const [module, output] = process.argv.slice(2);
+const own = (name) => fileURLToPath(new URL(name, import.meta.url));
+const library = gzipSync(readFileSync(module), { level: 9 }).toString("base64");
+
+async function bundle(entry, define = {}) {
+  const made = await build({ entryPoints: [own(entry)], bundle: true, minify: true, format: "iife", target: "es2022", write: false, define });
+  return made.outputFiles[0].text;
+}
+
+const worker = await bundle("js/worker.js");
+const script = await bundle("js/app.js", { WASM: JSON.stringify(library), WORKER: JSON.stringify(worker) });
+const style = await bundle("style.css");
+const html = readFileSync(own("index.html"), "utf8")
+  .replace("/*STYLE*/", () => style)
+  .replace("/*SCRIPT*/", () => script.replaceAll("</script", "<\\/script"));
+writeFileSync(output, html);
+console.log(`${output}: ${html.length} bytes, ${gzipSync(html).length} packed by gzip; the library ${readFileSync(module).length}, packed ${Math.floor(library.length * 0.75)}`);

@@ -1,0 +1,49 @@
+// The library in threads of its own, so that the page never waits.
+
+/** The library's module, unpacked and compiled once for all threads. */
+const compiled = (async () => {
+  const packed = Uint8Array.from(atob(WASM), (letter) => letter.charCodeAt(0));
+  const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return WebAssembly.compile(await new Response(unpacked).arrayBuffer());
+})();
+
+const source = URL.createObjectURL(new Blob([WORKER], { type: "text/javascript" }));
+
+export class Library {
+  #worker = new Worker(source);
+  #waiting = new Map();
+  #next = 0;
+  #ready = compiled.then((wasm) => this.#worker.postMessage({ wasm }));
+
+  constructor() {
+    this.#worker.onmessage = ({ data: { id, answer, error, isFatal, progress } }) => {
+      const own = this.#waiting.get(id);
+      if (!own) return;
+      if (progress) return own.onProgress?.(progress);
+      this.#waiting.delete(id);
+      if (error === undefined) own.resolve(answer);
+      else own.reject(Object.assign(new Error(error), { isFatal }));
+    };
+    this.#worker.onerror = (event) => {
+      for (const own of this.#waiting.values()) own.reject(new Error(event.message));
+      this.#waiting.clear();
+    };
+  }
+
+  /** Asks; `onProgress` is told how far long work is. */
+  async ask(request, { files, onProgress } = {}) {
+    await this.#ready;
+    return new Promise((resolve, reject) => {
+      const id = this.#next++;
+      this.#waiting.set(id, { resolve, reject, onProgress });
+      this.#worker.postMessage({ id, request, files });
+    });
+  }
+
+  /** Ends the thread; what it was asked fails as stopped. */
+  stop() {
+    this.#worker.terminate();
+    for (const own of this.#waiting.values()) own.reject(Object.assign(new Error("stopped"), { isStopped: true }));
+    this.#waiting.clear();
+  }
+}

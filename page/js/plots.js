@@ -1,0 +1,276 @@
+// Signal and reconstructions over spikes, on one time axis that zooms and pans.
+
+import uPlot from "uplot";
+import { lowerBound, Pyramid } from "./pyramid.js";
+
+const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const AXIS = 64;
+
+/** When samples are: in seconds where that is known, else their numbers. */
+export class Times {
+  constructor(count, rate, times) {
+    [this.count, this.rate, this.times] = [count, rate, times];
+    this.unit = times || rate ? "s" : "sample";
+    this.step = 1 / (rate ?? 1);
+  }
+  at(sample) {
+    if (sample >= this.count) return this.at(this.count - 1) + (sample - this.count + 1) * this.step;
+    return this.times ? this.times[sample] : sample * this.step;
+  }
+  /** The first sample at a time or later. */
+  first(time) {
+    const sample = this.times ? lowerBound(this.times, time) : Math.ceil(time / this.step - 1e-9);
+    return Math.max(0, Math.min(this.count, sample));
+  }
+}
+
+export class Plots {
+  /** `onRange` is told the samples in view. */
+  constructor(host, onRange) {
+    [this.host, this.onRange] = [host, onRange];
+    this.runs = [];
+    new ResizeObserver(() => this.resize()).observe(host);
+  }
+
+  setRecording(recording) {
+    this.recording = recording;
+    this.times = new Times(recording.samples, recording.rate, recording.arrays.times);
+    this.signal = new Pyramid(recording.arrays.values);
+    this.runs = [];
+    this.full = [this.times.at(0), Math.max(this.times.at(recording.samples - 1), this.times.at(0) + this.times.step)];
+    this.view = [...this.full];
+    this.rebuild();
+  }
+
+  /** Shows these runs, each with `decoded`, spikes, colour and name. */
+  setRuns(runs) {
+    const shape = (all) => all.map((own) => `${own.name}${own.colour}${own.neurons}`).join();
+    const isSame = shape(runs) === shape(this.runs);
+    for (const own of runs) own.pyramid ??= new Pyramid(own.arrays.decoded);
+    this.runs = runs;
+    if (isSame && this.upper) this.draw();
+    else this.rebuild();
+  }
+
+  rebuild() {
+    for (const own of [this.upper, ...(this.rasters ?? [])]) own?.destroy();
+    this.host.textContent = "";
+    if (!this.recording) return;
+    const width = this.width(), ink = css("--ink"), grid = css("--grid");
+    const axis = (label, more) => ({ stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid }, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif", label, labelSize: 18, ...more });
+    const common = {
+      width, legend: { show: false }, padding: [8, 12, 0, 0],
+      cursor: { drag: { x: true, y: false, setScale: false }, sync: { key: "time" } },
+      hooks: { setSelect: [(own) => this.select(own)] },
+    };
+    const { name, unit } = this.recording;
+    const scales = { x: { time: false, range: () => this.view }, y: { range: (_, low, high) => air(low, high) } };
+    this.upper = new uPlot({
+      ...common, height: 280, scales,
+      axes: [axis("", { size: 24 }), axis(unit ? `${name}, ${unit}` : name, { size: AXIS })],
+      series: [{}, { label: "signal", stroke: css("--signal"), width: 1.5, points: { show: false } },
+        ...this.runs.map((own) => ({ label: own.name, stroke: own.colour, width: 1.5, points: { show: false } }))],
+    }, this.data(), this.host);
+    this.rasters = this.runs.map((own, place) => {
+      const isLast = place === this.runs.length - 1;
+      const rows = own.neurons > 1 ? [-0.8, own.neurons - 0.2] : own.isSigned ? [-1.25, 1.25] : [0, 1.25];
+      return new uPlot({
+        ...common, height: (own.neurons > 1 ? 130 : 70) + (isLast ? 46 : 24),
+        scales: { x: scales.x, y: { range: () => rows } },
+        axes: [axis(isLast ? `time, ${this.times.unit}` : "", { size: isLast ? 28 : 24 }),
+          axis((own.neurons > 1 ? "neuron" : "spikes") + (this.runs.length > 1 ? ` ${own.name[0]}` : ""), { size: AXIS, grid: { show: false }, splits: own.neurons > 1 ? undefined : () => (own.isSigned ? [-1, 0, 1] : [0, 1]) })],
+        series: [{}, { paths: () => null, points: { show: false } }],
+        hooks: { ...common.hooks, draw: [(plot) => this.drawSpikes(plot, this.runs[place])] },
+      }, [this.view, [0, 0]], this.host);
+    });
+    for (const own of [this.upper, ...this.rasters]) this.listen(own);
+    this.onRange(this.samples());
+  }
+
+  width() {
+    return Math.max(240, this.host.clientWidth);
+  }
+
+  resize() {
+    const width = this.width();
+    if (!this.upper || this.upper.width === width) return;
+    for (const own of [this.upper, ...this.rasters]) own.setSize({ width, height: own.height });
+    this.draw();
+  }
+
+  /** The samples in view. */
+  samples() {
+    return [this.times.first(this.view[0]), this.times.first(this.view[1] + this.times.step / 2)];
+  }
+
+  /** Lowest and highest value of each column of pixels, or the samples where there are few. */
+  data() {
+    const columns = Math.max(100, this.width() - AXIS);
+    const start = Math.max(0, this.times.first(this.view[0]) - 1);
+    const end = Math.min(this.times.count, this.times.first(this.view[1]) + 1);
+    const all = [this.signal, ...this.runs.map((own) => own.pyramid)];
+    const xs = [], series = all.map(() => []);
+    if (end - start <= 4 * columns) {
+      for (let sample = start; sample < end; sample++) {
+        xs.push(this.times.at(sample));
+        all.forEach((own, place) => series[place].push(own.values[sample]));
+      }
+      return [xs, ...series];
+    }
+    const per = (end - start) / columns;
+    for (let column = 0; column < columns; column++) {
+      const from = start + Math.floor(column * per), to = Math.max(from + 1, start + Math.floor((column + 1) * per));
+      const x = this.times.at(from);
+      xs.push(x, x);
+      all.forEach((own, place) => series[place].push(...own.range(from, to)));
+    }
+    return [xs, ...series];
+  }
+
+  draw() {
+    this.upper.setData(this.data());
+    for (const own of this.rasters) own.setData([this.view, [0, 0]]);
+    this.onRange(this.samples());
+  }
+
+  /** One stroke for all spikes of a neuron that fall on a column of pixels. */
+  drawSpikes(plot, run) {
+    if (!run) return;
+    const { sample, neuron, slot, up } = run.arrays;
+    const { ctx } = plot;
+    const { left, width, top, height } = plot.bbox;
+    const x = (time) => Math.round(plot.valToPos(time, "x", true));
+    const y = (value) => plot.valToPos(value, "y", true);
+    const [start, end] = this.samples();
+    let at = lowerBound(sample, start);
+    const stop = lowerBound(sample, end, at);
+    const tick = Math.max(1, Math.round(devicePixelRatio));
+    const isPopulation = run.neurons > 1;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(left, top, width, height);
+    ctx.clip();
+    const shapes = [new Path2D(), new Path2D()];
+    const last = [new Int32Array(run.neurons).fill(-1), new Int32Array(run.neurons).fill(-1)];
+    // Where there are many spikes in a column, those of its first samples stand for all.
+    const most = Math.ceil((4 * run.neurons * (run.slots || 1)));
+    let column = -1, seen = 0;
+    while (at < stop) {
+      const own = sample[at];
+      const time = this.times.at(own) + (run.slots > 1 ? (slot[at] / run.slots) * this.times.step : 0);
+      const place = x(time);
+      if (place !== column) [column, seen] = [place, 0];
+      else if (++seen > most && stop - at > 4096) {
+        const next = this.times.first(plot.posToVal((place + 1 - left) / devicePixelRatio, "x"));
+        at = lowerBound(sample, Math.max(own + 1, next), at + 1, stop);
+        continue;
+      }
+      const sign = up[at], of = isPopulation ? neuron[at] : 0;
+      if (last[sign][of] !== place) {
+        last[sign][of] = place;
+        const [low, high] = isPopulation ? [of - 0.42, of + 0.42] : sign ? [0, 1] : [-1, 0];
+        const upper = y(high);
+        shapes[sign].rect(place, upper, tick, Math.max(tick, y(low) - upper));
+      }
+      at++;
+    }
+    ctx.fillStyle = css("--ink");
+    ctx.fill(shapes[1]);
+    ctx.fillStyle = css("--down");
+    ctx.fill(shapes[0]);
+    ctx.restore();
+  }
+
+  show(low, high) {
+    const [first, last] = this.full;
+    const least = Math.min(last - first, 4 * this.times.step);
+    const length = Math.max(least, Math.min(high - low, last - first));
+    const start = Math.max(first, Math.min(low + (high - low - length) / 2, last - length));
+    this.view = [start, start + length];
+    this.draw();
+  }
+
+  zoom(factor, around = (this.view[0] + this.view[1]) / 2) {
+    this.show(around + (this.view[0] - around) * factor, around + (this.view[1] - around) * factor);
+  }
+
+  pan(part) {
+    const by = (this.view[1] - this.view[0]) * part;
+    this.show(this.view[0] + by, this.view[1] + by);
+  }
+
+  select(plot) {
+    if (plot.select.width < 3) return;
+    const [low, high] = [plot.select.left, plot.select.left + plot.select.width].map((at) => plot.posToVal(at, "x"));
+    plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+    this.show(low, high);
+  }
+
+  /** Wheel zooms, shift and wheel or a middle button pans, a double click shows all. */
+  listen(plot) {
+    const { over } = plot;
+    over.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      const sideways = event.shiftKey ? event.deltaY : event.deltaX;
+      if (Math.abs(sideways) > Math.abs(event.shiftKey ? 0 : event.deltaY)) return this.pan(sideways / 1000);
+      const at = plot.posToVal(event.clientX - over.getBoundingClientRect().left, "x");
+      this.zoom(event.deltaY < 0 ? 0.8 : 1.25, at);
+    }, { passive: false });
+    over.addEventListener("dblclick", () => this.show(...this.full));
+    let from;
+    const touches = new Map();
+    over.addEventListener("pointerdown", (event) => {
+      if (event.pointerType === "touch") touches.set(event.pointerId, event.clientX);
+      else if (event.button === 1) {
+        from = event.clientX;
+        over.setPointerCapture(event.pointerId);
+        event.preventDefault();
+      }
+    });
+    over.addEventListener("pointermove", (event) => {
+      if (touches.size === 1 && touches.has(event.pointerId)) {
+        this.pan((touches.get(event.pointerId) - event.clientX) / over.clientWidth);
+      } else if (touches.size === 2 && touches.has(event.pointerId)) {
+        const [a, b] = touches.values();
+        const other = [...touches].find(([id]) => id !== event.pointerId)[1];
+        const before = Math.abs(a - b), now = Math.abs(event.clientX - other);
+        if (now > 8) this.zoom(before / now);
+      } else if (from !== undefined) {
+        this.pan((from - event.clientX) / over.clientWidth);
+        from = event.clientX;
+      }
+      if (touches.has(event.pointerId)) touches.set(event.pointerId, event.clientX);
+    });
+    const end = (event) => {
+      touches.delete(event.pointerId);
+      from = undefined;
+    };
+    over.addEventListener("pointerup", end);
+    over.addEventListener("pointercancel", end);
+  }
+
+  /** The canvases below each other, as one. */
+  canvas() {
+    const all = [this.upper, ...this.rasters].map((own) => own.ctx.canvas);
+    const joined = Object.assign(document.createElement("canvas"), {
+      width: Math.max(...all.map((own) => own.width)),
+      height: all.reduce((sum, own) => sum + own.height, 0),
+    });
+    const context = joined.getContext("2d");
+    context.fillStyle = css("--paper");
+    context.fillRect(0, 0, joined.width, joined.height);
+    let top = 0;
+    for (const own of all) {
+      context.drawImage(own, 0, top);
+      top += own.height;
+    }
+    return joined;
+  }
+}
+
+/** A range with air around it. */
+function air(low, high) {
+  if (!(low < high)) return [low - 1, low + 1];
+  const more = 0.06 * (high - low);
+  return [low - more, high + more];
+}

@@ -1,0 +1,59 @@
+// The other side of src/host.rs: starts the library and asks it.
+
+const KINDS = [Float64Array, Uint32Array, Uint16Array, Uint8Array];
+
+/** Starts the library; `onProgress` is told how far long work is. */
+export async function start(wasm, onProgress = () => {}) {
+  let files = [];
+  let answered, arrays, panic;
+  const memory = () => instance.exports.memory.buffer;
+  const text = (at, length) => new TextDecoder().decode(new Uint8Array(memory(), at, length));
+  const instance = await WebAssembly.instantiate(wasm, {
+    page: {
+      answer: (at, length) => (answered = JSON.parse(text(at, length))),
+      array(name, length, kind, at, bytes) {
+        // A copy: memory may move, and the array goes to another thread.
+        arrays[text(name, length)] = new KINDS[kind](memory().slice(at, at + bytes));
+      },
+      progress: (at, length) => onProgress(JSON.parse(text(at, length))),
+      panicked: (at, length) => (panic = text(at, length)),
+      size: (file) => files[file].size,
+      read(file, place, at, length) {
+        try {
+          const bytes = bytesOf(files[file], place, Math.min(length, files[file].size - place));
+          new Uint8Array(memory(), at).set(bytes);
+          return bytes.length;
+        } catch {
+          return -1;
+        }
+      },
+    },
+  });
+
+  /** Asks; `given` are the files that the request names. Throws errors in words. */
+  return function ask(request, given) {
+    if (given) files = given;
+    [answered, arrays] = [undefined, {}];
+    const bytes = new TextEncoder().encode(JSON.stringify(request));
+    try {
+      const at = instance.exports.allocate(bytes.length);
+      new Uint8Array(memory(), at).set(bytes);
+      instance.exports.call(at, bytes.length);
+    } catch (error) {
+      const broken = new Error(
+        panic ? `the library failed, which is an error of its own: ${panic}`
+          : `the browser gives no more memory for this recording (${error.message})`,
+      );
+      broken.isFatal = true;
+      throw broken;
+    }
+    if (answered.error !== undefined) throw new Error(answered.error);
+    return { ...answered, arrays };
+  };
+}
+
+/** Part of a file, read when it is needed: a log of a gigabyte is never in memory as a whole. */
+function bytesOf(file, place, length) {
+  if (length <= 0) return new Uint8Array();
+  return new Uint8Array(new FileReaderSync().readAsArrayBuffer(file.slice(place, place + length)));
+}

@@ -1,0 +1,62 @@
+//! What a user takes away: constants, files of parameters and spikes.
+
+use crate::host::send;
+use crate::recording::{self, Open};
+use crate::run::Choice;
+use anyhow::{Context, Result, bail};
+use catalogue::run::{SET, Value as Parameter};
+use lab::coding::Coding;
+use lab::encode::encode;
+use lab::output::Output;
+use lab::trial::Trial;
+use lab::tune::emit;
+use serde_json::{Value, json};
+
+/// Makes what is asked for: `text`, or the array `file`.
+pub(crate) fn export(kind: &str, choice: &Choice) -> Result<Value> {
+    recording::with(|open| {
+        let trial = choice.trial(open)?;
+        if kind == "csv" {
+            send("file", &spikes(open, &trial)?);
+            return Ok(json!({}));
+        }
+        Ok(json!({ "text": as_text(kind, open, &trial)? }))
+    })
+}
+
+fn as_text(kind: &str, open: &Open, trial: &Trial) -> Result<String> {
+    let (scheme, settings) = (trial.scheme, &trial.settings);
+    match kind {
+        "rust" => emit::rust(&[], &open.recording.name, scheme, settings),
+        "toml" => Ok(emit::toml(&[], scheme, settings)),
+        "python" => Ok(python(&Coding::of_settings(scheme, settings))),
+        _ => bail!("there is no export `{kind}`"),
+    }
+}
+
+/// The class of the Python package with its keywords.
+fn python(coding: &Coding) -> String {
+    let value = |value: &Parameter| match value {
+        value if *value == SET => "True".to_owned(),
+        Parameter::Word(word) => format!("\"{word}\""),
+        Parameter::Numbers(all) => {
+            format!("[{}]", all.iter().map(f64::to_string).collect::<Vec<_>>().join(", "))
+        }
+        value => value.to_string(),
+    };
+    let given = coding.asked.iter().map(|(name, own)| format!("{name}={}, ", value(own)));
+    let class = coding.scheme.info().type_name;
+    format!(
+        "import spikewire as sw\n\nscheme = sw.{class}({}sample=\"{}\")\n",
+        given.collect::<String>(),
+        coding.sample
+    )
+}
+
+/// The file that `spikewire encode` writes with these settings.
+fn spikes(open: &Open, trial: &Trial) -> Result<Vec<u8>> {
+    let input = open.input.as_ref().context("these samples come from no file")?;
+    let Coding { scheme, sample, asked } = Coding::of_settings(trial.scheme, &trial.settings);
+    let (output, _) = encode(input, scheme, sample, &asked, None, || Ok(Output::memory()))?;
+    Ok(output.into_bytes())
+}

@@ -1,0 +1,372 @@
+// Drives the page in a browser, against the laptop program. `cargo verify page` says where both are.
+
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, statSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+
+const { PAGE, LOGS, SPIKEWIRE, BROWSER, DATA, PICTURES } = process.env;
+const work = mkdtempSync(join(tmpdir(), "page-"));
+const spikewire = (...args) => execFileSync(SPIKEWIRE, args, { stdio: ["ignore", "pipe", "pipe"], maxBuffer: 1 << 28 });
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const url = pathToFileURL(PAGE).href;
+const executablePath = execFileSync("which", [BROWSER]).toString().trim();
+const browser = await chromium.launch({ executablePath, args: ["--no-sandbox"] });
+const said = [];
+
+async function opened(options = {}, hash = "") {
+  const context = await browser.newContext({ acceptDownloads: true, ...options });
+  const page = await context.newPage();
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && said.push(message.text()));
+  page.on("pageerror", (error) => said.push(String(error)));
+  page.on("request", (request) => {
+    const own = request.url();
+    if (!own.startsWith(url) && !/^(blob|data):/.test(own)) said.push(`a request off the page: ${own}`);
+  });
+  await page.goto(url + hash);
+  await settled(page);
+  return page;
+}
+
+/** Waits until the page has computed what was asked. */
+async function settled(page) {
+  await page.waitForFunction(() => document.body.dataset.busy === "no", null, { timeout: 120_000 });
+}
+
+async function choose(page, files) {
+  await page.setInputFiles("#choose", files);
+  await page.waitForTimeout(50);
+  await settled(page);
+}
+
+async function exported(page, kind) {
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click(`[data-save=${kind}]`)]);
+  return readFileSync(await download.path());
+}
+
+async function text(page, kind) {
+  await page.evaluate(() => (document.getElementById("out").value = ""));
+  await page.click(`[data-text=${kind}]`);
+  await page.waitForFunction(() => document.getElementById("out").value !== "");
+  return page.inputValue("#out");
+}
+
+const figure = async (page, name) => (await page.locator("#figures tr", { has: page.getByRole("rowheader", { name, exact: true }) }).locator("td").allTextContents()).join(" ");
+
+/** The spikes that are drawn, as lines of the program's table. */
+const drawn = (page) => page.evaluate(() => {
+  const { arrays: { sample, neuron, slot, up }, slots } = globalThis.spikewire.plots.runs[0];
+  const lines = [];
+  for (let at = 0; at < sample.length; at++) lines.push([sample[at] * slots + slot[at], neuron[at], up[at] ? 1 : -1].join());
+  return lines.sort();
+});
+
+/** The spikes in the picture, in the exported table and out of the program are the same. */
+async function compare(page, input, ...channel) {
+  const toml = join(work, "own.toml");
+  writeFileSync(toml, await text(page, "toml"));
+  const own = (await exported(page, "csv")).toString();
+  const theirs = spikewire("encode", "--params", toml, ...channel, input).toString();
+  assert.equal(own, theirs);
+  const lines = theirs.split("\n").filter((line) => /^\d/.test(line)).map((line) => line.split(",").slice(0, 3).join());
+  assert.deepEqual(await drawn(page), lines.sort());
+  assert.equal(Number((await figure(page, "Spikes")).replaceAll(",", "")), lines.length);
+  return lines.length;
+}
+
+/** The picture of the documentation: two of the settings, and their spikes. */
+async function pictured(page) {
+  for (const setting of [3, 2]) {
+    await page.click(`#tab-${setting}`);
+    await page.click("#remove");
+    await settled(page);
+  }
+  await page.setViewportSize({ width: 960, height: 800 });
+  await page.click("#tab-0");
+  await page.fill("#parameter-threshold", "0.35");
+  await settled(page);
+  await page.evaluate(() => globalThis.spikewire.plots.show(11.6, 12.9));
+  await page.mouse.move(0, 0);
+  await page.waitForTimeout(300);
+  const [first, last] = [await page.locator("#settings").boundingBox(), await page.locator("#plots").boundingBox()];
+  const clip = { x: 0, y: first.y, width: 960, height: last.y + last.height - first.y };
+  await page.screenshot({ path: join(PICTURES, "page.png"), clip, fullPage: true });
+}
+
+/** No finding of weight. */
+async function accessible(page, what) {
+  await page.evaluate(axe);
+  const { violations } = await page.evaluate(() => globalThis.axe.run());
+  const grave = violations.filter((own) => ["serious", "critical"].includes(own.impact));
+  assert.deepEqual(grave.map((own) => [own.id, own.nodes.map((node) => node.html)]), [], what);
+}
+
+const steps = {
+  async "is ready soon, with a flight and nothing asked of the network"() {
+    const page = await opened();
+    const ready = await page.evaluate(() => Number(document.body.dataset.ready));
+    console.log(`  ready after ${ready} ms; ${statSync(PAGE).size} bytes`);
+    assert.match(await page.textContent("#about"), /gyro_x, 3,627 samples/);
+    await page.context().close();
+  },
+
+  async "gives the program's spikes in every scheme and sample type"() {
+    const page = await opened();
+    const flight = join(DATA, "hexarotor.csv");
+    const schemes = await page.locator("#scheme option").evaluateAll((all) => all.map((own) => own.value));
+    assert(schemes.length >= 25);
+    let spikes = 0;
+    for (const scheme of schemes) {
+      await page.selectOption("#scheme", scheme);
+      await settled(page);
+      assert.equal(await page.isVisible("#error"), false, `${scheme}: ${await page.textContent("#error")}`);
+      spikes += await compare(page, flight, "--column", "gyro_x");
+    }
+    for (const sample of ["q8.8", "q16.16", "q1.15"]) {
+      await page.selectOption("#scheme", "sf");
+      await page.selectOption("#sample", sample);
+      await settled(page);
+      spikes += await compare(page, flight, "--column", "gyro_x");
+    }
+    console.log(`  ${schemes.length} schemes, ${spikes} spikes`);
+    await page.context().close();
+  },
+
+  async "moves the picture with the slider and the field, and takes nonsense in words"() {
+    const page = await opened();
+    const shown = () => page.evaluate(() => globalThis.spikewire.plots.canvas().toDataURL());
+    const [before, spikes] = [await shown(), await figure(page, "Spikes")];
+    await page.getByLabel("threshold, slider").focus();
+    for (let step = 0; step < 40; step++) await page.keyboard.press("ArrowLeft");
+    await settled(page);
+    assert.notEqual(await figure(page, "Spikes"), spikes);
+    assert.notEqual(await shown(), before);
+    await page.fill("#parameter-threshold", "0.1");
+    await settled(page);
+    assert.equal(await text(page, "toml"), 'scheme = "sf"\nsample = "f32"\nthreshold = 0.1\n');
+    assert.match(await text(page, "rust"), /^pub static GYRO_X: .*StepForward<f32> = .*0\.1\d*\);\n$/);
+    assert.equal(await text(page, "python"), 'import spikewire as sw\n\nscheme = sw.StepForward(threshold=0.1, sample="f32")\n');
+    for (const [given, words] of [["abc", /is not a number/], ["-1", /threshold/]]) {
+      await page.fill("#parameter-threshold", given);
+      await settled(page);
+      assert.match(await page.textContent("#error"), words);
+    }
+    await page.click("#reset");
+    await settled(page);
+    assert.equal(await figure(page, "Spikes"), spikes);
+    await page.focus("#plots");
+    await page.keyboard.press("+");
+    assert.match(await page.textContent("#in-view"), /^samples 894 to 2718, 4.6044 s to 13.803 s$/);
+    assert.match((await exported(page, "svg")).toString(), /^<svg [^]*<\/svg>\n$/);
+    assert.equal((await exported(page, "png")).subarray(1, 4).toString(), "PNG");
+    await page.context().close();
+  },
+
+  async "reads every kind of log as the program does"() {
+    const page = await opened();
+    const log = (name) => join(LOGS, name);
+    writeFileSync(log("log.ulg"), ulog());
+    for (const [name, topic, field] of [
+      ["log.bag", "/imu", "rate"], ["log.mcap", "/imu", "rate"], ["log.db3", "/imu", "rate"],
+      ["log.bbl", null, "gyroADC[0]"], ["log.ulg", "gyro", "rate"],
+    ]) {
+      await choose(page, log(name));
+      assert.equal(await page.textContent("#file-error"), "", name);
+      const found = await page.locator("#topic").inputValue();
+      await page.selectOption("#field", field);
+      await page.waitForTimeout(50);
+      await settled(page);
+      const own = topic === null ? [] : ["--topic", topic];
+      if (topic !== null) assert.equal(found, topic);
+      await compare(page, log(name), ...(own.length ? own : ["--topic", found]), "--field", field);
+    }
+    // Dropped, not chosen; and with another name of the column.
+    const bytes = [...readFileSync(join(DATA, "vtol_at_rest.csv"))];
+    await page.evaluate((all) => {
+      const data = new DataTransfer();
+      data.items.add(new File([new Uint8Array(all)], "rest.csv"));
+      document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+    }, bytes);
+    await page.waitForFunction(() => /rest\.csv/.test(document.getElementById("about").textContent));
+    await settled(page);
+    await compare(page, join(DATA, "vtol_at_rest.csv"), "--column", "gyro_x");
+    await page.context().close();
+  },
+
+  async "says what is wrong with a file, and goes on"() {
+    const page = await opened();
+    const whole = readFileSync(join(LOGS, "log.mcap"));
+    for (const [name, buffer, words] of [
+      ["empty.csv", Buffer.from(""), /empty/],
+      ["numbers.csv", Buffer.from("1,2\n3,4\n"), /header/],
+      ["words.csv", Buffer.from("a,b\nx,y\nz,w\n"), /words\.csv/],
+      ["noise.bin", Buffer.from(Array.from({ length: 4096 }, (_, at) => (at * 7919) % 251)), /noise\.bin/],
+      ["table.parquet", Buffer.from("PAR1xxxxxxxxxxxxxxxxxxxx"), /Parquet/],
+      ["cut.mcap", whole.subarray(0, whole.length / 2), /damaged log/],
+      ["cut.ulg", ulog().subarray(0, 900), /damaged log/],
+    ]) {
+      await choose(page, { name, mimeType: "application/octet-stream", buffer });
+      assert.match(await page.textContent("#file-error"), words, name);
+      assert(await page.isVisible("#file-error"));
+    }
+    await page.check("#accept-cut");
+    await page.waitForFunction(() => /cut\.ulg/.test(document.getElementById("about").textContent));
+    await settled(page);
+    assert.equal(await page.textContent("#file-error"), "");
+    await page.click("[data-example=paper]");
+    await page.waitForFunction(() => /signal\.csv/.test(document.getElementById("about").textContent));
+    await settled(page);
+    const paper = join(work, "paper.csv");
+    spikewire("signal", "--seconds", "15", "-o", paper);
+    await compare(page, paper, "--column", "signal");
+    await page.context().close();
+  },
+
+  async "compares settings, and keeps them in a link"() {
+    const page = await opened();
+    await page.click("#add");
+    await page.selectOption("#scheme", "sod");
+    await settled(page);
+    await page.fill("#parameter-threshold", "0.25");
+    await settled(page);
+    await page.click("#add");
+    await page.selectOption("#scheme", "grf");
+    await settled(page);
+    await page.click("#add");
+    await page.selectOption("#scheme", "hsa");
+    await page.selectOption("#sample", "q8.8");
+    await settled(page);
+    assert.equal(await page.isVisible("#add"), false);
+    const figures = await page.innerText("#figures");
+    const link = await text(page, "link");
+    await accessible(page, "four settings");
+    const other = await opened({}, new URL(link).hash);
+    assert.equal(await other.innerText("#figures"), figures);
+    if (PICTURES) await pictured(other);
+    await page.context().close();
+    await other.context().close();
+  },
+
+  async "searches in another thread, and stops"() {
+    const page = await opened();
+    await page.selectOption("#scheme", "sod");
+    await settled(page);
+    await page.fill("#evaluations", "128");
+    await page.click("#tune");
+    await page.waitForSelector("#front circle");
+    await page.waitForSelector("#tune:enabled");
+    const dot = page.locator("#front circle").nth(4);
+    const [, efficiency, rmse] = /: ([\d.]+) % without a spike, RMSE ([\d.]+)/.exec(await dot.getAttribute("aria-label"));
+    await dot.press("Enter");
+    await settled(page);
+    assert.equal(Number(await figure(page, "Samples without a spike, %")).toFixed(1), efficiency);
+    assert.equal(Number(Number(await figure(page, "RMSE")).toPrecision(3)), Number(rmse));
+    await accessible(page, "a front");
+    await page.fill("#evaluations", "20000");
+    await page.click("#tune-all");
+    await page.waitForFunction(() => document.getElementById("bar").value > 0);
+    await page.getByLabel("threshold, slider").press("ArrowLeft"); // the page answers meanwhile
+    await settled(page);
+    await page.click("#stop");
+    await page.waitForSelector("#tune:enabled");
+    assert.match(await page.textContent("#front-words"), /^Stopped/);
+    await page.fill("#evaluations", "16");
+    await page.click("#advise");
+    await page.waitForSelector("#advice:visible", { timeout: 300_000 });
+    assert.match(await page.textContent("#advice"), /take \w+ in f32/);
+    await page.context().close();
+  },
+
+  async "is clean for everybody: light, dark, and a phone"() {
+    for (const [name, options] of Object.entries({
+      light: { viewport: { width: 1280, height: 800 } },
+      dark: { viewport: { width: 1280, height: 800 }, colorScheme: "dark" },
+      phone: { viewport: { width: 390, height: 800 }, hasTouch: true, isMobile: true, deviceScaleFactor: 2 },
+    })) {
+      const page = await opened(options);
+      await page.fill("#parameter-threshold", "0.35");
+      await settled(page);
+      await accessible(page, name);
+      const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+      const { width } = options.viewport;
+      assert(wide <= width, `${name}: ${wide} wide on ${width}`);
+      if (PICTURES) await page.screenshot({ path: join(PICTURES, `page-${name}.png`), fullPage: true });
+      await page.context().close();
+    }
+  },
+
+  async "pans through ten million samples"() {
+    const page = await opened();
+    const start = Date.now();
+    await page.evaluate(() => {
+      const parts = ["rate\n"];
+      for (let block = 0; block < 100; block++) {
+        let text = "";
+        for (let at = 0; at < 100_000; at++) text += `${(Math.sin(at * 0.01) * 3 + Math.sin(at * 0.37 + block)).toFixed(3)}\n`;
+        parts.push(text);
+      }
+      const data = new DataTransfer();
+      data.items.add(new File(parts, "long.csv"));
+      document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+    });
+    await page.waitForFunction(() => /long\.csv: rate, 10,000,000/.test(document.getElementById("about").textContent), null, { timeout: 240_000 });
+    const read = Date.now() - start;
+    await settled(page);
+    const coded = Date.now() - start - read;
+    const frames = await page.evaluate(async () => {
+      const { plots } = globalThis.spikewire;
+      const all = [];
+      for (const factor of [0.5, 0.05]) {
+        plots.zoom(factor);
+        const begin = performance.now();
+        for (let frame = 0; frame < 30; frame++) {
+          plots.pan(0.01);
+          await new Promise(requestAnimationFrame);
+        }
+        all.push(30_000 / (performance.now() - begin));
+      }
+      return all.map((own) => own.toFixed(0));
+    });
+    console.log(`  made and read in ${read} ms, coded and drawn in ${coded} ms, panned at ${frames.join(" and ")} frames a second`);
+    await page.context().close();
+  },
+};
+
+/** A PX4 log of one topic. */
+function ulog() {
+  const message = (kind, content) => {
+    const head = Buffer.alloc(3);
+    head.writeUInt16LE(content.length);
+    head.write(kind, 2);
+    return Buffer.concat([head, content]);
+  };
+  const all = [Buffer.from("ULog\x01\x12\x35\x01\0\0\0\0\0\0\0\0", "latin1"), message("F", Buffer.from("gyro:uint64_t timestamp;float rate;")), message("A", Buffer.from("\0\0\0gyro", "latin1"))];
+  for (let at = 0; at < 200; at++) {
+    const content = Buffer.alloc(14);
+    content.writeBigUInt64LE(BigInt(1_000_000 + at * 5000), 2);
+    content.writeFloatLE(Math.sin(at * 0.1), 10);
+    all.push(message("D", content));
+  }
+  return Buffer.concat(all);
+}
+
+let failed = 0;
+const only = process.argv[2];
+for (const [name, step] of Object.entries(steps)) {
+  if (only && !name.includes(only)) continue;
+  const start = Date.now();
+  try {
+    await step();
+    assert.deepEqual(said.splice(0), [], "what the browser said");
+    console.log(`ok      ${name}, ${((Date.now() - start) / 1000).toFixed(1)} s`);
+  } catch (error) {
+    failed++;
+    console.log(`FAILED  ${name}\n${error.stack}`);
+  }
+}
+await browser.close();
+process.exit(failed ? 1 : 0);
