@@ -1,4 +1,4 @@
-//! Every scheme of the catalogue in its usual shapes. Written by `cargo xtask c-library --write`.
+//! Every scheme of the catalogue in its usual shapes. Written by `cargo xtask write c`.
 
 use fixed::types::{I8F8, I16F16};
 use spikewire::{Calibration, population, rate, temporal, timing};

@@ -1,4 +1,4 @@
-/* The codecs that fly, as the catalogue flies them. Written by `cargo xtask c-library --write`. */
+/* The codecs that fly, as the catalogue flies them. Written by `cargo xtask write c`. */
 #if defined(FLY_f32) && (!defined(HALF) || (HALF == 0))
 FLY(temporal_contrast_f32, SW_TEMPORAL_CONTRAST_F32_LATENCY, f32, "tbr", init_calibrated, &channel->calibration, 0.5f)
 FLY(adaptive_contrast_f32, SW_ADAPTIVE_CONTRAST_F32_LATENCY, f32, "atbr", init, fraction_f32(channel, 0.001), 5)

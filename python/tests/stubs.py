@@ -1,4 +1,4 @@
-"""Writes the type stub of the schemes' classes: python python/tests/stubs.py > python/spikewire/_schemes.pyi"""
+"""Prints the type stub of the schemes' classes, which `cargo xtask write python` keeps."""
 
 import spikewire as sw
 

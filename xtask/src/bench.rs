@@ -21,13 +21,12 @@ use serde::{Deserialize, Serialize};
 use std::{path::Path, thread};
 
 const USAGE: &str = "\
-cargo bench-target [events] [CORE]... [--json | --markdown | --write | --baseline]
+cargo bench-target [events] [CORE]... [--json | --markdown | --baseline]
 
   events        not the codecs: only what an event costs in queue, links, formats and chips' words
   CORE          M0, M3, M4F, M7 or M33; all, if none is named
   --json        every figure, as an array of objects; those of an event have the kind `event`
   --markdown    the tables of docs/costs.md
-  --write       puts those tables into docs/costs.md, and the short one into README.md
   --baseline    makes these counts the ones that `cargo verify` compares with";
 
 /// The programs that count codecs, two for each sample type, and the one that counts events.
@@ -63,19 +62,23 @@ pub fn bench(args: &[String]) -> Result<()> {
         cores => (&[], cores),
     };
     needs::ensure_met()?;
-    let tables = || measure(programs, &CORES);
     match *output {
         [] => {
             let Measured { rows, events, .. } = measure(programs, cores)?;
             print!("{}{}", table::text(&rows), events::text(&events));
         }
         ["--json"] => println!("{}", json(&measure(programs, cores)?)?),
-        ["--markdown"] => print!("{}", table::markdown(&tables()?)?),
-        ["--write"] => table::write(&tables()?)?,
+        ["--markdown"] => print!("{}", table::markdown(&measure(programs, &CORES)?)?),
         ["--baseline"] => baseline::write(&measure(&[], &baseline::CORES)?)?,
         _ => return Err(usage(USAGE.into())),
     }
     Ok(())
+}
+
+/// Puts the tables into docs/costs.md, and the short one into README.md.
+pub fn write() -> Result<()> {
+    needs::ensure_met()?;
+    table::write(&measure(&[], &CORES)?)
 }
 
 /// Fails if anything takes more instructions on a core than it did, or six channels more than is promised of theirs.

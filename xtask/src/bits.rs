@@ -39,7 +39,7 @@ pub fn write(table: &str) -> Result<()> {
 
 /// Fails if the page has another table.
 pub fn ensure_written(table: &str) -> Result<()> {
-    let command = "cargo xtask firmware --write";
+    let command = "cargo xtask write bits";
     markdown::ensure_written(PAGE, MARKER, &format!("\n{table}\n"), command)
 }
 

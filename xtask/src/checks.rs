@@ -96,7 +96,7 @@ pub fn no_panic_all() -> Result<()> {
 }
 
 pub fn demo() -> Result<()> {
-    crate::demo::fly()
+    crate::demo::fly().map(drop)
 }
 
 pub fn firmware() -> Result<()> {
@@ -127,7 +127,7 @@ pub fn laptop() -> Result<()> {
     );
     print!("{}", spikewire(&format!("score {flight}"))?);
     crate::schemes::ensure_written()?;
-    crate::jumps::jumps(&[])?;
+    crate::jumps::jumps()?;
     spikewire(&format!("plot --all {flight} -o {}", picture.display()))?;
     let tables = spikewire("bench")?;
     print!("{tables}");

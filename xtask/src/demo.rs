@@ -9,8 +9,10 @@ use crate::{
     paths, picture, qemu, setup,
     signal::Signal,
     usage::usage,
+    write,
 };
 use anyhow::{Result, bail};
+use std::path::PathBuf;
 
 /// The firmware program.
 const PROGRAM: &str = "demo";
@@ -21,10 +23,16 @@ pub fn demo(args: &[String]) -> Result<()> {
     }
     println!("=== What this needs");
     setup::setup()?;
-    fly()
+    fly().map(drop)
 }
 
-pub fn fly() -> Result<()> {
+/// Draws the flight into the page.
+pub fn write() -> Result<()> {
+    write::keep(&fly()?, "docs/flight.svg")
+}
+
+/// Flies, and draws the flight below the target directory.
+pub fn fly() -> Result<PathBuf> {
     println!("\n=== The flight, in the firmware of an emulated flight controller");
     let board = Board::with("M4F")?;
     let image = image::build(PROGRAM, board)?;
@@ -42,7 +50,7 @@ pub fn fly() -> Result<()> {
     if flown != here {
         bail!("the board and this computer differ");
     }
-    Ok(())
+    Ok(path)
 }
 
 fn print_table(signal: &Signal, flown: &[Flown], here: &[Flown]) {

@@ -11,10 +11,6 @@ use std::{fs, path::PathBuf, thread};
 /// Runs the named programs, or all, and fails if a board prints another line than the host.
 pub fn firmware(names: &[String]) -> Result<()> {
     needs::ensure_met()?;
-    if names == ["--write"] {
-        let (host, outcomes) = run(bits::PROGRAM)?;
-        return bits::write(&table(&host, &outcomes));
-    }
     let all = programs()?;
     let chosen = if names.is_empty() { &all } else { names };
     let mut differing = Vec::new();
@@ -28,6 +24,13 @@ pub fn firmware(names: &[String]) -> Result<()> {
         bail!("boards and host differ in {}", differing.join(", "));
     }
     Ok(())
+}
+
+/// Puts spike counts, and which bits agree, into the page of bits.
+pub fn write() -> Result<()> {
+    needs::ensure_met()?;
+    let (host, outcomes) = run(bits::PROGRAM)?;
+    bits::write(&table(&host, &outcomes))
 }
 
 /// A program is a directory of the firmware workspace with a `src/main.rs`. What is only linked, or prints

@@ -1,10 +1,11 @@
-//! `cargo xtask jumps`: the hardest second of the flight in three step codes of one threshold, and how far behind each
+//! The hardest second of the flight in three step codes of one threshold, and how far behind each
 //! of them is.
 
 use crate::{
     drawing::{Area, Drawn, FONT, LEFT, MARGIN, SIGNAL},
     paths,
     signal::Signal,
+    write,
 };
 use anyhow::{Result, ensure};
 use plotters::prelude::*;
@@ -12,7 +13,7 @@ use spikewire::{
     Code, Output, Start,
     temporal::{AdaptiveStepForward, SendOnDelta, StepForward},
 };
-use std::{fs, ops::Range};
+use std::{ops::Range, path::PathBuf};
 
 const PAGE: &str = "docs/jumps.svg";
 const SIZE: (u32, u32) = (1000, 760);
@@ -35,12 +36,8 @@ struct Followed {
     behind: f32,
 }
 
-pub fn jumps(args: &[String]) -> Result<()> {
-    let write = match args {
-        [] => false,
-        [one] if one == "--write" => true,
-        _ => return Err(crate::usage::usage("cargo xtask jumps [--write]".into())),
-    };
+/// Draws it below the target directory, and says where.
+pub fn jumps() -> Result<PathBuf> {
     let path = paths::target().join("jumps.svg");
     let signal = Signal::read();
     let shown = shown(&signal);
@@ -65,11 +62,12 @@ pub fn jumps(args: &[String]) -> Result<()> {
     ensure!(moved <= SPIKES as f32 * THRESHOLD, "the signal moves by {moved} rad/s in one sample");
     ensure!(delta.behind <= THRESHOLD * 1.0001, "send-on-delta leaves its law");
     ensure!(step.behind > 2.0 && adaptive.behind < step.behind, "another second is harder now");
-    if write {
-        fs::copy(&path, paths::root().join(PAGE))?;
-        println!("{PAGE} has it.");
-    }
-    Ok(())
+    Ok(path)
+}
+
+/// Draws it into the page.
+pub fn write() -> Result<()> {
+    write::keep(&jumps()?, PAGE)
 }
 
 /// The whole flight through a code, of which the second is kept.

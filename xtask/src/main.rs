@@ -51,6 +51,7 @@ mod tuned;
 mod usage;
 mod verify;
 mod video;
+mod write;
 
 use anyhow::Result;
 use std::{env, process::ExitCode};
@@ -61,12 +62,9 @@ cargo xtask <command>
 
   setup                 compiler targets, QEMU and binutils for Cortex-M; does only what is missing
   firmware [PROGRAM]... runs the example programs on every emulated board and compares with the host
-  schemes [--write]     what each scheme makes of a flight and of the paper's signal; --write puts it into docs/schemes.md
-  jumps [--write]       draws the flight's hardest second in three step codes; --write puts it into docs/jumps.svg
-  ros-figure [--write]  draws what a ROS node records of the paper's signal; --write puts it into docs/ros.svg
-  firmware --write      puts the spike counts of flight-log, and which bits agree, into docs/bits.md
+  write [PART]...       writes again what is generated: tables and pictures of the pages, headers, stubs; all, or the
+                        named parts; a name that there is not lists them
   c-library [--target]  the library for C: archive, header, CMake package and pkg-config file for each core
-  c-library --write     writes its header and declarations from the catalogue; --sizes, the table in c/README.md
   new-firmware DIR --board NAME
                         writes a firmware project for a board, which builds as it comes; without arguments, the boards
   page [--serve]        a page to look at signals and their spikes, as one HTML file; serves it on this machine alone
@@ -97,11 +95,9 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "setup" => setup::setup(),
         "firmware" => firmware::firmware(args),
         "bench-target" => bench::bench(args),
-        "schemes" => schemes::schemes(args),
-        "jumps" => jumps::jumps(args),
+        "write" => write::write(args),
         "c-library" => c_library::library(args),
         "new-firmware" => new_firmware::new_firmware(args),
-        "ros-figure" => ros::figure(args),
         "page" => page::page(args),
         "demo" => demo::demo(args),
         "verify" => verify::verify(args),

@@ -31,6 +31,16 @@ pub fn python() -> Result<()> {
     source_package(&python).map(drop)
 }
 
+/// Writes the type stub of the schemes' classes.
+pub fn write_stub() -> Result<()> {
+    let python = environment("python")?;
+    install(&python, &["--requirement", "python/requirements.txt"])?;
+    package(&python, "dev")?;
+    let stub = output(command(&python).arg("python/tests/stubs.py"))?;
+    fs::write(paths::root().join("python/spikewire/_schemes.pyi"), stub)?;
+    Ok(())
+}
+
 /// The package built from its source package, optimised, and its speed beside plain Python and other libraries.
 pub fn speed() -> Result<()> {
     let python = environment("python-speed")?;

@@ -3,7 +3,7 @@
 use crate::{
     host, paths, ros_figure, setup,
     shell::{cargo, command, output, run},
-    usage::usage,
+    write,
 };
 use anyhow::Result;
 use std::{
@@ -91,16 +91,9 @@ fn environment(directory: &Path) -> Result<PathBuf> {
     Ok(python)
 }
 
-/// `cargo xtask ros-figure`
-pub fn figure(args: &[String]) -> Result<()> {
-    let write = match args {
-        [] => false,
-        [one] if one == "--write" => true,
-        _ => return Err(usage("cargo xtask ros-figure [--write]".into())),
-    };
-    let drawn = Ros::ready()?.figure()?;
-    println!("The picture: {}", drawn.display());
-    if write { ros_figure::keep(&drawn) } else { Ok(()) }
+/// Draws the figure into the page.
+pub fn write() -> Result<()> {
+    write::keep(&Ros::ready()?.figure()?, ros_figure::PAGE)
 }
 
 /// The package `spikewire` and the catkin packages, built and installed below `target`.

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 use plotters::prelude::*;
 use std::{fs, ops::Range, path::Path};
 
-const PAGE: &str = "docs/ros.svg";
+pub const PAGE: &str = "docs/ros.svg";
 const SIZE: (u32, u32) = (1000, 560);
 const VALUES: Range<f64> = -3.6..4.0;
 
@@ -49,17 +49,10 @@ fn read(table: &Path) -> Result<Vec<Sample>> {
     samples.with_context(|| format!("{} has other columns", table.display()))
 }
 
-/// Puts the picture into the page.
-pub fn keep(picture: &Path) -> Result<()> {
-    fs::copy(picture, paths::root().join(PAGE))?;
-    println!("{PAGE} has it.");
-    Ok(())
-}
-
 /// Fails if the page has another picture.
 pub fn ensure_drawn(picture: &Path) -> Result<()> {
     let kept = fs::read(paths::root().join(PAGE)).context(PAGE)?;
-    let command = "cargo xtask ros-figure --write";
+    let command = "cargo xtask write ros";
     ensure!(kept == fs::read(picture)?, "{PAGE} is another picture; `{command}` draws it");
     println!("{PAGE} is what a bag of the node gives.");
     Ok(())

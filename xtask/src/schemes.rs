@@ -1,4 +1,4 @@
-//! `cargo xtask schemes`: what each scheme makes of a flight and of the paper's signal, measured by the laptop program.
+//! What each scheme makes of a flight and of the paper's signal, measured by the laptop program.
 
 use crate::{host::spikewire, markdown, paths, shell::output};
 use anyhow::{Context, Result};
@@ -16,18 +16,14 @@ struct Figures {
     spikes_per_second: Option<f64>,
 }
 
-pub fn schemes(args: &[String]) -> Result<()> {
-    let table = table()?;
-    if args == ["--write"] {
-        return markdown::write(PAGE, MARKER, &table);
-    }
-    print!("{table}");
-    Ok(())
+/// Puts the figures into the page.
+pub fn write() -> Result<()> {
+    markdown::write(PAGE, MARKER, &table()?)
 }
 
 /// Fails if the page has other figures.
 pub fn ensure_written() -> Result<()> {
-    markdown::ensure_written(PAGE, MARKER, &table()?, "cargo xtask schemes --write")
+    markdown::ensure_written(PAGE, MARKER, &table()?, "cargo xtask write schemes")
 }
 
 fn table() -> Result<String> {

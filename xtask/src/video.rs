@@ -5,6 +5,7 @@ use crate::{
     host::spikewire,
     paths,
     shell::{command, output, run},
+    write,
 };
 use anyhow::{Context, Result, ensure};
 use std::{
@@ -45,6 +46,12 @@ pub fn video() -> Result<()> {
     println!("{CLIP}: {bytes} bytes of events; {} is the paper's figure.", picture.display());
     ensure!(bytes == CLIP_BYTES, "the clip's events were {CLIP_BYTES} bytes");
     containers(&clip, &program)
+}
+
+/// Draws the clip's frame and events into the page.
+pub fn write() -> Result<()> {
+    video()?;
+    write::keep(&paths::target().join("frames.png"), "docs/frames.png")
 }
 
 /// Compares the events of one clip without loss as raw frames and in FFV1, in every pixel format and range of brightness.

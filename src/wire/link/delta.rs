@@ -20,8 +20,6 @@ const POLARITY: u32 = 1;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     coding: Coding,
-    /// The frame's tick.
-    start: Tick,
     tick: Tick,
     /// The lowest address that the next event can have at this tick: one above the last event, up to 65 536.
     next_address: u32,
@@ -30,12 +28,12 @@ pub(super) struct Place {
 impl Place {
     /// The beginning of a frame. The coding is within its limits.
     pub(super) fn new(coding: Coding, tick: Tick) -> Self {
-        Self { coding, start: tick, tick, next_address: 0 }
+        Self { coding, tick, next_address: 0 }
     }
 
-    /// Puts the bits of an event; `None` if it lies more than [`MAX_SINCE_START`] from the frame's tick.
+    /// Puts the bits of an event of the frame with this tick; `None` if it lies more than [`MAX_SINCE_START`] from there.
     #[inline]
-    pub(super) fn put(&self, event: Event, bits: &mut impl PutBits) -> Option<()> {
+    pub(super) fn put(&self, event: Event, start: Tick, bits: &mut impl PutBits) -> Option<()> {
         let Coding { period, address_bits, jitter_bits } = self.coding;
         let address = u32::from(event.address);
         let up = u32::from(event.polarity == Polarity::Up);
@@ -47,7 +45,8 @@ impl Place {
                 bits.put_code(distance << POLARITY | up, address_bits);
             }
             _ => {
-                if event.tick.since(self.start).unsigned_abs() > MAX_SINCE_START {
+                let since_start = event.tick.micros().wrapping_sub(start.micros());
+                if since_start.wrapping_add(MAX_SINCE_START) > 2 * MAX_SINCE_START {
                     return None;
                 }
                 let (steps, jitter) = nearest_step(since, period.into());

@@ -251,7 +251,7 @@ impl<'a> FrameWriter<'_, 'a> {
     /// frame is unchanged.
     pub fn event(&mut self, event: Event) -> Result<(), LinkError> {
         let mut word = Word::default();
-        self.place.put(event, &mut word).ok_or(LinkError::Full)?;
+        self.place.put(event, self.tick, &mut word).ok_or(LinkError::Full)?;
         if self.bits.put_word(word).is_none() {
             self.put_long(event)?;
         }
@@ -265,7 +265,7 @@ impl<'a> FrameWriter<'_, 'a> {
     #[inline(never)]
     fn put_long(&mut self, event: Event) -> Result<(), LinkError> {
         let mark = self.bits.mark();
-        self.place.put(event, &mut self.bits).ok_or(LinkError::Full)?;
+        self.place.put(event, self.tick, &mut self.bits).ok_or(LinkError::Full)?;
         if !self.bits.is_within_limit() {
             self.bits.back_to(mark);
             return Err(LinkError::Full);

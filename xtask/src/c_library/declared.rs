@@ -10,7 +10,7 @@ const SAMPLES: [(&str, &str); 4] =
 /// `c/src/codecs.rs`.
 pub fn codecs() -> String {
     let mut text = String::from(
-        "//! Every scheme of the catalogue in its usual shapes. Written by `cargo xtask c-library --write`.\n\n\
+        "//! Every scheme of the catalogue in its usual shapes. Written by `cargo xtask write c`.\n\n\
          use fixed::types::{I8F8, I16F16};\n\
          use spikewire::{Calibration, population, rate, temporal, timing};\n\n\
          crate::codecs! {\n",
@@ -38,7 +38,7 @@ pub fn codecs() -> String {
 /// `c/tests/flown.h`: a line for each codec that flies.
 pub fn flown() -> String {
     let mut text = String::from(
-        "/* The codecs that fly, as the catalogue flies them. Written by `cargo xtask c-library --write`. */\n",
+        "/* The codecs that fly, as the catalogue flies them. Written by `cargo xtask write c`. */\n",
     );
     // In two halves, for a flash that has no room for more.
     for (sample, half) in SAMPLES.into_iter().flat_map(|sample| [(sample, 0), (sample, 1)]) {

@@ -20,16 +20,15 @@ use std::{
 };
 
 pub use cost::cost;
+pub use sizes::write as write_sizes;
 pub use tests::{cores, verify};
 
 const ARCHIVE: &str = "libspikewire_c.a";
 
-/// Builds the library for the named cores or targets, or for all. `--write` writes what is made from the catalogue.
+/// Builds the library for the named cores or targets, or for all.
 pub fn library(args: &[String]) -> Result<()> {
     let args: Vec<&str> = args.iter().map(String::as_str).collect();
     let boards: Vec<&Board> = match args[..] {
-        ["--write"] => return write(),
-        ["--sizes"] => return sizes::write(),
         [] => BOARDS.iter().collect(),
         ["--target", name] => BOARDS
             .iter()
@@ -58,7 +57,7 @@ fn work() -> PathBuf {
 }
 
 /// Writes all that is made from the catalogue.
-fn write() -> Result<()> {
+pub fn write() -> Result<()> {
     put(&room().join("src/codecs.rs"), &declared::codecs())?;
     put(&room().join("tests/flown.h"), &declared::flown())?;
     host_archive()?;
@@ -69,7 +68,7 @@ fn write() -> Result<()> {
 fn ensure_written() -> Result<()> {
     let is = |path: &str, text: &str| {
         let kept = fs::read_to_string(room().join(path)).with_context(|| path.to_owned())?;
-        ensure!(kept == text, "c/{path} is out of date: cargo xtask c-library --write");
+        ensure!(kept == text, "c/{path} is out of date: cargo xtask write c");
         Ok(())
     };
     is("src/codecs.rs", &declared::codecs())?;

@@ -78,7 +78,7 @@ fn word<W: Copy>(
 /// The handshake as well, with a chip that answers at once.
 fn tiny_odin_fed(out: &mut impl Write) -> fmt::Result {
     let word = Cell::new(0);
-    let port = || Answers { word: &word, is_requested: false, written: 0 };
+    let port = || Answers { word: &word, is_requested: false, written: [(0, 0); 4] };
     let mut chip = TinyOdin::new(port(), port(), 4);
     let registers = TinyOdinInput::registers(255, true, [0; 16]);
     let mut agrees = chip.reset(&mut port()).and_then(|gated| gated.run(&registers)).is_ok();
@@ -102,8 +102,23 @@ fn tiny_odin_fed(out: &mut impl Write) -> fmt::Result {
 struct Answers<'a> {
     word: &'a Cell<u32>,
     is_requested: bool,
-    /// The byte that was written last, and is read.
-    written: u8,
+    /// The bytes that were written, each with its address.
+    written: [(u32, u8); 4],
+}
+
+impl Answers<'_> {
+    /// A frame: 20 bits of address, of which the highest is for a read and the next for a write, and 20 of data.
+    fn answer(&mut self, &[a0, a1, a2, keep, value]: &[u8; 5]) -> u8 {
+        let command = u32::from_be_bytes([0, a0, a1, a2]) >> 4;
+        let address = command & 0x3_FFFF;
+        let is_here = |&&mut (known, _): &&mut (u32, u8)| known == address || known == 0;
+        let Some((known, byte)) = self.written.iter_mut().find(is_here) else { return 0 };
+        if command >> 18 == 1 {
+            *known = address;
+            *byte = *byte & keep | value & !keep;
+        }
+        if *known == address { *byte } else { 0 }
+    }
 }
 
 impl ErrorType for Answers<'_> {
@@ -114,8 +129,13 @@ impl SpiDevice for Answers<'_> {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
         for operation in operations {
             match operation {
-                Operation::Write([.., last]) => self.written = *last,
-                Operation::TransferInPlace([.., last]) => *last = self.written,
+                Operation::Write(bytes) => drop(bytes.first_chunk().map(|frame| self.answer(frame))),
+                Operation::TransferInPlace(bytes) => {
+                    let answer = bytes.first_chunk().map(|frame| self.answer(frame));
+                    if let (Some(answer), Some(last)) = (answer, bytes.last_mut()) {
+                        *last = answer;
+                    }
+                }
                 _ => {}
             }
         }

@@ -1,0 +1,58 @@
+//! `cargo xtask write`: all that is generated, written again.
+
+use crate::{
+    bench, c_library, demo, firmware, jumps, paths, python, ros, schemes, usage::usage, video,
+};
+use anyhow::{Context, Result};
+use std::{collections::HashSet, fs, path::Path};
+
+/// Something generated.
+struct Part {
+    name: &'static str,
+    /// Where it is kept.
+    files: &'static str,
+    write: fn() -> Result<()>,
+}
+
+const fn part(name: &'static str, files: &'static str, write: fn() -> Result<()>) -> Part {
+    Part { name, files, write }
+}
+
+/// From the catalogue first, then what measures or draws.
+const PARTS: [Part; 10] = [
+    part("c", "c/include, c/src/codecs.rs, c/src/sizes.rs, c/tests/flown.h", c_library::write),
+    part("python", "python/spikewire/_schemes.pyi", python::write_stub),
+    part("schemes", "docs/schemes.md: the table", schemes::write),
+    part("jumps", "docs/jumps.svg", jumps::write),
+    part("flight", "docs/flight.svg", demo::write),
+    part("frames", "docs/frames.png", video::write),
+    part("ros", "docs/ros.svg", ros::write),
+    part("bits", "docs/bits.md: the table", firmware::write),
+    part("c-sizes", "c/README.md: the table of sizes", c_library::write_sizes),
+    part("costs", "docs/costs.md, README.md: the tables of costs", bench::write),
+];
+
+/// Writes the named parts, or all.
+pub fn write(names: &[String]) -> Result<()> {
+    let known: HashSet<_> = PARTS.iter().map(|part| part.name).collect();
+    if let Some(other) = names.iter().find(|name| !known.contains(name.as_str())) {
+        let lines = PARTS.map(|Part { name, files, .. }| format!("  {name:8} {files}"));
+        return Err(usage(format!(
+            "nothing generated is called `{other}`\n\ncargo xtask write [PART]...\n\n{}",
+            lines.join("\n")
+        )));
+    }
+    let chosen = |part: &&Part| names.is_empty() || names.iter().any(|name| name == part.name);
+    for Part { name, files, write } in PARTS.iter().filter(chosen) {
+        println!("=== {name}: {files}");
+        write().with_context(|| format!("cargo xtask write {name}"))?;
+    }
+    Ok(())
+}
+
+/// Puts a picture into the page.
+pub fn keep(picture: &Path, page: &str) -> Result<()> {
+    fs::copy(picture, paths::root().join(page)).with_context(|| page.to_owned())?;
+    println!("{page} has it.");
+    Ok(())
+}
