@@ -82,7 +82,11 @@ const LONG: &[Step] = &[
         crate::peers::tuner,
     ),
     step("py-speed", "the Python package from its source package, and its speed", python::speed),
-    step("all-boards", "the other boards' firmware, compiled and linked", real_boards::more),
+    step(
+        "all-boards",
+        "the other boards' firmware: the Pico's at 8 kHz flown, the rest linked",
+        real_boards::more,
+    ),
     step("c-cost", "what the calls of C take beside the crate's", crate::c_library::cost),
     step("panic-free", "every codec without a panic handler, on two cores", checks::no_panic_all),
     step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", checks::bench_m0),
