@@ -1,11 +1,12 @@
 /* A Betaflight task: spikes of the three turn rates out of a UART.
  *
  * Put this file into src/main/telemetry/spikes.c and into the list of sources, add TASK_SPIKES to scheduler.h, and to
- * tasks.c
+ * fc/tasks.c
  *
  *     [TASK_SPIKES] = DEFINE_TASK("SPIKES", NULL, NULL, taskSpikes, TASK_PERIOD_HZ(1000), TASK_PRIORITY_MEDIUM),
  *
- * and in tasksInit: `setTaskEnabled(TASK_SPIKES, spikesInit());`. Link lib/libspikewire.a of the board's core.
+ * and in tasksInit: `setTaskEnabled(TASK_SPIKES, spikesInit());`. Link lib/libspikewire.a of the board's core. The UART
+ * must be free of any other function; FUNCTION_SPIKES is the first of Betaflight's bits that stands for none.
  */
 #include <string.h>
 #include "platform.h"
@@ -20,6 +21,10 @@
 #define CHANNELS 3u
 #define PERIOD_US 1000u
 #define THRESHOLD 5.0f /* degrees a second */
+#define SPIKES_PORT SERIAL_PORT_USART3
+#define FUNCTION_SPIKES ((serialPortFunction_e)(1 << 20))
+/* A port has 256 bytes of buffer, or more: a frame must find room in that. */
+#define FRAME 192u
 
 static sw_step_forward_f32 codec;
 static sw_step_forward_f32_encoder encoders[CHANNELS];
@@ -34,7 +39,6 @@ void taskSpikes(timeUs_t now);
 bool spikesInit(void)
 {
     sw_error error;
-    const serialPortConfig_t *config = findSerialPortConfig(FUNCTION_TELEMETRY_IBUS);
 
     if (sw_step_forward_f32_init(&codec, THRESHOLD, &error) != SW_OK) {
         return false;
@@ -44,16 +48,16 @@ bool spikesInit(void)
             return false;
         }
     }
-    if ((sw_queue_init(&queue, storage, sizeof storage) != SW_OK) || (config == NULL)) {
+    if (sw_queue_init(&queue, storage, sizeof storage) != SW_OK) {
         return false;
     }
-    port = openSerialPort(config->identifier, FUNCTION_TELEMETRY_IBUS, NULL, NULL, 921600u, MODE_TX, SERIAL_NOT_INVERTED);
+    port = openSerialPort(SPIKES_PORT, FUNCTION_SPIKES, NULL, NULL, 921600u, MODE_TX, SERIAL_NOT_INVERTED);
     return port != NULL;
 }
 
 void taskSpikes(timeUs_t now)
 {
-    static uint8_t frame[SW_MAX_FRAME];
+    static uint8_t frame[FRAME];
     static uint32_t sample;
     const sw_stamp stamp = {(uint32_t)now, 0u, 0u};
     const float rates[CHANNELS] = {gyro.gyroADCf[0], gyro.gyroADCf[1], gyro.gyroADCf[2]};
@@ -78,7 +82,7 @@ void taskSpikes(timeUs_t now)
     }
     ++sample;
     /* Only what the port takes at once: the task never waits. */
-    if ((serialTxBytesFree(port) >= SW_MAX_FRAME) &&
+    if ((serialTxBytesFree(port) >= FRAME) &&
         (sw_writer_next_frame(&writer, &queue, frame, sizeof frame, &length) == SW_OK)) {
         serialWriteBuf(port, frame, (int)length);
     }

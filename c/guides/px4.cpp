@@ -6,24 +6,27 @@
 //     px4_add_module(MODULE modules__spikes MAIN spikes SRCS Spikes.cpp DEPENDS px4_work_queue)
 //     target_link_libraries(modules__spikes PRIVATE spikewire::spikewire)
 //
-// where SPIKEWIRE is target/c-library/cortex-m7. Then `spikes start` in the shell or in rc.txt.
+// where SPIKEWIRE is target/c-library/cortex-m7. Then `spikes start` in the shell or in rc.txt. ModuleBase is that of 2026,
+// without a template, whose descriptor holds the instance.
 
 #include <fcntl.h>
 #include <string.h>
 #include <unistd.h>
 
 #include <px4_platform_common/log.h>
-#include <px4_platform_common/module.h>
+#include <px4_platform_common/module_base.h>
 #include <px4_platform_common/px4_work_queue/ScheduledWorkItem.hpp>
 #include <uORB/SubscriptionCallback.hpp>
 #include <uORB/topics/vehicle_angular_velocity.h>
 
 #include "spikewire/step_forward.h"
 
-class Spikes : public ModuleBase<Spikes>, public px4::ScheduledWorkItem
+class Spikes : public ModuleBase, public px4::ScheduledWorkItem
 {
 public:
-	Spikes() : ModuleBase(), ScheduledWorkItem("spikes", px4::wq_configurations::rate_ctrl) {}
+	static Descriptor descriptor;
+
+	Spikes() : ScheduledWorkItem("spikes", px4::wq_configurations::rate_ctrl) {}
 
 	~Spikes() override
 	{
@@ -42,16 +45,16 @@ public:
 			return PX4_ERROR;
 		}
 
-		_object.store(instance);
-		_task_id = task_id_is_work_queue;
+		descriptor.object.store(instance);
+		descriptor.task_id = task_id_is_work_queue;
 
 		if (instance->init()) {
 			return PX4_OK;
 		}
 
 		delete instance;
-		_object.store(nullptr);
-		_task_id = -1;
+		descriptor.object.store(nullptr);
+		descriptor.task_id = -1;
 		return PX4_ERROR;
 	}
 
@@ -100,7 +103,7 @@ private:
 
 		if (should_exit()) {
 			_rates.unregisterCallback();
-			exit_and_cleanup();
+			exit_and_cleanup(descriptor);
 			return;
 		}
 
@@ -149,7 +152,9 @@ private:
 	int _fd{-1};
 };
 
+ModuleBase::Descriptor Spikes::descriptor{Spikes::task_spawn, Spikes::custom_command, Spikes::print_usage};
+
 extern "C" __EXPORT int spikes_main(int argc, char *argv[])
 {
-	return Spikes::main(argc, argv);
+	return ModuleBase::main(Spikes::descriptor, argc, argv);
 }

@@ -28,6 +28,11 @@ pub trait Argument: Sized {
     /// How C declares it.
     const DECLARED: Declared;
 
+    /// Which of a list's numbers is the first that is not finite.
+    fn not_finite(&self) -> Option<usize> {
+        None
+    }
+
     /// What the scheme takes.
     ///
     /// # Errors
@@ -42,6 +47,11 @@ pub trait Argument: Sized {
 pub trait Number: Copy {
     /// What C calls it.
     const TYPE: &'static str;
+
+    /// Whether it is a number: integers always are.
+    fn is_finite(self) -> bool {
+        true
+    }
 }
 
 /// A sample type that can be calibrated.
@@ -51,10 +61,14 @@ pub trait CSample: Sample + Number {
 }
 
 macro_rules! numbers {
-    ($($type:ty, $c:literal $(, $suffix:literal)?;)*) => {
+    ($($type:ty, $c:literal $(, $suffix:literal)?; $is_finite:expr;)*) => {
         $(
             impl Number for $type {
                 const TYPE: &'static str = $c;
+
+                fn is_finite(self) -> bool {
+                    ($is_finite)(self)
+                }
             }
 
             impl Argument for $type {
@@ -76,10 +90,10 @@ macro_rules! numbers {
 }
 
 numbers! {
-    u8, "uint8_t";
-    u16, "uint16_t";
-    f32, "float", "f32";
-    i16, "int16_t", "i16";
+    u8, "uint8_t"; |_| true;
+    u16, "uint16_t"; |_| true;
+    f32, "float", "f32"; f32::is_finite;
+    i16, "int16_t", "i16"; |_| true;
 }
 
 /// Fixed point is an integer in C, whatever its fraction; two have names there.
@@ -114,6 +128,10 @@ fixed! {
 impl<T: Number, const N: usize> Argument for [T; N] {
     type C = *const [T; N];
     const DECLARED: Declared = Declared::List(T::TYPE, N);
+
+    fn not_finite(&self) -> Option<usize> {
+        self.iter().position(|number| !number.is_finite())
+    }
 
     unsafe fn taken(c: Self::C) -> Result<Self, Status> {
         // SAFETY: C's promise; any bytes are numbers.

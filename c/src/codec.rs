@@ -3,8 +3,8 @@
 use core::mem::MaybeUninit;
 
 use spikewire::{
-    Code, ConfigError, Destination, Event, Item, Keyframe, NeuronSpike, Output, Put, Scheme, Start,
-    Tick,
+    Code, ConfigError, Destination, Event, Item, Keyframe, NeuronSpike, Output, Put, Sample,
+    SampleKind, Scheme, Start, Tick,
 };
 
 use crate::code::CCode;
@@ -93,7 +93,7 @@ impl<P, T> Running<P, T> {
     }
 }
 
-/// Makes a codec of parameters.
+/// Makes a codec of parameters, of whose list the number at `not_finite` is the first that is not finite.
 ///
 /// # Safety
 /// C's promise of [`pointer`].
@@ -102,6 +102,7 @@ pub unsafe fn init<P>(
     mark: u32,
     error: *mut Error,
     made: Result<Result<P, ConfigError>, Status>,
+    not_finite: Option<usize>,
 ) -> Status {
     let told = match made {
         Ok(Ok(scheme)) => {
@@ -114,7 +115,12 @@ pub unsafe fn init<P>(
                 Err(status) => Error::of(status),
             }
         }
-        Ok(Err(error)) => error.into(),
+        Ok(Err(error)) => match (error, not_finite) {
+            (ConfigError::NotFinite { .. }, Some(index)) => {
+                Error { index: index as u32, ..error.into() }
+            }
+            _ => error.into(),
+        },
         Err(status) => Error::of(status),
     };
     if !error.is_null() {
@@ -366,6 +372,10 @@ pub unsafe fn held<P: Exported>(decoder: *const Decoder<P>, value: *mut P::Sampl
 pub unsafe fn resync<P: Exported>(decoder: *mut Decoder<P>, value: P::Sample) -> Status {
     // SAFETY: C's promise.
     let parts = unsafe { Running::parts(decoder) };
+    // All values to come would be as little finite.
+    let is_good =
+        P::Sample::KIND != SampleKind::F32 || f32::from_bits(value.to_bits32()).is_finite();
+    let parts = parts.and_then(|parts| is_good.then_some(parts).ok_or(Status::NOT_FINITE));
     parts
         .map(|(scheme, state)| scheme.resync(state, value))
         .map_or_else(|status| status, |()| Status::OK)

@@ -86,14 +86,17 @@ macro_rules! codecs {
                 $($argument: <$type as $crate::argument::Argument>::C,)*
                 error: *mut $crate::Error,
             ) -> Status {
-                let made = || {
+                let mut not_finite = None;
+                let mut made = || {
                     // SAFETY: C's promise.
                     $(let $argument = unsafe { <$type as $crate::argument::Argument>::taken($argument) }?;)*
+                    $(not_finite = not_finite.or($crate::argument::Argument::not_finite(&$argument));)*
                     let made = || -> Result<Scheme, ::spikewire::ConfigError> { $value };
                     Ok(made())
                 };
+                let made = made();
                 // SAFETY: C's promise.
-                unsafe { codec::init(codec, MARK, error, made()) }
+                unsafe { codec::init(codec, MARK, error, made, not_finite) }
             }
         )+
     };

@@ -39,8 +39,9 @@ unsafe extern "C" fn sw_queue_init(
     storage: *mut usize,
     bytes: usize,
 ) -> Status {
+    let is_apart = pointer::apart(queue, 1, storage.cast::<u8>(), bytes);
     // SAFETY: C's promise.
-    let result = unsafe { made(storage, bytes) };
+    let result = is_apart.and_then(|()| unsafe { made(storage, bytes) });
     let kept = result.and_then(|ends| ends.ok_or(Status::NULL)).and_then(|(producer, consumer)| {
         // SAFETY: C's promise.
         unsafe { Kept::keep(queue, Queue { producer, consumer }) }

@@ -170,6 +170,12 @@ impl From<ConfigError> for Error {
     }
 }
 
+/// The version of the library, ended by 0: that of its header, unless the two were mixed up.
+#[unsafe(no_mangle)]
+extern "C" fn sw_version() -> *const c_char {
+    concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()
+}
+
 /// A line that says what a status means, ended by 0.
 #[unsafe(no_mangle)]
 extern "C" fn sw_status_text(status: Status) -> *const c_char {

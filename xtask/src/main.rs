@@ -64,7 +64,8 @@ cargo xtask <command>
   firmware [PROGRAM]... runs the example programs on every emulated board and compares with the host
   write [PART]...       writes again what is generated: tables and pictures of the pages, headers, stubs; all, or the
                         named parts; a name that there is not lists them
-  c-library [--target]  the library for C: archive, header, CMake package and pkg-config file for each core
+  c-library [--target]  the library for C: archive, header, CMake package and pkg-config file for each core and the host
+  guides FIRMWARE DIR   builds the guide of c/guides for crazyflie or betaflight within a checkout of that firmware
   new-firmware DIR --board NAME
                         writes a firmware project for a board, which builds as it comes; without arguments, the boards
   page [--serve]        a page to look at signals and their spikes, as one HTML file; serves it on this machine alone
@@ -97,6 +98,7 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "bench-target" => bench::bench(args),
         "write" => write::write(args),
         "c-library" => c_library::library(args),
+        "guides" => c_library::guides(args),
         "new-firmware" => new_firmware::new_firmware(args),
         "page" => page::page(args),
         "demo" => demo::demo(args),

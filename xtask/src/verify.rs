@@ -68,7 +68,11 @@ const LONG: &[Step] = &[
     step("lints", "clippy on all at once: every feature, firmware on host and core", long::lints),
     step("capture", "the laptop program with a debug probe's driver", long::capture),
     step("page", "the page in a browser, against the laptop program", crate::page::verify),
-    step("c-cores", "the library for C on the other four cores", crate::c_library::cores),
+    step(
+        "c-cores",
+        "the library for C on the other four cores, and as the host has it",
+        crate::c_library::cores,
+    ),
     step(
         "ros",
         "ROS nodes in the distribution's ROS, a flight through every scheme",

@@ -24,7 +24,7 @@
  *   sw_NAME_decode           decodes the code of a sample
  *   sw_NAME_decode_slice     decodes codes in order; a byte counts as a spike by its sign, and SW_WAITING_SPIKE as none
  *   sw_NAME_held             the value that a decoder holds until the next spike, or SW_NOTHING for rate codes
- *   sw_NAME_resync           sets a decoder to a known value: the first sample, or a keyframe
+ *   sw_NAME_resync           sets a decoder to a known value: the first sample, or a keyframe; SW_NOT_FINITE if it is none
  *   sw_NAME_firings          a code as the neurons that fire, by rising index; SW_TOO_SMALL if there are more
  *   sw_NAME_assemble         the code that neurons make up, in any order
  *   sw_NAME_bank             encodes a sample of each of several channels, whose encoders lie side by side, and puts the
@@ -58,6 +58,11 @@ extern "C" {
 #else
 #define SW_STATIC_ASSERT(name, condition) typedef char sw_assert_##name[(condition) ? 1 : -1]
 #endif
+
+/* The version of this header, as a text and as major * 10000 + minor * 100 + patch; and that of the library. */
+#define SW_VERSION "@VERSION@"
+#define SW_VERSION_NUMBER @VERSION_NUMBER@
+const char *sw_version(void);
 
 /* What a call returns: below 0 if it did not do what it was asked. */
 typedef int32_t sw_status;

@@ -25,7 +25,13 @@ pub fn core() -> String {
         calibration::<fixed::types::I8F8>(),
         calibration::<fixed::types::I16F16>(),
     ];
+    let part = |text: &str| text.parse::<u32>().unwrap_or_default();
+    let number = 10_000 * part(env!("CARGO_PKG_VERSION_MAJOR"))
+        + 100 * part(env!("CARGO_PKG_VERSION_MINOR"))
+        + part(env!("CARGO_PKG_VERSION_PATCH"));
     include_str!("core.h")
+        .replace("@VERSION@", env!("CARGO_PKG_VERSION"))
+        .replace("@VERSION_NUMBER@", &number.to_string())
         .replace("@STATUSES@", &statuses())
         .replace("@MAX_FRAME@", &MAX_FRAME.to_string())
         .replace("@WRITER_SIZE@", &writer.size.to_string())

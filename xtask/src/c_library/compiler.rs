@@ -2,7 +2,7 @@
 
 use super::{room, work};
 use crate::{boards::Board, paths, shell};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -83,6 +83,52 @@ pub fn guides() -> Result<()> {
     }
     Ok(())
 }
+
+/// Runs the guides in C on the host, in their firmware's place: what they send arrives, and they never wait.
+pub fn guides_run(archive: &Path) -> Result<()> {
+    for guide in ["crazyflie", "betaflight"] {
+        let program = work().join(format!("guide-{guide}"));
+        let (guides, tests) = (room().join("guides"), room().join("tests"));
+        let mut gcc = shell::command("gcc");
+        gcc.args(["-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O1", "-g"]);
+        gcc.args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]);
+        gcc.arg("-I").arg(room().join("include")).arg("-I").arg(guides.join("stubs").join(guide));
+        gcc.arg("-I").arg(&tests).arg(tests.join(format!("guide_{guide}.c")));
+        gcc.arg(guides.join(guide).with_extension("c")).arg(archive);
+        gcc.args(["-lpthread", "-ldl", "-lm", "-o"]).arg(&program);
+        shell::run(&mut gcc)?;
+        shell::run(&mut Command::new(program))?;
+    }
+    Ok(())
+}
+
+/// A project of CMake that finds the host's package and uses one codec of it.
+pub fn with_cmake(package: &Path) -> Result<()> {
+    const MOST: u64 = 100_000;
+    let place = work().join("with-cmake");
+    fs::create_dir_all(&place)?;
+    super::put(&place.join("CMakeLists.txt"), CMAKE_PROJECT)?;
+    fs::copy(room().join("tests/one.c"), place.join("one.c"))?;
+    let build = place.join("build");
+    let mut cmake = shell::command("cmake");
+    cmake.arg("-S").arg(&place).arg("-B").arg(&build).arg("-DCMAKE_BUILD_TYPE=Release");
+    shell::output(cmake.arg(format!("-DCMAKE_PREFIX_PATH={}", package.display())))?;
+    shell::output(shell::command("cmake").arg("--build").arg(&build))?;
+    let program = build.join("one");
+    let bytes = fs::metadata(&program)?.len();
+    println!("a program of the host with one codec: {bytes} bytes");
+    ensure!(bytes < MOST, "one codec costs {bytes} bytes, and not less than {MOST}");
+    shell::run(&mut Command::new(program))
+}
+
+const CMAKE_PROJECT: &str = "\
+cmake_minimum_required(VERSION 3.13)
+project(one C)
+find_package(spikewire 0.1.0 CONFIG REQUIRED)
+add_executable(one one.c)
+target_link_libraries(one PRIVATE spikewire::spikewire)
+target_link_options(one PRIVATE -s)
+";
 
 /// Puts the recorded flight where the assembler finds it.
 pub fn record() -> Result<()> {

@@ -3,6 +3,7 @@
 mod compiler;
 mod cost;
 mod declared;
+mod guides;
 mod package;
 mod sizes;
 mod tests;
@@ -20,6 +21,7 @@ use std::{
 };
 
 pub use cost::cost;
+pub use guides::guides;
 pub use sizes::write as write_sizes;
 pub use tests::{cores, verify};
 
@@ -29,22 +31,45 @@ const ARCHIVE: &str = "libspikewire_c.a";
 pub fn library(args: &[String]) -> Result<()> {
     let args: Vec<&str> = args.iter().map(String::as_str).collect();
     let boards: Vec<&Board> = match args[..] {
+        ["--target", "host"] => return host().map(drop),
         [] => BOARDS.iter().collect(),
         ["--target", name] => BOARDS
             .iter()
             .filter(|board| [board.target, board.cpu, board.core].contains(&name))
             .collect(),
-        _ => return Err(usage("cargo xtask c-library [--target TARGET or CORE]".into())),
+        _ => return Err(usage("cargo xtask c-library [--target TARGET, CORE or host]".into())),
     };
     if boards.is_empty() {
         let names: Vec<_> =
             BOARDS.iter().map(|board| format!("{} ({})", board.target, board.cpu)).collect();
-        return Err(usage(format!("no such target; there are {}", names.join(", "))));
+        return Err(usage(format!("no such target; there are host, {}", names.join(", "))));
     }
     for board in boards {
-        package::package(board, &archive(board)?)?;
+        package::package(board.cpu, &archive(board)?, &[])?;
     }
-    Ok(())
+    if args.is_empty() { host().map(drop) } else { Ok(()) }
+}
+
+/// Builds the library for the host: for a simulation in the loop, and for tests of units.
+fn host() -> Result<PathBuf> {
+    let mut cargo = shell::cargo("rustc --release --lib --crate-type staticlib");
+    shell::run(cargo.current_dir(room()).env("CARGO_TARGET_DIR", work()))?;
+    let kept = apart(&work().join("release").join(ARCHIVE), "host", "objcopy")?;
+    package::package("host", &kept, &["pthread", "dl", "m"])
+}
+
+/// Copies an archive, in which the crate's critical section gets a name of its own: another archive from Rust has one,
+/// too, of another type.
+fn apart(built: &Path, name: &str, objcopy: &str) -> Result<PathBuf> {
+    let kept = work().join(name).join("libspikewire.a");
+    fs::create_dir_all(work().join(name))?;
+    let mut command = shell::command(objcopy);
+    for half in ["acquire", "release"] {
+        let renamed = format!("_critical_section_1_0_{half}=_spikewire_critical_section_{half}");
+        command.arg("--redefine-sym").arg(renamed);
+    }
+    shell::run(command.arg(built).arg(&kept))?;
+    Ok(kept)
 }
 
 fn room() -> PathBuf {
@@ -102,7 +127,7 @@ fn host_archive() -> Result<PathBuf> {
         let mut cargo = shell::cargo(args);
         shell::run(cargo.current_dir(room()).env("CARGO_TARGET_DIR", work()))?;
     }
-    Ok(work().join("debug").join(ARCHIVE))
+    apart(&work().join("debug").join(ARCHIVE), "debug-host", "objcopy")
 }
 
 /// Writes the header with the program that [`host_archive`] built.
@@ -119,10 +144,7 @@ fn archive(board: &Board) -> Result<PathBuf> {
     shell::run(&mut cargo).with_context(|| format!("the library for {}", board.core))?;
     // Two cores share a target.
     let built = paths::thumb_target().join(board.target).join("release").join(ARCHIVE);
-    let kept = work().join(board.cpu);
-    fs::create_dir_all(&kept)?;
-    fs::copy(built, kept.join("libspikewire.a"))?;
-    Ok(kept.join("libspikewire.a"))
+    apart(&built, board.cpu, "arm-none-eabi-objcopy")
 }
 
 /// Writes a file if it says something else.

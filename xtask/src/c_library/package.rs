@@ -1,13 +1,16 @@
 //! What a build system takes: archive, header, CMake package and pkg-config file.
 
 use super::{put, room, work};
-use crate::{boards::Board, paths, shell};
+use crate::{paths, shell};
 use anyhow::Result;
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
-/// Puts it all below `target/c-library/<core>`.
-pub fn package(board: &Board, archive: &Path) -> Result<()> {
-    let place = paths::target().join("c-library").join(board.cpu);
+/// Puts it all below `target/c-library/<name>`; programs need these libraries besides.
+pub fn package(name: &str, archive: &Path, needs: &[&str]) -> Result<PathBuf> {
+    let place = paths::target().join("c-library").join(name);
     let cmake = place.join("lib/cmake/spikewire");
     let pkgconfig = place.join("lib/pkgconfig");
     for directory in [&cmake, &pkgconfig] {
@@ -15,11 +18,12 @@ pub fn package(board: &Board, archive: &Path) -> Result<()> {
     }
     fs::copy(archive, place.join("lib/libspikewire.a"))?;
     shell::run(shell::command("cp").arg("-r").arg(room().join("include")).arg(&place))?;
-    put(&cmake.join("spikewireConfig.cmake"), CMAKE)?;
+    put(&cmake.join("spikewireConfig.cmake"), &CMAKE.replace("@NEEDS@", &needs.join(";")))?;
     put(&cmake.join("spikewireConfigVersion.cmake"), CMAKE_VERSION)?;
-    put(&pkgconfig.join("spikewire.pc"), PKG_CONFIG)?;
-    println!("{}: {}", board.cpu, place.strip_prefix(work()).unwrap_or(&place).display());
-    Ok(())
+    let needed: String = needs.iter().map(|name| format!(" -l{name}")).collect();
+    put(&pkgconfig.join("spikewire.pc"), &PKG_CONFIG.replace("@NEEDS@", &needed))?;
+    println!("{name}: {}", place.strip_prefix(work()).unwrap_or(&place).display());
+    Ok(place)
 }
 
 const CMAKE: &str = "\
@@ -29,7 +33,9 @@ if(NOT TARGET spikewire::spikewire)
   add_library(spikewire::spikewire STATIC IMPORTED)
   set_target_properties(spikewire::spikewire PROPERTIES
     IMPORTED_LOCATION \"${_spikewire}/lib/libspikewire.a\"
-    INTERFACE_INCLUDE_DIRECTORIES \"${_spikewire}/include\")
+    INTERFACE_INCLUDE_DIRECTORIES \"${_spikewire}/include\"
+    INTERFACE_LINK_LIBRARIES \"@NEEDS@\"
+    INTERFACE_LINK_OPTIONS \"-Wl,--gc-sections\")
 endif()
 ";
 
@@ -49,5 +55,5 @@ Name: spikewire
 Description: Sensor samples to spikes and back on a flight controller
 Version: 0.1.0
 Cflags: -I${prefix}/include
-Libs: -L${prefix}/lib -lspikewire
+Libs: -L${prefix}/lib -lspikewire@NEEDS@ -Wl,--gc-sections
 ";

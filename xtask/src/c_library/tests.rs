@@ -21,14 +21,16 @@ pub fn verify() -> Result<()> {
         print!("{}", shell::output(&mut Command::new(misuse))?);
     }
     compiler::guides()?;
+    compiler::guides_run(&archive)?;
     let rust = in_rust()?;
     let flight = compiler::on_host("flight", "c99", &archive, &SAMPLES)?;
     compare("host", &shell::output(&mut Command::new(flight))?, &rust)?;
     fly("M4F", &rust)
 }
 
-/// The other cores.
+/// The other cores, and the host's package as a CMake project takes it: one codec costs what it is, not the whole.
 pub fn cores() -> Result<()> {
+    compiler::with_cmake(&super::host()?)?;
     compiler::record()?;
     let rust = in_rust()?;
     BOARDS.iter().filter(|board| board.core != "M4F").try_for_each(|board| fly(board.core, &rust))

@@ -1,4 +1,4 @@
 #pragma once
 #include <stddef.h>
-#define APPCHANNEL_MTU 31u
-void appchannelSendDataPacketBlock(void *data, size_t length);
+#define APPCHANNEL_MTU (30)
+int appchannelSendDataPacket(void *data, size_t length);
