@@ -15,7 +15,7 @@ const spikewire = (...args) => execFileSync(SPIKEWIRE, args, { stdio: ["ignore",
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const url = pathToFileURL(PAGE).href;
 const executablePath = execFileSync("which", [BROWSER]).toString().trim();
-const browser = await chromium.launch({ executablePath, args: ["--no-sandbox"] });
+const browser = await chromium.launch({ executablePath, args: ["--no-sandbox", "--use-fake-device-for-media-stream", "--use-fake-ui-for-media-stream"] });
 const said = [];
 
 async function opened(options = {}, hash = "") {
@@ -278,6 +278,58 @@ const steps = {
     await page.click("#advise");
     await page.waitForSelector("#advice:visible", { timeout: 300_000 });
     assert.match(await page.textContent("#advice"), /take \w+ in f32/);
+    await page.context().close();
+  },
+
+  async "shows a clip and a camera as events, those of the program"() {
+    const page = await opened();
+    const [width, height] = [16, 12];
+    const frames = [0, 1, 2, 3].map((frame) => Array.from({ length: width * height }, (_, at) => (at * 7 + frame * ((at * 5) % 23)) % 256));
+    frames.forEach((own, at) => writeFileSync(join(work, `frame-${at}.pgm`), Buffer.concat([Buffer.from(`P5 ${width} ${height} 255\n`), Buffer.from(own)])));
+    const events = join(work, "events.csv");
+    spikewire("frames", ...frames.map((_, at) => join(work, `frame-${at}.pgm`)), "--threshold", "10", "-o", events);
+    const theirs = readFileSync(events, "utf8").trim().split("\n").slice(1).map((line) => line.split(",").map(Number));
+    const ticks = [...new Set(theirs.map(([tick]) => tick))];
+    const ours = await page.evaluate(async ([frames, width, height]) => {
+      const all = [];
+      for (const [at, grey] of frames.entries()) {
+        const { arrays: { pixels } } = await globalThis.spikewire.video.encode(width, height, new Uint8Array(grey), at === 0);
+        pixels.forEach((own, place) => own && all.push([at, place % width, Math.floor(place / width), own === 2 ? 1 : -1]));
+      }
+      return all;
+    }, [frames, width, height]);
+    assert(ours.length > 100);
+    assert.deepEqual(ours, theirs.map(([tick, ...rest]) => [ticks.indexOf(tick) + 1, ...rest]));
+    const live = () => page.waitForFunction(() => /[1-9][\d,]* events in this frame/.test(document.getElementById("video-figures").textContent));
+    const cleared = () => page.evaluate(() => (document.getElementById("video-figures").textContent = ""));
+    await page.click("#camera");
+    await live();
+    await accessible(page, "a camera");
+    await page.click("#end");
+    await cleared();
+    await page.evaluate(async () => {
+      const canvas = Object.assign(document.createElement("canvas"), { width: 64, height: 48 }), context = canvas.getContext("2d");
+      const parts = [], recorder = new MediaRecorder(canvas.captureStream(30), { mimeType: "video/webm" });
+      recorder.ondataavailable = ({ data }) => parts.push(data);
+      recorder.start();
+      for (let at = 0; at < 30; at++) {
+        context.fillStyle = "black";
+        context.fillRect(0, 0, 64, 48);
+        context.fillStyle = "white";
+        context.fillRect(at, 10, 20, 20);
+        await new Promise((done) => setTimeout(done, 33));
+      }
+      recorder.stop();
+      await new Promise((done) => (recorder.onstop = done));
+      const data = new DataTransfer();
+      data.items.add(new File(parts, "clip.webm", { type: "video/webm" }));
+      document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+    });
+    await live();
+    await page.click("#end");
+    await page.setInputFiles("#clip", { name: "no.webm", mimeType: "video/webm", buffer: Buffer.from("no video") });
+    await page.waitForSelector("#video-error:visible");
+    assert.match(await page.textContent("#video-error"), /no\.webm: this browser cannot decode/);
     await page.context().close();
   },
 

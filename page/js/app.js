@@ -7,6 +7,7 @@ import { parameters } from "./parameters.js";
 import { Plots } from "./plots.js";
 import { Pyramid } from "./pyramid.js";
 import { picture } from "./svg.js";
+import { Video } from "./video.js";
 
 const at = (id) => document.getElementById(id);
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -16,10 +17,11 @@ const COLOURS = ["--decoded", "--b", "--c", "--ink"];
 const SAMPLES = ["f32", "i16", "q1.15", "q8.8", "i32", "q16.16"];
 const FIRST = { scheme: "sf", sample: "f32", parameters: {} };
 
-const library = new Library();
+let library = new Library();
 const plots = new Plots(at("plots"), showRange);
 // For whoever looks in the console, and for checks.
-globalThis.spikewire = { plots };
+const video = new Video(at("events"), (text) => (at("video-figures").textContent = text));
+globalThis.spikewire = { plots, video };
 let schemes = [];
 let opened; // { file, example, topics, files }
 let recording; // what was loaded
@@ -31,9 +33,10 @@ let showParameters = () => {};
 /** Words of the library for a page, where options are boxes. */
 function words(error) {
   return error.message
-    .replace(/--accept-cut/g, "“take the whole messages of a damaged log”")
-    .replace(/--skip-non-finite/g, "“pass over missing values”")
-    .replace(/--rate/g, "“samples a second”")
+    .replace(/`accept_cut`/g, "“take the whole messages of a damaged log”")
+    .replace(/`skip_non_finite`/g, "“pass over missing values”")
+    .replace(/`rate`/g, "“samples a second”")
+    .replace(/`hold_out` 0 with nothing to check the settings on/g, "a longer recording")
     .replace(/; `spikewire info` lists them/g, "");
 }
 
@@ -43,6 +46,13 @@ function fail(id, error) {
 }
 
 // --- The recording ---
+
+let isReading = false;
+
+/** How far reading is. */
+function reading({ done, total }) {
+  at("about").textContent = total > 1 ? `reading … ${Math.round((100 * done) / total)} % of ${(total / 1e6).toFixed(0)} MB` : "reading …";
+}
 
 let busy = 0;
 
@@ -65,15 +75,24 @@ const open = (from, wanted) => whileBusy(() => openNow(from, wanted));
 
 async function openNow({ files = [], example }, wanted = {}) {
   fail("file-error");
+  if (isReading) {
+    // What is read now is not wanted any more.
+    library.stop();
+    library = new Library();
+  }
+  isReading = true;
   const [named] = files;
   try {
     const request = example ? { ask: "example", name: example } : { ask: "open", names: files.map((own) => own.name), accept_cut: at("accept-cut").checked };
-    const answer = await library.ask(request, { files });
+    const answer = await library.ask(request, { files, onProgress: reading });
     opened = { ...answer, example, files };
     showTopics(wanted);
     await load();
   } catch (error) {
-    const isDamaged = /accept-cut/.test(error.message) || at("accept-cut").checked;
+    if (error.isStopped) return;
+    isReading = false;
+    at("about").textContent = "";
+    const isDamaged = /`accept_cut`/.test(error.message) || at("accept-cut").checked;
     at("damaged").hidden = !isDamaged;
     if (isDamaged) opened = { files, topics: [] };
     const name = named && !error.message.startsWith(named.name) ? `${named.name}: ` : "";
@@ -105,13 +124,17 @@ const load = () => whileBusy(loadNow);
 async function loadNow() {
   const { topic, field, rate, skip } = channel();
   fail("file-error");
-  at("about").textContent = "reading …";
+  isReading = true;
+  reading({ done: 0, total: 1 });
   try {
     const request = { ask: "load", topic: topic || null, field, rate: Number(rate) || null, skip_non_finite: skip, accept_cut: at("accept-cut").checked };
-    recording = await library.ask(request);
+    recording = await library.ask(request, { onProgress: reading });
+    isReading = false;
   } catch (error) {
+    if (error.isStopped) return;
+    isReading = false;
     at("about").textContent = "";
-    at("rate-field").hidden = !(/rate/.test(error.message) || rate);
+    at("rate-field").hidden = !(/`rate`/.test(error.message) || rate);
     fail("file-error", error);
     return;
   }
@@ -398,6 +421,24 @@ async function advise(thread) {
   else fail("search-error", new Error(whyNot));
 }
 
+// --- Video ---
+
+async function watch(file) {
+  fail("video-error");
+  try {
+    await video.start(file);
+    at("events").hidden = at("end").hidden = false;
+    at("video").scrollIntoView({ block: "nearest" });
+  } catch (error) {
+    fail("video-error", new Error(`${file?.name ?? "camera"}: ${error.message}`));
+  }
+}
+
+function endVideo() {
+  video.stop();
+  at("end").hidden = true;
+}
+
 // --- What a user does ---
 
 function listen() {
@@ -413,7 +454,9 @@ function listen() {
   addEventListener("drop", (event) => {
     event.preventDefault();
     document.body.classList.remove("over");
-    if (event.dataTransfer.files.length) open({ files: [...event.dataTransfer.files] });
+    const files = [...event.dataTransfer.files];
+    if (files[0]?.type.startsWith("video/")) watch(files[0]);
+    else if (files.length) open({ files });
   });
   at("scheme").addEventListener("change", ({ target }) => take(target.value, {}));
   at("sample").addEventListener("change", ({ target }) => { settings[current].sample = target.value; update(); });
@@ -451,6 +494,10 @@ function listen() {
   at("tune").addEventListener("click", () => search((thread) => tune(thread, [settings[current].scheme])));
   at("tune-all").addEventListener("click", () => search((thread) => tune(thread, schemes.map((own) => own.name))));
   at("advise").addEventListener("click", () => search(advise));
+  at("clip").addEventListener("change", ({ target }) => target.files.length && watch(target.files[0]));
+  at("camera").addEventListener("click", () => watch());
+  at("end").addEventListener("click", endVideo);
+  at("levels").addEventListener("input", ({ target }) => { video.threshold = target.valueAsNumber; at("level").textContent = target.value; });
   at("stop").addEventListener("click", () => searching?.stop());
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => recording && show());
 }

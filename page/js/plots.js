@@ -5,6 +5,7 @@ import { lowerBound, Pyramid } from "./pyramid.js";
 
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const AXIS = 64;
+const line = uPlot.paths.linear();
 
 /** When samples are: in seconds where that is known, else their numbers. */
 export class Times {
@@ -68,8 +69,8 @@ export class Plots {
     this.upper = new uPlot({
       ...common, height: 280, scales,
       axes: [axis("", { size: 24 }), axis(unit ? `${name}, ${unit}` : name, { size: AXIS })],
-      series: [{}, { label: "signal", stroke: css("--signal"), width: 1.5, points: { show: false } },
-        ...this.runs.map((own) => ({ label: own.name, stroke: own.colour, width: 1.5, points: { show: false } }))],
+      series: [{}, ...[css("--signal"), ...this.runs.map((own) => own.colour)].map((stroke) => ({ stroke, width: 1.5, points: { show: false }, paths: (...asked) => (this.isThinned ? null : line(...asked)) }))],
+      hooks: { ...common.hooks, draw: [(plot) => this.drawColumns(plot)] },
     }, this.data(), this.host);
     this.rasters = this.runs.map((own, place) => {
       const isLast = place === this.runs.length - 1;
@@ -110,7 +111,8 @@ export class Plots {
     const end = Math.min(this.times.count, this.times.first(this.view[1]) + 1);
     const all = [this.signal, ...this.runs.map((own) => own.pyramid)];
     const xs = [], series = all.map(() => []);
-    if (end - start <= 4 * columns) {
+    this.isThinned = end - start > 4 * columns;
+    if (!this.isThinned) {
       for (let sample = start; sample < end; sample++) {
         xs.push(this.times.at(sample));
         all.forEach((own, place) => series[place].push(own.values[sample]));
@@ -133,6 +135,28 @@ export class Plots {
     this.onRange(this.samples());
   }
 
+  /** Where columns of pixels stand for many samples, each is a bar: thousands of tall lines take a browser long. */
+  drawColumns(plot) {
+    if (!this.isThinned) return;
+    const { ctx, data: [xs, ...series] } = plot;
+    const thick = 1.5 * devicePixelRatio;
+    ctx.save();
+    series.forEach((own, place) => {
+      ctx.fillStyle = plot.series[place + 1].stroke();
+      let [before, after] = [own[0], own[1]];
+      for (let at = 0; at < xs.length; at += 2) {
+        const x = Math.round(plot.valToPos(xs[at], "x", true));
+        const end = at + 2 < xs.length ? Math.round(plot.valToPos(xs[at + 2], "x", true)) : x + 1;
+        // Up to the bar before it, so that a line stays one.
+        const top = plot.valToPos(Math.max(own[at + 1], before), "y", true);
+        const bottom = plot.valToPos(Math.min(own[at], after), "y", true);
+        ctx.fillRect(x, top - thick / 2, Math.max(1, end - x), bottom - top + thick);
+        [before, after] = [own[at], own[at + 1]];
+      }
+    });
+    ctx.restore();
+  }
+
   /** One stroke for all spikes of a neuron that fall on a column of pixels. */
   drawSpikes(plot, run) {
     if (!run) return;
@@ -150,7 +174,8 @@ export class Plots {
     ctx.beginPath();
     ctx.rect(left, top, width, height);
     ctx.clip();
-    const shapes = [new Path2D(), new Path2D()];
+    const colours = [css("--down"), css("--ink")];
+    let colour;
     const last = [new Int32Array(run.neurons).fill(-1), new Int32Array(run.neurons).fill(-1)];
     // Where there are many spikes in a column, those of its first samples stand for all.
     const most = Math.ceil((4 * run.neurons * (run.slots || 1)));
@@ -170,14 +195,11 @@ export class Plots {
         last[sign][of] = place;
         const [low, high] = isPopulation ? [of - 0.42, of + 0.42] : sign ? [0, 1] : [-1, 0];
         const upper = y(high);
-        shapes[sign].rect(place, upper, tick, Math.max(tick, y(low) - upper));
+        if (colour !== sign) ctx.fillStyle = colours[(colour = sign)];
+        ctx.fillRect(place, upper, tick, Math.max(tick, y(low) - upper));
       }
       at++;
     }
-    ctx.fillStyle = css("--ink");
-    ctx.fill(shapes[1]);
-    ctx.fillStyle = css("--down");
-    ctx.fill(shapes[0]);
     ctx.restore();
   }
 

@@ -1,11 +1,13 @@
 // The other side of src/host.rs: starts the library and asks it.
 
+/** Bytes after which the page hears how far reading is. */
+const STEP = 1 << 24;
 const KINDS = [Float64Array, Uint32Array, Uint16Array, Uint8Array];
 
 /** Starts the library; `onProgress` is told how far long work is. */
 export async function start(wasm, onProgress = () => {}) {
   let files = [];
-  let answered, arrays, panic;
+  let answered, arrays, panic, told = 0;
   const memory = () => instance.exports.memory.buffer;
   const text = (at, length) => new TextDecoder().decode(new Uint8Array(memory(), at, length));
   const instance = await WebAssembly.instantiate(wasm, {
@@ -20,6 +22,7 @@ export async function start(wasm, onProgress = () => {}) {
       size: (file) => files[file].size,
       read(file, place, at, length) {
         try {
+          if (place >= told + STEP || place < told) onProgress({ done: (told = place), total: files[file].size });
           const bytes = bytesOf(files[file], place, Math.min(length, files[file].size - place));
           new Uint8Array(memory(), at).set(bytes);
           return bytes.length;

@@ -1,7 +1,7 @@
 //! What the page can ask for.
 
 use crate::run::Choice;
-use crate::{catalogue, export, front, recording, run};
+use crate::{catalogue, export, frames, front, recording, run};
 use anyhow::{Context, Result};
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -26,6 +26,8 @@ enum Ask {
     Export { kind: String, choice: Choice },
     /// The settings of a scheme that no other ones beat in spikes and error.
     Front { choice: Choice, evaluations: usize },
+    /// Encodes the next frame of a video.
+    Frame(frames::Frame),
     /// The scheme that takes the fewest bytes within an error.
     Advise { sample: String, max_rmse: Option<f64>, evaluations: usize },
 }
@@ -47,6 +49,7 @@ fn answer(request: &[u8]) -> Result<Value> {
         Ask::Run { choice } => run::run(&choice),
         Ask::Export { kind, choice } => export::export(&kind, &choice),
         Ask::Front { choice, evaluations } => front::front(&choice, evaluations),
+        Ask::Frame(frame) => frames::next(&frame),
         Ask::Advise { sample, max_rmse, evaluations } => {
             front::advise(&sample, max_rmse, evaluations)
         }

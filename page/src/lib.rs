@@ -5,6 +5,7 @@
 mod ask;
 mod catalogue;
 mod export;
+mod frames;
 mod front;
 mod host;
 mod recording;
