@@ -434,6 +434,25 @@ fn a_lost_and_a_doubled_clock_within_one_access_are_an_error_or_right() {
     assert!(pairs_within_an_access(77) > 10_000);
 }
 
+/// Two faults that cancel out in the last frames of a step check, and leave the byte wrong that it writes.
+#[test]
+fn a_pair_within_a_step_check_is_an_error() {
+    use ClockFault::{Doubled, Lost};
+    for (before, lost, doubled) in
+        [(0xEDFF_1087, 580, 614), (0xB941_10FA, 588, 631), (0x46A2_1000, 535, 570)]
+    {
+        let board = TinyBoard::new(4, 1);
+        board.pins().chip.neurons[5] = before;
+        let mut chip = tiny(&board);
+        let mut gated = chip.reset(&mut board.clone()).unwrap();
+        let start = board.pins().spi_clocks;
+        board.pins().clock_faults.extend([(start + lost, Lost), (start + doubled, Doubled)]);
+        let value = TinyOdinNeuron { threshold: 1, ..TinyOdinNeuron::REST };
+        assert!(gated.set_neuron(5, &value).is_err(), "{before:x}");
+        assert!(board.pins().clock_faults.is_empty());
+    }
+}
+
 #[test]
 #[ignore = "minutes"]
 fn every_lost_and_doubled_clock_within_one_access_are_an_error_or_right() {

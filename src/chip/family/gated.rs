@@ -13,10 +13,11 @@ const PROBE_CLOCKS: u32 = 1_000;
 /// A gated chip: its memories can be accessed, and it takes no events. Its loop is open, so that no write makes a
 /// neuron fire.
 ///
-/// A call reads the old bytes, writes those that differ, and reads them again. Before and after the writes 5 more frames
-/// check that chip and bus are in step; what a call returns was read before and after. So an error reports one clock lost or doubled, and a lost and a doubled clock that
-/// cancel out. A neuron of tinyODIN takes 22 frames of 5 bytes, 1.3 ms at 656 kHz, a synapse 13; a neuron of ODIN 58. For
-/// whole networks [`load`](Self::load) takes 2 frames a byte. After such an error all memory is in doubt: reset the chip,
+/// A call reads the old bytes, writes those that differ, and reads them again, and at the end the byte with which the step
+/// is checked. Before and after the writes 5 more frames check that chip and bus are in step; what a call returns was read
+/// before and after. So an error reports one clock lost or doubled, and a lost and a doubled clock that cancel out. A neuron
+/// of tinyODIN takes 23 frames of 5 bytes, 1.4 ms at 656 kHz, a synapse 14; a neuron of ODIN 59. For whole networks
+/// [`load`](Self::load) takes 2 frames a byte. After such an error all memory is in doubt: reset the chip,
 /// and write all of it again.
 #[derive(Debug)]
 pub struct Gated<'a, I: Input, D, P> {
@@ -31,12 +32,13 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Writes the registers and lets the chip run.
     ///
     /// **Verified:** after every register chip and bus must be in step, so that one clock lost or doubled is an error; two
-    /// faults that cancel out within a register's frame and its check go unseen. Then the chip must answer a time step
+    /// faults that cancel out within a register's frame and its check go unseen, and may leave a register, or potentials of
+    /// neurons, other than they were. Then the chip must answer a time step
     /// of one neuron, which shows that the gate is open. If that neuron leaks, its potential is moved up by the leak
     /// before, so that the network is as it was.
     ///
-    /// **Time:** 37 frames of 5 bytes for tinyODIN, 2.3 ms at 656 kHz; 205 for ODIN. A neuron that leaks from a potential
-    /// other than 0 takes 16 more, each neuron that cannot be probed 4 or 16.
+    /// **Time:** 38 frames of 5 bytes for tinyODIN, 2.3 ms at 656 kHz; 206 for ODIN. A neuron that leaks from a potential
+    /// other than 0 takes 17 more, each neuron that cannot be probed 4 or 16.
     ///
     /// # Errors
     /// A value is out of its range, or [`NoProbe`](ChipError::NoProbe): the chip is still gated. Or the bus or the port

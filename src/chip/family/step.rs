@@ -115,7 +115,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         for (address, _, _, new) in bytes {
             self.expect_byte(address, 0, new)?;
         }
-        Ok(())
+        self.expect_anchor()
     }
 
     /// Reads up to 16 bytes, checks the step, and reads them again.
@@ -128,7 +128,17 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         for (address, byte) in addresses.zip(bytes) {
             self.expect_byte(address, 0, byte)?;
         }
+        self.expect_anchor()?;
         Ok(bytes)
+    }
+
+    /// Reads the byte that the step check wrote once more: two faults in the check's last frames may cancel out and leave
+    /// it wrong.
+    fn expect_anchor(&mut self) -> Outcome<(), D, P> {
+        match self.anchor {
+            Some(value) => self.expect_byte(anchor(), 0, value),
+            None => Ok(()),
+        }
     }
 
     /// Reads up to 16 bytes, which may be wrong if the bus is out of step.
