@@ -141,7 +141,7 @@ fn framed<S: Sample>(scheme: &'static StepForward<S>) -> Option<()> {
     let (view, length) = FrameView::new(bytes).ok()?;
     hide((view.number(), view.micros(), view.is_first(), view.tick(), view.period()));
     hide(view.is_after_loss());
-    view.heartbeats().for_each(|heartbeat| hide(heartbeat));
+    view.heartbeats().for_each(hide);
     let mut events = view.events();
     events.by_ref().for_each(hide);
     view.keyframes().for_each(hide);

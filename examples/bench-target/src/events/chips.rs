@@ -129,7 +129,11 @@ impl SpiDevice for Answers<'_> {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
         for operation in operations {
             match operation {
-                Operation::Write(bytes) => drop(bytes.first_chunk().map(|frame| self.answer(frame))),
+                Operation::Write(bytes) => {
+                    if let Some(frame) = bytes.first_chunk() {
+                        self.answer(frame);
+                    }
+                }
                 Operation::TransferInPlace(bytes) => {
                     let answer = bytes.first_chunk().map(|frame| self.answer(frame));
                     if let (Some(answer), Some(last)) = (answer, bytes.last_mut()) {
