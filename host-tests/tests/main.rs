@@ -13,6 +13,7 @@ mod chip_akd1500;
 mod chip_faults;
 mod chip_handshake;
 mod chip_network;
+mod chip_reckon;
 mod chip_search;
 mod chip_silicon;
 mod chip_words;

@@ -1,7 +1,7 @@
-//! tinyODIN and ODIN, clock by clock, written from the chips' public register-transfer code: no code of
+//! tinyODIN, ODIN and [`ReckOn`], clock by clock, written from the chips' public register-transfer code: no code of
 //! theirs is in here.
 //!
-//! One file each for what the chips share: the [SPI slave](spi), the [output bus](output), the
+//! `ReckOn` is a room of its own, [`reckon`]. One file each for what the others share: the [SPI slave](spi), the [output bus](output), the
 //! [pins](board) that a driver holds; and one for the [controller](chip). What the two do differently is a
 //! [`Kind`]: [`TinyOdin`], [`Odin`].
 //!
@@ -24,10 +24,12 @@ pub mod board;
 pub mod chip;
 mod odin;
 pub mod output;
+pub mod reckon;
 pub mod spi;
 mod tiny_odin;
 
 pub use board::{Board, Pins, Port, Spi};
 pub use chip::{Chip, Kind};
 pub use odin::Odin;
+pub use reckon::ReckOn;
 pub use tiny_odin::TinyOdin;

@@ -3,6 +3,7 @@
 //! | chip | spikes in | spikes out | how it was checked |
 //! |---|---|---|---|
 //! | [`TinyOdin`], [`Odin`] | parallel bus, 4-phase handshake | the same | bytes and words of the RTL in simulation; models of the chips, clock by clock |
+//! | [`ReckOn`] | parallel bus, 4-phase handshake, a pin for the time step | labels or potentials over a bus of bytes | a model, clock by clock, equal to the RTL in simulation |
 //! | [`Akd1500`] | a window onto memory, over SPI | the same | bytes of the vendor's library, and a model of its transport: every byte lost, doubled, flipped |
 //! | [`Xylo`] | counts in registers | a status register | the registers in the vendor's sources |
 //!
@@ -67,6 +68,7 @@ mod error;
 mod family;
 mod odin;
 mod output_source;
+mod reckon;
 mod tinyodin;
 mod xylo;
 
@@ -80,5 +82,10 @@ pub use odin::{
     Odin, OdinInput, OdinLearning, OdinNetwork, OdinNeuron, OdinRegisters, OdinSynapse,
 };
 pub use output_source::OutputSource;
+pub use reckon::{
+    DescribeReckOn, Programmed, ReckOn, ReckOnAnswer, ReckOnAnswers, ReckOnLearning, ReckOnNetwork,
+    ReckOnPair, ReckOnPort, ReckOnSample, ReckOnSettings, ReckOnShared, ReckOnStep, ReckOnTarget,
+    ReckOnTask, Started,
+};
 pub use tinyodin::{TinyOdin, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, TinyOdinRegisters};
 pub use xylo::{InputBank, Registers, Xylo, XyloMap, pack_counts};

@@ -40,6 +40,7 @@ mod rate_loop;
 mod real_boards;
 mod ros;
 mod ros_figure;
+mod rtl;
 mod schemes;
 mod setup;
 mod shell;

@@ -91,6 +91,7 @@ const LONG: &[Step] = &[
         "the other boards' firmware: the Pico's at 8 kHz flown, the rest linked",
         real_boards::more,
     ),
+    step("reckon", "the model of ReckOn against the chip's own code", crate::rtl::reckon),
     step("c-cost", "what the calls of C take beside the crate's", crate::c_library::cost),
     step("panic-free", "every codec without a panic handler, on two cores", checks::no_panic_all),
     step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", checks::bench_m0),

@@ -1,0 +1,479 @@
+//! `ReckOn`'s driver on the chip's model, which equals the chip's own code (`cargo verify reckon`).
+
+#![allow(clippy::needless_range_loop, reason = "a neuron's number is its column in several tables")]
+
+use embedded_hal::spi::{ErrorKind, SpiDevice};
+use host_tests::silicon::board::{CallFault, ClockFault};
+use host_tests::silicon::reckon::{Board, Port, Spi, State};
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
+use spikewire::chip::{
+    ChipError, DescribeReckOn, ReckOn, ReckOnAnswer, ReckOnLearning, ReckOnNetwork, ReckOnPair,
+    ReckOnSettings, ReckOnShared, ReckOnStep, ReckOnTarget, ReckOnTask,
+};
+
+type Chip = ReckOn<Spi, Port>;
+type Error = ChipError<ErrorKind, u64>;
+
+const PAIRS: [ReckOnPair; 2] =
+    [ReckOnPair { keep: 30_000, threshold: 300 }, ReckOnPair { keep: 33_000, threshold: 250 }];
+const RECURRENT: [[i8; 4]; 4] =
+    [[0, 60, -20, 11], [-128, 0, 127, 3], [40, -40, 0, 90], [5, 6, -7, 0]];
+const NETWORK: ReckOnNetwork<5, 4, 3> = ReckOnNetwork {
+    pairs: &PAIRS,
+    inputs: [[100, -30, 20, 7], [127, 127, -128, 60], [3, 2, 1, 90], [-9, 80, 80, 0], [1, 1, 1, 1]],
+    recurrent: &RECURRENT,
+    outputs: [[10, -20, 30], [-128, 127, 1], [50, 50, -50], [0, 9, 99]],
+    shared: ReckOnShared { shifts: [1, 2, 0], keep: 110, resets_to_zero: false },
+};
+
+fn on(board: &Board) -> Chip {
+    ReckOn::new(board.spi(), board.port(), Chip::MAX_CLOCKS)
+}
+
+/// The network in plain arithmetic: what fires at a tick, the outputs at it, then what acts after.
+#[derive(Clone)]
+struct Plain {
+    potentials: [i32; 4],
+    fired: [bool; 4],
+    outputs: [i32; 3],
+}
+
+impl Plain {
+    const NEW: Self = Self { potentials: [0; 4], fired: [false; 4], outputs: [0; 3] };
+
+    fn step(&mut self, inputs: &[u8]) -> [i16; 16] {
+        let clamp = |value: i32| value.clamp(-32_768, 32_767);
+        for n in 0..4 {
+            let ReckOnPair { keep, threshold } = PAIRS[n / 2];
+            let potential = self.potentials[n];
+            self.fired[n] = potential >= i32::from(threshold);
+            self.potentials[n] = (potential * i32::from(keep)) >> 15;
+            if self.fired[n] {
+                self.potentials[n] -= i32::from(threshold);
+            }
+        }
+        self.outputs.iter_mut().for_each(|output| *output = (*output * 110) >> 7);
+        let mut answer = [0; 16];
+        answer.iter_mut().zip(self.outputs).for_each(|(to, output)| *to = output as i16);
+        for source in 0..5 {
+            let is_input = inputs.contains(&source);
+            let at = usize::from(source);
+            let is_spike = at < 4 && self.fired[at];
+            for n in 0..4 {
+                let input = if is_input { i32::from(NETWORK.inputs[at][n]) << 1 } else { 0 };
+                let own = if is_spike { i32::from(RECURRENT[at][n]) << 2 } else { 0 };
+                self.potentials[n] = clamp(self.potentials[n] + clamp(input + own));
+            }
+            for k in 0..3 {
+                let own = if is_spike { i32::from(NETWORK.outputs[at][k]) } else { 0 };
+                self.outputs[k] = clamp(self.outputs[k] + own);
+            }
+        }
+        answer
+    }
+}
+
+#[test]
+fn a_network_answers_as_plain_arithmetic_does_step_by_step() {
+    let board = Board::new(10, 1);
+    let mut chip = on(&board);
+    let mut programmed = chip.reset(&mut board.clone()).unwrap();
+    programmed.load(&NETWORK, |_| ()).unwrap();
+    let mut started = programmed.run(&ReckOnSettings::POTENTIALS).unwrap();
+    let mut random = Pcg32::seed_from_u64(3);
+    let mut spikes = 0;
+    for _ in 0..4 {
+        let mut plain = Plain::NEW;
+        let mut sample = started.begin().unwrap();
+        for _ in 0..100 {
+            let inputs: Vec<u8> = (0..5).filter(|_| random.next_u32() % 3 == 0).collect();
+            for &input in &inputs {
+                sample.send(input).unwrap();
+            }
+            let answer = sample.step(ReckOnStep::default()).unwrap();
+            assert_eq!(answer, Some(ReckOnAnswer::Potentials(plain.step(&inputs))));
+        }
+        let (answer, next) = sample.end().unwrap();
+        assert_eq!(answer, ReckOnAnswer::Potentials(plain.step(&[])));
+        started = next;
+        spikes += std::mem::take(&mut board.pins().chip.fired).len();
+    }
+    assert!(spikes > 100, "{spikes}");
+    started.program().unwrap().verify(&NETWORK).unwrap();
+}
+
+#[test]
+fn the_label_is_the_output_that_was_highest_most_often() {
+    let board = Board::new(10, 1);
+    let mut chip = on(&board);
+    let mut programmed = chip.reset(&mut board.clone()).unwrap();
+    programmed.load(&NETWORK, |_| ()).unwrap();
+    let mut started = programmed.run(&ReckOnSettings::LABEL).unwrap();
+    for (inputs, label) in [(&[1][..], 1), (&[2], 2)] {
+        let mut sample = started.begin().unwrap();
+        for _ in 0..40 {
+            for &input in inputs {
+                sample.send(input).unwrap();
+            }
+            let step = ReckOnStep { counts: true, target: None };
+            assert_eq!(sample.step(step).unwrap(), None);
+        }
+        let (answer, next) = sample.end().unwrap();
+        assert_eq!(answer, ReckOnAnswer::Label(label));
+        started = next;
+    }
+}
+
+const LEARNING: ReckOnLearning = ReckOnLearning {
+    learns: [true; 3],
+    traces: [0; 3],
+    signal: 4,
+    thresholds: [-100, 0, 100, 200],
+    slopes: [1, 4, 8, 8, 4],
+    rates: [(8, 15), (8, 15), (2, 20)],
+    is_linear: true,
+};
+
+#[test]
+fn learning_moves_an_outputs_potential_towards_its_target() {
+    let board = Board::new(10, 1);
+    let mut chip = on(&board);
+    let mut programmed = chip.reset(&mut board.clone()).unwrap();
+    programmed.load(&NETWORK, |_| ()).unwrap();
+    let settings = ReckOnSettings { learning: Some(LEARNING), ..ReckOnSettings::POTENTIALS };
+    let mut started = programmed.run(&settings).unwrap();
+    let mut errors = vec![];
+    for _ in 0..40 {
+        let mut sample = started.begin().unwrap();
+        let mut error = 0;
+        for at in 0..20 {
+            for input in [0, 1, 3] {
+                sample.send(input).unwrap();
+            }
+            let target = ReckOnTarget::Potentials(&[300, -200, 50]);
+            let step = ReckOnStep { counts: false, target: (at > 4).then_some(target) };
+            let Some(ReckOnAnswer::Potentials(outputs)) = sample.step(step).unwrap() else {
+                panic!("no potentials")
+            };
+            let away = |output: i16, target: i32| (i32::from(output) - target).abs();
+            if at > 4 {
+                error += away(outputs[0], 300) + away(outputs[1], -200) + away(outputs[2], 50);
+            }
+        }
+        errors.push(error);
+        started = sample.end().unwrap().1;
+    }
+    let (first, last) = (errors[0], errors[errors.len() - 1]);
+    assert!(2 * last < first, "{errors:?}");
+    let mut programmed = started.program().unwrap();
+    assert!(programmed.verify(&NETWORK).is_err(), "weights have moved");
+}
+
+#[test]
+fn a_label_is_told_once_and_learnt() {
+    let board = Board::new(10, 1);
+    let mut chip = on(&board);
+    let mut programmed = chip.reset(&mut board.clone()).unwrap();
+    programmed.load(&NETWORK, |_| ()).unwrap();
+    let settings = ReckOnSettings {
+        learning: Some(ReckOnLearning { is_linear: false, ..LEARNING }),
+        ..ReckOnSettings::LABEL
+    };
+    let mut sample = programmed.run(&settings).unwrap().begin().unwrap();
+    for _ in 0..20 {
+        sample.send(1).unwrap();
+        let target = Some(ReckOnTarget::Label(2));
+        sample.step(ReckOnStep { counts: true, target }).unwrap();
+    }
+    assert!(matches!(sample.end().unwrap().0, ReckOnAnswer::Label(0..=2)));
+    assert!(chip.started().unwrap().program().unwrap().verify(&NETWORK).is_err());
+}
+
+#[test]
+fn a_target_that_does_not_fit_is_refused_and_the_sample_goes_on() {
+    let board = Board::new(10, 1);
+    let mut chip = on(&board);
+    let mut programmed = chip.reset(&mut board.clone()).unwrap();
+    programmed.load(&NETWORK, |_| ()).unwrap();
+    let mut sample = programmed.run(&ReckOnSettings::POTENTIALS).unwrap().begin().unwrap();
+    for target in [ReckOnTarget::Label(0), ReckOnTarget::Potentials(&[1])] {
+        let step = ReckOnStep { counts: false, target: Some(target) };
+        assert!(matches!(sample.step(step), Err(Error::OutOfRange { .. })));
+    }
+    assert!(matches!(sample.send(5), Err(Error::OutOfRange { .. })));
+    sample.step(ReckOnStep::default()).unwrap();
+}
+
+#[test]
+fn words_are_those_of_the_chips_documentation() {
+    #[derive(Debug, Default)]
+    struct Heard(Vec<u8>);
+    impl embedded_hal::spi::ErrorType for Heard {
+        type Error = ErrorKind;
+    }
+    impl SpiDevice for Heard {
+        fn transaction(
+            &mut self,
+            operations: &mut [embedded_hal::spi::Operation<'_, u8>],
+        ) -> Result<(), ErrorKind> {
+            for operation in operations {
+                match operation {
+                    embedded_hal::spi::Operation::Write(bytes) => self.0.extend_from_slice(bytes),
+                    embedded_hal::spi::Operation::TransferInPlace(bytes) => {
+                        self.0.extend_from_slice(bytes);
+                    }
+                    _ => panic!("neither"),
+                }
+            }
+            Ok(())
+        }
+    }
+    let board = Board::new(10, 1);
+    let mut chip = ReckOn::new(Heard::default(), board.port(), 10);
+    let error = chip.reset(&mut board.clone()).unwrap_err();
+    assert!(matches!(error, ChipError::ReadBack { .. }));
+    let (heard, _) = chip.release();
+    let words: Vec<u32> =
+        heard.0.as_chunks().0.iter().map(|&bytes| u32::from_be_bytes(bytes)).collect();
+    // Output weights of row 0x1AA: written, and read.
+    assert_eq!(words, [0x5001_06A8, 0xA53C_0F96, 0xD001_06A8, 0xFFFF_FFFF]);
+}
+
+#[test]
+fn a_tick_that_comes_too_early_stops_the_chip_and_the_driver_says_so() {
+    let board = Board::new(10, 1);
+    let mut chip = ReckOn::new(board.spi(), board.port(), 2_000);
+    let mut programmed = chip.reset(&mut board.clone()).unwrap();
+    programmed.load(&NETWORK, |_| ()).unwrap();
+    let mut sample = programmed.run(&ReckOnSettings::POTENTIALS).unwrap().begin().unwrap();
+    let mut pins = board.pins();
+    for is_high in [true, false, true, false] {
+        let mut inputs = pins.chip.inputs();
+        inputs.tick = is_high;
+        pins.chip.set_inputs(inputs);
+        pins.chip.run(4);
+    }
+    pins.chip.run(1_000);
+    assert!(pins.chip.timing_error() && pins.chip.outputs().error_or_ready);
+    drop(pins);
+    assert!(matches!(sample.step(ReckOnStep::default()), Err(Error::Handshake(_))));
+    assert!(matches!(chip.sample().unwrap_err(), Error::NotReset));
+}
+
+#[test]
+fn sample_falling_while_the_chip_learns_never_ends() {
+    let board = Board::new(10, 1);
+    let mut chip = on(&board);
+    let mut programmed = chip.reset(&mut board.clone()).unwrap();
+    programmed.load(&NETWORK, |_| ()).unwrap();
+    let settings = ReckOnSettings { learning: Some(LEARNING), ..ReckOnSettings::LABEL };
+    let settings = ReckOnSettings { task: ReckOnTask::Classification, ..settings };
+    let mut sample = programmed.run(&settings).unwrap().begin().unwrap();
+    let step = ReckOnStep { counts: true, target: Some(ReckOnTarget::Label(1)) };
+    sample.step(step).unwrap();
+    let mut pins = board.pins();
+    let mut inputs = pins.chip.inputs();
+    inputs.tick = true;
+    pins.chip.set_inputs(inputs);
+    while pins.chip.state() != State::Learn {
+        pins.chip.run(1);
+    }
+    inputs.sample = false;
+    pins.chip.set_inputs(inputs);
+    pins.chip.run(100_000);
+    assert_eq!(pins.chip.state(), State::Learn);
+}
+
+#[test]
+fn spi_needs_an_eighth_of_the_chips_clock_to_read() {
+    let reads = |ratio: u32| {
+        let board = Board::new(ratio, 1);
+        let mut chip = on(&board);
+        chip.reset(&mut board.clone()).is_ok()
+    };
+    let ratios: Vec<u32> = (2..16).filter(|&ratio| !reads(ratio)).collect();
+    assert_eq!(ratios, [2, 3, 4, 5, 6, 7]);
+}
+
+/// What the caller was told the chip holds.
+fn expected(board: &Board, network: &impl DescribeReckOn, at: &str) {
+    let pins = board.pins();
+    for input in 0..network.inputs() {
+        for neuron in 0..network.neurons() {
+            let word = pins.chip.input_weights[usize::from(input << 4 | neuron >> 4)];
+            let weight = (word >> (8 * (neuron & 15))) as i8;
+            assert_eq!(weight, network.input_weight(input, neuron), "{at}");
+        }
+    }
+    for from in 0..network.neurons() {
+        for to in 0..network.neurons() {
+            let word = pins.chip.recurrent_weights[usize::from(from << 4 | to >> 4)];
+            let weight = (word >> (8 * (to & 15))) as i8;
+            assert_eq!(weight, network.recurrent_weight(from, to), "{at}");
+        }
+        for output in 0..network.outputs() {
+            let weight = (pins.chip.output_weights[usize::from(from)] >> (8 * output)) as i8;
+            assert_eq!(weight, network.output_weight(from, output), "{at}");
+        }
+    }
+    assert_eq!([94, 95, 96].map(|register| pins.chip.register_value(register)), [4, 3, 2], "{at}");
+    assert_eq!([12, 13, 14].map(|register| pins.chip.register_value(register)), [1, 2, 0], "{at}");
+    assert_eq!(pins.chip.register_value(69), 110, "{at}");
+}
+
+/// Calls in any order, with up to three SPI clocks lost or doubled and up to two calls of the port failing: what is
+/// `Ok` is as the caller was told, and every answer is that of plain arithmetic.
+fn search(seed: u64, count: &mut [u32; 2]) {
+    let mut random = Pcg32::seed_from_u64(seed);
+    let mut below = |end: u32| random.next_u32() % end;
+    let ratio = 10 + below(10);
+    let board = Board::new(ratio, 1 + below(4));
+    let mut chip = ReckOn::new(board.spi(), board.port(), 3_000);
+    let mut last = 0;
+    for _ in 0..below(4) {
+        // Further apart than a register's frame and its check: closer ones may cancel out.
+        last += 400 + u64::from(below(240_000));
+        let fault = if below(2) == 0 { ClockFault::Lost } else { ClockFault::Doubled };
+        board.pins().clock_faults.push_back((last, fault));
+    }
+    let mut last = 0;
+    for _ in 0..below(3) {
+        last += 1 + u64::from(below(12_000));
+        let fault = if below(2) == 0 { CallFault::Before } else { CallFault::After };
+        board.pins().call_faults.push_back((last, fault));
+    }
+    let mut plain = Plain::NEW;
+    let mut is_loaded = false;
+    for call in 0..14 {
+        let at = format!("seed {seed}, call {call}");
+        let next = match () {
+            () if chip.sample().is_ok() => 5,
+            () if chip.started().is_ok() => 2,
+            () if chip.programmed().is_ok() && is_loaded => 1,
+            () => 0,
+        };
+        let any = below(6);
+        let is_ok = match if below(3) == 0 { any } else { next } {
+            0 => match chip.reset(&mut board.clone()) {
+                Ok(mut programmed) => {
+                    is_loaded = programmed.load(&NETWORK, |_| ()).is_ok();
+                    if is_loaded {
+                        expected(&board, &NETWORK, &at);
+                    }
+                    is_loaded
+                }
+                Err(_) => false,
+            },
+            1 if is_loaded => match chip.programmed() {
+                Ok(programmed) => programmed.run(&ReckOnSettings::POTENTIALS).is_ok(),
+                Err(_) => false,
+            },
+            2 => {
+                let begins = chip.started().is_ok_and(|started| started.begin().is_ok());
+                if begins {
+                    plain = Plain::NEW;
+                }
+                begins
+            }
+            3 => match chip.started().map(spikewire::chip::Started::program) {
+                Ok(Ok(mut programmed)) => {
+                    let is_same = programmed.verify(&NETWORK).is_ok();
+                    if is_same {
+                        expected(&board, &NETWORK, &at);
+                    }
+                    is_same
+                }
+                _ => false,
+            },
+            4 => match chip.sample() {
+                Ok(sample) => match sample.end() {
+                    Ok((answer, _)) => {
+                        assert_eq!(answer, ReckOnAnswer::Potentials(plain.step(&[])), "{at}");
+                        true
+                    }
+                    Err(_) => false,
+                },
+                Err(_) => false,
+            },
+            _ => match chip.sample() {
+                Ok(mut sample) => (0..below(12)).all(|_| {
+                    let inputs: Vec<u8> = (0..5).filter(|_| below(3) == 0).collect();
+                    let sent = inputs.iter().all(|&input| sample.send(input).is_ok());
+                    if !sent {
+                        return false;
+                    }
+                    match sample.step(ReckOnStep::default()) {
+                        Ok(answer) => {
+                            let told = Some(ReckOnAnswer::Potentials(plain.step(&inputs)));
+                            assert_eq!(answer, told, "{at}");
+                            true
+                        }
+                        Err(_) => false,
+                    }
+                }),
+                Err(_) => false,
+            },
+        };
+        count[usize::from(is_ok)] += 1;
+    }
+}
+
+#[test]
+fn calls_in_any_order_with_faults_are_right_or_refused() {
+    let mut count = [0; 2];
+    (0..4).for_each(|seed| search(seed, &mut count));
+    assert!(count.iter().all(|&count| count > 10), "{count:?}");
+}
+
+#[test]
+#[ignore = "takes minutes: run with --release"]
+fn two_thousand_orders_with_faults_are_right_or_refused() {
+    let mut count = [0; 2];
+    (1_000..3_000).for_each(|seed| search(seed, &mut count));
+    println!("calls refused, and Ok: {count:?}");
+}
+
+/// Clocks from a tick to the ready line, of a network of as many inputs as neurons.
+fn clocks_of_a_step(size: u16, events: u16) -> u64 {
+    let board = Board::new(10, 1);
+    let mut chip = on(&board);
+    let mut programmed = chip.reset(&mut board.clone()).unwrap();
+    programmed.set_register(94, u32::from(size) - 1).unwrap();
+    programmed.set_register(95, u32::from(size) - 1).unwrap();
+    board.pins().chip.neurons.fill(0x7FFF << 100);
+    let started = programmed.run(&ReckOnSettings::LABEL).unwrap();
+    started.begin().unwrap();
+    let mut pins = board.pins();
+    let mut inputs = pins.chip.inputs();
+    for input in 0..events {
+        (inputs.address, inputs.request) = (input as u8, true);
+        pins.chip.set_inputs(inputs);
+        pins.chip.run(5);
+        inputs.request = false;
+        pins.chip.set_inputs(inputs);
+        pins.chip.run(5);
+    }
+    inputs.tick = true;
+    pins.chip.set_inputs(inputs);
+    pins.chip.run(4);
+    let before = pins.chip.clocks;
+    while !pins.chip.is_ready() {
+        pins.chip.run(1);
+    }
+    4 + pins.chip.clocks - before
+}
+
+#[test]
+fn a_step_takes_two_clocks_a_neuron_and_one_for_each_event_and_neuron() {
+    for size in [16, 64, 256] {
+        for events in [0, 1, 7, size] {
+            let [neurons, count] = [size, events].map(u64::from);
+            assert_eq!(
+                clocks_of_a_step(size, events),
+                (2 + count) * neurons + 4,
+                "{size} {events}"
+            );
+        }
+    }
+}

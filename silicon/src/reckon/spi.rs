@@ -1,0 +1,165 @@
+//! The SPI slave: a header of 32 bits, then as many words of 32 as it says, counted from reset, without a chip select.
+
+/// Flags of what the core is asked to write: the memories in order of their codes, then the nine seeds.
+pub(super) const PROG_NEURON: u16 = 1;
+/// An output neuron.
+pub(super) const PROG_OUTPUT: u16 = 1 << 1;
+/// Weights of inputs.
+pub(super) const PROG_INPUT_WEIGHTS: u16 = 1 << 2;
+/// Recurrent weights.
+pub(super) const PROG_RECURRENT_WEIGHTS: u16 = 1 << 3;
+/// Weights of outputs.
+pub(super) const PROG_OUTPUT_WEIGHTS: u16 = 1 << 4;
+/// The first of nine seeds.
+pub(super) const PROG_SEED: u16 = 1 << 5;
+
+/// Registers up to 104.
+pub(super) const REGISTERS: usize = 105;
+
+/// What the slave holds. It runs on SCK alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct SpiSlave {
+    count: u32,
+    header: u32,
+    shift_in: u32,
+    shift_out: u32,
+    /// The address of the word that the core is asked for.
+    pub(super) address: u16,
+    /// The word to write.
+    pub(super) data: u32,
+    /// What the core is asked to write.
+    pub(super) writing: u16,
+    /// What the core is asked to read: the memories in order of their codes.
+    pub(super) reading: u8,
+    registers: [u32; REGISTERS],
+}
+
+impl Default for SpiSlave {
+    fn default() -> Self {
+        Self {
+            count: 0,
+            header: 0,
+            shift_in: 0,
+            shift_out: 0,
+            address: 0,
+            data: 0,
+            writing: 0,
+            reading: 0,
+            registers: [0; REGISTERS],
+        }
+    }
+}
+
+/// A register's bits; 0 where there is none.
+const fn width(register: usize) -> u32 {
+    match register {
+        0 | 2 | 3 | 8 | 10 | 11 | 21 | 23 | 25..=27 | 30..=33 => 1,
+        20 => 2,
+        9 | 12..=17 | 19 => 3,
+        18 | 96 | 104 => 4,
+        74..=84 | 99..=103 => 5,
+        22 | 69 | 94 | 95 => 8,
+        1 => 9,
+        98 => 12,
+        89 => 15,
+        70..=73 => 16,
+        93 => 17,
+        87 => 22,
+        85 | 86 => 25,
+        88 | 90..=92 => 30,
+        64..=68 => 32,
+        _ => 0,
+    }
+}
+
+/// A register's value after reset; `None` if reset leaves it.
+const fn reset_value(register: usize) -> Option<u32> {
+    match register {
+        0 | 3 | 11 | 26 | 31 => Some(1),
+        9 => Some(7),
+        69 => Some(0x7A),
+        94 | 95 => Some(0xFF),
+        96 => Some(0xF),
+        2 | 8 | 10 | 12..=23 | 25 | 27 | 30 | 32 | 33 | 65..=68 => Some(0),
+        _ => None,
+    }
+}
+
+impl SpiSlave {
+    /// What reset clears.
+    pub(super) fn reset(&mut self) {
+        (self.count, self.header, self.shift_out) = (0, 0, 0);
+        (self.writing, self.reading) = (0, 0);
+        for (at, register) in self.registers.iter_mut().enumerate() {
+            if let Some(value) = reset_value(at) {
+                *register = value;
+            }
+        }
+    }
+
+    /// A configuration register.
+    pub(super) const fn register(&self, register: usize) -> u32 {
+        self.registers[register]
+    }
+
+    /// Puts a value in a register, as tests do without the bus.
+    pub(super) fn set_register(&mut self, register: usize, value: u32) {
+        self.registers[register] = value & ((1_u64 << width(register)) - 1) as u32;
+    }
+
+    /// The line to the master, without the request of a target.
+    pub(super) const fn output(&self, read: u32) -> bool {
+        let is_first = self.header >> 31 == 1 && self.count & 31 == 0 && self.count >> 5 != 0;
+        (if is_first { read } else { self.shift_out }) >> 31 == 1
+    }
+
+    /// SCK rises.
+    pub(super) fn rise(&mut self, bit: bool, is_reset: bool) {
+        let word = self.shift_in << 1 | u32::from(bit);
+        let is_register = self.header >> 28 == 0 && self.count & 31 == 31 && self.count >> 5 != 0;
+        let register = usize::from(self.header as u16);
+        if is_register && !is_reset && register < REGISTERS {
+            self.set_register(register, word);
+        }
+        self.shift_in = word;
+    }
+
+    /// SCK falls. `read` is the word that the core read last.
+    pub(super) fn fall(&mut self, read: u32) {
+        let Self { count, header, shift_in, shift_out, .. } = *self;
+        let (words, is_last) = (count >> 5, count & 31 == 31);
+        let asked = if count == 31 { shift_in } else { header } >> 16 & 0xFFF;
+        self.shift_out = shift_out << 1;
+        let memory = |header: u32| match header >> 28 & 7 {
+            code @ 1..=5 => 1_u8 << (code - 1),
+            _ => 0,
+        };
+        if header >> 31 == 0 && is_last && words != 0 {
+            self.shift_out = 0;
+            let seed = match (header >> 28 & 7, header as u16) {
+                (0, register @ 85..=93) => PROG_SEED << (register - 85),
+                _ => 0,
+            };
+            self.writing = u16::from(memory(header)) | seed;
+            self.address = (header as u16).wrapping_add(words as u16).wrapping_sub(1);
+            self.data = shift_in;
+        } else if shift_in >> 31 == 1 && count == 31 {
+            self.reading = memory(shift_in);
+            self.address = shift_in as u16;
+        } else if header >> 31 == 1 && is_last && words != 0 && words < asked {
+            self.reading = memory(header);
+            self.address = (header as u16).wrapping_add(words as u16);
+        } else if header >> 31 == 1 && count & 31 == 0 && words != 0 {
+            self.shift_out = read << 1;
+            (self.reading, self.writing) = (0, 0);
+        } else if count & 31 == 0 {
+            self.shift_out = shift_out;
+            self.writing = 0;
+        }
+        if count == 31 {
+            self.header = shift_in;
+        }
+        let is_end = is_last && words >= asked;
+        self.count = if is_end { 0 } else { (count + 1) & 0x1_FFFF };
+    }
+}

@@ -1,0 +1,90 @@
+//! The wires of `ReckOn` beside SPI.
+
+/// The wires of `ReckOn` beside SPI, all active high.
+///
+/// | line | direction | |
+/// |---|---|---|
+/// | `AERIN_ADDR`, `AERIN_TAR_EN` | to the chip | an input's number, or a byte of a target: nine lines, written with one store |
+/// | `AERIN_REQ`, `AERIN_ACK` | to the chip, from it | the handshake of an input |
+/// | `OUT_DATA` | from the chip | a byte of its answer, eight lines |
+/// | `OUT_REQ`, `OUT_ACK` | from the chip, to it | the handshake of such a byte |
+/// | `SAMPLE`, `TIME_TICK` | to the chip | a recording's length, and its time steps |
+/// | `TARGET_VALID`, `INFER_ACC` | to the chip | whether a step learns, and whether it counts for the label |
+/// | `TIMING_ERROR_RDY` | from the chip | whether a tick may come |
+/// | `RST` | to the chip | pulsed at the start, and where chip and bus may be out of step |
+pub trait ReckOnPort {
+    /// The error of the port; `Infallible` for the microcontroller's own pins.
+    type Error;
+
+    /// Puts a byte on `AERIN_ADDR`, and drives `AERIN_TAR_EN`. Both must have settled at the chip when this returns.
+    ///
+    /// # Errors
+    /// The port failed.
+    fn set_input(&mut self, byte: u8, is_target: bool) -> Result<(), Self::Error>;
+
+    /// Drives `AERIN_REQ`.
+    ///
+    /// # Errors
+    /// See [`set_input`](Self::set_input).
+    fn set_input_request(&mut self, is_high: bool) -> Result<(), Self::Error>;
+
+    /// Reads `AERIN_ACK`.
+    ///
+    /// # Errors
+    /// See [`set_input`](Self::set_input).
+    fn input_acknowledge(&mut self) -> Result<bool, Self::Error>;
+
+    /// Reads `OUT_REQ`.
+    ///
+    /// # Errors
+    /// See [`set_input`](Self::set_input).
+    fn output_request(&mut self) -> Result<bool, Self::Error>;
+
+    /// Reads `OUT_DATA`.
+    ///
+    /// # Errors
+    /// See [`set_input`](Self::set_input).
+    fn output(&mut self) -> Result<u8, Self::Error>;
+
+    /// Drives `OUT_ACK`.
+    ///
+    /// # Errors
+    /// See [`set_input`](Self::set_input).
+    fn set_output_acknowledge(&mut self, is_high: bool) -> Result<(), Self::Error>;
+
+    /// Drives `SAMPLE`.
+    ///
+    /// # Errors
+    /// See [`set_input`](Self::set_input).
+    fn set_sample(&mut self, is_high: bool) -> Result<(), Self::Error>;
+
+    /// Drives `TIME_TICK`.
+    ///
+    /// # Errors
+    /// See [`set_input`](Self::set_input).
+    fn set_tick(&mut self, is_high: bool) -> Result<(), Self::Error>;
+
+    /// Drives `TARGET_VALID`.
+    ///
+    /// # Errors
+    /// See [`set_input`](Self::set_input).
+    fn set_target_valid(&mut self, is_high: bool) -> Result<(), Self::Error>;
+
+    /// Drives `INFER_ACC`.
+    ///
+    /// # Errors
+    /// See [`set_input`](Self::set_input).
+    fn set_infer(&mut self, is_high: bool) -> Result<(), Self::Error>;
+
+    /// Reads `TIMING_ERROR_RDY`.
+    ///
+    /// # Errors
+    /// See [`set_input`](Self::set_input).
+    fn ready(&mut self) -> Result<bool, Self::Error>;
+
+    /// Drives `RST`.
+    ///
+    /// # Errors
+    /// See [`set_input`](Self::set_input).
+    fn set_reset(&mut self, is_high: bool) -> Result<(), Self::Error>;
+}

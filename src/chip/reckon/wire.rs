@@ -1,0 +1,69 @@
+//! SPI without chip select: a header of 32 bits, then words of 32, which the chip counts from its reset on.
+
+use embedded_hal::spi::SpiDevice;
+
+const READ: u32 = 1 << 31;
+
+/// A word of one of the chip's memories.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Address(pub(super) u32);
+
+impl Address {
+    /// A quarter of what a pair of neurons holds.
+    pub(super) const fn pair(pair: u16, quarter: u32) -> Self {
+        Self(1 << 28 | (pair as u32) << 2 | quarter)
+    }
+
+    /// Weights from an input to the first four neurons; the next address holds the next four.
+    pub(super) const fn input(input: u16) -> Self {
+        Self(3 << 28 | (input as u32) << 6)
+    }
+
+    /// Weights from a neuron to the first four neurons, likewise.
+    pub(super) const fn recurrent(neuron: u16) -> Self {
+        Self(4 << 28 | (neuron as u32) << 6)
+    }
+
+    /// Weights from a neuron to the first four outputs, likewise.
+    pub(super) const fn output(neuron: u16) -> Self {
+        Self(5 << 28 | (neuron as u32) << 2)
+    }
+
+    /// A word that no network uses.
+    pub(super) const fn anchor() -> Self {
+        Self::output(0x1AA)
+    }
+
+    /// The address some words on.
+    pub(super) const fn next(self, words: u16) -> Self {
+        Self(self.0.wrapping_add(words as u32))
+    }
+}
+
+/// The bus, once it is in step.
+#[derive(Debug)]
+pub(super) struct Wire<D> {
+    pub(super) device: D,
+}
+
+impl<D: SpiDevice> Wire<D> {
+    pub(super) fn configure(&mut self, register: u16, value: u32) -> Result<(), D::Error> {
+        self.write(Address(register.into()), value)
+    }
+
+    pub(super) fn write(&mut self, address: Address, word: u32) -> Result<(), D::Error> {
+        self.device.write(&frame(address.0, word))
+    }
+
+    pub(super) fn read(&mut self, address: Address) -> Result<u32, D::Error> {
+        // The chip ignores the word that is sent: all ones, so that a fault makes no header of a write of it.
+        let mut bytes = frame(READ | address.0, u32::MAX);
+        self.device.transfer_in_place(&mut bytes)?;
+        Ok(u64::from_be_bytes(bytes) as u32)
+    }
+}
+
+/// A header that asks for one word, and the word.
+fn frame(header: u32, word: u32) -> [u8; 8] {
+    (u64::from(header | 1 << 16) << 32 | u64::from(word)).to_be_bytes()
+}
