@@ -2,14 +2,13 @@
 
 use crate::{
     boards::Board,
-    firmware,
+    drawing, firmware,
     flown::{self, Flown},
     image,
     names::full_name,
     paths, picture, qemu, setup,
     signal::Signal,
     usage::usage,
-    write,
 };
 use anyhow::{Result, bail};
 use std::path::PathBuf;
@@ -28,7 +27,7 @@ pub fn demo(args: &[String]) -> Result<()> {
 
 /// Draws the flight into the page.
 pub fn write() -> Result<()> {
-    write::keep(&fly()?, "docs/flight.svg")
+    drawing::keep(&fly()?, "docs/flight.svg")
 }
 
 /// Flies, and draws the flight below the target directory.

@@ -2,7 +2,10 @@
 //!
 //! The colours are Okabe and Ito's, which colour-blind people tell apart; polarity is also a direction.
 
+use crate::paths;
+use anyhow::{Context, Result};
 use plotters::{coord::Shift, prelude::*};
+use std::{fs, path::Path};
 
 pub const SIGNAL: RGBColor = RGBColor(165, 165, 165);
 pub const DECODED: RGBColor = RGBColor(0, 114, 178);
@@ -14,7 +17,7 @@ pub const MARGIN: i32 = 16;
 pub const FONT: &str = "sans-serif";
 
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-pub type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+pub type Drawn = std::result::Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 /// The last line of a heading of 100 pixels.
 pub fn legend(area: &Area) -> Drawn {
@@ -29,5 +32,12 @@ pub fn legend(area: &Area) -> Drawn {
         area.draw(&PathElement::new([(x, 76), (x, 91)], colour.stroke_width(2)))?;
         area.draw_text(label, &style, (x + 10, 76))?;
     }
+    Ok(())
+}
+
+/// Puts a picture into the pages.
+pub fn keep(picture: &Path, page: &str) -> Result<()> {
+    fs::copy(picture, paths::root().join(page)).with_context(|| page.to_owned())?;
+    println!("{page} has it.");
     Ok(())
 }

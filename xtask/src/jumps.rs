@@ -2,10 +2,9 @@
 //! of them is.
 
 use crate::{
-    drawing::{Area, Drawn, FONT, LEFT, MARGIN, SIGNAL},
+    drawing::{self, Area, Drawn, FONT, LEFT, MARGIN, SIGNAL},
     paths,
     signal::Signal,
-    write,
 };
 use anyhow::{Result, ensure};
 use plotters::prelude::*;
@@ -67,7 +66,7 @@ pub fn jumps() -> Result<PathBuf> {
 
 /// Draws it into the page.
 pub fn write() -> Result<()> {
-    write::keep(&jumps()?, PAGE)
+    drawing::keep(&jumps()?, PAGE)
 }
 
 /// The whole flight through a code, of which the second is kept.

@@ -1,9 +1,8 @@
 //! `cargo verify ros`: the nodes in a ROS 1 of the distribution; `cargo verify ros2`: those of ROS 2 against another DDS.
 
 use crate::{
-    host, paths, ros_figure, setup,
+    drawing, host, paths, ros_figure, setup,
     shell::{cargo, command, output, run},
-    write,
 };
 use anyhow::Result;
 use std::{
@@ -93,7 +92,7 @@ fn environment(directory: &Path) -> Result<PathBuf> {
 
 /// Draws the figure into the page.
 pub fn write() -> Result<()> {
-    write::keep(&Ros::ready()?.figure()?, ros_figure::PAGE)
+    drawing::keep(&Ros::ready()?.figure()?, ros_figure::PAGE)
 }
 
 /// The package `spikewire` and the catkin packages, built and installed below `target`.

@@ -2,10 +2,10 @@
 //! every container of the same frames.
 
 use crate::{
+    drawing,
     host::spikewire,
     paths,
     shell::{command, output, run},
-    write,
 };
 use anyhow::{Context, Result, ensure};
 use std::{
@@ -51,7 +51,7 @@ pub fn video() -> Result<()> {
 /// Draws the clip's frame and events into the page.
 pub fn write() -> Result<()> {
     video()?;
-    write::keep(&paths::target().join("frames.png"), "docs/frames.png")
+    drawing::keep(&paths::target().join("frames.png"), "docs/frames.png")
 }
 
 /// Compares the events of one clip without loss as raw frames and in FFV1, in every pixel format and range of brightness.

@@ -1,10 +1,8 @@
 //! `cargo xtask write`: all that is generated, written again.
 
-use crate::{
-    bench, c_library, demo, firmware, jumps, paths, python, ros, schemes, usage::usage, video,
-};
+use crate::{bench, c_library, demo, firmware, jumps, python, ros, schemes, usage::usage, video};
 use anyhow::{Context, Result};
-use std::{collections::HashSet, fs, path::Path};
+use std::collections::HashSet;
 
 /// Something generated.
 struct Part {
@@ -47,12 +45,5 @@ pub fn write(names: &[String]) -> Result<()> {
         println!("=== {name}: {files}");
         write().with_context(|| format!("cargo xtask write {name}"))?;
     }
-    Ok(())
-}
-
-/// Puts a picture into the page.
-pub fn keep(picture: &Path, page: &str) -> Result<()> {
-    fs::copy(picture, paths::root().join(page)).with_context(|| page.to_owned())?;
-    println!("{page} has it.");
     Ok(())
 }
