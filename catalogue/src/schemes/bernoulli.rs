@@ -40,8 +40,13 @@ impl Entry for Scheme {
             Parameter::MAX,
             Parameter::MEAN,
             Parameter::POWER,
-            Parameter::new("seed", Kind::Count, Unit::None, "where the generator starts; each channel draws from a stream of its own")
-                .with_default("0"),
+            Parameter::new(
+                "seed",
+                Kind::Count,
+                Unit::None,
+                "where the generator starts; each channel draws from a stream of its own",
+            )
+            .with_default("0"),
         ],
     };
 

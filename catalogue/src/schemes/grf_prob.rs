@@ -37,8 +37,13 @@ impl Entry for Scheme {
             Parameter::MIN,
             Parameter::MAX,
             Parameter::BETA,
-            Parameter::new("seed", Kind::Count, Unit::None, "where the generator starts; each channel draws from a stream of its own")
-                .with_default("0"),
+            Parameter::new(
+                "seed",
+                Kind::Count,
+                Unit::None,
+                "where the generator starts; each channel draws from a stream of its own",
+            )
+            .with_default("0"),
         ],
     };
 
