@@ -100,6 +100,11 @@ impl Build for Scheme {
 
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
         let slots = Self::shape(settings)?.slots as u8;
+        // A code computes all digits that it has room for: those of half of them cost half.
+        if slots <= 8 {
+            let scheme = WeightedPhase::<S, 8>::try_new(settings.range()?)?;
+            return visitor.visit(scheme.try_with_slots(slots)?, WeightedPhase::<S, 8>::START);
+        }
         let scheme = dynamic::WeightedPhase::<S>::try_new(settings.range()?)?;
         visitor.visit(scheme.try_with_slots(slots)?, dynamic::WeightedPhase::<S>::START)
     }
