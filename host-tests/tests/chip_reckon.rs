@@ -11,6 +11,7 @@ use spikewire::chip::{
     ChipError, DescribeReckOn, ReckOn, ReckOnAnswer, ReckOnLearning, ReckOnNetwork, ReckOnPair,
     ReckOnSettings, ReckOnShared, ReckOnStep, ReckOnTarget, ReckOnTask,
 };
+use spikewire::{Bank, Tick, population::Position};
 
 type Chip = ReckOn<Spi, Port>;
 type Error = ChipError<ErrorKind, u64>;
@@ -48,9 +49,11 @@ impl Plain {
             let ReckOnPair { keep, threshold } = PAIRS[n / 2];
             let potential = self.potentials[n];
             self.fired[n] = potential >= i32::from(threshold);
-            self.potentials[n] = (potential * i32::from(keep)) >> 15;
+            // 16 bits: with a `keep` above 1 a potential near the end of its range changes its sign.
+            self.potentials[n] = i32::from(((potential * i32::from(keep)) >> 15) as i16);
             if self.fired[n] {
-                self.potentials[n] -= i32::from(threshold);
+                let reset = self.potentials[n] - i32::from(threshold);
+                self.potentials[n] = i32::from(reset as i16);
             }
         }
         self.outputs.iter_mut().for_each(|output| *output = (*output * 110) >> 7);
@@ -476,4 +479,27 @@ fn a_step_takes_two_clocks_a_neuron_and_one_for_each_event_and_neuron() {
             );
         }
     }
+}
+
+#[test]
+fn a_banks_samples_are_time_steps_of_the_chip() {
+    static RATES: Position<f32, 5> = Position::linear(-2.0..=2.0);
+    let board = Board::new(10, 1);
+    let mut chip = on(&board);
+    let mut programmed = chip.reset(&mut board.clone()).unwrap();
+    programmed.load(&NETWORK, |_| ()).unwrap();
+    let mut sample = programmed.run(&ReckOnSettings::POTENTIALS).unwrap().begin().unwrap();
+    let (mut bank, mut plain) = (Bank::<_, 1>::new(&RATES), Plain::NEW);
+    let flight = host_tests::flight::hexarotor();
+    for reading in flight.iter().take(2_000) {
+        let mut inputs = vec![];
+        let now = Tick::from(reading.time_us);
+        bank.encode(now, [reading.gyro[0]], |event| inputs.push(event.address as u8));
+        for &input in &inputs {
+            sample.send(input).unwrap();
+        }
+        let answer = sample.step(ReckOnStep::default()).unwrap();
+        assert_eq!(answer, Some(ReckOnAnswer::Potentials(plain.step(&inputs))));
+    }
+    assert!(board.pins().chip.fired.len() > 200);
 }

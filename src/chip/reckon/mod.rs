@@ -52,6 +52,50 @@ use wire::{Address, Wire};
 /// - A word to a register with a count above 1 writes the same register again.
 /// - An input sent twice within a step counts once. Inputs that are sent after the last tick of a sample are lost.
 /// - Reset clears no memory.
+/// - With a `keep` above 32 768 a potential near the end of its range changes its sign as it grows out of it.
+///
+/// # A bank's samples as time steps
+/// ```
+/// use embedded_hal::{delay::DelayNs, spi::SpiDevice};
+/// use spikewire::chip::{
+///     ChipError, ReckOn, ReckOnAnswer, ReckOnNetwork, ReckOnPair, ReckOnPort, ReckOnSettings, ReckOnShared, ReckOnStep,
+///     Spikes,
+/// };
+/// use spikewire::{Bank, Tick, population::Position};
+///
+/// static RATES: Position<f32, 16> = Position::linear(-8.0..=8.0);
+/// static NETWORK: ReckOnNetwork<16, 16, 1> = ReckOnNetwork {
+///     pairs: &[ReckOnPair { keep: 31_000, threshold: 1_000 }; 8],
+///     inputs: [[40; 16]; 16],
+///     recurrent: &[[-5; 16]; 16],
+///     outputs: [[10]; 16],
+///     shared: ReckOnShared { shifts: [4, 4, 0], keep: 120, resets_to_zero: true },
+/// };
+///
+/// fn fly<D: SpiDevice, P: ReckOnPort>(
+///     chip: &mut ReckOn<D, P>,
+///     delay: &mut impl DelayNs,
+///     rates: impl Iterator<Item = (Tick, f32)>, // rad/s
+///     mut command: impl FnMut(i16),
+/// ) -> Result<(), ChipError<D::Error, P::Error>> {
+///     let mut programmed = chip.reset(delay)?;
+///     programmed.load(&NETWORK, |_| ())?;
+///     let mut sample = programmed.run(&ReckOnSettings::POTENTIALS)?.begin()?;
+///     let mut bank = Bank::<_, 1>::new(&RATES);
+///     for (now, rate) in rates {
+///         let mut events = Spikes::<16>::new();
+///         bank.encode(now, [rate], |event| events.push(event));
+///         for event in events.as_slice() {
+///             sample.send(event.address as u8)?;
+///         }
+///         if let Some(ReckOnAnswer::Potentials([output, ..])) = sample.step(ReckOnStep::default())? {
+///             command(output);
+///         }
+///     }
+///     sample.end()?;
+///     Ok(())
+/// }
+/// ```
 #[derive(Debug)]
 pub struct ReckOn<D, P> {
     wire: Wire<D>,
