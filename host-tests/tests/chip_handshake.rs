@@ -132,14 +132,14 @@ fn a_start_takes_as_many_frames_as_it_says() {
     let gated = chip.reset(&mut board.clone()).unwrap();
     let before = board.pins().spi_clocks;
     gated.run(&OPEN).unwrap();
-    assert_eq!(board.pins().spi_clocks - before, 37 * 40);
+    assert_eq!(board.pins().spi_clocks - before, 38 * 40);
 
     let board = Board::<silicon::Odin>::new(4, 1);
     let mut chip = Odin::new(board.spi(), board.port(), 1_600);
     let gated = chip.reset(&mut board.clone()).unwrap();
     let before = board.pins().spi_clocks;
     gated.run(&OdinRegisters::PLAIN).unwrap();
-    assert_eq!(board.pins().spi_clocks - before, 205 * 40);
+    assert_eq!(board.pins().spi_clocks - before, 206 * 40);
 }
 
 #[test]
