@@ -3,7 +3,7 @@
 use crate::scheme::Scheme;
 use anyhow::{Context, Result, anyhow, bail};
 use catalogue::Parameter;
-use catalogue::run::{Asked, SET, SampleType, Settings, Value, takes_no};
+use catalogue::run::{Asked, Known, SET, SampleType, Settings, Value, takes_no};
 use std::fs;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Table};
@@ -64,6 +64,7 @@ impl Coding {
             None => SampleType::default(),
         };
         let mut asked = Asked::default();
+        let mut lines = Vec::new();
         for (name, value) in table {
             let at = value.span().start;
             let Some(parameter) = scheme.info().parameter(name.get_ref()) else {
@@ -75,9 +76,37 @@ impl Coding {
             })?;
             if let Some(value) = value {
                 asked.set(parameter.name, value);
+                lines.push((parameter.name, at));
             }
         }
-        Ok(Self { scheme, sample, asked })
+        let coding = Self { scheme, sample, asked };
+        coding.built_alone().map_err(|error| {
+            let said = format!("{error:#}");
+            let named =
+                lines.iter().find(|(name, _)| said.split([' ', '`']).any(|word| word == *name));
+            error.context(named.map_or(file.to_owned(), |&(_, at)| place(at)))
+        })?;
+        Ok(coding)
+    }
+
+    /// Builds the scheme where nothing is left to options or to a recording: what then fails is a value's fault.
+    fn built_alone(&self) -> Result<()> {
+        let Self { scheme, sample, asked } = self;
+        let is_open = |own: &Parameter| {
+            own.default.is_none() && own.found.is_none() && asked.get(own.name).is_none()
+        };
+        let recorded = scheme.info().parameters.iter().filter(|own| own.is_recorded);
+        if asked.paper || scheme.needs_signal(asked).is_some() || recorded.clone().any(is_open) {
+            return Ok(());
+        }
+        let past = vec![0.0; scheme.looks_back(asked)];
+        let known = Known { calibrated: None, first: &past, can_calibrate: false };
+        let info = scheme.info();
+        let channels = asked.channels(info)?.unwrap_or(1);
+        (0..channels).try_for_each(|channel| {
+            let asked = asked.channel(info, channel, channels)?;
+            scheme.codec(&scheme.resolve(*sample, &asked, &known)?).map(drop)
+        })
     }
 
     /// The text of a file, below these comments.
@@ -177,6 +206,11 @@ mod tests {
                 "own.toml:2: threshold = [\"a\"]: must be a number",
             ),
             ("scheme = \"sf\"\nthreshold = 1979-05-27", "must be a number or a text"),
+            ("scheme = \"sf\"\n\nthreshold = -1", "own.toml:3: threshold -1 must be above 0"),
+            ("scheme = \"sf\"\nthreshold = [1, -1]", "own.toml:2: "),
+            ("scheme = \"mw\"\nthreshold = 1\nwindow = 99999", "own.toml:3: "),
+            ("scheme = \"position\"\nneurons = 4\nmin = 5\nmax = 1", "own.toml:4: min and max"),
+            ("scheme = \"sf\"\nsample = \"q8.8\"\nthreshold = 0.0001", "own.toml:3: "),
         ] {
             let told = format!("{:#}", read(text).unwrap_err());
             assert!(told.contains(words), "{text}: {told}");
