@@ -5,6 +5,8 @@
 
 #![cfg_attr(target_os = "none", no_std)]
 
+#[cfg(feature = "chip-bus")]
+pub mod chip_bus;
 #[cfg(all(target_os = "none", feature = "stopwatch"))]
 pub mod stopwatch;
 

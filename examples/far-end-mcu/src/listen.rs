@@ -34,9 +34,10 @@ pub fn run(out: &mut impl Write) -> fmt::Result {
     let (mut values, mut hash, mut commands) = (0_u32, 0xcbf2_9ce4_8422_2325_u64, 0_u32);
     loop {
         let now = MILLISECONDS.load(Relaxed);
-        if let Some(command) = far.silence(now) {
+        // Before the first frame there is only noise. A vehicle is neutral then, and goes on listening after the last one.
+        if let (Some(command), true) = (far.silence(now), commands > 0) {
             actuators.send(command.bytes());
-            break; // a vehicle goes on listening
+            break;
         }
         let Some(byte) = line.byte() else { continue };
         far.take(

@@ -1,7 +1,7 @@
 //! The chip on its board, its driver, and a twin of the driver that hears the same.
 
 use crate::tape::{Recording, Repeating, Tape};
-use board::stopwatch::instructions;
+use board::{chip_bus::ChipBus, stopwatch::instructions};
 use core::{
     fmt::{self, Write},
     num::NonZeroU32,
@@ -13,7 +13,7 @@ use spikewire::{
 };
 
 type Chip = TinyOdin<silicon::Spi<silicon::TinyOdin>, Recording<silicon::Port<silicon::TinyOdin>>>;
-type Twin = TinyOdin<Repeating, Repeating>;
+type Twin = TinyOdin<ChipBus, Repeating>;
 
 /// Of the chip to one of SCK: 10 MHz and 656 kHz, as an STM32F405 has it from 42 MHz.
 const RATIO: u32 = 16;
@@ -82,7 +82,7 @@ impl Rig {
 
         tape.record();
         let port = Repeating::new(Some(tape));
-        let mut twin = TinyOdin::new(Repeating::new(None), port, polls).with_time_step(time_step);
+        let mut twin = TinyOdin::new(ChipBus::default(), port, polls).with_time_step(time_step);
         let gated = twin.reset(&mut Repeating::new(None)).map_err(|_| fmt::Error)?;
         gated.run(&network.registers()).map_err(|_| fmt::Error)?;
         Ok(Self { board, chip, twin, tape, cost: Cost::default() })

@@ -3,10 +3,7 @@
 
 use alloc::{boxed::Box, vec};
 use core::{cell::Cell, convert::Infallible};
-use embedded_hal::{
-    delay::DelayNs,
-    spi::{ErrorType, Operation, SpiDevice},
-};
+use embedded_hal::delay::DelayNs;
 use spikewire::chip::AerPort;
 
 /// The most answers of an event.
@@ -109,38 +106,20 @@ impl<P: AerPort> AerPort for Recording<P> {
     }
 }
 
-/// A port that says it again, and before the first tape acknowledges at once; a bus that gives back what was written.
+/// A port that says it again, and before the first tape acknowledges at once.
 pub struct Repeating {
     pub tape: Option<&'static Tape>,
     pub is_requested: bool,
-    pub written: u8,
 }
 
 impl Repeating {
     pub const fn new(tape: Option<&'static Tape>) -> Self {
-        Self { tape, is_requested: false, written: 0 }
+        Self { tape, is_requested: false }
     }
 
     /// The tape, once there is something on it.
     fn said(&self) -> Option<&'static Tape> {
         self.tape.filter(|tape| tape.end.get() > 0)
-    }
-}
-
-impl ErrorType for Repeating {
-    type Error = Infallible;
-}
-
-impl SpiDevice for Repeating {
-    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
-        for operation in operations {
-            match operation {
-                Operation::Write([.., last]) => self.written = *last,
-                Operation::TransferInPlace([.., last]) => *last = self.written,
-                _ => {}
-            }
-        }
-        Ok(())
     }
 }
 

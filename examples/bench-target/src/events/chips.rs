@@ -8,10 +8,8 @@ use core::{
     num::NonZeroU32,
 };
 
-use embedded_hal::{
-    delay::DelayNs,
-    spi::{ErrorType, Operation, SpiDevice},
-};
+use board::chip_bus::ChipBus;
+use embedded_hal::delay::DelayNs;
 use spikewire::{
     Bins, Event, FromEvents, Polarity, Tick,
     chip::{
@@ -78,8 +76,8 @@ fn word<W: Copy>(
 /// The handshake as well, with a chip that answers at once.
 fn tiny_odin_fed(out: &mut impl Write) -> fmt::Result {
     let word = Cell::new(0);
-    let port = || Answers { word: &word, is_requested: false, written: [(0, 0); 4] };
-    let mut chip = TinyOdin::new(port(), port(), 4);
+    let port = || Answers { word: &word, is_requested: false };
+    let mut chip = TinyOdin::new(ChipBus::default(), port(), 4);
     let registers = TinyOdinInput::registers(255, true, [0; 16]);
     let mut agrees = chip.reset(&mut port()).and_then(|gated| gated.run(&registers)).is_ok();
     let mut feed = |event: Event, _: &mut [u8]| {
@@ -98,53 +96,10 @@ fn tiny_odin_fed(out: &mut impl Write) -> fmt::Result {
     cost.print_event(out, "tinyodin", "encode")
 }
 
-/// A bus and a port on which all goes well.
+/// A port on which all goes well.
 struct Answers<'a> {
     word: &'a Cell<u32>,
     is_requested: bool,
-    /// The bytes that were written, each with its address.
-    written: [(u32, u8); 4],
-}
-
-impl Answers<'_> {
-    /// A frame: 20 bits of address, of which the highest is for a read and the next for a write, and 20 of data.
-    fn answer(&mut self, &[a0, a1, a2, keep, value]: &[u8; 5]) -> u8 {
-        let command = u32::from_be_bytes([0, a0, a1, a2]) >> 4;
-        let address = command & 0x3_FFFF;
-        let is_here = |&&mut (known, _): &&mut (u32, u8)| known == address || known == 0;
-        let Some((known, byte)) = self.written.iter_mut().find(is_here) else { return 0 };
-        if command >> 18 == 1 {
-            *known = address;
-            *byte = *byte & keep | value & !keep;
-        }
-        if *known == address { *byte } else { 0 }
-    }
-}
-
-impl ErrorType for Answers<'_> {
-    type Error = Infallible;
-}
-
-impl SpiDevice for Answers<'_> {
-    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
-        for operation in operations {
-            match operation {
-                Operation::Write(bytes) => {
-                    if let Some(frame) = bytes.first_chunk() {
-                        self.answer(frame);
-                    }
-                }
-                Operation::TransferInPlace(bytes) => {
-                    let answer = bytes.first_chunk().map(|frame| self.answer(frame));
-                    if let (Some(answer), Some(last)) = (answer, bytes.last_mut()) {
-                        *last = answer;
-                    }
-                }
-                _ => {}
-            }
-        }
-        Ok(())
-    }
 }
 
 impl DelayNs for Answers<'_> {
