@@ -18,9 +18,10 @@ const executablePath = execFileSync("which", [BROWSER]).toString().trim();
 const browser = await chromium.launch({ executablePath, args: ["--no-sandbox", "--use-fake-device-for-media-stream", "--use-fake-ui-for-media-stream"] });
 const said = [];
 
-async function opened(options = {}, hash = "") {
+async function opened(options = {}, hash = "", before = undefined) {
   const context = await browser.newContext({ acceptDownloads: true, ...options });
   const page = await context.newPage();
+  if (before) await page.addInitScript(before);
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && said.push(message.text()));
   page.on("pageerror", (error) => said.push(String(error)));
   page.on("request", (request) => {
@@ -194,6 +195,20 @@ const steps = {
     await page.waitForFunction(() => /rest\.csv/.test(document.getElementById("about").textContent));
     await settled(page);
     await compare(page, join(DATA, "vtol_at_rest.csv"), "--column", "gyro_x");
+    // As spreadsheets write text: two bytes a letter.
+    const wide = Buffer.from(`\ufeff${readFileSync(join(DATA, "vtol_at_rest.csv"), "utf8")}`, "utf16le");
+    for (const [name, own] of [["little.csv", wide], ["big.csv", Buffer.from(wide).swap16()]]) {
+      writeFileSync(log(name), own);
+      await choose(page, log(name));
+      assert.equal(await page.textContent("#file-error"), "", name);
+      await page.selectOption("#field", "gyro_x");
+      await settled(page);
+      await compare(page, log(name), "--column", "gyro_x");
+    }
+    const events = join(work, "events.es");
+    writeFileSync(join(work, "own.csv"), await exported(page, "csv"));
+    spikewire("convert", "--from", "csv", "--to", "es", join(work, "own.csv"), "-o", events);
+    assert((await exported(page, "es")).equals(readFileSync(events)));
     await page.context().close();
   },
 
@@ -333,6 +348,72 @@ const steps = {
     await page.context().close();
   },
 
+  async "listens to a board as the program does, or says why not"() {
+    const without = await opened();
+    await without.evaluate(() => Object.defineProperty(navigator, "serial", { value: undefined }));
+    await without.click("#connect");
+    assert.match(await without.textContent("#board-error"), /reads no serial port/);
+    await without.context().close();
+
+    const page = await opened({}, "", fakeSerial);
+    const bytes = link();
+    const captured = join(work, "captured.link"), toml = join(work, "sender.toml");
+    writeFileSync(captured, bytes);
+    const heard = async (kind) => {
+      const [download] = await Promise.all([page.waitForEvent("download"), page.click(`[data-heard=${kind}]`)]);
+      return readFileSync(await download.path(), "utf8");
+    };
+    const listened = async (speaks) => {
+      await page.evaluate((own) => (globalThis.speaks = own), [...speaks]);
+      await page.click("#connect");
+      await page.waitForSelector("#board-files:visible, #board-error:visible");
+      assert.equal(await page.textContent("#board-error"), "");
+    };
+    let values = 0;
+    for (const [scheme, settings, more] of [
+      ["sf", { threshold: "0.35" }, []],
+      ["sf", { threshold: "0.35" }, ["--thresholds", "0.35,0.2"]],
+      ["grf", { neurons: "4", min: "-2", max: "2" }, []],
+    ]) {
+      await page.selectOption("#scheme", scheme);
+      await settled(page);
+      for (const [name, value] of Object.entries(settings)) await page.fill(`#parameter-${name}`, value);
+      await settled(page);
+      await page.fill("#thresholds", more[1] ?? "");
+      await listened(bytes);
+      writeFileSync(toml, await text(page, "toml"));
+      const theirs = spikewire("listen", captured, "--params", toml, ...more).toString();
+      assert.equal(await heard("values"), theirs, scheme);
+      assert.equal(await heard("spikes"), spikewire("convert", "--from", "link", "--to", "csv", captured).toString());
+      assert.match(theirs, /,exact\n[^]*,estimate\n|,estimate\n[^]*,exact\n/, scheme);
+      assert.match(await page.textContent("#board-words"), /1 lost in 1 gaps/);
+      assert.equal(await page.evaluate(() => globalThis.asked.baudRate), 921600);
+      values += theirs.split("\n").length - 2;
+    }
+    console.log(`  ${values} values of ${bytes.length} bytes in three ways`);
+    await accessible(page, "a board");
+    await page.selectOption("#scheme", "grf-slots");
+    await settled(page);
+    await page.click("#connect");
+    await page.waitForFunction(() => /grf-slots needs the length of/.test(document.getElementById("board-error").textContent));
+    // Amid the stream: what came is shown, and the port is closed when the user stops.
+    await page.selectOption("#meaning", "spikes");
+    await page.evaluate(() => (globalThis.stays = true));
+    await page.click("#connect");
+    await page.waitForFunction((length) => document.getElementById("board-figures").textContent.startsWith(`${length.toLocaleString("en")} bytes`), bytes.length);
+    await page.click("#hang-up");
+    await page.waitForSelector("#board-files:visible");
+    assert.equal(await page.evaluate(() => globalThis.isClosed), true);
+    await page.evaluate(() => ([globalThis.stays, globalThis.speaks] = [false, Array(500).fill(65)]));
+    await page.click("#connect");
+    await page.waitForSelector("#board-error:visible");
+    assert.match(await page.textContent("#board-error"), /no link frame in the 500 bytes of the board/);
+    await page.evaluate(() => (globalThis.speaks = undefined));
+    await page.click("#connect");
+    await page.waitForFunction(() => /no port was chosen/.test(document.getElementById("board-error").textContent));
+    await page.context().close();
+  },
+
   async "is clean for everybody: light, dark, and a phone"() {
     for (const [name, options] of Object.entries({
       light: { viewport: { width: 1280, height: 800 } },
@@ -387,6 +468,61 @@ const steps = {
     await page.context().close();
   },
 };
+
+/** In the browser: a serial port that gives the bytes of `speaks` in odd pieces. */
+function fakeSerial() {
+  const port = {
+    async open(options) {
+      globalThis.asked = options;
+      globalThis.isClosed = false;
+      const bytes = Uint8Array.from(globalThis.speaks);
+      let place = 0;
+      this.readable = new ReadableStream({
+        pull(controller) {
+          const end = place + 1 + (place % 97);
+          if (place < bytes.length) controller.enqueue(bytes.slice(place, end));
+          else if (!globalThis.stays) controller.close();
+          place = end;
+        },
+      });
+    },
+    async close() {
+      if (this.readable.locked) throw new Error("still read");
+      globalThis.isClosed = true;
+    },
+  };
+  const requestPort = async () => {
+    if (!globalThis.speaks) throw new DOMException("No port selected by the user.", "NotFoundError");
+    return port;
+  };
+  Object.defineProperty(navigator, "serial", { value: { requestPort } });
+}
+
+/** What a board of two addresses sends: keyframes now and then, and a frame that was damaged on its way. */
+function link() {
+  const lines = ["tick,address,polarity"];
+  const kept = [0, 0];
+  for (let step = 0; step < 900; step++) {
+    const tick = 1000 + step * 1000;
+    if (step % 300 === 0) {
+      kept.forEach((value, address) => {
+        const bits = Buffer.alloc(4);
+        bits.writeFloatBE(value);
+        lines.push(`# keyframe=${tick},${address},${bits.toString("hex")},f32`);
+      });
+    }
+    else if (step % 60 === 0) lines.push(`# heartbeat=${tick},0`); // which ends a frame
+    const address = (step * 7) % 2, up = Math.sin(step / 40 + address) > 0;
+    kept[address] = Math.fround(kept[address] + Math.fround(up ? 0.35 : -0.35));
+    lines.push(`${tick},${address},${up ? 1 : -1}`);
+  }
+  const [events, file] = [join(work, "sent.csv"), join(work, "sent.link")];
+  writeFileSync(events, `${lines.join("\n")}\n`);
+  spikewire("convert", "--from", "csv", "--to", "link,period=1000,channels=4", events, "-o", file);
+  const bytes = readFileSync(file);
+  bytes[Math.floor(bytes.length / 2)] ^= 0x10;
+  return bytes;
+}
 
 /** A PX4 log of one topic. */
 function ulog() {

@@ -1,5 +1,6 @@
 // The page: what its user drops, chooses and drags, and what the library makes of it.
 
+import { Board, whyNot } from "./board.js";
 import { Library } from "./library.js";
 import { draw as drawFront } from "./front.js";
 import * as link from "./link.js";
@@ -21,7 +22,8 @@ let library = new Library();
 const plots = new Plots(at("plots"), showRange);
 // For whoever looks in the console, and for checks.
 const video = new Video(at("events"), (text) => (at("video-figures").textContent = text));
-globalThis.spikewire = { plots, video };
+const board = new Board(at("heard"), (text) => (at("board-figures").textContent = text));
+globalThis.spikewire = { plots, video, board };
 let schemes = [];
 let opened; // { file, example, topics, files }
 let recording; // what was loaded
@@ -73,7 +75,17 @@ async function whileBusy(work) {
 /** Opens files or an example, and loads a channel of it: the wanted one, or the first. */
 const open = (from, wanted) => whileBusy(() => openNow(from, wanted));
 
-async function openNow({ files = [], example }, wanted = {}) {
+/** The file as the library reads it: text of two bytes a letter, as spreadsheets write it, becomes UTF-8. */
+async function readable(file) {
+  const [first, second, third, fourth] = new Uint8Array(await file.slice(0, 4).arrayBuffer());
+  const isLittle = (first === 0xff && second === 0xfe) || (first && second === 0 && third && fourth === 0);
+  const isBig = (first === 0xfe && second === 0xff) || (first === 0 && second && third === 0 && fourth);
+  if (!isLittle && !isBig) return file;
+  const text = new TextDecoder(isLittle ? "utf-16le" : "utf-16be").decode(await file.arrayBuffer());
+  return new File([text], file.name);
+}
+
+async function openNow({ files: given = [], example }, wanted = {}) {
   fail("file-error");
   if (isReading) {
     // What is read now is not wanted any more.
@@ -81,8 +93,11 @@ async function openNow({ files = [], example }, wanted = {}) {
     library = new Library();
   }
   isReading = true;
-  const [named] = files;
+  const [named] = given, own = library;
+  let files = given;
   try {
+    files = await Promise.all(given.map(readable));
+    if (own !== library) return;
     const request = example ? { ask: "example", name: example } : { ask: "open", names: files.map((own) => own.name), accept_cut: at("accept-cut").checked };
     const answer = await library.ask(request, { files, onProgress: reading });
     opened = { ...answer, example, files };
@@ -333,6 +348,7 @@ const texts = {
 };
 const files = {
   csv: async () => ["spikes.csv", (await ask("csv")).arrays.file, "text/csv"],
+  es: async () => ["spikes.es", (await ask("es")).arrays.file, "application/octet-stream"],
   svg: () => {
     const colours = Object.fromEntries(["signal", "ink", "paper", "grid", "down"].map((name) => [name, css(`--${name}`)]));
     return ["spikes.svg", picture(plots, colours), "image/svg+xml"];
@@ -439,6 +455,35 @@ function endVideo() {
   at("end").hidden = true;
 }
 
+// --- A board ---
+
+async function connect() {
+  fail("board-error", whyNot() && new Error(whyNot()));
+  if (whyNot() || at("connect").disabled) return;
+  at("connect").disabled = true;
+  try {
+    let choice = null;
+    if (at("meaning").value === "values") {
+      const { answer, error } = runs[current] ?? {};
+      if (!answer) throw error ?? new Error("there are no settings to decode by");
+      choice = { ...settings[current], parameters: answer.asked };
+    }
+    const thresholds = at("thresholds").value.split(",").filter((own) => own.trim()).map(Number);
+    if (thresholds.some(Number.isNaN)) throw new Error(`thresholds ${at("thresholds").value}: not numbers with commas between`);
+    const options = { choice, thresholds: choice ? thresholds : [], slot_ticks: at("slot-ticks").valueAsNumber || null };
+    const onStart = () => {
+      at("heard").hidden = at("hang-up").hidden = false;
+      at("board-files").hidden = true;
+    };
+    at("board-words").textContent = (await board.listen(at("baud").valueAsNumber, options, onStart)).join("; ");
+    at("board-files").hidden = false;
+  } catch (error) {
+    fail("board-error", error);
+  }
+  at("connect").disabled = false;
+  at("hang-up").hidden = true;
+}
+
 // --- What a user does ---
 
 function listen() {
@@ -498,6 +543,10 @@ function listen() {
   at("camera").addEventListener("click", () => watch());
   at("end").addEventListener("click", endVideo);
   at("levels").addEventListener("input", ({ target }) => { video.threshold = target.valueAsNumber; at("level").textContent = target.value; });
+  at("connect").addEventListener("click", connect);
+  at("hang-up").addEventListener("click", () => board.stop());
+  for (const own of document.querySelectorAll("[data-heard]")) own.addEventListener("click", () => save(`${own.dataset.heard}.csv`, board.files[own.dataset.heard], "text/csv"));
+  if (whyNot()) at("board-words").textContent = `Not here: ${whyNot()}.`;
   at("stop").addEventListener("click", () => searching?.stop());
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => recording && show());
 }

@@ -16,10 +16,10 @@ export class Library {
   #ready = compiled.then((wasm) => this.#worker.postMessage({ wasm }));
 
   constructor() {
-    this.#worker.onmessage = ({ data: { id, answer, error, isFatal, progress } }) => {
+    this.#worker.onmessage = ({ data: { id, answer, error, isFatal, progress, arrays } }) => {
       const own = this.#waiting.get(id);
       if (!own) return;
-      if (progress) return own.onProgress?.(progress);
+      if (progress) return own.onProgress?.(progress, arrays);
       this.#waiting.delete(id);
       if (error === undefined) own.resolve(answer);
       else own.reject(Object.assign(new Error(error), { isFatal }));
@@ -28,6 +28,11 @@ export class Library {
       for (const own of this.#waiting.values()) own.reject(new Error(event.message));
       this.#waiting.clear();
     };
+  }
+
+  /** Hands over bytes of a board that is listened to; none at its end. */
+  feed(bytes) {
+    this.#worker.postMessage({ bytes });
   }
 
   /** Asks; `onProgress` is told how far long work is. */

@@ -4,8 +4,11 @@
 const STEP = 1 << 24;
 const KINDS = [Float64Array, Uint32Array, Uint16Array, Uint8Array];
 
-/** Starts the library; `onProgress` is told how far long work is. */
-export async function start(wasm, onProgress = () => {}) {
+/** Whether a call can wait in its middle, as listening to a board does. */
+export const canWait = "Suspending" in WebAssembly;
+
+/** Starts the library; `onProgress` is told how far long work is, `pull(most)` promises bytes of a board. */
+export async function start(wasm, onProgress, pull) {
   let files = [];
   let answered, arrays, panic, told = 0;
   const memory = () => instance.exports.memory.buffer;
@@ -17,7 +20,11 @@ export async function start(wasm, onProgress = () => {}) {
         // A copy: memory may move, and the array goes to another thread.
         arrays[text(name, length)] = new KINDS[kind](memory().slice(at, at + bytes));
       },
-      progress: (at, length) => onProgress(JSON.parse(text(at, length))),
+      progress(at, length) {
+        const told = arrays;
+        arrays = {};
+        onProgress(JSON.parse(text(at, length)), told);
+      },
       panicked: (at, length) => (panic = text(at, length)),
       size: (file) => files[file].size,
       read(file, place, at, length) {
@@ -30,18 +37,25 @@ export async function start(wasm, onProgress = () => {}) {
           return -1;
         }
       },
+      board: canWait ? new WebAssembly.Suspending(async (at, length) => {
+        const bytes = await pull(length);
+        new Uint8Array(memory(), at).set(bytes);
+        return bytes.length;
+      }) : () => -1,
     },
   });
 
   /** Asks; `given` are the files that the request names. Throws errors in words. */
-  return function ask(request, given) {
+  return async function ask(request, given) {
     if (given) files = given;
     [answered, arrays] = [undefined, {}];
+    const { call } = instance.exports;
     const bytes = new TextEncoder().encode(JSON.stringify(request));
     try {
       const at = instance.exports.allocate(bytes.length);
       new Uint8Array(memory(), at).set(bytes);
-      instance.exports.call(at, bytes.length);
+      if (request.ask === "listen" && canWait) await WebAssembly.promising(call)(at, bytes.length);
+      else call(at, bytes.length);
     } catch (error) {
       const broken = new Error(
         panic ? `the library failed, which is an error of its own: ${panic}`

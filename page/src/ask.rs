@@ -1,7 +1,7 @@
 //! What the page can ask for.
 
 use crate::run::Choice;
-use crate::{catalogue, export, frames, front, recording, run};
+use crate::{board, catalogue, export, frames, front, recording, run};
 use anyhow::{Context, Result};
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -28,6 +28,8 @@ enum Ask {
     Front { choice: Choice, evaluations: usize },
     /// Encodes the next frame of a video.
     Frame(frames::Frame),
+    /// What a board sends, until it ends.
+    Listen(board::Listen),
     /// The scheme that takes the fewest bytes within an error.
     Advise { sample: String, max_rmse: Option<f64>, evaluations: usize },
 }
@@ -50,6 +52,7 @@ fn answer(request: &[u8]) -> Result<Value> {
         Ask::Export { kind, choice } => export::export(&kind, &choice),
         Ask::Front { choice, evaluations } => front::front(&choice, evaluations),
         Ask::Frame(frame) => frames::next(&frame),
+        Ask::Listen(options) => board::listen(&options),
         Ask::Advise { sample, max_rmse, evaluations } => {
             front::advise(&sample, max_rmse, evaluations)
         }

@@ -7,6 +7,7 @@ use anyhow::{Context, Result, bail};
 use catalogue::run::{SET, Value as Parameter};
 use lab::coding::Coding;
 use lab::encode::encode;
+use lab::events::{Format, Stream};
 use lab::output::Output;
 use lab::trial::Trial;
 use lab::tune::emit;
@@ -16,8 +17,9 @@ use serde_json::{Value, json};
 pub(crate) fn export(kind: &str, choice: &Choice) -> Result<Value> {
     recording::with(|open| {
         let trial = choice.trial(open)?;
-        if kind == "csv" {
-            send("file", &spikes(open, &trial)?);
+        if kind == "csv" || kind == "es" {
+            let table = spikes(open, &trial)?;
+            send("file", &if kind == "es" { event_stream(&table)? } else { table });
             return Ok(json!({}));
         }
         Ok(json!({ "text": as_text(kind, open, &trial)? }))
@@ -59,4 +61,14 @@ fn spikes(open: &Open, trial: &Trial) -> Result<Vec<u8>> {
     let Coding { scheme, sample, asked } = Coding::of_settings(trial.scheme, &trial.settings);
     let (output, _) = encode(input, scheme, sample, &asked, None, || Ok(Output::memory()))?;
     Ok(output.into_bytes())
+}
+
+/// The table as `spikewire convert --to es` writes it.
+fn event_stream(table: &[u8]) -> Result<Vec<u8>> {
+    let reader = Format::Csv.reader("the spikes");
+    let mut stream = Stream::new(reader, Format::EventStream.writer(false), false);
+    let mut file = Vec::new();
+    stream.push(table, None, &mut file)?;
+    stream.finish(&mut file)?;
+    Ok(file)
 }

@@ -15,7 +15,7 @@ unsafe extern "C" {
     fn answer(text: *const u8, length: usize);
     /// Takes an array of the answer: its name, the kind of its numbers, and these.
     fn array(name: *const u8, length: usize, kind: u32, numbers: *const u8, bytes: usize);
-    /// Takes how far the work is, as JSON.
+    /// Takes how far the work is, as JSON, and the arrays so far.
     fn progress(text: *const u8, length: usize);
     /// Takes the words of a panic, after which nothing may be called any more.
     fn panicked(text: *const u8, length: usize);
@@ -23,6 +23,8 @@ unsafe extern "C" {
     fn size(file: u32) -> f64;
     /// Reads a lent file from a place on, and returns how many bytes were read, or -1.
     fn read(file: u32, place: f64, into: *mut u8, length: usize) -> i32;
+    /// Waits for bytes of the board, and returns how many came: 0 at the end, or -1 where the browser cannot wait.
+    fn board(into: *mut u8, length: usize) -> i32;
 }
 
 /// Returns a place for so many bytes, which the next call takes over.
@@ -104,4 +106,13 @@ impl Bytes for Dropped {
         let read = unsafe { read(self.0, place as f64, into.as_mut_ptr(), into.len()) };
         usize::try_from(read).map_err(|_| io::Error::other("the browser cannot read it"))
     }
+}
+
+/// Waits for bytes of the board that JavaScript listens to; there are none at the end.
+pub(crate) fn hear(buffer: &mut [u8]) -> io::Result<&[u8]> {
+    // SAFETY: `buffer` is valid for writes of its length until the call returns, however late.
+    let count = unsafe { board(buffer.as_mut_ptr(), buffer.len()) };
+    let count = usize::try_from(count)
+        .map_err(|_| io::Error::other("this browser's WebAssembly cannot wait"))?;
+    Ok(&buffer[..count])
 }

@@ -3,6 +3,7 @@
 //! A worker of the page lends the files that its user dropped, and asks. Nothing leaves the browser.
 
 mod ask;
+mod board;
 mod catalogue;
 mod export;
 mod frames;

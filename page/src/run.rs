@@ -75,9 +75,11 @@ pub(crate) fn run(choice: &Choice) -> Result<Value> {
         let link =
             recording.rate.and_then(|rate| Some(per_second(link_bytes(&trial, rate).ok()?, rate)));
         let costs = Costs::new(trial.scheme, &trial.settings, trial.latency, CORE);
+        let asked = texts(&trial.settings.to_asked(trial.scheme.info()));
         let texts = trial.settings.entries().iter().map(|(name, value)| (*name, value.to_string()));
         Ok(json!({
             "settings": texts.collect::<BTreeMap<_, _>>(),
+            "asked": asked,
             "neurons": trial.shape.neurons,
             "slots": trial.shape.slots,
             "latency": trial.latency,

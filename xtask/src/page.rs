@@ -1,7 +1,7 @@
 //! `cargo xtask page`: the laptop library as WebAssembly in one HTML file, to look at and to check in a browser.
 
 use crate::{
-    distribution, paths, setup,
+    distribution, drawing, paths, setup,
     shell::{self, cargo, command, lint, run},
     toolchain,
     usage::usage,
@@ -126,6 +126,19 @@ fn respond(mut stream: TcpStream, page: &[u8]) -> Result<()> {
 
 /// Drives the page in a browser, against the laptop program.
 pub fn verify() -> Result<()> {
+    drive(None, env::var_os("PICTURES").map(|pictures| paths::root().join(pictures)))
+}
+
+/// Takes the documentation's picture of the page anew.
+pub fn write() -> Result<()> {
+    let pictures = target().join("pictures");
+    fs::create_dir_all(&pictures)?;
+    drive(Some("compares settings"), Some(pictures.clone()))?;
+    drawing::keep(&pictures.join("page.png"), "docs/page.png")
+}
+
+/// Runs the checks, or the one of this name, and keeps pictures of the page if there is a place for them.
+fn drive(only: Option<&str>, pictures: Option<PathBuf>) -> Result<()> {
     let page = build()?;
     if !BROWSERS.iter().any(|program| shell::has(program)) {
         setup::packages("a browser, without a window", &["chromium"])?;
@@ -137,12 +150,12 @@ pub fn verify() -> Result<()> {
     let built = paths::target().join("debug");
     run(command(built.join("examples/made-logs")).arg(&logs))?;
     let mut test = command("node");
-    test.current_dir(target().join("site")).arg("test.mjs");
+    test.current_dir(target().join("site")).arg("test.mjs").args(only);
     test.env("PAGE", page).env("LOGS", logs).env("SPIKEWIRE", built.join("spikewire"));
     test.env("BROWSER", browser.context("no chromium on the path")?);
     test.env("DATA", paths::root().join("data"));
-    if let Some(pictures) = env::var_os("PICTURES") {
-        test.env("PICTURES", paths::root().join(pictures));
+    if let Some(pictures) = pictures {
+        test.env("PICTURES", pictures);
     }
     run(&mut test)
 }

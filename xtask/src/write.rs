@@ -1,6 +1,8 @@
 //! `cargo xtask write`: all that is generated, written again.
 
-use crate::{bench, c_library, demo, firmware, jumps, python, ros, schemes, usage::usage, video};
+use crate::{
+    bench, c_library, demo, firmware, jumps, page, python, ros, schemes, usage::usage, video,
+};
 use anyhow::{Context, Result};
 use std::collections::HashSet;
 
@@ -17,13 +19,14 @@ const fn part(name: &'static str, files: &'static str, write: fn() -> Result<()>
 }
 
 /// From the catalogue first, then what measures or draws.
-const PARTS: [Part; 10] = [
+const PARTS: [Part; 11] = [
     part("c", "c/include, c/src/codecs.rs, c/src/sizes.rs, c/tests/flown.h", c_library::write),
     part("python", "python/spikewire/_schemes.pyi", python::write_stub),
     part("schemes", "docs/schemes.md: the table", schemes::write),
     part("jumps", "docs/jumps.svg", jumps::write),
     part("flight", "docs/flight.svg", demo::write),
     part("frames", "docs/frames.png", video::write),
+    part("page", "docs/page.png", page::write),
     part("ros", "docs/ros.svg", ros::write),
     part("bits", "docs/bits.md: the table", firmware::write),
     part("c-sizes", "c/README.md: the table of sizes", c_library::write_sizes),

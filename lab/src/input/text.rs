@@ -1,8 +1,6 @@
 //! Tables as they come: compressed, or in another encoding than UTF-8.
 
 use anyhow::{Context, Result, bail};
-use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
-use encoding_rs_io::DecodeReaderBytesBuilder;
 use flate2::read::MultiGzDecoder;
 use std::io::{self, Cursor, Read};
 
@@ -45,7 +43,7 @@ pub(crate) const GZIP: [u8; 2] = [0x1f, 0x8b];
 pub(super) fn name(bytes: &[u8]) -> String {
     match str::from_utf8(bytes) {
         Ok(text) => text.trim().to_owned(),
-        Err(_) => WINDOWS_1252.decode_without_bom_handling(bytes).0.trim().to_owned(),
+        Err(_) => encoding::latin(bytes).trim().to_owned(),
     }
 }
 
@@ -66,15 +64,12 @@ pub fn shown(bytes: &[u8]) -> String {
 }
 
 fn decode(head: &[u8], input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
-    let from = |encoding: &'static Encoding, input| -> Box<dyn Read> {
-        Box::new(DecodeReaderBytesBuilder::new().encoding(Some(encoding)).build(input))
-    };
     let is_utf16 = head.len() >= 4 && head.len().is_multiple_of(2);
     match *head {
-        [0xff, 0xfe, ..] => return Ok(from(UTF_16LE, Box::new(input) as Box<dyn Read>)),
-        [0xfe, 0xff, ..] => return Ok(from(UTF_16BE, Box::new(input) as Box<dyn Read>)),
-        [1..=255, 0, 1..=255, 0, ..] if is_utf16 => return Ok(from(UTF_16LE, Box::new(input))),
-        [0, 1..=255, 0, 1..=255, ..] if is_utf16 => return Ok(from(UTF_16BE, Box::new(input))),
+        [0xff, 0xfe, ..] => return encoding::utf16(input, false, name),
+        [0xfe, 0xff, ..] => return encoding::utf16(input, true, name),
+        [1..=255, 0, 1..=255, 0, ..] if is_utf16 => return encoding::utf16(input, false, name),
+        [0, 1..=255, 0, 1..=255, ..] if is_utf16 => return encoding::utf16(input, true, name),
         [0xef, 0xbb, 0xbf, ..] => {
             let mut input = input;
             input.read_exact(&mut [0; 3])?;
@@ -99,4 +94,42 @@ fn peek<R: Read>(mut input: R) -> io::Result<(Vec<u8>, impl Read + use<R>)> {
     let mut head = Vec::new();
     input.by_ref().take(HEAD as u64).read_to_end(&mut head)?;
     Ok((head.clone(), Cursor::new(head).chain(input)))
+}
+
+#[cfg(not(target_family = "wasm"))]
+mod encoding {
+    use anyhow::Result;
+    use encoding_rs::{UTF_16BE, UTF_16LE, WINDOWS_1252};
+    use encoding_rs_io::DecodeReaderBytesBuilder;
+    use std::borrow::Cow;
+    use std::io::Read;
+
+    pub(super) fn latin(bytes: &[u8]) -> Cow<'_, str> {
+        WINDOWS_1252.decode_without_bom_handling(bytes).0
+    }
+
+    #[expect(clippy::unnecessary_wraps, reason = "in a browser it is refused")]
+    pub(super) fn utf16(
+        input: impl Read + 'static,
+        is_big_endian: bool,
+        _: &str,
+    ) -> Result<Box<dyn Read>> {
+        let encoding = if is_big_endian { UTF_16BE } else { UTF_16LE };
+        Ok(Box::new(DecodeReaderBytesBuilder::new().encoding(Some(encoding)).build(input)))
+    }
+}
+
+/// A browser decodes such files itself before it lends them; the tables of all encodings would be a tenth of the page.
+#[cfg(target_family = "wasm")]
+mod encoding {
+    use anyhow::{Result, bail};
+    use std::io::Read;
+
+    pub(super) fn latin(bytes: &[u8]) -> String {
+        bytes.iter().copied().map(char::from).collect()
+    }
+
+    pub(super) fn utf16(_: impl Read + 'static, _: bool, name: &str) -> Result<Box<dyn Read>> {
+        bail!("{name}: text in UTF-16; save it as UTF-8")
+    }
 }
