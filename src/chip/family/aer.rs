@@ -68,7 +68,9 @@ pub(super) struct Aer<P> {
     /// How often a wait reads the pins, for each look in a clock of the chip.
     polls: u32,
     /// How often the pins may be read within one clock of the chip.
-    pub(super) looks_a_clock: NonZeroU32,
+    looks_a_clock: NonZeroU32,
+    /// How often a wait reads them: the product, as a Cortex-M0 takes long to multiply with care.
+    patience: u32,
     /// The phase of the word that was begun last.
     phase: Phase,
     carries: Carries,
@@ -84,12 +86,18 @@ impl<P: AerPort> Aer<P> {
             port,
             polls,
             looks_a_clock: NonZeroU32::MIN,
+            patience: polls,
             phase: Phase::Idle,
             carries: Carries::Word,
             answer: Answer::Idle,
             is_full: false,
             overflows: 0,
         }
+    }
+
+    pub(super) fn set_looks_a_clock(&mut self, looks: NonZeroU32) {
+        self.looks_a_clock = looks;
+        self.patience = self.looks(self.polls);
     }
 
     /// How often to read the pins for this number of clocks.
@@ -138,7 +146,7 @@ impl<P: AerPort> Aer<P> {
             AerError::Timeout(_) => AerError::Timeout(Phase::Idle),
             port @ AerError::Port(_) => port,
         })?;
-        self.wait_for(false, self.looks(self.polls), on_output)?;
+        self.wait_for(false, self.patience, on_output)?;
         self.port.set_input(word)?;
         (self.phase, self.carries) = (Phase::Acknowledge, carries);
         Ok(())
@@ -149,7 +157,7 @@ impl<P: AerPort> Aer<P> {
         &mut self,
         on_output: &mut impl FnMut(u8),
     ) -> Result<(), AerError<P::Error>> {
-        self.finish_within(self.looks(self.polls), on_output)
+        self.finish_within(self.patience, on_output)
     }
 
     pub(super) fn finish_within(

@@ -137,7 +137,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// [`Running::gate`] gates a chip that still works, whose potentials are then lost.
     #[must_use]
     pub fn with_looks_a_clock(mut self, looks: NonZeroU32) -> Self {
-        self.aer.looks_a_clock = looks;
+        self.aer.set_looks_a_clock(looks);
         self
     }
 
