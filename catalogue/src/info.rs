@@ -274,6 +274,15 @@ impl Parameter {
     .with_default("4")
     .searched(Search::Whole(1, 8));
 
+    /// The seed of chance.
+    pub const SEED: Self = Self::new(
+        "seed",
+        Kind::Count,
+        Unit::None,
+        "where the generator starts; each channel draws from a stream of its own",
+    )
+    .with_default("0");
+
     /// Most spikes a sample.
     pub const SPIKES: Self =
         Self::new("spikes", Kind::Count, Unit::None, "most spikes a sample, 1 to 127")

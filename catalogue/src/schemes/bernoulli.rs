@@ -9,7 +9,7 @@ use spikewire::rate::{Average, Bernoulli};
 
 use crate::entry::spike_of;
 use crate::plain::{self, Plain};
-use crate::{Channel, Count, Entry, Flight, InC, Info, Kind, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, InC, Info, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {
@@ -40,13 +40,7 @@ impl Entry for Scheme {
             Parameter::MAX,
             Parameter::MEAN,
             Parameter::POWER,
-            Parameter::new(
-                "seed",
-                Kind::Count,
-                Unit::None,
-                "where the generator starts; each channel draws from a stream of its own",
-            )
-            .with_default("0"),
+            Parameter::SEED,
         ],
     };
 

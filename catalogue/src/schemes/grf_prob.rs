@@ -7,7 +7,7 @@ use rand_pcg::rand_core::Rng;
 use spikewire::population::{FiredNeurons, Probabilistic};
 
 use crate::plain::{Plain, response};
-use crate::{Channel, Count, Entry, Flight, InC, Info, Kind, Parameter, Scaled, Unit};
+use crate::{Channel, Count, Entry, Flight, InC, Info, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {
@@ -37,13 +37,7 @@ impl Entry for Scheme {
             Parameter::MIN,
             Parameter::MAX,
             Parameter::BETA,
-            Parameter::new(
-                "seed",
-                Kind::Count,
-                Unit::None,
-                "where the generator starts; each channel draws from a stream of its own",
-            )
-            .with_default("0"),
+            Parameter::SEED,
         ],
     };
 
