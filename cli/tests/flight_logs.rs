@@ -2,7 +2,13 @@
 
 mod common;
 
-use common::{file, good, refused};
+use std::collections::BTreeMap;
+
+use common::{file, flight_logs, good, refused};
+use lab::input::{self, ChannelOptions, InputOptions};
+use yule_log::builder::ULogParserBuilder;
+use yule_log::model::inst::{FieldValue, Format};
+use yule_log::model::msg::UlogMessage;
 
 /// A log in the making.
 struct Log(Vec<u8>);
@@ -184,4 +190,76 @@ fn a_compressed_log_is_read() {
     let (_directory, path) = file("log.ulg.gz", encoder.finish().unwrap());
     assert!(good(&format!("info {path}"), "").output.contains("armed: 10 samples"));
     good(&format!("{SCHEME} --field on {path}"), "");
+}
+
+/// What another reader makes of a log: each number of each topic, by the sample.
+type Columns = BTreeMap<(String, String), Vec<f64>>;
+
+#[test]
+fn every_number_of_real_logs_as_another_reader_has_it() {
+    for log in flight_logs() {
+        let (mut others, mut compared) = (Columns::new(), 0);
+        let parser = ULogParserBuilder::new(std::fs::File::open(&log).unwrap()).build().unwrap();
+        for message in parser {
+            if let UlogMessage::LoggedData(logged) = message.unwrap() {
+                let topic = match logged.data.multi_id_index.unwrap_or(0) {
+                    0 => logged.data.name.to_string(),
+                    instance => format!("{}:{instance}", logged.data.name),
+                };
+                add_numbers(&topic, "", &logged.data, &mut others);
+            }
+        }
+        for (topic, own) in input::Log::read(&log, true).unwrap().topics() {
+            let channel = ChannelOptions {
+                topic: Some(topic.clone()),
+                field: own.fields.clone(),
+                skip_non_finite: true,
+                accept_cut: true,
+                ..ChannelOptions::default()
+            };
+            let options = InputOptions { input: log.clone(), channel };
+            let read = options.open().unwrap().rest().unwrap();
+            for (field, column) in own.fields.into_iter().zip(&read.columns) {
+                let other = others.remove(&(topic.clone(), field.clone())).unwrap();
+                let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+                assert_eq!(bits(column), bits(&other), "{topic} {field}");
+                compared += other.len();
+            }
+        }
+        assert!(others.is_empty(), "{:?}", others.keys().next());
+        assert!(compared > 50_000, "{compared} numbers in {}", log.display());
+    }
+}
+
+fn add_numbers(topic: &str, prefix: &str, data: &Format, columns: &mut Columns) {
+    for field in &data.fields {
+        add_number(topic, format!("{prefix}{}", field.name), &field.value, columns);
+    }
+}
+
+fn add_number(topic: &str, name: String, value: &FieldValue, columns: &mut Columns) {
+    let number = match value {
+        FieldValue::ScalarU8(value) => f64::from(*value),
+        FieldValue::ScalarU16(value) => f64::from(*value),
+        FieldValue::ScalarU32(value) => f64::from(*value),
+        FieldValue::ScalarU64(value) => *value as f64,
+        FieldValue::ScalarI8(value) => f64::from(*value),
+        FieldValue::ScalarI16(value) => f64::from(*value),
+        FieldValue::ScalarI32(value) => f64::from(*value),
+        FieldValue::ScalarI64(value) => *value as f64,
+        FieldValue::ScalarF32(value) => f64::from(*value),
+        FieldValue::ScalarF64(value) => *value,
+        FieldValue::ScalarBool(value) => f64::from(u8::from(*value)),
+        FieldValue::ScalarChar(_) | FieldValue::ArrayChar(_) => return,
+        FieldValue::ScalarOther(nested) => {
+            return add_numbers(topic, &format!("{name}."), nested, columns);
+        }
+        array => {
+            for (index, value) in array.to_scalars().unwrap().iter().enumerate() {
+                add_number(topic, format!("{name}[{index}]"), value, columns);
+            }
+            return;
+        }
+    };
+    columns.entry((topic.to_owned(), name)).or_default().push(number);
 }

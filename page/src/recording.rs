@@ -115,7 +115,7 @@ fn list(path: &Path, accept_cut: bool) -> Result<Value> {
         }
         Some(LogKind::Ulog) => {
             let log = Log::read(path, accept_cut)?;
-            let topics = log.topics()?.into_iter().filter(|(_, own)| !own.fields.is_empty());
+            let topics = log.topics().into_iter().filter(|(_, own)| !own.fields.is_empty());
             let topics = topics.map(|(name, own)| {
                 let about = format!("{} samples", own.times.len());
                 topic(&name, own.fields, about)

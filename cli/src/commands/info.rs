@@ -68,7 +68,7 @@ fn of_ulog(options: &Info) -> Result<(Vec<Overview>, Vec<String>)> {
             missing: 0,
         }
     };
-    let topics = log.topics()?.into_iter().map(overview).collect();
+    let topics = log.topics().into_iter().map(overview).collect();
     Ok((topics, log.findings.to_string().lines().map(str::to_owned).collect()))
 }
 

@@ -8,21 +8,19 @@ pub(crate) use scan::Findings;
 use super::text::GZIP;
 use super::{CHUNK, Chunk, InputOptions, Source, near};
 use crate::files;
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 use flate2::read::MultiGzDecoder;
-use format::{Field, Formats};
-use scan::{HEADER, Scan};
+use scan::{HEADER, Scan, Scanned, Series};
 use std::collections::BTreeMap;
 use std::io::Read;
+use std::ops::Range;
 use std::path::Path;
-use yule_log::builder::ULogParserBuilder;
-use yule_log::model::inst::{FieldValue, Format};
-use yule_log::model::msg::UlogMessage;
 
 /// The messages of a flight log that can be read.
 pub struct Log {
     bytes: Vec<u8>,
-    formats: Formats,
+    series: Vec<Series>,
+    messages: Vec<(usize, Range<usize>)>,
     file: String,
     /// What was skipped, and what the logger missed.
     pub findings: Findings,
@@ -60,8 +58,8 @@ impl Log {
         if bytes.len() < HEADER || &bytes[..4] != b"ULog" {
             bail!("{file}: not a flight log; ULog files start with `ULog` and 12 bytes more");
         }
-        let scanned = Scan::run(&bytes);
-        let (findings, length) = (scanned.findings, bytes.len());
+        let Scanned { series, messages, findings } = Scan::run(&bytes);
+        let length = bytes.len();
         if !accept_cut {
             if let Some(damage) = &findings.damage {
                 bail!(
@@ -76,84 +74,34 @@ impl Log {
                 );
             }
         }
-        let mut bytes = scanned.bytes;
-        silence_heartbeats(&mut bytes);
-        Ok(Self { bytes, formats: scanned.formats, file, findings })
+        Ok(Self { bytes, series, messages, file, findings })
     }
 
     /// What the log holds, by topic; later instances as `topic:1`.
-    ///
-    /// # Errors
-    /// A message that cannot be read.
-    pub fn topics(&self) -> Result<BTreeMap<String, Topic>> {
+    pub fn topics(&self) -> BTreeMap<String, Topic> {
         let mut topics: BTreeMap<String, Topic> = BTreeMap::new();
-        self.for_each(None, |name, time, data| {
-            let topic = topics.entry(name).or_insert_with(|| Topic {
-                fields: leaves(data).into_iter().map(|(name, _)| name).collect(),
-                texts: self.texts(data).map(|field| field.name.clone()).collect(),
+        self.for_each(None, |series, time, _| {
+            let topic = topics.entry(series.name.clone()).or_insert_with(|| Topic {
+                fields: series.numbers.iter().map(|(name, _)| name.clone()).collect(),
+                texts: series.texts.clone(),
                 times: Vec::new(),
             });
             topic.times.push(time);
-        })?;
-        Ok(topics)
+        });
+        topics
     }
 
-    /// The fields of text in a message.
-    fn texts(&self, data: &Format) -> impl Iterator<Item = &Field> {
-        let format = self.formats.get(&heard(&data.name));
-        format.into_iter().flat_map(format::Format::texts)
-    }
-
-    fn for_each(
-        &self,
-        only: Option<&str>,
-        mut visit: impl FnMut(String, i64, &Format),
-    ) -> Result<()> {
-        let mut parser = ULogParserBuilder::new(self.bytes.as_slice());
-        if let Some(topic) = only {
-            parser = parser.set_subscription_allow_list([topic]);
-        }
-        let parser = parser.build().map_err(|error| anyhow!("{}: {error}", self.file))?;
-        for (number, message) in parser.enumerate() {
-            let message =
-                message.map_err(|error| anyhow!("{}: message {number}: {error}", self.file))?;
-            if let UlogMessage::LoggedData(logged) = message {
-                let name = match logged.data.multi_id_index.unwrap_or(0) {
-                    0 => logged.data.name.to_string(),
-                    instance => format!("{}:{instance}", logged.data.name),
-                };
-                visit(heard(&name), logged.timestamp as i64, &logged.data);
+    fn for_each<'a>(&'a self, only: Option<&str>, mut visit: impl FnMut(&'a Series, i64, &[u8])) {
+        for (series, message) in &self.messages {
+            let Some(series) = self.series.get(*series) else { continue };
+            let message = &self.bytes[message.clone()];
+            if only.is_none_or(|name| name == series.name)
+                && let Some(time) = series.time.read_time(message)
+            {
+                visit(series, time, message);
             }
         }
-        Ok(())
     }
-}
-
-/// The parser prints every format whose name holds `heartbeat` on standard output, where our tables go.
-/// So it gets to see another name of the same length, and only we the right one.
-const HEARTBEAT: (&str, &str) = ("heartbeat", "HEARTBEAT");
-
-fn silence_heartbeats(bytes: &mut [u8]) {
-    let mut at = HEADER;
-    while let Some(&[low, high, kind]) = bytes.get(at..at + 3) {
-        let end = (at + 3 + usize::from(u16::from_le_bytes([low, high]))).min(bytes.len());
-        // Definitions of formats and subscriptions to them.
-        if matches!(kind, b'F' | b'A') {
-            rename(&mut bytes[at + 3..end]);
-        }
-        at = end;
-    }
-}
-
-fn rename(message: &mut [u8]) {
-    let (from, to) = (HEARTBEAT.0.as_bytes(), HEARTBEAT.1.as_bytes());
-    while let Some(place) = message.windows(from.len()).position(|window| window == from) {
-        message[place..place + to.len()].copy_from_slice(to);
-    }
-}
-
-fn heard(name: &str) -> String {
-    name.replace(HEARTBEAT.1, HEARTBEAT.0)
 }
 
 /// Fields of one topic of a log.
@@ -176,20 +124,15 @@ impl Channel {
         let mut all = Chunk::default();
         all.clear(asked.len());
         let mut places = Vec::new();
-        let (mut fields, mut texts) = (Vec::new(), Vec::new());
-        let parsed = name.split(':').next().unwrap_or(name).replace(HEARTBEAT.0, HEARTBEAT.1);
-        log.for_each(Some(&parsed), |instance, time, data| {
-            if instance != name {
-                return;
-            }
-            let numbers = leaves(data);
-            if fields.is_empty() {
+        let mut known: Option<&Series> = None;
+        log.for_each(Some(name), |series, time, message| {
+            let numbers = &series.numbers;
+            // A topic may be registered again, in another format.
+            if known.replace(series).is_none_or(|known| !std::ptr::eq(known, series)) {
                 let place = |asked: &&str| numbers.iter().position(|(name, _)| name == asked);
                 places = asked.iter().map(place).collect();
-                fields = numbers.iter().map(|(name, _)| name.clone()).collect();
-                texts = log.texts(data).map(|field| field.name.clone()).collect();
             }
-            let value = |place: &Option<usize>| numbers.get((*place)?).map(|(_, value)| *value);
+            let value = |place: &Option<usize>| numbers.get((*place)?)?.1.read(message);
             let Some(values) = places.iter().map(value).collect::<Option<Vec<f64>>>() else {
                 return;
             };
@@ -197,16 +140,16 @@ impl Channel {
                 column.push(value);
             }
             all.times.push(time);
-        })?;
-        if fields.is_empty() {
-            let topics = log.topics()?;
+        });
+        let Some(Series { numbers, texts, .. }) = known else {
+            let topics = log.topics();
             bail!("{file}: no topic `{topic}`; {}", near(topic, topics.keys().map(String::as_str)));
-        }
+        };
         if let Some((field, _)) = asked.iter().zip(&places).find(|(_, place)| place.is_none()) {
             if texts.iter().any(|text| text == field.split('[').next().unwrap_or(field)) {
                 bail!("{file}: topic {name}: field `{field}` is text, not a signal");
             }
-            let near = near(field, fields.iter().map(String::as_str));
+            let near = near(field, numbers.iter().map(|(name, _)| name.as_str()));
             bail!("{file}: topic {name} has no field `{field}`; {near}");
         }
         for (field, column) in asked.iter().zip(&all.columns) {
@@ -245,44 +188,4 @@ impl Source for Channel {
     fn notes(&self) -> &[String] {
         &self.notes
     }
-}
-
-/// All numbers of a message by name: `field`, `array[0]`, `nested.field`.
-fn leaves(data: &Format) -> Vec<(String, f64)> {
-    let mut numbers = Vec::new();
-    for field in &data.fields {
-        add(&heard(&field.name), &field.value, &mut numbers);
-    }
-    numbers
-}
-
-fn add(name: &str, value: &FieldValue, numbers: &mut Vec<(String, f64)>) {
-    let number = match value {
-        FieldValue::ScalarU8(value) => f64::from(*value),
-        FieldValue::ScalarU16(value) => f64::from(*value),
-        FieldValue::ScalarU32(value) => f64::from(*value),
-        FieldValue::ScalarU64(value) => *value as f64,
-        FieldValue::ScalarI8(value) => f64::from(*value),
-        FieldValue::ScalarI16(value) => f64::from(*value),
-        FieldValue::ScalarI32(value) => f64::from(*value),
-        FieldValue::ScalarI64(value) => *value as f64,
-        FieldValue::ScalarF32(value) => f64::from(*value),
-        FieldValue::ScalarF64(value) => *value,
-        FieldValue::ScalarBool(value) => f64::from(u8::from(*value)),
-        // Text is not a signal.
-        FieldValue::ScalarChar(_) | FieldValue::ArrayChar(_) => return,
-        FieldValue::ScalarOther(nested) => {
-            for (inner, number) in leaves(nested) {
-                numbers.push((format!("{name}.{inner}"), number));
-            }
-            return;
-        }
-        array => {
-            for (index, value) in array.to_scalars().unwrap_or_default().iter().enumerate() {
-                add(&format!("{name}[{index}]"), value, numbers);
-            }
-            return;
-        }
-    };
-    numbers.push((name.to_owned(), number));
 }

@@ -1,6 +1,6 @@
 //! The messages of a log one by one, and which of them can be read.
 
-use super::format::{Format, Formats};
+use super::format::{Format, Formats, Number};
 use std::collections::HashMap;
 use std::fmt;
 use std::ops::Range;
@@ -82,19 +82,34 @@ struct Message {
 pub(super) struct Scan<'a> {
     bytes: &'a [u8],
     formats: Formats,
-    /// The format of each registered id, and the lengths of its messages.
-    registered: HashMap<u16, (String, (usize, usize))>,
-    definitions: Vec<u8>,
-    data: Vec<u8>,
+    /// What each registered id stands for now, as a place in `series`.
+    registered: HashMap<u16, usize>,
+    series: Vec<Series>,
+    messages: Vec<(usize, Range<usize>)>,
     findings: Findings,
 }
 
 /// What can be read of a log.
 pub(super) struct Scanned {
-    /// A log of the good messages.
-    pub bytes: Vec<u8>,
-    pub formats: Formats,
+    /// What messages of data may be.
+    pub series: Vec<Series>,
+    /// The good messages of data in their order: which of the above, and where in the file.
+    pub messages: Vec<(usize, Range<usize>)>,
     pub findings: Findings,
+}
+
+/// An instance of a topic, as it was registered.
+pub(super) struct Series {
+    /// The topic, later instances as `topic:1`.
+    pub name: String,
+    /// Its numbers.
+    pub numbers: Vec<(String, Number)>,
+    /// Its fields of text.
+    pub texts: Vec<String>,
+    /// When a message was logged.
+    pub time: Number,
+    /// How long a message is, without and with padding at its end.
+    lengths: (usize, usize),
 }
 
 impl<'a> Scan<'a> {
@@ -104,8 +119,8 @@ impl<'a> Scan<'a> {
             bytes,
             formats: Formats::new(),
             registered: HashMap::new(),
-            definitions: Vec::new(),
-            data: Vec::new(),
+            series: Vec::new(),
+            messages: Vec::new(),
             findings: Findings::default(),
         };
         let appended = scan.appended();
@@ -114,10 +129,8 @@ impl<'a> Scan<'a> {
         if let Some(start) = appended {
             scan.part(start..bytes.len(), false);
         }
-        let mut good = bytes[..HEADER].to_vec();
-        good.append(&mut scan.definitions);
-        good.append(&mut scan.data);
-        Scanned { bytes: good, formats: scan.formats, findings: scan.findings }
+        let Self { series, messages, findings, .. } = scan;
+        Scanned { series, messages, findings }
     }
 
     /// Where data was appended later, such as after a crash.
@@ -186,8 +199,8 @@ impl<'a> Scan<'a> {
     fn is_good(&self, message: &Message) -> bool {
         let fits = || {
             let (id, length) = self.data_of(message)?;
-            let (_, (short, long)) = self.registered.get(&id)?;
-            (length == *short || length == *long).then_some(())
+            let (short, long) = self.series.get(*self.registered.get(&id)?)?.lengths;
+            (length == short || length == long).then_some(())
         };
         is_known(message) && (message.kind != b'D' || fits().is_some())
     }
@@ -203,15 +216,17 @@ impl<'a> Scan<'a> {
         match message.kind {
             b'F' => self.define(message.at, content),
             b'A' => self.register(message.at, content),
-            b'D' => match self.data_of(message) {
-                Some((id, _)) if !self.registered.contains_key(&id) => {
-                    self.findings.unregistered.at(message.at);
+            b'D' => {
+                let id = self.data_of(message).map(|(id, _)| id);
+                match id.map(|id| self.registered.get(&id)) {
+                    Some(None) => self.findings.unregistered.at(message.at),
+                    Some(Some(&series)) if self.is_good(message) => {
+                        let data = message.content.start + 2..message.content.end;
+                        self.messages.push((series, data));
+                    }
+                    _ => self.findings.lengths.at(message.at),
                 }
-                Some(_) if self.is_good(message) => {
-                    self.data.extend(&self.bytes[message.at..message.content.end]);
-                }
-                _ => self.findings.lengths.at(message.at),
-            },
+            }
             b'O' => {
                 if let Some(&milliseconds) = content.first_chunk() {
                     let milliseconds = u64::from(u16::from_le_bytes(milliseconds));
@@ -231,32 +246,32 @@ impl<'a> Scan<'a> {
             self.findings.formats.at(at);
             return;
         };
-        add(&mut self.definitions, b'F', format.text().as_bytes());
         self.formats.insert(format.name.clone(), format);
     }
 
     fn register(&mut self, at: usize, content: &[u8]) {
         let registered = || {
-            let (&[_, low, high], name) = content.split_first_chunk()?;
+            let (&[instance, low, high], name) = content.split_first_chunk()?;
             let format = self.formats.get(str::from_utf8(name).ok()?)?;
-            let lengths = format.lengths(&self.formats).filter(|_| format.is_timed())?;
-            Some((u16::from_le_bytes([low, high]), (format.name.clone(), lengths)))
+            let name = match instance {
+                0 => format.name.clone(),
+                instance => format!("{}:{instance}", format.name),
+            };
+            let series = Series {
+                name,
+                lengths: format.lengths(&self.formats)?,
+                time: format.time(&self.formats)?,
+                numbers: format.numbers(&self.formats),
+                texts: format.texts().map(|field| field.name.clone()).collect(),
+            };
+            Some((u16::from_le_bytes([low, high]), series))
         };
-        let Some((id, format)) = registered() else {
+        let Some((id, series)) = registered() else {
             self.findings.formats.at(at);
             return;
         };
-        add(&mut self.data, b'A', content);
-        self.registered.insert(id, format);
-    }
-}
-
-fn add(bytes: &mut Vec<u8>, kind: u8, content: &[u8]) {
-    // Rewritten definitions may be longer than they were, but no message is near this length.
-    if let Ok(length) = u16::try_from(content.len()) {
-        bytes.extend(length.to_le_bytes());
-        bytes.push(kind);
-        bytes.extend(content);
+        self.registered.insert(id, self.series.len());
+        self.series.push(series);
     }
 }
 
