@@ -12,14 +12,16 @@ pub mod encode;
 pub mod events;
 pub mod files;
 pub mod fit;
+#[cfg(feature = "frames")]
 pub mod frames;
 pub mod input;
 pub mod look;
+#[cfg(feature = "networks")]
 pub mod network;
 pub mod output;
 #[cfg(not(target_family = "wasm"))]
 pub mod plot;
-#[cfg(not(target_family = "wasm"))]
+#[cfg(all(feature = "ports", not(target_family = "wasm")))]
 pub mod port;
 pub mod resolution;
 #[cfg(any(test, feature = "capture"))]
