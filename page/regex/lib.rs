@@ -1,3 +1,0 @@
-//! `regex` for those who need it on ASCII only.
-
-pub use regex_lite::*;
