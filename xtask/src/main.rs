@@ -14,6 +14,7 @@ mod emulator;
 mod fifo;
 mod firmware;
 mod flown;
+mod fuzz;
 mod host;
 mod image;
 mod jumps;

@@ -30,6 +30,11 @@ const STEPS: &[Step] = &[
     step("fmt", "rustfmt", checks::fmt),
     step("clippy", "clippy on host code, which builds the tests, and on firmware", checks::clippy),
     step("test", "host tests and doctests", checks::test),
+    step(
+        "fuzz",
+        "hostile bytes for every reader, link, chip and codec: corpora and mutants",
+        crate::fuzz::replay,
+    ),
     step("peers", "event formats against other programs", checks::peers),
     step("readme", "the code of README and docs runs", checks::readme),
     step("doc", "documentation without warnings", checks::doc),
@@ -64,6 +69,11 @@ const LONG: &[Step] = &[
         "sweeps",
         "all tests, optimised, with twenty times as many cases, from a fresh seed",
         long::sweeps,
+    ),
+    step(
+        "fuzz-long",
+        "the same under libFuzzer, a minute a target (FUZZ_SECONDS), going on from the last run",
+        crate::fuzz::long,
     ),
     step("lints", "clippy on all at once: every feature, firmware on host and core", long::lints),
     step("capture", "the laptop program with a debug probe's driver", long::capture),
