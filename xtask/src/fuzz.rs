@@ -2,7 +2,7 @@
 
 use crate::{
     host::tests,
-    packages, paths,
+    paths,
     shell::{self, cargo, command, run},
 };
 use anyhow::{Context, Result, bail, ensure};
@@ -27,7 +27,6 @@ pub fn replay() -> Result<()> {
 /// Runs every target, or the one that `FUZZ_TARGET` names, under libFuzzer. What it found is kept below `target/fuzz`, so
 /// that the next run goes on from there.
 pub fn long() -> Result<()> {
-    packages::install(&["g++"])?;
     let engine = build()?;
     let seconds = env::var("FUZZ_SECONDS").unwrap_or_else(|_| SECONDS.into());
     let wanted = env::var("FUZZ_TARGET").ok();
