@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use catalogue::run::SampleType;
+use catalogue::run::{self, Codec, SampleType};
 use numpy::ndarray::{ArrayView1, ArrayViewD, Axis, Ix1, Slice};
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -60,6 +60,20 @@ impl Lane<'_> {
         }
     }
 
+    /// Encodes the samples, which are good, into rows of cells, and returns how many rows that made.
+    pub(crate) fn encode(&self, codec: &mut Codec, cells: &mut [i8]) -> usize {
+        let samples = match self {
+            Self::F32(lane) => lane.as_slice().map(run::Samples::F32),
+            Self::F64(lane) => lane.as_slice().map(run::Samples::F64),
+            Self::I16(lane) => lane.as_slice().map(run::Samples::I16),
+        };
+        match (samples, self) {
+            (Some(samples), _) => codec.encode_cells(samples, cells),
+            (None, Self::F32(lane)) => codec.encode_cells(run::Samples::F32(&lane.to_vec()), cells),
+            (None, lane) => codec.encode_cells(run::Samples::F64(&lane.to_vec()), cells),
+        }
+    }
+
     /// The first sample that an encoder of this type does not take: it is not finite, or becomes so in the type.
     pub(crate) fn bad(&self, sample: SampleType) -> Option<Bad> {
         match self {
@@ -111,14 +125,4 @@ fn split<T>(view: ArrayViewD<'_, T>) -> Vec<ArrayView1<'_, T>> {
             (0..rows).flat_map(|row| split(view.clone().index_axis_move(Axis(0), row))).collect()
         }
     }
-}
-
-/// Room for the decoded values of one channel.
-pub(crate) enum Values<'a> {
-    /// `float32`, of samples in `f32`.
-    F32(&'a mut [f32]),
-    /// `float64`, of samples in fixed point.
-    F64(&'a mut [f64]),
-    /// `int16`, of samples in `i16`.
-    I16(&'a mut [i16]),
 }

@@ -1,14 +1,16 @@
 //! A scheme with what was given of its parameters, and with all of them.
 
 use anyhow::{Context, Result, anyhow, bail};
-use catalogue::run::{Asked, Calibrated, Known, RunTime, SampleType, Settings, missing};
+use catalogue::run::{
+    Asked, Calibrated, Codec, Known, RunTime, SampleType, Settings, Values, missing,
+};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-use crate::array::{Lane, Samples, Values};
-use crate::channel::{self, Bad, Channel};
+use crate::array::{Lane, Samples};
+use crate::channel::{self, Bad};
 use crate::error::value;
 use crate::stream::{Decoder, Encoder};
 use crate::values::{self, Given};
@@ -61,12 +63,17 @@ impl Coder {
         self.scheme.looks_back(&self.asked)
     }
 
+    /// A codec as it starts on these settings.
+    pub(crate) fn start(&self, settings: &Settings) -> Result<Codec> {
+        self.scheme.codec_from(settings, settings.first_value())
+    }
+
     /// Refuses what makes no sense whatever the signal is.
     fn check(&self) -> Result<()> {
         let past = vec![0.0; self.looks_back()];
         let Some(what) = self.scheme.needs_signal(&self.asked) else {
             let settings = self.settle(&past, None)?;
-            return channel::start(self.scheme, &settings, None).map(drop);
+            return self.start(&settings).map(drop);
         };
         let is_end_given = ["min", "max"].iter().any(|name| self.asked.get(name).is_some());
         if missing(self.scheme.info(), &self.asked) == Some(what) && !is_end_given {
@@ -75,7 +82,7 @@ impl Coder {
             calibrated.observe(&[0.0, 1.0]);
             let plain = Self { sample: SampleType::F32, ..self.clone() };
             let settings = plain.settle(&past, Some(&calibrated))?;
-            channel::start(self.scheme, &settings, None)?;
+            self.start(&settings)?;
         }
         Ok(())
     }
@@ -172,7 +179,7 @@ impl Coder {
     /// How many samples after its own the code of a sample comes out.
     fn latency(&self) -> PyResult<usize> {
         let settings = self.of_ramp().map_err(|error| value(&error))?;
-        let channel = channel::start(self.scheme, &settings, None);
+        let channel = self.start(&settings);
         channel.map(|channel| channel.latency()).map_err(|error| value(&error))
     }
 
@@ -190,7 +197,7 @@ impl Coder {
         let channels = first.iter().enumerate().map(|(place, own)| {
             let past = vec![own.unwrap_or_default(); self.looks_back()];
             let settings = self.channel(place, first.len())?.settle(&past, None)?;
-            channel::start(self.scheme, &settings, *own)
+            self.scheme.codec_from(&settings, settings.first_value().or(*own))
         });
         let channels = channels.collect::<Result<Vec<_>>>();
         Ok(Decoder::new(channels.map_err(|error| value(&error))?, self.sample))
@@ -213,9 +220,9 @@ impl Fitted {
         own.ok_or_else(|| anyhow!("there is no channel"))
     }
 
-    fn start(&self, channel: usize) -> Result<Box<dyn Channel>> {
+    fn start(&self, channel: usize) -> Result<Codec> {
         let settings = self.settings(channel)?.with_stream(channel as u64);
-        channel::start(self.scheme, &settings, None)
+        self.scheme.codec_from(&settings, settings.first_value())
     }
 
     /// How many cells a row has.
@@ -333,7 +340,8 @@ impl Fitted {
                             if meter.is_stopped() {
                                 break;
                             }
-                            let done = channel.decode(rows, &mut Values::$kind(room));
+                            let done =
+                                channel::decode(&mut channel, rows, &mut Values::$kind(room));
                             done.map_err(|bad| told(place, piece * PIECE, &bad))?;
                             meter.add(room.len());
                         }
@@ -403,11 +411,11 @@ impl Fitted {
                 return Ok(());
             }
             let part = lane.part(start..lane.len().min(start + PIECE));
-            let coded = channel.encode(part, &mut room[made * width..]);
+            let coded = channel::encode(&mut channel, self.sample, part, &mut room[made * width..]);
             made += coded.map_err(|bad| told(place, start, &bad))?;
             meter.add(part.len());
         }
-        channel.finish(&mut room[made * width..]);
+        channel.finish_cells(&mut room[made * width..]);
         Ok(())
     }
 }

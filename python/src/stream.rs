@@ -3,14 +3,14 @@
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use anyhow::{Context, Result, ensure};
-use catalogue::run::SampleType;
+use catalogue::run::{Codec, SampleType, Values};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-use crate::array::{Lane, Samples, Values};
-use crate::channel::{self, Channel};
+use crate::array::{Lane, Samples};
+use crate::channel;
 use crate::coder::{Coder, is_wide, told};
 use crate::error::value;
 use crate::work;
@@ -19,12 +19,12 @@ use crate::work;
 /// channels that run. No version reads another's.
 type Pickled = (String, Vec<Vec<f64>>, Vec<Vec<u8>>);
 
-fn pickled(waiting: &[Vec<f64>], running: &[Box<dyn Channel>]) -> Result<Pickled> {
-    let states = running.iter().map(|channel| channel.state()).collect::<Result<_>>()?;
+fn pickled(waiting: &[Vec<f64>], running: &[Codec]) -> Result<Pickled> {
+    let states = running.iter().map(Codec::state).collect::<Result<_>>()?;
     Ok((env!("CARGO_PKG_VERSION").to_owned(), waiting.to_vec(), states))
 }
 
-fn set_states(running: &mut [Box<dyn Channel>], (version, _, states): &Pickled) -> Result<()> {
+fn set_states(running: &mut [Codec], (version, _, states): &Pickled) -> Result<()> {
     let own = env!("CARGO_PKG_VERSION");
     ensure!(version == own, "the stream was pickled by spikewire {version}, and this is {own}");
     ensure!(states.len() == running.len(), "the states are of {} channels", states.len());
@@ -64,7 +64,7 @@ impl Encoder {
 struct Encoding {
     coder: Coder,
     /// None before as many samples have come as the encoder starts from.
-    running: Vec<Box<dyn Channel>>,
+    running: Vec<Codec>,
     /// The samples that have come before that, by channel.
     waiting: Vec<Vec<f64>>,
     /// How many neurons and sub-timesteps a channel has.
@@ -86,7 +86,7 @@ impl Encoding {
             let mut settings =
                 self.coder.channel(place, self.waiting.len())?.settle(first, None)?;
             settings.stream = place as u64;
-            running.push(channel::start(self.coder.scheme, &settings, None)?);
+            running.push(self.coder.start(&settings)?);
         }
         self.running = running;
         let waiting: Vec<Vec<f64>> = self.waiting.iter_mut().map(std::mem::take).collect();
@@ -104,7 +104,7 @@ impl Encoding {
             let first = vec![0.0; self.coder.looks_back()];
             let start = |place| {
                 let settings = self.coder.channel(place, channels)?.settle(&first, None)?;
-                channel::start(self.coder.scheme, &settings, None)
+                self.coder.start(&settings)
             };
             running = (0..channels).map(start).collect::<Result<_>>()?;
         }
@@ -114,10 +114,11 @@ impl Encoding {
     }
 
     fn push(&mut self, lanes: &[Lane]) -> Result<Vec<Vec<i8>>> {
-        let width = self.width();
-        let code = |(place, (channel, lane)): (usize, (&mut Box<dyn Channel>, &Lane))| {
+        let (width, sample) = (self.width(), self.coder.sample);
+        let code = |(place, (channel, lane)): (usize, (&mut Codec, &Lane))| {
             let mut cells = vec![0; lane.len() * width];
-            let made = channel.encode(*lane, &mut cells).map_err(|bad| told(place, 0, &bad))?;
+            let made = channel::encode(channel, sample, *lane, &mut cells)
+                .map_err(|bad| told(place, 0, &bad))?;
             cells.truncate(made * width);
             Ok(cells)
         };
@@ -155,7 +156,7 @@ impl Encoding {
         for (cells, mut channel) in cells.iter_mut().zip(self.running.drain(..)) {
             let start = cells.len();
             cells.resize(start + channel.latency() * width, 0);
-            let made = channel.finish(&mut cells[start..]);
+            let made = channel.finish_cells(&mut cells[start..]);
             cells.truncate(start + made * width);
         }
         self.waiting.iter_mut().for_each(Vec::clear);
@@ -214,35 +215,35 @@ impl Encoder {
 /// Decoders of several channels.
 #[pyclass(frozen, module = "spikewire._native")]
 pub(crate) struct Decoder {
-    channels: Mutex<Vec<Box<dyn Channel>>>,
+    channels: Mutex<Vec<Codec>>,
     sample: SampleType,
 }
 
 impl Decoder {
-    pub(crate) fn new(channels: Vec<Box<dyn Channel>>, sample: SampleType) -> Self {
+    pub(crate) fn new(channels: Vec<Codec>, sample: SampleType) -> Self {
         Self { channels: Mutex::new(channels), sample }
     }
 
-    fn taken(&self) -> PyResult<MutexGuard<'_, Vec<Box<dyn Channel>>>> {
+    fn taken(&self) -> PyResult<MutexGuard<'_, Vec<Codec>>> {
         taken(&self.channels, "decoder")
     }
 }
 
 /// Decodes rows of cells, all or none: a bad one leaves the channels as they were.
 fn decode_all<T: Copy + Default>(
-    channels: &mut [Box<dyn Channel>],
+    channels: &mut [Codec],
     cells: &[i8],
     rows: usize,
     as_values: impl Fn(&mut [T]) -> Values<'_>,
 ) -> Result<Vec<T>> {
-    let before = channels.iter().map(|channel| channel.state()).collect::<Result<Vec<_>>>()?;
+    let before = channels.iter().map(Codec::state).collect::<Result<Vec<_>>>()?;
     let own = (cells.len() / channels.len().max(1)).max(1);
     let mut values = vec![T::default(); rows * channels.len()];
     let mut rooms = values.chunks_mut(rows.max(1));
     let mut failed = None;
     for (place, (channel, cells)) in channels.iter_mut().zip(cells.chunks(own)).enumerate() {
         let Some(room) = rooms.next() else { break };
-        if let Err(bad) = channel.decode(cells, &mut as_values(room)) {
+        if let Err(bad) = channel::decode(channel, cells, &mut as_values(room)) {
             failed = Some(told(place, 0, &bad));
             break;
         }

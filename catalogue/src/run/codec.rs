@@ -1,9 +1,15 @@
 //! An encoder and its decoder over many samples, whose type says nothing of the scheme.
+//!
+//! The code of a sample is a row of cells, one for each neuron of each sub-timestep. A cell holds how many spikes went
+//! up less how many went down: -1, 0 or 1, or more where a code sends several spikes a sample.
 
 use anyhow::Result;
-use spikewire::{Code, NeuronSpike, Output, Polarity, Sample, Scheme};
+#[cfg(feature = "states")]
+use anyhow::{Context, ensure};
+use spikewire::{Code, NeuronSpike, Output, Polarity, Sample, SampleKind, Scheme};
 
-use super::{Settings, Visit};
+use super::{Settings, Shape, Visit};
+use crate::State;
 
 /// One neuron's spike for one sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -18,23 +24,84 @@ pub struct Event {
     pub polarity: Polarity,
 }
 
-/// A matching encoder and decoder, in the recording's unit.
-pub struct Codec(Box<dyn Erased>);
+/// Samples in the signal's unit, all finite.
+#[derive(Clone, Copy, Debug)]
+pub enum Samples<'a> {
+    /// In single precision.
+    F32(&'a [f32]),
+    /// In double precision.
+    F64(&'a [f64]),
+    /// Whole numbers.
+    I16(&'a [i16]),
+}
+
+/// Room for decoded values, in the signal's unit.
+#[derive(Debug)]
+pub enum Values<'a> {
+    /// In single precision.
+    F32(&'a mut [f32]),
+    /// In double precision.
+    F64(&'a mut [f64]),
+    /// Whole numbers.
+    I16(&'a mut [i16]),
+}
+
+/// A matching encoder and decoder, in the signal's unit.
+pub struct Codec {
+    running: Box<dyn Running + Send + Sync>,
+    shape: Shape,
+    /// How many samples have been coded as events, and how many decoded from them.
+    coded: u64,
+    decoded: u64,
+    /// The cells of the sample that is decoded.
+    row: Vec<i8>,
+}
 
 impl Codec {
+    /// How many neurons and sub-timesteps it has.
+    pub fn shape(&self) -> Shape {
+        self.shape
+    }
+
     /// How many samples after its own the code of a sample comes out.
     pub fn latency(&self) -> usize {
-        self.0.latency()
+        self.running.latency()
+    }
+
+    /// Takes the next samples, writes their codes into rows of cells, which are all 0, and returns how many rows that made.
+    pub fn encode_cells(&mut self, samples: Samples, cells: &mut [i8]) -> usize {
+        let mut sink = Sink::Cells { rows: cells, shape: self.shape, made: 0 };
+        self.running.encode(samples, &mut sink);
+        sink.made()
+    }
+
+    /// The rows of the samples that still wait for later ones, and how many these are.
+    pub fn finish_cells(&mut self, cells: &mut [i8]) -> usize {
+        let mut sink = Sink::Cells { rows: cells, shape: self.shape, made: 0 };
+        self.running.finish(&mut sink);
+        sink.made()
+    }
+
+    /// Decodes as many rows of cells as there is room for values.
+    ///
+    /// # Errors
+    /// The first row that no encoder makes. Those before it have been decoded.
+    pub fn decode_cells(&mut self, cells: &[i8], values: &mut Values) -> Result<(), usize> {
+        self.running.decode(cells, values)
     }
 
     /// Takes the next samples, all finite, and adds the events that they bring about.
     pub fn encode(&mut self, samples: &[f64], events: &mut Vec<Event>) {
-        self.0.encode(samples, events);
+        let mut sink = Sink::Events { events, sample: self.coded };
+        self.running.encode(Samples::F64(samples), &mut sink);
+        self.coded = sink.made() as u64;
     }
 
     /// Adds the events of the samples that still wait for their look-ahead.
     pub fn finish(&mut self, events: &mut Vec<Event>) {
-        self.0.finish(events);
+        let mut sink = Sink::Events { events, sample: self.coded };
+        self.running.finish(&mut sink);
+        self.coded = sink.made() as u64;
     }
 
     /// Decodes the next samples from the events that belong to them, and adds their values.
@@ -44,159 +111,307 @@ impl Codec {
     pub fn decode(
         &mut self,
         samples: usize,
-        events: &[Event],
+        mut events: &[Event],
         values: &mut Vec<f64>,
     ) -> Result<(), Event> {
-        self.0.decode(samples, events, values)
+        let mut row = std::mem::take(&mut self.row);
+        row.resize(self.shape.neurons * self.shape.slots, 0);
+        for _ in 0..samples {
+            let own = events.iter().take_while(|event| event.sample == self.decoded).count();
+            let (now, later) = events.split_at(own);
+            events = later;
+            row.fill(0);
+            let mut value = [0.0];
+            let is_code = self.shape.put_all(now, &mut row)
+                && self.running.decode(&row, &mut Values::F64(&mut value)).is_ok();
+            if let (false, Some(first)) = (is_code, now.first()) {
+                return Err(*first);
+            }
+            values.extend(value);
+            self.decoded += 1;
+        }
+        self.row = row;
+        Ok(())
+    }
+
+    /// All that it keeps from sample to sample, as bytes.
+    ///
+    /// # Errors
+    /// None that is known.
+    #[cfg(feature = "states")]
+    pub fn state(&self) -> Result<Vec<u8>> {
+        self.running.state()
+    }
+
+    /// Goes on from what [`state`](Self::state) gave, of a codec of the same scheme.
+    ///
+    /// # Errors
+    /// It is damaged, or another scheme's.
+    #[cfg(feature = "states")]
+    pub fn set_state(&mut self, bytes: &[u8]) -> Result<()> {
+        self.running.set_state(bytes)
+    }
+}
+
+impl Shape {
+    /// Where a spike's cell is, unless it is none of these neurons and sub-timesteps.
+    fn cell(self, neuron: u16, slot: u16) -> Option<usize> {
+        let (neuron, slot) = (usize::from(neuron), usize::from(slot));
+        (neuron < self.neurons && slot < self.slots).then_some(slot * self.neurons + neuron)
+    }
+
+    /// Adds events to a row. Returns whether there are such cells, and no two events of a cell contradict each other.
+    fn put_all(self, events: &[Event], row: &mut [i8]) -> bool {
+        events.iter().all(|event| {
+            let cell = self.cell(event.neuron, event.slot).and_then(|cell| row.get_mut(cell));
+            let step = if event.polarity == Polarity::Up { 1 } else { -1 };
+            cell.is_some_and(|cell| {
+                let is_good = i32::from(*cell) * i32::from(step) >= 0;
+                let sum = cell.checked_add(step);
+                *cell = sum.unwrap_or(*cell);
+                is_good && sum.is_some()
+            })
+        })
+    }
+}
+
+/// Where codes go.
+enum Sink<'a> {
+    /// Into rows of cells, of which so many are made.
+    Cells { rows: &'a mut [i8], shape: Shape, made: usize },
+    /// Into a list of events, from this sample on.
+    Events { events: &'a mut Vec<Event>, sample: u64 },
+}
+
+impl Sink<'_> {
+    fn put<C: Code>(&mut self, code: C) {
+        match self {
+            Self::Cells { rows, shape, made } => {
+                let width = shape.neurons * shape.slots;
+                if let Some(row) = rows.get_mut(*made * width..(*made + 1) * width) {
+                    put(code, *shape, row);
+                    *made += 1;
+                }
+            }
+            Self::Events { events, sample } => {
+                events.extend(code.firings().map(|NeuronSpike { neuron, slot, polarity }| Event {
+                    sample: *sample,
+                    neuron,
+                    slot,
+                    polarity,
+                }));
+                *sample += 1;
+            }
+        }
+    }
+
+    /// How many rows were made, or the sample that comes next.
+    fn made(&self) -> usize {
+        match self {
+            Self::Cells { made, .. } => *made,
+            Self::Events { sample, .. } => *sample as usize,
+        }
+    }
+}
+
+fn put<C: Code>(code: C, shape: Shape, row: &mut [i8]) {
+    for NeuronSpike { neuron, slot, polarity } in code.firings() {
+        if let Some(cell) = shape.cell(neuron, slot).and_then(|cell| row.get_mut(cell)) {
+            *cell = cell.saturating_add(if polarity == Polarity::Up { 1 } else { -1 });
+        }
     }
 }
 
 /// What a codec does with many samples a call, so that the dynamic call costs nothing.
-trait Erased {
+trait Running {
     fn latency(&self) -> usize;
-    fn encode(&mut self, samples: &[f64], events: &mut Vec<Event>);
-    fn finish(&mut self, events: &mut Vec<Event>);
-    fn decode(
-        &mut self,
-        count: usize,
-        events: &[Event],
-        values: &mut Vec<f64>,
-    ) -> Result<(), Event>;
+    fn encode(&mut self, samples: Samples, sink: &mut Sink);
+    fn finish(&mut self, sink: &mut Sink);
+    fn decode(&mut self, cells: &[i8], values: &mut Values) -> Result<(), usize>;
+    #[cfg(feature = "states")]
+    fn state(&self) -> Result<Vec<u8>>;
+    #[cfg(feature = "states")]
+    fn set_state(&mut self, bytes: &[u8]) -> Result<()>;
 }
 
-/// Starts a codec on a recording.
+/// Starts a codec.
 pub(super) struct Start<'a> {
     pub(super) settings: &'a Settings,
-    /// The first sample, or the value before it, of schemes whose decoders add up steps.
+    pub(super) shape: Shape,
+    /// What decoders that add up steps start from, if not from 0.
     pub(super) first: Option<f64>,
 }
 
 impl<S: Sample> Visit<S> for Start<'_> {
     type Output = Codec;
 
-    fn visit<P: Scheme<Sample = S> + 'static>(
-        self,
-        scheme: P,
-        mut encoder: P::EncoderState,
-    ) -> Result<Codec> {
-        let Self { settings, first } = self;
+    fn visit<P>(self, scheme: P, mut encoder: P::EncoderState) -> Result<Codec>
+    where
+        P: Scheme<
+                Sample = S,
+                EncoderState: State + Send + Sync,
+                DecoderState: State + Send + Sync,
+                Code: Send + Sync,
+            > + Send
+            + Sync
+            + 'static,
+    {
+        let Self { settings, shape, first } = self;
         let one = settings.sample.one();
         let sample = |value: f64| S::from_f64(value * one);
-        let window: Vec<S> = settings.first.iter().copied().map(sample).collect();
-        scheme.prime(&mut encoder, &window);
+        let past: Vec<S> = settings.first.iter().copied().map(sample).collect();
+        scheme.prime(&mut encoder, &past);
         let mut decoder = scheme.decoder_state();
         if let Some(first) = first {
             scheme.resync(&mut decoder, sample(first));
         }
-        let starts_at_first = settings.starts_at_first();
-        let silent = P::Code::assemble(std::iter::empty());
-        let running = Running {
-            scheme,
+        let running = Box::new(Channel {
             encoder,
             decoder,
-            silent,
-            starts_at_first,
+            silent: P::Code::assemble(std::iter::empty()),
+            is_first_held: settings.starts_at_first(),
             one,
-            coded: 0,
-            decoded: 0,
-        };
-        Ok(Codec(Box::new(running)))
+            shape,
+            seen: vec![0; shape.neurons * shape.slots],
+            scheme,
+        });
+        Ok(Codec { running, shape, coded: 0, decoded: 0, row: Vec::new() })
     }
 }
 
 /// A scheme with the states of one channel.
-struct Running<P: Scheme> {
+struct Channel<P: Scheme> {
     scheme: P,
     encoder: P::EncoderState,
     decoder: P::DecoderState,
-    /// The code without events.
+    /// The code without spikes.
     silent: P::Code,
-    /// Whether the decoder holds the value of the first sample, whose spike then changes nothing.
-    starts_at_first: bool,
-    /// What a 1 of the recording is in the unit of the sample type.
+    /// Whether the decoder holds the value of the sample that comes next, whose spike then changes nothing.
+    is_first_held: bool,
+    /// What a 1 of the signal is in the unit of the sample type.
     one: f64,
-    /// How many samples have been coded.
-    coded: u64,
-    /// How many have been decoded.
-    decoded: u64,
+    shape: Shape,
+    /// A row of cells, to compare.
+    seen: Vec<i8>,
 }
 
-impl<P: Scheme> Running<P> {
-    fn emit(&mut self, code: P::Code, events: &mut Vec<Event>) {
-        let sample = self.coded;
-        events.extend(code.firings().map(|firing| event_of(sample, firing)));
-        self.coded += 1;
-    }
-}
-
-impl<P: Scheme> Erased for Running<P> {
-    fn latency(&self) -> usize {
-        self.scheme.latency()
-    }
-
-    fn encode(&mut self, samples: &[f64], events: &mut Vec<Event>) {
-        for &sample in samples {
-            let sample = P::Sample::from_f64(sample * self.one);
-            if let Some(code) = self.scheme.encode(&mut self.encoder, sample).code() {
-                self.emit(code, events);
-            }
-        }
-    }
-
-    fn finish(&mut self, events: &mut Vec<Event>) {
-        while let Some(code) = self.scheme.finish_next(&mut self.encoder) {
-            self.emit(code, events);
-        }
-    }
-
-    fn decode(
+impl<P: Scheme> Channel<P> {
+    /// Encodes in blocks, which schemes have faster code for.
+    fn encode_all(
         &mut self,
-        count: usize,
-        mut events: &[Event],
-        values: &mut Vec<f64>,
-    ) -> Result<(), Event> {
-        for _ in 0..count {
-            let now = leading(&mut events, self.decoded);
-            let code = match now {
-                [] => self.silent,
-                [first, ..] => assembled(now).ok_or(*first)?,
-            };
-            let held = if self.starts_at_first && self.decoded == 0 {
-                self.scheme.held(&self.decoder)
-            } else {
-                None
-            };
-            let value = held.unwrap_or_else(|| self.scheme.decode(&mut self.decoder, code));
-            values.push(value.to_f64() / self.one);
-            self.decoded += 1;
+        mut samples: impl ExactSizeIterator<Item = P::Sample>,
+        sink: &mut Sink,
+    ) {
+        const BLOCK: usize = 512;
+        let mut put = |output: P::Output| {
+            if let Some(code) = output.code() {
+                sink.put(code);
+            }
+        };
+        let Some(first) = samples.next() else { return };
+        // It also stands in the room for the others.
+        let first = self.scheme.encode(&mut self.encoder, first);
+        put(first);
+        let most = samples.len().min(BLOCK);
+        let (mut block, mut outputs) = (Vec::with_capacity(most), vec![first; most]);
+        while samples.len() > 0 {
+            block.clear();
+            block.extend(samples.by_ref().take(most));
+            let count = self.scheme.encode_slice(&mut self.encoder, &block, &mut outputs);
+            outputs.iter().take(count).for_each(|output| put(*output));
+        }
+    }
+
+    /// The code of a row, unless there is none.
+    fn code(&mut self, row: &[i8]) -> Option<P::Code> {
+        if row.iter().all(|cell| *cell == 0) {
+            return Some(self.silent);
+        }
+        let neurons = self.shape.neurons;
+        let firings = row.iter().enumerate().flat_map(|(place, cell)| {
+            let polarity = if *cell > 0 { Polarity::Up } else { Polarity::Down };
+            let (neuron, slot) = ((place % neurons) as u16, (place / neurons) as u16);
+            let firing = NeuronSpike { neuron, slot, polarity };
+            std::iter::repeat_n(firing, cell.unsigned_abs().into())
+        });
+        let code = P::Code::assemble(firings);
+        self.seen.fill(0);
+        put(code, self.shape, &mut self.seen);
+        (self.seen == row).then_some(code)
+    }
+
+    fn decode_next(&mut self, row: &[i8]) -> Option<P::Sample> {
+        let code = self.code(row)?;
+        if std::mem::take(&mut self.is_first_held)
+            && let Some(held) = self.scheme.held(&self.decoder)
+        {
+            return Some(held);
+        }
+        Some(self.scheme.decode(&mut self.decoder, code))
+    }
+
+    fn decode_each<T>(
+        &mut self,
+        cells: &[i8],
+        values: &mut [T],
+        of: impl Fn(P::Sample) -> T,
+    ) -> Result<(), usize> {
+        let rows = cells.chunks_exact(self.seen.len());
+        for (place, (row, value)) in rows.zip(values).enumerate() {
+            *value = of(self.decode_next(row).ok_or(place)?);
         }
         Ok(())
     }
 }
 
-/// Takes the events of this sample from the front of the list.
-fn leading<'a>(events: &mut &'a [Event], sample: u64) -> &'a [Event] {
-    let count = events.iter().take_while(|event| event.sample == sample).count();
-    let (now, later) = events.split_at(count);
-    *events = later;
-    now
-}
-
-/// The code of these events of one sample, in any order, unless there is no such code.
-fn assembled<C: Code>(events: &[Event]) -> Option<C> {
-    let firing = |event: &Event| {
-        let Event { neuron, slot, polarity, .. } = *event;
-        NeuronSpike { neuron, slot, polarity }
-    };
-    let code = C::assemble(events.iter().map(firing));
-    let mut left: Vec<NeuronSpike> = events.iter().map(firing).collect();
-    for firing in code.firings() {
-        left.swap_remove(left.iter().position(|other| *other == firing)?);
+impl<P: Scheme<EncoderState: State, DecoderState: State>> Running for Channel<P> {
+    fn latency(&self) -> usize {
+        self.scheme.latency()
     }
-    left.is_empty().then_some(code)
-}
 
-fn event_of(sample: u64, firing: NeuronSpike) -> Event {
-    let NeuronSpike { neuron, slot, polarity } = firing;
-    Event { sample, neuron, slot, polarity }
+    fn encode(&mut self, samples: Samples, sink: &mut Sink) {
+        let one = self.one;
+        let sample = |value: f64| P::Sample::from_f64(value * one);
+        match samples {
+            Samples::F32(own) if P::Sample::KIND == SampleKind::F32 => {
+                let as_is = own.iter().map(|value| P::Sample::from_bits32(value.to_bits()));
+                self.encode_all(as_is, sink);
+            }
+            Samples::F32(own) => self.encode_all(own.iter().map(|own| sample((*own).into())), sink),
+            Samples::F64(own) => self.encode_all(own.iter().map(|own| sample(*own)), sink),
+            Samples::I16(own) => self.encode_all(own.iter().map(|own| sample((*own).into())), sink),
+        }
+    }
+
+    fn finish(&mut self, sink: &mut Sink) {
+        while let Some(code) = self.scheme.finish_next(&mut self.encoder) {
+            sink.put(code);
+        }
+    }
+
+    fn decode(&mut self, cells: &[i8], values: &mut Values) -> Result<(), usize> {
+        let one = self.one;
+        match values {
+            Values::F32(room) => self.decode_each(cells, room, |own| (own.to_f64() / one) as f32),
+            Values::F64(room) => self.decode_each(cells, room, |own| own.to_f64() / one),
+            Values::I16(room) => self.decode_each(cells, room, |own| (own.to_f64() / one) as i16),
+        }
+    }
+
+    #[cfg(feature = "states")]
+    fn state(&self) -> Result<Vec<u8>> {
+        Ok(postcard::to_allocvec(&(&self.encoder, &self.decoder, self.is_first_held))?)
+    }
+
+    #[cfg(feature = "states")]
+    fn set_state(&mut self, bytes: &[u8]) -> Result<()> {
+        let read = postcard::take_from_bytes::<(P::EncoderState, P::DecoderState, bool)>(bytes);
+        let ((encoder, decoder, is_first_held), rest) = read.context("the state is damaged")?;
+        ensure!(
+            rest.is_empty() && self.scheme.fits(&encoder) && self.scheme.fits_decoder(&decoder),
+            "the state is damaged, or another scheme's"
+        );
+        (self.encoder, self.decoder, self.is_first_held) = (encoder, decoder, is_first_held);
+        Ok(())
+    }
 }

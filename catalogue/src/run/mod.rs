@@ -19,7 +19,7 @@ mod value;
 
 pub use asked::{Asked, takes_no};
 pub use calibrate::Calibrated;
-pub use codec::{Codec, Event};
+pub use codec::{Codec, Event, Samples, Values};
 pub use exact::{Outcome, Outcomes, Parabola, below, outcomes};
 pub use filter::taps;
 pub use resolve::{Known, Resolve, missing};
@@ -273,6 +273,12 @@ pub trait RunTime: Sync {
     /// # Errors
     /// A parameter makes no sense.
     fn codec(&self, settings: &Settings) -> Result<Codec>;
+
+    /// The same, whose decoder starts from a value, if there is one.
+    ///
+    /// # Errors
+    /// A parameter makes no sense.
+    fn codec_from(&self, settings: &Settings, first: Option<f64>) -> Result<Codec>;
 }
 
 impl<T: Build + Sync> RunTime for T {
@@ -340,13 +346,17 @@ impl<T: Build + Sync> RunTime for T {
     }
 
     fn codec(&self, settings: &Settings) -> Result<Codec> {
-        let mut visitor = codec::Start { settings, first: None };
-        if T::INFO.has_first_value {
-            let Some(name) = settings.first_key() else {
-                bail!("the header lacks `# first=` or `# start=`; is it a file of spikes?")
-            };
-            visitor.first = Some(settings.number(name)?);
+        if !T::INFO.has_first_value {
+            return self.codec_from(settings, None);
         }
+        let Some(name) = settings.first_key() else {
+            bail!("the header lacks `# first=` or `# start=`; is it a file of spikes?")
+        };
+        self.codec_from(settings, Some(settings.number(name)?))
+    }
+
+    fn codec_from(&self, settings: &Settings, first: Option<f64>) -> Result<Codec> {
+        let visitor = codec::Start { settings, shape: T::shape(settings)?, first };
         for_sample_type!(settings.sample, S => T::build::<S, _>(settings, visitor))
     }
 }

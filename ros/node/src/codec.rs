@@ -3,9 +3,9 @@
 use crate::settings::Settings;
 use anyhow::{Context, Result, anyhow, bail};
 use catalogue::run::{
-    Asked, Calibrated, Event, Known, RunTime, SampleType, Settings as Complete, Value,
+    Asked, Calibrated, Codec as Running, Known, RunTime, SampleType, Samples, Settings as Complete,
+    Value, Values,
 };
-use spikewire::Polarity;
 
 /// Schemes whose messages have a number for each neuron.
 const NEURON_BY_NEURON: [&str; 4] = ["position", "grf", "grf-prob", "grf-nonlinear"];
@@ -109,14 +109,7 @@ pub(crate) struct Codec {
     scheme: &'static dyn RunTime,
     sample: SampleType,
     settings: Complete,
-    running: catalogue::run::Codec,
-    neurons: usize,
-    slots: usize,
-    events: Vec<Event>,
-    /// How many samples were taken, how many of them are coded, and how many rows were decoded.
-    taken: u64,
-    coded: u64,
-    decoded: u64,
+    running: Running,
 }
 
 impl Codec {
@@ -127,22 +120,8 @@ impl Codec {
         known: &Known,
     ) -> Result<Self> {
         let settings = scheme.resolve(sample, asked, known).map_err(plain)?;
-        let shape = scheme.shape(&settings).map_err(plain)?;
         let running = scheme.codec(&settings).map_err(plain)?;
-        let (neurons, slots) = (shape.neurons, shape.slots);
-        let events = Vec::new();
-        Ok(Self {
-            scheme,
-            sample,
-            settings,
-            running,
-            neurons,
-            slots,
-            events,
-            taken: 0,
-            coded: 0,
-            decoded: 0,
-        })
+        Ok(Self { scheme, sample, settings, running })
     }
 
     pub(crate) fn name(&self) -> &'static str {
@@ -150,7 +129,8 @@ impl Codec {
     }
 
     fn width(&self) -> usize {
-        self.neurons * self.slots
+        let shape = self.running.shape();
+        shape.neurons * shape.slots
     }
 
     /// Whether decoding starts from the first sample's value, whose spike then changes nothing.
@@ -190,29 +170,24 @@ impl Codec {
 
     /// Takes finite samples, and returns the cells of those that these complete.
     pub(crate) fn encode(&mut self, samples: &[f64]) -> Vec<Vec<i8>> {
-        self.running.encode(samples, &mut self.events);
-        self.taken += samples.len() as u64;
-        self.rows(self.taken.saturating_sub(self.running.latency() as u64))
+        self.rows(samples.len(), |running, cells| {
+            running.encode_cells(Samples::F64(samples), cells)
+        })
     }
 
     /// Returns the cells of the samples that wait for later ones.
     pub(crate) fn finish(&mut self) -> Vec<Vec<i8>> {
-        self.running.finish(&mut self.events);
-        self.rows(self.taken)
+        self.rows(self.running.latency(), Running::finish_cells)
     }
 
-    fn rows(&mut self, coded: u64) -> Vec<Vec<i8>> {
-        let first = self.coded;
-        let mut rows = vec![vec![0_i8; self.width()]; coded.saturating_sub(first) as usize];
-        for event in self.events.drain(..) {
-            let cell = usize::from(event.slot) * self.neurons + usize::from(event.neuron);
-            let row = rows.get_mut((event.sample - first) as usize);
-            if let Some(cell) = row.and_then(|row| row.get_mut(cell)) {
-                *cell = cell.saturating_add(if event.polarity == Polarity::Up { 1 } else { -1 });
-            }
-        }
-        self.coded = self.coded.max(coded);
-        rows
+    fn rows(
+        &mut self,
+        most: usize,
+        code: impl FnOnce(&mut Running, &mut [i8]) -> usize,
+    ) -> Vec<Vec<i8>> {
+        let mut cells = vec![0; most * self.width()];
+        let made = code(&mut self.running, &mut cells);
+        cells.chunks(self.width()).take(made).map(<[i8]>::to_vec).collect()
     }
 
     /// Decodes the next sample's cells.
@@ -224,22 +199,11 @@ impl Codec {
         if cells.len() != width {
             bail!("{} numbers a message, where {name} has {width}", cells.len());
         }
-        let events: Vec<Event> = cells
-            .iter()
-            .enumerate()
-            .flat_map(|(place, cell)| {
-                let polarity = if *cell > 0 { Polarity::Up } else { Polarity::Down };
-                let (neuron, slot) = ((place % self.neurons) as u16, (place / self.neurons) as u16);
-                let event = Event { sample: self.decoded, neuron, slot, polarity };
-                std::iter::repeat_n(event, cell.unsigned_abs().into())
-            })
-            .collect();
-        let mut values = Vec::with_capacity(1);
-        if self.running.decode(1, &events, &mut values).is_err() {
+        let mut value = [0.0];
+        if self.running.decode_cells(cells, &mut Values::F64(&mut value)).is_err() {
             bail!("{cells:?} is no code of {name}");
         }
-        self.decoded += 1;
-        values.first().copied().context("a sample has a value")
+        Ok(value[0])
     }
 }
 
