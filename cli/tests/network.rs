@@ -1,8 +1,9 @@
-//! Networks onto tinyODIN: from NIR and JSON to the constant, what it costs, and what is refused.
+//! Networks onto chips: from NIR and JSON to the constant, what it costs, and what is refused.
 
 mod common;
 
 use common::{file, flight, good, refused, spikewire};
+use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -63,6 +64,139 @@ fn a_network_that_the_chip_can_hold_costs_nothing() {
     assert!(ran.output.contains("    outputs: [3],\n"), "{}", ran.output);
     assert!(ran.output.contains("TinyOdinNetwork<2, 4, 1>"), "{}", ran.output);
     assert!(!ran.output.contains("BIAS"));
+}
+
+/// How `turns.py` trains: of the roll rates every third stretch of 250 is held out.
+fn stretches(is_held_out: bool) -> String {
+    let flight = fs::read_to_string(flight("hexarotor.csv")).unwrap();
+    let rows: Vec<&str> = flight.lines().skip(1).collect();
+    let chosen = rows.chunks(250).enumerate().filter(|(at, _)| (at % 3 == 2) == is_held_out);
+    let rates = chosen.flat_map(|(_, rows)| rows).map(|row| row.split(',').nth(1).unwrap());
+    let mut table = "time_s,gyro_x\n".to_owned();
+    for (at, rate) in rates.enumerate() {
+        writeln!(table, "{},{rate}", at as f64 / 200.0).unwrap();
+    }
+    table
+}
+
+/// `turns.py` says how often its neurons fire; double precision fires as often here, and the chip almost. The firmware
+/// `rate-loop` has the constant.
+#[test]
+fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
+    let (_trained, trained) = file("trained.csv", stretches(false));
+    let (_held_out, held_out) = file("held_out.csv", stretches(true));
+    let (_bytes, bytes) = file("turns.bin", "");
+    let turns = peers("turns.nir").display().to_string();
+    let ran = good(
+        &format!(
+            "network {turns} --chip reckon --scheme position --neurons 25 --min=-1.2 --max 1.2 --dt 0.005 --column \
+             gyro_x {trained} --held-out {held_out} --bytes {bytes}"
+        ),
+        "",
+    );
+    // A header, pairs, and 25 inputs, 32 neurons and 3 outputs for each neuron.
+    assert_eq!(fs::read(bytes).unwrap().len(), 16 + 16 * 4 + 32 * (25 + 32 + 3));
+    assert!(
+        ran.told.contains("32 of the chip's 256 neurons, 25 of its 256 inputs"),
+        "{}",
+        ran.told
+    );
+    let (tuned, held_out) = ran.told.split_once("held out:\n").unwrap();
+    for (told, expected) in [(tuned, 2147.0), (held_out, 1365.0)] {
+        let of_spikes = told.rsplit_once("\nlayer: neurons").map_or(told, |(_, told)| told);
+        let [neurons, clipped, spikes, on_chip, _] = figures(of_spikes, "node `neurons`: ")[..]
+        else {
+            panic!("{}", ran.told)
+        };
+        assert_eq!((neurons, clipped, spikes), (32.0, 0.0, expected), "{}", ran.told);
+        assert!((on_chip - spikes).abs() < 0.03 * spikes, "{}", ran.told);
+        let [_, _, agreeing, _] = figures(told, "outputs agree")[..] else {
+            panic!("{}", ran.told)
+        };
+        assert!(agreeing > 97.0, "{}", ran.told);
+        let of_outputs = told.rsplit("node `outputs`: ").next().unwrap();
+        let [_, size, error] = figures(of_outputs, "3 outputs, ")[..] else {
+            panic!("{}", ran.told)
+        };
+        assert!(error < 0.15 * size, "{}", ran.told);
+    }
+    let firmware = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/rate-loop/src/turns.rs");
+    assert_eq!(ran.output, fs::read_to_string(firmware).unwrap());
+}
+
+/// Two layers, a way back, a bias, and thresholds that lie between what weights can add up to.
+#[test]
+fn a_network_that_reckon_can_hold_costs_nothing() {
+    let json = r#"{"layers": [
+        {"name": "one", "weights": [[3, 0], [0, 5], [2, 2]], "threshold": 11.5, "bias": [0, 1, 0],
+         "recurrent": [[0, 2, 0], [0, 0, -4], [0, 0, 0]]},
+        {"name": "two", "weights": [[7, 4, -4], [1, 6, 5]], "threshold": [12.5, 6.5]}
+    ]}"#;
+    let (_directory, path) = file("whole.json", json);
+    let sf = format!("--scheme sf --threshold 0.05 --column gyro_x {}", flight("hexarotor.csv"));
+    let ran = good(&format!("network {path} --chip reckon {sf}"), "");
+    assert!(ran.told.contains("\noutputs agree in 100.0 % of 3627 steps"), "{}", ran.told);
+    let (_, spikes) = ran.told.split_once("layer: neurons").unwrap();
+    for layer in ["one", "two"] {
+        let figures = figures(spikes, &format!("{layer}: "));
+        let [_, clipped, spikes, on_chip, distance] = figures[..] else { panic!("{}", ran.told) };
+        assert!(spikes > 100.0, "{}", ran.told);
+        assert_eq!((clipped, distance, on_chip), (0.0, 0.0, spikes), "{}", ran.told);
+    }
+    assert!(ran.output.contains("pub const BIAS: u8 = 2;"), "{}", ran.output);
+    // The first layer's third neuron has a pair of its own.
+    assert!(ran.output.contains("ReckOnNetwork<3, 6, 2>"), "{}", ran.output);
+}
+
+#[test]
+fn what_reckon_cannot_hold_is_refused_or_told() {
+    let network = |json: &str| {
+        let (directory, path) = file("net.json", json);
+        let sf =
+            format!("--scheme sf --threshold 0.05 --column gyro_x {}", flight("hexarotor.csv"));
+        (directory, format!("network {path} --chip reckon {sf}"))
+    };
+    let ones = |rows: usize, columns: usize| {
+        format!("[{}]", vec![format!("[{}]", vec!["1"; columns].join(",")); rows].join(","))
+    };
+    for (json, words) in [
+        (
+            format!(r#"{{"layers": [{{"weights": {}, "threshold": 1}}]}}"#, ones(257, 2)),
+            "256 neurons",
+        ),
+        (
+            format!(r#"{{"layers": [{{"weights": {}, "threshold": 1}}]}}"#, ones(17, 2)),
+            "16 outputs",
+        ),
+        (
+            format!(
+                r#"{{"layers": [{{"weights": [[1, 1]], "threshold": 1}}],
+                    "readout": {{"weights": {}, "keep": 0.001}}}}"#,
+                ones(2, 1)
+            ),
+            "read after they have leaked",
+        ),
+    ] {
+        let (_directory, command) = network(&json);
+        refused(&command, "", &[words]);
+    }
+    // tinyODIN has no outputs that never fire.
+    let json =
+        r#"{"layers": [{"weights": [[1, 1]], "threshold": 1}], "readout": {"weights": [[1]]}}"#;
+    let (_directory, command) = network(json);
+    refused(
+        &command.replace("--chip reckon", "--chip tinyodin"),
+        "",
+        &["readout: tinyODIN has no outputs"],
+    );
+    // Neurons keep 0.875 at least.
+    let json = r#"{"layers": [{"weights": [[0.4, -0.3]], "keep": 0.6, "threshold": 0.5}]}"#;
+    let (_directory, command) = network(json);
+    let told = good(&command, "").told;
+    assert!(
+        told.contains("warning: 1 neurons or outputs leak otherwise than trained, by up to 0.2750"),
+        "{told}"
+    );
 }
 
 /// As snnTorch and Norse write layers: graphs in the graph, one that leads back to itself.
@@ -218,8 +352,15 @@ fn files_of_pypis_nir_are_read_and_what_is_wrong_is_named() {
     let kept = good(&network(&peers("roll.nir").display().to_string()), "");
     let fresh = good(&network(&written("roll.nir", &[])), "");
     assert_eq!(fresh.output, kept.output);
+    let short = good(&network(&written("short.nir", &["short"])), "");
+    let body = |output: &str| output.lines().skip(1).map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(body(&short.output), body(&kept.output), "a current of a step is none");
     for (fault, words) in [
-        ("cuba", "node `lif2` (CubaLIF): tinyODIN has nothing like it"),
+        (
+            "cuba",
+            "node `lif2`: a spike's current lasts: its time constant of 1 s is longer than a step",
+        ),
+        ("odd", "node `lif2` (Threshold): no chip here has anything like it"),
         ("back", "node `lif2` leads to 2 nodes"),
         ("deep", "4 layers, of which 3 at most"),
         ("nan", "node `lif2`: neuron 1 has a weight of NaN"),

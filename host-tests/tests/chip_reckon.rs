@@ -8,8 +8,8 @@ use host_tests::silicon::reckon::{Board, Port, Spi, State};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 use spikewire::chip::{
-    ChipError, DescribeReckOn, ReckOn, ReckOnAnswer, ReckOnLearning, ReckOnNetwork, ReckOnPair,
-    ReckOnSettings, ReckOnShared, ReckOnStep, ReckOnTarget, ReckOnTask,
+    ChipError, DescribeReckOn, FormatError, ReckOn, ReckOnAnswer, ReckOnBytes, ReckOnLearning,
+    ReckOnNetwork, ReckOnPair, ReckOnSettings, ReckOnShared, ReckOnStep, ReckOnTarget, ReckOnTask,
 };
 use spikewire::{Bank, Tick, population::Position};
 
@@ -104,6 +104,49 @@ fn a_network_answers_as_plain_arithmetic_does_step_by_step() {
     }
     assert!(spikes > 100, "{spikes}");
     started.program().unwrap().verify(&NETWORK).unwrap();
+}
+
+#[test]
+fn a_network_as_bytes_is_the_same_and_damaged_bytes_are_refused() {
+    let mut buffer = [0; 256];
+    let length = ReckOnBytes::write(&NETWORK, &mut buffer).unwrap();
+    assert_eq!(length, 16 + 2 * 4 + 5 * 4 + 4 * 4 + 4 * 3);
+    let bytes = &buffer[..length];
+    assert_eq!(&bytes[..12], b"SWN1\x03\x01\x04\0\x05\0\x03\0");
+    let network = ReckOnBytes::new(bytes).unwrap();
+    assert_eq!(network.shared(), NETWORK.shared());
+    for pair in 0..3 {
+        assert_eq!(network.pair(pair), NETWORK.pair(pair));
+    }
+    for from in 0..6 {
+        for to in 0..6 {
+            assert_eq!(network.input_weight(from, to), NETWORK.input_weight(from, to));
+            assert_eq!(network.recurrent_weight(from, to), NETWORK.recurrent_weight(from, to));
+            assert_eq!(network.output_weight(from, to), NETWORK.output_weight(from, to));
+        }
+    }
+    let board = Board::new(10, 1);
+    let mut chip = on(&board);
+    let mut programmed = chip.reset(&mut board.clone()).unwrap();
+    programmed.load(&network, |_| ()).unwrap();
+    programmed.verify(&NETWORK).unwrap();
+
+    let refused = |at: usize, byte: u8| {
+        let mut bytes = bytes.to_vec();
+        bytes[at] = byte;
+        ReckOnBytes::new(&bytes).map(drop).unwrap_err()
+    };
+    assert_eq!(refused(0, b'T'), FormatError::Magic);
+    assert_eq!(refused(4, 1), FormatError::Chip);
+    assert_eq!(refused(6, 0), FormatError::Size);
+    assert_eq!(refused(10, 17), FormatError::Size);
+    assert_eq!(refused(12, 8), FormatError::Value, "a shift");
+    assert_eq!(refused(17, 0), FormatError::Value, "a keep");
+    assert_eq!(refused(19, 0x80), FormatError::Value, "a threshold below 0");
+    let short = FormatError::Length { needed: length, given: length - 1 };
+    assert_eq!(ReckOnBytes::new(&bytes[..length - 1]).unwrap_err(), short);
+    let small = ReckOnBytes::write(&NETWORK, &mut [0; 71]).unwrap_err();
+    assert_eq!(small, FormatError::Length { needed: length, given: 71 });
 }
 
 #[test]

@@ -14,6 +14,7 @@ mod chip_faults;
 mod chip_handshake;
 mod chip_network;
 mod chip_reckon;
+mod chip_reckon_pairs;
 mod chip_search;
 mod chip_silicon;
 mod chip_words;

@@ -115,13 +115,7 @@ impl<K> ErrorType for Spi<K> {
 impl<K: Kind> Pins<K> {
     fn spi_bit(&mut self, bit: bool) -> bool {
         self.chip.run(self.ratio / 2);
-        let fault = match self.clock_faults.front() {
-            Some(&(at, fault)) if at == self.spi_clocks => {
-                self.clock_faults.pop_front();
-                Some(fault)
-            }
-            _ => None,
-        };
+        let fault = due(&mut self.clock_faults, self.spi_clocks);
         self.spi_clocks += 1;
         if fault == Some(ClockFault::Lost) {
             self.chip.run(self.ratio.div_ceil(2));
@@ -138,30 +132,46 @@ impl<K: Kind> Pins<K> {
         self.chip.fall();
         out
     }
-
-    fn spi_byte(&mut self, byte: u8) -> u8 {
-        (0..8).rev().fold(0, |out, at| out << 1 | u8::from(self.spi_bit(byte >> at & 1 == 1)))
-    }
 }
 
 impl<K: Kind> SpiDevice for Spi<K> {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
         let mut pins = self.0.pins();
-        for operation in operations {
-            match operation {
-                Operation::Write(bytes) => bytes.iter().for_each(|&byte| {
-                    pins.spi_byte(byte);
-                }),
-                Operation::TransferInPlace(bytes) => {
-                    for byte in bytes.iter_mut() {
-                        *byte = pins.spi_byte(*byte);
-                    }
-                }
-                _ => return Err(ErrorKind::Other),
-            }
-        }
-        Ok(())
+        transact(operations, |bit| pins.spi_bit(bit))
     }
+}
+
+/// The bytes of a transaction, the highest bit first.
+pub(crate) fn transact(
+    operations: &mut [Operation<'_, u8>],
+    mut exchange: impl FnMut(bool) -> bool,
+) -> Result<(), ErrorKind> {
+    let mut byte = |byte: u8| {
+        (0..8).rev().fold(0, |out, at| out << 1 | u8::from(exchange(byte >> at & 1 == 1)))
+    };
+    for operation in operations {
+        match operation {
+            Operation::Write(bytes) => bytes.iter().for_each(|&sent| {
+                byte(sent);
+            }),
+            Operation::TransferInPlace(bytes) => {
+                for place in bytes.iter_mut() {
+                    *place = byte(*place);
+                }
+            }
+            _ => return Err(ErrorKind::Other),
+        }
+    }
+    Ok(())
+}
+
+/// The fault that is due now.
+pub(crate) fn due<T: Copy>(faults: &mut VecDeque<(u64, T)>, now: u64) -> Option<T> {
+    let &(at, fault) = faults.front()?;
+    (at == now).then(|| {
+        faults.pop_front();
+        fault
+    })
 }
 
 /// The chip's parallel pins.
@@ -176,13 +186,7 @@ impl<K: Kind> Port<K> {
         pins.calls += 1;
         let clocks = pins.call_clocks;
         pins.chip.run(clocks);
-        let fault = match pins.call_faults.front() {
-            Some(&(at, fault)) if at == call => {
-                pins.call_faults.pop_front();
-                Some(fault)
-            }
-            _ => None,
-        };
+        let fault = due(&mut pins.call_faults, call);
         if fault == Some(CallFault::Before) {
             return Err(call);
         }

@@ -83,9 +83,9 @@ pub use odin::{
 };
 pub use output_source::OutputSource;
 pub use reckon::{
-    DescribeReckOn, Programmed, ReckOn, ReckOnAnswer, ReckOnAnswers, ReckOnLearning, ReckOnNetwork,
-    ReckOnPair, ReckOnPort, ReckOnSample, ReckOnSettings, ReckOnShared, ReckOnStep, ReckOnTarget,
-    ReckOnTask, Started,
+    DescribeReckOn, Programmed, ReckOn, ReckOnAnswer, ReckOnAnswers, ReckOnBytes, ReckOnLearning,
+    ReckOnNetwork, ReckOnPair, ReckOnPort, ReckOnSample, ReckOnSettings, ReckOnShared, ReckOnStep,
+    ReckOnTarget, ReckOnTask, Started,
 };
 pub use tinyodin::{TinyOdin, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, TinyOdinRegisters};
 pub use xylo::{InputBank, Registers, Xylo, XyloMap, pack_counts};

@@ -2,27 +2,32 @@
 
 use crate::inputs::InputOptions;
 use crate::options::{SchemeOptions, schemes, tell_each};
-use anyhow::{Result, bail, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use catalogue::run::{Calibrated, Known, SampleType, Settings, Shape};
 use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::bank::Bank;
 use lab::fit::rounding;
 use lab::input::{Clock, above_zero};
-use lab::network::{Brought, Figures, File, Request, Told, Trains, WINDOW, bring, emit};
+use lab::network::{
+    Brought, CHIPS, Chip, Figures, File, OnChip, Request, Told, Trains, WINDOW, bring,
+};
 use lab::output::Output;
 use lab::scheme::Scheme;
 use spikewire::Polarity;
 use std::io::Write;
 use std::path::PathBuf;
 
-/// Bring a trained network onto tinyODIN: a Rust constant for `spikewire::chip`, and what quantising costs.
+/// Bring a trained network onto a chip: a Rust constant for `spikewire::chip`, and what quantising costs.
 ///
-/// A recording's spikes run through the network in double precision and, with weights of 4 bits, through the chip's
-/// model, clock by clock. NETWORK is a NIR graph (an HDF5 file of snnTorch, Norse, Rockpool, Sinabs, Lava and
-/// others) that is a chain of up to three layers, each Linear or Affine and LIF or IF, which may lead back to itself; or
-/// JSON: {"layers": [{"name": ..., "weights": [[...]], "recurrent": [[...]], "bias": [...], "keep": 0.9, "threshold":
-/// 1.0}]}, with weights by neuron and then input, and the share of the potential that a step leaves.
+/// A recording's spikes run through the network in double precision and, with the chip's weights and arithmetic, through
+/// its model, clock by clock. NETWORK is a NIR graph (an HDF5 file of snnTorch, Norse, Rockpool, Sinabs, Lava and
+/// others) that is a chain of up to three layers, each Linear or Affine and LIF, IF or `CubaLIF` (whose currents last a
+/// step), which may lead back to itself, and on `ReckOn` Linear and LI, I or `CubaLI` as outputs; or JSON: {"layers":
+/// [{"name": ..., "weights": [[...]], "recurrent": [[...]], "bias": [...], "keep": 0.9, "threshold": 1.0}], "readout":
+/// {"name": ..., "weights": [[...]], "keep": 0.95}}, with weights by neuron and then input, and the share of the
+/// potential that a step leaves.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -31,6 +36,9 @@ pub(crate) struct Network {
     /// NIR graph, or network in JSON
     #[arg(value_name = "NETWORK")]
     trained: PathBuf,
+    /// The chip
+    #[arg(long, default_value = CHIPS[0].name(), value_parser = chips())]
+    chip: &'static str,
     /// The scheme that makes the inputs: one for each neuron of each column, of codes with a direction two, up and
     /// down
     #[arg(long, value_parser = schemes(Scheme::all()))]
@@ -52,6 +60,16 @@ pub(crate) struct Network {
     /// File of Rust; standard output unless given
     #[arg(short, long)]
     output: Option<PathBuf>,
+    /// File of the network as bytes, which the driver loads at run time
+    #[arg(long, value_name = "FILE")]
+    bytes: Option<PathBuf>,
+}
+
+/// The names of the chips.
+fn chips() -> impl TypedValueParser<Value = &'static str> {
+    let name = |chip: &&dyn Chip| chip.name();
+    PossibleValuesParser::new(CHIPS.iter().map(name))
+        .map(move |asked| CHIPS.iter().map(name).find(|name| *name == asked).unwrap_or_default())
 }
 
 /// Runs the command.
@@ -91,7 +109,9 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
     };
+    let chip = CHIPS.iter().find(|chip| chip.name() == options.chip).context("no such chip")?;
     let brought = bring(&Request {
+        chip: *chip,
         trained: &trained,
         tuned: &driven.steps,
         held_out: held_out.as_ref().map(|held_out| &held_out.steps),
@@ -102,8 +122,13 @@ pub(crate) fn run(options: &Network) -> Result<()> {
 
     let told = Told { source: name, inputs: driven.words(), step_us: driven.step_us };
     let mut output = Output::open(output.as_deref(), &input.input)?;
-    output.write_all(emit(&brought.network, &told).as_bytes())?;
+    output.write_all(brought.network.emit(&told).as_bytes())?;
     output.finish()?;
+    if let Some(path) = &options.bytes {
+        let mut output = Output::open(Some(path), &input.input)?;
+        output.write_all(&brought.network.bytes()?)?;
+        output.finish()?;
+    }
     tell_each(&driven.notes);
     report(&brought);
     Ok(())
@@ -207,18 +232,13 @@ const LOW: f64 = 0.5;
 /// What quantising costs, on standard error.
 fn report(brought: &Brought) {
     let Brought { network, tuned, held_out } = brought;
-    let neurons: usize = tuned.layers.iter().map(|layer| layer.neurons).sum();
-    let every = match network.steps_a_leak {
-        1 => "step",
-        steps => &format!("{steps} steps"),
-    };
-    eprintln!("{neurons} of the chip's 256 neurons; a leak every {every}");
+    network.notes().iter().for_each(|note| eprintln!("{note}"));
     eprintln!("layer: neurons, weights clipped; spikes, on the chip, distance");
-    tell(tuned);
+    tell(tuned, &**network);
     match held_out {
         Some(held_out) => {
             eprintln!("the recording that was held out:");
-            tell(held_out);
+            tell(held_out, &**network);
         }
         None => eprintln!(
             "the figures are those of the recording that the network is tuned on: --held-out shows another"
@@ -226,32 +246,40 @@ fn report(brought: &Brought) {
     }
 }
 
-fn tell(figures: &Figures) {
+fn tell(figures: &Figures, network: &dyn OnChip) {
     for layer in &figures.layers {
         eprintln!(
             "{}: {}, {}; {}, {}, {:.1}",
             layer.name, layer.neurons, layer.clipped, layer.spikes, layer.on_chip, layer.distance
         );
     }
+    if let Some(outputs) = &figures.potentials {
+        eprintln!(
+            "{}: {} outputs, {} weights clipped; potentials of {:.4}, on the chip {:.4} off (root mean squares)",
+            outputs.name, outputs.outputs, outputs.clipped, outputs.size, outputs.error
+        );
+    }
     let &Figures { steps, agreeing, active, windows, windows_agreeing, .. } = figures;
     if let Some(agreement) = figures.agreement() {
         eprintln!(
-            "outputs agree in {:.1} % of {steps} steps, in {:.1} % of the {active} in which any fires",
+            "outputs agree in {:.1} % of {steps} steps, in {:.1} % of the {active} in which any {}",
             100.0 * agreeing as f64 / steps as f64,
-            100.0 * agreement
+            100.0 * agreement,
+            if figures.potentials.is_some() { "has a potential" } else { "fires" }
         );
         eprintln!(
-            "the output that fires most is the same in {:.1} % of {windows} times {WINDOW} steps",
+            "the output that {} is the same in {:.1} % of {windows} times {WINDOW} steps",
+            if figures.potentials.is_some() { "is highest most often" } else { "fires most" },
             100.0 * windows_agreeing as f64 / windows as f64
         );
         if agreement < LOW {
             eprintln!(
                 "warning: step by step the chip is another network than the trained one; compare the spikes of each \
-                 layer, and train with what costs most: weights of 4 bits, and thresholds that are looked at after \
-                 every spike"
+                 layer, and train with what costs most: {}",
+                network.dearest()
             );
         }
-    } else {
+    } else if figures.potentials.is_none() {
         eprintln!(
             "warning: no output fires, neither in double precision nor on the chip: there is nothing to compare"
         );
@@ -260,10 +288,7 @@ fn tell(figures: &Figures) {
         "a step takes the chip {:.0} clocks, {} at most",
         figures.mean_clocks, figures.most_clocks
     );
-    if figures.overflows > 0 {
-        eprintln!(
-            "warning: the chip's queue of 128 was full, and {} spikes were lost",
-            figures.overflows
-        );
+    if figures.lost > 0 {
+        eprintln!("warning: {} spikes were lost: {}", figures.lost, network.loss());
     }
 }

@@ -2,8 +2,8 @@
 
     roll.py FILE [FAULT]   20 neurons of a position code in, 12 LIF neurons, 3 LIF neurons out: falls, holds, rises
 
-FAULT is what is wrong with it: cuba, back, deep, nan, narrow, unweighted, reset, wide. Or what else is in it that is
-taken: nested, recurrent.
+FAULT is what is wrong with it: cuba, odd, back, deep, nan, narrow, unweighted, reset, wide. Or what else is in it that is
+taken: short, nested, recurrent.
 """
 
 import sys
@@ -50,6 +50,19 @@ def spoil(fault, nodes, edges):
         nodes["lif2"] = nir.CubaLIF(
             tau_syn=each, tau_mem=each, r=each, v_leak=0 * each, v_threshold=each
         )
+    elif fault == "short":
+        # A current that lasts a step of the recording.
+        lif2 = nodes["lif2"]
+        nodes["lif2"] = nir.CubaLIF(
+            tau_syn=0.005 * each,
+            tau_mem=lif2.tau,
+            r=lif2.r,
+            v_leak=0 * each,
+            v_threshold=each,
+            v_reset=0 * each,
+        )
+    elif fault == "odd":
+        nodes["lif2"] = nir.Threshold(each)
     elif fault == "back":
         nodes["fc3"] = nir.Linear(numpy.ones((HIDDEN, OUTPUTS)))
         edges += [("lif2", "fc3"), ("fc3", "lif1")]

@@ -1,6 +1,7 @@
-//! A recorded flight around a whole loop: turn rates, spikes, tinyODIN's driver, the chip, spikes, commands.
+//! A recorded flight around a whole loop: turn rates, spikes, tinyODIN's driver, the chip, spikes, commands; then the same
+//! flight through a recurrent network on ReckOn.
 //!
-//! The chip is its model, clock by clock, behind the pins of a port. All lines but those of instructions are the same
+//! A chip is its model, clock by clock, behind the pins of a port. All lines but those of instructions are the same
 //! on a board and on the host.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
@@ -13,16 +14,19 @@ mod flight;
 #[cfg(target_os = "none")]
 mod heap;
 mod network;
+mod recurrent;
 mod rig;
 mod roll;
 mod tape;
 mod trained;
+mod turns;
 
 use core::fmt::{self, Write};
 
 fn run(out: &mut impl Write) -> fmt::Result {
     command::fly(out)?;
-    trained::fly(out)
+    trained::fly(out)?;
+    recurrent::fly(out)
 }
 
 #[cfg_attr(target_os = "none", board::entry)]

@@ -4,7 +4,7 @@
 use alloc::{boxed::Box, vec};
 use core::{cell::Cell, convert::Infallible};
 use embedded_hal::delay::DelayNs;
-use spikewire::chip::AerPort;
+use spikewire::chip::{AerPort, ReckOnPort};
 
 /// The most answers of an event.
 const LENGTH: usize = 8 * 1024;
@@ -32,6 +32,10 @@ impl Tape {
     /// To the start of a repetition.
     pub fn repeat(&self) {
         self.end.set(self.at.replace(0));
+    }
+
+    fn is_repeating(&self) -> bool {
+        self.end.get() > 0
     }
 
     /// Whether all of it was said again.
@@ -119,7 +123,7 @@ impl Repeating {
 
     /// The tape, once there is something on it.
     fn said(&self) -> Option<&'static Tape> {
-        self.tape.filter(|tape| tape.end.get() > 0)
+        self.tape.filter(|tape| tape.is_repeating())
     }
 }
 
@@ -159,5 +163,87 @@ impl AerPort for Repeating {
 
     fn set_reset(&mut self, _: bool) -> Result<(), Infallible> {
         Ok(())
+    }
+}
+
+/// A port of ReckOn that does both: its driver keeps nothing from one time step to the next, and can run it twice.
+pub struct Taped<P> {
+    pub port: P,
+    pub tape: &'static Tape,
+}
+
+impl<P> Taped<P> {
+    fn ask<E>(&mut self, ask: impl FnOnce(&mut P) -> Result<u8, E>) -> Result<u8, E> {
+        if self.tape.is_repeating() {
+            return Ok(self.tape.next());
+        }
+        let answer = ask(&mut self.port)?;
+        self.tape.keep(answer);
+        Ok(answer)
+    }
+
+    fn set<E>(
+        &mut self,
+        is_high: bool,
+        set: impl FnOnce(&mut P, bool) -> Result<(), E>,
+    ) -> Result<(), E> {
+        if self.tape.is_repeating() {
+            board::stopwatch::keep(&is_high);
+            return Ok(());
+        }
+        set(&mut self.port, is_high)
+    }
+}
+
+impl<P: ReckOnPort> ReckOnPort for Taped<P> {
+    type Error = P::Error;
+
+    fn set_input(&mut self, byte: u8, is_target: bool) -> Result<(), P::Error> {
+        board::stopwatch::keep(&byte);
+        self.set(is_target, |port, is_target| port.set_input(byte, is_target))
+    }
+
+    fn set_input_request(&mut self, is_high: bool) -> Result<(), P::Error> {
+        self.set(is_high, P::set_input_request)
+    }
+
+    fn input_acknowledge(&mut self) -> Result<bool, P::Error> {
+        self.ask(|port| port.input_acknowledge().map(u8::from)).map(|answer| answer == 1)
+    }
+
+    fn output_request(&mut self) -> Result<bool, P::Error> {
+        self.ask(|port| port.output_request().map(u8::from)).map(|answer| answer == 1)
+    }
+
+    fn output(&mut self) -> Result<u8, P::Error> {
+        self.ask(P::output)
+    }
+
+    fn set_output_acknowledge(&mut self, is_high: bool) -> Result<(), P::Error> {
+        self.set(is_high, P::set_output_acknowledge)
+    }
+
+    fn set_sample(&mut self, is_high: bool) -> Result<(), P::Error> {
+        self.set(is_high, P::set_sample)
+    }
+
+    fn set_tick(&mut self, is_high: bool) -> Result<(), P::Error> {
+        self.set(is_high, P::set_tick)
+    }
+
+    fn set_target_valid(&mut self, is_high: bool) -> Result<(), P::Error> {
+        self.set(is_high, P::set_target_valid)
+    }
+
+    fn set_infer(&mut self, is_high: bool) -> Result<(), P::Error> {
+        self.set(is_high, P::set_infer)
+    }
+
+    fn ready(&mut self) -> Result<bool, P::Error> {
+        self.ask(|port| port.ready().map(u8::from)).map(|answer| answer == 1)
+    }
+
+    fn set_reset(&mut self, is_high: bool) -> Result<(), P::Error> {
+        self.set(is_high, P::set_reset)
     }
 }

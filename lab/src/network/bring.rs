@@ -1,6 +1,6 @@
 //! A trained network onto a chip: what is asked for, and what came of it.
 
-use super::{Distance, Quantised, Trained, Trains, quantise, run_on_chip};
+use super::{Chip, Distance, OnChip, Trained, Trains};
 use anyhow::Result;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,6 +9,8 @@ pub const WINDOW: usize = 20;
 
 /// What to bring onto the chip.
 pub struct Request<'a> {
+    /// The chip.
+    pub chip: &'a dyn Chip,
     /// The network.
     pub trained: &'a Trained,
     /// The spikes on which the chip's numbers are tuned, by step.
@@ -22,7 +24,7 @@ pub struct Request<'a> {
 /// A network for the chip, and what quantising costs.
 pub struct Brought {
     /// The network.
-    pub network: Quantised,
+    pub network: Box<dyn OnChip>,
     /// On the recording that it is tuned on.
     pub tuned: Figures,
     /// On the recording that was held out.
@@ -49,8 +51,24 @@ pub struct Figures {
     pub mean_clocks: f64,
     /// The most of a step.
     pub most_clocks: u64,
-    /// Spikes lost as the chip's queue was full.
-    pub overflows: u32,
+    /// Spikes lost on their way into the chip.
+    pub lost: u32,
+    /// Outputs that never fire.
+    pub potentials: Option<PotentialFigures>,
+}
+
+/// Potentials of outputs in double precision beside the chip's model.
+pub struct PotentialFigures {
+    /// As its file calls them.
+    pub name: String,
+    /// Outputs.
+    pub outputs: usize,
+    /// Weights that were larger than the chip's.
+    pub clipped: usize,
+    /// The root mean square of the potentials in double precision.
+    pub size: f64,
+    /// The root mean square of what they differ by on the chip.
+    pub error: f64,
 }
 
 /// A layer in double precision beside the chip's model.
@@ -74,28 +92,29 @@ pub struct LayerFigures {
 /// # Errors
 /// It does not fit, or the model refuses something.
 pub fn bring(request: &Request) -> Result<Brought> {
-    let Request { trained, tuned, held_out, progress } = *request;
+    let Request { chip, trained, tuned, held_out, progress } = *request;
     let original = trained.run(tuned);
-    let network = quantise(trained, tuned, &original, progress)?;
-    let tuned = figures(trained, &network, tuned, &original)?;
+    let network = chip.quantise(trained, tuned, &original, progress)?;
+    let tuned = figures(trained, &*network, tuned, &original)?;
     let held_out = held_out
-        .map(|held_out| figures(trained, &network, held_out, &trained.run(held_out)))
+        .map(|held_out| figures(trained, &*network, held_out, &trained.run(held_out)))
         .transpose()?;
     Ok(Brought { network, tuned, held_out })
 }
 
 fn figures(
     trained: &Trained,
-    network: &Quantised,
+    network: &dyn OnChip,
     inputs: &Trains,
     original: &[Trains],
 ) -> Result<Figures> {
-    let ran = run_on_chip(network, inputs)?;
-    let layers = trained.layers.iter().zip(&network.layers).zip(original.iter().zip(&ran.fired));
-    let layers = layers.map(|((layer, chip), (original, fired))| LayerFigures {
+    let ran = network.run(inputs)?;
+    let clipped = network.clipped();
+    let layers = trained.layers.iter().zip(&clipped).zip(original.iter().zip(&ran.fired));
+    let layers = layers.map(|((layer, &clipped), (original, fired))| LayerFigures {
         name: layer.name.clone(),
         neurons: layer.neurons.len(),
-        clipped: chip.neurons.iter().map(|neuron| neuron.clipped).sum(),
+        clipped,
         spikes: original.iter().map(Vec::len).sum(),
         on_chip: fired.iter().map(Vec::len).sum(),
         distance: distance(layer.neurons.len(), original, fired),
@@ -111,12 +130,53 @@ fn figures(
         windows_agreeing: 0,
         mean_clocks: ran.clocks.iter().sum::<u64>() as f64 / steps.max(1) as f64,
         most_clocks: ran.clocks.iter().max().copied().unwrap_or(0),
-        overflows: ran.overflows,
+        lost: ran.lost,
+        potentials: None,
     };
-    if let (Some(original), Some(fired)) = (original.last(), ran.fired.last()) {
+    if let Some(readout) = &trained.readout {
+        let potentials = trained.potentials(original);
+        figures.potentials = Some(PotentialFigures {
+            name: readout.name.clone(),
+            outputs: readout.weights.len(),
+            clipped: clipped.last().copied().unwrap_or(0),
+            size: root_mean_square(potentials.iter().flatten().copied()),
+            error: root_mean_square(
+                potentials
+                    .iter()
+                    .flatten()
+                    .zip(ran.potentials.iter().flatten())
+                    .map(|(a, b)| a - b),
+            ),
+        });
+        // Of one output none is the highest.
+        if readout.weights.len() > 1 {
+            figures.compare(&highest(&potentials), &highest(&ran.potentials));
+        }
+    } else if let (Some(original), Some(fired)) = (original.last(), ran.fired.last()) {
         figures.compare(original, fired);
     }
     Ok(figures)
+}
+
+fn root_mean_square(numbers: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = numbers.fold((0.0, 0), |(sum, count), n| (sum + n * n, count + 1));
+    (sum / f64::from(count.max(1))).sqrt()
+}
+
+/// The output whose potential is the highest, by step; none before any has one.
+fn highest(potentials: &[Vec<f64>]) -> Trains {
+    let of_step = |step: &Vec<f64>| {
+        if step.iter().all(|potential| *potential == 0.0) {
+            return vec![];
+        }
+        let most = step.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        step.iter()
+            .position(|potential| *potential == most)
+            .map(|at| at as u16)
+            .into_iter()
+            .collect()
+    };
+    potentials.iter().map(of_step).collect()
 }
 
 fn distance(neurons: usize, original: &Trains, fired: &Trains) -> f64 {

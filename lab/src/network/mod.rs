@@ -1,19 +1,19 @@
 //! Trained networks: read, run in double precision, brought onto a chip and run there.
 
 mod bring;
+mod chip;
 mod distance;
-mod emit;
 mod nir;
-mod on_chip;
 mod plain;
-mod quantise;
+mod reckon;
+mod tiny_odin;
 mod trained;
 
-pub use bring::{Brought, Figures, LayerFigures, Request, WINDOW, bring};
+pub use bring::{Brought, Figures, LayerFigures, PotentialFigures, Request, WINDOW, bring};
+pub use chip::{CHIPS, Chip, OnChip, Ran, Told};
 pub use distance::Distance;
-pub use emit::{Told, emit};
-pub use on_chip::{Ran, run_on_chip};
-pub use quantise::{Quantised, quantise};
+pub use reckon::ReckOn;
+pub use tiny_odin::TinyOdin;
 pub use trained::{Trained, Trains};
 
 use anyhow::{Context, Result, bail};
@@ -28,7 +28,7 @@ pub enum File {
     /// Per step already.
     Plain(Trained),
     /// In seconds.
-    Nir(nir::Chain),
+    Nir(Box<nir::Chain>),
 }
 
 impl File {
@@ -40,7 +40,7 @@ impl File {
         let name = || path.display().to_string();
         let bytes = fs::read(path).with_context(|| format!("{}: cannot be opened", name()))?;
         if bytes.starts_with(HDF5) {
-            return Ok(Self::Nir(nir::read(bytes).with_context(name)?));
+            return Ok(Self::Nir(Box::new(nir::read(bytes).with_context(name)?)));
         }
         if bytes.trim_ascii_start().starts_with(b"{") {
             return Ok(Self::Plain(plain::read(&bytes).with_context(name)?));

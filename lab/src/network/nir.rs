@@ -3,7 +3,7 @@
 //! Source: J. E. Pedersen et al., *Neuromorphic intermediate representation*, Nature Communications 15 (2024), table 1.
 
 use super::Trained;
-use super::trained::{Layer, Neuron};
+use super::trained::{Layer, Neuron, Readout};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use hdf5_reader::group::Group;
 use hdf5_reader::messages::datatype::Datatype;
@@ -14,7 +14,11 @@ use std::collections::BTreeMap;
 const MOST_BYTES: usize = 1 << 26;
 
 /// The layers from input to output, with time in seconds.
-pub struct Chain(Vec<Stage>);
+pub struct Chain {
+    stages: Vec<Stage>,
+    /// The last, if it never fires.
+    readout: Option<Stage>,
+}
 
 struct Stage {
     weights: Weights,
@@ -34,8 +38,16 @@ struct Neurons {
     /// Perfect integrators have none.
     leak: Option<Leak>,
     resistance: Array,
-    threshold: Array,
+    /// None if they never fire.
+    threshold: Option<Array>,
     reset: Option<Array>,
+    /// How long a spike's current lasts, and the weight before it, if it is no step's.
+    synapse: Option<Synapse>,
+}
+
+struct Synapse {
+    tau: Array,
+    weight: Array,
 }
 
 struct Leak {
@@ -68,8 +80,13 @@ struct Loops<'a> {
     weights: Vec<&'a str>,
 }
 
-/// Reads the graph, which must be a chain of Linear or Affine and LIF or IF, each of which may lead back to itself. Graphs
-/// in it are taken as their nodes.
+/// Neurons that fire, of which each layer may lead back to itself.
+const FIRING: [&str; 3] = ["LIF", "IF", "CubaLIF"];
+/// Neurons that never fire, which may be the last.
+const SILENT: [&str; 3] = ["LI", "I", "CubaLI"];
+
+/// Reads the graph, which must be a chain of Linear or Affine and neurons that fire, each of which may lead back to
+/// itself; the last neurons may be ones that never fire. Graphs in it are taken as their nodes.
 ///
 /// # Errors
 /// The file is damaged, or the graph is another.
@@ -81,33 +98,42 @@ pub(crate) fn read(bytes: Vec<u8>) -> Result<Chain> {
     let (first, last) = graph.take(&file.group("/node").context(no_graph)?, "", 0)?;
     graph.join();
 
-    let mut stages = Vec::new();
+    let (mut stages, mut readout) = (Vec::new(), None);
     let mut weights: Option<Weights> = None;
     for (name, loops) in graph.chain(&first, &last)? {
         let node = &graph.nodes[name];
         let kind = kind(node, name)?;
         let mut read = || -> Result<()> {
             match (kind.as_str(), weights.take()) {
+                ("Flatten" | "Input" | "Output", before) => weights = before,
+                _ if readout.is_some() => bail!("it follows on neurons that never fire"),
                 ("Linear" | "Affine", None) => weights = Some(read_weights(node, &kind)?),
                 ("Linear" | "Affine", Some(_)) => {
-                    bail!("weights follow on weights; there must be LIF or IF neurons between them")
+                    bail!("weights follow on weights; there must be neurons between them")
                 }
-                ("LIF" | "IF", Some(weights)) => {
+                (fires, Some(weights)) if FIRING.contains(&fires) => {
                     let neurons = read_neurons(node, name, &kind, weights.rows.len())?;
                     let recurrent = graph.recurrent(&loops, weights.rows.len())?;
                     stages.push(Stage { weights, recurrent, neurons });
                 }
-                ("LIF" | "IF", None) => bail!("no weights lead to it"),
-                // Spikes are in a row already.
-                ("Flatten" | "Input" | "Output", before) => weights = before,
-                _ => bail!("tinyODIN has nothing like it; Linear, Affine, LIF and IF are taken"),
+                (silent, Some(weights)) if SILENT.contains(&silent) => {
+                    let neurons = read_neurons(node, name, &kind, weights.rows.len())?;
+                    readout = Some(Stage { weights, recurrent: None, neurons });
+                }
+                (neurons, None) if FIRING.contains(&neurons) || SILENT.contains(&neurons) => {
+                    bail!("no weights lead to it")
+                }
+                _ => bail!(
+                    "no chip here has anything like it; Linear, Affine, LIF, IF and CubaLIF are taken, and last LI, \
+                     I and CubaLI"
+                ),
             }
             Ok(())
         };
         read().with_context(|| format!("node `{name}` ({kind})"))?;
     }
-    ensure!(weights.is_none(), "the last weights lead to no LIF or IF neurons");
-    Ok(Chain(stages))
+    ensure!(weights.is_none(), "the last weights lead to no neurons");
+    Ok(Chain { stages, readout })
 }
 
 fn kind(node: &Group, name: &str) -> Result<String> {
@@ -188,7 +214,7 @@ impl Graph {
         loop {
             let mut loops = Loops { is_direct: false, weights: Vec::new() };
             let mut next = Vec::new();
-            let fires = matches!(kind(&self.nodes[at], at)?.as_str(), "LIF" | "IF");
+            let fires = FIRING.contains(&kind(&self.nodes[at], at)?.as_str());
             for to in self.after(at) {
                 let (to, weights) = node(to)
                     .with_context(|| format!("node `{at}` leads to `{to}`, which there is not"))?;
@@ -274,17 +300,28 @@ fn read_neurons(node: &Group, name: &str, kind: &str, count: usize) -> Result<Ne
         }
         Ok(Array(numbers))
     };
+    let has = |what: &str| -> Result<bool> {
+        Ok(node.datasets()?.iter().any(|dataset| dataset.name() == what))
+    };
     let leak = match kind {
-        "LIF" => Some(Leak { tau: array("tau")?, rest: array("v_leak")? }),
+        "LIF" | "LI" => Some(Leak { tau: array("tau")?, rest: array("v_leak")? }),
+        "CubaLIF" | "CubaLI" => Some(Leak { tau: array("tau_mem")?, rest: array("v_leak")? }),
         _ => None,
     };
-    let has_reset = node.datasets()?.iter().any(|dataset| dataset.name() == "v_reset");
+    let synapse = match kind {
+        "CubaLIF" | "CubaLI" => Some(Synapse {
+            tau: array("tau_syn")?,
+            weight: if has("w_in")? { array("w_in")? } else { Array(vec![1.0]) },
+        }),
+        _ => None,
+    };
     Ok(Neurons {
         name: name.to_owned(),
         leak,
         resistance: array("r")?,
-        threshold: array("v_threshold")?,
-        reset: if has_reset { Some(array("v_reset")?) } else { None },
+        threshold: if FIRING.contains(&kind) { Some(array("v_threshold")?) } else { None },
+        reset: if has("v_reset")? { Some(array("v_reset")?) } else { None },
+        synapse,
     })
 }
 
@@ -316,51 +353,92 @@ impl Chain {
     /// # Errors
     /// A time constant is shorter than a step, or the step is needed and not known.
     pub(super) fn in_steps(self, step: Option<f64>) -> Result<Trained> {
-        let layers = self.0.into_iter().map(|stage| {
-            let name = format!("node `{}`", stage.neurons.name);
-            stage.in_steps(name.clone(), step).context(name)
+        let layers = self.stages.into_iter().map(|stage| {
+            let name = stage.neurons.name();
+            stage.in_steps(step).context(name)
         });
-        Trained::new(layers.collect::<Result<_>>()?)
+        let layers = layers.collect::<Result<_>>()?;
+        let readout = self.readout.map(|stage| {
+            let name = stage.neurons.name();
+            stage.readout_in_steps(step).context(name)
+        });
+        Trained::with_readout(layers, readout.transpose()?)
+    }
+}
+
+impl Neurons {
+    fn name(&self) -> String {
+        format!("node `{}`", self.name)
+    }
+
+    /// What a step leaves of a neuron's potential, what its inputs are multiplied by, and where it rests.
+    fn in_steps(&self, at: usize, step: Option<f64>) -> Result<(f64, f64, f64)> {
+        let resistance = self.resistance.at(at);
+        let Some(Leak { tau, rest }) = &self.leak else { return Ok((1.0, resistance, 0.0)) };
+        let step = step.context(
+            "its time constants are in seconds, and neither `dt` nor the recording's times say how long a step is",
+        )?;
+        let mut gain = resistance;
+        if let Some(Synapse { tau, weight }) = &self.synapse {
+            let tau = tau.at(at);
+            ensure!(
+                tau <= step * 1.001,
+                "a spike's current lasts: its time constant of {tau} s is longer than a step of {step} s, and the chip's \
+                 neurons have no current; train with `tau_syn` of a step, or LIF"
+            );
+            // Shorter than a step it is a step's all the same.
+            gain *= weight.at(at);
+        }
+        let tau = tau.at(at);
+        ensure!(
+            tau >= step * (1.0 - 1e-9),
+            "a time constant of {tau} s is shorter than a step of {step} s; `dt` gives the step that its framework \
+             counts with (snnTorch: 1e-4)"
+        );
+        let part = step / tau;
+        Ok(((1.0 - part).max(0.0), part * gain, rest.at(at)))
     }
 }
 
 impl Stage {
-    fn in_steps(self, name: String, step: Option<f64>) -> Result<Layer> {
+    fn in_steps(self, step: Option<f64>) -> Result<Layer> {
         let Self { weights: Weights { rows, bias }, recurrent, neurons } = self;
         let mut biases = bias.unwrap_or_else(|| vec![0.0; rows.len()]);
         let (recurrent, more) = recurrent.map_or((vec![], None), |own| (own.rows, own.bias));
         biases.iter_mut().zip(more.iter().flatten()).for_each(|(bias, more)| *bias += more);
+        let name = neurons.name();
         let mut layer = Layer { name, bias: biases, recurrent, weights: rows, neurons: Vec::new() };
         for at in 0..layer.weights.len() {
-            let resistance = neurons.resistance.at(at);
-            let (part, rest) = match &neurons.leak {
-                None => (0.0, 0.0),
-                Some(Leak { tau, rest }) => {
-                    let step = step.context(
-                        "its time constants are in seconds, and neither `dt` nor the recording's times say \
-                         how long a step is",
-                    )?;
-                    let tau = tau.at(at);
-                    ensure!(
-                        tau >= step * (1.0 - 1e-9),
-                        "a time constant of {tau} s is shorter than a step of {step} s; `dt` gives the step \
-                         that its framework counts with (snnTorch: 1e-4)"
-                    );
-                    (step / tau, rest.at(at))
-                }
-            };
+            let (keep, gain, rest) = neurons.in_steps(at, step)?;
             let returns = neurons.reset.as_ref().map_or(0.0, |reset| reset.at(at));
             ensure!(
                 returns == rest,
                 "neuron {at} returns to {returns} when it fires and leaks to {rest}: the chip has one value for both"
             );
-            let gain = if neurons.leak.is_some() { part * resistance } else { resistance };
             let own = layer.recurrent.get_mut(at).into_iter().flatten();
             layer.weights[at].iter_mut().chain(own).for_each(|weight| *weight *= gain);
             layer.bias[at] *= gain;
-            let keep = (1.0 - part).max(0.0);
-            layer.neurons.push(Neuron { keep, threshold: neurons.threshold.at(at) - rest });
+            let threshold = neurons.threshold.as_ref().map_or(f64::INFINITY, |all| all.at(at));
+            layer.neurons.push(Neuron { keep, threshold: threshold - rest });
         }
         Ok(layer)
+    }
+
+    fn readout_in_steps(self, step: Option<f64>) -> Result<Readout> {
+        let Self { weights: Weights { rows: mut weights, bias }, neurons, .. } = self;
+        let mut keep = Vec::new();
+        for (at, row) in weights.iter_mut().enumerate() {
+            let (own, gain, rest) = neurons.in_steps(at, step)?;
+            let bias = bias.as_ref().map_or(0.0, |bias| bias[at]);
+            ensure!(
+                rest == 0.0 && bias == 0.0,
+                "output {at} has a bias of {bias} and rests at {rest}: both must be 0, and be added where it is read"
+            );
+            for weight in row {
+                *weight *= gain;
+            }
+            keep.push(own);
+        }
+        Ok(Readout { name: neurons.name(), weights, keep })
     }
 }

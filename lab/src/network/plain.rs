@@ -1,7 +1,7 @@
 //! The plain form of a network, in JSON.
 
 use super::Trained;
-use super::trained::{Layer, Neuron};
+use super::trained::{Layer, Neuron, Readout};
 use anyhow::{Context, Result, bail};
 use serde::Deserialize;
 
@@ -9,6 +9,17 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields)]
 struct Network {
     layers: Vec<Written>,
+    readout: Option<WrittenReadout>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenReadout {
+    name: Option<String>,
+    /// By output, then by neuron of the last layer.
+    weights: Vec<Vec<f64>>,
+    /// Unless given, outputs do not leak.
+    keep: Option<Numbers>,
 }
 
 #[derive(Deserialize)]
@@ -57,7 +68,13 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Trained> {
         let name = written.name.clone().unwrap_or_else(|| format!("layer {}", at + 1));
         layer(&name, written).with_context(|| name.clone())
     });
-    Trained::new(layers.collect::<Result<_>>()?)
+    let readout = network.readout.map(|WrittenReadout { name, weights, keep }| -> Result<_> {
+        let name = name.unwrap_or_else(|| "readout".to_owned());
+        let keep = keep.unwrap_or(Numbers::One(1.0)).each(weights.len(), "keep");
+        let keep = keep.with_context(|| name.clone())?;
+        Ok(Readout { name, weights, keep })
+    });
+    Trained::with_readout(layers.collect::<Result<_>>()?, readout.transpose()?)
 }
 
 fn layer(name: &str, written: Written) -> Result<Layer> {

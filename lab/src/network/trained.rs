@@ -13,6 +13,56 @@ pub type Trains = Vec<Vec<u16>>;
 pub struct Trained {
     /// From the input on.
     pub layers: Vec<Layer>,
+    /// Behind the last layer, neurons that never fire.
+    pub readout: Option<Readout>,
+}
+
+/// Leaky neurons that never fire: their potentials are the network's outputs.
+#[derive(Clone, Debug)]
+pub struct Readout {
+    /// As its file calls it.
+    pub name: String,
+    /// By output, what a spike of each neuron of the last layer adds to the potential.
+    pub weights: Vec<Vec<f64>>,
+    /// By output, the share of the potential that is left after a step, 0 to 1.
+    pub keep: Vec<f64>,
+}
+
+impl Readout {
+    fn check(&self, neurons: usize) -> Result<()> {
+        let Self { name, weights, keep } = self;
+        ensure!(!weights.is_empty() && keep.len() == weights.len(), "{name}: no weights");
+        for (output, row) in weights.iter().enumerate() {
+            ensure!(
+                row.len() == neurons,
+                "{name}: output {output} has {} weights, but the last layer has {neurons} neurons",
+                row.len()
+            );
+            if let Some(weight) = row.iter().find(|weight| !weight.is_finite()) {
+                bail!("{name}: output {output} has a weight of {weight}");
+            }
+        }
+        if let Some(keep) = keep.iter().find(|keep| !(0.0..=1.0).contains(*keep)) {
+            bail!(
+                "{name}: an output keeps {keep} of its potential a step, which must lie in 0..=1"
+            );
+        }
+        Ok(())
+    }
+
+    /// The potentials, by step and output.
+    fn run(&self, fired: &Trains) -> Vec<Vec<f64>> {
+        let mut potentials = vec![0.0; self.weights.len()];
+        let step = |fired: &Vec<u16>| {
+            for ((potential, row), keep) in potentials.iter_mut().zip(&self.weights).zip(&self.keep)
+            {
+                let driven: f64 = fired.iter().map(|&neuron| row[usize::from(neuron)]).sum();
+                *potential = *potential * keep + driven;
+            }
+            potentials.clone()
+        };
+        fired.iter().map(step).collect()
+    }
 }
 
 /// Neurons, and what leads to them.
@@ -83,8 +133,8 @@ impl Layer {
         Ok(())
     }
 
-    /// Who fires, by step.
-    fn run(&self, inputs: &Trains) -> Trains {
+    /// Who fires, by step. Calls `see` with each neuron and its potential, before it fires.
+    pub(super) fn follow(&self, inputs: &Trains, mut see: impl FnMut(usize, f64)) -> Trains {
         let mut potentials = vec![0.0; self.neurons.len()];
         let mut before: Vec<u16> = Vec::new();
         let step = |fired: &Vec<u16>| {
@@ -96,6 +146,7 @@ impl Layer {
                 let back: f64 =
                     before.iter().map(|&own| self.recurrent[at][usize::from(own)]).sum();
                 *potential = *potential * keep + driven + back + self.bias[at];
+                see(at, *potential);
                 if *potential > threshold {
                     *potential = 0.0;
                     out.push(at as u16);
@@ -136,7 +187,19 @@ impl Trained {
                 before.neurons.len()
             );
         }
-        Ok(Self { layers })
+        Ok(Self { layers, readout: None })
+    }
+
+    /// These layers, and behind the last neurons that never fire.
+    ///
+    /// # Errors
+    /// See [`new`](Self::new).
+    pub fn with_readout(layers: Vec<Layer>, readout: Option<Readout>) -> Result<Self> {
+        let network = Self::new(layers)?;
+        if let (Some(readout), Some(last)) = (&readout, network.layers.last()) {
+            readout.check(last.neurons.len())?;
+        }
+        Ok(Self { readout, ..network })
     }
 
     /// How many inputs it has.
@@ -148,10 +211,16 @@ impl Trained {
     pub fn run(&self, inputs: &Trains) -> Vec<Trains> {
         let mut all: Vec<Trains> = Vec::new();
         for layer in &self.layers {
-            let fired = layer.run(all.last().unwrap_or(inputs));
+            let fired = layer.follow(all.last().unwrap_or(inputs), |_, _| ());
             all.push(fired);
         }
         all
+    }
+
+    /// The outputs' potentials, by step, if so fire who do; empty if the last layer's spikes are the outputs.
+    pub fn potentials(&self, fired: &[Trains]) -> Vec<Vec<f64>> {
+        let (Some(readout), Some(fired)) = (&self.readout, fired.last()) else { return vec![] };
+        readout.run(fired)
     }
 }
 
@@ -174,10 +243,10 @@ mod tests {
         // Potentials: 0.6, 0.3 + 0.6 = 0.9, 0.45, 0.225 + 1.2 -> fires, 0.6.
         let one = layer(&[&[0.6]], 0.5, 1.0);
         let inputs = vec![vec![0], vec![0], vec![], vec![0, 0], vec![0]];
-        assert_eq!(one.run(&inputs), [vec![], vec![], vec![], vec![0], vec![]]);
+        assert_eq!(one.follow(&inputs, |_, _| ()), [vec![], vec![], vec![], vec![0], vec![]]);
         // At its threshold it does not fire yet.
         let exact = layer(&[&[0.5]], 1.0, 1.0);
-        let fired = exact.run(&vec![vec![0]; 6]);
+        let fired = exact.follow(&vec![vec![0]; 6], |_, _| ());
         assert_eq!(fired, [vec![], vec![], vec![0], vec![], vec![], vec![0]]);
     }
 
@@ -185,8 +254,21 @@ mod tests {
     fn a_recurrent_spike_acts_in_the_next_step() {
         let one = layer(&[&[2.0], &[0.0]], 1.0, 1.0);
         let back = Layer { recurrent: vec![vec![0.0, 0.0], vec![1.5, 0.0]], ..one };
-        let fired = back.run(&vec![vec![0], vec![], vec![], vec![0], vec![0]]);
+        let fired = back.follow(&vec![vec![0], vec![], vec![], vec![0], vec![0]], |_, _| ());
         assert_eq!(fired, [vec![0], vec![1], vec![], vec![0], vec![0, 1]]);
+    }
+
+    #[test]
+    fn a_readout_adds_up_and_leaks() {
+        let one = layer(&[&[2.0]], 1.0, 1.0);
+        let readout = Readout {
+            name: "outputs".to_owned(),
+            weights: vec![vec![1.0], vec![-2.0]],
+            keep: vec![0.5, 1.0],
+        };
+        let network = Trained::with_readout(vec![one], Some(readout)).unwrap();
+        let fired = network.run(&vec![vec![0], vec![], vec![0]]);
+        assert_eq!(network.potentials(&fired), [[1.0, -2.0], [0.5, -2.0], [1.25, -4.0]]);
     }
 
     #[test]

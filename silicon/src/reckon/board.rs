@@ -9,7 +9,7 @@ use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 use spikewire::chip::ReckOnPort;
 
 use super::{Inputs, ReckOn};
-use crate::board::{CallFault, ClockFault};
+use crate::board::{CallFault, ClockFault, due, transact};
 
 /// Chip and wires.
 #[derive(Debug)]
@@ -67,15 +67,6 @@ impl Board {
     }
 }
 
-/// The fault that is due now.
-fn due<T: Copy>(faults: &mut VecDeque<(u64, T)>, now: u64) -> Option<T> {
-    let &(at, fault) = faults.front()?;
-    (at == now).then(|| {
-        faults.pop_front();
-        fault
-    })
-}
-
 /// The chip's SPI pins.
 #[derive(Debug)]
 pub struct Spi(Board);
@@ -110,29 +101,12 @@ impl Pins {
         }
         out
     }
-
-    fn spi_byte(&mut self, byte: u8) -> u8 {
-        (0..8).rev().fold(0, |out, at| out << 1 | u8::from(self.spi_bit(byte >> at & 1 == 1)))
-    }
 }
 
 impl SpiDevice for Spi {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
         let mut pins = self.0.pins();
-        for operation in operations {
-            match operation {
-                Operation::Write(bytes) => bytes.iter().for_each(|&byte| {
-                    pins.spi_byte(byte);
-                }),
-                Operation::TransferInPlace(bytes) => {
-                    for byte in bytes.iter_mut() {
-                        *byte = pins.spi_byte(*byte);
-                    }
-                }
-                _ => return Err(ErrorKind::Other),
-            }
-        }
-        Ok(())
+        transact(operations, |bit| pins.spi_bit(bit))
     }
 }
 

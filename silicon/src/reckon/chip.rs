@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 
 use super::learn;
 use super::lfsr::Lfsr;
+use super::memory::Memory;
 use super::spi::{self, SpiSlave};
 
 /// A bit for each neuron or input.
@@ -235,11 +236,11 @@ pub struct ReckOn {
     /// The neurons' memory: two a word.
     pub neurons: Vec<u128>,
     /// Weights from inputs: sixteen a word, sixteen words an input.
-    pub input_weights: Vec<u128>,
+    pub input_weights: Memory,
     /// Weights from neurons, likewise.
-    pub recurrent_weights: Vec<u128>,
+    pub recurrent_weights: Memory,
     /// Weights from neurons to outputs: a word a neuron.
-    pub output_weights: Vec<u128>,
+    pub output_weights: Memory,
     is_still: bool,
     /// How many clocks there were.
     pub clocks: u64,
@@ -257,9 +258,9 @@ impl Default for ReckOn {
             spi: SpiSlave::default(),
             now: Clocked::default(),
             neurons: vec![0; 128],
-            input_weights: vec![0; 4096],
-            recurrent_weights: vec![0; 4096],
-            output_weights: vec![0; 512],
+            input_weights: Memory::new(4096),
+            recurrent_weights: Memory::new(4096),
+            output_weights: Memory::new(512),
             is_still: false,
             clocks: 0,
             fired: Vec::new(),
@@ -275,12 +276,16 @@ struct Access {
     write: Option<(u128, u128)>,
 }
 
-fn access(memory: &mut [u128], word: &mut u128, access: Option<&Access>) {
+/// What a word becomes.
+const fn changed(old: u128, (data, mask): (u128, u128)) -> u128 {
+    data & mask | old & !mask
+}
+
+fn access(memory: &mut Memory, word: &mut u128, access: Option<&Access>) {
     let Some(&Access { address, write }) = access else { return };
-    let place = &mut memory[address];
-    *word = *place;
-    if let Some((data, mask)) = write {
-        *place = data & mask | *place & !mask;
+    *word = memory[address];
+    if let Some(write) = write {
+        memory.set(address, changed(*word, write));
     }
 }
 
@@ -695,7 +700,12 @@ impl ReckOn {
         );
         let output_access =
             weights((spi::PROG_OUTPUT_WEIGHTS, 1 << 4), 0x1FF, learning.output_weights, output_row);
-        access(&mut self.neurons, &mut new.neuron_word, neuron_access.as_ref());
+        if let Some(Access { address, write }) = neuron_access {
+            new.neuron_word = self.neurons[address];
+            if let Some(write) = write {
+                self.neurons[address] = changed(new.neuron_word, write);
+            }
+        }
         access(&mut self.input_weights, &mut new.input_weights, input_access.as_ref());
         access(&mut self.recurrent_weights, &mut new.recurrent_weights, recurrent_access.as_ref());
         access(&mut self.output_weights, &mut new.output_weights, output_access.as_ref());

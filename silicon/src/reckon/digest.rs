@@ -79,9 +79,9 @@ impl ReckOn {
     /// A digest of the four memories.
     pub fn memory_digest(&self) -> u64 {
         let mut mixed = Mixed::default();
-        let memories =
-            [&self.neurons, &self.input_weights, &self.recurrent_weights, &self.output_weights];
-        memories.into_iter().flatten().for_each(|&word| mixed.wide(word));
+        let weights = [&self.input_weights, &self.recurrent_weights, &self.output_weights];
+        let weights = weights.into_iter().flat_map(super::Memory::iter);
+        self.neurons.iter().copied().chain(weights).for_each(|word| mixed.wide(word));
         mixed.0
     }
 }

@@ -7,7 +7,9 @@ mod chip;
 mod digest;
 mod learn;
 mod lfsr;
+mod memory;
 mod spi;
 
 pub use board::{Board, Pins, Port, Spi};
 pub use chip::{EventState, Inputs, Outputs, ReckOn, State};
+pub use memory::Memory;

@@ -19,7 +19,7 @@ pub enum FormatError {
     Magic,
     /// The bytes are for another chip.
     Chip,
-    /// There are no neurons, or more than 256 neurons, inputs or rows of synapses.
+    /// There are no neurons, or more than 256 neurons, inputs or rows of synapses; for `ReckOn` more than 16 outputs.
     Size,
     /// The bytes or the buffer have the wrong length.
     Length {
@@ -53,7 +53,7 @@ impl core::error::Error for FormatError {}
 /// | bytes | what |
 /// |---|---|
 /// | 4 | `SWN1` |
-/// | 1 | the chip: 1 tinyODIN, 2 ODIN |
+/// | 1 | the chip: 1 tinyODIN, 2 ODIN; 3 is [`ReckOnBytes`](crate::chip::ReckOnBytes) |
 /// | 1 | bit 0: recurrent; bit 1: inputs are virtual events |
 /// | 2, 2, 2 | neurons, inputs, outputs |
 /// | 4 or 16 a neuron | the neuron as in the chip's memory |

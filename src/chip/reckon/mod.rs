@@ -1,5 +1,6 @@
 //! `ReckOn`: 256 recurrent neurons, 16 leaky outputs, weights of 8 bits, learning on the chip.
 
+mod bytes;
 mod network;
 mod port;
 mod programmed;
@@ -7,6 +8,7 @@ mod running;
 mod settings;
 mod wire;
 
+pub use bytes::ReckOnBytes;
 pub use network::{DescribeReckOn, ReckOnNetwork, ReckOnPair, ReckOnShared};
 pub use port::ReckOnPort;
 pub use programmed::Programmed;

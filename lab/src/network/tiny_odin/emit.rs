@@ -1,21 +1,12 @@
 //! The network as Rust: constant data for `spikewire::chip`.
 
+use super::super::chip::{Told, list};
 use super::Quantised;
 use spikewire::chip::{Describe, TinyOdinNeuron};
-use std::fmt::{Display, Write};
-
-/// What a reader of the file should know.
-pub struct Told {
-    /// Where the network is from.
-    pub source: String,
-    /// What its inputs are.
-    pub inputs: String,
-    /// How long a step is in µs, if that is known.
-    pub step_us: Option<f64>,
-}
+use std::fmt::Write;
 
 /// A file of Rust, which compiles without `std` beside the crate's feature `embedded-hal`.
-pub fn emit(network: &Quantised, told: &Told) -> String {
+pub(super) fn emit(network: &Quantised, told: &Told) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = write(&mut text, network, told);
@@ -75,8 +66,4 @@ fn write(text: &mut String, network: &Quantised, told: &Told) -> std::fmt::Resul
     writeln!(text, "    ],")?;
     writeln!(text, "    outputs: [{}],", list(outputs.into_iter()))?;
     writeln!(text, "}};")
-}
-
-fn list(numbers: impl Iterator<Item = impl Display>) -> String {
-    numbers.map(|number| number.to_string()).collect::<Vec<_>>().join(", ")
 }

@@ -1,28 +1,23 @@
 //! The network on the chip's model, clock by clock, through the crate's driver.
 
-use super::{Quantised, Trains};
-use anyhow::{Result, anyhow};
+use super::super::Trains;
+use super::super::chip::{Ran, refused};
+use super::Quantised;
+use anyhow::Result;
 use silicon::Board;
-use spikewire::chip::{ChipError, Describe, Input, TinyOdin, TinyOdinInput};
-use std::fmt::Debug;
+use spikewire::chip::{Describe, Input, NetworkBytes, TinyOdin, TinyOdinInput};
 
-/// What came of it.
-pub struct Ran {
-    /// Who fired, by layer and step.
-    pub fired: Vec<Trains>,
-    /// The chip's clocks, by step.
-    pub clocks: Vec<u64>,
-    /// How often the chip's queue was full, and spikes were lost.
-    pub overflows: u32,
-}
+/// More bytes than any network takes.
+const LARGEST: usize = 64 * 1024;
+
+/// The chip's clocks to one of its SPI.
+const RATIO: u32 = 4;
 
 /// Loads the network, verifies it and runs it. Each step's leak comes first, then its bias, then its inputs in order.
 ///
 /// # Errors
 /// The chip refuses something.
-pub fn run_on_chip(network: &Quantised, inputs: &Trains) -> Result<Ran> {
-    /// The chip's clocks to one of its SPI.
-    const RATIO: u32 = 4;
+pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
     let board = Board::<silicon::TinyOdin>::new(RATIO, 1);
     board.pins().has_full_pin = true;
     let mut chip = TinyOdin::new(board.spi(), board.port(), TinyOdinInput::MAX_CLOCKS);
@@ -53,10 +48,17 @@ pub fn run_on_chip(network: &Quantised, inputs: &Trains) -> Result<Ran> {
         }
         clocks.push(board.pins().chip.clocks - before);
     }
-    let overflows = board.pins().chip.overflows;
-    Ok(Ran { fired, clocks, overflows })
+    let lost = board.pins().chip.overflows;
+    Ok(Ran { fired, potentials: vec![], clocks, lost })
 }
 
-fn refused<B: Debug, P: Debug>(error: &ChipError<B, P>) -> anyhow::Error {
-    anyhow!("the chip's model: {error}")
+/// The network as bytes.
+///
+/// # Errors
+/// It is no network of the chip.
+pub(super) fn bytes(network: &Quantised) -> Result<Vec<u8>> {
+    let mut bytes = vec![0; LARGEST];
+    let length = NetworkBytes::write(network, &mut bytes)?;
+    bytes.truncate(length);
+    Ok(bytes)
 }

@@ -1,7 +1,7 @@
 //! From numbers in double precision to what tinyODIN holds.
 
-use super::trained::{Layer, Neuron};
-use super::{Distance, Trained, Trains};
+use super::super::trained::{Layer, Neuron};
+use super::super::{Distance, Trained, Trains};
 use anyhow::{Result, ensure};
 use rayon::prelude::*;
 use spikewire::chip::{Describe, Input, TinyOdinInput, TinyOdinNeuron};
@@ -33,7 +33,7 @@ const STEPS: [usize; 6] = [1, 2, 3, 4, 8, 16];
 /// A network as tinyODIN holds it: the layers' neurons one after the other, then, if a layer has a bias, an input more
 /// that every step must be told.
 #[derive(Clone, Debug)]
-pub struct Quantised {
+pub(super) struct Quantised {
     /// The layers.
     pub layers: Vec<ChipLayer>,
     /// Inputs without the bias.
@@ -48,7 +48,7 @@ pub struct Quantised {
 
 /// A layer's neurons.
 #[derive(Clone, Debug)]
-pub struct ChipLayer {
+pub(super) struct ChipLayer {
     /// As its file calls it.
     pub name: String,
     /// How many spikes it takes from before it.
@@ -59,7 +59,7 @@ pub struct ChipLayer {
 
 /// A neuron, and what leads to it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ChipNeuron {
+pub(super) struct ChipNeuron {
     /// By input, then in a recurrent layer by its neurons.
     pub weights: Vec<i8>,
     /// What every step adds.
@@ -78,7 +78,7 @@ pub struct ChipNeuron {
 ///
 /// # Errors
 /// It does not fit.
-pub fn quantise(
+pub(super) fn quantise(
     trained: &Trained,
     inputs: &Trains,
     fired: &[Trains],
@@ -401,7 +401,7 @@ impl ChipNeuron {
 
 impl Quantised {
     /// The layer and the place in it of a neuron of the chip.
-    pub fn place(&self, neuron: usize) -> Option<(usize, usize)> {
+    pub(super) fn place(&self, neuron: usize) -> Option<(usize, usize)> {
         let mut first = 0;
         for (at, layer) in self.layers.iter().enumerate() {
             if neuron < first + layer.neurons.len() {
@@ -413,7 +413,7 @@ impl Quantised {
     }
 
     /// How many neurons.
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.layers.iter().map(|layer| layer.neurons.len()).sum()
     }
 

@@ -1,0 +1,90 @@
+//! What a chip must do for a network to be brought onto it.
+
+use super::{ReckOn, TinyOdin, Trained, Trains};
+use anyhow::{Result, anyhow};
+use spikewire::chip::ChipError;
+use std::fmt::{Debug, Display};
+
+/// A chip that a trained network can be brought onto.
+pub trait Chip: Sync {
+    /// The name by which the chip is asked for.
+    fn name(&self) -> &'static str;
+
+    /// Finds what the chip should hold so that it does what the network does. `fired` is who fires in double precision,
+    /// by layer and step. Calls `progress` with the neurons that are done and those in all.
+    ///
+    /// # Errors
+    /// The network does not fit the chip.
+    fn quantise(
+        &self,
+        trained: &Trained,
+        inputs: &Trains,
+        fired: &[Trains],
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<Box<dyn OnChip>>;
+}
+
+/// Every chip that networks can be brought onto.
+pub static CHIPS: [&dyn Chip; 2] = [&TinyOdin, &ReckOn];
+
+/// A network as a chip holds it.
+pub trait OnChip {
+    /// Loads the network into the chip's model with the crate's driver, and runs it.
+    ///
+    /// # Errors
+    /// The chip refuses something.
+    fn run(&self, inputs: &Trains) -> Result<Ran>;
+
+    /// By layer, the number of weights that were larger than the chip's; then of the outputs, if they have potentials.
+    fn clipped(&self) -> Vec<usize>;
+
+    /// Writes a file of Rust, which compiles without `std` beside the crate's feature `embedded-hal`.
+    fn emit(&self, told: &Told) -> String;
+
+    /// The network as bytes, which the crate's driver loads at run time.
+    ///
+    /// # Errors
+    /// It is no network of the chip.
+    fn bytes(&self) -> Result<Vec<u8>>;
+
+    /// What the network takes of the chip, and what of it had to change: a line each.
+    fn notes(&self) -> Vec<String>;
+
+    /// What of the chip's arithmetic a network should be trained with, if the chip does something else.
+    fn dearest(&self) -> &'static str;
+
+    /// Why spikes get lost on their way into the chip.
+    fn loss(&self) -> &'static str;
+}
+
+/// What came of a run on the chip.
+pub struct Ran {
+    /// Who fired, by layer and step.
+    pub fired: Vec<Trains>,
+    /// The outputs' potentials by step, in the units of the training; empty if the last layer's spikes are the outputs.
+    pub potentials: Vec<Vec<f64>>,
+    /// The chip's clocks, by step.
+    pub clocks: Vec<u64>,
+    /// How many spikes got lost on their way into the chip.
+    pub lost: u32,
+}
+
+/// What a reader of the file should know.
+pub struct Told {
+    /// Where the network is from.
+    pub source: String,
+    /// What its inputs are.
+    pub inputs: String,
+    /// How long a step is in µs, if that is known.
+    pub step_us: Option<f64>,
+}
+
+/// Numbers with commas between.
+pub(super) fn list(numbers: impl Iterator<Item = impl Display>) -> String {
+    numbers.map(|number| number.to_string()).collect::<Vec<_>>().join(", ")
+}
+
+/// The error of a driver on the model.
+pub(super) fn refused<B: Debug, P: Debug>(error: &ChipError<B, P>) -> anyhow::Error {
+    anyhow!("the chip's model: {error}")
+}

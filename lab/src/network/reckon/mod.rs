@@ -1,0 +1,94 @@
+//! `ReckOn`: 256 recurrent neurons, 16 leaky outputs, weights of 8 bits.
+
+mod emit;
+mod place;
+mod quantise;
+mod run;
+
+use super::chip::{Chip, OnChip, Ran, Told};
+use super::{Trained, Trains};
+use anyhow::Result;
+use quantise::{Quantised, quantise};
+use spikewire::chip::DescribeReckOn;
+
+/// The chip `ReckOn`.
+pub struct ReckOn;
+
+impl Chip for ReckOn {
+    fn name(&self) -> &'static str {
+        "reckon"
+    }
+
+    fn quantise(
+        &self,
+        trained: &Trained,
+        inputs: &Trains,
+        fired: &[Trains],
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<Box<dyn OnChip>> {
+        Ok(Box::new(quantise(trained, inputs, fired, progress)?))
+    }
+}
+
+/// SPI clocks of a word and its header.
+const FRAME: u32 = 64;
+
+impl OnChip for Quantised {
+    fn run(&self, inputs: &Trains) -> Result<Ran> {
+        run::run(self, inputs)
+    }
+
+    fn clipped(&self) -> Vec<usize> {
+        self.changes.iter().map(|change| change.clipped).collect()
+    }
+
+    fn emit(&self, told: &Told) -> String {
+        emit::emit(self, told)
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>> {
+        run::bytes(self)
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let (inputs, neurons, outputs) = (self.inputs(), self.neurons(), self.outputs());
+        let words = u32::from(inputs + 256) * u32::from(neurons.div_ceil(4))
+            + 256 * u32::from(outputs.div_ceil(4))
+            + 512;
+        let mut notes = vec![format!(
+            "{neurons} of the chip's 256 neurons, {inputs} of its 256 inputs, {outputs} of its 16 outputs; {} bytes \
+             of weights; {words} words, written and read back in {:.2} s at 1 MHz",
+            inputs * neurons + neurons * neurons + neurons * outputs,
+            f64::from(2 * words * FRAME) * 1e-6,
+        )];
+        notes.push(
+            "layer: weights, of them clipped, and become 0; change of the weights".to_owned(),
+        );
+        for change in &self.changes {
+            notes.push(format!(
+                "{}: {}, {}, {}; {:.2} %",
+                change.name,
+                change.weights,
+                change.clipped,
+                change.vanished,
+                100.0 * change.relative()
+            ));
+        }
+        if self.shared_keeps.0 > 0 {
+            let (count, most) = self.shared_keeps;
+            notes.push(format!(
+                "warning: {count} neurons or outputs leak otherwise than trained, by up to {most:.4} of the potential \
+                 a step: neurons keep 0.875 at least, two share a leak, all outputs have one"
+            ));
+        }
+        notes
+    }
+
+    fn dearest(&self) -> &'static str {
+        "weights of 8 bits, leaks that round down"
+    }
+
+    fn loss(&self) -> &'static str {
+        "an input that fires several times in a step counts once"
+    }
+}

@@ -1,0 +1,77 @@
+//! Where on the chip the neurons of the layers are.
+
+use super::super::Trained;
+use anyhow::{Result, ensure};
+
+const NEURONS: usize = 256;
+const INPUTS: usize = 256;
+const OUTPUTS: usize = 16;
+
+/// The chip's neurons in pairs, which share leak and threshold: a pair is of one layer, of neurons that leak alike.
+#[derive(Clone, Debug)]
+pub(super) struct Places {
+    /// By neuron of the chip, layer and neuron; none where a layer's last pair has one neuron only.
+    pub(super) neurons: Vec<Option<(usize, usize)>>,
+    /// By layer and neuron, the neuron of the chip.
+    by_layer: Vec<Vec<usize>>,
+}
+
+impl Places {
+    /// Finds room for the network.
+    ///
+    /// # Errors
+    /// There is not enough of it.
+    pub(super) fn new(trained: &Trained, has_bias: bool) -> Result<Self> {
+        let mut neurons = Vec::new();
+        let mut by_layer = Vec::new();
+        for (at, layer) in trained.layers.iter().enumerate() {
+            let mut order: Vec<usize> = (0..layer.neurons.len()).collect();
+            order.sort_by(|&one, &other| {
+                layer.neurons[one].keep.total_cmp(&layer.neurons[other].keep)
+            });
+            if !neurons.len().is_multiple_of(2) {
+                neurons.push(None);
+            }
+            let mut own = vec![0; order.len()];
+            for neuron in order {
+                own[neuron] = neurons.len();
+                neurons.push(Some((at, neuron)));
+            }
+            ensure!(
+                neurons.len() <= NEURONS,
+                "{}: the chip has {NEURONS} neurons, and with this layer's {} the network needs {}",
+                layer.name,
+                layer.neurons.len(),
+                neurons.len()
+            );
+            by_layer.push(own);
+        }
+        let inputs = trained.inputs() + usize::from(has_bias);
+        ensure!(
+            inputs <= INPUTS,
+            "{}: the chip has {INPUTS} inputs, and the network has {inputs}{}",
+            trained.layers[0].name,
+            if has_bias { ", one of them the bias" } else { "" }
+        );
+        let (name, outputs) = match (&trained.readout, trained.layers.last()) {
+            (Some(readout), _) => (readout.name.as_str(), readout.weights.len()),
+            (None, Some(layer)) => (layer.name.as_str(), layer.neurons.len()),
+            (None, None) => ("", 0),
+        };
+        ensure!(
+            outputs <= OUTPUTS,
+            "{name}: the chip has {OUTPUTS} outputs, and the network has {outputs}"
+        );
+        Ok(Self { neurons, by_layer })
+    }
+
+    /// The neuron of the chip.
+    pub(super) fn of(&self, layer: usize, neuron: usize) -> usize {
+        self.by_layer[layer][neuron]
+    }
+
+    /// The neurons of a pair, by layer and neuron.
+    pub(super) fn pairs(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
+        self.neurons.chunks(2).map(|pair| pair.iter().flatten().copied().collect())
+    }
+}

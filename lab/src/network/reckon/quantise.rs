@@ -1,0 +1,476 @@
+//! From numbers in double precision to what `ReckOn` holds.
+
+use super::super::trained::{Layer, Neuron, Readout};
+use super::super::{Distance, Trained, Trains};
+use super::place::Places;
+use anyhow::{Result, ensure};
+use rayon::prelude::*;
+use spikewire::chip::{DescribeReckOn, ReckOnPair, ReckOnShared};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// A share of the potential, as the chip holds it for neurons and for outputs.
+const KEEP: f64 = 32_768.0;
+const OUTPUT_KEEP: f64 = 128.0;
+/// The least that a neuron keeps.
+const LEAST_KEEP: f64 = 0.875;
+const LARGEST: f64 = 127.0;
+/// The largest potential that the recording may make: the rest of the range is for other recordings.
+const ROOM: f64 = 0.8 * 32_767.0;
+/// Of the scale with which the largest weight just fits, which parts are tried.
+const SCALES: [f64; 8] = [1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.6];
+/// Shifts left that weights may have.
+const SHIFTS: u8 = 8;
+/// An output without weights of its own follows its neuron: half of it is left each step, so that the bits of the
+/// potential are the neuron's last steps.
+const FOLLOWS: (i8, u8, u8) = (64, 7, 64);
+/// The bit of an answer that says whether the neuron has fired last.
+pub(super) const FIRED: u32 = 12;
+
+/// A network as `ReckOn` holds it.
+#[derive(Clone, Debug)]
+pub(super) struct Quantised {
+    pub(super) places: Places,
+    pub(super) pairs: Vec<ReckOnPair>,
+    /// By input, then neuron. The bias is the last, if there is one.
+    pub(super) inputs: Vec<Vec<i8>>,
+    /// By neuron that sends, then neuron.
+    pub(super) recurrent: Vec<Vec<i8>>,
+    /// By neuron, then output.
+    pub(super) outputs: Vec<Vec<i8>>,
+    pub(super) shared: ReckOnShared,
+    /// The input that every step must be told.
+    pub(super) bias: Option<usize>,
+    /// By layer, its name and size.
+    pub(super) layers: Vec<(String, usize)>,
+    /// What an answer of 1 stands for in the training's units; none if an answer's bits are the spikes of a neuron.
+    pub(super) unit: Option<f64>,
+    /// By layer, then of the outputs, if they have weights.
+    pub(super) changes: Vec<Change>,
+    /// Neurons and outputs that leak otherwise than trained, and by how much at most.
+    pub(super) shared_keeps: (usize, f64),
+}
+
+/// What became of weights.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Change {
+    pub(super) name: String,
+    pub(super) weights: usize,
+    /// Larger than the chip's.
+    pub(super) clipped: usize,
+    /// Too small for the chip.
+    pub(super) vanished: usize,
+    /// Of the squares of the weights, and of their changes.
+    sums: [f64; 2],
+}
+
+impl Change {
+    /// The root mean square of the changes to that of the weights.
+    pub(super) fn relative(&self) -> f64 {
+        let [weights, changes] = self.sums;
+        if weights > 0.0 { (changes / weights).sqrt() } else { 0.0 }
+    }
+
+    /// The weight on the chip, for a weight of `1` that is `scale` there before it is shifted.
+    fn weight(&mut self, weight: f64, scale: f64) -> i8 {
+        let rounded = (weight * scale).round();
+        let held = rounded.clamp(-LARGEST - 1.0, LARGEST);
+        self.weights += 1;
+        self.clipped += usize::from(held != rounded);
+        self.vanished += usize::from(held == 0.0 && weight != 0.0);
+        let change = held / scale - weight;
+        self.sums[0] += weight * weight;
+        self.sums[1] += change * change;
+        held as i8
+    }
+}
+
+/// A neuron and all that leads to it, its threshold taken as 1.
+struct Source {
+    layer: usize,
+    neuron: usize,
+    keep: f64,
+    /// By input; the bias is the last, if there is one.
+    inputs: Vec<f64>,
+    /// Neurons of the chip, and their weights.
+    recurrent: Vec<(usize, f64)>,
+    has_bias: bool,
+    /// The largest potential.
+    peak: f64,
+}
+
+fn largest(weights: impl Iterator<Item = f64>) -> f64 {
+    weights.fold(0.0, |most, weight| most.max(weight.abs()))
+}
+
+impl Source {
+    fn largest(&self) -> [f64; 2] {
+        [
+            largest(self.inputs.iter().copied()),
+            largest(self.recurrent.iter().map(|(_, weight)| *weight)),
+        ]
+    }
+}
+
+/// The scale of a pair: the largest with which its largest weights and potentials fit.
+fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
+    let room = largest(pair.iter().map(|source| source.peak.max(1.0)));
+    let of_kind = |kind: usize| {
+        let most = largest(pair.iter().map(|source| source.largest()[kind]));
+        if most > 0.0 { LARGEST * f64::from(1 << shifts[kind]) / most } else { f64::INFINITY }
+    };
+    (ROOM / room).min(of_kind(0)).min(of_kind(1))
+}
+
+/// How much the weights of a pair change, as a sum of squares, beside what leaks lose by rounding.
+fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
+    let scale = scale(pair, shifts);
+    let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
+    let squared = |weight: f64, scale: f64| ((weight * scale).round() / scale - weight).powi(2);
+    let of_source = |source: &Source| {
+        let inputs: f64 = source.inputs.iter().map(|&weight| squared(weight, inputs)).sum();
+        let own: f64 = source.recurrent.iter().map(|&(_, weight)| squared(weight, recurrent)).sum();
+        let lost = 0.5 / (1.0 - source.keep).max(0.01) / scale;
+        inputs + own + lost * lost
+    };
+    pair.iter().map(of_source).sum()
+}
+
+/// Brings a network onto the chip: the shifts with which weights change least, then for each pair of neurons the scale
+/// with which its spikes are nearest to the original's, driven by what fires in double precision. Calls `progress` with
+/// the neurons that are done and those in all.
+///
+/// # Errors
+/// It does not fit.
+pub(super) fn quantise(
+    trained: &Trained,
+    inputs: &Trains,
+    fired: &[Trains],
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Quantised> {
+    let has_bias = trained.layers.iter().any(|layer| layer.bias.iter().any(|bias| *bias != 0.0));
+    let places = Places::new(trained, has_bias)?;
+    let peaks = peaks(trained, inputs, fired);
+    let pairs: Vec<Vec<Source>> = places
+        .pairs()
+        .map(|pair| {
+            let of = |(layer, neuron): (usize, usize)| {
+                source(trained, &places, has_bias, layer, neuron, peaks[layer][neuron])
+            };
+            pair.into_iter().map(of).collect()
+        })
+        .collect();
+    let all = (0..SHIFTS).flat_map(|input| (0..SHIFTS).map(move |own| [input, own]));
+    let change = |&shifts: &[u8; 2]| pairs.iter().map(|pair| change(pair, shifts)).sum::<f64>();
+    let changes: Vec<([u8; 2], f64)> = all.map(|shifts| (shifts, change(&shifts))).collect();
+    let best = changes.iter().min_by(|(_, one), (_, other)| one.total_cmp(other));
+    let shifts = best.map_or([0; 2], |(shifts, _)| *shifts);
+
+    let drives = drives(trained, inputs, fired);
+    let done = AtomicUsize::new(0);
+    let total: usize = trained.layers.iter().map(|layer| layer.neurons.len()).sum();
+    let chosen = pairs.par_iter().map(|pair| {
+        let keep = mean_keep(pair);
+        let candidates = SCALES.map(|part| part * scale(pair, shifts));
+        let distance = |scale: f64| -> f64 {
+            let of = |source: &Source| {
+                Held::new(source, keep, scale, shifts, &places).distance(
+                    &drives[source.layer],
+                    &fired[source.layer],
+                    source.neuron,
+                )
+            };
+            pair.iter().map(of).sum()
+        };
+        let tried = candidates
+            .into_iter()
+            .filter(|scale| threshold(*scale) <= f64::from(i16::MAX))
+            .map(|scale| (scale, distance(scale)));
+        let best = tried.min_by(|(_, one), (_, other)| one.total_cmp(other));
+        progress(done.fetch_add(pair.len(), Ordering::Relaxed) + pair.len(), total);
+        (keep, best.map_or(1.0, |(scale, _)| scale))
+    });
+    let chosen: Vec<(u16, f64)> = chosen.collect();
+
+    let count = places.neurons.len();
+    let mut network = Quantised {
+        pairs: Vec::new(),
+        inputs: vec![vec![0; count]; trained.inputs() + usize::from(has_bias)],
+        recurrent: vec![vec![0; count]; count],
+        outputs: Vec::new(),
+        shared: ReckOnShared { shifts: [shifts[0], shifts[1], 0], keep: 0, resets_to_zero: true },
+        bias: has_bias.then(|| trained.inputs()),
+        layers: trained.layers.iter().map(|l| (l.name.clone(), l.neurons.len())).collect(),
+        unit: None,
+        changes: trained
+            .layers
+            .iter()
+            .map(|layer| Change { name: layer.name.clone(), ..Change::default() })
+            .collect(),
+        shared_keeps: (0, 0.0),
+        places,
+    };
+    for (pair, &(keep, scale)) in pairs.iter().zip(&chosen) {
+        network.pairs.push(ReckOnPair { keep, threshold: threshold(scale) as i16 });
+        for source in pair {
+            network.put(source, scale, shifts);
+            network.tell_keep(source.keep, f64::from(keep) / KEEP, 1e-4);
+        }
+    }
+    match &trained.readout {
+        Some(readout) => network.read_out(readout, &trained.potentials(fired))?,
+        None => network.follow(trained.layers.len() - 1),
+    }
+    Ok(network)
+}
+
+/// Fires at, where the original fires above.
+fn threshold(scale: f64) -> f64 {
+    (scale + 1e-9).floor() + 1.0
+}
+
+fn mean_keep(pair: &[Source]) -> u16 {
+    let mean = pair.iter().map(|source| source.keep).sum::<f64>() / pair.len().max(1) as f64;
+    (mean.max(LEAST_KEEP) * KEEP).round() as u16
+}
+
+fn source(
+    trained: &Trained,
+    places: &Places,
+    has_bias: bool,
+    at: usize,
+    neuron: usize,
+    peak: f64,
+) -> Source {
+    let layer = &trained.layers[at];
+    let Neuron { keep, threshold } = layer.neurons[neuron];
+    let part = |weight: &f64| weight / threshold;
+    let row = layer.weights[neuron].iter().map(part);
+    let mut inputs = vec![0.0; trained.inputs()];
+    let mut recurrent: Vec<(usize, f64)> = Vec::new();
+    match at.checked_sub(1) {
+        None => inputs = row.collect(),
+        Some(before) => {
+            recurrent
+                .extend(row.enumerate().map(|(from, weight)| (places.of(before, from), weight)));
+        }
+    }
+    let own = layer.recurrent.get(neuron).into_iter().flatten().map(part);
+    recurrent.extend(own.enumerate().map(|(from, weight)| (places.of(at, from), weight)));
+    if has_bias {
+        inputs.push(layer.bias[neuron] / threshold);
+    }
+    Source { layer: at, neuron, keep, inputs, recurrent, has_bias, peak: peak / threshold }
+}
+
+/// The largest potentials in double precision, by layer and neuron.
+fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> {
+    let before = std::iter::once(inputs).chain(fired);
+    let of_layer = |(layer, before): (&Layer, &Trains)| {
+        let mut peaks = vec![0.0_f64; layer.neurons.len()];
+        layer.follow(before, |at, potential| peaks[at] = peaks[at].max(potential.abs()));
+        peaks
+    };
+    trained.layers.iter().zip(before).map(of_layer).collect()
+}
+
+/// What drives a layer in a step.
+struct Drive {
+    /// Inputs of the network, each once.
+    inputs: Vec<u16>,
+    /// Neurons of the layer before, in the same step, and its own in the step before: by layer and neuron.
+    neurons: Vec<(usize, usize)>,
+}
+
+/// By layer and step, as it is in double precision.
+fn drives(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<Drive>> {
+    let of_layer = |(at, layer): (usize, &Layer)| {
+        let of_step = |step: usize| {
+            let mut drive = Drive { inputs: vec![], neurons: vec![] };
+            match at.checked_sub(1) {
+                None => {
+                    drive.inputs.clone_from(&inputs[step]);
+                    drive.inputs.sort_unstable();
+                    drive.inputs.dedup();
+                }
+                Some(before) => drive
+                    .neurons
+                    .extend(fired[before][step].iter().map(|&neuron| (before, neuron.into()))),
+            }
+            if let (Some(last), false) = (step.checked_sub(1), layer.recurrent.is_empty()) {
+                drive.neurons.extend(fired[at][last].iter().map(|&neuron| (at, neuron.into())));
+            }
+            drive
+        };
+        (0..inputs.len()).map(of_step).collect()
+    };
+    trained.layers.iter().enumerate().map(of_layer).collect()
+}
+
+/// A neuron as the chip holds it.
+struct Held<'a> {
+    keep: i32,
+    threshold: i32,
+    inputs: Vec<i32>,
+    recurrent: Vec<i32>,
+    bias: i32,
+    places: &'a Places,
+}
+
+impl<'a> Held<'a> {
+    fn new(source: &Source, keep: u16, scale: f64, shifts: [u8; 2], places: &'a Places) -> Self {
+        let mut change = Change::default();
+        let mut held = |weight: f64, shift: u8| {
+            i32::from(change.weight(weight, scale / f64::from(1 << shift))) << shift
+        };
+        let inputs: Vec<i32> =
+            source.inputs.iter().map(|&weight| held(weight, shifts[0])).collect();
+        let mut recurrent = vec![0; places.neurons.len()];
+        for &(from, weight) in &source.recurrent {
+            recurrent[from] = held(weight, shifts[1]);
+        }
+        let bias = inputs.last().copied().filter(|_| source.has_bias).unwrap_or(0);
+        Self {
+            keep: keep.into(),
+            threshold: threshold(scale) as i32,
+            inputs,
+            recurrent,
+            bias,
+            places,
+        }
+    }
+
+    /// How far its spikes are from the original's.
+    fn distance(&self, drives: &[Drive], fired: &Trains, neuron: usize) -> f64 {
+        let (mut potential, mut distance) = (0_i32, Distance::default());
+        for (drive, meant) in drives.iter().zip(fired) {
+            let first = drive.inputs.iter().map(|&input| self.inputs[usize::from(input)]);
+            let own = drive.neurons.iter().map(|&(l, n)| self.recurrent[self.places.of(l, n)]);
+            let added: i32 = first.chain(own).sum();
+            let kept = (potential * self.keep) >> 15;
+            potential = (kept + added + self.bias).clamp(i16::MIN.into(), i16::MAX.into());
+            let is_over = potential >= self.threshold;
+            if is_over {
+                potential = 0;
+            }
+            let meant = meant.iter().filter(|fired| usize::from(**fired) == neuron).count();
+            distance.step(is_over.into(), meant);
+        }
+        distance.value()
+    }
+}
+
+impl Quantised {
+    /// Ticks from a step's own to the one whose answer shows what its inputs did.
+    pub(super) fn late(&self) -> usize {
+        self.layers.len() + 1
+    }
+
+    fn put(&mut self, source: &Source, scale: f64, shifts: [u8; 2]) {
+        let at = self.places.of(source.layer, source.neuron);
+        let change = &mut self.changes[source.layer];
+        let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
+        for (row, &weight) in self.inputs.iter_mut().zip(&source.inputs) {
+            if weight != 0.0 {
+                row[at] = change.weight(weight, inputs);
+            }
+        }
+        for &(from, weight) in &source.recurrent {
+            if weight != 0.0 {
+                self.recurrent[from][at] = change.weight(weight, recurrent);
+            }
+        }
+    }
+
+    fn tell_keep(&mut self, trained: f64, held: f64, tolerance: f64) {
+        let (count, most) = &mut self.shared_keeps;
+        let difference = (trained - held).abs();
+        *count += usize::from(difference > tolerance);
+        *most = most.max(difference);
+    }
+
+    /// Outputs whose potentials are read.
+    fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>]) -> Result<()> {
+        let Readout { name, weights, keep } = readout;
+        let mean = keep.iter().sum::<f64>() / keep.len() as f64;
+        let held = (mean * OUTPUT_KEEP).round();
+        ensure!(
+            held >= 1.0,
+            "{name}: the chip's outputs are read after they have leaked, and these keep {mean:.4} of their potential a \
+             step"
+        );
+        for &keep in keep {
+            self.tell_keep(keep, held / OUTPUT_KEEP, 0.5 / OUTPUT_KEEP);
+        }
+        let most = largest(weights.iter().flatten().copied()).max(f64::MIN_POSITIVE);
+        let room = ROOM / largest(potentials.iter().flatten().copied()).max(most);
+        let fits = |shift: &u8| LARGEST * f64::from(1 << shift) / most <= room;
+        let shift = (0..SHIFTS).rev().find(fits).unwrap_or(0);
+        let scale = (LARGEST * f64::from(1 << shift) / most).min(room);
+        let mut change = Change { name: name.clone(), ..Change::default() };
+        let last = self.layers.len() - 1;
+        self.outputs = vec![vec![0; weights.len()]; self.places.neurons.len()];
+        for (output, row) in weights.iter().enumerate() {
+            for (neuron, &weight) in row.iter().enumerate() {
+                self.outputs[self.places.of(last, neuron)][output] =
+                    change.weight(weight, scale / f64::from(1 << shift));
+            }
+        }
+        self.changes.push(change);
+        self.shared.shifts[2] = shift;
+        self.shared.keep = held as u8;
+        // An answer has leaked once more.
+        self.unit = Some(OUTPUT_KEEP / held / scale);
+        Ok(())
+    }
+
+    /// An output for each neuron of the last layer.
+    fn follow(&mut self, last: usize) {
+        let (weight, shift, keep) = FOLLOWS;
+        let outputs = self.layers[last].1;
+        self.outputs = vec![vec![0; outputs]; self.places.neurons.len()];
+        for output in 0..outputs {
+            self.outputs[self.places.of(last, output)][output] = weight;
+        }
+        self.shared.shifts[2] = shift;
+        self.shared.keep = keep;
+    }
+}
+
+fn at(rows: &[Vec<i8>], row: u16, column: u16) -> i8 {
+    let row = rows.get(usize::from(row));
+    row.and_then(|row| row.get(usize::from(column))).copied().unwrap_or(0)
+}
+
+impl DescribeReckOn for Quantised {
+    fn neurons(&self) -> u16 {
+        self.places.neurons.len() as u16
+    }
+
+    fn inputs(&self) -> u16 {
+        self.inputs.len() as u16
+    }
+
+    fn outputs(&self) -> u16 {
+        self.outputs.first().map_or(0, Vec::len) as u16
+    }
+
+    fn pair(&self, pair: u16) -> ReckOnPair {
+        self.pairs.get(usize::from(pair)).copied().unwrap_or(ReckOnPair::REST)
+    }
+
+    fn input_weight(&self, input: u16, neuron: u16) -> i8 {
+        at(&self.inputs, input, neuron)
+    }
+
+    fn recurrent_weight(&self, from: u16, to: u16) -> i8 {
+        at(&self.recurrent, from, to)
+    }
+
+    fn output_weight(&self, neuron: u16, output: u16) -> i8 {
+        at(&self.outputs, neuron, output)
+    }
+
+    fn shared(&self) -> ReckOnShared {
+        self.shared
+    }
+}

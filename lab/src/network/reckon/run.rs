@@ -1,0 +1,95 @@
+//! The network on the chip's model, clock by clock, through the crate's driver.
+
+use super::super::Trains;
+use super::super::chip::{Ran, refused};
+use super::Quantised;
+use super::quantise::FIRED;
+use anyhow::{Result, bail};
+use silicon::reckon::{Board, Port, Spi};
+use spikewire::chip::{ReckOn, ReckOnAnswer, ReckOnBytes, ReckOnSettings, ReckOnStep};
+
+type Chip = ReckOn<Spi, Port>;
+
+/// More bytes than any network takes.
+const LARGEST: usize = 256 * 1024;
+
+/// The chip's clocks to one of its SPI.
+const RATIO: u32 = 10;
+
+/// Loads the network, verifies it and runs it as one sample: each step's inputs, its bias, then a tick. Neurons of the
+/// first layer fire at the next tick, those of each further layer one later, and outputs show what the last layer fired
+/// at the tick after; all are told in the step in which they fire in double precision.
+///
+/// # Errors
+/// The chip refuses something.
+pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
+    let board = Board::new(RATIO, 1);
+    let mut chip = Chip::new(board.spi(), board.port(), Chip::MAX_CLOCKS);
+    let mut programmed = chip.reset(&mut board.clone()).map_err(|error| refused(&error))?;
+    programmed.load(network, |_| ()).map_err(|error| refused(&error))?;
+    let started = programmed.run(&ReckOnSettings::POTENTIALS).map_err(|error| refused(&error))?;
+    let mut sample = started.begin().map_err(|error| refused(&error))?;
+
+    let layers = network.layers.len();
+    let mut ran = Ran {
+        fired: vec![vec![vec![]; inputs.len()]; layers],
+        potentials: vec![],
+        clocks: vec![],
+        lost: 0,
+    };
+    // Spikes are taken from the model, but those of the last layer from what the chip answers, if it does.
+    let told = if network.unit.is_some() { layers } else { layers - 1 };
+    let late = network.late();
+    board.pins().chip.fired.clear();
+    let silent = vec![];
+    for step in 0..inputs.len() + late {
+        let before = board.pins().chip.clocks;
+        let mut sent: Vec<u16> = inputs.get(step).unwrap_or(&silent).clone();
+        sent.sort_unstable();
+        let all = sent.len();
+        sent.dedup();
+        ran.lost += (all - sent.len()) as u32;
+        for input in sent.into_iter().chain(network.bias.map(|bias| bias as u16)) {
+            sample.send(input as u8).map_err(|error| refused(&error))?;
+        }
+        let answer = sample.step(ReckOnStep::default()).map_err(|error| refused(&error))?;
+        let Some(ReckOnAnswer::Potentials(answer)) = answer else {
+            bail!("the chip's model answers {answer:?}")
+        };
+        if step < inputs.len() {
+            ran.clocks.push(board.pins().chip.clocks - before);
+        }
+        for neuron in std::mem::take(&mut board.pins().chip.fired) {
+            let Some((layer, place)) = network.places.neurons[usize::from(neuron)] else {
+                bail!("neuron {neuron} fires, which the network has not")
+            };
+            if let Some(step) = step.checked_sub(layer + 1).filter(|_| layer < told)
+                && let Some(step) = ran.fired[layer].get_mut(step)
+            {
+                step.push(place as u16);
+            }
+        }
+        let Some(step) = step.checked_sub(late) else { continue };
+        let outputs = &answer[..network.outputs[0].len()];
+        if let Some(unit) = network.unit {
+            ran.potentials.push(outputs.iter().map(|&told| f64::from(told) * unit).collect());
+        } else {
+            let fired = (0..).zip(outputs).filter(|(_, told)| *told >> FIRED & 1 == 1);
+            ran.fired[layers - 1][step] = fired.map(|(output, _)| output).collect();
+        }
+    }
+    // In order of their number, as in double precision.
+    ran.fired.iter_mut().flatten().for_each(|step| step.sort_unstable());
+    Ok(ran)
+}
+
+/// The network as bytes.
+///
+/// # Errors
+/// It is no network of the chip.
+pub(super) fn bytes(network: &Quantised) -> Result<Vec<u8>> {
+    let mut bytes = vec![0; LARGEST];
+    let length = ReckOnBytes::write(network, &mut bytes)?;
+    bytes.truncate(length);
+    Ok(bytes)
+}

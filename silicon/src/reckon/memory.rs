@@ -1,0 +1,47 @@
+//! A memory of weights, which takes room for what was written to it alone: a microcontroller has not enough for all.
+
+use alloc::vec::Vec;
+use core::iter::repeat_n;
+use core::ops::Index;
+
+/// Words of 128 bits, all 0 until they are written.
+#[derive(Clone, Debug)]
+pub struct Memory {
+    /// Up to the last that is not 0.
+    words: Vec<u128>,
+    length: usize,
+}
+
+impl Memory {
+    pub(super) const fn new(length: usize) -> Self {
+        Self { words: Vec::new(), length }
+    }
+
+    /// Writes a word.
+    ///
+    /// # Panics
+    /// There is no such word.
+    pub fn set(&mut self, at: usize, word: u128) {
+        assert!(at < self.length, "a memory of {} words has no word {at}", self.length);
+        if at >= self.words.len() {
+            if word == 0 {
+                return;
+            }
+            self.words.resize(at + 1, 0);
+        }
+        self.words[at] = word;
+    }
+
+    /// All words.
+    pub fn iter(&self) -> impl Iterator<Item = u128> {
+        self.words.iter().copied().chain(repeat_n(0, self.length - self.words.len()))
+    }
+}
+
+impl Index<usize> for Memory {
+    type Output = u128;
+
+    fn index(&self, at: usize) -> &u128 {
+        self.words.get(at).unwrap_or(&0)
+    }
+}
