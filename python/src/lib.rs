@@ -8,6 +8,7 @@ mod coder;
 mod error;
 mod fingerprint;
 mod library;
+mod link;
 mod stream;
 mod values;
 mod work;
@@ -27,6 +28,8 @@ mod _native {
     use super::library::{
         advise, plot, read, read_events, score, to_c, to_rust, to_toml, tune, write_events,
     };
+    #[pymodule_export]
+    use super::link::{Hearer, Sender};
     #[pymodule_export]
     use super::stream::{Decoder, Encoder};
     use pyo3::prelude::*;

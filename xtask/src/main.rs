@@ -13,6 +13,7 @@ mod drawing;
 mod emulator;
 mod fifo;
 mod firmware;
+mod flies;
 mod flown;
 mod fuzz;
 mod host;
@@ -71,6 +72,7 @@ cargo xtask <command>
   new-firmware DIR --board NAME
                         writes a firmware project for a board, which builds as it comes; without arguments, the boards
   page [--serve]        a page to look at signals and their spikes, as one HTML file; serves it on this machine alone
+  loop [CODE]           flies a simulated drone on spikes and draws it; installs RotorPy from PyPI, 0.5 GB
   demo                  real flight data through encoder, emulated flight controller and decoder
   bench-target          what every codec costs on every emulated board, in instructions and bytes
   verify [STEP]...      every check, or the named ones; `cargo verify --help` lists them
@@ -104,6 +106,7 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "new-firmware" => new_firmware::new_firmware(args),
         "page" => page::page(args),
         "demo" => demo::demo(args),
+        "loop" => flies::fly(args),
         "verify" => verify::verify(args),
         "" | "help" | "-h" | "--help" => {
             println!("{USAGE}");

@@ -54,7 +54,7 @@ pub fn speed() -> Result<()> {
 }
 
 /// An environment of this name, below the target directory.
-fn environment(name: &str) -> Result<PathBuf> {
+pub fn environment(name: &str) -> Result<PathBuf> {
     let place = paths::target().join(name);
     let python = place.join("bin/python");
     if !python.is_file() {
@@ -76,12 +76,13 @@ fn pip(python: &PathBuf) -> Command {
     pip
 }
 
-fn install(python: &PathBuf, what: &[&str]) -> Result<()> {
+/// Installs packages from PyPI.
+pub fn install(python: &PathBuf, what: &[&str]) -> Result<()> {
     run(pip(python).args(what))
 }
 
 /// Compiles the package in a profile of cargo, linted as the other crates are, and installs it.
-fn package(python: &PathBuf, profile: &str) -> Result<()> {
+pub fn package(python: &PathBuf, profile: &str) -> Result<()> {
     let mut pip = pip(python);
     pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall", "./python"]);
     pip.env("MATURIN_PEP517_ARGS", format!("--profile {profile}")).env("CARGO_INCREMENTAL", "0");

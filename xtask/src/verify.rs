@@ -101,6 +101,7 @@ const LONG: &[Step] = &[
         "the other boards' firmware: the Pico's at 8 kHz flown, the rest linked",
         real_boards::more,
     ),
+    step("flies", "a simulated drone on spikes: the picture and a row again", crate::flies::verify),
     step("reckon", "the model of ReckOn against the chip's own code", crate::rtl::reckon),
     step("c-cost", "what the calls of C take beside the crate's", crate::c_library::cost),
     step("panic-free", "every codec without a panic handler, on two cores", checks::no_panic_all),

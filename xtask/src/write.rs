@@ -1,7 +1,7 @@
 //! `cargo xtask write`: all that is generated, written again.
 
 use crate::{
-    bench, c_library, demo, firmware, jumps, page, python, ros, schemes, usage::usage, video,
+    bench, c_library, demo, firmware, flies, jumps, page, python, ros, schemes, usage::usage, video,
 };
 use anyhow::{Context, Result};
 use std::collections::HashSet;
@@ -19,12 +19,13 @@ const fn part(name: &'static str, files: &'static str, write: fn() -> Result<()>
 }
 
 /// From the catalogue first, then what measures or draws.
-const PARTS: [Part; 11] = [
+const PARTS: [Part; 12] = [
     part("c", "c/include, c/src/codecs.rs, c/src/sizes.rs, c/tests/flown.h", c_library::write),
     part("python", "python/spikewire/_schemes.pyi", python::write_stub),
     part("schemes", "docs/schemes.md: the table", schemes::write),
     part("jumps", "docs/jumps.svg", jumps::write),
     part("flight", "docs/flight.svg", demo::write),
+    part("loop", "docs/loop.md: the table; docs/loop.svg; some 15 minutes", flies::write),
     part("frames", "docs/frames.png", video::write),
     part("page", "docs/page.png", page::write),
     part("ros", "docs/ros.svg", ros::write),

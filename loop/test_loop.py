@@ -1,0 +1,55 @@
+"""What must hold before any figure of the table means anything. Run by `cargo verify flies`."""
+
+import numpy as np
+
+from codes import Coded, schemes
+from flight import Registers, fly
+from manoeuvres import ALL
+from world import check
+
+HOVER, STEPS = ALL[0], ALL[2]
+
+
+def test_the_world_is_rotorpys():
+    assert check() < 1e-12
+
+
+def test_without_a_code_the_drone_is_steady():
+    for manoeuvre in ALL:
+        flight = fly(manoeuvre, Registers(), seed=7)
+        assert not flight.lost, manoeuvre.name
+    assert fly(HOVER, Registers(), seed=7).errors.max() < 2
+
+
+def test_a_seed_repeats_a_flight_and_another_does_not():
+    def errors(seed, loss):
+        return fly(HOVER, Coded(schemes("sod")), seed, loss).errors
+
+    assert np.array_equal(errors(3, 0.1), errors(3, 0.1))
+    assert not np.array_equal(errors(3, 0.1), errors(4, 0.1))
+
+
+def test_frames_carry_what_encoders_and_decoders_alone_have():
+    """Without losses the link's values are those of the stream's decoder, bit for bit, once both have a full past."""
+    for name in ("sod", "asf", "weighted-phase", "sigma-delta"):
+        scheme = schemes(name)
+        flight = fly(STEPS, Coded(scheme), seed=5, trace=True)
+        sent = np.array([shown[2] for shown in flight.trace]).T
+        heard = np.array([shown[3] for shown in flight.trace]).T
+        for channel in range(6):
+            codes = scheme[channel].encoder().encode(sent[channel])
+            decoder = scheme[channel].decoder(first=sent[channel][0])
+            assert np.array_equal(decoder.decode(codes)[50:], heard[channel][50:]), (name, channel)
+
+
+def test_a_lost_frame_is_noticed():
+    path = Coded(schemes("sf"))
+    fly(STEPS, path, seed=5, loss=0.1)
+    assert path.receiver.lost > 0 and 0.3 < path.exact < 1
+
+
+if __name__ == "__main__":
+    for name, test in list(globals().items()):
+        if name.startswith("test_"):
+            test()
+            print(f"{name}: ok", flush=True)
