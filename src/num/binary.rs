@@ -31,25 +31,39 @@ fn add_halves(one: f32, other: f32) -> f32 {
     one * 0.5 + other * 0.5
 }
 
+/// The first `count` binary digits of `rest / range`, exactly.
+#[cold]
+#[inline(never)]
+fn digit_by_digit(mut rest: f32, range: f32, count: u32) -> u32 {
+    let mut digits = 0;
+    for _ in 0..count {
+        rest += rest;
+        digits <<= 1;
+        if rest >= range {
+            rest -= range;
+            digits |= 1;
+        }
+    }
+    digits
+}
+
 impl Binary for f32 {
     /// Rounds `self - min` and `max - min` once each; the rest is exact.
+    ///
+    /// A rounded quotient has the digits of the exact one, unless it is their very number: the exact one may have been
+    /// less.
     #[inline]
     fn digits(self, min: f32, max: f32, count: u32) -> u32 {
         if self >= max {
             return ones(count);
         }
-        let range = max - min;
-        let mut rest = if self > min { self - min } else { 0.0 };
-        let mut digits = 0;
-        for _ in 0..count {
-            rest += rest;
-            digits <<= 1;
-            if rest >= range {
-                rest -= range;
-                digits |= 1;
-            }
+        if self <= min {
+            return 0;
         }
-        digits
+        let (rest, range) = (self - min, max - min);
+        let place = rest / range * (1_u32 << (count & 31)) as f32;
+        let digits = place as u32;
+        if digits as f32 == place { digit_by_digit(rest, range, count) } else { digits }
     }
 
     /// `min + (max - min) (2 digits + 1) / 2^(count + 1)`: the quotient is exact, the rest rounded once each.

@@ -42,6 +42,15 @@ impl<'a> Cursor<'a> {
         Some(())
     }
 
+    /// Appends a byte so many times, or as often as it fits, and returns how often.
+    pub(crate) fn repeat(&mut self, byte: u8, times: usize) -> usize {
+        let room = self.limit.saturating_sub(self.written);
+        let (start, times) = (self.written, times.min(room));
+        self.written = start.wrapping_add(times);
+        self.bytes.get_mut(start..self.written).unwrap_or_default().fill(byte);
+        times
+    }
+
     /// The bytes written.
     #[cfg(feature = "link")]
     pub(crate) fn as_slice(&self) -> &[u8] {

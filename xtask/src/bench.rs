@@ -2,37 +2,43 @@
 
 mod baseline;
 mod code;
+pub mod cycles;
 mod events;
 mod figures;
+mod listing;
+mod loops;
 mod measured;
 mod table;
 
 use crate::{
     boards::{BOARDS, Board},
-    image, needs, qemu,
+    image, needs,
     usage::usage,
 };
 use anyhow::{Context, Result, bail};
 use code::Code;
 use events::Event;
-use figures::{CORES, Row, mean};
+use figures::{CORES, Row, cycles_max, cycles_mean, mean};
 use measured::Measured;
 use serde::{Deserialize, Serialize};
 use std::{path::Path, thread};
 
 const USAGE: &str = "\
 cargo bench-target [events] [CORE]... [--json | --markdown | --baseline]
+cargo bench-target loops [CORE]...
 
   events        not the codecs: only what an event costs in queue, links, formats and chips' words
+  loops         checks the cycles of small loops against those that were worked out by hand
   CORE          M0, M3, M4F, M7 or M33; all, if none is named
   --json        every figure, as an array of objects; those of an event have the kind `event`
   --markdown    the tables of docs/costs.md
-  --baseline    makes these counts the ones that `cargo verify` compares with";
+  --baseline    makes these counts the ones that `cargo verify` compares with, and puts the tables into the docs";
 
 /// The programs that count codecs, two for each sample type, and the one that counts events.
 const CODECS: [&str; 8] =
     ["f32_1", "f32_2", "q16_16_1", "q16_16_2", "q8_8_1", "q8_8_2", "i16_1", "i16_2"];
 const EVENTS: &str = "events";
+const LOOPS: &str = "loops";
 
 /// A line that the firmware prints.
 #[derive(Deserialize)]
@@ -44,7 +50,9 @@ struct Printed {
     form: String,
     samples: u32,
     total: u32,
+    total_cycles: [u32; 2],
     max: u32,
+    max_cycles: [u32; 2],
     plain_samples: u32,
     plain: u32,
     code: u32,
@@ -57,6 +65,10 @@ pub fn bench(args: &[String]) -> Result<()> {
     let options: Vec<&str> = args.iter().map(String::as_str).collect();
     let named = options.iter().take_while(|arg| !arg.starts_with('-')).count();
     let (named, output) = options.split_at(named);
+    if let [LOOPS, cores @ ..] = named {
+        needs::ensure_met()?;
+        return boards(cores)?.into_iter().try_for_each(loops::verify);
+    }
     let (programs, cores): (&[&str], _) = match named {
         [EVENTS, cores @ ..] => (&[EVENTS], cores),
         cores => (&[], cores),
@@ -69,7 +81,11 @@ pub fn bench(args: &[String]) -> Result<()> {
         }
         ["--json"] => println!("{}", json(&measure(programs, cores)?)?),
         ["--markdown"] => print!("{}", table::markdown(&measure(programs, &CORES)?)?),
-        ["--baseline"] => baseline::write(&measure(&[], &baseline::CORES)?)?,
+        ["--baseline"] => {
+            let measured = measure(&[], &baseline::CORES)?;
+            baseline::write(&measured)?;
+            table::write(&measured)?;
+        }
         _ => return Err(usage(USAGE.into())),
     }
     Ok(())
@@ -81,8 +97,9 @@ pub fn write() -> Result<()> {
     table::write(&measure(&[], &CORES)?)
 }
 
-/// Fails if anything takes more instructions on a core than it did, or six channels more than is promised of theirs.
+/// Fails if small loops take other cycles than are known, if anything takes more instructions on a core than it did, or six channels more than is promised of theirs.
 pub fn verify(core: &str) -> Result<()> {
+    loops::verify(Board::with(core)?)?;
     let measured = measure(&[], &[core])?;
     if core == events::PROMISED.0 {
         events::ensure_six_channels_fit(&measured.events)?;
@@ -115,7 +132,7 @@ fn measure(programs: &[&str], cores: &[&str]) -> Result<Measured> {
             for &program in &programs {
                 let image = images.join(program);
                 runs.push(scope.spawn(move || {
-                    let printed = qemu::run_counting(board, &image)?;
+                    let printed = cycles::run_counting(board, &image)?;
                     read(board, program, &image, &printed)
                         .with_context(|| format!("on {}", board.core))
                 }));
@@ -157,6 +174,8 @@ fn read(board: &Board, program: &str, image: &Path, printed: &str) -> Result<Mea
             core: board.core,
             instructions_mean: mean(printed.total, printed.samples),
             instructions_max: printed.max,
+            cycles_mean: cycles_mean(printed.total_cycles, printed.samples),
+            cycles_max: cycles_max(printed.max_cycles),
             plain_mean: (printed.plain > 0).then(|| mean(printed.plain, printed.plain_samples)),
             code_bytes: code.bytes(printed.code),
             state_bytes: printed.state,

@@ -37,7 +37,19 @@ pub fn run_counting(board: &Board, image: &Path) -> Result<String> {
     run_for(LONG_PATIENCE, board, counting(board), image)
 }
 
-/// The same, and what went out of the board's first serial port is kept in the file.
+/// The same with a plugin, started in the directory.
+pub fn run_counting_with(
+    board: &Board,
+    image: &Path,
+    directory: &Path,
+    plugin: &str,
+) -> Result<String> {
+    let mut emulator = counting(board);
+    emulator.current_dir(directory).args(["-plugin", plugin]);
+    run_for(LONG_PATIENCE, board, emulator, image)
+}
+
+/// The same as `run_counting`, and what went out of the board's first serial port is kept in the file.
 pub fn run_capturing(board: &Board, image: &Path, serial: &Path) -> Result<String> {
     let mut emulator = counting(board);
     // Or the monitor takes the console that the serial port leaves.

@@ -2,7 +2,7 @@
 
 use core::{fmt, hint::black_box, mem::size_of};
 
-use board::stopwatch::{instructions, keep, stack_depth};
+use board::stopwatch::{Count, counted, keep, stack_depth};
 use spikewire::{Output, Scheme};
 
 use crate::signal::LENGTH;
@@ -30,20 +30,20 @@ struct Cost {
     code: usize,
     state: usize,
     samples: usize,
-    total: u32,
+    total: Count,
     /// Of the worst sample; in the slice form, of the worst chunk's mean.
-    max: u32,
+    max: Count,
     stack: u32,
 }
 
 impl Cost {
     fn new(direction: &'static str, form: &'static str, code: *const (), state: usize) -> Self {
-        let code = code.addr();
-        Self { direction, form, code, state, samples: 0, total: 0, max: 0, stack: 0 }
+        let (code, total) = (code.addr(), Count::default());
+        Self { direction, form, code, state, samples: 0, total, max: total, stack: 0 }
     }
 
     /// Counts a piece of work, less the same call of a function that does nothing.
-    fn add(&mut self, samples: usize, call: u32, count: u32) {
+    fn add(&mut self, samples: usize, call: Count, count: Count) {
         let count = count.saturating_sub(call);
         self.samples += samples;
         self.total += count;
@@ -74,8 +74,10 @@ impl Subject<'_> {
         let Self { signal, codec, sample, flash, .. } = self;
         let Cost { direction, form, code, state, samples, total, max, stack } = cost;
         write!(out, r#"{{"signal":"{signal}","codec":"{codec}","direction":"{direction}","#)?;
-        write!(out, r#""sample":"{sample}","form":"{form}","samples":{samples},"total":{total},"#)?;
-        write!(out, r#""max":{max},"plain_samples":{LENGTH},"plain":{plain},"code":{code},"#)?;
+        write!(out, r#""sample":"{sample}","form":"{form}","samples":{samples},"#)?;
+        print_count(out, "total", total)?;
+        print_count(out, "max", max)?;
+        write!(out, r#""plain_samples":{LENGTH},"plain":{plain},"code":{code},"#)?;
         writeln!(out, r#""state":{state},"flash":{flash},"stack":{stack}}}"#)
     }
 }
@@ -91,8 +93,8 @@ fn encoding<P: Scheme>(
     let mut each = Cost::new("encode", "sample", encode_sample::<P> as *const (), size);
     let mut state = start();
     for &sample in signal {
-        let call = instructions(|| take_one(scheme, &mut state, black_box(sample)));
-        let count = instructions(|| keep(&encode_sample(scheme, &mut state, black_box(sample))));
+        let call = counted(|| take_one(scheme, &mut state, black_box(sample)));
+        let count = counted(|| keep(&encode_sample(scheme, &mut state, black_box(sample))));
         each.add(1, call, count);
     }
     let mut state = start();
@@ -104,9 +106,8 @@ fn encoding<P: Scheme>(
     let mut outputs = [encode_sample(scheme, &mut start(), signal[0]); CHUNK];
     let mut state = start();
     for chunk in signal.chunks_exact(CHUNK) {
-        let call = instructions(|| take_slices(scheme, &mut state, black_box(chunk), &mut outputs));
-        let count =
-            instructions(|| encode_slice(scheme, &mut state, black_box(chunk), &mut outputs));
+        let call = counted(|| take_slices(scheme, &mut state, black_box(chunk), &mut outputs));
+        let count = counted(|| encode_slice(scheme, &mut state, black_box(chunk), &mut outputs));
         slice.add(CHUNK, call, count);
         keep(&outputs);
     }
@@ -147,12 +148,12 @@ fn decoding<P: Scheme>(
         }
         let codes = &codes[..length];
         for &code in codes {
-            let call = instructions(|| take_one(scheme, one, black_box(code)));
-            let count = instructions(|| keep(&decode_sample(scheme, one, black_box(code))));
+            let call = counted(|| take_one(scheme, one, black_box(code)));
+            let count = counted(|| keep(&decode_sample(scheme, one, black_box(code))));
             each.add(1, call, count);
         }
-        let call = instructions(|| take_slices(scheme, many, black_box(codes), &mut values));
-        let count = instructions(|| decode_slice(scheme, many, black_box(codes), &mut values));
+        let call = counted(|| take_slices(scheme, many, black_box(codes), &mut values));
+        let count = counted(|| decode_slice(scheme, many, black_box(codes), &mut values));
         slice.add(length, call, count);
 
         let depth = stack_depth(|| {
@@ -164,6 +165,12 @@ fn decoding<P: Scheme>(
         keep(&values);
     }
     [each, slice]
+}
+
+/// A member of a line of JSON, and the comma after it.
+pub fn print_count(out: &mut impl fmt::Write, name: &str, count: &Count) -> fmt::Result {
+    let Count { instructions, cycles: [least, most] } = count;
+    write!(out, r#""{name}":{instructions},"{name}_cycles":[{least},{most}],"#)
 }
 
 // What is counted is one call of a function that is not inlined, less one call of an empty one like

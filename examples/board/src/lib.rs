@@ -7,6 +7,8 @@
 
 #[cfg(feature = "chip-bus")]
 pub mod chip_bus;
+#[cfg(feature = "stopwatch")]
+mod count;
 #[cfg(all(target_os = "none", feature = "stopwatch"))]
 pub mod stopwatch;
 
@@ -18,6 +20,13 @@ pub use cortex_m::{console, entry, finish};
 /// The host counts no instructions.
 #[cfg(all(not(target_os = "none"), feature = "stopwatch"))]
 pub mod stopwatch {
+    pub use crate::count::Count;
+
+    pub fn counted(work: impl FnOnce()) -> Count {
+        work();
+        Count::default()
+    }
+
     pub fn instructions(work: impl FnOnce()) -> u32 {
         work();
         0

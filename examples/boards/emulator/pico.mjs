@@ -2,8 +2,8 @@
 //
 //   node pico.mjs IMAGE SENSOR SECONDS DIRECTORY [TIME:FATE]...
 //
-// Writes to DIRECTORY what left the UART (`uart`), when each byte had left (`times`, µs), the sensor's samples (`samples`)
-// and the log of the debug probe (`log`), and prints what was seen as JSON. A fate strikes at its time, in ms: see FATES.
+// Writes to DIRECTORY what left the UART (`uart`), when each byte had left (`times`, µs), the sensor's samples (`samples`),
+// the log of the debug probe (`log`) and what was executed (`executed`), and prints what was seen as JSON. A fate strikes at its time, in ms: see FATES.
 //
 // rp2040js has the RP2040's core, clocks, DMA, timers, GPIO and SPI. Here are added: the PL011's transmit FIFO, the time of a
 // byte on SPI, the ring oscillator's random bit, the end of a DMA transfer that is given up, the reset by the watchdog, and
@@ -52,6 +52,8 @@ const rtt = symbol(imagePath, "_SEGGER_RTT");
 const sensor = new SENSORS[sensorName](PINS);
 const seen = { starts: [], instructions: 0, cycles: 0, shortestPause: Infinity, shortestGuard: Infinity };
 const [uart, times, log] = [[], [], []];
+const executed = new Map();
+let slow = 0;
 const wires = { miso: "whole", dataReady: "whole", clock: "whole", uart: "whole", crystal: "whole" };
 /// Thrown out of whatever runs when the watchdog's time is over.
 const BITTEN = new Error("the watchdog");
@@ -98,6 +100,13 @@ function start(reason) {
   // The boot ROM runs the first 256 bytes, which set the flash up and go on here.
   mcu.core.VTOR = 0x10000100;
   mcu.core.reset();
+  // What a bus takes more than the core's own cycle, or the single-cycle port less.
+  const bus = mcu.core.cyclesIO.bind(mcu.core);
+  mcu.core.cyclesIO = (address, write) => {
+    const cycles = bus(address, write);
+    slow += cycles - 1;
+    return cycles;
+  };
   seen.starts.push({ at: mcu.clock.nanos / 1e6, reason });
   wireSpi();
   wireUart();
@@ -240,11 +249,26 @@ function step() {
     const alarm = clock.nextAlarm ? clock.nextAlarm.nanos : END;
     clock.tick(Math.max(Math.min(until, alarm) - now, 8));
   } else {
+    // Here and not within, so that the address is that of what is executed.
+    if (core.interruptsUpdated && core.checkForInterrupts()) core.waiting = false;
+    const at = core.PC & ~1;
+    slow = 0;
     const cycles = core.executeInstruction();
+    if (fates.length === 0) note(at, cycles); // what breaks is executed no differently
     seen.instructions += 1;
     seen.cycles += cycles;
     clock.tick((cycles * 1e9) / mcu.clkSys);
   }
+}
+
+/// Keeps how often each instruction was executed, how often it branched, and its cycles without the buses'.
+function note(at, cycles) {
+  let one = executed.get(at);
+  if (one === undefined) executed.set(at, (one = { count: 0, taken: 0, cycles: 0 }));
+  const isWide = mcu.readUint16(at) >> 11 > 0b11100;
+  one.count += 1;
+  one.taken += (mcu.core.PC & ~1) !== at + (isWide ? 4 : 2) ? 1 : 0;
+  one.cycles += cycles - slow;
 }
 
 while (mcu.clock.nanos < END) {
@@ -262,4 +286,6 @@ writeFileSync(`${directory}/uart`, Buffer.from(uart));
 writeFileSync(`${directory}/times`, times.map((at) => at.toFixed(0)).join("\n"));
 writeFileSync(`${directory}/log`, Buffer.from(log));
 writeFileSync(`${directory}/samples`, sensor.samples.join("\n"));
+const line = ([at, { count, taken, cycles }]) => [at, count, taken, cycles].join(",");
+writeFileSync(`${directory}/executed`, [...executed].map(line).join("\n"));
 console.log(JSON.stringify(seen));

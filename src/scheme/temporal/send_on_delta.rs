@@ -147,6 +147,12 @@ impl<const K: usize> Steps<K> {
         })
     }
 
+    /// The same of a count that is within already.
+    #[inline]
+    pub(crate) const fn within(count: i8) -> Self {
+        Self(count)
+    }
+
     /// The number of spikes, -`K` to `K`; negative if they go down.
     pub const fn count(self) -> i8 {
         self.0
@@ -230,13 +236,36 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
         let samples = samples.get(first..).unwrap_or_default();
         let outputs = outputs.get_mut(first..).unwrap_or_default();
 
-        let mut band = Band::around(state.base, self.threshold);
+        let (threshold, most) = (self.threshold, i32::from(self.most));
+        let mut band = Band::around(state.base, threshold);
+        let mut check = S::ZERO;
         for (output, &sample) in outputs.iter_mut().zip(samples) {
-            output.write(Steps(0));
-            if !band.holds(sample) {
-                output.write(self.follow(state, sample));
-                band = Band::around(state.base, self.threshold);
+            let mut steps = 0_i32;
+            if sample > band.upper {
+                check = check.including(sample);
+                loop {
+                    band = Band::around(band.upper, threshold);
+                    steps = steps.wrapping_add(1);
+                    if steps >= most || sample <= band.upper {
+                        break;
+                    }
+                }
+            } else if band.is_above(sample) {
+                check = check.including(sample);
+                loop {
+                    band = Band::around(band.lower, threshold);
+                    steps = steps.wrapping_sub(1);
+                    if steps <= most.wrapping_neg() || sample >= band.lower {
+                        break;
+                    }
+                }
             }
+            output.write(Steps(steps as i8));
+        }
+        if check.is_finite() {
+            state.base = band.base;
+        } else {
+            encode_each(self, state, samples, outputs, Until::End);
         }
         first + samples.len().min(outputs.len())
     }

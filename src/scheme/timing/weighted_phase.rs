@@ -17,7 +17,8 @@ use crate::{ConfigError, Recovery, Sample, SampleKind, Scheme, Start};
 ///   [`with_slots`](Self::with_slots) may use fewer.
 /// - **Latency:** 0 samples. **Memory:** 4 bytes a channel, 4 to decode in `f32`; the scheme takes 12 bytes of flash
 ///   in `f32`.
-/// - **Work:** a comparison and an addition a slot; no division, no table.
+/// - **Work:** in `f32` a division, and where the quotient falls on a cell's very edge a comparison and an addition a slot; in fixed
+///   point a comparison and an addition a slot. No table.
 /// - **Exactness:** fixed point is exact; `f32` rounds `x - min` and `R` once each.
 /// - **Decoder:** the middle of the values with these digits. `f32` rounds `min + R (2q + 1) 2^-(K+1)` after each
 ///   operation.

@@ -2,7 +2,7 @@
 
 use super::{
     events,
-    figures::{CORES, Row},
+    figures::{CORES, Row, between_whole, cell},
     measured::Measured,
 };
 use crate::markdown;
@@ -67,9 +67,11 @@ pub fn text(rows: &[Row]) -> String {
         let title = format!("{}, {} signal, {}", encode.core, encode.signal, encode.sample);
         if title != table {
             text += &format!(
-                "\n{title:18} {:>8} {:>8} {:>6} {:>8} {:>8} {:>6} {:>9} {:>6} {:>6} {:>8} {:>6} {:>5} {:>5} {:>5}\n",
+                "\n{title:18} {:>8} {:>15} {:>8} {:>15} {:>6} {:>8} {:>8} {:>6} {:>9} {:>6} {:>6} {:>8} {:>6} {:>5} {:>5} {:>5}\n",
                 "encode",
+                "cycles",
                 "1 sample",
+                "cycles",
                 "worst",
                 "decode",
                 "1 sample",
@@ -87,10 +89,12 @@ pub fn text(rows: &[Row]) -> String {
         }
         let (plain, ratio) = line.plain();
         text += &format!(
-            "{:24} {:>8.1} {:>8.1} {:>6} {:>8.1} {:>8.1} {:>6} {:>9} {:>6} {:>6} {:>8} {:>6} {:>5} {:>5} {:>5}\n",
+            "{:24} {:>8.1} {:>15} {:>8.1} {:>15} {:>6} {:>8.1} {:>8.1} {:>6} {:>9} {:>6} {:>6} {:>8} {:>6} {:>5} {:>5} {:>5}\n",
             encode.codec,
             encode.instructions_mean,
+            cell(encode.cycles_mean),
             encode_sample.instructions_mean,
+            cell(encode_sample.cycles_mean),
             encode_sample.instructions_max,
             decode.instructions_mean,
             decode_sample.instructions_mean,
@@ -127,23 +131,30 @@ fn tables(Measured { rows, events, .. }: &Measured) -> Result<Vec<((&str, &str),
 /// A few codecs on the usual core.
 fn brief(rows: &[Row]) -> String {
     let mut text = String::from(
-        "\n| Cortex-M4F, `f32` | instructions to encode a sample | worst | to decode | RAM, bytes |\n\
-         |---|---:|---:|---:|---:|\n",
+        "\n| Cortex-M4F, `f32` | cycles to encode a sample | µs at 168 MHz | worst, cycles | cycles to decode | RAM, bytes |\n\
+         |---|---:|---:|---:|---:|---:|\n",
     );
     for Line { encode, encode_sample, decode, .. } in lines(rows) {
         let of = (encode.core, encode.sample.as_str(), encode.signal.as_str());
         if of == (CORES[0], "f32", "paper") && FEW.contains(&encode.codec.as_str()) {
             text += &format!(
-                "| {} | {:.1} | {} | {:.1} | {} |\n",
+                "| {} | {} | {} | {} | {} | {} |\n",
                 name(&encode.codec),
-                encode_sample.instructions_mean,
-                encode_sample.instructions_max,
-                decode.instructions_mean,
+                cell(encode_sample.cycles_mean),
+                encode_sample.cycles_mean.map_or("–".into(), microseconds),
+                encode_sample.cycles_max.map_or("–".into(), between_whole),
+                cell(decode.cycles_mean),
                 encode.state_bytes,
             );
         }
     }
     text + "\n"
+}
+
+/// Of an STM32F405's core.
+fn microseconds(cycles: [f64; 2]) -> String {
+    let [least, most] = cycles.map(|cycles| format!("{:.2}", cycles / 168.0));
+    if least == most { least } else { format!("{least}–{most}") }
 }
 
 /// `f32` where there is a floating-point unit, fixed point where there is none.
@@ -152,8 +163,8 @@ fn codecs(rows: &[Row]) -> String {
     for (core, sample) in CORES.into_iter().zip(["f32", "q16.16"]) {
         text += &format!(
             "\nCortex-{core}, `{sample}`:\n\n\
-             | codec | encode slice | encode sample | worst sample | decode | plain | ratio | code slice | code sample | state | flash |\n\
-             |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
+             | codec | encode slice | cycles | encode sample | cycles | worst sample | cycles | decode | cycles | plain | ratio | code slice | code sample | state | flash |\n\
+             |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
         );
         for line in lines(rows) {
             let Line { encode, encode_sample, decode, .. } = &line;
@@ -162,12 +173,16 @@ fn codecs(rows: &[Row]) -> String {
             {
                 let (plain, ratio) = line.plain();
                 text += &format!(
-                    "| {} | {:.1} | {:.1} | {} | {:.1} | {plain} | {ratio} | {} | {} | {} | {} |\n",
+                    "| {} | {:.1} | {} | {:.1} | {} | {} | {} | {:.1} | {} | {plain} | {ratio} | {} | {} | {} | {} |\n",
                     name(&encode.codec),
                     encode.instructions_mean,
+                    cell(encode.cycles_mean),
                     encode_sample.instructions_mean,
+                    cell(encode_sample.cycles_mean),
                     encode_sample.instructions_max,
+                    encode_sample.cycles_max.map_or("–".into(), between_whole),
                     decode.instructions_mean,
+                    cell(decode.cycles_mean),
                     encode.code_bytes,
                     encode_sample.code_bytes,
                     encode.state_bytes,

@@ -5,7 +5,7 @@ use core::{
     hint::black_box,
 };
 
-use board::stopwatch::{instructions, keep};
+use board::stopwatch::{counted, keep};
 use spikewire::{
     Bank, Calibration, ConfigError, Start, Tick,
     rate::{Hough, Scale, Shape, Taps, ThresholdHough},
@@ -76,8 +76,8 @@ fn bank<P: Start<Sample: Measured>>(
     let mut cost = Cost::default();
     for (tick, set) in flight::samples().map(flight::typed::<P::Sample>) {
         let (tick, set) = (black_box(&tick), black_box(&set));
-        let call = *cost.call.get_or_insert_with(|| instructions(|| take(&mut bank, tick, set)));
-        let count = instructions(|| encode(&mut bank, tick, set)).saturating_sub(call);
+        let call = *cost.call.get_or_insert_with(|| counted(|| take(&mut bank, tick, set)));
+        let count = counted(|| encode(&mut bank, tick, set)).saturating_sub(call);
         cost.add(1, 0, count);
     }
     cost.print(out, (name, "encode"), Some(sample), "sample set")

@@ -2,6 +2,7 @@
 
 use core::fmt::{self, Write};
 
+use board::stopwatch::Count;
 use spikewire::{
     Event, Polarity, Tick,
     format::{Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, FormatError, eieio},
@@ -45,7 +46,7 @@ fn format(
     let mut bytes = [0; 512];
     let mut agrees = true;
     flight::events(|event| {
-        let (mut writing, mut reading, mut length) = (0, 0, 0);
+        let (mut writing, mut reading, mut length) = (Count::default(), Count::default(), 0);
         let mut decoded = None;
         // Time that passes may take more than there is room for.
         while decoded.is_none() {

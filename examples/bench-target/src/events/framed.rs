@@ -6,7 +6,7 @@ use core::{
     slice::Iter,
 };
 
-use board::stopwatch::{instructions, keep};
+use board::stopwatch::{counted, keep};
 use fixed::{FixedI32, types::extra::U16};
 use spikewire::{
     Decoder, Event, FromEvents, Sample, Scheme,
@@ -95,9 +95,8 @@ impl<'a> Link<'a> {
         let mut source = FromEvents(events.iter().copied());
         let mut buffer = [0; MAX_FRAME];
         let mut length = 0;
-        let call = instructions(|| take(&mut self.transmitter, &source, &buffer));
-        let writing =
-            instructions(|| length = write(&mut self.transmitter, &mut source, &mut buffer));
+        let call = counted(|| take(&mut self.transmitter, &source, &buffer));
+        let writing = counted(|| length = write(&mut self.transmitter, &mut source, &mut buffer));
         let taken = events.len() - source.0.len();
         for &event in &events[..taken] {
             self.last.replace(event).into_iter().for_each(|event| self.sent.add(event));

@@ -5,7 +5,7 @@ use core::{
     hint::black_box,
 };
 
-use board::stopwatch::{instructions, keep};
+use board::stopwatch::{counted, keep};
 use spikewire::{
     Tick,
     frame::{FrameEncoder, Intensity, LogIntensity, PixelCode, Refractory},
@@ -66,10 +66,9 @@ fn code<C: PixelCode>(out: &mut impl Write, subject: &str, code: &C) -> fmt::Res
             for y in 0..H {
                 let row = scene.row(frame, y);
                 let row = black_box(&row);
-                let call = *cost
-                    .call
-                    .get_or_insert_with(|| instructions(|| take(&mut camera, &tick, row)));
-                let count = instructions(|| encode(&mut camera, &tick, y, row, &mut events));
+                let call =
+                    *cost.call.get_or_insert_with(|| counted(|| take(&mut camera, &tick, row)));
+                let count = counted(|| encode(&mut camera, &tick, y, row, &mut events));
                 // The first frame sets the bases.
                 if frame > 0 {
                     cost.add(W, 0, count.saturating_sub(call));

@@ -2,20 +2,22 @@
 
 use core::{fmt, hint::black_box};
 
-use board::stopwatch::{instructions, keep};
+use board::stopwatch::{Count, counted, keep};
 use spikewire::Event;
+
+use crate::measure::print_count;
 
 /// What one direction of a subject cost.
 #[derive(Default)]
 pub struct Cost {
     /// Events, or sets of samples.
     count: u32,
-    total: u32,
+    total: Count,
     /// Of the worst one; where many go together, of the worst batch's mean.
-    max: u32,
+    max: Count,
     bytes: u32,
     /// Of a call of an empty function, once it is known.
-    pub call: Option<u32>,
+    pub call: Option<Count>,
 }
 
 impl Cost {
@@ -26,30 +28,30 @@ impl Cost {
         event: Event,
         bytes: &mut [u8],
         given: &mut R,
-    ) -> u32
+    ) -> Count
     where
         F: FnMut(Event, &mut [u8]) -> R,
     {
         let event = black_box(&event);
-        let empty = *self.call.get_or_insert_with(|| instructions(|| take(work, event, bytes)));
-        instructions(|| *given = encode(work, event, bytes)).saturating_sub(empty)
+        let empty = *self.call.get_or_insert_with(|| counted(|| take(work, event, bytes)));
+        counted(|| *given = encode(work, event, bytes)).saturating_sub(empty)
     }
 
     /// Counts a call that reads bytes, and keeps what it gave.
-    pub fn decoding<F, R>(&mut self, work: &mut F, bytes: &[u8], given: &mut R) -> u32
+    pub fn decoding<F, R>(&mut self, work: &mut F, bytes: &[u8], given: &mut R) -> Count
     where
         F: FnMut(&[u8]) -> R,
     {
         let bytes = black_box(bytes);
-        let empty = *self.call.get_or_insert_with(|| instructions(|| take(work, bytes, &())));
-        instructions(|| *given = decode(work, bytes)).saturating_sub(empty)
+        let empty = *self.call.get_or_insert_with(|| counted(|| take(work, bytes, &())));
+        counted(|| *given = decode(work, bytes)).saturating_sub(empty)
     }
 
-    pub fn add(&mut self, count: usize, bytes: usize, instructions: u32) {
+    pub fn add(&mut self, count: usize, bytes: usize, cost: Count) {
         let count = count as u32;
         self.count += count;
-        self.total += instructions;
-        self.max = self.max.max(instructions.div_ceil(count.max(1)));
+        self.total += cost;
+        self.max = self.max.max(cost.div_ceil(count.max(1)));
         self.bytes += bytes as u32;
     }
 
@@ -66,7 +68,9 @@ impl Cost {
         if let Some(sample) = sample {
             write!(out, r#""sample":"{sample}","#)?;
         }
-        writeln!(out, r#""count":{count},"total":{total},"max":{max},"bytes":{bytes}}}"#)
+        print_count(out, "total", total)?;
+        print_count(out, "max", max)?;
+        writeln!(out, r#""count":{count},"bytes":{bytes}}}"#)
     }
 
     /// A line of JSON, of an event.

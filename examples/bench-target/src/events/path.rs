@@ -5,7 +5,7 @@ use core::{
     hint::black_box,
 };
 
-use board::stopwatch::instructions;
+use board::stopwatch::{Count, counted};
 use spikewire::{
     Bank, Consumer, Event, EventQueue, Overflow, Source as _, SpscQueue, Tick,
     link::{Coding, MAX_FRAME, Reader, Receiver, Session, Transmitter},
@@ -127,13 +127,13 @@ impl<'a, S: Measured> Way<'a, S> {
         samples: impl Iterator<Item = (Tick, [f32; CHANNELS])>,
     ) -> fmt::Result {
         let mut events = EVENTS.consumer().ok_or(fmt::Error)?;
-        let (mut sets, mut interrupts) = (0, 0);
+        let (mut sets, mut interrupts) = (0, Count::default());
         let (mut frames_at, mut keyframes_at) = (Tick::from(FRAMES), Tick::from(0));
         let mut agrees = true;
         for (tick, set) in samples.map(flight::typed) {
             let mut count = self.interrupt(&tick, &set);
             if !tick.is_before(keyframes_at) {
-                count += instructions(|| keyframes(&self.bank, black_box(&tick)));
+                count += counted(|| keyframes(&self.bank, black_box(&tick)));
                 keyframes_at = tick + KEYFRAMES;
             }
             self.interrupt.add(1, 0, count);
@@ -143,12 +143,13 @@ impl<'a, S: Measured> Way<'a, S> {
             if !tick.is_before(frames_at) {
                 let mut buffer = [0; 3 * MAX_FRAME];
                 let mut length = 0;
-                let main = instructions(|| {
+                let main = counted(|| {
                     length = send(&mut self.transmitter, &mut events, &mut buffer);
                 });
                 self.main.add(sets, length, main);
-                self.all.add(sets, length, interrupts + main);
-                (sets, interrupts) = (0, 0);
+                interrupts += main;
+                self.all.add(sets, length, interrupts);
+                (sets, interrupts) = (0, Count::default());
                 frames_at = tick + FRAMES;
                 agrees &= self.arrives(&buffer[..length]);
             }
@@ -161,11 +162,10 @@ impl<'a, S: Measured> Way<'a, S> {
     }
 
     /// The instructions of an interrupt, without its call.
-    fn interrupt(&mut self, tick: &Tick, set: &[S; CHANNELS]) -> u32 {
+    fn interrupt(&mut self, tick: &Tick, set: &[S; CHANNELS]) -> Count {
         let (tick, set, bank) = (black_box(tick), black_box(set), &mut self.bank);
-        let call =
-            *self.interrupt.call.get_or_insert_with(|| instructions(|| take(bank, tick, set)));
-        instructions(|| interrupt(bank, tick, set)).saturating_sub(call)
+        let call = *self.interrupt.call.get_or_insert_with(|| counted(|| take(bank, tick, set)));
+        counted(|| interrupt(bank, tick, set)).saturating_sub(call)
     }
 
     /// Whether the values at the other end are those that the encoders hold.

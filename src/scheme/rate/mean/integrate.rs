@@ -2,8 +2,9 @@
 
 use crate::error::{offset, step, unwrap, within};
 use crate::num::{Tally, Total, to_f64};
+use crate::scheme::codec::{Until, encode_each};
 use crate::temporal::Steps;
-use crate::{ConfigError, Recovery, Sample, Scheme, Start};
+use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Start};
 
 /// Integrate and fire (IF), and with [`leaky`](Self::leaky) leaky integrate and fire (LIF): a potential adds up the
 /// signal, and fires when it reaches the threshold.
@@ -135,29 +136,37 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
         self.threshold.offset_from(S::ZERO)
     }
 
-    /// Takes a potential that has reached the threshold, or is not finite.
+    /// Adds a sample to a potential, and fires. Returns the potential that is left, the number of spikes, negative if
+    /// they go down, and whether the potential has to be looked at: one that is not finite stays so.
     #[inline]
-    fn fire(&self, state: &mut IntegrateAndFireState<S>, mut potential: S::Total) -> Steps<K> {
-        if !potential.is_finite() {
-            state.tally.reject();
-            return Steps::new(0);
+    fn advance(&self, mut potential: S::Total, sample: S) -> (S::Total, i32, bool) {
+        if self.is_leaky {
+            potential = leaked(potential, self.power);
         }
-        let (threshold, least) = (self.unit(), self.most.wrapping_neg());
-        let mut steps = 0;
-        if potential > S::Total::ZERO {
-            while potential >= threshold && steps < self.most {
+        potential = potential.plus(sample.offset_from(self.reference));
+        let (threshold, most) = (self.unit(), i32::from(self.most));
+        let lowest = S::Total::ZERO.minus(threshold);
+        let mut steps = 0_i32;
+        if potential >= threshold {
+            loop {
                 potential = potential.minus(threshold);
-                steps += 1;
+                steps = steps.wrapping_add(1);
+                if steps >= most || potential < threshold {
+                    break;
+                }
             }
+        } else if potential > lowest {
+            return (potential, 0, false);
         } else {
-            let lowest = S::Total::ZERO.minus(threshold);
-            while potential <= lowest && steps > least {
+            loop {
                 potential = potential.plus(threshold);
-                steps -= 1;
+                steps = steps.wrapping_sub(1);
+                if steps <= most.wrapping_neg() || potential > lowest {
+                    break;
+                }
             }
         }
-        state.potential = potential.capped();
-        Steps::new(steps)
+        (potential.capped(), steps, true)
     }
 }
 
@@ -205,17 +214,38 @@ impl<S: Sample, const K: usize> Scheme for IntegrateAndFire<S, K> {
 
     #[inline]
     fn encode(&self, state: &mut IntegrateAndFireState<S>, sample: S) -> Steps<K> {
-        let mut potential = state.potential;
-        if self.is_leaky {
-            potential = leaked(potential, self.power);
+        let (potential, steps, has_fired) = self.advance(state.potential, sample);
+        if has_fired && !potential.is_finite() {
+            state.tally.reject();
+            return Steps::within(0);
         }
-        potential = potential.plus(sample.offset_from(self.reference));
-        let threshold = self.unit();
-        if potential < threshold && potential > S::Total::ZERO.minus(threshold) {
+        state.potential = potential;
+        Steps::within(steps as i8)
+    }
+
+    /// The potential stays in registers. Whether it was finite is asked once, at the end.
+    #[inline]
+    fn encode_slice(
+        &self,
+        state: &mut IntegrateAndFireState<S>,
+        samples: &[S],
+        outputs: &mut [impl Destination<Steps<K>>],
+    ) -> usize {
+        let mut potential = state.potential;
+        let mut check = S::Total::ZERO;
+        for (output, &sample) in outputs.iter_mut().zip(samples) {
+            let (left, steps, has_fired) = self.advance(potential, sample);
+            if has_fired {
+                check = check.plus(left);
+            }
+            potential = left;
+            output.write(Steps::within(steps as i8));
+        }
+        if check.is_finite() {
             state.potential = potential;
-            Steps::new(0)
+            samples.len().min(outputs.len())
         } else {
-            self.fire(state, potential)
+            encode_each(self, state, samples, outputs, Until::End)
         }
     }
 
