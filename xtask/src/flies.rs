@@ -1,11 +1,12 @@
 //! `cargo xtask loop`: a drone in RotorPy that flies on spikes, in an environment of its own.
 
 use crate::{
-    drawing, markdown, paths, python,
+    boards::BOARDS,
+    drawing, image, markdown, paths, python,
     shell::{command, output, run},
     usage::usage,
 };
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -56,6 +57,14 @@ pub fn verify() -> Result<()> {
         "{PAGE} has another row; `cargo xtask write loop` flies all"
     );
     Ok(())
+}
+
+/// An emulated board flies a short manoeuvre, in lockstep with the world: each bit of it must be the laptop's.
+pub fn board() -> Result<()> {
+    let python = environment()?;
+    let board = BOARDS.iter().find(|board| board.machine == "netduinoplus2");
+    let image = image::build("in-the-loop", board.context("no board with an STM32F405")?)?;
+    run(program(&python, "board.py").arg(image))
 }
 
 fn draw(python: &Path) -> Result<PathBuf> {

@@ -102,6 +102,7 @@ const LONG: &[Step] = &[
         real_boards::more,
     ),
     step("flies", "a simulated drone on spikes: the picture and a row again", crate::flies::verify),
+    step("flown", "the same, on an emulated board: bit for bit", crate::flies::board),
     step("reckon", "the model of ReckOn against the chip's own code", crate::rtl::reckon),
     step("c-cost", "what the calls of C take beside the crate's", crate::c_library::cost),
     step("panic-free", "every codec without a panic handler, on two cores", checks::no_panic_all),
