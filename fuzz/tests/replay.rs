@@ -1,4 +1,4 @@
-//! `cargo verify fuzz`: the corpora, and mutants of theirs from a fixed seed.
+//! `cargo verify fuzz`: the corpora, and mutants of theirs from a fixed seed; `FUZZ_TIMES` times as many of these.
 
 use fuzz::TARGETS;
 use fuzz::mutate::Random;
@@ -8,6 +8,7 @@ use std::{fs, time::Instant};
 #[test]
 #[ignore = "a check of its own, `cargo verify fuzz`"]
 fn replay() {
+    let times: usize = std::env::var("FUZZ_TIMES").map_or(1, |times| times.parse().unwrap());
     let mut all = 0;
     for target in TARGETS {
         let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(target.name);
@@ -22,12 +23,12 @@ fn replay() {
         for file in &files {
             let input = fs::read(file).unwrap();
             (target.run)(&input);
-            for _ in 0..target.mutants {
+            for _ in 0..target.mutants * times {
                 let mut mutant = input.clone();
                 random.damage(&mut mutant);
                 (target.run)(&mutant);
             }
-            runs += 1 + target.mutants;
+            runs += 1 + target.mutants * times;
         }
         println!(
             "{:10} {runs:6} inputs of {} files, {:.1?}",

@@ -8,6 +8,7 @@ mod figures;
 mod listing;
 mod loops;
 mod measured;
+mod stack;
 mod table;
 
 use crate::{
@@ -15,12 +16,13 @@ use crate::{
     image, needs,
     usage::usage,
 };
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use code::Code;
 use events::Event;
 use figures::{CORES, Row, cycles_max, cycles_mean, mean};
 use measured::Measured;
 use serde::{Deserialize, Serialize};
+use stack::Stack;
 use std::{path::Path, thread};
 
 const USAGE: &str = "\
@@ -97,6 +99,32 @@ pub fn write() -> Result<()> {
     table::write(&measure(&[], &CORES)?)
 }
 
+/// Puts the tables of stacks into docs/costs.md.
+pub fn write_stack() -> Result<()> {
+    needs::ensure_met()?;
+    let measured = measure(&CODECS, &CORES)?;
+    CORES.iter().try_for_each(|core| table::write_stack(core, &measured))
+}
+
+/// No codec takes more stack, in bytes.
+const MOST_STACK: u32 = 1024;
+
+/// Fails if a codec's stack has no bound, or one above `MOST_STACK`, or was seen deeper than its bound.
+pub fn verify_stack() -> Result<()> {
+    let measured = measure(&CODECS, &CORES)?;
+    let mut deepest = 0;
+    for row in &measured.rows {
+        let (Row { core, codec, sample, direction, form, .. }, seen) = (row, row.stack_bytes);
+        let of = format!("{core} {codec} {sample} {direction} {form}");
+        let bound = row.stack_bound_bytes.with_context(|| format!("{of}: no bound"))?;
+        ensure!(seen <= bound, "{of}: {seen} bytes of stack were seen, where the bound is {bound}");
+        ensure!(bound <= MOST_STACK, "{of}: {bound} bytes of stack");
+        deepest = deepest.max(bound);
+    }
+    println!("{} stacks; the deepest may take {deepest} bytes.", measured.rows.len());
+    Ok(())
+}
+
 /// Fails if small loops take other cycles than are known, if anything takes more instructions on a core than it did, or six channels more than is promised of theirs.
 pub fn verify(core: &str) -> Result<()> {
     loops::verify(Board::with(core)?)?;
@@ -167,9 +195,11 @@ fn read(board: &Board, program: &str, image: &Path, printed: &str) -> Result<Mea
         let events = printed.lines().map(|line| Event::read(board, line));
         return Ok(Measured { events: events.collect::<Result<_>>()?, rustc, rows: Vec::new() });
     }
-    let code = Code::read(image)?;
+    let (code, stack) = (Code::read(image)?, Stack::read(image)?);
     let row = |line: &str| {
         let printed: Printed = serde_json::from_str(line).with_context(|| line.to_owned())?;
+        let seen = printed.stack.saturating_sub(stack.between(printed.code));
+        let bound = stack.depth(printed.code).ok().filter(|bound| !bound.is_blind);
         Ok(Row {
             core: board.core,
             instructions_mean: mean(printed.total, printed.samples),
@@ -180,7 +210,8 @@ fn read(board: &Board, program: &str, image: &Path, printed: &str) -> Result<Mea
             code_bytes: code.bytes(printed.code),
             state_bytes: printed.state,
             flash_bytes: printed.flash,
-            stack_bytes: printed.stack,
+            stack_bytes: seen,
+            stack_bound_bytes: bound.map(|bound| bound.bytes),
             codec: printed.codec,
             direction: printed.direction,
             sample: printed.sample,

@@ -40,6 +40,7 @@ mod python;
 mod qemu;
 mod rate_loop;
 mod real_boards;
+mod release;
 mod ros;
 mod ros_figure;
 mod rtl;
@@ -74,6 +75,7 @@ cargo xtask <command>
   page [--serve]        a page to look at signals and their spikes, as one HTML file; serves it on this machine alone
   loop [CODE]           flies a simulated drone on spikes and draws it; installs RotorPy from PyPI, 0.5 GB
   demo                  real flight data through encoder, emulated flight controller and decoder
+  release               checks and builds all that is uploaded, stops before that, and says what the owner fills in
   bench-target          what every codec costs on every emulated board, in instructions and bytes
   verify [STEP]...      every check, or the named ones; `cargo verify --help` lists them
 
@@ -107,6 +109,7 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "page" => page::page(args),
         "demo" => demo::demo(args),
         "loop" => flies::fly(args),
+        "release" => release::release(),
         "verify" => verify::verify(args),
         "" | "help" | "-h" | "--help" => {
             println!("{USAGE}");

@@ -11,7 +11,8 @@ use std::{
 };
 
 /// What a published file's path begins with.
-const PUBLISHED: [&str; 5] = ["src/", "docs/", "README.md", "CHANGELOG.md", "LICENSE-"];
+const PUBLISHED: [&str; 6] =
+    ["src/", "docs/", "README.md", "CHANGELOG.md", "SAFETY.md", "LICENSE-"];
 /// What cargo adds.
 const ADDED: [&str; 4] = ["Cargo.toml", "Cargo.toml.orig", "Cargo.lock", ".cargo_vcs_info.json"];
 
@@ -53,7 +54,7 @@ pub fn unpacked() -> Result<PathBuf> {
     Ok(packed.join(format!("spikewire-{version}")))
 }
 
-fn version() -> Result<String> {
+pub fn version() -> Result<String> {
     let manifest = fs::read_to_string(paths::root().join("Cargo.toml"))?;
     let line = manifest.lines().find_map(|line| line.strip_prefix("version = \""));
     Ok(line.context("Cargo.toml has no version")?.trim_end_matches('"').into())

@@ -75,6 +75,7 @@ const LONG: &[Step] = &[
         "the same under libFuzzer, a minute a target (FUZZ_SECONDS), going on from the last run",
         crate::fuzz::long,
     ),
+    step("deny", "licences and sources of every crate, in every workspace", crate::release::deny),
     step("lints", "clippy on all at once: every feature, firmware on host and core", long::lints),
     step("capture", "the laptop program with a debug probe's driver", long::capture),
     step("page", "the page in a browser, against the laptop program", crate::page::verify),
@@ -106,6 +107,11 @@ const LONG: &[Step] = &[
     step("reckon", "the model of ReckOn against the chip's own code", crate::rtl::reckon),
     step("c-cost", "what the calls of C take beside the crate's", crate::c_library::cost),
     step("panic-free", "every codec without a panic handler, on two cores", checks::no_panic_all),
+    step(
+        "stack",
+        "no codec's stack is deeper than the bound of its code, nor that above 1 KiB, on two cores",
+        crate::bench::verify_stack,
+    ),
     step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", checks::bench_m0),
     step("cores", "instruction counts on all five cores", long::cores),
 ];

@@ -19,7 +19,7 @@ const fn part(name: &'static str, files: &'static str, write: fn() -> Result<()>
 }
 
 /// From the catalogue first, then what measures or draws.
-const PARTS: [Part; 12] = [
+const PARTS: [Part; 13] = [
     part("c", "c/include, c/src/codecs.rs, c/src/sizes.rs, c/tests/flown.h", c_library::write),
     part("python", "python/spikewire/_schemes.pyi", python::write_stub),
     part("schemes", "docs/schemes.md: the table", schemes::write),
@@ -32,6 +32,7 @@ const PARTS: [Part; 12] = [
     part("bits", "docs/bits.md: the table", firmware::write),
     part("c-sizes", "c/README.md: the table of sizes", c_library::write_sizes),
     part("costs", "docs/costs.md, README.md: the tables of costs", bench::write),
+    part("stack", "docs/costs.md: the tables of stacks", bench::write_stack),
 ];
 
 /// Writes the named parts, or all.

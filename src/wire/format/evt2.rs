@@ -174,7 +174,8 @@ impl Evt2Decoder {
         match self.header {
             Header::LineStart if byte != b'%' => {
                 self.header = Header::Over;
-                return self.push_word(byte);
+                let word = self.whole(byte)?;
+                return self.word(word);
             }
             Header::LineStart => {
                 self.header = Header::Percent;
@@ -187,16 +188,30 @@ impl Evt2Decoder {
                     return self.word(word);
                 }
                 self.header = Header::Line { end: 1 };
-                // Fewer than four bytes make no word, and so no event.
                 let [_, rest @ ..] = word.to_le_bytes();
                 for byte in rest {
-                    self.push_word(byte);
+                    self.again(byte);
                 }
             }
             Header::Line { end } => self.header = within_line(end, byte),
             Header::Over => {}
         }
         None
+    }
+
+    /// Takes one of the three bytes after a `%` that began a line: they make no word, and so no event. No call of
+    /// [`header`](Self::header), or the stack would have no bound that a compiler sees.
+    fn again(&mut self, byte: u8) {
+        match self.header {
+            Header::Line { end } => {
+                self.header = within_line(end, byte);
+                return;
+            }
+            Header::LineStart if byte == b'%' => self.header = Header::Percent,
+            Header::LineStart => self.header = Header::Over,
+            Header::Percent | Header::Over => {}
+        }
+        self.whole(byte);
     }
 
     #[inline]

@@ -24,7 +24,10 @@ pub struct Row {
     pub code_bytes: u32,
     pub state_bytes: u32,
     pub flash_bytes: u32,
+    /// What painting it showed.
     pub stack_bytes: u32,
+    /// What the code can take at most; null where that is not known.
+    pub stack_bound_bytes: Option<u32>,
 }
 
 /// To a thousandth, or some would have 16 digits.

@@ -1,11 +1,12 @@
 //! The figures as tables to read.
 
+use super::stack::Stack;
 use super::{
     events,
     figures::{CORES, Row, between_whole, cell},
     measured::Measured,
 };
-use crate::markdown;
+use crate::{boards::Board, image, markdown};
 use anyhow::Result;
 
 /// Where the tables stand: the file, and the comments between which they are.
@@ -192,6 +193,91 @@ fn codecs(rows: &[Row]) -> String {
         }
     }
     text + "\n"
+}
+
+/// The rooms of the crate beside the codecs, and what paths they have in an image.
+const ROOMS: [(&str, &[&str]); 6] = [
+    ("bank and queues", &["spikewire::event::"]),
+    ("link", &["spikewire::wire::link::"]),
+    ("formats and batches", &["spikewire::wire::format::", "spikewire::wire::batch::"]),
+    ("sinks", &["spikewire::out::"]),
+    ("chips", &["spikewire::chip::"]),
+    ("cameras", &["spikewire::frame::"]),
+];
+
+/// What the stacks of a core are told as: the largest bound of all sample types, and what painting saw of it.
+fn stack(core: &str, measured: &Measured) -> Result<String> {
+    let mut codecs: Vec<&str> = Vec::new();
+    let rows = || measured.rows.iter().filter(|row| row.core == core);
+    for row in rows() {
+        if !codecs.contains(&row.codec.as_str()) {
+            codecs.push(&row.codec);
+        }
+    }
+    let mut text = String::from(
+        "\n| codec | encode sample | encode slice | decode sample | decode slice |\n|---|---:|---:|---:|---:|\n",
+    );
+    for codec in codecs {
+        text += &format!("| {}", name(codec));
+        for (direction, form) in
+            [("encode", "sample"), ("encode", "slice"), ("decode", "sample"), ("decode", "slice")]
+        {
+            let of = rows().filter(|row| {
+                (row.codec.as_str(), row.direction.as_str(), row.form.as_str())
+                    == (codec, direction, form)
+            });
+            let (bound, seen) = of.fold((0, 0), |(bound, seen): (u32, u32), row| {
+                (bound.max(row.stack_bound_bytes.unwrap_or(u32::MAX)), seen.max(row.stack_bytes))
+            });
+            text += &format!(" | {bound} ({seen})");
+        }
+        text += " |\n";
+    }
+    // Of the usual core alone: this is another image to build.
+    if core != CORES[0] {
+        return Ok(text + "\n");
+    }
+    text += "\n| everything else | at most | its deepest function |\n|---|---:|---|\n";
+    let image = image::build("no-panic", Board::with(core)?)?;
+    let image = Stack::read(&image)?;
+    for (room, paths) in ROOMS {
+        let Some((depth, deepest)) = image.deepest_of(paths)? else {
+            text += &format!("| {room} | – | all inlined into their callers |\n");
+            continue;
+        };
+        let waker = if depth.is_blind { " and the program's waker" } else { "" };
+        text += &format!("| {room} | {}{waker} | `{}` |\n", depth.bytes, short(deepest));
+    }
+    Ok(text + "\n")
+}
+
+/// A function's path without its modules and what it is generic in.
+fn short(path: &str) -> String {
+    let (mut depth, mut plain) = (0, String::new());
+    for letter in path.trim_start_matches('<').chars() {
+        match letter {
+            '<' => depth += 1,
+            '>' if depth > 0 => depth -= 1,
+            '>' => {}
+            _ if depth == 0 => plain.push(letter),
+            _ => {}
+        }
+    }
+    let words: Vec<&str> = plain.split("::").filter(|word| !word.is_empty()).collect();
+    let word = |word: &str| word.split(" as ").next().unwrap_or_default().to_owned();
+    match words[..] {
+        [.., kind, method] => format!("{}::{}", word(kind), word(method)),
+        _ => plain,
+    }
+}
+
+fn stack_marker(core: &str) -> String {
+    format!("bench-target stack {core}")
+}
+
+/// Puts the table of a core's stacks into the page of costs.
+pub fn write_stack(core: &str, measured: &Measured) -> Result<()> {
+    markdown::write(CODECS.0, &stack_marker(core), &stack(core, measured)?)
 }
 
 /// The codec as a reader of the tables knows it.
