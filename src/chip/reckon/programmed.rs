@@ -127,6 +127,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         let word = self.chip.read(address)?;
         self.chip.check_step()?;
         self.chip.expect(address, word)?;
+        // A bus out of step may read 0, as the weight is, and write.
+        self.chip.check_step()?;
         Ok((word >> (8 * u32::from(at & 3))) as i8)
     }
 

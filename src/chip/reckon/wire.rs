@@ -56,8 +56,9 @@ impl<D: SpiDevice> Wire<D> {
     }
 
     pub(super) fn read(&mut self, address: Address) -> Result<u32, D::Error> {
-        // The chip ignores the word that is sent: all ones, so that a fault makes no header of a write of it.
-        let mut bytes = frame(READ | address.0, u32::MAX);
+        // The chip ignores the word that is sent. Taken for a header, it is one of a read. And a header of neurons that
+        // loses its first bit writes an output's potential, the low half of the word: 0 is what it is before a sample.
+        let mut bytes = frame(READ | address.0, 0xFFFF_0000);
         self.device.transfer_in_place(&mut bytes)?;
         Ok(u64::from_be_bytes(bytes) as u32)
     }
