@@ -137,7 +137,7 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
     }
 
     /// Adds a sample to a potential, and fires. Returns the potential that is left, the number of spikes, negative if
-    /// they go down, and whether the potential has to be looked at: one that is not finite stays so.
+    /// they go down, and whether the potential has to be looked at, as it may not be finite.
     #[inline]
     fn advance(&self, mut potential: S::Total, sample: S) -> (S::Total, i32, bool) {
         if self.is_leaky {
@@ -223,7 +223,7 @@ impl<S: Sample, const K: usize> Scheme for IntegrateAndFire<S, K> {
         Steps::within(steps as i8)
     }
 
-    /// The potential stays in registers. Whether it was finite is asked once, at the end.
+    /// The potential stays in registers. One that is not finite stays so, and is looked at once, at the end.
     #[inline]
     fn encode_slice(
         &self,
@@ -232,16 +232,12 @@ impl<S: Sample, const K: usize> Scheme for IntegrateAndFire<S, K> {
         outputs: &mut [impl Destination<Steps<K>>],
     ) -> usize {
         let mut potential = state.potential;
-        let mut check = S::Total::ZERO;
         for (output, &sample) in outputs.iter_mut().zip(samples) {
-            let (left, steps, has_fired) = self.advance(potential, sample);
-            if has_fired {
-                check = check.plus(left);
-            }
+            let (left, steps, _) = self.advance(potential, sample);
             potential = left;
             output.write(Steps::within(steps as i8));
         }
-        if check.is_finite() {
+        if potential.is_finite() {
             state.potential = potential;
             samples.len().min(outputs.len())
         } else {
