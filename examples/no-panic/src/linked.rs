@@ -13,6 +13,7 @@ mod constants;
 mod exercise;
 mod frames;
 mod links;
+mod reckon;
 
 use fixed::{
     FixedI16, FixedI32,

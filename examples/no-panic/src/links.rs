@@ -28,6 +28,7 @@ use spikewire::{
 };
 
 use crate::exercise::{EVENTS, event, hide, tick};
+use crate::reckon;
 
 pub fn link() {
     time();
@@ -41,6 +42,7 @@ pub fn link() {
     family(TinyOdin::new(Bus, Bus, black_box(3)), &registers, 1);
     let synapse = OdinSynapse { weight: black_box(1), is_mapped: true };
     family(Odin::new(Bus, Bus, black_box(3)), &OdinRegisters::PLAIN, synapse);
+    reckon::reckon();
     memory();
     counts();
 }
@@ -274,7 +276,7 @@ fn counts() {
 }
 
 /// Every bus and pin there is.
-struct Bus;
+pub struct Bus;
 
 impl spi::ErrorType for Bus {
     type Error = ErrorKind;

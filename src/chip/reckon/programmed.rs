@@ -193,18 +193,17 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
     }
 
     fn learn(&mut self, learning: &super::ReckOnLearning) -> Outcome<(), D, P> {
-        let traces = (15..).zip(learning.traces.map(u32::from));
-        let thresholds = (70..).zip(learning.thresholds.map(|at| u32::from(at as u16)));
-        let slopes = (74..).zip(learning.slopes.map(|slope| u32::from(slope as u8 & 31)));
-        let rates = (79..).step_by(2).zip(learning.rates);
+        let traces = (15..18).zip(learning.traces.map(u32::from));
+        let thresholds = (70..74).zip(learning.thresholds.map(|at| u32::from(at as u16)));
+        let slopes = (74..79).zip(learning.slopes.map(|slope| u32::from(slope as u8 & 31)));
         let others = [(18, learning.signal.into()), (27, learning.is_linear.into())];
         let all = traces.chain(thresholds).chain(slopes).chain(others);
         for (register, value) in all {
             self.configure(register, value)?;
         }
-        for (register, (right, left)) in rates {
-            self.configure(register, right.into())?;
-            self.configure(register + 1, left.into())?;
+        let rates = learning.rates.into_iter().flat_map(|(right, left)| [right, left]);
+        for (register, rate) in (79..85).zip(rates) {
+            self.configure(register, rate.into())?;
         }
         Ok(())
     }
@@ -247,7 +246,8 @@ fn words(network: &impl DescribeReckOn) -> u32 {
     let rows = u32::from(network.inputs()) + 256;
     let row = u32::from(network.neurons().div_ceil(4));
     let outputs = 256 * u32::from(network.outputs().div_ceil(4));
-    4 * u32::from(PAIRS) + rows * row + outputs
+    // Below 2³¹ for any counts.
+    rows.wrapping_mul(row).wrapping_add(outputs).wrapping_add(4 * u32::from(PAIRS))
 }
 
 /// Visits every word of the chip's memories that the network needs, and its value.
@@ -270,7 +270,7 @@ fn each_word<B, X>(
     let mut row = |row: Address, length: u16, weight: &dyn Fn(u16) -> i8| {
         for word in 0..length.div_ceil(4) {
             let weights = [0, 1, 2, 3].map(|at| {
-                let at = word * 4 + at;
+                let at = word.wrapping_mul(4).wrapping_add(at);
                 if at < length { weight(at) as u8 } else { 0 }
             });
             visit(row.next(word), u32::from_le_bytes(weights))?;
