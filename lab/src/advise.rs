@@ -1,4 +1,4 @@
-//! What a recording is like, and which scheme suits it.
+//! Advice on a recording: the character of each channel, and the scheme that suits it.
 
 use crate::brief::{brief, short};
 use crate::events::{Format, Item};
@@ -56,7 +56,7 @@ impl AdviseRequest {
     }
 }
 
-/// What is said of a channel.
+/// The advice on one channel.
 #[derive(Debug, Serialize)]
 pub struct Advice {
     look: Look,
@@ -69,7 +69,7 @@ pub struct Advice {
     others: Vec<String>,
     /// Whether a search ended before its budget of settings.
     is_cut_short: bool,
-    /// What raw samples would take on a wire.
+    /// Bytes a second that raw samples would take on a wire.
     raw_bytes_per_second: Option<f64>,
     #[serde(skip)]
     sample: SampleType,
@@ -225,7 +225,7 @@ impl Advice {
         })
     }
 
-    /// What a person reads.
+    /// The advice as a page for people.
     pub fn page(&self) -> String {
         let Look { name, samples, seconds, rate, jitter_ms, gaps, rejected, .. } = &self.look;
         let unit = known_unit(name).map_or(String::new(), |unit| format!(" {unit}"));
@@ -312,7 +312,7 @@ impl Advice {
     }
 }
 
-/// What the crate's link takes for all events, in full frames, with a keyframe a second where a decoder needs them.
+/// Bytes that all events take on the crate's link, in full frames, with a keyframe a second where a decoder needs them.
 ///
 /// # Errors
 /// The link cannot hold the rate or the events.

@@ -20,7 +20,7 @@ pub struct Coding {
 }
 
 impl Coding {
-    /// What brings these settings about again.
+    /// The coding that gives these settings again.
     pub fn of_settings(scheme: Scheme, settings: &Settings) -> Self {
         Self { scheme, sample: settings.sample, asked: settings.to_asked(scheme.info()) }
     }
@@ -28,8 +28,8 @@ impl Coding {
     /// Reads a file.
     ///
     /// # Errors
-    /// There is none, it is no TOML, names no scheme, or holds what the scheme does not take. The error names file and
-    /// line.
+    /// Returns an error, with file and line, if the file is missing, is no TOML, names no scheme, or holds what the
+    /// scheme does not take.
     pub fn read(path: &str) -> Result<Self> {
         let text = fs::read_to_string(path).with_context(|| format!("{path}: cannot be opened"))?;
         Self::parse(path, &text)
@@ -38,7 +38,7 @@ impl Coding {
     /// Reads the text of a file, whose name is for errors.
     ///
     /// # Errors
-    /// As for [`read`](Self::read).
+    /// See [`read`](Self::read).
     pub fn parse(file: &str, text: &str) -> Result<Self> {
         let table = DeTable::parse(text).map_err(|error| anyhow!("{file}: no TOML: {error}"))?;
         let mut table = table.into_inner();

@@ -39,7 +39,7 @@ fn settings(coding: &Coding) -> Result<Settings> {
 pub struct Codec {
     /// Its name in C: `roll` gives `sw_roll_encode`.
     pub name: String,
-    /// What it is.
+    /// Its scheme, sample type and parameters.
     pub coding: Coding,
 }
 

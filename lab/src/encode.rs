@@ -132,7 +132,7 @@ fn first(source: &mut dyn Source, enough: usize) -> Result<Chunk> {
 /// A pass over the recording.
 ///
 /// # Errors
-/// It cannot be read.
+/// Returns an error if the input cannot be read.
 fn calibrate(input: &InputOptions, sample: SampleType) -> Result<Vec<Calibrated>> {
     let mut calibrated = Vec::new();
     let (mut source, mut chunk) = (input.open()?, Chunk::default());

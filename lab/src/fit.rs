@@ -56,7 +56,7 @@ impl Fit {
         self.resolution.observe(values);
     }
 
-    /// What a user should know, a line each.
+    /// The notes for the user, a line each.
     pub fn notes(&self, settings: &Settings, spikes: u64) -> String {
         let mut notes = String::new();
         // Writing to a string cannot fail.
@@ -116,7 +116,7 @@ fn threshold(scheme: Scheme, settings: &Settings) -> Option<f64> {
     settings.number("threshold").ok().filter(|_| scheme.info().has_first_value)
 }
 
-/// What the sample type has rounded, in words.
+/// A sentence on what the sample type has rounded.
 pub fn rounding(settings: &Settings) -> Option<String> {
     let (mut told, mut lists) = (Vec::new(), Vec::new());
     for (name, asked) in &settings.rounded {

@@ -1,4 +1,4 @@
-//! What a channel is like before anything is encoded: rate, noise, bandwidth, range, and whether it is worth tuning.
+//! A channel before anything is encoded: rate, noise, bandwidth, range, and whether it is worth tuning.
 
 use crate::brief::short;
 use crate::trial::Recording;
@@ -41,7 +41,7 @@ pub struct Look {
     pub flight: Option<[f64; 2]>,
     /// Percent of the samples where it is quiet.
     pub resting: f64,
-    /// What speaks against tuning on it, if anything.
+    /// The reason not to tune on it, if there is one.
     pub verdict: Verdict,
 }
 
@@ -55,7 +55,7 @@ pub enum Verdict {
     TooShort,
     /// All samples are equal.
     Constant,
-    /// It moves no more than its own noise, which is white: all on the ground, or no signal at all.
+    /// The channel moves no more than its own noise, which is white: all on the ground, or no signal at all.
     OnlyNoise,
     /// More is missing than a fifth.
     FullOfHoles,

@@ -1,4 +1,4 @@
-//! Where captured bytes come from: a serial port, a file, standard input.
+//! Sources of captured bytes: a serial port, a file, standard input.
 
 use anyhow::{Context, Result, bail};
 use std::fs::{self, File};
@@ -13,11 +13,11 @@ pub struct Port {
     is_file: bool,
 }
 
-/// What a port has.
+/// The result of reading from a port.
 pub enum Bytes {
-    /// So many.
+    /// This many bytes.
     Some(usize),
-    /// None yet.
+    /// No bytes yet.
     NotYet,
     /// No more.
     End,
@@ -27,7 +27,7 @@ impl Port {
     /// A serial port if there is a baud rate, else a file, or `-` for standard input.
     ///
     /// # Errors
-    /// It cannot be opened.
+    /// Returns an error if the port cannot be opened.
     pub fn open(path: &Path, baud: Option<u32>) -> Result<Self> {
         /// How long a read waits: the display goes on meanwhile.
         const PATIENCE: Duration = Duration::from_millis(100);

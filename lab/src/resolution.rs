@@ -81,7 +81,7 @@ impl Resolution {
         })
     }
 
-    /// Which types hold the steps.
+    /// The names of the types that hold the steps.
     pub fn holders(&self) -> String {
         let names: Vec<String> = [self.single(), self.fixed()]
             .into_iter()

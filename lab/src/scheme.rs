@@ -19,7 +19,7 @@ impl Scheme {
         Self::all().find(|scheme| scheme.name() == name)
     }
 
-    /// What options and files call it.
+    /// The name in options and files.
     pub fn name(self) -> &'static str {
         self.info().name
     }

@@ -24,11 +24,11 @@ pub struct Figures {
     pub snr: f64,
     /// Spikes a second, if the length is known.
     pub spikes_per_second: Option<f64>,
-    /// What it ran with.
+    /// The parameters that ran.
     pub parameters: BTreeMap<&'static str, Value>,
     /// How steep the signal is for step forward, of which scheme alone it is told.
     pub slope: Option<Steep>,
-    /// What a user should know.
+    /// Notes for the user.
     pub notes: Vec<String>,
     /// The parameters in a few words.
     #[serde(skip)]

@@ -22,12 +22,12 @@ pub struct Steep {
     fastest: f64,
     /// The steepest slope of the signal, likewise.
     steepest: f64,
-    /// What the two are counted by: `second` or `sample`.
+    /// The unit of both slopes' denominator: `second` or `sample`.
     per: &'static str,
 }
 
 impl Steep {
-    /// Of codes that climb by a step a sample at most.
+    /// The slopes of a code that climbs by a step a sample at most; `None` for others.
     pub fn new(scheme: Scheme, recording: &Recording, settings: &Settings) -> Option<Self> {
         let threshold = settings.number(scheme.info().climbs_by?).ok()?;
         let segments = recording.segments.iter().map(|own| &recording.values[own.clone()]);

@@ -18,7 +18,7 @@ pub struct Recording {
     pub segments: Vec<Range<usize>>,
     /// Samples a second, if known.
     pub rate: Option<f64>,
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// How many samples were not finite.
     rejected: usize,
@@ -28,7 +28,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Of samples in memory, all finite, evenly spaced.
+    /// A recording of samples in memory, all finite, evenly spaced.
     pub fn of(name: String, values: Vec<f64>, rate: Option<f64>) -> Self {
         /// No step is longer than another.
         const STEPS: f64 = 1.5;
@@ -41,7 +41,7 @@ impl Recording {
     /// Reads all of its one channel.
     ///
     /// # Errors
-    /// As reading does, several channels, or no finite sample.
+    /// Returns an error if the input cannot be read, has several channels, or no finite sample.
     pub fn read(input: &InputOptions) -> Result<Self> {
         input.single("this command")?;
         Self::read_all(input)?.pop().with_context(|| format!("{}: no channel", input.name()))
@@ -50,7 +50,7 @@ impl Recording {
     /// Reads all of every channel asked for.
     ///
     /// # Errors
-    /// As reading does, or no row without a value that is not finite.
+    /// Returns an error if the input cannot be read, or no row is finite in all columns.
     pub fn read_all(input: &InputOptions) -> Result<Vec<Self>> {
         let mut source = input.open()?;
         let all = source.rest()?;
@@ -87,7 +87,7 @@ impl Recording {
             .collect()
     }
 
-    /// What a user should know of it, a line each.
+    /// Notes for the user on the recording, a line each.
     pub fn notes(&self) -> String {
         let mut notes = self.notes.clone();
         if self.rejected > 0 {
@@ -133,7 +133,7 @@ fn in_a_row(times: &[i64], segments: &[Range<usize>], period: i64) -> Vec<i64> {
     all
 }
 
-/// What a scheme made of a recording.
+/// The result of a scheme on a recording.
 pub struct Trial {
     /// The scheme.
     pub scheme: Scheme,
@@ -143,11 +143,11 @@ pub struct Trial {
     pub shape: Shape,
     /// How many samples after its own the code of a sample comes out.
     pub latency: usize,
-    /// What a user should know of how the parameters suit the recording.
+    /// Notes for the user on how the parameters suit the recording.
     pub notes: Vec<String>,
     /// The spikes.
     pub events: Vec<Event>,
-    /// What they decode to, one value a sample.
+    /// The decoded values, one a sample.
     pub decoded: Vec<f64>,
 }
 
@@ -202,7 +202,7 @@ impl Trial {
     }
 }
 
-/// What to say where the decoded values are off on the whole, by more than the signal itself moves.
+/// A note if the decoded values are off on the whole, by more than the signal itself moves.
 fn low(values: &[f64], decoded: &[f64]) -> Option<String> {
     let mean = |sum: f64| sum / values.len() as f64;
     let center = mean(values.iter().sum());

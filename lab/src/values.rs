@@ -18,7 +18,7 @@ const FEWER: usize = 64;
 /// The most events of one sample, over all channels.
 const EVENTS: usize = 1 << 14;
 
-/// What is done with a receiver.
+/// A function that uses a receiver.
 type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 
 /// Makes a receiver with these settings, one for each channel, or one for all, and passes it to `then`.
@@ -121,7 +121,7 @@ impl<S: Sample> Visit<S> for Boxed {
     }
 }
 
-/// What a link calls a sample type.
+/// The sample type's name on a link.
 fn kind(sample: SampleType) -> SampleKind {
     match sample {
         SampleType::F32 => SampleKind::F32,
@@ -198,7 +198,7 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     end: Option<Tick>,
     /// Keyframes for a code that has none.
     unused_keyframes: u64,
-    /// What a 1 is in the unit of the decoders.
+    /// The value of 1 in the unit of the decoders.
     one: f64,
     /// The sample type of the sender.
     kind: SampleKind,
@@ -227,7 +227,7 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         Received { frame, ..*received }
     }
 
-    /// Which channels are exact.
+    /// For each channel, whether it is exact.
     fn exact(&self) -> [bool; N] {
         std::array::from_fn(|channel| self.receiver.exact(channel as u16).is_some())
     }

@@ -20,6 +20,6 @@ pub struct Progress {
     pub done: usize,
     /// Units of work in all.
     pub total: usize,
-    /// What is being done, for people.
+    /// A sentence on what is being done.
     pub words: String,
 }

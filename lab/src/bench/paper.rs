@@ -1,4 +1,4 @@
-//! What the paper prints.
+//! The figures of the paper's tables.
 
 /// The signals' durations in seconds.
 pub const CASES: [usize; 5] = [1, 5, 15, 50, 100];

@@ -9,7 +9,7 @@ use spikewire::{Calibration, Code, ConfigError, Output, Spike, Start};
 /// The schemes of the tables, and GRF and GRF with slots, of which the paper gives no figures.
 pub(super) const COLUMNS: usize = 8;
 
-/// What a scheme made of a signal.
+/// The efficiency and error of a scheme on a signal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Outcome {
     /// `(1 - spikes / samples) * 100`. Below 0 where there are more spikes than samples.

@@ -13,7 +13,7 @@ pub struct Waveform {
 pub const RATE: usize = 100;
 
 impl Waveform {
-    /// As many seconds of it.
+    /// A waveform of this many seconds.
     pub fn new(seconds: usize) -> Self {
         let at = |step: usize| {
             let t = step as f64 / RATE as f64;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// What is kept of a cell.
+/// The mean and deviation of one cell of a table.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Statistics {
     /// The mean.
@@ -14,7 +14,7 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// Of these values.
+    /// The statistics of these values.
     pub fn new(values: impl ExactSizeIterator<Item = f64> + Clone) -> Self {
         let count = values.len();
         let mean = values.clone().sum::<f64>() / count as f64;

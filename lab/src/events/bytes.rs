@@ -13,7 +13,7 @@ pub(super) struct Reader<D> {
     hooks: Hooks<D>,
 }
 
-/// What one format needs and others do not.
+/// The steps that one format needs and others do not.
 pub(super) struct Hooks<D> {
     /// Refuses another format's bytes.
     pub check: fn(&D) -> Result<()>,

@@ -23,7 +23,7 @@ pub(super) struct Reader {
     told: Told,
 }
 
-/// Where in a line things are.
+/// The places of the columns in a line.
 #[derive(Clone, Copy)]
 struct Columns {
     tick: usize,
@@ -131,7 +131,7 @@ fn event_item(text: &str, columns: Columns, long_ticks: &mut u64) -> Result<Item
     Ok(Item::Event(Event { tick, address, polarity }))
 }
 
-/// What a comment says; others than ours say nothing.
+/// The item that a comment stands for; `None` for comments that are not ours.
 fn note_item(note: &str) -> Result<Option<Item>> {
     let (key, value) = note.split_once('=').unwrap_or((note, ""));
     Ok(match key {

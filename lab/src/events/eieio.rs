@@ -8,7 +8,7 @@ use spikewire::{Event, Polarity, Tick};
 use std::io::Write;
 use std::num::NonZeroU32;
 
-/// What the keys and time stamps of a board mean.
+/// The meaning of a board's keys and time stamps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
     /// The key of address 0.

@@ -30,7 +30,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// What reads it; `file` is named in errors.
+    /// The format's reader; errors name `file`.
     pub fn reader(self, file: &str) -> Box<dyn EventReader> {
         match self {
             Self::Link(_) => Box::new(LinkReader::new(None)),
@@ -60,7 +60,7 @@ impl Format {
         }
     }
 
-    /// What writes it. Events that it has no word for are an error, or dropped and counted.
+    /// The format's writer. Events that the format has no word for are an error, or dropped and counted if `drops`.
     pub fn writer(self, drops: bool) -> Box<dyn EventWriter> {
         match self {
             Self::Link(coding) => Box::new(link::Writer::new(coding)),
@@ -85,7 +85,7 @@ impl Format {
     }
 }
 
-/// What writes decoded values of a sample type.
+/// The writer of decoded values of a sample type.
 pub fn values_writer(sample: SampleType) -> Box<dyn EventWriter> {
     Box::new(csv::Writer::new(Some(sample)))
 }

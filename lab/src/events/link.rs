@@ -6,7 +6,7 @@ use spikewire::link::{Coding, Framer, LinkError, MAX_FRAME, Reader, Received, Se
 use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;
 
-/// What decodes the frames of a link.
+/// Decodes the frames of a link into values.
 pub trait Values {
     /// Decodes a frame, and adds a value for each keyframe and event, or for each sample that is over.
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>);
@@ -126,7 +126,7 @@ fn take(
 pub(super) struct Writer {
     framer: Framer,
     coding: Coding,
-    /// Of one tick and sample type.
+    /// Keyframes that wait for their frame, all of one tick and sample type.
     keyframes: Vec<Keyframe>,
     /// When what comes next happens, as far as it is known.
     tick: Tick,

@@ -23,16 +23,16 @@ use anyhow::Result;
 use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;
 
-/// What a stream brings, in its order.
+/// One item of a stream, in its order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Item {
     /// A spike.
     Event(Event),
-    /// What the sender's encoder held.
+    /// The value that the sender's encoder held.
     Keyframe(Keyframe),
     /// A sample of a code without keyframes, whose events are all told: its tick, and its bank's first address.
     Heartbeat(Tick, u16),
-    /// What the decoder of an address holds after an event or keyframe.
+    /// The value of an address's decoder after an event or keyframe.
     Value {
         /// When.
         tick: Tick,
@@ -43,7 +43,7 @@ pub enum Item {
         /// How well it is known.
         known: Known,
     },
-    /// So many frames never arrived.
+    /// This many frames never arrived.
     LostFrames(u32),
     /// The sender lost events.
     LostEvents,
@@ -54,9 +54,9 @@ pub enum Item {
 /// How well a decoded value is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Known {
-    /// It came as a keyframe.
+    /// The value came as a keyframe.
     Keyframe,
-    /// It is what the sender's own decoder holds, bit for bit.
+    /// The value is that of the sender's own decoder, bit for bit.
     Exact,
     /// Something was lost since the last keyframe, or there was none yet.
     Estimate,
@@ -73,12 +73,12 @@ pub trait EventReader {
     /// The end of the bytes; adds what was held back.
     ///
     /// # Errors
-    /// As [`read`](Self::read).
+    /// See [`read`](Self::read).
     fn finish(&mut self, _: &mut Vec<Item>) -> Result<()> {
         Ok(())
     }
 
-    /// What there was besides events.
+    /// The counts of all that is no event.
     fn tally(&self) -> Tally;
 
     /// Tells a format without times the time of the bytes that come next.
@@ -101,6 +101,6 @@ pub trait EventWriter {
         Ok(())
     }
 
-    /// What the format could not hold, in sentences.
+    /// Sentences on what the format could not hold.
     fn notes(&self) -> Vec<String>;
 }

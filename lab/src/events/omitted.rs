@@ -1,9 +1,9 @@
-//! What a format cannot hold, counted.
+//! Counts of what a format cannot hold.
 
 use super::Item;
 use spikewire::Tick;
 
-/// What was left out, and events that will be read at another time.
+/// Counts of items left out, and of events that will be read at another time.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Omitted {
     dropped: u64,

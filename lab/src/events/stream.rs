@@ -10,7 +10,7 @@ use std::io::Write;
 pub struct Stream<'a> {
     reader: Box<dyn EventReader + 'a>,
     writer: Box<dyn EventWriter>,
-    /// What is taken off every tick, where they are to start at 0.
+    /// The tick that is subtracted from all, if they are to start at 0.
     zero: Zero,
     items: Vec<Item>,
     bytes: u64,
@@ -59,7 +59,7 @@ impl<'a> Stream<'a> {
         arrival: Option<Tick>,
         output: &mut dyn Write,
     ) -> Result<()> {
-        /// So many that their items stay small.
+        /// The most bytes read at once, so that their items take little memory.
         const PIECE: usize = 1 << 14;
         if let Some(tick) = arrival {
             self.reader.set_arrival(tick);
@@ -77,7 +77,7 @@ impl<'a> Stream<'a> {
     /// The end of the bytes.
     ///
     /// # Errors
-    /// As [`push`](Self::push).
+    /// See [`push`](Self::push).
     pub fn finish(&mut self, output: &mut dyn Write) -> Result<()> {
         let read = self.reader.finish(&mut self.items);
         self.write(output)?;
@@ -165,7 +165,7 @@ impl<'a> Stream<'a> {
         Ok(())
     }
 
-    /// What so many bytes are for what was written, in words.
+    /// A sentence that relates this many bytes to the items written.
     pub fn written(&self, bytes: u64) -> String {
         match self.count() {
             0 => format!("{bytes} bytes written"),
@@ -176,13 +176,13 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// What there was besides events.
+    /// The counts of all that was no event.
     pub fn tally(&self) -> Tally {
         self.reader.tally()
     }
 }
 
-/// What a user should know at the end.
+/// The notes for the user at the end of the stream.
 impl fmt::Display for Stream<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (count, what) =

@@ -1,4 +1,4 @@
-//! What a stream brings besides events.
+//! Counts of all in a stream that is no event.
 
 use spikewire::link::Withheld;
 use std::fmt;
@@ -12,7 +12,7 @@ pub struct Tally {
     pub is_cut: bool,
     /// Ticks of more than 32 bits.
     pub long_ticks: u64,
-    /// Of a link only.
+    /// The counts of a link; `None` for other formats.
     pub link: Option<LinkTally>,
 }
 
@@ -23,7 +23,7 @@ pub struct LinkTally {
     pub frames: u64,
     /// Frames that never did.
     pub lost: u64,
-    /// Where they are missing.
+    /// Number of places at which frames are missing.
     pub gaps: u64,
     /// Checksums that did not match.
     pub bad_checksums: u64,
@@ -43,7 +43,7 @@ pub struct LinkTally {
     pub misfits: u64,
     /// Keyframes for a scheme that has none.
     pub unused_keyframes: u64,
-    /// Of keyframes and the values before them.
+    /// The comparison of keyframes with the values just before them.
     pub held: Held,
     /// Why no value is exact, of frames that are decoded.
     pub withheld: Option<Withheld>,

@@ -1,4 +1,4 @@
-//! What a file of spikes says of its own length.
+//! The length that a file of spikes states at its end.
 
 use anyhow::{Context, Result, bail};
 

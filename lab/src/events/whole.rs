@@ -9,14 +9,14 @@ use spikewire::Event;
 pub struct Events {
     /// The events, in their order.
     pub events: Vec<Event>,
-    /// What else there was, and what was lost, in sentences.
+    /// Sentences on all that was no event, and on losses.
     pub notes: Vec<String>,
 }
 
 /// Reads the events in bytes of a format by its name: `es`, `evt2`, `link`, `edvs:e2`…
 ///
 /// # Errors
-/// There is no such format, or the bytes are of another.
+/// Returns an error if there is no such format, or the bytes are of another.
 pub fn read_events(bytes: &[u8], format: &str) -> Result<Events> {
     let format: Format = format.parse()?;
     let mut reader = format.reader("the bytes");
@@ -39,7 +39,7 @@ pub fn read_events(bytes: &[u8], format: &str) -> Result<Events> {
 /// Writes events as bytes of a format by its name; returns the bytes, and notes of what the format could not hold.
 ///
 /// # Errors
-/// There is no such format, or it has no word for an event.
+/// Returns an error if there is no such format, or it has no word for an event.
 pub fn write_events(events: &[Event], format: &str) -> Result<(Vec<u8>, Vec<String>)> {
     let mut writer = format.parse::<Format>()?.writer(false);
     let mut bytes: Vec<u8> = Vec::new();

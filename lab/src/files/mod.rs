@@ -23,7 +23,7 @@ pub fn has_bytes(path: &Path) -> bool {
 /// Reads a whole file.
 ///
 /// # Errors
-/// There is no such file, or it cannot be read.
+/// Returns an error if the file is missing or cannot be read.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?.read_to_end(&mut bytes)?;
@@ -33,7 +33,7 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
 /// Reads a whole file of text.
 ///
 /// # Errors
-/// There is no such file, it cannot be read, or is not UTF-8.
+/// Returns an error if the file is missing, cannot be read, or is not UTF-8.
 pub fn read_to_string(path: &Path) -> io::Result<String> {
     let mut text = String::new();
     File::open(path)?.read_to_string(&mut text)?;

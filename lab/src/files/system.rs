@@ -17,7 +17,7 @@ pub fn is_file(path: &Path) -> bool {
 /// Opens a nameless file to unpack into, which is gone once it is closed.
 ///
 /// # Errors
-/// There is no place for it.
+/// Returns an error if no temporary file can be made.
 pub fn scratch() -> io::Result<File> {
     tempfile::tempfile()
 }

@@ -13,7 +13,7 @@ use std::thread::JoinHandle;
 /// range is expanded as [`Y4m`] expands it.
 const GREY: &str = "gray";
 
-/// What `ffmpeg` makes of a file.
+/// The frames that `ffmpeg` makes of a file.
 pub(super) struct Converted {
     video: Y4m<BufReader<ChildStdout>>,
     child: Child,
@@ -25,7 +25,7 @@ impl Converted {
     /// Starts the program, the one that the variable `FFMPEG` names or the one on the path.
     ///
     /// # Errors
-    /// It is not there, or cannot read the file.
+    /// Returns an error if `ffmpeg` is missing or cannot read the file.
     pub(super) fn open(input: &Path) -> Result<Self> {
         let name = input.display().to_string();
         let program = env::var_os("FFMPEG").unwrap_or_else(|| "ffmpeg".into());
@@ -71,7 +71,7 @@ impl Converted {
     }
 }
 
-/// What it said, in one line.
+/// The messages of `ffmpeg`, in one line.
 fn words(said: &mut Option<JoinHandle<String>>) -> String {
     let text = said.take().and_then(|said| said.join().ok()).unwrap_or_default();
     text.lines().collect::<Vec<_>>().join("; ")

@@ -137,7 +137,7 @@ impl Preview {
     /// Puts the file in its place.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Returns an error if the file cannot be written.
     pub fn finish(self) -> Result<()> {
         let columns = self.columns();
         match self.file {

@@ -1,4 +1,4 @@
-//! Where the events of pixels go.
+//! The files into which pixel events go.
 
 use crate::output::Output;
 use anyhow::{Result, bail};
@@ -24,7 +24,8 @@ impl Sink {
     /// Opens the file and writes its header.
     ///
     /// # Errors
-    /// It cannot be written, its name has another ending, or its format has no word for so large a picture.
+    /// Returns an error if the file cannot be written, has an unknown ending, or its format has no word for so large a
+    /// picture.
     pub fn open(path: &Path, input: &Path, (width, height): (u16, u16)) -> Result<Self> {
         let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let format = match ending.as_str() {
@@ -57,7 +58,7 @@ impl Sink {
     /// Writes an event.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Returns an error if the file cannot be written.
     pub fn write(&mut self, event: PixelEvent) -> Result<()> {
         let Self { output, format } = self;
         match format {
@@ -74,7 +75,7 @@ impl Sink {
     /// Puts the file in its place, and says how many bytes it has.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Returns an error if the file cannot be written.
     pub fn finish(self) -> Result<u64> {
         let bytes = self.output.bytes();
         self.output.finish()?;

@@ -1,4 +1,4 @@
-//! What a video is, whatever holds it.
+//! Videos, whatever file holds them.
 
 use super::{ffmpeg, pictures, y4m};
 use anyhow::{Context, Result, bail};
@@ -21,7 +21,7 @@ pub trait Video {
     /// Puts the next frame into the buffer, row-major; false at the end.
     ///
     /// # Errors
-    /// It cannot be read, or has another size.
+    /// Returns an error if the frame cannot be read or has another size.
     fn next(&mut self, frame: &mut Vec<u8>) -> Result<bool>;
 }
 
@@ -33,7 +33,7 @@ pub struct Rate {
 }
 
 impl Rate {
-    /// So many frames in so many seconds; `None` if either is 0.
+    /// The rate of this many frames in this many seconds; `None` if either is 0.
     pub fn new(frames: u64, seconds: u64) -> Option<Self> {
         (frames > 0 && seconds > 0).then_some(Self { frames, seconds })
     }
@@ -62,7 +62,7 @@ impl FromStr for Rate {
 /// Opens a video: YUV4MPEG2, a sequence of pictures, or whatever `ffmpeg` reads.
 ///
 /// # Errors
-/// There is no such video, or it cannot be read.
+/// Returns an error if the video is missing or cannot be read.
 pub fn open(inputs: &[PathBuf]) -> Result<Box<dyn Video>> {
     let [input] = inputs else { return Ok(Box::new(pictures::Pictures::open(inputs.to_vec())?)) };
     if input == Path::new("-") {

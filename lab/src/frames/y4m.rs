@@ -10,7 +10,7 @@ use std::io::{self, Read};
 use std::rc::Rc;
 use y4m::{Decoder, Error};
 
-/// What such a video begins with.
+/// The first bytes of a YUV4MPEG2 file.
 pub(super) const MAGIC: &[u8] = b"YUV4MPEG2 ";
 
 /// A reader that counts what it has read.
@@ -33,7 +33,7 @@ pub(super) struct Y4m<R: Read> {
     is_limited: bool,
     name: String,
     size: (u16, u16),
-    /// What was read so far, and up to the end of the last frame.
+    /// Number of bytes read so far, and up to the end of the last frame.
     bytes: Rc<Cell<u64>>,
     end: u64,
     index: u64,
@@ -44,7 +44,7 @@ impl<R: Read> Y4m<R> {
     /// Reads the header; the length in bytes tells the number of frames.
     ///
     /// # Errors
-    /// It is another format's, or its pixels have more than 8 bits.
+    /// Returns an error if the file is of another format, or its pixels have more than 8 bits.
     pub(super) fn open(reader: R, name: String, length: Option<u64>) -> Result<Self> {
         let bytes = Rc::new(Cell::new(0));
         let counting = Counting { reader, bytes: Rc::clone(&bytes) };

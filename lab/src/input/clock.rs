@@ -2,21 +2,21 @@
 
 use std::fmt;
 
-/// What is unusual of a step in time.
+/// The kind of an unusual step in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// It is too long.
+    /// The step is too long.
     Gap,
-    /// It goes back: samples out of order.
+    /// The step goes back: samples are out of order.
     Backward,
-    /// It goes back so far that the clock started anew, as after a reboot: what follows is a segment of its own.
+    /// The step goes back so far that the clock started anew, as after a reboot: a new segment begins.
     Restart,
 }
 
 /// An unusual step in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
     /// The sample before it.
     pub after: u64,
@@ -70,7 +70,7 @@ pub struct Clock {
     is_timed: bool,
 }
 
-/// So many steps tell a rate.
+/// Number of steps from which a rate is taken.
 const RUN: usize = 64;
 /// A clock that goes back by more than so many usual steps started anew.
 const RESTART: f64 = 10.0;
@@ -230,7 +230,7 @@ impl<T: fmt::Display> fmt::Display for Told<T> {
     }
 }
 
-/// What there is to report.
+/// The report on the times.
 impl fmt::Display for Clock {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.is_timed {

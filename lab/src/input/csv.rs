@@ -35,7 +35,7 @@ struct Column {
     name: String,
 }
 
-/// Where the times are.
+/// The column with the times.
 struct Time {
     column: Column,
     reading: Reading,
@@ -249,7 +249,7 @@ impl Source for Table {
     }
 }
 
-/// What stands for a value that there is none.
+/// Whether a field is a spelling of a missing value, such as `NA`.
 fn is_missing(field: &[u8]) -> bool {
     const WORDS: [&str; 8] = ["", "na", "n/a", "#n/a", "<na>", "null", "none", "-"];
     WORDS.iter().any(|word| field.eq_ignore_ascii_case(word.as_bytes()))
@@ -269,7 +269,7 @@ fn first_line<R: BufRead>(mut input: R) -> Result<(Vec<u8>, R)> {
     }
 }
 
-/// What separates most names of the header.
+/// Finds the delimiter that separates most names of the header.
 fn delimiter(start: &[u8]) -> u8 {
     let header = start.trim_ascii_end().rsplit(|&byte| byte == b'\n').next().unwrap_or_default();
     let mut is_quoted = false;

@@ -30,14 +30,14 @@ const ALL: &str = "all";
 /// How many samples a chunk holds.
 pub const CHUNK: usize = 8192;
 
-/// Where samples come from.
+/// A recording, and how to read it.
 #[derive(Clone, Debug)]
 pub struct InputOptions {
     /// CSV table with a header, also compressed by gzip, or log: PX4's `ULog`, bag of ROS 1 or
     /// 2, MCAP, Betaflight's blackbox; `-` is a CSV table on
     /// standard input
     pub input: PathBuf,
-    /// What of it is read, and how.
+    /// The channel to read.
     pub channel: ChannelOptions,
 }
 
@@ -49,7 +49,7 @@ impl Deref for InputOptions {
     }
 }
 
-/// What of a recording is read, and how.
+/// The channel of a recording, and how to read it.
 #[derive(Clone, Debug)]
 pub struct ChannelOptions {
     /// Column of a CSV table, by name or by number from 1; `encode` takes several
@@ -62,7 +62,7 @@ pub struct ChannelOptions {
     /// Unit of that column; told by its name, such as `time (us)` or `stamp_ns`, or by its values,
     /// unless given
     pub time_unit: Option<TimeUnit>,
-    /// What stands between columns: `,` `;` `|` `tab` `space`; found in the header unless given
+    /// Delimiter of columns: `,` `;` `|` `tab` `space`; found in the header unless given
     pub delimiter: Option<Delimiter>,
     /// Topic of a log; in a PX4 log with `:1` after it for its second instance
     pub topic: Option<String>,
@@ -100,7 +100,7 @@ impl Default for ChannelOptions {
     }
 }
 
-/// What stands between the columns of a table.
+/// The delimiter of a table's columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Delimiter(pub u8);
 
@@ -178,13 +178,13 @@ pub trait Source {
     /// Replaces the chunk by the next samples; none are left if it stays empty.
     ///
     /// # Errors
-    /// What cannot be read, and where.
+    /// Returns an error that names what cannot be read, and its place.
     fn next(&mut self, chunk: &mut Chunk) -> Result<()>;
 
     /// All samples that are left.
     ///
     /// # Errors
-    /// As for [`next`](Self::next).
+    /// See [`next`](Self::next).
     fn rest(&mut self) -> Result<Chunk> {
         let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
         loop {
@@ -196,10 +196,10 @@ pub trait Source {
         }
     }
 
-    /// What the channels are, as keys and values for the header of a file of spikes.
+    /// The channels' origin, as keys and values for the header of a file of spikes.
     fn origin(&self) -> &[(&'static str, String)];
 
-    /// What a user should know of how it is read, a line each.
+    /// Notes for the user on how the recording is read, a line each.
     fn notes(&self) -> &[String];
 }
 
@@ -207,7 +207,7 @@ impl InputOptions {
     /// Opens the recording at its start. Times of a clock that runs over go on behind it.
     ///
     /// # Errors
-    /// There is no such file, column, topic or field, or nothing in it.
+    /// Returns an error if there is no such file, column, topic or field, or nothing in it.
     pub fn open(&self) -> Result<Box<dyn Source>> {
         Ok(Box::new(rollover::Unwrapped::new(self.open_as_is()?)))
     }
@@ -333,7 +333,7 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
     }
 }
 
-/// What kinds of logs there are.
+/// The kinds of logs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LogKind {
     /// PX4's.
@@ -342,10 +342,10 @@ pub enum LogKind {
     Messages(messages::Kind),
 }
 
-/// What kind of log a file is by how it starts, also when compressed; none if it may be a table.
+/// Finds a file's kind from its first bytes, packed or not; `None` if it may be a table.
 ///
 /// # Errors
-/// It cannot be opened.
+/// Returns an error if the file cannot be opened.
 pub fn log_kind(path: &Path) -> Result<Option<LogKind>> {
     if files::is_dir(path) {
         return Ok(messages::kind_of(path)?.map(LogKind::Messages));

@@ -1,4 +1,4 @@
-//! What a misspelt name may have meant.
+//! Suggestions for a misspelt name.
 
 /// Names that resemble the one asked for, or all if they are few: ` (did you mean ..?)`.
 pub fn near<'a>(asked: &str, names: impl IntoIterator<Item = &'a str>) -> String {

@@ -56,7 +56,7 @@ impl Rollover {
         shown.saturating_add(self.offset)
     }
 
-    /// What a user should know.
+    /// A note for the user.
     pub fn note(&self) -> Option<String> {
         let Self { count, first, .. } = self;
         (*count > 0).then(|| {

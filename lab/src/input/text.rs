@@ -7,7 +7,7 @@ use std::io::{self, Cursor, Read};
 /// How far a file is looked at to tell what it is.
 const HEAD: usize = 16;
 
-/// What a file that starts like this is, and what to do with it.
+/// The first bytes of files that are no tables, the name of each kind, and the way to export it.
 const OTHERS: [(&[u8], &str); 11] = [
     (b"PK\x03\x04", "a zip archive or a spreadsheet; export it as CSV"),
     (b"\xd0\xcf\x11\xe0", "an old spreadsheet; export it as CSV"),
@@ -25,7 +25,7 @@ const OTHERS: [(&[u8], &str); 11] = [
 /// The text of a file as UTF-8, or in bytes that extend ASCII.
 ///
 /// # Errors
-/// It is no text.
+/// Returns an error if the file is no text.
 pub fn text(input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
     let (head, input) = peek(input).with_context(|| name.to_owned())?;
     if head.starts_with(&GZIP) {
@@ -36,7 +36,7 @@ pub fn text(input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
     decode(&head, input, name)
 }
 
-/// What gzip files start with.
+/// The first bytes of gzip files.
 pub(crate) const GZIP: [u8; 2] = [0x1f, 0x8b];
 
 /// A name in a table, from UTF-8 or else from Latin-1.

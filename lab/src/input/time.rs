@@ -18,7 +18,7 @@ pub enum TimeUnit {
 }
 
 impl TimeUnit {
-    /// What a 1 is in µs.
+    /// The length of one unit in µs.
     pub(super) fn microseconds(self) -> f64 {
         match self {
             Self::S => 1e6,
@@ -62,18 +62,19 @@ impl fmt::Display for TimeUnit {
     }
 }
 
-/// What a column's name says of the times in it.
+/// The meaning of a column's name for the times in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Named {
     /// They are in this unit.
     In(TimeUnit),
     /// The values must tell: whole numbers are in this unit, unless they count from 1970.
     Whole(TimeUnit),
-    /// It is a time only if it holds dates.
+    /// The column has times only if it holds dates.
     Dates,
 }
 
-/// What the name says, if it is that of a time: as in exports of Betaflight, `ArduPilot`, PX4, ROS and pandas.
+/// The meaning of a time column's name in exports of Betaflight, `ArduPilot`, PX4, ROS and pandas; `None` if it is no
+/// time.
 pub(super) fn of_name(name: &str) -> Option<Named> {
     let name = name.trim().to_lowercase();
     match name.as_str() {
@@ -103,7 +104,7 @@ pub(super) fn of_name(name: &str) -> Option<Named> {
     is_time(base).then_some(Named::In(TimeUnit::of_word(word)?))
 }
 
-/// What the name of a column says that the user calls a time.
+/// The meaning of the name of a column that the user has named as the time.
 pub(super) fn of_given(name: &str) -> Named {
     match of_name(name) {
         Some(named @ (Named::In(_) | Named::Whole(_))) => named,
@@ -217,7 +218,7 @@ fn by_value(values: &[f64], whole: TimeUnit) -> TimeUnit {
     }
 }
 
-/// What is to be said of the first times, in µs: steps of which a recording of a flight has none.
+/// A note if the first times, in µs, have steps that no recording of a flight has.
 pub(super) fn implausible(times: &[f64]) -> Option<String> {
     const SHORTEST: f64 = 1e-3;
     const LONGEST: f64 = 60e6;

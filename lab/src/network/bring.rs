@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The steps over which outputs are counted.
 pub const WINDOW: usize = 20;
 
-/// What to bring onto the chip.
+/// A network, and the recording with which it is brought onto the chip.
 pub struct Request<'a> {
     /// The chip.
     pub chip: &'a dyn Chip,
@@ -41,11 +41,11 @@ pub struct Figures {
     pub agreeing: usize,
     /// Steps in which an output fires, in double precision or on the chip.
     pub active: usize,
-    /// Of those, the steps in which the outputs that fire are the same.
+    /// Of the active steps, those in which the same outputs fire.
     pub active_agreeing: usize,
     /// Times [`WINDOW`] steps in which an output fires.
     pub windows: usize,
-    /// Of those, how many in which the outputs that fire most are the same.
+    /// Of the windows, those in which the same outputs fire most.
     pub windows_agreeing: usize,
     /// The chip's clocks for a step: the mean.
     pub mean_clocks: f64,
@@ -59,7 +59,7 @@ pub struct Figures {
 
 /// Potentials of outputs in double precision beside the chip's model.
 pub struct PotentialFigures {
-    /// As its file calls them.
+    /// The name in its file.
     pub name: String,
     /// Outputs.
     pub outputs: usize,
@@ -73,7 +73,7 @@ pub struct PotentialFigures {
 
 /// A layer in double precision beside the chip's model.
 pub struct LayerFigures {
-    /// As its file calls it.
+    /// The name in its file.
     pub name: String,
     /// Neurons.
     pub neurons: usize,
@@ -90,7 +90,7 @@ pub struct LayerFigures {
 /// Quantises the network, and runs it on the chip's model.
 ///
 /// # Errors
-/// It does not fit, or the model refuses something.
+/// Returns an error if the network does not fit, or the chip's model refuses something.
 pub fn bring(request: &Request) -> Result<Brought> {
     let Request { chip, trained, tuned, held_out, progress } = *request;
     let original = trained.run(tuned);

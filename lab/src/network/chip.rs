@@ -1,4 +1,4 @@
-//! What a chip must do for a network to be brought onto it.
+//! The trait of a chip onto which a network can be brought.
 
 use super::{ReckOn, TinyOdin, Trained, Trains};
 use anyhow::{Result, anyhow};
@@ -44,20 +44,20 @@ pub trait OnChip {
     /// The network as bytes, which the crate's driver loads at run time.
     ///
     /// # Errors
-    /// It is no network of the chip.
+    /// Returns an error if the chip does not take the network.
     fn bytes(&self) -> Result<Vec<u8>>;
 
-    /// What the network takes of the chip, and what of it had to change: a line each.
+    /// Notes on the network's size on the chip, and on what had to change: a line each.
     fn notes(&self) -> Vec<String>;
 
-    /// What of the chip's arithmetic a network should be trained with, if the chip does something else.
+    /// The part of the chip's arithmetic that changes a network most, so that it should be trained with it.
     fn dearest(&self) -> &'static str;
 
     /// Why spikes get lost on their way into the chip.
     fn loss(&self) -> &'static str;
 }
 
-/// What came of a run on the chip.
+/// The result of a run on the chip.
 pub struct Ran {
     /// Who fired, by layer and step.
     pub fired: Vec<Trains>,
@@ -69,11 +69,11 @@ pub struct Ran {
     pub lost: u32,
 }
 
-/// What a reader of the file should know.
+/// Remarks for a reader of the file.
 pub struct Told {
-    /// Where the network is from.
+    /// The network's source.
     pub source: String,
-    /// What its inputs are.
+    /// The meaning of its inputs.
     pub inputs: String,
     /// How long a step is in µs, if that is known.
     pub step_us: Option<f64>,

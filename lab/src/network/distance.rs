@@ -1,6 +1,6 @@
 //! How far two spike trains are from each other.
 
-/// What a step leaves of an exponential of 5 steps: e to the -1/5.
+/// The part of an exponential of 5 steps that is left after a step: e to the -1/5.
 const KEPT: f64 = 0.818_730_753_077_981_8;
 
 /// The distance of van Rossum (2001), squared, with an exponential of 5 steps.
@@ -19,12 +19,12 @@ impl Distance {
         self.sum += self.difference * self.difference;
     }
 
-    /// What it is at least, whatever steps follow.
+    /// The distance so far, which later steps can only raise.
     pub fn so_far(self) -> f64 {
         (1.0 - KEPT * KEPT) * self.sum
     }
 
-    /// What it is, with the time after the last step.
+    /// The distance, including the time after the last step.
     pub fn value(self) -> f64 {
         let after = self.difference * self.difference * KEPT * KEPT / (1.0 - KEPT * KEPT);
         (1.0 - KEPT * KEPT) * (self.sum + after)

@@ -35,7 +35,7 @@ impl File {
     /// Reads a NIR graph or the plain form.
     ///
     /// # Errors
-    /// It cannot be read, or is neither.
+    /// Returns an error if the file cannot be read, or is neither.
     pub fn read(path: &Path) -> Result<Self> {
         let name = || path.display().to_string();
         let bytes = fs::read(path).with_context(|| format!("{}: cannot be opened", name()))?;

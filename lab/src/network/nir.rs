@@ -38,7 +38,7 @@ struct Neurons {
     /// Perfect integrators have none.
     leak: Option<Leak>,
     resistance: Array,
-    /// None if they never fire.
+    /// Thresholds; `None` if the neurons never fire.
     threshold: Option<Array>,
     reset: Option<Array>,
     /// How long a spike's current lasts, and the weight before it, if it is no step's.
@@ -69,7 +69,7 @@ impl Array {
 struct Graph {
     nodes: BTreeMap<String, Group>,
     edges: Vec<(String, String)>,
-    /// Of each graph in it, by its path, the nodes through which it is entered and left.
+    /// The first and last node of each inner graph, by its path.
     inner: BTreeMap<String, (String, String)>,
 }
 
@@ -371,7 +371,7 @@ impl Neurons {
         format!("node `{}`", self.name)
     }
 
-    /// What a step leaves of a neuron's potential, what its inputs are multiplied by, and where it rests.
+    /// The part of a neuron's potential that a step leaves, the factor of its inputs, and its resting potential.
     fn in_steps(&self, at: usize, step: Option<f64>) -> Result<(f64, f64, f64)> {
         let resistance = self.resistance.at(at);
         let Some(Leak { tau, rest }) = &self.leak else { return Ok((1.0, resistance, 0.0)) };

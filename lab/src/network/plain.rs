@@ -61,7 +61,7 @@ impl Numbers {
 /// Reads it.
 ///
 /// # Errors
-/// It is not of the form, or a number makes no sense.
+/// Returns an error if the JSON has another form, or a number makes no sense.
 pub(crate) fn read(bytes: &[u8]) -> Result<Trained> {
     let network: Network = serde_json::from_slice(bytes)?;
     let layers = network.layers.into_iter().enumerate().map(|(at, written)| {

@@ -20,7 +20,7 @@ pub struct Trained {
 /// Leaky neurons that never fire: their potentials are the network's outputs.
 #[derive(Clone, Debug)]
 pub struct Readout {
-    /// As its file calls it.
+    /// The name in its file.
     pub name: String,
     /// By output, what a spike of each neuron of the last layer adds to the potential.
     pub weights: Vec<Vec<f64>>,
@@ -68,7 +68,7 @@ impl Readout {
 /// Neurons, and what leads to them.
 #[derive(Clone, Debug)]
 pub struct Layer {
-    /// As its file calls it.
+    /// The name in its file.
     pub name: String,
     /// By neuron, what a spike of each input adds to the potential.
     pub weights: Vec<Vec<f64>>,
@@ -86,7 +86,7 @@ pub struct Layer {
 pub struct Neuron {
     /// The share of the potential that is left after a step, 0 to 1; 1 for a perfect integrator.
     pub keep: f64,
-    /// It fires above.
+    /// The potential above which it fires.
     pub threshold: f64,
 }
 
@@ -165,7 +165,7 @@ impl Trained {
     /// These layers.
     ///
     /// # Errors
-    /// There are none or too many, they do not fit each other, or a number makes no sense.
+    /// Returns an error if there are no layers or too many, they do not fit each other, or a number makes no sense.
     pub fn new(layers: Vec<Layer>) -> Result<Self> {
         ensure!(!layers.is_empty(), "the network has no layer of LIF or IF neurons");
         ensure!(

@@ -30,7 +30,7 @@ impl Beside {
     /// Writes again what stands at a place of the file.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Returns an error if the file cannot be written.
     pub(super) fn overwrite(&mut self, place: u64, bytes: &[u8]) -> io::Result<()> {
         self.file.seek(SeekFrom::Start(place))?;
         self.file.write_all(bytes)?;
@@ -41,7 +41,7 @@ impl Beside {
     /// Writes what is left and puts the file in its place.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Returns an error if the file cannot be written.
     pub(super) fn finish(self) -> Result<()> {
         let name = self.path.display();
         let file = self.file.into_inner().map_err(io::IntoInnerError::into_error)?;
@@ -69,7 +69,7 @@ pub(super) fn is_same(output: &Path, input: &Path) -> bool {
     matches!((Handle::from_path(output), input), (Ok(output), Ok(input)) if output == input)
 }
 
-/// Where links lead, even if there is nothing yet.
+/// Follows symbolic links, even if the last leads to no file yet.
 fn target(mut path: PathBuf) -> io::Result<PathBuf> {
     /// More are a circle.
     const MOST: usize = 40;

@@ -109,7 +109,7 @@ impl Output {
     /// Writes again what stands at a place of the file.
     ///
     /// # Errors
-    /// It cannot be written, or it went to standard output or a device.
+    /// Returns an error if the output cannot be written, or went to standard output or a device.
     pub fn overwrite(&mut self, place: u64, bytes: &[u8]) -> Result<()> {
         match &mut self.place {
             #[cfg(not(target_family = "wasm"))]
@@ -130,7 +130,7 @@ impl Output {
     /// Writes what is left and puts the file in its place.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Returns an error if the output cannot be written.
     pub fn finish(self) -> Result<()> {
         match self.place {
             #[cfg(not(target_family = "wasm"))]

@@ -81,7 +81,7 @@ pub(super) fn legend_height(named: &[Named], width: u32) -> u32 {
 /// The width of a legend's entry.
 const ENTRY: i32 = 260;
 
-/// Which line is which, once for all panels.
+/// The legend, once for all panels.
 pub(super) fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>, named: &[Named]) -> Drawn<B> {
     let columns = (area.dim_in_pixel().0 as i32 / ENTRY).max(1);
     let text = (FONT, TEXT).into_font().color(&INK);

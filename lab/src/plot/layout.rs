@@ -1,4 +1,4 @@
-//! Where the panels are.
+//! The places of the panels.
 
 use super::title::Drawn;
 use super::{Picture, efficiencies, front, panel};

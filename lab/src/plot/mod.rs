@@ -21,7 +21,7 @@ use tiny_skia::{Color, Pixmap};
 
 use crate::output::Output;
 
-/// What is drawn.
+/// The content of a picture.
 pub struct Picture<'a> {
     /// The signal.
     pub recording: &'a Recording,
@@ -47,7 +47,7 @@ pub fn draw(path: &Path, input: &Path, picture: &Picture) -> Result<()> {
 /// Draws fronts into a file, by its ending.
 ///
 /// # Errors
-/// As for [`draw`].
+/// See [`draw`].
 pub fn draw_fronts(path: &Path, input: &Path, panels: &[front::Panel]) -> Result<()> {
     write(path, input, layout::fronts_size(panels), Drawing::Fronts(panels))
 }

@@ -1,4 +1,4 @@
-//! What of a long recording a picture can show.
+//! Decimates a long recording to what a picture can show.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! What stands over every panel.
+//! The title of a panel.
 
 use super::FONT;
 use super::palette::{DECODED, INK, QUIET, SIGNAL};
@@ -32,7 +32,7 @@ pub(super) fn title<B: DrawingBackend>(
     Ok(())
 }
 
-/// Which curve is which, beside the title, where no curve is.
+/// The legend, beside the title, where no curve is.
 pub(super) fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>) -> Drawn<B> {
     let width = area.dim_in_pixel().0 as i32;
     let small = (FONT, 13).into_font().color(&INK);

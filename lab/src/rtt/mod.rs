@@ -20,7 +20,7 @@ pub trait Channel {
     fn read(&mut self, buffer: &mut [u8]) -> Result<usize>;
 }
 
-/// What came of a capture.
+/// The result of a capture.
 #[derive(Debug)]
 pub struct Captured {
     /// How much was written.
@@ -48,7 +48,7 @@ fn copy(
 ) -> Result<()> {
     /// A board's buffer of 1 KiB fills in 10 ms at 100 kB/s.
     const PAUSE: Duration = Duration::from_millis(1);
-    /// So much may be left when it is time to stop: a board that never rests must not go on for ever.
+    /// The most bytes read after it is time to stop: a board that never rests must not go on for ever.
     const REST: u64 = 1 << 20;
     let mut buffer = vec![0; 1 << 14];
     let mut last = None;
@@ -76,7 +76,7 @@ mod tests {
     use anyhow::{Result, bail};
     use std::collections::VecDeque;
 
-    /// What each read finds; after the last, the board is gone.
+    /// The bytes of each read; after the last, the board is gone.
     struct Fake(VecDeque<&'static [u8]>);
 
     impl Channel for Fake {

@@ -8,7 +8,7 @@ use probe_rs::rtt::{Rtt, ScanRegion, try_attach_to_rtt};
 use probe_rs::{Core, Permissions};
 use std::time::Duration;
 
-/// Which channel of which board is read.
+/// A board, and the channel to read.
 #[derive(Clone, Debug)]
 pub struct Board {
     /// The chip, as probe-rs calls it: `STM32F405RG`, `RP2040`.
@@ -63,7 +63,7 @@ pub fn with_channel(
     use_it(&mut Probed { core, rtt, number: *number })
 }
 
-/// What keeps a probe from being found.
+/// A hint on what may keep a probe from being found.
 fn hint() -> &'static str {
     if cfg!(target_os = "linux") {
         "; is it plugged in, and may this user open it (udev rules of probe-rs)? CMSIS-DAP version 1 is not supported"

@@ -16,7 +16,7 @@ pub(super) struct Bag {
     chunks: Vec<Chunk>,
 }
 
-/// What the end of the bag says of a chunk.
+/// The entry of a chunk at the end of the bag.
 struct Chunk {
     place: u64,
     first: u64,
@@ -25,7 +25,7 @@ struct Chunk {
     counts: Vec<u32>,
 }
 
-/// As large as `rosbag` makes them.
+/// The size of a chunk, that of `rosbag`.
 const CHUNK: usize = 768 * 1024;
 const VERSION: &[u8] = b"#ROSBAG V2.0\n";
 /// The first record is padded to this, so that it can be written again at the end.

@@ -6,7 +6,7 @@ use catalogue::Parameter;
 use catalogue::run::{SampleType, Settings};
 use std::str::FromStr;
 
-/// What a file of spikes says before the first.
+/// The header of a file of spikes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
     /// The scheme.
@@ -17,7 +17,7 @@ pub struct Header {
     pub channels: Vec<Settings>,
     /// Samples a second, if known.
     pub rate: Option<f64>,
-    /// Where the signal came from, and what was calibrated; decoding needs none of it.
+    /// The signal's origin, and what was calibrated; decoding needs none of it.
     pub notes: Vec<(&'static str, String)>,
 }
 
@@ -32,7 +32,7 @@ pub fn unrecorded(scheme: Scheme) -> Vec<&'static str> {
 /// The version of the format.
 const VERSION: &str = "1";
 
-/// As many addresses as there are.
+/// The number of addresses.
 const MOST_CHANNELS: usize = 1 << 16;
 
 /// Keys that decoding does not need, besides parameters that others were made from.

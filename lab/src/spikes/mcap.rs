@@ -13,7 +13,7 @@ pub(super) struct Mcap {
     chunk: Vec<u8>,
     /// The messages in the chunk: their topic, time and place.
     index: Vec<(usize, u64, u64)>,
-    /// What the end of the file says of each chunk.
+    /// The entry of each chunk at the end of the file.
     chunks: Vec<Vec<u8>>,
     /// How many messages each topic has.
     counts: Vec<u32>,
@@ -21,7 +21,7 @@ pub(super) struct Mcap {
     span: Option<(u64, u64)>,
 }
 
-/// As large as `rosbag` makes them.
+/// The size of a chunk, that of `rosbag`.
 const CHUNK: usize = 768 * 1024;
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 

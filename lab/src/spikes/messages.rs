@@ -28,7 +28,7 @@ impl Messages {
     /// Reads what decoding needs: the header where there is one, or else what all messages say together.
     ///
     /// # Errors
-    /// There are no spikes in the log, or it does not say enough of their scheme.
+    /// Returns an error if the log has no spikes, or does not say enough of their scheme.
     pub fn open(path: &Path, kind: Kind, accept_cut: bool) -> Result<(Self, Header)> {
         let file = path.display().to_string();
         let found = Found::read(Reading::open(path, kind, accept_cut)?)?;
@@ -120,19 +120,19 @@ impl Spikes for Messages {
     }
 }
 
-/// What a pass over a log finds.
+/// The findings of a pass over a log.
 #[derive(Default)]
 struct Found {
     topic: String,
-    /// What the header says, in our logs.
+    /// The header, in our logs.
     header: Option<String>,
     scheme: String,
-    /// Of the first message.
+    /// The start value of the first message.
     start: f64,
     range: (f64, f64),
     neurons: usize,
     first: i64,
-    /// Of all messages; the toolbox takes the mean of the thresholds.
+    /// The sum of the thresholds of all messages; the toolbox takes their mean.
     thresholds: f64,
     samples: u64,
     last: i64,
@@ -234,7 +234,7 @@ impl Found {
     }
 }
 
-/// As many neurons as there are.
+/// The number of neurons that addresses can tell apart.
 const MOST: usize = 1 << 16;
 
 #[cfg(test)]

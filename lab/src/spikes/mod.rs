@@ -25,7 +25,7 @@ use crate::output::Output;
 use anyhow::Result;
 use catalogue::run::Event;
 
-/// What comes of spikes and samples, in a file of one kind or another.
+/// A file of one kind or another that takes spikes and samples.
 pub trait Record {
     /// Takes note of the next samples and keeps the rows that are finite, for the encoder.
     ///
@@ -42,11 +42,11 @@ pub trait Record {
     /// Writes the end and gives back the output.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Returns an error if the file cannot be written.
     fn finish(self: Box<Self>, events: &mut Vec<Event>) -> Result<(Output, Summary)>;
 }
 
-/// Where spikes come from, in the order of samples.
+/// A source of spikes, in the order of samples.
 pub trait Spikes {
     /// Whether its events have times.
     fn is_timed(&self) -> bool;
@@ -54,13 +54,13 @@ pub trait Spikes {
     /// The next item; the last is [`Item::End`].
     ///
     /// # Errors
-    /// What is there makes no sense, or the end is missing.
+    /// Returns an error if an item makes no sense, or the end is missing.
     fn next(&mut self) -> Result<Item>;
 
-    /// Where the last item is, for an error.
+    /// The place of the last item, for an error.
     fn place(&self) -> String;
 
-    /// What a user should know of the file, complete after the last item.
+    /// Notes for the user on the file, complete after the last item.
     fn notes(&mut self) -> Vec<String> {
         Vec::new()
     }

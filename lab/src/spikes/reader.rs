@@ -7,12 +7,12 @@ use catalogue::run::Event;
 use spikewire::Polarity;
 use std::io::{BufRead, Read};
 
-/// What follows the header.
+/// One item after the header.
 #[derive(Debug, PartialEq)]
 pub enum Item {
     /// A spike; samples are counted as the file does.
     Event {
-        /// What it is.
+        /// The event.
         event: Event,
         /// The time of its sample in µs.
         time: Option<i64>,
@@ -62,7 +62,7 @@ impl<R: BufRead> Reader<R> {
     /// Reads the header.
     ///
     /// # Errors
-    /// It is not complete, or contradicts itself.
+    /// Returns an error if the header is incomplete or contradicts itself.
     pub fn open(input: R, file: &str) -> Result<(Self, Header)> {
         let mut reader = Self {
             input,

@@ -33,13 +33,13 @@ pub(super) trait Container {
     /// Adds a message of a topic.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Returns an error if the file cannot be written.
     fn add(&mut self, topic: usize, nanoseconds: u64, message: &[u8]) -> Result<()>;
 
     /// Writes the end and gives back the output.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Returns an error if the file cannot be written.
     fn finish(self: Box<Self>) -> Result<Output>;
 }
 
@@ -53,7 +53,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// That of a file of this name; none if it is a table.
+    /// The container of a file of this name; `None` if it is a table.
     pub fn of(path: &Path) -> Option<Self> {
         match path.extension()?.to_str()? {
             "bag" => Some(Self::Bag),
@@ -71,7 +71,7 @@ const UNTIMED: &str =
 pub struct Recorder {
     container: Box<dyn Container>,
     kind: Kind,
-    /// What all messages of a channel share.
+    /// The part that all messages of a channel share.
     empty: Vec<Spyke>,
     /// The lines of the header, until they are written.
     header: Option<String>,
@@ -104,7 +104,7 @@ impl Recorder {
     /// Starts a log. The ranges are those of the channels.
     ///
     /// # Errors
-    /// It cannot be written, or samples have no times.
+    /// Returns an error if the file cannot be written, or samples have no times.
     pub fn new(
         output: Output,
         format: Format,

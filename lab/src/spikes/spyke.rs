@@ -24,9 +24,9 @@ pub(crate) struct Spyke {
 /// A kind of message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// Of one neuron.
+    /// A message of one neuron.
     Spyke,
-    /// Of several, or with sub-timesteps.
+    /// A message of several neurons, or with sub-timesteps.
     SpykeArray,
     /// Text.
     String,
@@ -42,7 +42,7 @@ string scheme
 ";
 
 impl Kind {
-    /// What ROS 1 calls it.
+    /// Its name in ROS 1.
     pub(crate) fn ros1(self) -> &'static str {
         match self {
             Self::Spyke => "spyke_msgs/spyke",
@@ -51,7 +51,7 @@ impl Kind {
         }
     }
 
-    /// What ROS 2 calls it.
+    /// Its name in ROS 2.
     pub(crate) fn ros2(self) -> &'static str {
         match self {
             Self::Spyke => "spyke_msgs/msg/Spyke",
@@ -81,7 +81,7 @@ impl Kind {
         }
     }
 
-    /// What ROS 1 tells definitions apart by: the MD5 of the definition without comments.
+    /// The MD5 of the definition without comments, by which ROS 1 tells definitions apart.
     pub(crate) fn md5(self) -> &'static str {
         match self {
             Self::Spyke => "3fe7d788a9984f98947655b57e7a8ced",
@@ -92,7 +92,7 @@ impl Kind {
 }
 
 impl Spyke {
-    /// As ROS 1 sends it.
+    /// Encodes the message as ROS 1 sends it.
     pub(crate) fn ros1(&self, kind: Kind) -> Vec<u8> {
         let mut bytes = Vec::new();
         if kind == Kind::SpykeArray {
@@ -109,7 +109,7 @@ impl Spyke {
         bytes
     }
 
-    /// As ROS 2 sends it: numbers of four bytes are aligned, texts end with a zero.
+    /// Encodes as CDR, the wire format of ROS 2: four-byte alignment, NUL-terminated strings.
     pub(crate) fn cdr(&self, kind: Kind) -> Vec<u8> {
         let mut bytes = CDR.to_vec();
         if kind == Kind::SpykeArray {
@@ -169,7 +169,8 @@ const OF_TOOLBOX: [(&str, &str); 7] = [
     ("threshold_hsa", "t-hsa"),
 ];
 
-/// What messages call a scheme of ours. The toolbox's name of `grf` stays its own: there, neurons are numbered otherwise.
+/// The name of one of our schemes in messages: the toolbox's if it has one, but for `grf`, as its neurons are numbered
+/// otherwise.
 pub(crate) fn published(scheme: &'static str) -> &'static str {
     let same = OF_TOOLBOX.iter().find(|(name, own)| *own == scheme && *name != GAUSSIAN_FIELDS);
     same.map_or(scheme, |(name, _)| name)
@@ -178,7 +179,7 @@ pub(crate) fn published(scheme: &'static str) -> &'static str {
 /// GRF as the toolbox's node has it: its neurons are numbered from 0 where the paper's centres are from 1.
 pub(crate) const GAUSSIAN_FIELDS: &str = "gaussian_fields";
 
-/// Which scheme of ours messages mean.
+/// Our name of the scheme that messages name.
 pub(crate) fn meant(name: &str) -> &str {
     OF_TOOLBOX.iter().find(|(own, _)| *own == name).map_or(name, |(_, scheme)| scheme)
 }

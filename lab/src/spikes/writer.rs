@@ -33,7 +33,7 @@ pub struct Writer {
     line: Vec<u8>,
 }
 
-/// What went through.
+/// Counts of what was written.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Summary {
     /// All samples.
@@ -48,7 +48,7 @@ impl Writer {
     /// Writes the header.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Returns an error if the output cannot be written.
     pub fn new(mut output: Output, header: &Header, is_timed: bool) -> Result<Self> {
         let slots = match header.channels.first() {
             Some(settings) => header.scheme.shape(settings)?.slots,

@@ -1,4 +1,4 @@
-//! What settings cost on a flight controller, from the measured counts.
+//! The cost of settings on a flight controller, from the measured counts.
 
 use crate::scheme::Scheme;
 use anyhow::{Result, bail};
@@ -22,7 +22,7 @@ static MEASURED: LazyLock<BTreeMap<String, f64>> = LazyLock::new(|| {
         .unwrap_or_default()
 });
 
-/// What one channel costs.
+/// The cost of one channel.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Costs {
     /// How many samples after its own the code of a sample comes out.
@@ -36,7 +36,7 @@ pub struct Costs {
 }
 
 impl Costs {
-    /// Of these settings, on a core of the measured table.
+    /// The cost of these settings on a core of the measured table.
     pub fn new(scheme: Scheme, settings: &Settings, latency: usize, core: &str) -> Self {
         let counted = scheme.counted(settings).ok();
         let measured = counted.and_then(|counted| {

@@ -92,7 +92,8 @@ impl Evolution {
 
     /// Takes the points asked for, in their order and perhaps moved, with their values; the last may be missing.
     pub(super) fn tell(&mut self, points: Vec<(Vec<f64>, f64)>) {
-        /// What is not allowed has values far apart, which shall not outweigh all else.
+        /// The most that a value counts: settings that are not allowed have values far apart, which must not outweigh
+        /// all else.
         const MOST: f64 = 1e5;
         let mut successes = Vec::new();
         let tried = points.into_iter().zip(&self.asked);

@@ -28,14 +28,14 @@ pub struct Figures {
     pub below: Option<f64>,
     /// Events a second, if a rate is known.
     pub events_per_second: Option<f64>,
-    /// What the spikes tell: the entropy of a sample's code, a second.
+    /// The entropy of the spikes: of a sample's code, a second.
     pub bits_per_second: Option<f64>,
-    /// What samples would need that are rounded to as large an error.
+    /// The bits that samples rounded to as large an error would need, a second.
     pub raw_bits_per_second: Option<f64>,
 }
 
 impl Figures {
-    /// Of options on stretches, of which there is one at least.
+    /// The figures of settings on stretches, of which there is one at least.
     ///
     /// # Errors
     /// The options make no sense.
@@ -167,7 +167,7 @@ pub fn squares_below(values: &[f64], limit: f64) -> f64 {
     kept.map(|(_, power)| power).sum()
 }
 
-/// What each frequency adds to the sum of the squares, from 0 to half the rate.
+/// The part of each frequency in the sum of the squares, from 0 to half the rate.
 pub fn power(values: &[f64]) -> Vec<f64> {
     let count = values.len();
     if count < 2 {

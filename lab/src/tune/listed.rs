@@ -17,7 +17,7 @@ const PASSES_A_SETTING: usize = 200_000;
 const NEIGHBOURHOODS: usize = 24;
 /// Combinations of what is whole that are listed before anybody is asked whether to go on.
 const COMBINATIONS: usize = 8;
-/// Of listed outcomes, what the codec scores at most.
+/// The most of the listed outcomes that the codec scores.
 const MOST_SCORED: usize = 1000;
 
 /// The combinations of what is whole, and the outcomes of each that matter, with its place among them.

@@ -1,11 +1,11 @@
-//! What is looked for: a goal, limits, and the score of settings by the codec that flies.
+//! The problem to solve: a goal, limits, and the score of settings by the codec that flies.
 
 use super::{Costs, Extent, Stretch};
 use crate::scheme::Scheme;
 use anyhow::{Result, anyhow, bail};
 use catalogue::run::{Asked, Calibrated, Event, Known, SampleType, Settings};
 
-/// What is best.
+/// The goal of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
     /// The least RMSE at a spiking efficiency of at least so many percent.
@@ -16,7 +16,7 @@ pub enum Goal {
     Front,
 }
 
-/// What settings may cost at most.
+/// The most that settings may cost.
 #[derive(Clone, Debug, Default)]
 pub struct Limits {
     /// Bytes of a channel's encoder.
@@ -95,9 +95,9 @@ impl Limit {
 pub struct Excess {
     /// The limit.
     pub limit: Limit,
-    /// What the settings come to.
+    /// The figure of the settings.
     pub is: f64,
-    /// What they may come to.
+    /// The limit.
     pub may_be: f64,
     /// By how much it is too much, as a part of what it may be.
     pub part: f64,
@@ -110,9 +110,9 @@ pub struct Scored {
     pub options: Asked,
     /// Samples, spikes and errors.
     pub tally: Tally,
-    /// What they cost on a microcontroller.
+    /// The cost on a microcontroller.
     pub costs: Costs,
-    /// What they exceed, of limits and goal.
+    /// The limits and goals that the settings exceed.
     pub excess: Vec<Excess>,
 }
 
@@ -123,19 +123,19 @@ impl Scored {
     }
 }
 
-/// What is looked for.
+/// A scheme, a recording, a goal and limits.
 pub struct Problem<'a> {
     /// The scheme.
     pub scheme: Scheme,
     /// The sample type of the codec that is scored.
     pub sample: SampleType,
-    /// What the user has decided.
+    /// The parameters that the user has given.
     pub fixed: Asked,
     /// The stretches to tune on.
     pub train: &'a [Stretch],
-    /// What is best.
+    /// The goal.
     pub goal: Goal,
-    /// What settings may cost at most.
+    /// The most that settings may cost.
     pub limits: &'a Limits,
     /// The core whose measured instructions count.
     pub core: &'a str,
@@ -210,7 +210,7 @@ impl<'a> Problem<'a> {
         Ok((events, decoded, codec.latency()))
     }
 
-    /// What options come to on stretches, and the latency.
+    /// The score of settings on stretches, and the latency.
     ///
     /// # Errors
     /// They make no sense.

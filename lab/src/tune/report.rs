@@ -1,4 +1,4 @@
-//! What is told of the settings that were found.
+//! The report on the settings that were found.
 
 use super::problem::{Goal, Tally};
 use super::search::Found;
@@ -40,9 +40,9 @@ pub struct Row {
     pub whole: Figures,
     /// The paper's settings on the same blocks.
     pub paper: Option<Paper>,
-    /// What the settings cost on a microcontroller.
+    /// The cost of the settings on a microcontroller.
     pub costs: Costs,
-    /// What the sample type adds to the RMSE of `f32`, in percent.
+    /// The part that the sample type adds to the RMSE of `f32`, in percent.
     pub quantisation: Option<f64>,
     /// Settings that the codec scored.
     pub evaluated: usize,
@@ -52,7 +52,7 @@ pub struct Row {
     pub is_complete: bool,
     /// Whether the search ended before its budget of settings.
     pub is_cut_short: bool,
-    /// What a user should know.
+    /// Notes for the user.
     pub notes: Vec<String>,
     /// The settings.
     #[serde(skip)]
@@ -71,7 +71,7 @@ pub struct Paper {
 }
 
 impl Row {
-    /// Of the settings that a search has found.
+    /// The report on the settings that a search has found.
     ///
     /// # Errors
     /// They make no sense, which those of a search do.
@@ -128,7 +128,7 @@ impl Row {
         Ok(row)
     }
 
-    /// What speaks against the settings.
+    /// The reasons not to trust the settings.
     fn flags(&self, problem: &Problem, cut: &Cut, found: &Found) -> Vec<String> {
         /// Others may be better on held-out blocks by chance.
         const BY_CHANCE: f64 = 1.25;
@@ -214,7 +214,7 @@ impl Row {
         flags
     }
 
-    /// What a file of settings says of them.
+    /// The comments on the settings in their file.
     pub fn comments(&self, channel: &str) -> Vec<String> {
         let Self { scheme, sample, tuned_on, held_out, .. } = self;
         let held_out = held_out.map_or(String::new(), |own| {

@@ -25,13 +25,13 @@ pub struct TuneRequest {
     pub fixed: Asked,
     /// Whether the single taps of a filter are searched, beyond its shape, length and sum.
     pub free_taps: bool,
-    /// What is best; the least error at the efficiency of the paper's settings unless given.
+    /// The goal; the least error at the efficiency of the paper's settings unless given.
     pub goal: Option<Goal>,
-    /// What settings may cost.
+    /// The most that settings may cost.
     pub limits: Limits,
     /// Core of the measured table that tells instructions.
     pub core: String,
-    /// What is held out of each recording, to score the settings on.
+    /// The part of each recording that is held out, to score the settings on.
     pub hold_out: HoldOut,
     /// Frequency in Hz below which the error is told too.
     pub below: Option<f64>,
@@ -153,7 +153,7 @@ impl TuneRequest {
     }
 }
 
-/// What was found for one channel.
+/// The settings found for one channel.
 pub struct Tuned {
     /// The channel, with its blocks.
     pub channel: Cut,
@@ -163,7 +163,7 @@ pub struct Tuned {
     pub curves: Vec<Curve>,
     /// Why the other schemes do not reach the goal, and how near they come.
     pub missed: Vec<String>,
-    /// What speaks against the recordings, where they were searched anyway.
+    /// The reasons not to trust the recordings, if they were searched anyway.
     pub notes: Vec<String>,
 }
 
@@ -225,7 +225,7 @@ fn so_far(channel: &str, scheme: Scheme, best: &Scored) -> String {
     format!("{channel} {}: {state} {efficiency:.2} %, RMSE {rmse:.4}", scheme.name())
 }
 
-/// What became of a scheme on a channel.
+/// The result of a scheme on a channel.
 enum Outcome {
     Row(Box<Row>),
     Curve(Curve),

@@ -22,7 +22,7 @@ pub struct Budget<'a> {
     pub tick: &'a (dyn Fn(usize, Option<&Scored>) + Sync),
 }
 
-/// What a search has found.
+/// The settings that a search has found.
 pub struct Found {
     /// The best settings, allowed or not.
     pub best: Option<Scored>,

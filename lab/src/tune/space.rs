@@ -1,11 +1,11 @@
-//! Where settings are looked for: the searched parameters of a scheme as numbers between bounds, and back to options.
+//! The space of a search: the searched parameters of a scheme as numbers between bounds, and back to options.
 
 use super::chance::Chance;
 use crate::scheme::Scheme;
 use catalogue::run::{Asked, Value, taps};
 use catalogue::{Found, Parameter, Search, Unit};
 
-/// What of the signal the bounds hang on.
+/// The figures of the signal on which the bounds depend.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
     /// Its smallest sample.
@@ -31,7 +31,7 @@ struct Axis {
     high: f64,
 }
 
-/// What a number becomes.
+/// The parameter that a number becomes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Role {
     /// The logarithm of a number in this unit.

@@ -47,7 +47,7 @@ pub struct HoldOut {
 /// A block of fewer samples says nothing.
 const SHORTEST: usize = 20;
 
-/// So that the blocks held out are evenly spread, and neither the first nor the last.
+/// The offset with which the blocks held out are evenly spread, and neither the first nor the last.
 const OFFSET: f64 = 0.35;
 
 /// The stretches to tune on, and those held out: blocks next to each other are one stretch.

@@ -12,9 +12,9 @@ use anyhow::{Context, Result, bail};
 use std::collections::HashMap;
 use std::path::Path;
 
-/// What bags of all versions start with.
+/// The first bytes of a bag of any version.
 pub(super) const START: &[u8] = b"#ROSBAG V";
-/// What those start with that are read.
+/// The first bytes of a bag of the version that is read.
 const VERSION: &[u8] = b"#ROSBAG V2.0\n";
 
 /// Kinds of records.
@@ -42,7 +42,7 @@ pub(super) struct Bag {
     is_over: bool,
 }
 
-/// Where a message's bytes are.
+/// The place of a message's bytes.
 enum Message {
     InChunk(std::ops::Range<usize>),
     Alone,

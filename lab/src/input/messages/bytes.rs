@@ -8,7 +8,7 @@ use ruzstd::decoding::StreamingDecoder;
 use std::io::{self, BufReader, Cursor, Read};
 use std::path::Path;
 
-/// What files packed by Zstandard start with.
+/// The first bytes of a file packed by Zstandard.
 pub(super) const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
 /// The bytes of a file, unpacked if it is packed as a whole.
@@ -19,7 +19,7 @@ pub(super) struct Bytes {
 
 impl Bytes {
     /// # Errors
-    /// There is no such file, or it cannot be unpacked.
+    /// Returns an error if the file is missing or cannot be unpacked.
     pub(super) fn open(path: &Path) -> Result<Self> {
         let file =
             File::open(path).with_context(|| format!("{}: cannot be opened", path.display()))?;
@@ -39,7 +39,8 @@ impl Bytes {
         self.at
     }
 
-    /// So many bytes, or fewer at the end. What is said to be long takes no memory before it is there.
+    /// Takes this many bytes, or fewer at the end. A false length takes no memory, as bytes are read before room is
+    /// made.
     ///
     /// # Errors
     /// They cannot be read or unpacked.
@@ -64,7 +65,7 @@ impl Bytes {
 /// Whether a file is packed as a whole.
 ///
 /// # Errors
-/// It cannot be read.
+/// Returns an error if the file cannot be read.
 pub(super) fn is_packed(path: &Path) -> Result<bool> {
     let mut start = Vec::new();
     let file = File::open(path).with_context(|| format!("{}: cannot be opened", path.display()))?;
@@ -91,7 +92,7 @@ fn unpacked(file: File) -> io::Result<Box<dyn Read>> {
     })
 }
 
-/// What a compressed part of a log holds: all of it, or else as much as can be unpacked and what is wrong.
+/// Unpacks a compressed part of a log: all of it, or as much as can be unpacked and what is wrong.
 pub(super) fn unpack(how: &str, packed: &[u8], size: u64) -> (Vec<u8>, Option<String>) {
     let mut bytes = Vec::new();
     let mut limited =
@@ -141,7 +142,7 @@ pub(super) fn u64_from(bytes: &mut &[u8]) -> Option<u64> {
     Some(u64::from_le_bytes(*first))
 }
 
-/// So many bytes from the front.
+/// Takes this many bytes from the front.
 pub(super) fn take<'a>(bytes: &mut &'a [u8], count: u64) -> Option<&'a [u8]> {
     let (first, rest) = bytes.split_at_checked(usize::try_from(count).ok()?)?;
     *bytes = rest;

@@ -25,7 +25,7 @@ pub struct Channel {
     notes: Vec<String>,
 }
 
-/// Where in a message the fields are, and the time if it is in there.
+/// The places of the fields in a message, and of the time if the message has it.
 struct Plan {
     fields: Vec<Path>,
     time: Option<Time>,
@@ -153,7 +153,7 @@ impl Channel {
         Ok(())
     }
 
-    /// What is wrong where there was nothing.
+    /// The error of a topic without messages, or of an unknown topic.
     fn nothing(&self) -> anyhow::Error {
         let (file, topic) = (&self.file, &self.topic);
         if self.plans.iter().any(Option::is_some) {

@@ -9,9 +9,9 @@ use anyhow::Result;
 pub(super) struct Chunk {
     bytes: Vec<u8>,
     taken: usize,
-    /// Where it is in the file.
+    /// Its place in the file.
     at: u64,
-    /// It ends before it should, which was told.
+    /// Whether it ends too early, which was reported.
     is_cut: bool,
 }
 
@@ -19,7 +19,7 @@ impl Chunk {
     /// Begins a chunk, with what is wrong with it; whether its file ends within it was told.
     ///
     /// # Errors
-    /// It is damaged, and that was not accepted.
+    /// Returns an error if the chunk is damaged and that is not accepted.
     pub(super) fn begin(
         &mut self,
         at: u64,
@@ -36,7 +36,7 @@ impl Chunk {
         &self.bytes
     }
 
-    /// What is still to be read.
+    /// The bytes that are still to be read.
     pub(super) fn left(&self) -> &[u8] {
         &self.bytes[self.taken..]
     }
@@ -46,7 +46,7 @@ impl Chunk {
         self.taken
     }
 
-    /// Where it is in the file.
+    /// Its place in the file.
     pub(super) fn at(&self) -> u64 {
         self.at
     }
@@ -69,7 +69,7 @@ impl Chunk {
 
 /// A log of records, some of which are chunks of records.
 pub(super) trait Chunked {
-    /// What is known of a record outside of chunks once it is read.
+    /// A record outside of chunks, once it is read.
     type Record;
 
     /// The chunk that is being read.
@@ -78,7 +78,7 @@ pub(super) trait Chunked {
     /// Takes the next record of the chunk; gives the entry of a message.
     ///
     /// # Errors
-    /// It is damaged, and that was not accepted.
+    /// Returns an error if the log is damaged and that is not accepted.
     fn of_chunk(&mut self) -> Result<Option<Entry>>;
 
     /// Whether the last record outside of chunks was read.
@@ -87,19 +87,19 @@ pub(super) trait Chunked {
     /// Reads the next record outside of chunks; `None` at the end.
     ///
     /// # Errors
-    /// As for [`of_chunk`](Self::of_chunk).
+    /// See [`of_chunk`](Self::of_chunk).
     fn record(&mut self) -> Result<Option<Self::Record>>;
 
     /// Takes a record outside of chunks; gives the entry of a message.
     ///
     /// # Errors
-    /// As for [`of_chunk`](Self::of_chunk).
+    /// See [`of_chunk`](Self::of_chunk).
     fn outside(&mut self, record: Self::Record) -> Result<Option<Entry>>;
 
     /// Goes to the next message, in a chunk or outside.
     ///
     /// # Errors
-    /// As for [`of_chunk`](Self::of_chunk).
+    /// See [`of_chunk`](Self::of_chunk).
     fn next_message(&mut self) -> Result<Option<Entry>> {
         loop {
             let entry = if !self.chunk().left().is_empty() {

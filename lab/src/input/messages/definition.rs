@@ -57,14 +57,14 @@ pub(super) enum Shape {
     Counted,
 }
 
-/// Which dialect a definition is of.
+/// The dialect of a definition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Dialect {
     Ros1,
     Ros2,
 }
 
-/// Where in a message a number is.
+/// The steps to a number within a message.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Path(pub Vec<Step>);
 
@@ -83,7 +83,7 @@ pub(super) enum NoNumber {
     Several,
 }
 
-/// Where the two numbers of a time are: seconds and nanoseconds.
+/// The places of the two numbers of a time: seconds and nanoseconds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Stamp {
     pub seconds: Path,
@@ -99,7 +99,7 @@ impl Definition {
     /// From the text in a log, for a message of this type, such as `sensor_msgs/Imu`.
     ///
     /// # Errors
-    /// What cannot be understood.
+    /// Returns an error that names what cannot be understood.
     pub(super) fn parse(name: &str, text: &str, dialect: Dialect) -> Result<Self, String> {
         let mut texts = HashMap::new();
         let mut own = String::new();
@@ -134,7 +134,7 @@ impl Definition {
         self.structs.get(place).unwrap_or(const { &Struct { fields: Vec::new() } })
     }
 
-    /// Where the number of this name is, such as `angular_velocity.x` or `ranges[5]`.
+    /// The place of the number of this name, such as `angular_velocity.x` or `ranges[5]`.
     pub(super) fn number(&self, asked: &str) -> Result<Path, NoNumber> {
         match self.find(asked)? {
             (path, Kind::Number(_)) => Ok(path),
@@ -143,12 +143,12 @@ impl Definition {
         }
     }
 
-    /// Where the text of this name is.
+    /// The place of the text of this name.
     pub(super) fn text(&self, asked: &str) -> Option<Path> {
         self.find(asked).ok().filter(|(_, kind)| *kind == Kind::Text).map(|(path, _)| path)
     }
 
-    /// Where the time of this name is, such as `header.stamp`.
+    /// The place of the time of this name, such as `header.stamp`.
     pub(super) fn stamp(&self, asked: &str) -> Option<Stamp> {
         let Ok((path, Kind::Nested(place))) = self.find(asked) else { return None };
         let [seconds, nanoseconds] = &self.nested(place).fields[..] else { return None };
@@ -328,7 +328,7 @@ fn declared(line: &str) -> Option<(&str, &str)> {
     (!name.is_empty() && !behind.starts_with('=')).then_some((kind, name))
 }
 
-/// What logs leave out because every ROS has it.
+/// The definition of a type that logs leave out, as every ROS has it.
 fn built_in(name: &str, dialect: Dialect) -> Option<&'static str> {
     Some(match (name, dialect) {
         ("time", Dialect::Ros1) => "uint32 secs\nuint32 nsecs",

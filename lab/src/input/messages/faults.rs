@@ -1,4 +1,4 @@
-//! What is wrong with a log, and what is said of it.
+//! The faults of a log, and the notes on them.
 
 use anyhow::{Result, bail};
 use std::fmt::Display;
@@ -39,7 +39,7 @@ impl Faults {
     /// Something that reading can go on behind.
     ///
     /// # Errors
-    /// It was not accepted.
+    /// Returns an error if faults are not accepted.
     pub(super) fn skip(&mut self, at: u64, what: impl Display) -> Result<()> {
         if !self.is_accepted {
             bail!("{}: byte {at}: {what}; `accept_cut` goes on behind it", self.file);
@@ -54,7 +54,7 @@ impl Faults {
     /// Something that nothing can be read behind.
     ///
     /// # Errors
-    /// It was not accepted.
+    /// Returns an error if faults are not accepted.
     pub(super) fn end(&mut self, at: u64, what: impl Display) -> Result<()> {
         if !self.is_accepted {
             bail!("{}: byte {at}: {what}; `accept_cut` takes what is before", self.file);

@@ -13,9 +13,9 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::path::Path;
 
-/// What files start with.
+/// The first bytes of a file of any version.
 pub(super) const START: &[u8] = b"\x89MCAP";
-/// What those start with that are read.
+/// The first bytes of a file of the version that is read.
 const VERSION: &[u8] = b"\x89MCAP0\r\n";
 
 /// Kinds of records.
@@ -48,7 +48,7 @@ pub(super) struct Mcap {
     is_over: bool,
 }
 
-/// Where a message's bytes are.
+/// The place of a message's bytes.
 enum Message {
     InChunk(Range<usize>),
     InData(Range<usize>),
@@ -282,7 +282,7 @@ impl Log for Mcap {
     }
 }
 
-/// What a message holds that was packed by itself.
+/// Unpacks a message that was packed by itself.
 fn unpacked(message: &[u8]) -> Option<Vec<u8>> {
     // No message of ROS 2 starts like this.
     message.starts_with(&ZSTD).then(|| unpack("zstd", message, LARGEST_MESSAGE).0)

@@ -33,14 +33,14 @@ use faults::Faults;
 use std::path::Path;
 use topic::Topic;
 
-/// Which message came, of those of a log.
+/// One message of a log.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     /// Its topic's place among the log's.
     topic: usize,
     /// When it was recorded, in ns.
     pub time: i64,
-    /// Where in the file it is, or its chunk.
+    /// Its place in the file, or that of its chunk.
     pub at: u64,
     /// Its number on its topic, where the log counts them.
     pub sequence: Option<u32>,
@@ -60,11 +60,11 @@ trait Log {
     /// The bytes of the message that came last.
     fn message(&self) -> &[u8];
 
-    /// What is wrong with it, to add to and to tell; complete at the end.
+    /// The faults found so far, to add to and to report; complete at the end.
     fn faults(&mut self) -> &mut Faults;
 }
 
-/// What kinds of logs there are.
+/// The kinds of logs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A ROS 1 bag.
@@ -89,10 +89,10 @@ impl Kind {
     }
 }
 
-/// What kind of log this is, by how it starts, also when it is packed.
+/// Finds a log's kind from its first bytes, packed or not.
 ///
 /// # Errors
-/// It cannot be opened or read.
+/// Returns an error if the file cannot be opened or read.
 pub fn kind_of(path: &Path) -> Result<Option<Kind>> {
     const START: u64 = 32;
     if files::is_dir(path) || path.file_name().is_some_and(|name| name == rosbag2::METADATA) {
@@ -106,7 +106,7 @@ pub fn kind_of(path: &Path) -> Result<Option<Kind>> {
     Ok(kind(&start))
 }
 
-/// What kind of log starts like this.
+/// The kind of a log that starts with these bytes.
 fn kind(start: &[u8]) -> Option<Kind> {
     let kinds = [
         (bag::START, Kind::Bag),
@@ -120,7 +120,7 @@ fn kind(start: &[u8]) -> Option<Kind> {
 /// Opens a log.
 ///
 /// # Errors
-/// It cannot be opened, or its start is damaged.
+/// Returns an error if the log cannot be opened, or its start is damaged.
 fn open(path: &Path, kind: Kind, accept_cut: bool) -> Result<Box<dyn Log>> {
     let file = path.display().to_string();
     let faults = Faults::new(&file, accept_cut);

@@ -14,7 +14,7 @@ pub struct Reading {
 
 impl Reading {
     /// # Errors
-    /// It cannot be opened.
+    /// Returns an error if the log cannot be opened.
     pub fn open(path: &Path, kind: Kind, accept_cut: bool) -> Result<Self> {
         let file = path.display().to_string();
         Ok(Self { log: open(path, kind, accept_cut)?, file, entry: None })
@@ -47,7 +47,7 @@ impl Reading {
     /// A number of the message; none where an array is shorter.
     ///
     /// # Errors
-    /// There is no such field.
+    /// Returns an error if there is no such field.
     pub fn number(&self, field: &str) -> Result<Option<f64>> {
         let topic = self.own().context("there is no message")?;
         let definition =
@@ -59,10 +59,10 @@ impl Reading {
         number.map_err(|fault| anyhow!("{}: {fault}", self.place()))
     }
 
-    /// What a neuron did: that of `spike`, or its place in the array of that name.
+    /// A neuron's spike: that of the field `spike`, or of its place in the array of that name.
     ///
     /// # Errors
-    /// There is no such field.
+    /// Returns an error if there is no such field.
     pub fn spike(&self, place: usize, of: usize) -> Result<Option<i8>> {
         let is_one = self.own().is_some_and(|topic| {
             topic.definition.as_ref().is_ok_and(|own| own.number("spike").is_ok())
@@ -96,13 +96,13 @@ impl Reading {
         Ok(microseconds(told.unwrap_or(entry.time)))
     }
 
-    /// Where the message is, for an error.
+    /// The place of the message, for an error.
     pub fn place(&self) -> String {
         let at = self.entry.map_or(0, |entry| entry.at);
         format!("{}: byte {at}, a message of topic {}", self.file, self.topic())
     }
 
-    /// What is to be said of the log, complete at its end.
+    /// The notes on the log, complete at its end.
     pub fn notes(&mut self) -> Vec<String> {
         self.log.faults().notes()
     }

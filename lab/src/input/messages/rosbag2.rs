@@ -13,7 +13,7 @@ use anyhow::{Context, Result, bail};
 use std::collections::{HashMap, VecDeque};
 use std::path::{Path, PathBuf};
 
-/// What a directory that is a bag holds.
+/// The file that a bag's directory holds.
 pub(super) const METADATA: &str = "metadata.yaml";
 
 /// Why messages that are not common cannot be read.

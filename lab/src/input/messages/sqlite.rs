@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::Path;
 
-/// What files start with.
+/// The first bytes of a database.
 pub(super) const START: &[u8] = b"SQLite format 3\0";
 
 /// A file that is open.
@@ -46,7 +46,7 @@ struct Page {
 /// A row: the values of its columns.
 #[derive(Debug)]
 pub(super) struct Row {
-    /// Where in the file its page is.
+    /// The place of its page in the file.
     pub at: u64,
     values: Vec<Value>,
 }
@@ -62,7 +62,7 @@ pub(super) enum Value {
 
 impl Database {
     /// # Errors
-    /// It is no such file.
+    /// Returns an error if the file is no database.
     pub(super) fn open(path: &Path) -> Result<Self> {
         let name = path.display();
         let mut file = File::open(path).with_context(|| format!("{name}: cannot be opened"))?;

@@ -75,10 +75,10 @@ impl Topic {
     }
 }
 
-/// What a log holds of one topic.
+/// A summary of one topic of a log.
 #[derive(Debug)]
 pub struct Overview {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// The type of its messages, if they have one.
     pub kind: String,
@@ -101,7 +101,7 @@ pub struct Overview {
 /// A log at a glance, by topic, and what is to be said of it besides.
 ///
 /// # Errors
-/// It cannot be read.
+/// Returns an error if the log cannot be read.
 pub fn overview(
     path: &std::path::Path,
     kind: Kind,
@@ -147,7 +147,7 @@ struct Watched {
     clock: Option<Clock>,
     rollover: Rollover,
     count: u64,
-    /// Where messages count themselves.
+    /// The place of the number with which messages count themselves.
     counter: Option<Path>,
     previous: Option<u32>,
     missing: u64,

@@ -12,12 +12,12 @@ pub(super) enum Wire {
     Cdr,
 }
 
-/// What is wrong with a message.
+/// The fault of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fault {
-    /// It ends within its fields.
+    /// The message ends within its fields.
     Short,
-    /// It is not plain CDR.
+    /// The message is not plain CDR.
     Encapsulation(u16),
     /// How long that is depends on the writer.
     WideText,
@@ -76,7 +76,7 @@ pub(super) fn text(
     Some(text.trim_end_matches('\0').to_owned())
 }
 
-/// What is left of a message.
+/// The rest of a message.
 struct Input<'a> {
     bytes: &'a [u8],
     at: usize,

@@ -54,7 +54,7 @@ impl Format {
         self.fields.iter().filter(|field| field.kind == "char")
     }
 
-    /// Where the time is when a message was logged, if its messages say that.
+    /// The place of the time at which a message was logged, if its messages have it.
     pub(super) fn time(&self, formats: &Formats) -> Option<Number> {
         let mut offset = 0;
         for field in &self.fields {

@@ -22,11 +22,11 @@ pub struct Log {
     series: Vec<Series>,
     messages: Vec<(usize, Range<usize>)>,
     file: String,
-    /// What was skipped, and what the logger missed.
+    /// Messages that were skipped, and what the logger missed.
     pub findings: Findings,
 }
 
-/// What a log holds of one instance of a topic.
+/// A summary of one instance of a topic.
 #[derive(Debug, Default)]
 pub struct Topic {
     /// Its fields of numbers.
@@ -41,7 +41,7 @@ impl Log {
     /// Reads a log and sees to it that it is whole.
     ///
     /// # Errors
-    /// It is not a flight log, or cut short and that was not accepted.
+    /// Returns an error if the file is no flight log, or is cut short and that is not accepted.
     pub fn read(path: &Path, accept_cut: bool) -> Result<Self> {
         let file = path.display().to_string();
         let mut bytes = files::read(path).with_context(|| format!("{file}: cannot be read"))?;
@@ -77,7 +77,7 @@ impl Log {
         Ok(Self { bytes, series, messages, file, findings })
     }
 
-    /// What the log holds, by topic; later instances as `topic:1`.
+    /// The log's topics by name; later instances as `topic:1`.
     pub fn topics(&self) -> BTreeMap<String, Topic> {
         let mut topics: BTreeMap<String, Topic> = BTreeMap::new();
         self.for_each(None, |series, time, _| {

@@ -8,7 +8,7 @@ use std::ops::Range;
 /// The length of the file's header.
 pub(super) const HEADER: usize = 16;
 
-/// What there is to say of a log besides its data.
+/// Findings on a log besides its data.
 #[derive(Debug, Default)]
 pub struct Findings {
     unregistered: Found,
@@ -16,9 +16,9 @@ pub struct Findings {
     lengths: Found,
     damaged: Found,
     dropouts: Dropouts,
-    /// Where the last message begins that does not end.
+    /// The place at which the last message, which does not end, begins.
     pub(super) cut: Option<usize>,
-    /// Where the first damage is, and where messages go on.
+    /// The place of the first damage, and that at which messages go on.
     pub(super) damage: Option<Range<usize>>,
 }
 
@@ -82,16 +82,16 @@ struct Message {
 pub(super) struct Scan<'a> {
     bytes: &'a [u8],
     formats: Formats,
-    /// What each registered id stands for now, as a place in `series`.
+    /// The present meaning of each registered id, as an index of `series`.
     registered: HashMap<u16, usize>,
     series: Vec<Series>,
     messages: Vec<(usize, Range<usize>)>,
     findings: Findings,
 }
 
-/// What can be read of a log.
+/// The readable part of a log.
 pub(super) struct Scanned {
-    /// What messages of data may be.
+    /// The series of messages, by id.
     pub series: Vec<Series>,
     /// The good messages of data in their order: which of the above, and where in the file.
     pub messages: Vec<(usize, Range<usize>)>,
@@ -133,7 +133,7 @@ impl<'a> Scan<'a> {
         Scanned { series, messages, findings }
     }
 
-    /// Where data was appended later, such as after a crash.
+    /// The place at which data was appended later, such as after a crash.
     fn appended(&self) -> Option<usize> {
         let first = self.header(HEADER, self.bytes.len()).filter(|first| first.kind == b'B')?;
         let content = &self.bytes[first.content];

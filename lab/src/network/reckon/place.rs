@@ -1,4 +1,4 @@
-//! Where on the chip the neurons of the layers are.
+//! The places of the layers' neurons on the chip.
 
 use super::super::Trained;
 use anyhow::{Result, ensure};
@@ -20,7 +20,7 @@ impl Places {
     /// Finds room for the network.
     ///
     /// # Errors
-    /// There is not enough of it.
+    /// Returns an error if the chip has too few neurons, inputs or outputs.
     pub(super) fn new(trained: &Trained, has_bias: bool) -> Result<Self> {
         let mut neurons = Vec::new();
         let mut by_layer = Vec::new();

@@ -16,7 +16,7 @@ const LEAST_KEEP: f64 = 0.875;
 const LARGEST: f64 = 127.0;
 /// The largest potential that the recording may make: the rest of the range is for other recordings.
 const ROOM: f64 = 0.8 * 32_767.0;
-/// Of the scale with which the largest weight just fits, which parts are tried.
+/// The scales that are tried, as parts of the one with which the largest weight just fits.
 const SCALES: [f64; 8] = [1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.6];
 /// Shifts left that weights may have.
 const SHIFTS: u8 = 8;
@@ -42,7 +42,7 @@ pub(super) struct Quantised {
     pub(super) bias: Option<usize>,
     /// By layer, its name and size.
     pub(super) layers: Vec<(String, usize)>,
-    /// What an answer of 1 stands for in the training's units; none if an answer's bits are the spikes of a neuron.
+    /// The value of an answer of 1 in the training's units; `None` if an answer's bits are the spikes of a neuron.
     pub(super) unit: Option<f64>,
     /// By layer, then of the outputs, if they have weights.
     pub(super) changes: Vec<Change>,
@@ -50,7 +50,7 @@ pub(super) struct Quantised {
     pub(super) shared_keeps: (usize, f64),
 }
 
-/// What became of weights.
+/// The change of weights by rounding.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Change {
     pub(super) name: String,
@@ -59,7 +59,7 @@ pub(super) struct Change {
     pub(super) clipped: usize,
     /// Too small for the chip.
     pub(super) vanished: usize,
-    /// Of the squares of the weights, and of their changes.
+    /// The sums of the squares of the weights, and of their changes.
     sums: [f64; 2],
 }
 
@@ -140,7 +140,7 @@ fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
 /// the neurons that are done and those in all.
 ///
 /// # Errors
-/// It does not fit.
+/// Returns an error if the network does not fit.
 pub(super) fn quantise(
     trained: &Trained,
     inputs: &Trains,
@@ -273,7 +273,7 @@ fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> 
     trained.layers.iter().zip(before).map(of_layer).collect()
 }
 
-/// What drives a layer in a step.
+/// The input that drives a layer in a step.
 struct Drive {
     /// Inputs of the network, each once.
     inputs: Vec<u16>,

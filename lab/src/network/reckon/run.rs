@@ -86,7 +86,7 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
 /// The network as bytes.
 ///
 /// # Errors
-/// It is no network of the chip.
+/// Returns an error if the chip does not take the network.
 pub(super) fn bytes(network: &Quantised) -> Result<Vec<u8>> {
     let mut bytes = vec![0; LARGEST];
     let length = ReckOnBytes::write(network, &mut bytes)?;

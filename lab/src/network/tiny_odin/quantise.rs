@@ -12,14 +12,14 @@ const NEURONS: usize = 256;
 const ROWS: usize = 256;
 const MAX_THRESHOLD: f64 = 2047.0;
 const MAX_LEAK: f64 = 127.0;
-/// What the largest weight may become: above 7 it is clipped, for the sake of the others.
+/// The values tried for the largest weight: above 7 it is clipped, for the sake of the others.
 const LARGEST: [f64; 20] = [
     7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 10.0, 3.0, 12.0, 2.0, 14.0, 1.0, 16.0, 6.5, 5.5, 4.5, 3.5, 7.5,
     8.5, 20.0,
 ];
 /// From how many of them the search goes on.
 const CLIMBS: usize = 2;
-/// Of the leak at half the threshold, which parts are tried.
+/// The leaks that are tried, as parts of the leak at half the threshold.
 const LEAKS: [f64; 7] = [1.0, 0.5, 0.75, 1.5, 2.0, 3.0, 0.0];
 /// Neurons of each layer that tell which steps suit it.
 const SURVEYED: usize = 32;
@@ -49,7 +49,7 @@ pub(super) struct Quantised {
 /// A layer's neurons.
 #[derive(Clone, Debug)]
 pub(super) struct ChipLayer {
-    /// As its file calls it.
+    /// The name in its file.
     pub name: String,
     /// How many spikes it takes from before it.
     inputs: usize,
@@ -62,11 +62,11 @@ pub(super) struct ChipLayer {
 pub(super) struct ChipNeuron {
     /// By input, then in a recurrent layer by its neurons.
     pub weights: Vec<i8>,
-    /// What every step adds.
+    /// The weight that every step adds.
     pub bias: i8,
-    /// Where it fires.
+    /// The potential at which it fires.
     pub threshold: u16,
-    /// What a leak takes.
+    /// The amount that a leak takes off.
     pub leak: u8,
     /// How many weights were larger than the chip's.
     pub clipped: usize,
@@ -77,7 +77,7 @@ pub(super) struct ChipNeuron {
 /// order. Calls `progress` with the neurons that are done and those in all.
 ///
 /// # Errors
-/// It does not fit.
+/// Returns an error if the network does not fit.
 pub(super) fn quantise(
     trained: &Trained,
     inputs: &Trains,
@@ -170,14 +170,14 @@ fn check_room(trained: &Trained, has_bias: bool) -> Result<()> {
 
 /// The spikes that drive a layer, by step: its inputs, then in a recurrent layer its own neurons, counted on from them.
 struct Drive {
-    /// Where each step's spikes end.
+    /// The end of each step's spikes.
     ends: Vec<usize>,
     spikes: Vec<u16>,
 }
 
 impl Drive {
-    /// As the chip's neurons see it: a spike of a neuron comes in its own step, behind the inputs. `fired` stands for
-    /// what the layer itself will do.
+    /// The spikes as the chip's neurons see them: those of neurons come in their own step, behind the inputs. `fired`
+    /// is what the layer itself will do.
     fn new(inputs: &Trains, layer: &Layer, fired: &Trains) -> Self {
         let (mut ends, mut spikes) = (Vec::new(), Vec::new());
         let first = layer.inputs() as u16;
@@ -247,16 +247,16 @@ impl ChipLayer {
     }
 }
 
-/// What of a neuron is searched.
+/// The searched settings of a neuron.
 #[derive(Clone, Copy)]
 struct Choice {
-    /// What a weight of 1 on the chip stands for.
+    /// The value of a weight of 1 on the chip.
     unit: f64,
     threshold: u16,
     leak: u8,
 }
 
-/// What a neuron is to do.
+/// The spikes that a neuron should have.
 struct Aim<'a> {
     drive: &'a Drive,
     /// How often it fires, by step.
@@ -301,7 +301,7 @@ fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, ChipNeuro
     (least, neuron(best))
 }
 
-/// Where the search starts: scales, with the threshold that belongs to them and some leaks.
+/// The first choices of the search: scales, with the threshold that belongs to them and some leaks.
 fn choices(layer: &Layer, at: usize, steps_a_leak: usize) -> Vec<Choice> {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).chain(&layer.bias[at..=at]);
@@ -500,7 +500,7 @@ mod tests {
         }
     }
 
-    /// What the chip can hold comes out as it is: the neurons fire at the same steps.
+    /// A network that the chip can hold comes out as it is: the neurons fire at the same steps.
     #[test]
     fn whole_weights_without_a_leak_lose_nothing() {
         let weights = vec![vec![3.0, 7.0, 1.0], vec![2.0, 0.0, 5.0]];

@@ -22,7 +22,7 @@ pub(super) enum Encoding {
     Signed,
     /// Seven bits a byte.
     Unsigned,
-    /// Of 14 bits, negated.
+    /// 14 bits, negated.
     Negative14,
     /// Up to eight numbers, and a byte that says which are not 0.
     UpToEight,

@@ -2,13 +2,13 @@
 
 use super::encoding::Encoding;
 
-/// What is needed of the head to read frames.
+/// The part of the header that is needed to read frames.
 #[derive(Clone, Debug)]
 pub(super) struct Header {
     pub version: i64,
     /// A frame of all numbers comes every so many iterations.
     pub full_every: i64,
-    /// Of so many iterations, so many are logged.
+    /// Numerator and denominator: so many of so many loop iterations are logged.
     pub logged: (i64, i64),
     pub min_throttle: i32,
     pub min_motor: i32,
@@ -37,7 +37,7 @@ impl Header {
     /// From the lines of a log.
     ///
     /// # Errors
-    /// What is missing or not known.
+    /// Returns an error that names what is missing or unknown.
     pub(super) fn parse(lines: &[(String, String)]) -> Result<Self, String> {
         let get = |key: &str| {
             lines.iter().rev().find(|(own, _)| own == key).map(|(_, value)| value.as_str())
@@ -115,7 +115,7 @@ impl Fields {
         Ok(Self { names, signed, predictors, encodings })
     }
 
-    /// Where a field is.
+    /// The index of a field.
     pub(super) fn place(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|own| own == name)
     }

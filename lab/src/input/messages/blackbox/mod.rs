@@ -16,7 +16,7 @@ use encoding::{Fault, Input};
 use header::{Fields, Header};
 use std::path::Path;
 
-/// What a log starts with.
+/// The first bytes of a log.
 pub(super) const START: &[u8] = b"H Product:Blackbox";
 
 /// The topic of the frames of the main loop.
@@ -31,7 +31,7 @@ const LONGEST_JUMP: (i64, i64) = (10_000_000, 5000);
 pub(super) struct Blackbox {
     bytes: Bytes,
     faults: Faults,
-    /// What was read of the file and is not taken yet, from `at` on, and where in the file it starts.
+    /// Bytes read from the file and not yet taken, from `at` on, and the place of the first in the file.
     window: Vec<u8>,
     at: usize,
     start: u64,
@@ -41,7 +41,7 @@ pub(super) struct Blackbox {
     session: Option<Session>,
     topics: Vec<Topic>,
     message: Vec<u8>,
-    /// Where what is damaged began.
+    /// The place at which the present damage began.
     damaged: Option<u64>,
 }
 
@@ -64,7 +64,7 @@ struct Session {
     time: usize,
 }
 
-/// What came of a frame.
+/// The result of reading a frame.
 enum Frame {
     Message { topic: usize, time: i64, numbers: Vec<i64> },
     Other,
@@ -225,7 +225,7 @@ impl Blackbox {
     }
 }
 
-/// What frames begin with.
+/// The bytes with which frames begin.
 const KINDS: &[u8] = b"IPSGHE";
 
 impl Session {
