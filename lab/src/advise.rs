@@ -60,12 +60,12 @@ impl AdviseRequest {
 #[derive(Debug, Serialize)]
 pub struct Advice {
     look: Look,
-    /// Why nothing is advised, if so.
+    /// The reason that nothing is advised, if so.
     objection: Option<String>,
     max_rmse: f64,
     /// The schemes that reach it, the advised one first.
     reaching: Vec<Candidate>,
-    /// Those that do not, and why.
+    /// The schemes that do not, each with the reason.
     others: Vec<String>,
     /// Whether a search ended before its budget of settings.
     is_cut_short: bool,
@@ -214,7 +214,7 @@ impl Advice {
         self.reaching.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
     }
 
-    /// Why nothing is advised.
+    /// The reason that nothing is advised.
     pub fn why_not(&self) -> String {
         self.objection.clone().unwrap_or_else(|| {
             format!(

@@ -21,7 +21,7 @@ fn list(value: &Value) -> Option<Vec<f64>> {
     value.number().map(|number| vec![number]).or_else(|| value.numbers().map(<[f64]>::to_vec))
 }
 
-/// At most six digits that mean anything.
+/// Writes a number with at most six significant digits.
 pub fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{}", value + 0.0);

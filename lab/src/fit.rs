@@ -20,7 +20,7 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// For a channel that has no samples yet.
+    /// The fit of a channel that has no samples yet.
     pub fn new(scheme: Scheme, settings: &Settings) -> Self {
         // A rate code adds up its filters on its shift.
         let reach = settings

@@ -73,7 +73,7 @@ const WHITE: f64 = 0.6;
 const WINDOW: usize = 64;
 
 impl Look {
-    /// At a recording with one sample at least.
+    /// Examines a recording with one sample at least.
     pub fn at(recording: &Recording) -> Self {
         let values = &recording.values;
         let samples = values.len();
@@ -131,7 +131,7 @@ impl Look {
         }
     }
 
-    /// Why nothing should be tuned on it, if so.
+    /// The reason not to tune on it, if there is one.
     pub fn objection(&self) -> Option<String> {
         let Self { name, samples, min, rejected, deviation, noise, clipped, .. } = self;
         match self.verdict {
@@ -205,7 +205,7 @@ fn flatness(values: &[f64]) -> f64 {
     if arithmetic > 0.0 { logarithm.exp() / arithmetic } else { 1.0 }
 }
 
-/// By window, whether it moves as little as where the channel is quietest: the channel rests there.
+/// For each window, whether it moves as little as where the channel is quietest: the channel rests there.
 fn quiet(values: &[f64]) -> Vec<bool> {
     const QUIET: f64 = 4.0;
     let deviations: Vec<f64> = values.chunks(WINDOW).map(deviation).collect();

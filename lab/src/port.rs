@@ -19,7 +19,7 @@ pub enum Bytes {
     Some(usize),
     /// No bytes yet.
     NotYet,
-    /// No more.
+    /// The end of the bytes.
     End,
 }
 

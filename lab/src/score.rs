@@ -1,4 +1,4 @@
-//! How few spikes a trial has, and how near they come to the signal.
+//! Scores a trial: how few spikes it has, and how near they come to the signal.
 
 use crate::brief::brief;
 use crate::steep::Steep;
@@ -26,7 +26,7 @@ pub struct Figures {
     pub spikes_per_second: Option<f64>,
     /// The parameters that ran.
     pub parameters: BTreeMap<&'static str, Value>,
-    /// How steep the signal is for step forward, of which scheme alone it is told.
+    /// The signal's slope beside what step forward follows; `None` for other schemes.
     pub slope: Option<Steep>,
     /// Notes for the user.
     pub notes: Vec<String>,

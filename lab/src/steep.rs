@@ -6,7 +6,7 @@ use crate::trial::Recording;
 use catalogue::run::Settings;
 use serde::Serialize;
 
-/// How steep a recording is, beside what the code follows.
+/// The slope of a recording, beside that which the code follows.
 #[derive(Clone, Debug, Serialize)]
 pub struct Steep {
     /// The scheme.
@@ -45,7 +45,7 @@ impl Steep {
         })
     }
 
-    /// In plain words.
+    /// A sentence on both slopes.
     pub fn words(&self) -> String {
         const FEW: f64 = 0.1;
         let Self { scheme, steps_above_threshold: above, part, per, .. } = self;

@@ -1,10 +1,10 @@
-//! When samples were, from the times of some of them.
+//! The times of samples, from those of some of them.
 
 use std::collections::VecDeque;
 
 /// Times of samples in order, those not known evenly spaced between those that are.
 pub struct Timeline {
-    /// From sample to sample, in µs.
+    /// The usual step from sample to sample, in µs.
     step: f64,
     before: Option<(u64, i64)>,
     ahead: VecDeque<(u64, i64)>,
@@ -28,7 +28,7 @@ impl Timeline {
         self.ahead.len()
     }
 
-    /// When a sample was, asked for in order.
+    /// The time of a sample. Samples must be asked for in order.
     pub fn at(&mut self, sample: u64) -> i64 {
         while let Some(&known) = self.ahead.front().filter(|(known, _)| *known <= sample) {
             self.before = Some(known);

@@ -1,4 +1,4 @@
-//! From frames to values, with the receiver that runs on boards, in any sample type.
+//! Decodes frames to values, with the receiver that runs on boards, in any sample type.
 
 use crate::events::{Held, Item, Known, Values};
 use crate::scheme::Scheme as Chosen;
@@ -202,7 +202,7 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     one: f64,
     /// The sample type of the sender.
     kind: SampleKind,
-    /// Beside what the receiver itself counts.
+    /// Number of events outside, beside those that the receiver counts.
     outside: u64,
     /// Whether keyframes are what a decoder holds already.
     are_held: bool,

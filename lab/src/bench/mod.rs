@@ -17,7 +17,7 @@ use statistics::Statistics;
 /// Signals a case, each with a generator of its own.
 pub const MOST_TESTS: usize = 1_000_000;
 
-/// One case of the benchmark: what came out of all its tests, by scheme.
+/// One case of the benchmark: the results of all its tests, by scheme.
 pub struct CaseResult {
     /// The signals' duration in seconds.
     pub seconds: usize,

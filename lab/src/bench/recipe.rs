@@ -30,7 +30,7 @@ const BETA: f32 = 1.5;
 /// Runs all schemes, in the order of the columns.
 ///
 /// # Panics
-/// If the signal is shorter than a window or never moves, which those of the benchmark do.
+/// If the signal is shorter than a window or never moves: none of the benchmark is or does.
 #[expect(clippy::expect_used, reason = "the signals are the benchmark's own")]
 pub(super) fn run(signal: &[f32]) -> [Outcome; COLUMNS] {
     try_run(signal).expect("the benchmark's signals rise and fall")

@@ -209,7 +209,7 @@ impl Writer {
         self.line.push(b',');
     }
 
-    /// In as few digits as name the number: `f32` and fixed point come back bit for bit.
+    /// Writes a number with the fewest digits that read back to the same bits, in `f32` and in fixed point.
     fn value(&mut self, value: f64) {
         let mut digits = zmij::Buffer::new();
         let text = match self.values {

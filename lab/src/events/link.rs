@@ -23,10 +23,10 @@ pub trait Values {
     /// How many keyframes came for a scheme that has none.
     fn unused_keyframes(&self) -> u64;
 
-    /// How keyframes compare with the values before them.
+    /// The comparison of keyframes with the values before them.
     fn held(&self) -> Held;
 
-    /// Why no value was exact so far; `None` if one was.
+    /// The reason that no value was exact so far; `None` if one was.
     fn withheld(&self) -> Option<Withheld>;
 }
 
@@ -128,7 +128,7 @@ pub(super) struct Writer {
     coding: Coding,
     /// Keyframes that wait for their frame, all of one tick and sample type.
     keyframes: Vec<Keyframe>,
-    /// When what comes next happens, as far as it is known.
+    /// The tick of the next item, as far as it is known.
     tick: Tick,
     /// How often it restarted.
     starts: u32,

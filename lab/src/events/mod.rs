@@ -38,9 +38,9 @@ pub enum Item {
         tick: Tick,
         /// Where.
         address: u16,
-        /// In the recording's unit.
+        /// The value, in the recording's unit.
         value: f64,
-        /// How well it is known.
+        /// The certainty of the value.
         known: Known,
     },
     /// This many frames never arrived.
@@ -51,7 +51,7 @@ pub enum Item {
     Restart,
 }
 
-/// How well a decoded value is known.
+/// The certainty of a decoded value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Known {
     /// The value came as a keyframe.
@@ -67,7 +67,7 @@ pub trait EventReader {
     /// Takes bytes, cut anywhere, and adds what they complete.
     ///
     /// # Errors
-    /// They are of another format.
+    /// Returns an error if the bytes are of another format.
     fn read(&mut self, bytes: &[u8], items: &mut Vec<Item>) -> Result<()>;
 
     /// The end of the bytes; adds what was held back.

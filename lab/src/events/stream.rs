@@ -52,7 +52,7 @@ impl<'a> Stream<'a> {
     /// Takes bytes, cut anywhere, that arrive at this time if it means anything.
     ///
     /// # Errors
-    /// They cannot be read, or what they mean cannot be written.
+    /// Returns an error if the bytes cannot be read, or their meaning cannot be written.
     pub fn push(
         &mut self,
         bytes: &[u8],
@@ -153,7 +153,7 @@ impl<'a> Stream<'a> {
     /// Refuses bytes none of which meant anything in this format.
     ///
     /// # Errors
-    /// Some were skipped, and there was neither event nor frame.
+    /// Returns an error if bytes were skipped, and there was neither event nor frame.
     pub fn check_format(&self, format: Format, file: &str) -> Result<()> {
         let Tally { skipped, link, .. } = self.tally();
         let frames = link.map_or(0, |link| link.frames);

@@ -45,16 +45,16 @@ pub struct LinkTally {
     pub unused_keyframes: u64,
     /// The comparison of keyframes with the values just before them.
     pub held: Held,
-    /// Why no value is exact, of frames that are decoded.
+    /// The reason that no value is exact, if frames are decoded.
     pub withheld: Option<Withheld>,
 }
 
 /// Keyframes of a code whose decoder should hold them already.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Held {
-    /// Those that followed an exact value.
+    /// Number of keyframes that followed an exact value.
     pub compared: u64,
-    /// Those that were another.
+    /// Number of those that differed from it.
     pub contradicted: u64,
 }
 

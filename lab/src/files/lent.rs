@@ -19,7 +19,7 @@ pub trait Bytes {
     /// Reads from a place on and returns how many bytes were read, which is 0 at the end only.
     ///
     /// # Errors
-    /// They cannot be read.
+    /// Returns an error if the bytes cannot be read.
     fn read_at(&self, place: u64, into: &mut [u8]) -> io::Result<usize>;
 }
 
@@ -62,7 +62,7 @@ impl File {
     /// Opens a file that was lent.
     ///
     /// # Errors
-    /// No file of this name was lent.
+    /// Returns an error if no file of this name was lent.
     pub fn open(path: &Path) -> io::Result<Self> {
         let found = LENT.with_borrow(|lent| lent.get(path).cloned());
         let content = found.ok_or(ErrorKind::NotFound)?;

@@ -16,7 +16,7 @@ const GREYS: u16 = 253;
 const UP: u8 = 253;
 const DOWN: u8 = 254;
 const PAPER: u8 = 255;
-/// Beside and between the panels.
+/// The margin beside and between the panels.
 const GAP: usize = 6;
 /// Small videos are shown larger, by whole numbers, up to this many columns in all.
 const WIDEST: usize = 1080;

@@ -133,7 +133,7 @@ impl Clock {
         self.before.saturating_add(self.segment()) as f64 * 1e-6
     }
 
-    /// From sample to sample, in µs, as far as it is known.
+    /// The usual step from sample to sample, in µs, as far as it is known.
     pub fn period(&self) -> i64 {
         (self.usual_step / self.samples_a_step).round() as i64
     }

@@ -206,7 +206,7 @@ impl Table {
 }
 
 impl Time {
-    /// In µs.
+    /// The time, in µs.
     fn read(&self, record: &ByteRecord) -> Option<f64> {
         let field = |column: &Column| record.get(column.index).unwrap_or_default().trim_ascii();
         let time = self.reading.read(field(&self.column), self.has_decimal_commas)?;

@@ -137,7 +137,7 @@ impl Chunk {
         self.len() == 0
     }
 
-    /// Without samples, for so many channels.
+    /// Removes all samples, and prepares this many channels.
     fn clear(&mut self, channels: usize) {
         self.columns.resize(channels, Vec::new());
         self.columns.iter_mut().for_each(Vec::clear);
@@ -153,7 +153,7 @@ impl Chunk {
         self.times.append(&mut other.times);
     }
 
-    /// By row, whether all its values are finite.
+    /// For each row, whether all its values are finite.
     pub fn finite_rows(&self) -> Vec<bool> {
         let mut rows = vec![true; self.len()];
         for column in &self.columns {
@@ -181,7 +181,7 @@ pub trait Source {
     /// Returns an error that names what cannot be read, and its place.
     fn next(&mut self, chunk: &mut Chunk) -> Result<()>;
 
-    /// All samples that are left.
+    /// Reads all samples that are left.
     ///
     /// # Errors
     /// See [`next`](Self::next).
@@ -338,7 +338,7 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
 pub enum LogKind {
     /// PX4's.
     Ulog,
-    /// Those that are read message by message.
+    /// A log that is read message by message.
     Messages(messages::Kind),
 }
 

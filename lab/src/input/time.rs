@@ -65,7 +65,7 @@ impl fmt::Display for TimeUnit {
 /// The meaning of a column's name for the times in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Named {
-    /// They are in this unit.
+    /// The times are in this unit.
     In(TimeUnit),
     /// The values must tell: whole numbers are in this unit, unless they count from 1970.
     Whole(TimeUnit),
@@ -143,7 +143,7 @@ fn last_word(name: &str) -> Option<(&str, &str)> {
         .or_else(|| name.rsplit_once(['_', ' ', '.', '-', ':']))
 }
 
-/// How the values of a column are read.
+/// The way in which a column's values are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reading {
     /// Numbers in this unit.
@@ -155,7 +155,7 @@ pub(super) enum Reading {
 }
 
 impl Reading {
-    /// From the first values, where the name leaves it open. `None` if they are no times at all.
+    /// Finds it from the first values, if the name leaves it open. `None` if they are no times at all.
     pub(super) fn new(named: Named, first: &[&[u8]], has_commas: bool) -> Option<Self> {
         let numbers: Option<Vec<f64>> =
             first.iter().map(|field| number(field, has_commas)).collect();

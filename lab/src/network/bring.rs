@@ -25,15 +25,15 @@ pub struct Request<'a> {
 pub struct Brought {
     /// The network.
     pub network: Box<dyn OnChip>,
-    /// On the recording that it is tuned on.
+    /// The figures on the recording on which it is tuned.
     pub tuned: Figures,
-    /// On the recording that was held out.
+    /// The figures on the recording that was held out.
     pub held_out: Option<Figures>,
 }
 
 /// The network in double precision beside the chip's model.
 pub struct Figures {
-    /// By layer.
+    /// The figures of each layer.
     pub layers: Vec<LayerFigures>,
     /// Steps.
     pub steps: usize,

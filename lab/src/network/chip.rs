@@ -35,7 +35,8 @@ pub trait OnChip {
     /// The chip refuses something.
     fn run(&self, inputs: &Trains) -> Result<Ran>;
 
-    /// By layer, the number of weights that were larger than the chip's; then of the outputs, if they have potentials.
+    /// For each layer, the number of weights that were larger than the chip's; then that of the outputs, if they have
+    /// potentials.
     fn clipped(&self) -> Vec<usize>;
 
     /// Writes a file of Rust, which compiles without `std` beside the crate's feature `embedded-hal`.
@@ -53,13 +54,13 @@ pub trait OnChip {
     /// The part of the chip's arithmetic that changes a network most, so that it should be trained with it.
     fn dearest(&self) -> &'static str;
 
-    /// Why spikes get lost on their way into the chip.
+    /// The reason that spikes get lost on their way into the chip.
     fn loss(&self) -> &'static str;
 }
 
 /// The result of a run on the chip.
 pub struct Ran {
-    /// Who fired, by layer and step.
+    /// The neurons that fired, by layer and step.
     pub fired: Vec<Trains>,
     /// The outputs' potentials by step, in the units of the training; empty if the last layer's spikes are the outputs.
     pub potentials: Vec<Vec<f64>>,

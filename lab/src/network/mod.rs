@@ -20,7 +20,7 @@ use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::Path;
 
-/// How HDF5 files begin.
+/// The first bytes of HDF5 files.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 /// A network as its file says it, whose time constants may be in seconds.

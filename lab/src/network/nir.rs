@@ -22,7 +22,7 @@ pub struct Chain {
 
 struct Stage {
     weights: Weights,
-    /// From the neurons to themselves.
+    /// The weights from the neurons to themselves.
     recurrent: Option<Weights>,
     neurons: Neurons,
 }
@@ -73,7 +73,7 @@ struct Graph {
     inner: BTreeMap<String, (String, String)>,
 }
 
-/// How a layer leads back to itself.
+/// The way in which a layer leads back to itself.
 struct Loops<'a> {
     /// Whether there is an edge without weights.
     is_direct: bool,

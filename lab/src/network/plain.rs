@@ -16,7 +16,7 @@ struct Network {
 #[serde(deny_unknown_fields)]
 struct WrittenReadout {
     name: Option<String>,
-    /// By output, then by neuron of the last layer.
+    /// The weights by output, then by neuron of the last layer.
     weights: Vec<Vec<f64>>,
     /// Unless given, outputs do not leak.
     keep: Option<Numbers>,
@@ -26,9 +26,9 @@ struct WrittenReadout {
 #[serde(deny_unknown_fields)]
 struct Written {
     name: Option<String>,
-    /// By neuron, then by input.
+    /// The weights by neuron, then by input.
     weights: Vec<Vec<f64>>,
-    /// By neuron, then by the neuron of the same layer that fired a step before.
+    /// The weights by neuron, then by the neuron of the same layer that fired a step before.
     #[serde(default)]
     recurrent: Vec<Vec<f64>>,
     #[serde(default)]
@@ -38,7 +38,7 @@ struct Written {
     threshold: Numbers,
 }
 
-/// One for all neurons, or one for each.
+/// A number for all neurons, or one for each.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Numbers {

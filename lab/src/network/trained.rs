@@ -5,13 +5,13 @@ use anyhow::{Result, bail, ensure};
 /// Layers that a network may have.
 const LAYERS: usize = 3;
 
-/// By step, who fires; a step may name one several times.
+/// The neurons that fire, by step; a step may name one several times.
 pub type Trains = Vec<Vec<u16>>;
 
 /// Layers of integrate-and-fire neurons, each fully connected to the one before.
 #[derive(Clone, Debug)]
 pub struct Trained {
-    /// From the input on.
+    /// The layers, from the input on.
     pub layers: Vec<Layer>,
     /// Behind the last layer, neurons that never fire.
     pub readout: Option<Readout>,
@@ -22,9 +22,9 @@ pub struct Trained {
 pub struct Readout {
     /// The name in its file.
     pub name: String,
-    /// By output, what a spike of each neuron of the last layer adds to the potential.
+    /// For each output, what a spike of each neuron of the last layer adds to the potential.
     pub weights: Vec<Vec<f64>>,
-    /// By output, the share of the potential that is left after a step, 0 to 1.
+    /// For each output, the share of the potential that is left after a step, 0 to 1.
     pub keep: Vec<f64>,
 }
 
@@ -70,14 +70,14 @@ impl Readout {
 pub struct Layer {
     /// The name in its file.
     pub name: String,
-    /// By neuron, what a spike of each input adds to the potential.
+    /// For each neuron, what a spike of each input adds to the potential.
     pub weights: Vec<Vec<f64>>,
     /// By neuron, what a spike of each neuron of this layer adds to the potential in the next step; empty unless the layer
     /// is recurrent.
     pub recurrent: Vec<Vec<f64>>,
-    /// By neuron, what every step adds.
+    /// For each neuron, what every step adds.
     pub bias: Vec<f64>,
-    /// By neuron, the rest.
+    /// The other parameters of each neuron.
     pub neurons: Vec<Neuron>,
 }
 
@@ -133,7 +133,7 @@ impl Layer {
         Ok(())
     }
 
-    /// Who fires, by step. Calls `see` with each neuron and its potential, before it fires.
+    /// The neurons that fire, by step. Calls `see` with each neuron and its potential, before it fires.
     pub(super) fn follow(&self, inputs: &Trains, mut see: impl FnMut(usize, f64)) -> Trains {
         let mut potentials = vec![0.0; self.neurons.len()];
         let mut before: Vec<u16> = Vec::new();
@@ -162,7 +162,7 @@ impl Layer {
 }
 
 impl Trained {
-    /// These layers.
+    /// A network of these layers.
     ///
     /// # Errors
     /// Returns an error if there are no layers or too many, they do not fit each other, or a number makes no sense.
@@ -190,7 +190,7 @@ impl Trained {
         Ok(Self { layers, readout: None })
     }
 
-    /// These layers, and behind the last neurons that never fire.
+    /// A network of these layers, and behind the last one neurons that never fire.
     ///
     /// # Errors
     /// See [`new`](Self::new).
@@ -207,7 +207,7 @@ impl Trained {
         self.layers.first().map_or(0, Layer::inputs)
     }
 
-    /// Who fires, by layer and step. A step passes through all layers.
+    /// The neurons that fire, by layer and step. A step passes through all layers.
     pub fn run(&self, inputs: &Trains) -> Vec<Trains> {
         let mut all: Vec<Trains> = Vec::new();
         for layer in &self.layers {

@@ -9,7 +9,7 @@ use crate::tune::Curve;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-/// One channel.
+/// The fronts of one channel.
 pub struct Panel {
     /// Its name.
     pub title: String,

@@ -18,7 +18,7 @@ pub(super) fn size(picture: &Picture) -> (u32, u32) {
     (PANEL.0 * COLUMNS as u32, PANEL.1 * rows)
 }
 
-/// One trial alone, or all in a grid with the efficiencies last.
+/// Places one trial alone, or all in a grid with the efficiencies last.
 pub(super) fn fill<B: DrawingBackend>(area: &DrawingArea<B, Shift>, picture: &Picture) -> Drawn<B> {
     area.fill(&WHITE)?;
     if let [trial] = picture.trials {
@@ -53,7 +53,7 @@ pub(super) fn fronts_size(panels: &[front::Panel]) -> (u32, u32) {
     (width, front::legend_height(&front::named(panels), width) + FRONT.1 * rows as u32)
 }
 
-/// One front alone, or all in a grid, below one legend.
+/// Places one front alone, or all in a grid, below one legend.
 pub(super) fn fill_fronts<B: DrawingBackend>(
     area: &DrawingArea<B, Shift>,
     panels: &[front::Panel],

@@ -25,7 +25,7 @@ use crate::output::Output;
 pub struct Picture<'a> {
     /// The signal.
     pub recording: &'a Recording,
-    /// One panel each.
+    /// The trials, a panel each.
     pub trials: &'a [Trial],
     /// The unit of the signal, if it is known.
     pub unit: Option<&'a str>,

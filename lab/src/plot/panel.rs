@@ -161,7 +161,7 @@ fn y_label(picture: &Picture) -> String {
     picture.unit.map_or(name.clone(), |unit| format!("{name}, {unit}"))
 }
 
-/// When a sample is, in seconds from the start, or else its number.
+/// The time of a sample, in seconds from the start, or else its number.
 fn times<'a>(picture: &'a Picture) -> impl Fn(usize) -> f64 + 'a {
     let recording = picture.recording;
     move |sample| match (recording.times.get(sample), recording.times.first(), recording.rate) {
@@ -171,7 +171,7 @@ fn times<'a>(picture: &'a Picture) -> impl Fn(usize) -> f64 + 'a {
     }
 }
 
-/// From the earliest to the latest time.
+/// The span from the earliest to the latest time.
 fn span(times: impl Iterator<Item = f64>) -> Range<f64> {
     let (min, max) =
         times.fold((f64::MAX, f64::MIN), |(min, max), time| (min.min(time), max.max(time)));

@@ -25,7 +25,7 @@ pub trait Channel {
 pub struct Captured {
     /// How much was written.
     pub bytes: u64,
-    /// Why it ended, unless as it should.
+    /// The reason that it ended, unless it was asked to.
     pub end: Result<()>,
 }
 

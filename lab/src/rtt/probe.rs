@@ -24,7 +24,7 @@ pub struct Board {
 /// Finds chip, probe and channel, and hands the channel over.
 ///
 /// # Errors
-/// One of them is not there, or what is done with it fails.
+/// Returns an error if the probe, the board or the channel is missing, or an access to it fails.
 pub fn with_channel(
     board: &Board,
     use_it: impl FnOnce(&mut dyn Channel) -> Result<()>,

@@ -78,7 +78,7 @@ impl Header {
     /// Reads the keys and values again.
     ///
     /// # Errors
-    /// One is missing, occurs twice, is not a number or does not belong to the scheme.
+    /// Returns an error if a parameter is missing, occurs twice, is not a number or does not belong to the scheme.
     pub fn parse(lines: Vec<(String, String)>) -> Result<Self> {
         let mut keys = Keys::new(lines)?;
         let version = keys.take("spikewire")?;

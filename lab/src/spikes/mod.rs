@@ -36,7 +36,7 @@ pub trait Record {
     /// Writes events. The encoder's next ones are of the finite sample `decided` or later.
     ///
     /// # Errors
-    /// They cannot be written.
+    /// Returns an error if the spikes cannot be written.
     fn write(&mut self, events: &mut Vec<Event>, decided: u64) -> Result<()>;
 
     /// Writes the end and gives back the output.

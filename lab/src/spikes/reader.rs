@@ -17,11 +17,11 @@ pub enum Item {
         /// The time of its sample in µs.
         time: Option<i64>,
     },
-    /// When a sample was taken.
+    /// The time at which a sample was taken.
     Time {
         /// The sample.
         sample: u64,
-        /// In µs.
+        /// The time, in µs.
         time: i64,
     },
     /// Values that were not finite.
@@ -33,7 +33,7 @@ pub enum Item {
     },
     /// The end, after this many samples.
     End {
-        /// All samples.
+        /// Number of samples.
         samples: u64,
     },
 }
@@ -48,7 +48,7 @@ pub struct Reader<R> {
     neurons: u64,
     is_signed: bool,
     columns: usize,
-    /// From sample to sample, in µs.
+    /// The usual step from sample to sample, in µs.
     period: u64,
     /// The last `# time=`.
     noted: Option<(u64, i64)>,

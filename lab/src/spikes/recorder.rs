@@ -43,7 +43,7 @@ pub(super) trait Container {
     fn finish(self: Box<Self>) -> Result<Output>;
 }
 
-/// How messages are recorded.
+/// The format of recorded messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// A ROS 1 bag.
@@ -76,7 +76,7 @@ pub struct Recorder {
     /// The lines of the header, until they are written.
     header: Option<String>,
     neurons: usize,
-    /// From sample to sample, in µs, where no times are recorded.
+    /// The step from sample to sample, in µs, if no times are recorded.
     period: Option<f64>,
     /// Samples that are not written yet, and how many were.
     pending: VecDeque<Pending>,

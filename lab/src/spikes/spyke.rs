@@ -17,7 +17,7 @@ pub(crate) struct Spyke {
     pub input: f32,
     /// The scheme's name.
     pub scheme: &'static str,
-    /// When the sample was taken.
+    /// The time at which the sample was taken.
     pub time: Duration,
 }
 

@@ -16,7 +16,7 @@ use std::io::Write;
 pub struct Writer {
     output: Output,
     slots: u64,
-    /// From sample to sample, in µs, as far as it is known.
+    /// The usual step from sample to sample, in µs, as far as it is known.
     period: u64,
     is_timed: bool,
     /// Finite samples whose events may still come: their index and time.
@@ -36,9 +36,9 @@ pub struct Writer {
 /// Counts of what was written.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Summary {
-    /// All samples.
+    /// Number of samples.
     pub samples: u64,
-    /// Those that were not finite.
+    /// Number of samples that were not finite.
     pub rejected: u64,
     /// Spikes.
     pub events: u64,

@@ -81,7 +81,7 @@ fn cores() -> Vec<&'static str> {
 /// Finds the core of this name, in capitals or not.
 ///
 /// # Errors
-/// No instructions were counted on such a core.
+/// Returns an error if no instructions were counted on such a core.
 pub fn core(name: &str) -> Result<String> {
     let known = cores();
     match known.iter().find(|core| core.eq_ignore_ascii_case(name)) {

@@ -1,4 +1,4 @@
-//! How good settings are, in all that is told of them.
+//! The figures of settings: all that a report says of how good they are.
 
 use super::{Problem, Stretch};
 use anyhow::Result;
@@ -22,7 +22,7 @@ pub struct Figures {
     pub snr: f64,
     /// The largest error.
     pub worst: f64,
-    /// By how many samples the decoded values come late, besides the latency: where they correlate best.
+    /// Number of samples by which the decoded values come late, besides the latency: where they correlate best.
     pub lag: i64,
     /// The RMSE of what is below the band limit, if there is one.
     pub below: Option<f64>,

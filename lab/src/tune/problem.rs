@@ -12,7 +12,7 @@ pub enum Goal {
     LeastError(f64),
     /// The greatest spiking efficiency at an RMSE of at most this.
     MostEfficient(f64),
-    /// All settings that no other one beats in both.
+    /// All settings that no other one beats in both spikes and error.
     Front,
 }
 
@@ -99,7 +99,7 @@ pub struct Excess {
     pub is: f64,
     /// The limit.
     pub may_be: f64,
-    /// By how much it is too much, as a part of what it may be.
+    /// The excess, as a part of the limit.
     pub part: f64,
 }
 
@@ -213,7 +213,7 @@ impl<'a> Problem<'a> {
     /// The score of settings on stretches, and the latency.
     ///
     /// # Errors
-    /// They make no sense.
+    /// Returns an error if the settings make no sense.
     pub fn tally(
         &self,
         options: &Asked,
@@ -256,7 +256,7 @@ impl<'a> Problem<'a> {
     /// The score of options on the stretches to tune on.
     ///
     /// # Errors
-    /// They make no sense.
+    /// Returns an error if the settings make no sense.
     pub fn score(&self, options: &Asked) -> Result<Scored> {
         let (tally, latency, settings) = self.tallied(options, self.sample, self.train)?;
         let costs = Costs::new(self.scheme, &settings, latency, self.core);
@@ -345,7 +345,7 @@ pub fn most_spikes(efficiency: f64, samples: usize) -> usize {
     (if is_count { nearest } else { spikes.floor() }).max(0.0) as usize
 }
 
-/// Those that no other one beats in both spikes and error, by their spikes.
+/// The trials that no other one beats in both spikes and error, by their spikes.
 pub fn front(mut all: Vec<Scored>) -> Vec<Scored> {
     let key = |one: &Scored| one.tally.spikes as f64 / one.tally.samples as f64;
     all.sort_by(|a, b| key(a).total_cmp(&key(b)).then(a.tally.squares.total_cmp(&b.tally.squares)));

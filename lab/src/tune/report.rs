@@ -32,11 +32,11 @@ pub struct Row {
     pub sample: String,
     /// The parameters, as the file of a figure lists them.
     pub parameters: BTreeMap<&'static str, Value>,
-    /// On the blocks that they were tuned on.
+    /// The figures on the blocks that they were tuned on.
     pub tuned_on: Figures,
-    /// On the blocks that were held out.
+    /// The figures on the blocks that were held out.
     pub held_out: Option<Figures>,
-    /// On whole recordings, coded in one piece.
+    /// The figures on whole recordings, coded in one piece.
     pub whole: Figures,
     /// The paper's settings on the same blocks.
     pub paper: Option<Paper>,
@@ -74,7 +74,7 @@ impl Row {
     /// The report on the settings that a search has found.
     ///
     /// # Errors
-    /// They make no sense, which those of a search do.
+    /// Returns an error if the settings make no sense, which no search gives.
     pub fn new(
         problem: &Problem,
         cut: &Cut,
@@ -319,7 +319,7 @@ fn details(text: &mut String, row: &Row, core: &str) -> std::fmt::Result {
     row.notes.iter().try_for_each(|note| writeln!(text, "  {note}"))
 }
 
-/// Why the best settings are not allowed, and how near they come.
+/// The reason that the best settings are not allowed, and how near they come.
 pub fn missed(problem: &Problem, best: &Scored) -> String {
     let words = best.excess.iter().map(|one| {
         let is = if one.is.is_finite() { short(one.is) } else { "not known".to_owned() };

@@ -161,7 +161,7 @@ pub struct Tuned {
     pub rows: Vec<(Scheme, Row)>,
     /// The fronts, for [`Goal::Front`].
     pub curves: Vec<Curve>,
-    /// Why the other schemes do not reach the goal, and how near they come.
+    /// The reason that the other schemes do not reach the goal, and how near they come.
     pub missed: Vec<String>,
     /// The reasons not to trust the recordings, if they were searched anyway.
     pub notes: Vec<String>,
@@ -173,7 +173,7 @@ pub struct Curve {
     pub scheme: Scheme,
     /// Efficiency and RMSE of each setting.
     pub points: Vec<(f64, f64)>,
-    /// Those of the paper's setting.
+    /// The figures of the paper's setting.
     pub paper: Option<(f64, f64)>,
 }
 

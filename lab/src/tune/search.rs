@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 pub struct Budget<'a> {
     /// Settings to try at most.
     pub evaluations: usize,
-    /// When to stop at the latest, which makes the result depend on how fast the machine is.
+    /// The time at which to stop, which makes the result depend on how fast the machine is.
     pub deadline: Option<Instant>,
     /// Whether somebody wants it to stop.
     pub is_stopped: &'a (dyn Fn() -> bool + Sync),
@@ -26,7 +26,7 @@ pub struct Budget<'a> {
 pub struct Found {
     /// The best settings, allowed or not.
     pub best: Option<Scored>,
-    /// Those allowed that no other one beats in both spikes and error.
+    /// Settings within the limits that no other one beats in both spikes and error.
     pub front: Vec<Scored>,
     /// How many settings were scored by the codec.
     pub evaluated: usize,
@@ -38,7 +38,7 @@ pub struct Found {
     pub is_cut_short: bool,
 }
 
-/// How a search is done.
+/// The method of a search.
 #[derive(Clone, Copy, Debug)]
 pub struct Method {
     /// Seed of the generator.

@@ -75,7 +75,7 @@ pub(crate) struct Inner {
 }
 
 impl Space {
-    /// All that these options leave open.
+    /// The space of all that these options leave open.
     pub(crate) fn new(scheme: Scheme, fixed: &Asked, extent: Extent) -> Self {
         let mut axes = Vec::new();
         for parameter in scheme.info().parameters {

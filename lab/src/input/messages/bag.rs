@@ -159,7 +159,7 @@ fn connection(fields: &Fields<'_>, data: &[u8]) -> Option<(u32, Topic)> {
 }
 
 impl Chunked for Bag {
-    /// Its place; it is in `header` and `data`.
+    /// The place of a record, which is in `header` and `data`.
     type Record = u64;
 
     fn chunk(&self) -> &Chunk {

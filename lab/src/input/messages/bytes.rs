@@ -29,7 +29,7 @@ impl Bytes {
     /// Copies all bytes.
     ///
     /// # Errors
-    /// They cannot be unpacked or written.
+    /// Returns an error if the bytes cannot be unpacked or written.
     pub(super) fn copy(mut self, output: &mut File) -> io::Result<u64> {
         io::copy(&mut self.input, output)
     }
@@ -43,7 +43,7 @@ impl Bytes {
     /// made.
     ///
     /// # Errors
-    /// They cannot be read or unpacked.
+    /// Returns an error if the bytes cannot be read or unpacked.
     pub(super) fn take(&mut self, count: u64, bytes: &mut Vec<u8>) -> io::Result<bool> {
         bytes.clear();
         let taken = self.input.by_ref().take(count).read_to_end(bytes)?;
@@ -54,7 +54,7 @@ impl Bytes {
     /// Passes over so many bytes; whether they were there.
     ///
     /// # Errors
-    /// They cannot be read or unpacked.
+    /// Returns an error if the bytes cannot be read or unpacked.
     pub(super) fn pass(&mut self, count: u64) -> io::Result<bool> {
         let passed = io::copy(&mut self.input.by_ref().take(count), &mut io::sink())?;
         self.at += passed;

@@ -17,7 +17,7 @@ pub struct Channel {
     time: Option<String>,
     time_unit: Option<TimeUnit>,
     skip_non_finite: bool,
-    /// For each topic of the log that has this name, where its fields are.
+    /// The places of the fields, for each topic of the log that has this name.
     plans: Vec<Option<Plan>>,
     samples: u64,
     values: Vec<f64>,

@@ -74,7 +74,7 @@ pub(super) enum Step {
     Item(usize),
 }
 
-/// Why a name leads to no number.
+/// The reason that a name leads to no number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NoNumber {
     Missing,
@@ -96,7 +96,7 @@ const DEEPEST: usize = 16;
 const LONGEST: usize = 1 << 28;
 
 impl Definition {
-    /// From the text in a log, for a message of this type, such as `sensor_msgs/Imu`.
+    /// Reads the text in a log, for a message of this type, such as `sensor_msgs/Imu`.
     ///
     /// # Errors
     /// Returns an error that names what cannot be understood.

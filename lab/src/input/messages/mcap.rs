@@ -37,7 +37,7 @@ pub(super) struct Mcap {
     bytes: Bytes,
     faults: Faults,
     topics: Vec<Topic>,
-    /// By number: name, encoding and text.
+    /// The schemas by number: name, encoding and text.
     schemas: HashMap<u16, (String, String, String)>,
     /// The topic of each channel.
     channels: HashMap<u16, usize>,
@@ -159,7 +159,7 @@ impl Mcap {
 }
 
 impl Chunked for Mcap {
-    /// Its kind and place; it is in `data`.
+    /// The kind and place of a record, which is in `data`.
     type Record = (u8, u64);
 
     fn chunk(&self) -> &Chunk {

@@ -36,13 +36,13 @@ use topic::Topic;
 /// One message of a log.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    /// Its topic's place among the log's.
+    /// The index of its topic among the log's.
     topic: usize,
-    /// When it was recorded, in ns.
+    /// The time at which it was recorded, in ns.
     pub time: i64,
     /// Its place in the file, or that of its chunk.
     pub at: u64,
-    /// Its number on its topic, where the log counts them.
+    /// Its number on its topic, if the log counts them.
     pub sequence: Option<u32>,
 }
 

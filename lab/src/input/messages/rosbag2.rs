@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 /// The file that a bag's directory holds.
 pub(super) const METADATA: &str = "metadata.yaml";
 
-/// Why messages that are not common cannot be read.
+/// The reason that messages that are not common cannot be read.
 const UNDEFINED: &str = "the bag has no definition of its messages, as those written before ROS 2 Iron; \
     `ros2 bag convert` to MCAP adds it";
 
@@ -25,7 +25,7 @@ pub(super) struct Sqlite {
     database: Database,
     faults: Faults,
     topics: Vec<Topic>,
-    /// By number.
+    /// The topics, by number.
     places: HashMap<i64, usize>,
     rows: Rows,
     /// The columns of the topic, the time and the message.

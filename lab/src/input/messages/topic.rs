@@ -33,7 +33,7 @@ impl Topic {
         Self { name, kind, wire: Wire::Ros1, definition: Err(why) }
     }
 
-    /// Its place among others, of which it may be one already.
+    /// The index of the topic among others, to which it is added if it is new.
     pub(super) fn place_in(self, topics: &mut Vec<Self>) -> usize {
         let known = topics.iter().position(|own| *own == self);
         known.unwrap_or_else(|| {
@@ -86,7 +86,7 @@ pub struct Overview {
     pub fields: Vec<String>,
     /// Its fields of text.
     pub texts: Vec<String>,
-    /// Why its fields cannot be read.
+    /// The reason that its fields cannot be read.
     pub unread: Option<String>,
     /// Messages.
     pub count: u64,
@@ -134,7 +134,7 @@ pub fn overview(
     Ok((topics, log.faults().notes()))
 }
 
-/// In whole µs, as the times of all recordings are.
+/// The time in whole µs, as the times of all recordings are.
 pub(super) fn microseconds(nanoseconds: i64) -> i64 {
     nanoseconds.saturating_add(500).div_euclid(1000)
 }

@@ -3,7 +3,7 @@
 use super::definition::{Definition, Kind, Number, Path, Shape, Step, Struct};
 use std::fmt;
 
-/// How messages are put in bytes.
+/// The encoding of messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wire {
     /// One field after the other.

@@ -26,7 +26,7 @@ pub(super) struct Field {
 pub(super) type Formats = HashMap<String, Format>;
 
 impl Format {
-    /// From the text of a definition; `None` if it is no text or not of this form.
+    /// Reads the text of a definition; `None` if it is no text or not of this form.
     pub(super) fn parse(message: &[u8]) -> Option<Self> {
         let (name, fields) = str::from_utf8(message).ok()?.split_once(':')?;
         let fields = fields.split(';').map(str::trim).filter(|field| !field.is_empty());
@@ -36,7 +36,7 @@ impl Format {
 
     /// How long a message is: without the padding at its end, which is not logged, and with it.
     pub(super) fn lengths(&self, formats: &Formats) -> Option<(usize, usize)> {
-        /// No message is longer.
+        /// The longest message.
         const LONGEST: usize = 1 << 16;
         let sizes: Vec<usize> =
             self.fields.iter().map(|field| field.size(formats, 0)).collect::<Option<_>>()?;
@@ -66,7 +66,8 @@ impl Format {
         None
     }
 
-    /// All numbers of a message by name, but for its time: `field`, `array[0]`, `nested.field`. It has a length.
+    /// All numbers of a message by name, but for its time: `field`, `array[0]`, `nested.field`. The message has a
+    /// length.
     pub(super) fn numbers(&self, formats: &Formats) -> Vec<(String, Number)> {
         let mut numbers = Vec::new();
         self.add_numbers(formats, "", 0, &mut numbers);

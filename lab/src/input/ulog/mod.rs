@@ -33,7 +33,7 @@ pub struct Topic {
     pub fields: Vec<String>,
     /// Its fields of text.
     pub texts: Vec<String>,
-    /// When it was logged, in µs.
+    /// The time at which it was logged, in µs.
     pub times: Vec<i64>,
 }
 

@@ -106,7 +106,7 @@ pub(super) struct Series {
     pub numbers: Vec<(String, Number)>,
     /// Its fields of text.
     pub texts: Vec<String>,
-    /// When a message was logged.
+    /// The place of the time at which a message was logged.
     pub time: Number,
     /// How long a message is, without and with padding at its end.
     lengths: (usize, usize),

@@ -10,9 +10,9 @@ const OUTPUTS: usize = 16;
 /// The chip's neurons in pairs, which share leak and threshold: a pair is of one layer, of neurons that leak alike.
 #[derive(Clone, Debug)]
 pub(super) struct Places {
-    /// By neuron of the chip, layer and neuron; none where a layer's last pair has one neuron only.
+    /// The layer and neuron of each of the chip's neurons; `None` where a layer's last pair has one neuron only.
     pub(super) neurons: Vec<Option<(usize, usize)>>,
-    /// By layer and neuron, the neuron of the chip.
+    /// The chip's neuron of each layer and neuron.
     by_layer: Vec<Vec<usize>>,
 }
 

@@ -1,4 +1,4 @@
-//! From numbers in double precision to what `ReckOn` holds.
+//! Quantises a network from double precision to the numbers of `ReckOn`.
 
 use super::super::trained::{Layer, Neuron, Readout};
 use super::super::{Distance, Trained, Trains};
@@ -31,20 +31,20 @@ pub(super) const FIRED: u32 = 12;
 pub(super) struct Quantised {
     pub(super) places: Places,
     pub(super) pairs: Vec<ReckOnPair>,
-    /// By input, then neuron. The bias is the last, if there is one.
+    /// The weights by input, then neuron. The bias is the last input, if there is one.
     pub(super) inputs: Vec<Vec<i8>>,
-    /// By neuron that sends, then neuron.
+    /// The weights by neuron that sends, then neuron.
     pub(super) recurrent: Vec<Vec<i8>>,
-    /// By neuron, then output.
+    /// The weights by neuron, then output.
     pub(super) outputs: Vec<Vec<i8>>,
     pub(super) shared: ReckOnShared,
     /// The input that every step must be told.
     pub(super) bias: Option<usize>,
-    /// By layer, its name and size.
+    /// The name and size of each layer.
     pub(super) layers: Vec<(String, usize)>,
     /// The value of an answer of 1 in the training's units; `None` if an answer's bits are the spikes of a neuron.
     pub(super) unit: Option<f64>,
-    /// By layer, then of the outputs, if they have weights.
+    /// The change of each layer's weights, then of the outputs', if they have any.
     pub(super) changes: Vec<Change>,
     /// Neurons and outputs that leak otherwise than trained, and by how much at most.
     pub(super) shared_keeps: (usize, f64),
@@ -89,7 +89,7 @@ struct Source {
     layer: usize,
     neuron: usize,
     keep: f64,
-    /// By input; the bias is the last, if there is one.
+    /// The weights of each input; the bias is the last, if there is one.
     inputs: Vec<f64>,
     /// Neurons of the chip, and their weights.
     recurrent: Vec<(usize, f64)>,

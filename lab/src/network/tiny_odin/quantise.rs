@@ -1,4 +1,4 @@
-//! From numbers in double precision to what tinyODIN holds.
+//! Quantises a network from double precision to the numbers of tinyODIN.
 
 use super::super::trained::{Layer, Neuron};
 use super::super::{Distance, Trained, Trains};
@@ -17,7 +17,7 @@ const LARGEST: [f64; 20] = [
     7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 10.0, 3.0, 12.0, 2.0, 14.0, 1.0, 16.0, 6.5, 5.5, 4.5, 3.5, 7.5,
     8.5, 20.0,
 ];
-/// From how many of them the search goes on.
+/// Number of choices from which the search goes on.
 const CLIMBS: usize = 2;
 /// The leaks that are tried, as parts of the leak at half the threshold.
 const LEAKS: [f64; 7] = [1.0, 0.5, 0.75, 1.5, 2.0, 3.0, 0.0];
@@ -53,14 +53,14 @@ pub(super) struct ChipLayer {
     pub name: String,
     /// How many spikes it takes from before it.
     inputs: usize,
-    /// In order.
+    /// The neurons, in order.
     pub neurons: Vec<ChipNeuron>,
 }
 
 /// A neuron, and what leads to it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ChipNeuron {
-    /// By input, then in a recurrent layer by its neurons.
+    /// The weights by input, then in a recurrent layer by its neurons.
     pub weights: Vec<i8>,
     /// The weight that every step adds.
     pub bias: i8,

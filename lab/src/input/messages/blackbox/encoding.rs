@@ -11,7 +11,7 @@ pub(super) struct Input<'a> {
 pub(super) enum Fault {
     /// The bytes end.
     End,
-    /// No frame is like this.
+    /// The bytes are not those of a frame.
     Odd,
 }
 
@@ -37,7 +37,7 @@ pub(super) enum Encoding {
 }
 
 impl Encoding {
-    /// By its number in the header.
+    /// The encoding of this number in the header.
     pub(super) fn of(number: i64) -> Option<Self> {
         Some(match number {
             0 => Self::Signed,
@@ -83,7 +83,7 @@ impl Input<'_> {
         Err(Fault::Odd)
     }
 
-    /// One of both signs by turns: 0, -1, 1, -2.
+    /// A number of both signs by turns: 0, -1, 1, -2.
     pub(super) fn signed(&mut self) -> Result<i32, Fault> {
         let number = self.unsigned()?;
         Ok((number >> 1) as i32 ^ -((number & 1) as i32))

@@ -30,11 +30,11 @@ pub(super) struct Fields {
     pub encodings: Vec<Encoding>,
 }
 
-/// No log leaves more iterations out.
+/// The most iterations that a log leaves out.
 const MOST: i64 = 1 << 12;
 
 impl Header {
-    /// From the lines of a log.
+    /// Reads the header from the lines of a log.
     ///
     /// # Errors
     /// Returns an error that names what is missing or unknown.

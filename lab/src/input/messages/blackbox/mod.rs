@@ -22,7 +22,7 @@ pub(super) const START: &[u8] = b"H Product:Blackbox";
 /// The topic of the frames of the main loop.
 pub(super) const MAIN: &str = "main";
 
-/// No frame and no line of the head is longer.
+/// The longest frame, and the longest line of the header.
 const LONGEST: usize = 4096;
 /// A frame is not later than so by the log's counts, unless those after it agree: in µs and in iterations.
 const LONGEST_JUMP: (i64, i64) = (10_000_000, 5000);
@@ -57,7 +57,7 @@ struct Session {
     home: Vec<i32>,
     /// The iteration and the time of the last good frame.
     last: Option<(i64, i64)>,
-    /// Those of a frame that is far from it, until another confirms them.
+    /// The iteration and time of a frame that is far from it, until another confirms them.
     doubted: Option<(i64, i64)>,
     /// The place of `loopIteration` and `time`.
     iteration: Option<usize>,
