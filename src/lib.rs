@@ -18,7 +18,7 @@
 //! ```
 //!
 //! A [`Scheme`] holds parameters, in a `const` or a `static`. An [`Encoder`] or a [`Decoder`] is a reference to it
-//! and a small state; a [`Bank`] is one scheme with a state for each channel. Events, ticks and keyframes leave the
+//! and a small state; a [`Bank`] is one scheme with a state for each channel. Events and keyframes leave the
 //! interrupt as one stream of [items](Item), in order, through a queue to a link, a sink or a chip.
 //!
 //! # Schemes
@@ -71,7 +71,8 @@
 //! | `link` | `link`: framed events over any byte transport |
 //! | `embedded-hal` | [`out`]: SPI; `chip`: neuromorphic chips |
 //! | `async` | [`out`]: asynchronous SPI; waiting on a queue |
-//! | `embedded-io` | [`out`]: UART and USB serial |
+//! | `embedded-io` | [`out`]: UART and USB serial, over ports of `embedded-io` 0.7 |
+//! | `embedded-io-06` | the same over ports of version 0.6 |
 #![no_std]
 #![forbid(unsafe_code)]
 

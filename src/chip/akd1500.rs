@@ -104,7 +104,7 @@ impl<D: SpiDevice> Akd1500<D> {
     /// Writes words and reads them back.
     ///
     /// # Errors
-    /// Those of [`write`](Self::write), or the first word that reads back differently.
+    /// The errors of [`write`](Self::write), or the first word that reads back differently.
     pub fn program(&mut self, address: u32, words: &[u32]) -> Result<(), ChipError<D::Error>> {
         self.write(address, words)?;
         for (address, _, block) in blocks(address, words) {

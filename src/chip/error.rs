@@ -41,9 +41,9 @@ pub enum ChipError<B, P = Infallible> {
     },
     /// A value is out of its range.
     OutOfRange {
-        /// What was out of range.
+        /// The name of the value.
         what: &'static str,
-        /// What it was.
+        /// The value that was given.
         value: i64,
         /// The smallest allowed.
         min: i64,

@@ -7,7 +7,7 @@
 //! | [`Akd1500`] | a window onto memory, over SPI | the same | bytes of the vendor's library, and a model of its transport: every byte lost, doubled, flipped |
 //! | [`Xylo`] | counts in registers | a status register | the registers in the vendor's sources |
 //!
-//! None of these drivers has run on hardware. No bus has a checksum. What can be read back is read back. The
+//! None of these drivers has run on hardware. No bus has a checksum. All that can be read back is read back. The
 //! configuration registers of tinyODIN and ODIN cannot be read back: a check of the bus follows each. The registers of
 //! Xylo are not read back.
 //!

@@ -171,7 +171,7 @@ impl<R: Registers> Xylo<R> {
     /// Sets the counts that the next time step reads: in its bank, or in both if the map does not tell which that is.
     ///
     /// # Errors
-    /// As [`set_input`](Self::set_input).
+    /// See [`set_input`](Self::set_input).
     pub fn set_next_input(&mut self, counts: [u8; 16]) -> Result<(), ChipError<R::Error>> {
         if let Some(bank) = self.next_bank()? {
             return self.set_input(bank, counts);
@@ -183,7 +183,7 @@ impl<R: Registers> Xylo<R> {
     /// Sets the counts of both banks to 0.
     ///
     /// # Errors
-    /// As [`set_input`](Self::set_input).
+    /// See [`set_input`](Self::set_input).
     pub fn clear_input(&mut self) -> Result<(), ChipError<R::Error>> {
         self.set_input(InputBank::First, [0; 16])?;
         self.set_input(InputBank::Second, [0; 16])

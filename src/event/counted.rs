@@ -7,20 +7,20 @@ use heapless::vec::{VecInner, VecStorage};
 
 use super::{Event, Item, Put, Source, Taken};
 
-/// What a container may hold of the stream: [`Taken`], [`Item`] or [`Event`].
+/// An element that a container may hold of the stream: [`Taken`], [`Item`] or [`Event`].
 pub trait Element: Into<Taken> {
     /// The element of an item, with the number of items lost before it; `None` if the element cannot hold the item.
     fn of(taken: Taken) -> Option<Self>;
 }
 
-/// Items with the losses before them: what comes out of the container tells of them in place.
+/// Items with the losses before them: whoever takes one learns of the losses in their place.
 impl Element for Taken {
     fn of(taken: Taken) -> Option<Self> {
         Some(taken)
     }
 }
 
-/// Items alone: of losses only [`Counted`] knows.
+/// Items alone: only [`Counted`] knows of losses.
 impl Element for Item {
     fn of(taken: Taken) -> Option<Self> {
         Some(taken.item)
@@ -37,9 +37,9 @@ impl Element for Event {
     }
 }
 
-/// A container of fixed capacity, of which an item may find no room.
+/// A container of fixed capacity, which may have no room for an item.
 pub trait Container {
-    /// What it holds.
+    /// The type of its elements.
     type Element: Element;
 
     /// Appends an element.
@@ -115,11 +115,11 @@ impl<T: Element, S: heapless::storage::Storage> Source for &heapless::mpmc::Queu
 /// - **Out:** `Deque`, the consumer of `spsc` and `mpmc` by reference are [`Source`]s; a `Vec` is one by way of
 ///   [`FromItems`](super::FromItems).
 /// - **Losses:** a full container drops new items. With `Taken`, each element has the number of items lost since the
-///   one before, so that decoders learn of the gap in its place: once something is put again, as none tells of losses
-///   after the last element. With `Item` and `Event` they learn nothing, and temporal decoders drift.
-/// - **`mpmc`:** each `Counted` counts its own; elements of other producers may come before the one that tells. Where an
-///   interrupt cuts into another operation, that queue may be full or empty before its time: what is put then is lost
-///   and counted.
+///   one before, so that decoders learn of the gap in its place; of losses after the last element they learn once
+///   something is put again. With `Item` and `Event` they learn nothing, and temporal decoders drift.
+/// - **`mpmc`:** each `Counted` counts its own; elements of other producers may come before the one with the count. If
+///   an interrupt cuts into another operation, that queue may seem full or empty: an item that is put then is lost and
+///   counted.
 /// - **Cortex-M0:** all but `mpmc`, which needs compare-and-swap: the feature `portable-atomic` brings it, by critical
 ///   sections.
 ///

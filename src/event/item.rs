@@ -1,8 +1,8 @@
-//! Items: the events, keyframes and breaks that go from the interrupt to the wire in one order.
+//! Items: the events, keyframes, heartbeats and breaks that go from the interrupt to the wire in one order.
 
 use super::{Event, Keyframe, Tick};
 
-/// One item of the stream: an event, a keyframe, or a break.
+/// One item of the stream: an event, a keyframe, a heartbeat or a break.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -32,7 +32,7 @@ impl<E> From<E> for AerError<E> {
     }
 }
 
-/// What the word under way is.
+/// The kind of the word under way.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Carries {
     /// A word from [`Running::send`](super::Running::send).

@@ -17,8 +17,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     /// counted as [late](super::Counters::late_events).
     ///
     /// # Errors
-    /// Those of [`send`](Self::send). After any error call it again with the events that remain: no event is lost or
-    /// sent twice, except those that a reset [counts](super::Counters::repeated_events) and those whose input is not
+    /// The errors of [`send`](Self::send). After any error call it again with the events that remain: no event is lost
+    /// or sent twice, except those that a reset [counts](super::Counters::repeated_events) and those whose input is not
     /// valid, which are dropped.
     pub fn feed<A: Into<Option<I>>>(
         &mut self,

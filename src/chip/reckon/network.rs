@@ -3,7 +3,7 @@
 use crate::chip::ChipError;
 use crate::chip::error::in_range;
 
-/// What two neighbouring neurons share.
+/// The parameters that two neighbouring neurons share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -19,7 +19,7 @@ impl ReckOnPair {
     pub const REST: Self = Self { keep: 1 << 15, threshold: i16::MAX };
 }
 
-/// What all neurons share.
+/// The parameters that all neurons share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -40,7 +40,7 @@ pub trait DescribeReckOn {
     fn inputs(&self) -> u16;
     /// The number of outputs, 1 to 16.
     fn outputs(&self) -> u16;
-    /// What neurons `2 * pair` and `2 * pair + 1` share.
+    /// The parameters that neurons `2 * pair` and `2 * pair + 1` share.
     fn pair(&self, pair: u16) -> ReckOnPair;
     /// The weight from an input to a neuron.
     fn input_weight(&self, input: u16, neuron: u16) -> i8;
@@ -48,14 +48,14 @@ pub trait DescribeReckOn {
     fn recurrent_weight(&self, from: u16, to: u16) -> i8;
     /// The weight from a neuron to an output.
     fn output_weight(&self, neuron: u16, output: u16) -> i8;
-    /// What all neurons share.
+    /// The parameters that all neurons share.
     fn shared(&self) -> ReckOnShared;
 }
 
 /// A network as constant data: `IN` inputs, `N` neurons, `OUT` outputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReckOnNetwork<const IN: usize, const N: usize, const OUT: usize> {
-    /// What two neurons each share: `N / 2` of them, rounded up.
+    /// The parameters that two neurons each share: `N / 2` pairs, rounded up.
     pub pairs: &'static [ReckOnPair],
     /// Weights from each input to the neurons.
     pub inputs: [[i8; N]; IN],
@@ -63,7 +63,7 @@ pub struct ReckOnNetwork<const IN: usize, const N: usize, const OUT: usize> {
     pub recurrent: &'static [[i8; N]],
     /// Weights from each neuron to the outputs.
     pub outputs: [[i8; OUT]; N],
-    /// What all neurons share.
+    /// The parameters that all neurons share.
     pub shared: ReckOnShared,
 }
 

@@ -24,11 +24,11 @@ pub struct ReckOnSample<'a, D, P> {
 pub struct ReckOnStep<'a> {
     /// Whether the highest output of this step counts for the label.
     pub counts: bool,
-    /// What to learn in this step; none if it does not learn.
+    /// The target of this step; `None` if it does not learn.
     pub target: Option<ReckOnTarget<'a>>,
 }
 
-/// What a step is to learn.
+/// The target of a step that learns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ReckOnTarget<'a> {
@@ -38,7 +38,7 @@ pub enum ReckOnTarget<'a> {
     Potentials(&'a [i16]),
 }
 
-/// What the chip answers.
+/// An answer of the chip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ReckOnAnswer {

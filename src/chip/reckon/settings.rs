@@ -1,6 +1,6 @@
 //! `ReckOn`'s registers, as far as a network, its answers and its learning need them.
 
-/// What the chip answers, and when.
+/// The kind of the chip's answers, and when they come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -23,7 +23,7 @@ impl ReckOnAnswers {
     }
 }
 
-/// What a target is.
+/// The kind of a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -34,7 +34,7 @@ pub enum ReckOnTask {
     Regression,
 }
 
-/// How the chip learns, by e-prop. Every field is that of the chip's registers; their sum is the chip's documentation.
+/// How the chip learns, by e-prop. Every field is a register of the chip; its documentation says how they act together.
 ///
 /// A step that learns takes up to 8 704 clocks more. Weights change by 1, at random: seed the sources for a run that
 /// can be repeated, with [`Programmed::set_register`](super::Programmed::set_register), registers 85 to 92.
@@ -63,9 +63,9 @@ pub struct ReckOnLearning {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReckOnSettings {
-    /// What the chip answers.
+    /// The kind of the chip's answers.
     pub answers: ReckOnAnswers,
-    /// What a target is. Labels exist in classification only.
+    /// The kind of targets. Labels exist in classification only.
     pub task: ReckOnTask,
     /// How the chip learns; `None` switches learning off, which after reset is on.
     pub learning: Option<ReckOnLearning>,

@@ -13,7 +13,7 @@ pub use consumer::Consumer;
 pub use ring::{EventQueue, Queue, QueueView};
 pub use spsc::{SpscConsumer, SpscProducer, SpscQueue};
 
-/// What a full queue does with a new item.
+/// The policy of a full queue for a new item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -146,12 +146,12 @@ impl fmt::Debug for QueueView {
     }
 }
 
-/// What becomes of an item that the queue refuses.
+/// The fate of an item that the queue refuses.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Refusal {
     /// The caller gets it back.
     Returns,
-    /// It is lost.
+    /// The item is lost.
     Loses,
 }
 

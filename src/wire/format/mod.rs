@@ -83,7 +83,7 @@ pub enum FormatError {
     },
     /// The format has no word for the address.
     Address {
-        /// What it was.
+        /// The address that was given.
         address: u16,
         /// The largest allowed.
         max: u16,

@@ -64,7 +64,7 @@ pub struct Reader<const N: usize> {
 /// A frame counts as late up to this many frames back, and beyond that as one after a long gap.
 const LATE: u16 = 256;
 
-/// So many frames of earlier sessions in a row are not late: the present session was the late one.
+/// Number of frames of earlier sessions in a row from which on they are not late: the present session was the late one.
 const RETURN: u8 = 16;
 
 /// The frames of one session.
@@ -85,7 +85,7 @@ impl Run {
     }
 }
 
-/// Where a frame stands among those delivered.
+/// The place of a frame among those delivered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Standing {
     /// The first of its session.

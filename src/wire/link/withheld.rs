@@ -7,11 +7,11 @@ use core::fmt;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Withheld {
-    /// It waits for its next keyframe.
+    /// The channel waits for its next keyframe.
     Keyframe,
-    /// It waits for this many more samples without a loss.
+    /// The channel waits for this many more samples without a loss.
     Samples(usize),
-    /// It waits for the next sample with a spike.
+    /// The channel waits for the next sample with a spike.
     Spike,
     /// The code has sub-timesteps, and no [heartbeat](crate::Item::Heartbeat) has come since the start or the last loss:
     /// the sender must call [`keyframe_into`](crate::Bank::keyframe_into).

@@ -90,9 +90,9 @@ pub struct Framer {
     coding: Coding,
     /// The number of the next frame.
     number: u64,
-    /// That of the last tick told; without meaning before the first frame.
+    /// The time of the last tick told; without meaning before the first frame.
     time: Time,
-    /// Those of the next frame.
+    /// The flags of the next frame.
     flags: u8,
     leaps: u32,
 }
@@ -190,7 +190,7 @@ pub struct FrameWriter<'f, 'a> {
     bits: BitWriter<'a>,
     flags: u8,
     tick: Tick,
-    /// What the frame's run of keyframes or heartbeats is of; `None` before the first.
+    /// The kind of the frame's keyframes or heartbeats; `None` before the first.
     run: Option<Run>,
     keyframes: u8,
     events: u32,
