@@ -1,13 +1,13 @@
 //! Pointers from C, checked as far as can be known, as references.
 //!
-//! What cannot be known is what C promises: that a pointer which is neither null nor misaligned points to storage of
-//! its type that nothing else uses during the call.
+//! The rest is the promise of C's caller: a pointer that is neither null nor misaligned points to storage of its type
+//! that nothing else uses during the call.
 
 use core::mem::MaybeUninit;
 
 use crate::Status;
 
-/// Neither null nor misaligned.
+/// Checks that a pointer is neither null nor misaligned.
 pub(crate) fn check<T>(pointer: *const T) -> Result<(), Status> {
     if pointer.is_null() {
         Err(Status::NULL)
@@ -18,30 +18,30 @@ pub(crate) fn check<T>(pointer: *const T) -> Result<(), Status> {
     }
 }
 
-/// What is read.
+/// Borrows `*pointer`, after checking that it is not null and is aligned.
 ///
 /// # Safety
-/// C's promise, and what it points to is a value.
+/// `pointer` must be valid for reads of an initialised `T` for the whole call.
 pub(crate) unsafe fn shared<'a, T>(pointer: *const T) -> Result<&'a T, Status> {
     check(pointer)?;
     // SAFETY: neither null nor misaligned; the rest is the caller's promise.
     Ok(unsafe { &*pointer })
 }
 
-/// What is changed.
+/// Borrows `*pointer` mutably, after checking that it is not null and is aligned.
 ///
 /// # Safety
-/// C's promise, and what it points to is a value.
+/// `pointer` must be valid for reads and writes of an initialised `T` for the whole call.
 pub(crate) unsafe fn exclusive<'a, T>(pointer: *mut T) -> Result<&'a mut T, Status> {
     check(pointer)?;
     // SAFETY: neither null nor misaligned; the rest is the caller's promise.
     Ok(unsafe { &mut *pointer })
 }
 
-/// What is written.
+/// Borrows `*pointer` as storage that may be uninitialised, after checking that it is not null and is aligned.
 ///
 /// # Safety
-/// C's promise.
+/// `pointer` must be valid for writes of a `T` for the whole call.
 pub(crate) unsafe fn place<'a, T>(pointer: *mut T) -> Result<&'a mut MaybeUninit<T>, Status> {
     // SAFETY: any bytes are a `MaybeUninit`; the rest is the caller's promise.
     unsafe { exclusive(pointer.cast()) }
@@ -54,10 +54,10 @@ fn check_all<T>(pointer: *const T, length: usize) -> Result<(), Status> {
     check(pointer)
 }
 
-/// What is read; null if there is none of it.
+/// Borrows `length` values from `pointer` on, which may be null if there are none.
 ///
 /// # Safety
-/// C's promise, and what it points to are so many values.
+/// `pointer` must be valid for reads of `length` consecutive `T` for the whole call.
 pub(crate) unsafe fn slice<'a, T>(pointer: *const T, length: usize) -> Result<&'a [T], Status> {
     if length == 0 {
         return Ok(&[]);
@@ -67,10 +67,10 @@ pub(crate) unsafe fn slice<'a, T>(pointer: *const T, length: usize) -> Result<&'
     Ok(unsafe { core::slice::from_raw_parts(pointer, length) })
 }
 
-/// What is changed; null if there is none of it.
+/// Borrows `length` values from `pointer` on mutably, which may be null if there are none.
 ///
 /// # Safety
-/// C's promise, and what it points to are so many values.
+/// `pointer` must be valid for reads and writes of `length` consecutive `T` for the whole call.
 pub(crate) unsafe fn slice_mut<'a, T>(
     pointer: *mut T,
     length: usize,
@@ -83,10 +83,11 @@ pub(crate) unsafe fn slice_mut<'a, T>(
     Ok(unsafe { core::slice::from_raw_parts_mut(pointer, length) })
 }
 
-/// What is read and, as long, what is written; it shares no byte with what is read, nor with what is `kept`.
+/// Borrows `length` values to read and as many to write, after checking that these share no byte with those or `kept`.
 ///
 /// # Safety
-/// C's promise, and what they point to are so many values, or any bytes are.
+/// `from` must be valid for reads, and `to` for writes, of `length` consecutive values for the whole call, initialised
+/// unless any bytes are a value of the type.
 #[inline]
 pub(crate) unsafe fn from_to<'a, K, A, B>(
     kept: *const K,

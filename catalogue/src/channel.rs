@@ -1,11 +1,11 @@
-//! What a flight tells of one channel before it is flown.
+//! The figures of one channel of a flight, known before it is flown.
 
 use spikewire::{Calibration, Sample};
 
 /// One channel's calibration, and parameters as fractions of its range.
 #[derive(Clone, Copy, Debug)]
 pub struct Channel<S> {
-    /// Which channel, from 0: where a generator starts.
+    /// The channel's index, from which a generator starts.
     pub index: usize,
     /// The calibration over all its samples.
     pub calibration: Calibration<S>,

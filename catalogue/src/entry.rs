@@ -1,4 +1,4 @@
-//! What every entry of the catalogue offers to visitors.
+//! The trait of a catalogue entry, for visitors.
 
 use spikewire::population::Position;
 use spikewire::{ConfigError, Sample, Scheme, Spike, Start};
@@ -8,10 +8,10 @@ use crate::{Channel, InC, Info, Scaled, State};
 
 /// A scheme of the catalogue.
 pub trait Entry {
-    /// What is known of it without running it.
+    /// The description of the scheme, without running it.
     const INFO: Info;
 
-    /// What programs in C get of it; nothing if its encoders need a generator.
+    /// The scheme's forms in C; empty if its encoders need a generator.
     const IN_C: &'static [InC];
 
     /// Hands the instances that fly the recorded flight to a visitor.
@@ -51,7 +51,7 @@ pub trait Flight {
 pub trait Count {
     /// How many parts the catalogue is taken in, where a program of all does not fit a small core's flash.
     const PARTS: usize = 1;
-    /// Which of the parts it wants, from 0.
+    /// The index of the part that it wants.
     const PART: usize = 0;
 
     /// The sample type that it wants.

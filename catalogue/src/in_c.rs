@@ -1,4 +1,4 @@
-//! What programs in C get of a scheme.
+//! A scheme's forms in C.
 //!
 //! The library's declarations are written from this: types and values are Rust, in which `S` stands for the sample type
 //! and `{0}` for the first number of the shape.
@@ -6,7 +6,7 @@
 /// A scheme as a codec of C's library, in a few shapes.
 #[derive(Clone, Copy, Debug)]
 pub struct InC {
-    /// What C calls it, without the shape and the sample type: `threshold_hough`.
+    /// The name in C, without the shape and the sample type: `threshold_hough`.
     pub name: &'static str,
     /// Its type: `rate::ThresholdHough<S, {0}>`.
     pub scheme: &'static str,
@@ -21,7 +21,7 @@ pub struct InC {
 pub struct Made {
     /// How the function's name ends: `init`.
     pub name: &'static str,
-    /// What it takes, in a line.
+    /// Its arguments, in a line.
     pub words: &'static str,
     /// Its arguments.
     pub arguments: &'static [Argument],
@@ -38,11 +38,11 @@ pub struct Argument {
     pub name: &'static str,
     /// Its type in Rust.
     pub kind: &'static str,
-    /// What it is on the recorded flight.
+    /// Its value on the recorded flight.
     pub flown: Flown,
 }
 
-/// What an argument is on the recorded flight, from the channel's calibration.
+/// The value of an argument on the recorded flight, from the channel's calibration.
 #[derive(Clone, Copy, Debug)]
 pub enum Flown {
     /// This initialisation does not fly.
@@ -79,7 +79,7 @@ impl Argument {
     pub const MIN: Self = Self::sample("min", Flown::Min);
     /// The range's upper end.
     pub const MAX: Self = Self::sample("max", Flown::Max);
-    /// What a rate code takes off the samples.
+    /// The number that a rate code subtracts from the samples.
     pub const SHIFT: Self = Self::sample("shift", Flown::Min);
     /// As many taps as the shape says.
     pub const TAPS: Self = Self::new("taps", "[S; {0}]");

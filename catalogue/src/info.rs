@@ -1,18 +1,18 @@
-//! What is known of a scheme without running it.
+//! The description of a scheme, without running it.
 
 /// A scheme's names, words and parameters.
 #[derive(Clone, Copy, Debug)]
 pub struct Info {
-    /// What options and files call it.
+    /// The name in options and files.
     pub name: &'static str,
     /// What its class is called in bindings to other languages: the name of its type in the crate, where it has one
     /// of its own.
     pub type_name: &'static str,
-    /// What the paper's tables call it.
+    /// The name in the paper's tables.
     pub title: &'static str,
     /// Its name in words.
     pub words: &'static str,
-    /// What it is good for, in a few words.
+    /// The purpose, in a few words.
     pub good_for: &'static str,
     /// Whether its spikes have a direction.
     pub is_signed: bool,
@@ -39,31 +39,31 @@ impl Info {
 /// A parameter of a scheme.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
-    /// What options and files call it.
+    /// The name in options and files.
     pub name: &'static str,
-    /// What values it takes.
+    /// The values that it takes.
     pub kind: Kind,
-    /// What a 1 of it is.
+    /// The unit of its values.
     pub unit: Unit,
-    /// What it means, in a line.
+    /// Its meaning, in a line.
     pub help: &'static str,
     /// The paper's setting.
     pub paper: Paper,
-    /// What it is unless given, if not a preset or found out.
+    /// The value unless given, if it is not a preset or found from the signal.
     pub default: Option<&'static str>,
-    /// What of the signal stands in its place unless it is given.
+    /// The figure of the signal that stands in its place unless it is given.
     pub found: Option<Found>,
     /// Whether a file of spikes holds it, so that the file decodes by itself.
     pub is_recorded: bool,
     /// Whether decoding does without it.
     pub is_of_encoder: bool,
-    /// What one may give.
+    /// An example of a value.
     pub example: &'static str,
-    /// Where a good value is looked for; unless there is a place, it stays what it is unless given.
+    /// The range in which a good value is looked for; `None` if it keeps its default.
     pub search: Option<Search>,
 }
 
-/// Where a good value of a parameter is looked for.
+/// The range in which a good value of a parameter is looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Search {
     /// A number between these, as likely between 1 and 2 as between 10 and 20. Of a parameter in the signal's unit they
@@ -83,7 +83,7 @@ pub enum Search {
     Filter(u32, f64, f64),
 }
 
-/// What values a parameter takes.
+/// The values that a parameter takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A number.
@@ -100,7 +100,7 @@ pub enum Kind {
     Filter,
 }
 
-/// What of a signal may stand in the place of a parameter.
+/// A figure of a signal that may stand in the place of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Found {
     /// Its first sample.
@@ -111,7 +111,7 @@ pub enum Found {
     Max,
 }
 
-/// What a 1 of a parameter is.
+/// The unit of a parameter's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// A pure number.
@@ -183,19 +183,19 @@ impl Parameter {
         Self { found: Some(found), ..self }
     }
 
-    /// That another one is made from, which the file of spikes holds in its place.
+    /// Marks a parameter from which another one is made, and which a file of spikes does not hold.
     #[must_use]
     pub const fn unrecorded(self) -> Self {
         Self { is_recorded: false, ..self }
     }
 
-    /// That decoding does without.
+    /// Marks a parameter that decoding does not need.
     #[must_use]
     pub const fn of_encoder(self) -> Self {
         Self { is_of_encoder: true, ..self }
     }
 
-    /// What a file of spikes calls it.
+    /// The name in a file of spikes.
     pub const fn key(&self) -> &'static str {
         if matches!(self.kind, Kind::Filter) { "taps" } else { self.name }
     }

@@ -40,10 +40,10 @@ macro_rules! schemes {
             $(pub mod $module;)*
         }
 
-        /// What is known of every scheme, in the order of the catalogue.
+        /// The description of every scheme, in the order of the catalogue.
         pub const INFO: &[Info] = &[$(<schemes::$module::Scheme as Entry>::INFO),*];
 
-        /// What programs in C get of every scheme, in the order of the catalogue.
+        /// The forms in C of every scheme, in the order of the catalogue.
         pub const IN_C: &[(&Info, &[InC])] =
             &[$((&<schemes::$module::Scheme as Entry>::INFO, <schemes::$module::Scheme as Entry>::IN_C)),*];
 
@@ -72,7 +72,7 @@ macro_rules! schemes {
             Ok(())
         }
 
-        /// Where a scheme stands in the catalogue.
+        /// The place of a scheme in the catalogue.
         #[allow(non_camel_case_types)]
         enum Number {
             $($module),*
@@ -85,7 +85,7 @@ macro_rules! schemes {
         /// Builds the scheme of this name in a sample type and hands it to a visitor.
         ///
         /// # Errors
-        /// There is no such scheme, a parameter makes no sense, or the visitor's own.
+        /// Returns an error if there is no such scheme, a parameter makes no sense, or the visitor returns one.
         #[cfg(feature = "run")]
         pub fn visit<S: spikewire::Sample, V: run::Visit<S>>(
             name: &str,

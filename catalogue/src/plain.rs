@@ -1,4 +1,4 @@
-//! What the plain transcriptions share: the numbers that they are written in, and the decoders that several codes use.
+//! Shared by the plain transcriptions: the numbers that they are written in, and the decoders that several codes use.
 //!
 //! A transcription is the paper's pseudo-code: whole recordings, one index after the other, its slips of sign and index
 //! mended. It is what the codecs are measured against, in the same sample type, for the same core, by the same compiler.
@@ -13,7 +13,7 @@ use fixed::{
 };
 use spikewire::Sample;
 
-/// What the pseudo-code needs of a number: a type that its sums and products fit in.
+/// The arithmetic that the pseudo-code needs of a number: a type that its sums and products fit in.
 pub trait Plain: Sample + Into<Self::Wide> {
     /// Sums and products.
     type Wide: Copy
@@ -35,11 +35,11 @@ pub trait Plain: Sample + Into<Self::Wide> {
     fn count(count: i16) -> Self::Wide;
     /// Back to the sample type, which holds it.
     fn narrow(wide: Self::Wide) -> Self;
-    /// So many times twice.
+    /// Doubles the value `times` times.
     fn doubled(wide: Self::Wide, times: u8) -> Self::Wide;
-    /// So many times half; whole numbers are rounded down.
+    /// Halves the value `times` times; integers round down.
     fn halved(wide: Self::Wide, times: u8) -> Self::Wide;
-    /// So many times half; whole numbers are rounded to the nearest, halves upwards.
+    /// Halves the value `times` times; integers round to the nearest, halves upwards.
     fn halved_to_nearest(wide: Self::Wide, times: u8) -> Self::Wide;
     /// Whether a draw of 16 bits falls below a part of the range: `2^17 part >= (2 draw + 1) range`.
     fn is_drawn(part: Self::Wide, range: Self::Wide, draw: u32) -> bool;
@@ -273,7 +273,7 @@ pub fn position_decode<S: Plain>(neurons: &[i8], centres: &[S], values: &mut [S]
     }
 }
 
-/// Of one receptive field.
+/// The response of a receptive field.
 pub fn response(x: f32, centre: f32, sigma: f32) -> f32 {
     let u = (x - centre) / sigma;
     libm::expf(-u * u / 2.0)

@@ -1,4 +1,4 @@
-//! What counting tells of a signal before it is counted on.
+//! Figures of a signal, found before instructions are counted on it.
 
 use spikewire::{Calibration, Sample};
 
@@ -16,7 +16,7 @@ pub struct Scaled<S> {
 }
 
 impl<S: Sample> Scaled<S> {
-    /// What the paper calls the amplitude of its signal.
+    /// The paper's amplitude of its signal.
     pub const PAPER_RANGE: f64 = 5.8;
 
     /// A signal whose calibration has seen its samples.

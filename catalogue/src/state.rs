@@ -1,4 +1,4 @@
-//! What visitors may do with the states of a scheme.
+//! Operations of visitors on the states of a scheme.
 
 /// A state that can be written and read back with the feature `serde`; every state without.
 #[cfg(feature = "serde")]

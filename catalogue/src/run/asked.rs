@@ -1,4 +1,4 @@
-//! What a user asks for.
+//! The parameters that a user asks for.
 
 use anyhow::{Result, bail};
 
@@ -66,7 +66,7 @@ impl Asked {
     /// Refuses what the scheme does not take.
     ///
     /// # Errors
-    /// Such a parameter is given.
+    /// Returns an error if a parameter is given that the scheme does not take.
     pub fn check(&self, info: &Info) -> Result<()> {
         match self.values.iter().find(|(name, _)| info.parameter(name).is_none()) {
             Some((name, _)) => bail!(takes_no(info, name)),
@@ -92,7 +92,7 @@ impl Asked {
         Ok(all.map(|(_, count)| count))
     }
 
-    /// What is asked of one channel of so many.
+    /// The parameters asked for one of `channels` channels.
     ///
     /// # Errors
     /// A parameter has another number of values.
@@ -123,7 +123,7 @@ impl Asked {
     }
 }
 
-/// That a scheme has no parameter of this name.
+/// The message that a scheme has no parameter of this name.
 pub fn takes_no(info: &Info, name: &str) -> String {
     let taken: Vec<String> = info.parameters.iter().map(|own| format!("`{}`", own.name)).collect();
     format!("{} takes no `{name}`; it takes {}", info.name, taken.join(" "))

@@ -1,4 +1,4 @@
-//! What a scheme takes from a whole recording, in any sample type.
+//! The figures that a scheme takes from a whole recording, in any sample type.
 
 use super::SampleType;
 use super::quantiles::Quantiles;
@@ -10,7 +10,7 @@ use spikewire::{Calibration, ConfigError, Sample};
 pub struct Calibrated {
     calibration: Box<dyn Calibrate + Send + Sync>,
     quantiles: Quantiles,
-    /// What a 1 is in the unit of the calibration.
+    /// The value of 1 in the unit of the calibration.
     one: f64,
 }
 
@@ -35,7 +35,7 @@ impl Calibrated {
         self.calibration.range().map(|(min, max)| (min / self.one, max / self.one))
     }
 
-    /// So many quantiles `(2i + 1) / 2M`, dense where the samples are, if there was one.
+    /// This many quantiles `(2i + 1) / 2M`, dense where the samples are; `None` before the first sample.
     pub fn quantiles(&self, count: usize) -> Option<Vec<f64>> {
         let part = |i: usize| (2 * i + 1) as f64 / (2 * count) as f64;
         (0..count).map(|i| self.quantiles.quantile(part(i))).collect()

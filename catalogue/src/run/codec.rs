@@ -137,7 +137,7 @@ impl Codec {
     /// All that it keeps from sample to sample, as bytes.
     ///
     /// # Errors
-    /// None that is known.
+    /// No state is known that cannot be written.
     #[cfg(feature = "states")]
     pub fn state(&self) -> Result<Vec<u8>> {
         self.running.state()
@@ -146,7 +146,7 @@ impl Codec {
     /// Goes on from what [`state`](Self::state) gave, of a codec of the same scheme.
     ///
     /// # Errors
-    /// It is damaged, or another scheme's.
+    /// Returns an error if the state is damaged, or another scheme's.
     #[cfg(feature = "states")]
     pub fn set_state(&mut self, bytes: &[u8]) -> Result<()> {
         self.running.set_state(bytes)
@@ -154,7 +154,7 @@ impl Codec {
 }
 
 impl Shape {
-    /// Where a spike's cell is, unless it is none of these neurons and sub-timesteps.
+    /// The index of a spike's cell; `None` if it is none of these neurons and sub-timesteps.
     fn cell(self, neuron: u16, slot: u16) -> Option<usize> {
         let (neuron, slot) = (usize::from(neuron), usize::from(slot));
         (neuron < self.neurons && slot < self.slots).then_some(slot * self.neurons + neuron)
@@ -175,7 +175,7 @@ impl Shape {
     }
 }
 
-/// Where codes go.
+/// The destination of codes.
 enum Sink<'a> {
     /// Into rows of cells, of which so many are made.
     Cells { rows: &'a mut [i8], shape: Shape, made: usize },
@@ -222,7 +222,7 @@ fn put<C: Code>(code: C, shape: Shape, row: &mut [i8]) {
     }
 }
 
-/// What a codec does with many samples a call, so that the dynamic call costs nothing.
+/// A codec over many samples a call, so that the dynamic call costs nothing.
 trait Running {
     fn latency(&self) -> usize;
     fn encode(&mut self, samples: Samples, sink: &mut Sink);
@@ -238,7 +238,7 @@ trait Running {
 pub(super) struct Start<'a> {
     pub(super) settings: &'a Settings,
     pub(super) shape: Shape,
-    /// What decoders that add up steps start from, if not from 0.
+    /// The value from which decoders that add up steps start, if not from 0.
     pub(super) first: Option<f64>,
 }
 
@@ -288,7 +288,7 @@ struct Channel<P: Scheme> {
     silent: P::Code,
     /// Whether the decoder holds the value of the sample that comes next, whose spike then changes nothing.
     is_first_held: bool,
-    /// What a 1 of the signal is in the unit of the sample type.
+    /// The value of 1 of the signal in the unit of the sample type.
     one: f64,
     shape: Shape,
     /// A row of cells, to compare.

@@ -8,7 +8,7 @@
 pub struct Outcome {
     /// The encoder's threshold.
     pub threshold: f64,
-    /// What the decoder adds for a spike.
+    /// The amount that the decoder adds for a spike.
     pub step: f64,
     /// How many spikes there are.
     pub spikes: usize,
@@ -217,7 +217,7 @@ fn add(tree: &mut [i64], place: usize, change: i64) {
 mod tests {
     use super::{Outcome, outcomes};
 
-    /// What a threshold and a step come to, sample by sample.
+    /// The spikes and the squared error of a threshold and a step, computed sample by sample.
     fn coded(stretches: &[Vec<f64>], threshold: f64, step: f64) -> (usize, f64) {
         let (mut spikes, mut squares) = (0, 0.0);
         for values in stretches {

@@ -10,7 +10,7 @@ use super::Value;
 /// Reads taps as listed, from a file, or the name of a shape, which must be one.
 ///
 /// # Errors
-/// There is no such shape or file, or something in it is not a number.
+/// Returns an error if there is no such shape or file, or something in it is not a number.
 pub(super) fn read(text: &str) -> Result<Value> {
     if let Some(taps) = shape(text) {
         return taps.map(|_| Value::Word(text.to_owned().into()));
@@ -22,7 +22,7 @@ pub(super) fn read(text: &str) -> Result<Value> {
 /// The taps of a shape, such as `triang:15`.
 ///
 /// # Errors
-/// There is no such shape.
+/// Returns an error if there is no such shape.
 pub fn taps(text: &str) -> Result<Vec<f64>> {
     shape(text).unwrap_or_else(|| bail!("there is no such shape; there are {SHAPES}"))
 }

@@ -48,7 +48,7 @@ pub struct Shape {
 
 /// Takes a scheme of any type in a sample type.
 pub trait Visit<S: Sample> {
-    /// What it makes of it.
+    /// The result of the visit.
     type Output;
 
     /// Takes the scheme, and the state from which its encoder starts.
@@ -129,7 +129,7 @@ pub trait Build: Entry {
         bail!("the memory of {} is not known here", Self::INFO.name)
     }
 
-    /// Which codec of the measured table stands for its work.
+    /// The codec of the measured table that stands for its work.
     ///
     /// # Errors
     /// The settings lack its length, or none does.
@@ -151,7 +151,7 @@ pub trait Build: Entry {
         None
     }
 
-    /// It as a constant in Rust.
+    /// The scheme as a constant in Rust.
     ///
     /// # Errors
     /// The settings lack something, or it has no constant.
@@ -164,7 +164,7 @@ pub trait Build: Entry {
         parameter.unit == Unit::Signal
     }
 
-    /// Where a good value of a parameter is looked for beside these.
+    /// The range in which a good value of a parameter is looked for, given the others.
     fn search(parameter: &Parameter, _: &Asked) -> Option<Search> {
         parameter.search
     }
@@ -205,7 +205,7 @@ pub trait BuildPopulation: Build {
 
 /// A scheme of the catalogue, whichever it is.
 pub trait RunTime: Sync {
-    /// What is known of it without running it.
+    /// The description of the scheme, without running it.
     fn info(&self) -> &'static Info;
 
     /// The parameters that would make a calibration over the whole signal unnecessary.
@@ -226,7 +226,7 @@ pub trait RunTime: Sync {
     /// The settings lack them, or they make no sense.
     fn shape(&self, settings: &Settings) -> Result<Shape>;
 
-    /// Where a good value of a parameter is looked for beside these.
+    /// The range in which a good value of a parameter is looked for, given the others.
     fn search(&self, parameter: &Parameter, asked: &Asked) -> Option<Search>;
 
     /// The bytes of RAM of one channel's encoder, on a flight controller.
@@ -235,7 +235,7 @@ pub trait RunTime: Sync {
     /// The settings lack its length, or it is not known.
     fn ram(&self, settings: &Settings) -> Result<usize>;
 
-    /// Which codec of the measured table stands for its work.
+    /// The codec of the measured table that stands for its work.
     ///
     /// # Errors
     /// The settings lack its length, or none does.
@@ -262,7 +262,7 @@ pub trait RunTime: Sync {
         values: &[f64; LANES],
     ) -> Option<[(usize, f64); LANES]>;
 
-    /// It as a constant in Rust, as the settings run.
+    /// The scheme as a constant in Rust, as the settings run.
     ///
     /// # Errors
     /// The settings lack something, or it has no constant.

@@ -6,7 +6,7 @@
 pub(super) struct Quantiles {
     /// The lower end of the first cell.
     low: f64,
-    /// Of a cell; 0 before the first sample.
+    /// The width of a cell; 0 before the first sample.
     width: f64,
     counts: Vec<u64>,
     /// The first and the last cell with samples.

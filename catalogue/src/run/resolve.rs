@@ -5,7 +5,7 @@ use anyhow::{Context, Error, Result, anyhow, bail};
 use super::{Asked, Calibrated, Settings, Value, filter};
 use crate::{Found, Info, Kind, Paper, Parameter, Scaled};
 
-/// What is known of the signal.
+/// The known figures of the signal.
 #[derive(Clone, Copy)]
 pub struct Known<'a> {
     /// A calibration over the whole of it, where one was needed.
@@ -27,12 +27,12 @@ pub fn missing(info: &Info, asked: &Asked) -> Option<String> {
     Some(names.join(" and "))
 }
 
-/// What a user asks of a scheme, with all that may stand in for what is not given.
+/// The parameters that a user asks of a scheme, and all that may stand in for those not given.
 pub struct Resolve<'a> {
     info: &'static Info,
-    /// What was given.
+    /// The parameters given.
     pub asked: &'a Asked,
-    /// What is known of the signal.
+    /// The known figures of the signal.
     pub known: &'a Known<'a>,
     /// The range of the signal over that of the paper's, if the paper's settings are wanted.
     scale: Option<f64>,
@@ -71,7 +71,7 @@ impl<'a> Resolve<'a> {
     /// Sets one parameter as given, as in the paper, by default, or as the signal tells.
     ///
     /// # Errors
-    /// It is missing or makes no sense.
+    /// Returns an error if the value is missing or makes no sense.
     pub fn settle(&self, name: &str, settings: &mut Settings) -> Result<()> {
         let parameter = self.parameter(name)?;
         let value = match (self.value(name)?, parameter.found) {
@@ -96,7 +96,7 @@ impl<'a> Resolve<'a> {
     /// A number as given, as in the paper or by default.
     ///
     /// # Errors
-    /// There is none, or it is not a finite number.
+    /// Returns an error if the value is missing or not a finite number.
     pub fn number(&self, name: &str) -> Result<f64> {
         let value = self.value(name)?.ok_or_else(|| self.needs(name))?;
         value.number().with_context(|| format!("`{name}` {value} is not a number"))
@@ -105,7 +105,7 @@ impl<'a> Resolve<'a> {
     /// A value as given, as in the paper or by default.
     ///
     /// # Errors
-    /// There is none, or it is none of this parameter.
+    /// Returns an error if the value is missing or not one of this parameter.
     pub fn needed(&self, name: &str) -> Result<Value> {
         let value = self.value(name)?;
         value.ok_or_else(|| self.needs(name))
@@ -114,7 +114,7 @@ impl<'a> Resolve<'a> {
     /// A list of finite numbers; `None` if it is one of these words instead.
     ///
     /// # Errors
-    /// There is none, or it is neither.
+    /// Returns an error if the value is missing, or neither a list nor one of the words.
     pub fn list(&self, name: &str, words: &[&str]) -> Result<Option<Vec<f64>>> {
         let value = self.value(name)?.ok_or_else(|| self.needs(name))?;
         match value.word() {
@@ -131,12 +131,12 @@ impl<'a> Resolve<'a> {
         }
     }
 
-    /// What the user gave.
+    /// The value that the user gave.
     pub fn user(&self, name: &str) -> Option<&Value> {
         self.asked.get(name)
     }
 
-    /// What the user gave, or the paper has if that is wanted, or the default.
+    /// The value that the user gave, else the paper's if that is wanted, else the default.
     ///
     /// # Errors
     /// The scheme has no such parameter, or the value is none of it.
@@ -150,7 +150,7 @@ impl<'a> Resolve<'a> {
         self.paper(parameter).or_else(default).transpose()
     }
 
-    /// That a parameter is missing, named in backticks.
+    /// The error that a parameter is missing, which is named in backticks.
     pub fn needs(&self, what: &str) -> Error {
         let otherwise = " (or `paper`, for the paper's settings scaled to the signal)";
         let hint = if self.known.can_calibrate { otherwise } else { "" };

@@ -14,10 +14,10 @@ pub struct Constant {
     pub value: String,
 }
 
-/// Which codec of the measured table stands for a scheme's work.
+/// The codec of the measured table that stands for a scheme's work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Counted {
-    /// What the table calls it.
+    /// The name in the table.
     pub codec: &'static str,
     /// How many times its work this is, at most.
     pub times: f64,
@@ -41,7 +41,7 @@ pub const fn state<P: Scheme>() -> usize {
     size_of::<P::EncoderState>()
 }
 
-/// What grows with a length evenly, from what it is at 8 and at 16.
+/// Extrapolates a size that grows evenly with a length, from its values at 8 and at 16.
 pub const fn lengthened([at_8, at_16]: [usize; 2], length: usize) -> usize {
     (at_8 + (at_16 - at_8) * length / 8).saturating_sub(at_16 - at_8)
 }
@@ -56,7 +56,7 @@ pub struct Mean {
 }
 
 impl Mean {
-    /// As settings say.
+    /// The mean that settings ask for.
     ///
     /// # Errors
     /// They lack it, or it makes no sense.
@@ -116,7 +116,7 @@ impl Rust {
     /// A parameter in the signal's unit, as it runs.
     ///
     /// # Errors
-    /// There is none of this name, or it is no finite number.
+    /// Returns an error if the setting is missing or not a finite number.
     pub fn signal(self, settings: &Settings, name: &str) -> Result<String> {
         Ok(self.number(settings.number(name)?))
     }
@@ -124,7 +124,7 @@ impl Rust {
     /// From `min` to `max`, as they run.
     ///
     /// # Errors
-    /// As for [`signal`](Self::signal).
+    /// See [`signal`](Self::signal).
     pub fn range(self, settings: &Settings) -> Result<String> {
         Ok(format!("{}..={}", self.signal(settings, "min")?, self.signal(settings, "max")?))
     }
@@ -132,7 +132,7 @@ impl Rust {
     /// Numbers in the signal's unit, as an array.
     ///
     /// # Errors
-    /// There are none of this name, or they are not finite.
+    /// Returns an error if the settings are missing or not finite.
     pub fn signals(self, settings: &Settings, name: &str) -> Result<String> {
         let numbers = settings.numbers(name)?;
         let numbers: Vec<String> = numbers.iter().map(|number| self.number(*number)).collect();
@@ -142,7 +142,7 @@ impl Rust {
     /// The filter.
     ///
     /// # Errors
-    /// As for [`signals`](Self::signals).
+    /// See [`signals`](Self::signals).
     pub fn taps(self, settings: &Settings) -> Result<String> {
         Ok(format!("spikewire::rate::Taps::new({})", self.signals(settings, "taps")?))
     }

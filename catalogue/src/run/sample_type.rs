@@ -25,7 +25,7 @@ pub enum SampleType {
     },
 }
 
-/// What every format of 32 bits runs as.
+/// The type as which every format of 32 bits runs.
 pub type Fixed32 = fixed::types::I16F16;
 
 /// Evaluates an expression with a type parameter set to the crate's type.
@@ -49,7 +49,7 @@ macro_rules! for_sample_type {
     };
 }
 impl SampleType {
-    /// What a 1 is in the unit of the crate's type: a power of two.
+    /// The value of 1 in the unit of the crate's type: a power of two.
     pub fn one(self) -> f64 {
         match self {
             Self::F32 => 1.0,

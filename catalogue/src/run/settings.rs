@@ -21,7 +21,7 @@ pub struct Settings {
     /// The stream of the generator that codes by chance draw from: channels of one seed have one each, by their
     /// number.
     pub stream: u64,
-    /// What the sample type has rounded, as it was before.
+    /// The values that the sample type has rounded, as they were before.
     pub rounded: Vec<(&'static str, Value)>,
 }
 
@@ -73,7 +73,7 @@ impl Settings {
         self.get(FIRST).is_some()
     }
 
-    /// What brings these settings about again.
+    /// The request that gives these settings again.
     pub fn to_asked(&self, info: &Info) -> Asked {
         let mut asked = Asked::default();
         for parameter in info.parameters.iter().filter(|parameter| parameter.is_recorded) {
@@ -106,7 +106,7 @@ impl Settings {
     /// A value.
     ///
     /// # Errors
-    /// There is none of this name, as in a file that is none of spikes.
+    /// Returns an error if the setting is missing, as in a file that is none of spikes.
     pub fn value(&self, name: &str) -> Result<&Value> {
         let value = self.get(name);
         value.with_context(|| format!("the header lacks `# {name}=`; is it a file of spikes?"))
@@ -115,7 +115,7 @@ impl Settings {
     /// The word in the place of a list; `None` where there is a list.
     ///
     /// # Errors
-    /// There is none of this name.
+    /// Returns an error if the setting is missing.
     pub fn preset(&self, name: &str) -> Result<Option<&str>> {
         Ok(self.value(name)?.word())
     }
@@ -123,7 +123,7 @@ impl Settings {
     /// A finite number.
     ///
     /// # Errors
-    /// There is none of this name, or it is no number.
+    /// Returns an error if the setting is missing or not a number.
     pub fn number(&self, name: &str) -> Result<f64> {
         let value = self.value(name)?;
         value.number().with_context(|| format!("{name}={value} is not a number"))
@@ -132,7 +132,7 @@ impl Settings {
     /// Finite numbers.
     ///
     /// # Errors
-    /// There are none of this name, or it is a word.
+    /// Returns an error if the setting is missing or a word.
     pub fn numbers(&self, name: &str) -> Result<&[f64]> {
         let value = self.value(name)?;
         value.numbers().with_context(|| format!("{name}={value} is no list of numbers"))
@@ -141,7 +141,7 @@ impl Settings {
     /// A whole number within this range.
     ///
     /// # Errors
-    /// There is none of this name, or it is no whole number, or outside the range.
+    /// Returns an error if the setting is missing, not an integer, or outside `range`.
     pub fn count(&self, name: &str, range: RangeInclusive<usize>) -> Result<usize> {
         let value = self.value(name)?;
         let (min, max) = (range.start(), range.end());
@@ -167,7 +167,7 @@ impl Settings {
     /// Starts the generator of a code by chance, on the settings' seed and stream.
     ///
     /// # Errors
-    /// There is no seed, or it is no whole number.
+    /// Returns an error if the seed is missing or not an integer.
     pub fn generator(&self) -> Result<ChaCha8Rng> {
         let mut generator = ChaCha8Rng::seed_from_u64(self.count("seed", 0..=usize::MAX)? as u64);
         generator.set_stream(self.stream);
@@ -177,7 +177,7 @@ impl Settings {
     /// One of these words.
     ///
     /// # Errors
-    /// There is none of this name, or another word.
+    /// Returns an error if the setting is missing or none of the words.
     pub fn choice(&self, name: &str, words: &[&'static str]) -> Result<&'static str> {
         let value = self.value(name)?;
         match words.iter().find(|own| value.word() == Some(own)) {
@@ -189,7 +189,7 @@ impl Settings {
     /// How many neurons there are.
     ///
     /// # Errors
-    /// As for [`count`](Self::count).
+    /// See [`count`](Self::count).
     pub fn neurons(&self) -> Result<usize> {
         self.count("neurons", 3..=dynamic::NEURONS)
     }
@@ -197,7 +197,7 @@ impl Settings {
     /// How many taps the filter has.
     ///
     /// # Errors
-    /// As for [`numbers`](Self::numbers).
+    /// See [`numbers`](Self::numbers).
     pub fn length(&self) -> Result<usize> {
         Ok(self.numbers("taps")?.len())
     }
@@ -205,7 +205,7 @@ impl Settings {
     /// A number in the signal's unit, in the sample type.
     ///
     /// # Errors
-    /// As for [`number`](Self::number).
+    /// See [`number`](Self::number).
     pub fn signal<S: Sample>(&self, name: &str) -> Result<S> {
         Ok(S::from_f64(self.number(name)? * self.sample.one()))
     }
@@ -213,7 +213,7 @@ impl Settings {
     /// Numbers in the signal's unit, in the sample type.
     ///
     /// # Errors
-    /// As for [`numbers`](Self::numbers).
+    /// See [`numbers`](Self::numbers).
     pub fn signals<S: Sample>(&self, name: &str) -> Result<Vec<S>> {
         let one = self.sample.one();
         Ok(self.numbers(name)?.iter().map(|number| S::from_f64(number * one)).collect())
@@ -222,7 +222,7 @@ impl Settings {
     /// Numbers in the signal's unit, in that of the sample type, but not rounded to it.
     ///
     /// # Errors
-    /// As for [`numbers`](Self::numbers).
+    /// See [`numbers`](Self::numbers).
     pub fn reals(&self, name: &str) -> Result<Vec<f32>> {
         let one = self.sample.one();
         Ok(self.numbers(name)?.iter().map(|number| (number * one) as f32).collect())
@@ -231,7 +231,7 @@ impl Settings {
     /// From `min` to `max`.
     ///
     /// # Errors
-    /// As for [`number`](Self::number).
+    /// See [`number`](Self::number).
     pub fn range<S: Sample>(&self) -> Result<RangeInclusive<S>> {
         Ok(self.signal("min")?..=self.signal("max")?)
     }
@@ -239,7 +239,7 @@ impl Settings {
     /// Whether the mean of spikes is taken over a window, and not as an average.
     ///
     /// # Errors
-    /// There is no such setting, or it is another word.
+    /// Returns an error if the setting is missing or another word.
     pub fn takes_window(&self) -> Result<bool> {
         Ok(self.choice("mean", &["average", "window"])? == "window")
     }
@@ -247,7 +247,7 @@ impl Settings {
     /// A mean over a window, in the room of the largest.
     ///
     /// # Errors
-    /// As for [`count`](Self::count).
+    /// See [`count`](Self::count).
     pub fn window(&self) -> Result<rate::Window<128>> {
         Ok(rate::Window::try_new(self.count("power", 0..=12)? as u8)?)
     }
@@ -255,7 +255,7 @@ impl Settings {
     /// A mean as an average.
     ///
     /// # Errors
-    /// As for [`count`](Self::count).
+    /// See [`count`](Self::count).
     pub fn average(&self) -> Result<rate::Average> {
         Ok(rate::Average::try_new(self.count("power", 1..=15)? as u8)?)
     }
@@ -263,7 +263,7 @@ impl Settings {
     /// The filter.
     ///
     /// # Errors
-    /// There are too many taps or none, or they make no filter.
+    /// Returns an error if there are too many taps or none, or they make no filter.
     pub fn taps<S: Sample>(&self) -> Result<dynamic::Taps<S>> {
         Ok(dynamic::Taps::try_new(&self.signals("taps")?)?)
     }

@@ -49,7 +49,7 @@ impl Value {
     }
 }
 
-/// As a file of spikes holds it: numbers have commas between.
+/// The value as a file of spikes holds it: numbers have commas between.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -134,7 +134,7 @@ impl Parameter {
     /// Reads a value from a file of spikes, which holds a filter's taps and one value for each channel.
     ///
     /// # Errors
-    /// As for [`read`](Self::read).
+    /// See [`read`](Self::read).
     pub(super) fn read_recorded(&self, text: &str) -> Result<Value> {
         let value = match self.kind {
             Kind::Filter => Self { kind: Kind::Text, ..*self }.read(text)?,
@@ -196,7 +196,7 @@ impl Parameter {
 }
 
 impl Kind {
-    /// What its values are.
+    /// The names of its kinds of values.
     fn words(self) -> &'static str {
         match self {
             Self::Number => "a number",

@@ -26,7 +26,7 @@ use {
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
-/// What `form` and `criterion` may be.
+/// The words of `form` and of `criterion`.
 const FORMS: &[&str] = &["aligned", "toolbox"];
 const CRITERIA: &[&str] = &["sub", "mul"];
 

@@ -161,7 +161,7 @@ pub fn transcribed<S: Plain>(input: &[S], min: S, max: S, bursts: &mut [i8]) {
     }
 }
 
-/// What each burst stands for, by a list of them.
+/// Decodes bursts by a list of what each stands for.
 #[inline(never)]
 pub fn transcribed_decoder<S: Plain>(codes: &[i8], bursts: &[(i8, S)], values: &mut [S]) {
     for i in 0..codes.len() {

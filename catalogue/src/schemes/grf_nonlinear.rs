@@ -24,7 +24,7 @@ use {
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
-/// Where the centres are.
+/// The places of the centres.
 pub(super) const CENTRES: Parameter = Parameter::new(
     "centres",
     Kind::Text,
@@ -173,7 +173,7 @@ pub(super) fn needs_signal(asked: &Asked, info: &Info) -> Option<String> {
     }
 }
 
-/// As many neurons as there are centres.
+/// The number of neurons: that of the centres.
 #[cfg(feature = "run")]
 pub(super) fn neurons(settings: &Settings) -> Result<usize> {
     match settings.preset("centres")? {

@@ -23,7 +23,7 @@ use {
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
-/// Of the neuron with and without a leak.
+/// The parameters of the neuron with and without a leak.
 pub(super) const PARAMETERS: &[Parameter] = &[
     Parameter::new(
         "threshold",
@@ -323,7 +323,7 @@ pub(crate) mod tests {
             agrees(&x, threshold, power, false);
         }
 
-        /// What the samples add up to is what the spikes tell, to less than one.
+        /// The spikes tell the integral of the samples, to less than one.
         #[test]
         fn the_integral_never_drifts(x in drawn(), threshold in 512_i16..4000, reference in -90_i16..90) {
             let scheme = Neuron::<i16, 8>::new(threshold, 3).with_reference(reference);

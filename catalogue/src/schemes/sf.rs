@@ -110,7 +110,8 @@ impl Build for Scheme {
     }
 }
 
-/// What step forward makes of stretches at a threshold or just above it, and the threshold at which its spikes differ.
+/// The outcome of step forward on stretches at a threshold or just above it, and the threshold at which its spikes
+/// differ.
 #[cfg(feature = "run")]
 fn outcome(stretches: &[&[f64]], threshold: f64) -> (Outcome, f64) {
     let (mut parabola, mut spikes, mut next) = (Parabola::default(), 0, f64::INFINITY);
