@@ -5,7 +5,7 @@ mod code;
 pub mod cycles;
 mod events;
 mod figures;
-mod listing;
+pub mod listing;
 mod loops;
 mod measured;
 mod stack;

@@ -85,7 +85,7 @@ pub const BOARDS: [Part; 7] = [
         board: "nrf52840_dk",
         part: "nrf52840",
         memory: "nrf52840",
-        baud: 921_600,
+        baud: 1_000_000,
         ..SPEEDYBEE
     },
 ];

@@ -32,11 +32,16 @@ pub fn boards() -> Result<()> {
     BOARDS.iter().filter(|part| part.name == EVERY_DAY).try_for_each(fly)
 }
 
-/// The other image that an emulator has, flown; and those that none here has: compiled and linked, and looked at.
+/// The other images that an emulator has, flown; and those that none here has: compiled and linked, and looked at. `BOARD`
+/// in the environment names one of them alone.
 pub fn more() -> Result<()> {
-    BOARDS.iter().filter(|part| part.name != EVERY_DAY).try_for_each(|part| match part.memory {
-        "rp2040" => fly(part),
-        _ => build(part, true).map(drop),
+    let asked = std::env::var("BOARD").ok();
+    let is_asked = |part: &Part| match &asked {
+        Some(name) => part.name == name,
+        None => part.name != EVERY_DAY,
+    };
+    BOARDS.iter().filter(|part| is_asked(part)).try_for_each(|part| {
+        if emulator::has(part) { fly(part) } else { build(part, true).map(drop) }
     })
 }
 
@@ -72,6 +77,9 @@ fn build(part: &Part, quickly: bool) -> Result<PathBuf> {
         "stm32h743" => dma_has_its_memory(&image)?,
         "crazyflie" => the_bootloader_stays(&image)?,
         _ => {}
+    }
+    if part.memory.starts_with("stm32") || part.memory == "crazyflie" {
+        a_binary_begins_with_the_vectors(&image)?;
     }
     Ok(image)
 }
@@ -132,6 +140,17 @@ fn the_bootloader_stays(image: &Path) -> Result<()> {
     Ok(())
 }
 
+/// What `objcopy` makes of the image for DFU and the radio begins with the stack's address, and has no gap up to another memory.
+fn a_binary_begins_with_the_vectors(image: &Path) -> Result<()> {
+    let binary = image.with_extension("bin");
+    run(command("arm-none-eabi-objcopy").args(["-O", "binary"]).arg(image).arg(&binary))?;
+    let bytes = fs::read(&binary)?;
+    println!("for DFU: {} bytes", bytes.len());
+    ensure!(bytes.first_chunk() == Some(&0x2000_4000_u32.to_le_bytes()), "no stack's address");
+    ensure!(bytes.len() < 256 * 1024, "{} bytes of a firmware of some 60 kB", bytes.len());
+    Ok(())
+}
+
 /// The stack ends where the memory does: one that overflows meets no static, but a fault.
 fn stack_ends_the_memory(image: &Path) -> Result<()> {
     let symbols = output(command("arm-none-eabi-nm").arg(image))?;
@@ -149,6 +168,25 @@ fn stack_ends_the_memory(image: &Path) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_page_has_each_boards_port_and_code() {
+        let page = fs::read_to_string(paths::root().join("docs/firmware.md")).unwrap();
+        let rows = page.lines().filter(|line| line.starts_with("| `"));
+        let rows: Vec<_> = rows.skip(1).collect();
+        assert_eq!(rows.len(), BOARDS.len());
+        let mut listen = "";
+        for row in rows {
+            let of_row = |part: &&Part| row.starts_with(&format!("| `{}` |", part.name));
+            let part = BOARDS.iter().find(of_row).unwrap_or_else(|| panic!("{row}"));
+            assert!(row.replace(' ', "").contains(&format!(",{}|", part.baud)), "{row}");
+            if !row.ends_with("| the same |") {
+                listen = part.listen;
+                assert!(row.ends_with(&format!("| `{listen}` |")), "{row}");
+            }
+            assert_eq!(part.listen, listen, "{row}");
+        }
+    }
 
     /// A log that waits for a debug probe stops the firmware when somebody pulls the probe.
     #[test]

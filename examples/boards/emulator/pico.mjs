@@ -282,6 +282,7 @@ while (mcu.clock.nanos < END) {
 drain();
 Object.assign(seen, { clkSys: mcu.clkSys, clkPeri: mcu.clkPeri, reads: sensor.reads, configured: sensor.isConfigured });
 seen.pulledUp = mcu.gpio[PINS.miso].pullupEnabled;
+seen.pausesOnHalt = (mcu.peripherals[0x40058].readUint32(0x00) >> 24 & 7) === 7; // PAUSE_JTAG, PAUSE_DBG0, PAUSE_DBG1
 writeFileSync(`${directory}/uart`, Buffer.from(uart));
 writeFileSync(`${directory}/times`, times.map((at) => at.toFixed(0)).join("\n"));
 writeFileSync(`${directory}/log`, Buffer.from(log));

@@ -150,10 +150,10 @@ export class Icm42688p extends Sensor {
   sample(at) {
     const [rx, ry, rz, ax, ay, az] = this.take(at);
     if (this.bytes[0x16] >> 6 !== 1) return;
-    const packet = Buffer.alloc(16);
-    packet[0] = 0x68;
-    [ax, ay, az, rx, ry, rz].forEach((count, axis) => packet.writeInt16BE(count, 1 + 2 * axis));
-    this.fifo.push(...packet);
+    const packet = new DataView(new ArrayBuffer(16));
+    packet.setUint8(0, 0x68);
+    [ax, ay, az, rx, ry, rz].forEach((count, axis) => packet.setInt16(1 + 2 * axis, count));
+    this.fifo.push(...new Uint8Array(packet.buffer));
     if (this.fifo.length > 2048) {
       this.fifo.splice(0, 16);
       this.bytes[0x2d] |= 0x02; // FIFO_FULL

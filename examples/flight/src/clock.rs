@@ -92,6 +92,8 @@ mod tests {
         for crystal in [12_000_000, 16_000_000, 25_000_000, 26_000_000] {
             assert!(catch_unwind(|| Stm32F405 { crystal, ..eight }.checked()).is_err());
         }
+        // What the part would do, as `docs/before-you-fly.md` says.
+        assert_eq!(Stm32F405 { crystal: 12_000_000, ..eight }.sysclk(), 252_000_000);
     }
 
     #[test]

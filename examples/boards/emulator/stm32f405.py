@@ -1,0 +1,398 @@
+"""An STM32F405's peripherals, as far as the firmware uses them (RM0090), on a SpeedyBee F405 V4. One without its clock faults."""
+
+from collections import defaultdict
+
+from cortex_m import Core, Reset
+from unicorn.arm_const import UC_CPU_ARM_CORTEX_M4
+
+MEMORIES = ((0x08000000, 0x100000), (0x10000000, 0x10000), (0x20000000, 0x20000))
+VECTORS = 0x08000000
+CRYSTAL = 8_000_000
+START_NS = 2e6  # of the crystal
+LOW_HZ = 32_000  # of the watchdog
+
+# The wires: port, pin, alternate function.
+SCK, MISO, MOSI, TX = ("A", 5, 5), ("A", 6, 5), ("A", 7, 5), ("C", 6, 8)
+SELECT, READY = ("A", 4), ("C", 4)
+# RM0090, table 43: what a stream of DMA2 moves on which channel.
+REQUESTS = {(0, 3): "SPI1_RX", (3, 3): "SPI1_TX", (6, 5): "USART6_TX"}
+
+# Where each lies, and the bit of RCC that clocks it.
+PLACES = {
+    "TIM5": (0x40000C00, 0x40, 3),
+    "IWDG": (0x40003000, None, 0),
+    "PWR": (0x40007000, 0x40, 28),
+    "USART6": (0x40011400, 0x44, 5),
+    "SPI1": (0x40013000, 0x44, 12),
+    "SYSCFG": (0x40013800, 0x44, 14),
+    "EXTI": (0x40013C00, None, 0),
+    **{f"GPIO{name}": (0x40020000 + 0x400 * at, 0x30, at) for at, name in enumerate("ABCDEFGHI")},
+    "RCC": (0x40023800, None, 0),
+    "FLASH": (0x40023C00, None, 0),
+    "DMA1": (0x40026000, 0x30, 21),
+    "DMA2": (0x40026400, 0x30, 22),
+    "RNG": (0x50060800, 0x34, 6),
+    "DBGMCU": (0xE0042000, None, 0),
+}
+
+
+class Registers:
+    """Keeps what is written."""
+
+    def __init__(self, part):
+        self.part, self.core, self.words = part, part.core, defaultdict(int)
+
+    def read(self, offset):
+        return self.words[offset]
+
+    def write(self, offset, value):
+        before, self.words[offset] = self.words[offset], value
+        self.written(offset, before, value)
+
+    def written(self, offset, before, value):
+        pass
+
+
+class Rcc(Registers):
+    REASONS = {"power": 0b0110 << 25, "pin": 1 << 26, "software": 1 << 28 | 1 << 26, "watchdog": 1 << 29 | 1 << 26}
+
+    def __init__(self, part):
+        super().__init__(part)
+        self.words |= {0x00: 0x81, 0x04: 0x24003010, 0x30: 0x100000, 0x74: self.REASONS[part.reason]}
+        self.since = None
+
+    def read(self, offset):
+        value = self.words[offset]
+        if offset == 0x00:
+            crystal = self.since is not None and self.core.now - self.since > START_NS and self.part.bench.crystal
+            pll = value >> 24 & 1 and (crystal or not self.words[0x04] >> 22 & 1)
+            return value & ~0x02020002 | value << 1 & 2 | crystal << 17 | pll << 25
+        if offset == 0x08:
+            return value & ~0xC | value << 2 & 0xC
+        return value & ~2 | value << 1 & 2 if offset == 0x74 else value
+
+    def written(self, offset, before, value):
+        if offset == 0x00 and (before ^ value) >> 16 & 1:
+            self.since = self.core.now if value >> 16 & 1 else None
+        if offset == 0x74 and value >> 24 & 1:
+            self.words[0x74] &= 0x00FFFFFF
+        if offset in (0x00, 0x04, 0x08):
+            self.core.hz = self.hz()
+            self.core.deadline = 0.0
+
+    def hz(self):
+        source = self.words[0x08] & 3
+        return (16_000_000, CRYSTAL, self.pll(self.words[0x04] >> 16 & 3) // 1)[source]
+
+    def pll(self, p):
+        word = self.words[0x04]
+        entry = CRYSTAL if word >> 22 & 1 else 16_000_000
+        return entry // (word & 63) * (word >> 6 & 511) // (2 * p + 2)
+
+    def bus(self, first_bit):
+        """A peripheral bus' clock, and its divider."""
+        code = self.words[0x08] >> first_bit & 7
+        divider = 1 if code < 4 else 2 << (code - 4)
+        return self.hz() // divider, divider
+
+
+class Timer(Registers):
+    """TIM5: an update, and four compares."""
+
+    began, order = None, 0
+
+    def hz(self):
+        clock, divider = self.part.rcc.bus(10)
+        return clock * (1 if divider == 1 else 2) / (self.words[0x28] + 1)
+
+    def count(self):
+        return 0 if self.began is None else int((self.core.now - self.began) * self.hz() / 1e9 + 1e-3)
+
+    def period(self):
+        return self.words[0x2C] + 1
+
+    def read(self, offset):
+        return self.count() % self.period() if offset == 0x24 else self.words[offset]
+
+    def written(self, offset, before, value):
+        if offset == 0x10:
+            self.words[offset] = before & value
+        elif offset == 0x14:
+            self.words[0x10] |= 0 if self.words[0x00] >> 2 & 1 else 1
+            self.began = self.began and self.core.now
+        elif offset == 0x00 and value & 1 and self.began is None:
+            self.began = self.core.now
+            self.part.bench.ticks_begin()
+            for channel in range(5):
+                self.compare(channel)
+        elif 0x34 <= offset <= 0x40:
+            self.compare((offset - 0x30) // 4)
+        self.update()
+
+    def compare(self, channel):
+        """Channel 0 is the update."""
+        if self.began is None:
+            return
+        value = self.words[0x30 + 4 * channel] if channel else 0
+        count = self.count()
+        ahead = (value - count) % self.period() or self.period()
+
+        def reached():
+            if channel and self.words[0x30 + 4 * channel] != value:
+                return
+            self.words[0x10] |= 1 << channel
+            self.update()
+            self.compare(channel)
+
+        self.core.at(self.began + (count + ahead) * 1e9 / self.hz(), reached)
+
+    def update(self):
+        self.core.line(50, self.words[0x10] & self.words[0x0C] & 0x1F != 0)
+
+
+class Watchdog(Registers):
+    bite = None
+
+    def written(self, offset, before, value):
+        if offset != 0:
+            return
+        if value == 0xCCCC or value == 0xAAAA and self.bite:
+            if self.bite:
+                self.bite[2] = None
+            ns = (4 << self.words[4]) * (self.words[8] + 1) / LOW_HZ * 1e9
+            self.bite = self.core.after(ns, self.over)
+
+    def over(self):
+        raise Reset("watchdog")
+
+
+class Random(Registers):
+    def read(self, offset):
+        if offset == 4:
+            return self.words[0] >> 2 & 1
+        return self.part.bench.random() if offset == 8 else self.words[offset]
+
+
+class Gpio(Registers):
+    def __init__(self, part, name):
+        super().__init__(part)
+        self.name, self.level = name, 0
+
+    def read(self, offset):
+        return self.level if offset == 0x10 else self.words[offset]
+
+    def written(self, offset, before, value):
+        if offset == 0x18:
+            self.words[0x14] = (self.words[0x14] | value & 0xFFFF) & ~(value >> 16)
+        port, pin = SELECT
+        if self.name == port and self.words[0] >> 2 * pin & 3 == 1:
+            self.part.bench.select(not self.words[0x14] >> pin & 1)
+
+    def does(self, pin, function):
+        """Whether a pin has this alternate function."""
+        chosen = self.words[0x20 + pin // 8 * 4] >> pin % 8 * 4 & 15
+        return self.words[0] >> 2 * pin & 3 == 2 and chosen == function
+
+
+class Exti(Registers):
+    def written(self, offset, before, value):
+        if offset == 0x14:
+            self.words[offset] = before & ~value
+        self.update()
+
+    def edge(self, port, pin, rises):
+        chosen = self.part.named["SYSCFG"].words[0x08 + pin // 4 * 4] >> pin % 4 * 4 & 15
+        if "ABCDEFGHI"[chosen] == port and self.words[0x08 if rises else 0x0C] >> pin & 1:
+            self.words[0x14] |= 1 << pin
+            self.update()
+
+    def update(self):
+        active = self.words[0x14] & self.words[0x00]
+        for line in range(5):
+            self.core.line(6 + line, active >> line & 1 == 1)
+        self.core.line(23, active >> 5 & 0x1F != 0)
+        self.core.line(40, active >> 10 & 0x3F != 0)
+
+
+class Dma(Registers):
+    """DMA2's streams: bytes, between memory and one register."""
+
+    LINES = (56, 57, 58, 59, 60, 68, 69, 70)
+
+    def stream(self, request):
+        """The stream that is on for this request, or None."""
+        for stream in range(8):
+            control = self.words[0x10 + 0x18 * stream]
+            if control & 1 and REQUESTS.get((stream, control >> 25 & 7)) == request:
+                return stream
+        return None
+
+    def memory(self, stream):
+        return self.words[0x1C + 0x18 * stream], self.words[0x14 + 0x18 * stream]
+
+    def bytes(self, stream):
+        address, length = self.memory(stream)
+        return self.part.ram(address, length)
+
+    def done(self, stream, left=0):
+        self.words[0x14 + 0x18 * stream] = left
+        self.words[0x10 + 0x18 * stream] &= ~1
+        self.flag(stream, 0b100000)
+
+    def flag(self, stream, bits):
+        self.words[stream // 4 * 4] |= bits << (0, 6, 16, 22)[stream % 4]
+        self.update()
+
+    def written(self, offset, before, value):
+        if offset in (0x08, 0x0C):
+            self.words[offset - 8] &= ~value
+        stream, register = divmod(offset - 0x10, 0x18)
+        if offset >= 0x10 and register == 0:
+            if value & 1 and not before & 1:
+                self.part.moved()
+            elif before & 1 and not value & 1:
+                self.part.stopped(stream)
+                self.flag(stream, 0b100000)
+        self.update()
+
+    def update(self):
+        for stream, line in enumerate(self.LINES):
+            flags = self.words[stream // 4 * 4] >> (0, 6, 16, 22)[stream % 4]
+            control = self.words[0x10 + 0x18 * stream]
+            asked = (control >> 4 & 1) << 5 | (control >> 3 & 1) << 4 | (control >> 2 & 1) << 3
+            self.core.line(line, flags & asked != 0)
+
+
+class Spi(Registers):
+    running = None
+
+    def read(self, offset):
+        return 2 | (self.running is not None) << 7 if offset == 8 else self.words[offset]
+
+    def written(self, offset, before, value):
+        self.part.moved()
+
+    def go(self):
+        dma, ports = self.part.named["DMA2"], self.part.named
+        into, out = dma.stream("SPI1_RX"), dma.stream("SPI1_TX")
+        is_on = self.words[0] >> 6 & 1 and self.words[4] & 3 == 3
+        if self.running or not is_on or into is None or out is None:
+            return
+        hz = self.part.rcc.bus(13)[0] / (2 << (self.words[0] >> 3 & 7))
+        pull = {1: "up", 2: "down"}.get(ports["GPIO" + MISO[0]].words[0x0C] >> 2 * MISO[1] & 3, "none")
+        self.part.wired(SCK, MISO, MOSI)
+
+        def done(read):
+            self.running = None
+            self.core.uc.mem_write(dma.memory(into)[0], read)
+            dma.done(out)
+            dma.done(into)
+
+        self.streams = (into, out)
+        self.running = self.part.bench.transfer(dma.bytes(out), hz, pull, done)
+
+    def stop(self, stream):
+        if self.running and stream in self.streams:
+            self.running[2], self.running = None, None
+
+
+class Usart(Registers):
+    """Its sending half: a byte in its register while the one before leaves."""
+
+    stream, free = None, 0.0
+
+    def read(self, offset):
+        return 0xC0 if offset == 0 else self.words[offset]
+
+    def written(self, offset, before, value):
+        self.part.moved()
+
+    def go(self):
+        dma = self.part.named["DMA2"]
+        stream = dma.stream("USART6_TX")
+        is_on = self.words[0x0C] & 0x2008 == 0x2008 and self.words[0x14] >> 7 & 1
+        if self.stream is not None or not is_on or stream is None:
+            return
+        self.part.wired(TX)
+        self.stream, self.bytes, self.sent = stream, dma.bytes(stream), 0
+        self.core.at(max(self.free, self.core.now), self.next)
+
+    def next(self):
+        if self.stream is None:
+            return
+        took = self.part.bench.send(self.bytes[self.sent], self.part.rcc.bus(13)[0] / self.words[8])
+        self.sent, self.free = self.sent + 1, self.core.now + took
+        if self.sent < len(self.bytes):
+            self.core.at(self.free, self.next)
+            return
+        stream, self.stream = self.stream, None
+        self.part.named["DMA2"].done(stream)
+
+    def stop(self, stream):
+        if stream == self.stream:
+            self.stream = None
+
+
+class Part:
+    def __init__(self):
+        self.core = Core(MEMORIES, UC_CPU_ARM_CORTEX_M4)
+        for base in sorted({place & ~0xFFF for place, _, _ in PLACES.values()}):
+            self.core.bus(base, 0x1000, Window(self, base))
+
+    def reset(self, bench, reason):
+        self.bench, self.reason = bench, reason
+        kinds = {"TIM5": Timer, "IWDG": Watchdog, "USART6": Usart, "SPI1": Spi, "EXTI": Exti, "RCC": Rcc, "DMA2": Dma, "RNG": Random}
+        self.named = {name: Gpio(self, name[4:]) if name[:4] == "GPIO" else kinds.get(name, Registers)(self) for name in PLACES}
+        self.rcc = self.named["RCC"]
+        self.core.hz = self.rcc.hz()
+        self.places = {place: (name, register, bit) for name, (place, register, bit) in PLACES.items()}
+        bench.pin = self.pin
+
+    def pauses_on_halt(self):
+        """Whether the watchdog stands still while a debugger halts the core: DBG_IWDG_STOP."""
+        return bool(self.named["DBGMCU"].words[8] >> 12 & 1)
+
+    def pin(self, level):
+        port, pin = READY
+        self.named["GPIO" + port].level = level << pin
+        self.named["EXTI"].edge(port, pin, level)
+
+    def find(self, address):
+        name, register, bit = self.places.get(address & ~0x3FF, ("", None, 0))
+        if not name or register and not self.rcc.words[register] >> bit & 1:
+            self.core.raise_later(LookupError(f"nothing at {address:#x}, or without a clock: {name}"))
+            return Registers(self)
+        return self.named[name]
+
+    def wired(self, *pins):
+        for port, pin, function in pins:
+            if not self.named["GPIO" + port].does(pin, function):
+                self.core.raise_later(LookupError(f"P{port}{pin} is not the peripheral's"))
+
+    def moved(self):
+        """A stream or a peripheral was turned on."""
+        self.named["SPI1"].go()
+        self.named["USART6"].go()
+
+    def stopped(self, stream):
+        self.named["SPI1"].stop(stream)
+        self.named["USART6"].stop(stream)
+
+    def ram(self, address, length):
+        if not 0x20000000 <= address <= 0x20020000 - length and not 0x08000000 <= address < 0x08100000:
+            self.core.raise_later(LookupError(f"DMA does not reach {address:#x}"))
+            return bytes(length)
+        return bytes(self.core.uc.mem_read(address, length))
+
+
+class Window:
+    """Peripherals of 1 KiB within a page."""
+
+    def __init__(self, part, base):
+        self.part, self.base = part, base
+
+    def read(self, offset):
+        return self.part.find(self.base + offset).read(offset & 0x3FF)
+
+    def write(self, offset, value):
+        self.part.find(self.base + offset).write(offset & 0x3FF, value)
