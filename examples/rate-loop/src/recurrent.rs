@@ -26,7 +26,7 @@ const STRETCH: usize = 250;
 const PAST: usize = 40;
 const TURNS: f64 = 0.06;
 
-/// Of the chip to one of SCK, and to a look at its pins: those of 10 MHz on an STM32F405 are 1 MHz and 34 instructions.
+/// Clocks of the chip to one of SCK, and to a look at its pins: at 10 MHz, beside an STM32F405, 1 MHz and 34 cycles.
 const RATIO: u32 = 10;
 const LOOK: u32 = 2;
 

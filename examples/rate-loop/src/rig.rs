@@ -15,9 +15,9 @@ use spikewire::{
 type Chip = TinyOdin<silicon::Spi<silicon::TinyOdin>, Recording<silicon::Port<silicon::TinyOdin>>>;
 type Twin = TinyOdin<ChipBus, Repeating>;
 
-/// Of the chip to one of SCK: 10 MHz and 656 kHz, as an STM32F405 has it from 42 MHz.
+/// Clocks of the chip to one of SCK: 10 MHz and 656 kHz, as an STM32F405 has it from 42 MHz.
 const RATIO: u32 = 16;
-/// Of the chip to a look at its pins: some 34 instructions of a core at 168 MHz.
+/// Clocks of the chip to a look at its pins: some 34 cycles of a core at 168 MHz.
 const LOOK: u32 = 2;
 
 pub struct Rig {
