@@ -29,9 +29,9 @@ pub struct Look {
     pub max: f64,
     /// The standard deviation.
     pub deviation: f64,
-    /// The deviation of what changes from sample to sample without order, where the channel is quietest.
+    /// The deviation of changes from sample to sample without order, where the channel is quietest.
     pub noise: f64,
-    /// Below it are 99 % of the power around the mean, in Hz.
+    /// Frequency in Hz below which 99 % of the power around the mean lies.
     pub bandwidth: Option<f64>,
     /// Percent of the samples that stand at the lowest or highest value at least three in a row.
     pub clipped: f64,

@@ -67,7 +67,7 @@ impl Resolution {
         self.off > 0.0
     }
 
-    /// The column's steps that the type loses, and what holds them.
+    /// A sentence on the column's steps that the type loses, and on the types that hold them.
     pub fn lost(&self) -> Option<String> {
         let Self { sample, steps, moved, off, .. } = self;
         (*off > PART * moved).then(|| {

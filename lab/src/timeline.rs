@@ -11,7 +11,7 @@ pub struct Timeline {
 }
 
 impl Timeline {
-    /// Before the first and after the last time known, samples come at this rate.
+    /// A timeline that knows no time yet. Before the first and after the last known one, samples come at this rate.
     pub fn new(rate: Option<f64>) -> Self {
         Self { step: rate.map_or(0.0, |rate| 1e6 / rate), before: None, ahead: VecDeque::new() }
     }

@@ -22,7 +22,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// How far a printed figure may be from what was rounded.
+    /// The largest distance of a printed figure from the unrounded one.
     pub fn rounding(&self) -> f64 {
         0.5 * 10_f64.powi(-(self.decimals as i32))
     }

@@ -14,7 +14,7 @@ pub(super) const COLUMNS: usize = 8;
 pub(super) struct Outcome {
     /// `(1 - spikes / samples) * 100`. Below 0 where there are more spikes than samples.
     pub efficiency: f64,
-    /// Between the signal and what was decoded.
+    /// The root mean square error between the signal and the decoded values.
     pub rmse: f64,
 }
 

@@ -129,9 +129,9 @@ pub fn differing(cases: &[CaseResult]) -> Vec<String> {
     names
 }
 
-/// Ours and the paper's.
+/// Our figure of a cell, and the paper's.
 type Figures = fn(&Cell) -> [f64; 2];
-/// Of a column without the paper's.
+/// Our figure of a column for which the paper has none.
 type Figure = fn(&Statistics) -> f64;
 
 fn write_table(
@@ -189,7 +189,7 @@ fn write_table(
     writeln!(text)
 }
 
-/// The same for programs.
+/// The cells as JSON.
 pub fn json(cases: &[CaseResult], seed: u64) -> Value {
     let table = |table: &Table| -> Value {
         let cells = cells(table, cases);

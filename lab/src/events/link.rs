@@ -40,7 +40,7 @@ pub struct LinkReader<'a> {
 }
 
 impl<'a> LinkReader<'a> {
-    /// A reader that gives values where there is something to decode them.
+    /// A reader of values if there is a decoder for them, else of events.
     pub fn new(values: Option<Box<dyn Values + 'a>>) -> Self {
         Self { reader: Reader::new(), padding: 0, values, tally: LinkTally::default() }
     }

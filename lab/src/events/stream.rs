@@ -29,7 +29,7 @@ enum Zero {
 }
 
 impl<'a> Stream<'a> {
-    /// Bytes are read by the one and written by the other, with the ticks as they are or from 0 on.
+    /// A stream from a reader to a writer, with the ticks as they are or from 0 on.
     pub fn new(
         reader: Box<dyn EventReader + 'a>,
         writer: Box<dyn EventWriter>,
@@ -49,7 +49,7 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// Takes bytes, cut anywhere, that arrive at this time if it means anything.
+    /// Takes bytes, cut anywhere, with the time at which they arrived if it means anything.
     ///
     /// # Errors
     /// Returns an error if the bytes cannot be read, or their meaning cannot be written.
@@ -74,7 +74,7 @@ impl<'a> Stream<'a> {
         Ok(())
     }
 
-    /// The end of the bytes.
+    /// Ends the stream after its last bytes.
     ///
     /// # Errors
     /// See [`push`](Self::push).
@@ -150,7 +150,7 @@ impl<'a> Stream<'a> {
         self.bytes
     }
 
-    /// Refuses bytes none of which meant anything in this format.
+    /// Refuses bytes of another format.
     ///
     /// # Errors
     /// Returns an error if bytes were skipped, and there was neither event nor frame.

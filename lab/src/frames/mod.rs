@@ -1,4 +1,4 @@
-//! Videos: frames in, events of pixels and pictures of them out.
+//! Converts video frames to pixel events, and renders those events as pictures.
 
 mod ffmpeg;
 mod pictures;

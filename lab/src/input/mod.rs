@@ -120,7 +120,7 @@ impl FromStr for Delimiter {
 /// Samples in order, with their times where there are any.
 #[derive(Debug, Default)]
 pub struct Chunk {
-    /// The samples by channel, perhaps not finite, of each channel as many.
+    /// The samples by channel, perhaps not finite; all channels have the same number.
     pub columns: Vec<Vec<f64>>,
     /// Their times in µs: as many, or none at all.
     pub times: Vec<i64>,
@@ -267,7 +267,7 @@ impl InputOptions {
         Some(Self { channel, ..self.clone() })
     }
 
-    /// The same of all columns of a table, unless some are asked for.
+    /// These options with all columns of a table, unless some are asked for.
     ///
     /// # Errors
     /// The file cannot be opened.

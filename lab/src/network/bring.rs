@@ -43,13 +43,13 @@ pub struct Figures {
     pub active: usize,
     /// Of the active steps, those in which the same outputs fire.
     pub active_agreeing: usize,
-    /// Times [`WINDOW`] steps in which an output fires.
+    /// Windows of [`WINDOW`] steps in which an output fires.
     pub windows: usize,
     /// Of the windows, those in which the same outputs fire most.
     pub windows_agreeing: usize,
     /// The chip's clocks for a step: the mean.
     pub mean_clocks: f64,
-    /// The most of a step.
+    /// The chip's clocks for the longest step.
     pub most_clocks: u64,
     /// Spikes lost on their way into the chip.
     pub lost: u32,
@@ -67,7 +67,7 @@ pub struct PotentialFigures {
     pub clipped: usize,
     /// The root mean square of the potentials in double precision.
     pub size: f64,
-    /// The root mean square of what they differ by on the chip.
+    /// The root mean square of their difference on the chip.
     pub error: f64,
 }
 

@@ -13,7 +13,7 @@ pub struct Distance {
 }
 
 impl Distance {
-    /// A step with so many spikes in the one train and in the other.
+    /// Adds a step with `one` spikes in the one train and `other` in the other.
     pub fn step(&mut self, one: usize, other: usize) {
         self.difference = self.difference * KEPT + (one as f64 - other as f64);
         self.sum += self.difference * self.difference;

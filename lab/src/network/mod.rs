@@ -25,9 +25,9 @@ const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 /// A network as its file says it, whose time constants may be in seconds.
 pub enum File {
-    /// Per step already.
+    /// With its numbers by step already.
     Plain(Trained),
-    /// In seconds.
+    /// With time constants in seconds.
     Nir(Box<nir::Chain>),
 }
 
@@ -48,7 +48,7 @@ impl File {
         bail!("{}: neither a NIR graph, which is an HDF5 file, nor a network in JSON", name())
     }
 
-    /// The network in steps of so many seconds.
+    /// The network in steps of `step` seconds.
     ///
     /// # Errors
     /// A time constant is shorter than a step, or the step is needed and not known.

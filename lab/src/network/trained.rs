@@ -13,7 +13,7 @@ pub type Trains = Vec<Vec<u16>>;
 pub struct Trained {
     /// The layers, from the input on.
     pub layers: Vec<Layer>,
-    /// Behind the last layer, neurons that never fire.
+    /// Neurons that never fire, behind the last layer.
     pub readout: Option<Readout>,
 }
 
@@ -72,8 +72,8 @@ pub struct Layer {
     pub name: String,
     /// For each neuron, what a spike of each input adds to the potential.
     pub weights: Vec<Vec<f64>>,
-    /// By neuron, what a spike of each neuron of this layer adds to the potential in the next step; empty unless the layer
-    /// is recurrent.
+    /// For each neuron, what a spike of each neuron of this layer adds to the potential in the next step; empty unless the
+    /// layer is recurrent.
     pub recurrent: Vec<Vec<f64>>,
     /// For each neuron, what every step adds.
     pub bias: Vec<f64>,
@@ -217,7 +217,7 @@ impl Trained {
         all
     }
 
-    /// The outputs' potentials, by step, if so fire who do; empty if the last layer's spikes are the outputs.
+    /// The outputs' potentials by step, for these spikes; empty if the last layer's spikes are the outputs.
     pub fn potentials(&self, fired: &[Trains]) -> Vec<Vec<f64>> {
         let (Some(readout), Some(fired)) = (&self.readout, fired.last()) else { return vec![] };
         readout.run(fired)

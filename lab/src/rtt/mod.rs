@@ -11,7 +11,7 @@ use std::io::Write;
 use std::thread;
 use std::time::Duration;
 
-/// A buffer that is read by asking for what is in it.
+/// A board's buffer, which is read by polling.
 pub trait Channel {
     /// Takes what there is, up to the buffer's length; 0 if there is nothing.
     ///

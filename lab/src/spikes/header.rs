@@ -52,7 +52,7 @@ impl Header {
         lines
     }
 
-    /// The keys and values, in order. What channels do not share has theirs behind an `@`: `start@1`.
+    /// The keys and values, in order. A value that channels do not share has its channel behind an `@`: `start@1`.
     pub fn lines(&self) -> Vec<(String, String)> {
         let texts = |own: &Settings| -> Vec<(&'static str, String)> {
             own.entries().iter().map(|(name, value)| (*name, value.to_string())).collect()

@@ -2,16 +2,16 @@
 
 use std::time::Duration;
 
-/// A message, a sample's.
+/// The message of one sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Spyke {
-    /// Neuron by neuron, and so for each sub-timestep: 1, 0 or -1, or how many spikes of one direction.
+    /// The spikes of each neuron, sub-timestep after sub-timestep: 1, 0 or -1, or how many of one direction.
     pub spikes: Vec<i8>,
     /// The value that decoding starts from.
     pub start: f32,
     /// The smallest and the largest sample.
     pub range: (f32, f32),
-    /// 0 where the scheme has none.
+    /// The threshold; 0 if the scheme has none.
     pub threshold: f32,
     /// The sample.
     pub input: f32,

@@ -23,7 +23,7 @@ pub struct Cut {
     pub whole: Vec<Stretch>,
 }
 
-/// The settings of one scheme, and all that is told of them.
+/// The settings of one scheme, and the report on them.
 #[derive(Debug, Serialize)]
 pub struct Row {
     /// Short name of the scheme.
@@ -241,7 +241,7 @@ fn value_of(text: &str) -> Value {
     }
 }
 
-/// The table of all rows, and what is told below it.
+/// The table of all rows, and the lines below it.
 pub fn print(rows: &[&Row], core: &str, below: Option<f64>) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.

@@ -180,7 +180,7 @@ pub struct Curve {
 /// Searches the parameters of schemes on the channels of logs.
 ///
 /// # Errors
-/// The request or a recording is not good. That nothing reaches the goal is no error, but told in the result.
+/// The request or a recording is not good. If nothing reaches the goal, the result says so.
 pub fn tune(request: &TuneRequest, watch: &Watch) -> Result<Vec<Tuned>> {
     request.check()?;
     let (channels, notes) = request.channels()?;

@@ -38,7 +38,7 @@ impl Stretch {
 /// How much of a recording is held out.
 #[derive(Clone, Copy, Debug)]
 pub struct HoldOut {
-    /// Into how many blocks it is cut.
+    /// Number of blocks into which it is cut.
     pub blocks: usize,
     /// The part of the blocks that is held out.
     pub part: f64,

@@ -13,6 +13,8 @@ pub struct Reading {
 }
 
 impl Reading {
+    /// Opens a log.
+    ///
     /// # Errors
     /// Returns an error if the log cannot be opened.
     pub fn open(path: &Path, kind: Kind, accept_cut: bool) -> Result<Self> {

@@ -13,7 +13,7 @@ pub(super) struct Topic {
     /// The type of its messages.
     pub kind: String,
     pub wire: Wire,
-    /// Or why they cannot be read.
+    /// The definition of its messages, or the reason that they cannot be read.
     pub definition: Result<Definition, String>,
 }
 
@@ -88,17 +88,17 @@ pub struct Overview {
     pub texts: Vec<String>,
     /// The reason that its fields cannot be read.
     pub unread: Option<String>,
-    /// Messages.
+    /// Number of messages.
     pub count: u64,
     /// Its length, rate and gaps.
     pub clock: Clock,
     /// The times that its clock ran over.
     pub rollover: Rollover,
-    /// Messages that the counts within say are missing.
+    /// Number of messages missing, by the numbers that they have.
     pub missing: u64,
 }
 
-/// A log at a glance, by topic, and what is to be said of it besides.
+/// Summarises a log by topic, with notes on all else.
 ///
 /// # Errors
 /// Returns an error if the log cannot be read.
