@@ -16,7 +16,7 @@ const ADDRESSES: usize = 6;
 pub(crate) struct Live {
     line: Option<ProgressBar>,
     shown: Instant,
-    /// What each address had when it was shown last.
+    /// The count of each address when it was shown last.
     counts: Vec<u64>,
     bytes: u64,
 }

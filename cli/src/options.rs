@@ -10,7 +10,7 @@ use lab::scheme::Scheme;
 use std::fmt::{Display, Write};
 use std::ops::Deref;
 
-/// What is run, and how: from the command line, and from a file for what that leaves open.
+/// The scheme to run and its settings: from the command line, and from a file if that leaves some open.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Coding {
     /// The scheme, unless --params says which
@@ -93,7 +93,7 @@ pub(crate) fn schemes(
     })
 }
 
-/// What a user gave of the parameters of any scheme.
+/// The parameters of any scheme that a user gave.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SchemeOptions(pub Asked);
 
@@ -167,7 +167,7 @@ pub(crate) fn augment(
     command
 }
 
-/// What was given of these parameters.
+/// Those of these parameters that were given.
 pub(crate) fn given(
     matches: &ArgMatches,
     takes: fn(&Info) -> bool,
@@ -250,7 +250,7 @@ fn meaning(parameter: &Parameter) -> String {
 
 /// A text of the library as the command line has it: the name of a setting in backticks becomes its option.
 pub(crate) fn spelled(text: &str) -> String {
-    /// What stands in backticks behind these words came from the user or a file.
+    /// Words behind which text in backticks came from the user or a file.
     const DATA: [&str; 9] = [
         "channel ",
         "column ",

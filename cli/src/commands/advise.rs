@@ -47,7 +47,7 @@ pub(crate) struct Advise {
     /// Settings of each scheme and channel to score at most
     #[arg(long, default_value_t = AdviseRequest::EVALUATIONS)]
     evaluations: usize,
-    /// Where the search's chance starts
+    /// Seed of the search
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Draw one channel's signal, spikes and reconstruction by the scheme advised, `.svg` or `.png`

@@ -187,7 +187,7 @@ impl Decoding {
         Ok(())
     }
 
-    /// What the encoder never saw has no value.
+    /// Samples that the encoder never saw have no value.
     fn skip(&mut self, count: u64) -> Result<(), Failure> {
         const MOST: u64 = 8192;
         self.skipped += count;
@@ -231,7 +231,7 @@ impl Decoding {
     }
 }
 
-/// What the columns are called: `value`, or with several channels as in the recording.
+/// The names of the columns: `value`, or with several channels as in the recording.
 fn names(header: &Header) -> Vec<String> {
     let count = header.channels.len();
     if count == 1 {

@@ -7,7 +7,7 @@ use lab::input::{Clock, Log, LogKind, Rollover, Topic, above_zero, log_kind};
 use std::io::{Write, stdout};
 use std::path::PathBuf;
 
-/// What is read.
+/// The kinds of logs that are read.
 const KINDS: &str =
     "there are PX4's ULog, bags of ROS 1 and 2, MCAP files and Betaflight's blackbox";
 

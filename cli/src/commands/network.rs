@@ -134,9 +134,9 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     Ok(())
 }
 
-/// What goes into the network.
+/// The input of the network.
 struct Driven {
-    /// By step.
+    /// The input spikes, by step.
     steps: Trains,
     inputs: usize,
     shape: Shape,
@@ -144,13 +144,13 @@ struct Driven {
     is_signed: bool,
     /// How long a step is, if that is known.
     step_us: Option<f64>,
-    /// Of the columns.
+    /// The settings of the columns.
     settings: Vec<Settings>,
     notes: Vec<String>,
 }
 
 impl Driven {
-    /// What the inputs are.
+    /// A sentence on the inputs.
     fn words(&self) -> String {
         let Self { inputs, shape: Shape { neurons, .. }, channels, is_signed, .. } = self;
         let directions = if *is_signed { ", each up and down" } else { "" };
@@ -229,7 +229,7 @@ fn driven(options: &Network, input: &InputOptions, known: Option<&[Settings]>) -
 /// The share of agreeing steps below which a warning says so.
 const LOW: f64 = 0.5;
 
-/// What quantising costs, on standard error.
+/// Prints the cost of quantising on standard error.
 fn report(brought: &Brought) {
     let Brought { network, tuned, held_out } = brought;
     network.notes().iter().for_each(|note| eprintln!("{note}"));

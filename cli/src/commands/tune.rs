@@ -87,7 +87,7 @@ pub(crate) struct Tune {
     /// Settings of each scheme and channel to score at most
     #[arg(long, default_value_t = TuneRequest::EVALUATIONS, help_heading = "Search")]
     evaluations: usize,
-    /// Where the search's chance starts; the same seed and budget of evaluations give the same settings
+    /// Seed of the search; the same seed and budget of evaluations give the same settings
     #[arg(long, default_value_t = 1, help_heading = "Search")]
     seed: u64,
     /// Search although the log says little: noise, all on the ground, full of holes, clipped
@@ -134,7 +134,7 @@ fn hertz(text: &str) -> Result<f64, String> {
     lab::input::above_zero(number)
 }
 
-/// What is written.
+/// The form of the output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Emit {
     /// A constant with parameters and taps, which compiles without std
@@ -226,7 +226,7 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
 }
 
 impl Tune {
-    /// What is asked for, but for the logs.
+    /// The request, but for the logs.
     fn request(&self) -> Result<TuneRequest> {
         let schemes = match self.scheme {
             Which::One(scheme) => vec![scheme],
@@ -328,7 +328,7 @@ impl Tune {
 /// The steps of the bar.
 const BAR: u64 = 1000;
 
-/// Where the bar stands, from the parts of all settings and of the time that are done: whichever ends first.
+/// The position of the bar, from the parts of all settings and of the time that are done: whichever ends first.
 fn position(settings: f64, time: f64) -> u64 {
     (settings.max(time).clamp(0.0, 1.0) * BAR as f64) as u64
 }

@@ -72,8 +72,8 @@ pub struct Layer {
     pub name: String,
     /// For each neuron, what a spike of each input adds to the potential.
     pub weights: Vec<Vec<f64>>,
-    /// For each neuron, what a spike of each neuron of this layer adds to the potential in the next step; empty unless the
-    /// layer is recurrent.
+    /// For each neuron, what a spike of each neuron of this layer adds to the potential in the next step; empty unless
+    /// the layer is recurrent.
     pub recurrent: Vec<Vec<f64>>,
     /// For each neuron, what every step adds.
     pub bias: Vec<f64>,
