@@ -4,6 +4,7 @@ use core::fmt;
 
 use super::schemes::{CodeOf, EncoderStateOf, SampleOf, States};
 use super::{Event, Item, Keyframe, Put, Schemes, Tick};
+use crate::num::Arithmetic;
 use crate::{Code, ConfigError, NeuronSpike, Output, Scheme, Start, error};
 
 /// The encoders of `N` channels, such as the six of an inertial sensor: one scheme for all channels or one for each,
@@ -114,11 +115,19 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
 
     /// Encodes one sample of every channel and passes each event to `emit`.
     #[inline]
-    pub fn encode(
+    pub fn encode(&mut self, tick: Tick, samples: [SampleOf<T, N>; N], emit: impl FnMut(Event)) {
+        self.encode_or_skip(tick, samples, emit, || ());
+    }
+
+    /// [`encode`](Self::encode), and calls `skip` for each sample of which its encoder takes no notice: one that is not
+    /// finite, of a rate code with a filter.
+    #[inline]
+    fn encode_or_skip(
         &mut self,
         tick: Tick,
         samples: [SampleOf<T, N>; N],
         mut emit: impl FnMut(Event),
+        mut skip: impl FnMut(),
     ) {
         if CodeOf::<T, N>::SLOTS > 1 && self.slot_ticks > 0 {
             return self.encode_by_slot(tick, samples, emit);
@@ -129,6 +138,8 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
                 for firing in code.firings() {
                     emit(event(tick, first, firing));
                 }
+            } else if !sample.is_finite() {
+                skip();
             }
             first = first.wrapping_add(scheme.neurons() as u16);
         }
@@ -162,9 +173,17 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
 
     /// Encodes one sample of every channel, in the interrupt that brings them, and puts the events into a queue.
     /// Never blocks; the queue counts events that do not fit as lost, under any policy.
+    ///
+    /// The encoder of a rate code with a filter leaves out a sample that is not finite, of which a receiver that counts
+    /// samples knows nothing. A [break](Item::Break) then tells it.
     #[inline]
     pub fn encode_into(&mut self, tick: Tick, samples: [SampleOf<T, N>; N], mut queue: impl Put) {
-        self.encode(tick, samples, |event| queue.put(Item::Event(event)));
+        let mut skips = false;
+        let emit = |event| queue.put(Item::Event(event));
+        self.encode_or_skip(tick, samples, emit, || skips = true);
+        if skips {
+            queue.put(Item::Break(tick));
+        }
     }
 
     /// Puts a keyframe of every channel that has one into a queue, after the events of the samples so far; where none

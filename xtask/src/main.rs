@@ -11,6 +11,7 @@ mod demo;
 mod distribution;
 mod drawing;
 mod emulator;
+mod faults;
 mod fifo;
 mod firmware;
 mod flies;

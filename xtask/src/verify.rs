@@ -75,6 +75,11 @@ const LONG: &[Step] = &[
         "the same under libFuzzer, a minute a target (FUZZ_SECONDS), going on from the last run",
         crate::fuzz::long,
     ),
+    step(
+        "faults",
+        "hours of flight in which all goes wrong, and the table of it in SAFETY.md",
+        crate::faults::verify,
+    ),
     step("deny", "licences and sources of every crate, in every workspace", crate::release::deny),
     step("lints", "clippy on all at once: every feature, firmware on host and core", long::lints),
     step("capture", "the laptop program with a debug probe's driver", long::capture),

@@ -1,7 +1,8 @@
 //! `cargo xtask write`: all that is generated, written again.
 
 use crate::{
-    bench, c_library, demo, firmware, flies, jumps, page, python, ros, schemes, usage::usage, video,
+    bench, c_library, demo, faults, firmware, flies, jumps, page, python, ros, schemes,
+    usage::usage, video,
 };
 use anyhow::{Context, Result};
 use std::collections::HashSet;
@@ -19,7 +20,7 @@ const fn part(name: &'static str, files: &'static str, write: fn() -> Result<()>
 }
 
 /// From the catalogue first, then what measures or draws.
-const PARTS: [Part; 13] = [
+const PARTS: [Part; 14] = [
     part("c", "c/include, c/src/codecs.rs, c/src/sizes.rs, c/tests/flown.h", c_library::write),
     part("python", "python/spikewire/_schemes.pyi", python::write_stub),
     part("schemes", "docs/schemes.md: the table", schemes::write),
@@ -32,6 +33,7 @@ const PARTS: [Part; 13] = [
     part("bits", "docs/bits.md: the table", firmware::write),
     part("c-sizes", "c/README.md: the table of sizes", c_library::write_sizes),
     part("costs", "docs/costs.md, README.md: the tables of costs", bench::write),
+    part("faults", "SAFETY.md: the table of faults", faults::write),
     part("stack", "docs/costs.md: the tables of stacks", bench::write_stack),
 ];
 

@@ -25,6 +25,8 @@ use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Start};
 /// - **Exactness:** `f32` compares the distance to the rounded centre, rounded once, with the rounded table;
 ///   fixed point compares exact distances to the unrounded centre.
 /// - **Range:** a value so far outside the range that no level reaches the floor fires no neuron.
+/// - **Error:** at most the mean of the distances within which the neurons' levels are reached, weighted by these
+///   levels.
 /// - **Decoder:** the mean of the centres weighted by their levels, `N - slot`; if no neuron fired, the previous
 ///   value. One division a sample. Fixed point gives the exact mean, rounded to the
 ///   nearest, halves upwards.

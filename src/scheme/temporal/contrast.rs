@@ -19,6 +19,7 @@ use crate::{Calibration, ConfigError, Destination, Recovery, Sample, Scheme, Spi
 /// - **Exactness:** `f32` rounds `d` once; fixed point compares exact differences.
 /// - **Error:** the decoded value drifts without bound, since differences within the threshold are lost.
 ///   [Resynchronise](crate::Decoder::resync) it.
+/// - **Silence:** a constant signal gives no spike. A larger threshold never gives more spikes.
 ///
 /// Source: paper, section II-C, algorithm 6.
 ///

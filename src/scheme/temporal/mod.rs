@@ -7,6 +7,8 @@
 //! or a keyframe, by [`Decoder::resync`](crate::Decoder::resync), and decode from the next spike on: the value of
 //! that sample is known, so its own spike is left out.
 //!
+//! **Scale.** In `f32`, samples and threshold times a power of two give the same spikes, and values times that power.
+//!
 //! ```
 //! use spikewire::{Scheme, temporal::MovingWindow};
 //!

@@ -26,6 +26,8 @@ use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 /// - **Work:** constant, and in `f32` a pass of `N` additions every `N` samples. `FixedI32` takes fewer
 ///   instructions while samples stay below `2^28 / N` units in the last place.
 /// - **Error:** the decoded value drifts without bound. Resynchronise it.
+/// - **Silence:** a signal that was constant for `N` samples gives no spike, in `f32` if the threshold exceeds what
+///   rounding leaves in the sum. A larger threshold never gives more spikes.
 ///
 /// Source: paper, section II-C, algorithm 8.
 ///

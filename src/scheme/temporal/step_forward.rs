@@ -18,7 +18,9 @@ use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 /// - **Latency:** 0 samples. **Memory:** 8 bytes a channel in `f32`, 4 to decode.
 /// - **Exactness:** `f32` rounds `base ± threshold` once; fixed point is exact.
 /// - **Error:** while `|x[i] - x[i-1]| <= threshold`, the decoded value stays within the threshold
-///   of the signal.
+///   of the signal. It never overshoots.
+/// - **Silence:** a constant signal gives no spike once the baseline is near it. A larger threshold mostly gives fewer
+///   spikes, but not always: `0, 3, 5, 1` gives two with a threshold of 1, and three with 2.
 ///
 /// Source: paper, section II-C, algorithm 7 (whose second `base + threshold` is a slip for `-`).
 ///
