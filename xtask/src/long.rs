@@ -47,6 +47,11 @@ pub fn sweeps() -> Result<()> {
     run(catalogue.env("PROPTEST_CASES", "5120").env("PROPTEST_RNG_SEED", &seed))
 }
 
+/// Explores the orders of memory of the queue without locks.
+pub fn loom() -> Result<()> {
+    run(&mut cargo("test --package host-tests --features loom --test loom -- --test-threads 1"))
+}
+
 /// What `clippy` and the builds of firmware lint, and what they leave out.
 pub fn lints() -> Result<()> {
     let warnings = ["--", "-D", "warnings"];

@@ -80,6 +80,7 @@ const LONG: &[Step] = &[
         "hours of flight in which all goes wrong, and the table of it in SAFETY.md",
         crate::faults::verify,
     ),
+    step("loom", "the queue without locks in every order of its loads and stores", long::loom),
     step("deny", "licences and sources of every crate, in every workspace", crate::release::deny),
     step("lints", "clippy on all at once: every feature, firmware on host and core", long::lints),
     step("capture", "the laptop program with a debug probe's driver", long::capture),
