@@ -1,4 +1,4 @@
-"""What a board is wired to: a sensor on SPI, its data-ready line, a serial line, a crystal, and fates that strike them.
+"""What a board is wired to: a sensor on SPI or I2C, its data-ready line, a serial line, a crystal, and fates that strike them.
 
 The sensor is that of `sensors.mjs`, which the Pico's emulator has, too.
 """
@@ -15,7 +15,7 @@ function feed(line, now) {
   return answers.join(",");
 }
 """
-CLASSES = {"bmi323": "Bmi323", "icm42688p": "Icm42688p"}
+CLASSES = {"bmi323": "Bmi323", "icm42688p": "Icm42688p", "bmi088": "Bmi088"}
 
 
 class Bench:
@@ -123,6 +123,28 @@ class Bench:
         floating = {"up": 0xFF, "down": 0x00}.get(pull, noise)
         whole = driven if driven >= 0 else floating
         return {"whole": whole, "cut": floating, "noise": noise, "low": 0x00, "high": 0xFF}[self.miso]
+
+    # A sensor on I2C: MISO is SDA, that the bus pulls up, and the clock SCL.
+
+    def holds_low(self):
+        """Whether SDA is stuck low."""
+        return self.miso == "low"
+
+    def hears(self):
+        return self.clock and self.miso in ("whole", "noise")
+
+    def acknowledges(self, byte):
+        """The first byte of a transfer: address, and whether it reads."""
+        driven = self.hears() and self.js(f"sensor.begin({byte})")
+        return bool(self.random() >> 31) if self.miso == "noise" else bool(driven)
+
+    def put(self, byte):
+        driven = self.hears() and self.js(f"sensor.put({byte})")
+        return bool(self.random() >> 31) if self.miso == "noise" else bool(driven)
+
+    def take(self):
+        driven = self.js("sensor.get()") if self.hears() else -1
+        return self.read(driven, "up")
 
     def send(self, byte, baud):
         """A byte on the serial line; returns how long it takes."""

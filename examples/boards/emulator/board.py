@@ -1,4 +1,4 @@
-"""Runs an image with a Cortex-M4F from its reset vector, with a sensor on SPI.
+"""Runs an image with a Cortex-M4F or M7 from its reset vector, with a sensor on its bus.
 
     python board.py PART IMAGE SENSOR SECONDS DIRECTORY [TIME:FATE]...
 
@@ -13,12 +13,15 @@ import sys
 
 from bench import Bench
 from cortex_m import LOOP, Reset, symbol
+from unicorn import UcError
+from unicorn.arm_const import UC_ARM_REG_PC
 
 part_name, image, sensor, seconds, directory, *fates = sys.argv[1:]
-part = importlib.import_module(part_name).Part()
+module = importlib.import_module(part_name)
+part = module.Part()
 core, elf, end = part.core, pathlib.Path(image).read_bytes(), float(seconds) * 1e9
 directory, rtt, log = pathlib.Path(directory), symbol(elf, b"_SEGGER_RTT"), bytearray()
-core.load(elf, importlib.import_module(part_name).VECTORS)
+core.load(elf, module.VECTORS, getattr(module, "ENTRY", module.VECTORS))
 core.reset()
 bench = Bench(core, sensor)
 
@@ -65,13 +68,16 @@ def hang():
 
 
 start("power")
-while core.now < end:
+fault = None
+while core.now < end and not fault:
     try:
         core.run(end)
     except Reset as reset:
         start(reset.args[0])
+    except UcError as error:
+        fault = f"{error} at {core.uc.reg_read(UC_ARM_REG_PC):#x}"  # such as a panic's end
 drain()
-seen = bench.seen | {"instructions": core.instructions, "cycles": 0, "clkSys": core.hz}
+seen = bench.seen | {"instructions": core.instructions, "cycles": 0, "clkSys": core.hz, "fault": fault}
 seen["pausesOnHalt"] = part.pauses_on_halt()
 seen["configured"] = bool(bench.js("sensor.isConfigured"))
 (directory / "uart").write_bytes(bench.uart)

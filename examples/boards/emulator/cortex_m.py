@@ -57,18 +57,18 @@ class Core:
         self.uc.mem_write(LOOP, b"\xfe\xe7")
         self.now, self.instructions, self.hz = 0.0, 0, 0
         self.events, self.order = [], 0
-        self.blocks = {}
+        self.blocks, self.fault = {}, None
         self.uc.hook_add(UC_HOOK_BLOCK, self.block)
         self.bus(SYSTEM, 0x1000, self)
 
-    def load(self, elf, vectors):
+    def load(self, elf, vectors, entry):
         for address, code in segments(elf):
             self.uc.mem_write(address, bytes(code))
             for at in range(0, len(code) - 1, 2):
                 one = struct.unpack_from("<H", code, at)[0]
                 if one in (WFE, WFI, SEV):
                     self.uc.hook_add(UC_HOOK_CODE, self.hint, one, address + at, address + at)
-        self.vectors = vectors
+        self.table, self.entry = vectors, entry
 
     def bus(self, base, size, one):
         """Puts a peripheral at its address."""
@@ -92,7 +92,8 @@ class Core:
         self.events.clear()
         self.event, self.polls, self.polled, self.polled_at = False, 0, None, 0
         self.deadline, self.asleep, self.before = 0.0, False, None
-        stack, self.pc = struct.unpack("<II", self.uc.mem_read(self.vectors, 8))
+        self.vectors = self.table
+        stack, self.pc = struct.unpack("<II", self.uc.mem_read(self.entry, 8))
         self.uc.reg_write(arm.UC_ARM_REG_SP, stack)
         self.uc.reg_write(arm.UC_ARM_REG_PRIMASK, 0)
 
@@ -189,8 +190,6 @@ class Core:
             raise fault
         if not self.stopped:
             self.pc = self.uc.reg_read(arm.UC_ARM_REG_PC) | 1
-
-    fault = None
 
     # Interrupts
 

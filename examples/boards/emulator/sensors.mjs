@@ -1,4 +1,4 @@
-// Sensors on SPI as their master sees them: registers, FIFO, status and the interrupt line. The samples are a signal with
+// Sensors on SPI or I2C as their master sees them: registers, FIFO, status and the interrupt line. The samples are a signal with
 // noise, in counts; each is kept with its time.
 
 /// Six channels at a time in seconds: rates about x, y, z, then accelerations along them. Different on every axis.
@@ -193,5 +193,75 @@ export class Icm42688p extends Sensor {
     if (register === 0x11 && value & 1) this.reset();
     else if (register === 0x4b && value & 2) this.fifo = [];
     else this.bytes[register] = value;
+  }
+}
+
+/// BMI088 on I2C, by its data sheet (BST-BMI088-DS001): two dies, each with an address, and the rates' pulse on INT3.
+export class Bmi088 extends Sensor {
+  constructor() {
+    super(1e9 / 1000);
+  }
+
+  reset() {
+    this.dies = { 0x18: this.fresh(0x18), 0x69: this.fresh(0x69) };
+  }
+
+  fresh(die) {
+    const bytes = new Uint8Array(128);
+    if (die === 0x18) {
+      bytes[0x00] = 0x1e; // ACC_CHIP_ID
+      bytes.set([0xa8, 0x01], 0x40); // ACC_CONF, ACC_RANGE
+      bytes[0x7c] = 0x03; // ACC_PWR_CONF: suspended
+    } else {
+      bytes[0x00] = 0x0f; // GYRO_CHIP_ID
+      bytes[0x10] = 0x80; // GYRO_BANDWIDTH: 2000 Hz
+      bytes[0x16] = 0x0f; // INT3_INT4_IO_CONF
+    }
+    return bytes;
+  }
+
+  /// ±24 g at 1600 Hz, ±2000 °/s at 1000 Hz, data-ready on INT3: push-pull, active high.
+  get isConfigured() {
+    const has = (die, settings) => Object.entries(settings).every(([register, value]) => this.dies[die][register] === value);
+    return has(0x18, { 0x7c: 0, 0x7d: 4, 0x40: 0x8c, 0x41: 3 }) && has(0x69, { 0x0f: 0, 0x10: 0x82, 0x15: 0x80, 0x16: 1, 0x18: 1 });
+  }
+
+  get isSampling() {
+    return this.dies[0x69][0x10] === 0x82;
+  }
+
+  sample(at) {
+    const [rx, ry, rz, ax, ay, az] = this.take(at);
+    const set = (die, first, counts) =>
+      counts.forEach((count, axis) => this.dies[die].set([count & 0xff, (count >> 8) & 0xff], first + 2 * axis));
+    set(0x69, 0x02, [rx, ry, rz]);
+    if (this.dies[0x18][0x7d] === 4 && this.dies[0x18][0x7c] === 0) set(0x18, 0x12, [ax, ay, az]);
+    if (this.dies[0x69][0x15] === 0x80 && this.dies[0x69][0x18] & 1) this.pulse = at;
+  }
+
+  /// The address with its direction; says whether a die acknowledges.
+  begin(byte) {
+    this.die = byte >> 1;
+    if (!(byte & 1)) this.register = undefined;
+    return this.isOn && this.die in this.dies;
+  }
+
+  put(byte) {
+    if (!this.isOn) return false;
+    if (this.register === undefined) this.register = byte & 0x7f;
+    else this.write(this.register++, byte);
+    return true;
+  }
+
+  get() {
+    if (!this.isOn) return -1;
+    if (this.register === 0x17) this.reads += 1;
+    return this.dies[this.die][this.register++ & 0x7f];
+  }
+
+  write(register, value) {
+    const isAccelerometer = this.die === 0x18;
+    if (register === (isAccelerometer ? 0x7e : 0x14) && value === 0xb6) this.dies[this.die] = this.fresh(this.die);
+    else this.dies[this.die][register] = !isAccelerometer && register === 0x10 ? value | 0x80 : value; // that bit is always 1
   }
 }

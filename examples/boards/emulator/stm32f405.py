@@ -11,11 +11,8 @@ CRYSTAL = 8_000_000
 START_NS = 2e6  # of the crystal
 LOW_HZ = 32_000  # of the watchdog
 
-# The wires: port, pin, alternate function.
-SCK, MISO, MOSI, TX = ("A", 5, 5), ("A", 6, 5), ("A", 7, 5), ("C", 6, 8)
-SELECT, READY = ("A", 4), ("C", 4)
 # RM0090, table 43: what a stream of DMA2 moves on which channel.
-REQUESTS = {(0, 3): "SPI1_RX", (3, 3): "SPI1_TX", (6, 5): "USART6_TX"}
+REQUESTS = {(0, 3): "SPI_RX", (3, 3): "SPI_TX", (6, 5): "TX"}
 
 # Where each lies, and the bit of RCC that clocks it.
 PLACES = {
@@ -95,6 +92,16 @@ class Rcc(Registers):
         divider = 1 if code < 4 else 2 << (code - 4)
         return self.hz() // divider, divider
 
+    def timer_hz(self):
+        clock, divider = self.bus(10)
+        return clock * (1 if divider == 1 else 2)
+
+    def spi_hz(self):
+        return self.bus(13)[0]
+
+    def port_hz(self):
+        return self.bus(13)[0]
+
 
 class Timer(Registers):
     """TIM5: an update, and four compares."""
@@ -102,8 +109,7 @@ class Timer(Registers):
     began, order = None, 0
 
     def hz(self):
-        clock, divider = self.part.rcc.bus(10)
-        return clock * (1 if divider == 1 else 2) / (self.words[0x28] + 1)
+        return self.part.rcc.timer_hz() / (self.words[0x28] + 1)
 
     def count(self):
         return 0 if self.began is None else int((self.core.now - self.began) * self.hz() / 1e9 + 1e-3)
@@ -184,7 +190,7 @@ class Gpio(Registers):
     def written(self, offset, before, value):
         if offset == 0x18:
             self.words[0x14] = (self.words[0x14] | value & 0xFFFF) & ~(value >> 16)
-        port, pin = SELECT
+        port, pin = self.part.SELECT
         if self.name == port and self.words[0] >> 2 * pin & 3 == 1:
             self.part.bench.select(not self.words[0x14] >> pin & 1)
 
@@ -195,19 +201,21 @@ class Gpio(Registers):
 
 
 class Exti(Registers):
+    MASK, RISES, FALLS, PENDING = 0x00, 0x08, 0x0C, 0x14
+
     def written(self, offset, before, value):
-        if offset == 0x14:
+        if offset == self.PENDING:
             self.words[offset] = before & ~value
         self.update()
 
     def edge(self, port, pin, rises):
         chosen = self.part.named["SYSCFG"].words[0x08 + pin // 4 * 4] >> pin % 4 * 4 & 15
-        if "ABCDEFGHI"[chosen] == port and self.words[0x08 if rises else 0x0C] >> pin & 1:
-            self.words[0x14] |= 1 << pin
+        if "ABCDEFGHI"[chosen] == port and self.words[self.RISES if rises else self.FALLS] >> pin & 1:
+            self.words[self.PENDING] |= 1 << pin
             self.update()
 
     def update(self):
-        active = self.words[0x14] & self.words[0x00]
+        active = self.words[self.PENDING] & self.words[self.MASK]
         for line in range(5):
             self.core.line(6 + line, active >> line & 1 == 1)
         self.core.line(23, active >> 5 & 0x1F != 0)
@@ -215,7 +223,7 @@ class Exti(Registers):
 
 
 class Dma(Registers):
-    """DMA2's streams: bytes, between memory and one register."""
+    """A controller's streams: bytes, between memory and one register."""
 
     LINES = (56, 57, 58, 59, 60, 68, 69, 70)
 
@@ -223,16 +231,27 @@ class Dma(Registers):
         """The stream that is on for this request, or None."""
         for stream in range(8):
             control = self.words[0x10 + 0x18 * stream]
-            if control & 1 and REQUESTS.get((stream, control >> 25 & 7)) == request:
+            if control & 1 and self.request(stream, control) == request:
                 return stream
         return None
+
+    def request(self, stream, control):
+        return REQUESTS.get((stream, control >> 25 & 7))
 
     def memory(self, stream):
         return self.words[0x1C + 0x18 * stream], self.words[0x14 + 0x18 * stream]
 
     def bytes(self, stream):
+        """What it reads; None, and an error, if it does not reach that memory."""
         address, length = self.memory(stream)
-        return self.part.ram(address, length)
+        if self.part.reaches(address, length):
+            return bytes(self.core.uc.mem_read(address, length))
+        self.fail(stream)
+        return None
+
+    def fail(self, stream):
+        self.words[0x10 + 0x18 * stream] &= ~1
+        self.flag(stream, 0b1000)
 
     def done(self, stream, left=0):
         self.words[0x14 + 0x18 * stream] = left
@@ -272,24 +291,33 @@ class Spi(Registers):
     def written(self, offset, before, value):
         self.part.moved()
 
+    def is_on(self):
+        return self.words[0] >> 6 & 1 and self.words[4] & 3 == 3
+
+    def divider(self):
+        return 2 << (self.words[0] >> 3 & 7)
+
     def go(self):
-        dma, ports = self.part.named["DMA2"], self.part.named
-        into, out = dma.stream("SPI1_RX"), dma.stream("SPI1_TX")
-        is_on = self.words[0] >> 6 & 1 and self.words[4] & 3 == 3
-        if self.running or not is_on or into is None or out is None:
+        part, dma = self.part, self.part.dma
+        into, out = dma.stream("SPI_RX"), dma.stream("SPI_TX")
+        if self.running or not self.is_on() or into is None or out is None:
             return
-        hz = self.part.rcc.bus(13)[0] / (2 << (self.words[0] >> 3 & 7))
-        pull = {1: "up", 2: "down"}.get(ports["GPIO" + MISO[0]].words[0x0C] >> 2 * MISO[1] & 3, "none")
-        self.part.wired(SCK, MISO, MOSI)
+        port, pin, _ = part.MISO
+        pull = {1: "up", 2: "down"}.get(part.named["GPIO" + port].words[0x0C] >> 2 * pin & 3, "none")
+        part.wired(part.SCK, part.MISO, part.MOSI)
+        place, length = dma.memory(into)
+        sent = dma.bytes(out)
+        if sent is None or not part.reaches(place, length):
+            return dma.fail(into)
 
         def done(read):
             self.running = None
-            self.core.uc.mem_write(dma.memory(into)[0], read)
+            self.core.uc.mem_write(place, read)
             dma.done(out)
             dma.done(into)
 
         self.streams = (into, out)
-        self.running = self.part.bench.transfer(dma.bytes(out), hz, pull, done)
+        self.running = part.bench.transfer(sent, part.rcc.spi_hz() / self.divider(), pull, done)
 
     def stop(self, stream):
         if self.running and stream in self.streams:
@@ -307,26 +335,33 @@ class Usart(Registers):
     def written(self, offset, before, value):
         self.part.moved()
 
+    def is_on(self):
+        return self.words[0x0C] & 0x2008 == 0x2008 and self.words[0x14] >> 7 & 1
+
+    def divider(self):
+        return self.words[8]
+
     def go(self):
-        dma = self.part.named["DMA2"]
-        stream = dma.stream("USART6_TX")
-        is_on = self.words[0x0C] & 0x2008 == 0x2008 and self.words[0x14] >> 7 & 1
-        if self.stream is not None or not is_on or stream is None:
+        dma = self.part.dma
+        stream = dma.stream("TX")
+        if self.stream is not None or not self.is_on() or stream is None:
             return
-        self.part.wired(TX)
-        self.stream, self.bytes, self.sent = stream, dma.bytes(stream), 0
-        self.core.at(max(self.free, self.core.now), self.next)
+        self.part.wired(self.part.TX)
+        self.bytes, self.sent = dma.bytes(stream), 0
+        if self.bytes is not None:
+            self.stream = stream
+            self.core.at(max(self.free, self.core.now), self.next)
 
     def next(self):
         if self.stream is None:
             return
-        took = self.part.bench.send(self.bytes[self.sent], self.part.rcc.bus(13)[0] / self.words[8])
+        took = self.part.bench.send(self.bytes[self.sent], self.part.rcc.port_hz() / self.divider())
         self.sent, self.free = self.sent + 1, self.core.now + took
         if self.sent < len(self.bytes):
             self.core.at(self.free, self.next)
             return
         stream, self.stream = self.stream, None
-        self.part.named["DMA2"].done(stream)
+        self.part.dma.done(stream)
 
     def stop(self, stream):
         if stream == self.stream:
@@ -334,18 +369,27 @@ class Usart(Registers):
 
 
 class Part:
+    MEMORIES, MODEL, PLACES = MEMORIES, UC_CPU_ARM_CORTEX_M4, PLACES
+    KINDS = {"TIM5": Timer, "IWDG": Watchdog, "USART6": Usart, "SPI1": Spi, "EXTI": Exti, "RCC": Rcc, "DMA2": Dma, "RNG": Random, "GPIO": Gpio}
+    SPI, PORT, DMA = "SPI1", "USART6", "DMA2"
+    # The wires: port, pin, alternate function.
+    SCK, MISO, MOSI, TX = ("A", 5, 5), ("A", 6, 5), ("A", 7, 5), ("C", 6, 8)
+    SELECT, READY = ("A", 4), ("C", 4)
+    REACHED = ((0x20000000, 0x20020000), (0x08000000, 0x08100000))
+
     def __init__(self):
-        self.core = Core(MEMORIES, UC_CPU_ARM_CORTEX_M4)
-        for base in sorted({place & ~0xFFF for place, _, _ in PLACES.values()}):
+        self.core = Core(self.MEMORIES, self.MODEL)
+        for base in sorted({place & ~0xFFF for place, _, _ in self.PLACES.values()}):
             self.core.bus(base, 0x1000, Window(self, base))
 
     def reset(self, bench, reason):
-        self.bench, self.reason = bench, reason
-        kinds = {"TIM5": Timer, "IWDG": Watchdog, "USART6": Usart, "SPI1": Spi, "EXTI": Exti, "RCC": Rcc, "DMA2": Dma, "RNG": Random}
-        self.named = {name: Gpio(self, name[4:]) if name[:4] == "GPIO" else kinds.get(name, Registers)(self) for name in PLACES}
-        self.rcc = self.named["RCC"]
+        self.bench, self.reason, self.named = bench, reason, {}
+        for name in self.PLACES:
+            is_port = name.startswith("GPIO")
+            self.named[name] = self.KINDS["GPIO"](self, name[4:]) if is_port else self.KINDS.get(name, Registers)(self)
+        self.rcc, self.dma = self.named["RCC"], self.named[self.DMA]
         self.core.hz = self.rcc.hz()
-        self.places = {place: (name, register, bit) for name, (place, register, bit) in PLACES.items()}
+        self.places = {place: (name, register, bit) for name, (place, register, bit) in self.PLACES.items()}
         bench.pin = self.pin
 
     def pauses_on_halt(self):
@@ -353,7 +397,7 @@ class Part:
         return bool(self.named["DBGMCU"].words[8] >> 12 & 1)
 
     def pin(self, level):
-        port, pin = READY
+        port, pin = self.READY
         self.named["GPIO" + port].level = level << pin
         self.named["EXTI"].edge(port, pin, level)
 
@@ -371,18 +415,16 @@ class Part:
 
     def moved(self):
         """A stream or a peripheral was turned on."""
-        self.named["SPI1"].go()
-        self.named["USART6"].go()
+        self.named[self.SPI].go()
+        self.named[self.PORT].go()
 
     def stopped(self, stream):
-        self.named["SPI1"].stop(stream)
-        self.named["USART6"].stop(stream)
+        self.named[self.SPI].stop(stream)
+        self.named[self.PORT].stop(stream)
 
-    def ram(self, address, length):
-        if not 0x20000000 <= address <= 0x20020000 - length and not 0x08000000 <= address < 0x08100000:
-            self.core.raise_later(LookupError(f"DMA does not reach {address:#x}"))
-            return bytes(length)
-        return bytes(self.core.uc.mem_read(address, length))
+    def reaches(self, address, length):
+        """Whether DMA reaches this memory."""
+        return any(start <= address <= end - length for start, end in self.REACHED)
 
 
 class Window:

@@ -8,7 +8,7 @@
 //! - [`Watch`] runs for ever: it starts the sensor, reads it at each data-ready edge, turns its axes into the vehicle's
 //!   ([`Alignment`]), codes the samples, and starts the sensor again when it dies;
 //! - [`Sampler`] judges the samples: it notices a sensor that is silent, stuck or failing, and tells the far end by a break;
-//! - [`Sender`] writes frames to a UART or a USB port;
+//! - [`Sender`] writes frames to a UART or a USB port, through [`Bounced`] where that port's DMA does not reach every memory;
 //! - [`Rounds`] tells whoever feeds the watchdog that sampling goes on;
 //! - [`clock`] checks a crystal and its dividers while the firmware is compiled.
 //!
@@ -22,6 +22,7 @@ mod align;
 pub mod bmi088;
 #[cfg(feature = "bmi323")]
 pub mod bmi323;
+mod bounced;
 pub mod clock;
 pub mod code;
 mod counters;
@@ -41,6 +42,7 @@ mod watch;
 pub const KEYFRAMES: u16 = 20;
 
 pub use align::Alignment;
+pub use bounced::Bounced;
 pub use counters::Counters;
 pub use device::{Device, Timing};
 pub use fault::Fault;

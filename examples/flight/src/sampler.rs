@@ -19,7 +19,7 @@ pub struct Plan {
     pub burst: u8,
     /// How many samples in a row may be alike in all bits of the three rates, or of the three accelerations. Noise changes
     /// some bit of a living sensor's sample all the time; one of two dies may freeze alone. As many samples in a row may
-    /// be missing from what was read.
+    /// be missing from what was read, those between two failed reads included.
     pub most_alike: u8,
     /// The most spikes that the code has for a channel and sample.
     pub most_spikes: u8,
@@ -114,10 +114,13 @@ where
             self.counters.discarded = self.counters.discarded.wrapping_add(1);
             return;
         }
-        self.count_missed(edge);
+        let missed = self.count_missed(edge);
         let Ok(sample) = read else {
             self.counters.failed = self.counters.failed.wrapping_add(1);
-            self.failed = self.failed.saturating_add(1);
+            // A bus that hangs until it is given up takes the samples between two reads with it.
+            let between = if self.failed > 0 { missed } else { 0 };
+            let all = u8::try_from(between.saturating_add(1)).unwrap_or(u8::MAX);
+            self.failed = self.failed.saturating_add(all);
             if self.failed > self.plan.most_alike {
                 self.end(Why::Failing, edge, queue);
             }
@@ -165,15 +168,18 @@ where
         self.counters.samples = self.counters.samples.wrapping_add(1);
     }
 
-    /// Whole periods between two edges are samples that nobody saw.
-    fn count_missed(&mut self, edge: Tick) {
+    /// Counts whole periods between two edges, which are samples that nobody saw, and returns their number.
+    fn count_missed(&mut self, edge: Tick) -> u32 {
+        let mut missed = 0;
         if self.has_come {
             let period = u32::from(self.plan.period).max(1);
             let passed = edge.since(self.last).max(0).unsigned_abs();
             let periods = (passed + period / 2) / period;
-            self.counters.missed = self.counters.missed.wrapping_add(periods.saturating_sub(1));
+            missed = periods.saturating_sub(1);
+            self.counters.missed = self.counters.missed.wrapping_add(missed);
         }
         (self.last, self.has_come) = (edge, true);
+        missed
     }
 
     /// Whether the sensor must be started, and why; tells the far end when that is news.

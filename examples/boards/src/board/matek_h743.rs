@@ -14,7 +14,7 @@ use embassy_stm32::{
     time::Hertz,
     usart::{self, UartTx},
 };
-use flight::{Alignment, Device, Spin};
+use flight::{Alignment, Bounced, Device, Spin};
 use icm42688p::{Icm42688p, TIMING};
 
 use spikewire::link::Session;
@@ -31,7 +31,8 @@ bind_interrupts!(struct Interrupts {
 
 pub type Imu = Icm42688p<'static, Device<Spi<'static, Async, Master>, Output<'static>, Spin>>;
 pub type DataReady = ExtiInput<'static, Async>;
-pub type Port = UartTx<'static, Async>;
+/// Frames lie in the DTCM, which DMA1 does not reach.
+pub type Port = Bounced<'static, UartTx<'static, Async>>;
 
 /// `GYRO_1_ALIGN`.
 pub const ALIGNMENT: Alignment = Alignment::Cw0Flip;
@@ -54,10 +55,11 @@ pub fn start() -> Board {
     let Ok(port) = UartTx::new(p.USART1, p.PA9, p.DMA1_CH2, Interrupts, at) else {
         panic!("no such baud rate")
     };
+    let part::Dma { imu: bytes, port: frame } = part::dma();
     Board {
-        imu: Icm42688p::new(imu, part::dma_buffer()),
+        imu: Icm42688p::new(imu, bytes),
         data_ready: ExtiInput::new(p.PB2, p.EXTI2, Pull::Down, Interrupts),
-        port,
+        port: Bounced::new(port, frame),
         session: Session::random(Rng::new(p.RNG, Interrupts).next_u64()),
     }
 }

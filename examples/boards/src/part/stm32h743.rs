@@ -1,9 +1,9 @@
 //! An STM32H743: watchdog, clocks, time, and the memory that DMA and processor share.
 //!
-//! DMA1 and DMA2 do not reach the DTCM, where the statics are. The driver's one buffer lies in SRAM1 of domain D2, which
-//! they reach without crossing into the processor's domain. That memory is not cached, so that no line has to be cleaned or
-//! thrown away around a transfer: a forgotten one would be a wrong sample now and then. It costs the processor some slow
-//! reads of 132 bytes a millisecond. The data cache then serves the constants in flash alone, as the DTCM is never in it.
+//! DMA1 and DMA2 do not reach the DTCM, where the statics are. What they move, the driver's one buffer and each frame, lies in
+//! SRAM1 of domain D2, which they reach without crossing into the processor's domain. That memory is not cached, so that no
+//! line has to be cleaned or thrown away around a transfer: a forgotten one would be a wrong sample now and then. It costs
+//! the processor some slow reads of 132 bytes a millisecond. The data cache then serves the constants in flash alone, as the DTCM is never in it.
 
 use core::{
     mem::MaybeUninit,
@@ -25,7 +25,7 @@ use embassy_stm32::{
 use embassy_time::{Duration, Instant};
 use flight::Spin;
 use icm42688p::{Buffer, NEW_BUFFER};
-use spikewire::Tick;
+use spikewire::{Tick, link::MAX_FRAME};
 
 use crate::Reset;
 
@@ -42,9 +42,15 @@ pub const SPI_HZ: u32 = PLL_HZ / 8;
 const SRAM1: u32 = 0x3000_0000;
 const SRAM1_SIZE: u32 = 17;
 
+/// What DMA moves.
+pub struct Dma {
+    pub imu: Buffer,
+    pub port: [u8; MAX_FRAME],
+}
+
 /// SRAM1 has no clock before [`start`], so this is written after it.
 #[unsafe(link_section = ".dma")]
-static mut DMA: MaybeUninit<Buffer> = MaybeUninit::uninit();
+static mut DMA: MaybeUninit<Dma> = MaybeUninit::uninit();
 
 /// The watchdog, which has a clock of its own and stands still while a debugger halts the core.
 pub struct Watchdog(IndependentWatchdog<'static, IWDG1>);
@@ -116,7 +122,7 @@ fn leave_out_of_cache(mpu: &mut MPU) {
     const ENABLE: u32 = 1;
     const DEFAULT_MAP_ELSEWHERE: u32 = 1 << 2;
     let attributes = NOT_CACHED | FULL_ACCESS | EXECUTE_NEVER | (SRAM1_SIZE - 1) << 1 | ENABLE;
-    // SAFETY: the region holds the buffer alone, which nobody has touched yet.
+    // SAFETY: the region holds the buffers alone, which nobody has touched yet.
     unsafe {
         mpu.rnr.write(0);
         mpu.rbar.write(SRAM1);
@@ -127,15 +133,15 @@ fn leave_out_of_cache(mpu: &mut MPU) {
     cortex_m::asm::isb();
 }
 
-/// Returns the driver's buffer, after [`start`].
+/// Returns the buffers, after [`start`].
 ///
 /// # Panics
-/// It was taken before.
-pub fn dma_buffer() -> &'static mut Buffer {
+/// They were taken before.
+pub fn dma() -> &'static mut Dma {
     static IS_TAKEN: AtomicBool = AtomicBool::new(false);
-    assert!(!IS_TAKEN.swap(true, Relaxed), "the buffer is taken");
+    assert!(!IS_TAKEN.swap(true, Relaxed), "the buffers are taken");
     // SAFETY: this is the only reference, as the flag says.
-    unsafe { (*addr_of_mut!(DMA)).write(NEW_BUFFER) }
+    unsafe { (*addr_of_mut!(DMA)).write(Dma { imu: NEW_BUFFER, port: [0; MAX_FRAME] }) }
 }
 
 /// Waits by the core's cycles, of which this core does two turns of the loop.

@@ -4,6 +4,7 @@
 mod align;
 mod bmi088;
 mod bmi323;
+mod bounced;
 mod code;
 mod device;
 mod i2c;

@@ -161,6 +161,23 @@ fn reads_that_go_on_failing_end_it_and_single_ones_do_not() {
     assert_eq!(breaks(&log), 1);
 }
 
+/// A bus that is held hangs in each read for some samples, until it is given up: the limit is one of time.
+#[test]
+fn reads_that_hang_end_it_no_later() {
+    for hangs in 1..5 {
+        let (mut sampler, mut log) = (sampler(), Log::default());
+        fly(&mut sampler, 1..11, &mut log);
+        let edges = (10 + hangs..).step_by(hangs as usize);
+        let last = edges.take_while(|&edge| {
+            sampler.take(at(edge), Err(()), &mut log);
+            sampler.is_alive()
+        });
+        let last = last.last().unwrap_or(10);
+        // Three may fail; the first read's own time is not known.
+        assert!(last <= 10 + hangs + 3, "{hangs}: {last}");
+    }
+}
+
 #[test]
 fn edges_that_nobody_saw_are_counted() {
     let (mut sampler, mut log) = (sampler(), Log::default());
