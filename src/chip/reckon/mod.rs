@@ -34,9 +34,10 @@ use wire::{Address, Wire};
 ///   step all calls are refused until the next reset.
 /// - **Checks:** memories are read back. Registers cannot be read; after each, a word that no network uses is written
 ///   and read twice, so that a clock lost or doubled before it is an error. A lost and a doubled clock, one of
-///   them in a register's own frame or next to it, may cancel out and go unseen: the register keeps its value, takes another, or another register
-///   does. The same pair in the first bits of a frame that writes neurons' weights may reach a register, too; that is
-///   seen unless the memory held these weights before.
+///   them in a register's own frame or in the one before it, may cancel out and go unseen: the register keeps its value,
+///   takes another, or another register does. The same pair in the first bits of a frame that writes neurons' weights may
+///   reach a register, too; that is seen unless the memory held these weights before. And a read with which a load
+///   compares may become a write that nobody sees: [`Programmed::verify`] after the load sees it.
 /// - **Waits** read the pins a given number of times, then return an error.
 ///
 /// # A time step
