@@ -37,7 +37,8 @@ use wire::{Address, Wire};
 ///   them in a register's own frame or in the one before it, may cancel out and go unseen: the register keeps its value,
 ///   takes another, or another register does. The same pair in the first bits of a frame that writes neurons' weights may
 ///   reach a register, too; that is seen unless the memory held these weights before. And a read with which a load
-///   compares may become a write that nobody sees: [`Programmed::verify`] after the load sees it.
+///   compares may become a write: [`Programmed::verify`] after the load sees that in weights and parameters, but nobody does
+///   in the potential of a neuron or an output.
 /// - **Waits** read the pins a given number of times, then return an error.
 ///
 /// # A time step
