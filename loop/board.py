@@ -119,9 +119,8 @@ def main(image: str) -> None:
 
     flight.Sensor.read = registers
     both = Both(flight.RATE, board, path, lambda: last[0])
-    flight.Control = lambda _: both
     manoeuvre = Manoeuvre("steps and a flip", 2.5, lambda time: steps(20)(time + 0.2) if time < 0.9 else flip(time - 0.9))
-    flown = flight.fly(manoeuvre, path, seed=1, loss=0.02)
+    flown = flight.fly(manoeuvre, path, seed=1, loss=0.02, control=both)
     said = board.end()
     if flown.lost or path.receiver.lost == 0:
         raise SystemExit(f"not the flight that was meant: {flown.errors.max():.0f}°, {path.receiver.lost} frames lost")

@@ -48,7 +48,8 @@ class Control:
         """The speeds for a `wanted` attitude (w, x, y, z), a thrust in N and the rate at which what is wanted turns."""
         gx, gy, gz, ax, ay, az = (F(own) for own in sample)
         rates = self._estimate(gx, gy, gz, ax, ay, az)
-        moments = self._moments(rates, [F(own) for own in wanted], [F(own) for own in feed])
+        turns = self._turns([F(own) for own in wanted], [F(own) for own in feed])
+        moments = [inertia * wish for inertia, wish in zip(self.inertia, self._wishes(rates, turns))]
         return self._mix(F(thrust), moments)
 
     def _estimate(self, gx, gy, gz, ax, ay, az):
@@ -76,8 +77,8 @@ class Control:
         self.q = [w * scale, x * scale, y * scale, z * scale]
         return rates
 
-    def _moments(self, rates, wanted, feed):
-        """Attitude and rate: moments in Nm."""
+    def _turns(self, wanted, feed):
+        """Attitude: the rates that turn the drone to where it is wanted."""
         w, x, y, z = self.q
         a, b, c, d = wanted
         # The turn that is left, in the drone's axes: conj(q) * wanted.
@@ -88,21 +89,23 @@ class Control:
             w * d - x * c + y * b - z * a,
         ]
         sign = TWO if way >= ZERO else -TWO
+        turns = [ATTITUDE[axis] * sign * left[axis] + feed[axis] for axis in range(3)]
+        return [min(max(turn, -FASTEST_TURN), FASTEST_TURN) for turn in turns]
+
+    def _wishes(self, rates, turns):
+        """Rate: angular accelerations that bring the rates to the turns, rad/s²."""
         if self.last is None:
             self.last = rates
-        moments = []
+        wishes = []
         for axis in range(3):
-            turn = ATTITUDE[axis] * sign * left[axis] + feed[axis]
-            turn = min(max(turn, -FASTEST_TURN), FASTEST_TURN)
-            error = turn - rates[axis]
+            error = turns[axis] - rates[axis]
             integral = self.integral[axis] + INTEGRAL[axis] * error * self.dt
             self.integral[axis] = min(max(integral, -MOST), MOST)
             slope = (rates[axis] - self.last[axis]) / self.dt
             self.slope[axis] = self.slope[axis] + SMOOTH * (slope - self.slope[axis])
-            wish = RATE[axis] * error + self.integral[axis] - DERIVATIVE[axis] * self.slope[axis]
-            moments.append(self.inertia[axis] * wish)
+            wishes.append(RATE[axis] * error + self.integral[axis] - DERIVATIVE[axis] * self.slope[axis])
         self.last = rates
-        return moments
+        return wishes
 
     def _mix(self, thrust, moments) -> list[float]:
         """Thrust and moments as the squares of rotor speeds; roll and pitch come before thrust, and yaw last."""

@@ -48,11 +48,13 @@ class Flight:
     trace: list = field(default_factory=list)
 
 
-def fly(manoeuvre: Manoeuvre, path, seed: int, loss: float = 0.0, trace: bool = False) -> Flight:
+def fly(
+    manoeuvre: Manoeuvre, path, seed: int, loss: float = 0.0, trace: bool = False, control: Control | None = None
+) -> Flight:
     """Flies a manoeuvre, the sensor heard by way of `path`; the same seed gives the same flight."""
     random = np.random.default_rng(seed)
     samples = round(manoeuvre.seconds * RATE)
-    world, pilot, control = World(**manoeuvre.world), Pilot(manoeuvre, RATE), Control(RATE)
+    world, pilot, control = World(**manoeuvre.world), Pilot(manoeuvre, RATE), control or Control(RATE)
     sensor = Sensor(random, RATE, samples)
     dice = np.random.default_rng([seed, 1])
     is_lost = (lambda: bool(dice.random() < loss)) if loss else (lambda: False)

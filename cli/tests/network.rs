@@ -66,6 +66,32 @@ fn a_network_that_the_chip_can_hold_costs_nothing() {
     assert!(!ran.output.contains("BIAS"));
 }
 
+/// A line of spikes is a step: each weight is added, and the neuron fires at 12. The line that comes later is answered
+/// as the chip does it, which keeps its potentials.
+#[test]
+fn spikes_as_they_are_drive_a_network_that_answers_step_by_step() {
+    let json = r#"{"layers": [{"weights": [[3, 0], [0, 5]], "threshold": 11.5}]}"#;
+    let (_network, network) = file("two.json", json);
+    let (_steps, steps) = file("steps.txt", "0 1\n\n1\n0\n1\n0\n0\n");
+    let ran = good(&format!("network {network} {steps} --live"), "1\n0 1\n\n1\n1\n");
+    let outputs = ran.output.lines().map(|line| line.split(' ').skip(1).collect::<Vec<_>>());
+    assert_eq!(outputs.collect::<Vec<_>>(), [vec![], vec![], vec![], vec!["1"], vec![]]);
+    let clocks = ran.output.lines().map(|line| line.split(' ').next().unwrap().parse::<u32>());
+    assert!(clocks.into_iter().all(|clocks| clocks.unwrap() > 0), "{}", ran.output);
+    assert!(ran.told.contains("outputs agree in 100.0 % of 7 steps"), "{}", ran.told);
+    // Without --live there is the constant, as from a recording.
+    let ran = good(&format!("network {network} {steps}"), "");
+    assert!(ran.output.contains("TinyOdinNetwork<2, 2, 2>"), "{}", ran.output);
+
+    refused(&format!("network {network} {steps} --live"), "2\n", &["2 inputs", "[2]"]);
+    let (_odd, odd) = file("odd.txt", "0\n0 x\n");
+    refused(&format!("network {network} {odd}"), "", &["line 2", "`x`"]);
+    let (_wide, wide) = file("wide.txt", "0 7\n");
+    refused(&format!("network {network} {wide}"), "", &["2 inputs", "7"]);
+    let reckon = format!("network {network} {steps} --chip reckon --live");
+    refused(&reckon, "0\n", &["only tinyODIN"]);
+}
+
 /// How `turns.py` trains: of the roll rates every third stretch of 250 is held out.
 fn stretches(is_held_out: bool) -> String {
     let flight = fs::read_to_string(flight("hexarotor.csv")).unwrap();

@@ -3,7 +3,7 @@
 use crate::{
     boards::BOARDS,
     drawing, image, markdown, paths, python,
-    shell::{command, output, run},
+    shell::{cargo, command, output, run},
     usage::usage,
 };
 use anyhow::{Context, Result, ensure};
@@ -15,6 +15,7 @@ use std::{
 
 const PAGE: &str = "docs/loop.md";
 const MARKER: &str = "loop";
+const CHIP: &str = "chip";
 const PICTURE: &str = "docs/loop.svg";
 
 /// The row that a check flies again.
@@ -57,6 +58,24 @@ pub fn verify() -> Result<()> {
         "{PAGE} has another row; `cargo xtask write loop` flies all"
     );
     Ok(())
+}
+
+/// A network on the model of tinyODIN flies all manoeuvres: what the page has of it comes again from the committed graph.
+pub fn chip() -> Result<()> {
+    markdown::ensure_written(PAGE, CHIP, &on_chip()?, "cargo xtask write chip")
+}
+
+/// Flies them, and puts the table into the page.
+pub fn write_chip() -> Result<()> {
+    markdown::write(PAGE, CHIP, &on_chip()?)
+}
+
+fn on_chip() -> Result<String> {
+    let python = environment()?;
+    run(&mut cargo("build --package spikewire-cli"))?;
+    let flown = output(program(&python, "chip.py").arg(paths::target().join("debug/spikewire")))?;
+    println!("{flown}");
+    Ok(format!("\n{flown}\n"))
 }
 
 /// An emulated board flies a short manoeuvre, in lockstep with the world: each bit of it must be the laptop's.

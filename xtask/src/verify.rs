@@ -110,6 +110,7 @@ const LONG: &[Step] = &[
     ),
     step("flies", "a simulated drone on spikes: the picture and a row again", crate::flies::verify),
     step("flown", "the same, on an emulated board: bit for bit", crate::flies::board),
+    step("chip-flies", "the same, on a network on tinyODIN's model", crate::flies::chip),
     step("reckon", "the model of ReckOn against the chip's own code", crate::rtl::reckon),
     step("c-cost", "what the calls of C take beside the crate's", crate::c_library::cost),
     step("panic-free", "every codec without a panic handler, on two cores", checks::no_panic_all),

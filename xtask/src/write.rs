@@ -27,6 +27,7 @@ const PARTS: [Part; 14] = [
     part("jumps", "docs/jumps.svg", jumps::write),
     part("flight", "docs/flight.svg", demo::write),
     part("loop", "docs/loop.md: the table; docs/loop.svg; some 15 minutes", flies::write),
+    part("chip", "docs/loop.md: the chip's flights", flies::write_chip),
     part("frames", "docs/frames.png", video::write),
     part("page", "docs/page.png", page::write),
     part("ros", "docs/ros.svg", ros::write),

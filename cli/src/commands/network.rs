@@ -3,7 +3,7 @@
 use crate::inputs::InputOptions;
 use crate::options::{SchemeOptions, schemes, tell_each};
 use anyhow::{Context, Result, bail, ensure};
-use catalogue::run::{Calibrated, Known, SampleType, Settings, Shape};
+use catalogue::run::{Calibrated, Known, SampleType, Settings};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -11,13 +11,16 @@ use lab::bank::Bank;
 use lab::fit::rounding;
 use lab::input::{Clock, above_zero};
 use lab::network::{
-    Brought, CHIPS, Chip, Figures, File, OnChip, Request, Told, Trains, WINDOW, bring,
+    Brought, CHIPS, Chip, Figures, File, OnChip, Request, Stepped, Told, Trained, Trains, WINDOW,
+    bring,
 };
 use lab::output::Output;
 use lab::scheme::Scheme;
 use spikewire::Polarity;
-use std::io::Write;
-use std::path::PathBuf;
+use std::fmt::Write as _;
+use std::fs;
+use std::io::{self, BufRead, Write, stdin, stdout};
+use std::path::{Path, PathBuf};
 
 /// Bring a trained network onto a chip: a Rust constant for `spikewire::chip`, and what quantising costs.
 ///
@@ -40,9 +43,10 @@ pub(crate) struct Network {
     #[arg(long, default_value = CHIPS[0].name(), value_parser = chips())]
     chip: &'static str,
     /// The scheme that makes the inputs: one for each neuron of each column, of codes with a direction two, up and
-    /// down
+    /// down. Without it INPUT holds the spikes themselves: a line for each step, with the numbers of the inputs that fire,
+    /// in order
     #[arg(long, value_parser = schemes(Scheme::all()))]
-    scheme: Scheme,
+    scheme: Option<Scheme>,
     /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8
     #[arg(long, default_value_t)]
     sample: SampleType,
@@ -63,6 +67,11 @@ pub(crate) struct Network {
     /// File of the network as bytes, which the driver loads at run time
     #[arg(long, value_name = "FILE")]
     bytes: Option<PathBuf>,
+    /// Then run the network on the chip's model, step by step: each line of standard input is one, as those of spikes
+    /// are, and is answered by a line of the chip's clocks and the outputs that fire. The constant is not written
+    /// unless -o is given
+    #[arg(long)]
+    live: bool,
 }
 
 /// The names of the chips.
@@ -77,30 +86,32 @@ fn chips() -> impl TypedValueParser<Value = &'static str> {
 /// # Errors
 /// The network, the recording, the parameters or the output are not good, or the network does not fit the chip.
 pub(crate) fn run(options: &Network) -> Result<()> {
-    let Network { trained: path, scheme, dt, input, output, .. } = options;
+    let Network { trained: path, dt, input, output, .. } = options;
     let file = File::read(path)?;
     ensure!(
         !input.is_stdin(),
         "the recording calibrates scheme and chip, and is read as a whole: give a file"
     );
-    let driven = driven(options, input, None)?;
+    let driven = match options.scheme {
+        Some(scheme) => driven(options, scheme, input, None)?,
+        None => spiking(&input.input)?,
+    };
     let seconds = driven.step_us.map(|step| step * 1e-6);
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let trained = file.in_steps(dt.or(seconds)).map_err(|error| error.context(name.clone()))?;
-    ensure!(
-        trained.inputs() == driven.inputs,
-        "{name}: {} has {} inputs, but {} gives {}",
-        trained.layers[0].name,
-        trained.inputs(),
-        scheme.name(),
-        driven.words()
-    );
+    driven.check(&trained, options.scheme).with_context(|| name.clone())?;
     let held_out = options.held_out.as_ref().map(|path| {
         let mut input = input.clone();
         input.0.input.clone_from(path);
-        self::driven(options, &input, Some(&driven.settings))
+        match options.scheme {
+            Some(scheme) => self::driven(options, scheme, &input, Some(&driven.settings)),
+            None => spiking(path),
+        }
     });
     let held_out = held_out.transpose()?;
+    if let Some(held_out) = &held_out {
+        held_out.check(&trained, options.scheme).with_context(|| name.clone())?;
+    }
 
     let bar = ProgressBar::new(0).with_style(ProgressStyle::with_template(
         "{bar:40} {percent:>3} %  {human_pos} of {human_len} neurons",
@@ -120,10 +131,12 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     bar.finish_and_clear();
     let brought = brought.map_err(|error| error.context(name.clone()))?;
 
-    let told = Told { source: name, inputs: driven.words(), step_us: driven.step_us };
-    let mut output = Output::open(output.as_deref(), &input.input)?;
-    output.write_all(brought.network.emit(&told).as_bytes())?;
-    output.finish()?;
+    let told = Told { source: name, inputs: driven.words, step_us: driven.step_us };
+    if output.is_some() || !options.live {
+        let mut output = Output::open(output.as_deref(), &input.input)?;
+        output.write_all(brought.network.emit(&told).as_bytes())?;
+        output.finish()?;
+    }
     if let Some(path) = &options.bytes {
         let mut output = Output::open(Some(path), &input.input)?;
         output.write_all(&brought.network.bytes()?)?;
@@ -131,17 +144,46 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     }
     tell_each(&driven.notes);
     report(&brought);
+    if options.live { live(&*brought.network, trained.inputs()) } else { Ok(()) }
+}
+
+/// Steps in by standard input, answers out.
+fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
+    let (mut answers, mut line) = (stdout().lock(), String::new());
+    let step = |line: io::Result<String>| {
+        let step = spikes(&line?)?;
+        let is_known = step.iter().all(|input| usize::from(*input) < inputs);
+        ensure!(is_known, "the network has {inputs} inputs, and not those of {step:?}");
+        Ok(step)
+    };
+    let mut steps = stdin().lock().lines().map(step);
+    network.follow(&mut steps, &mut |Stepped { fired, clocks }| {
+        line.clear();
+        write!(line, "{clocks}")?;
+        fired.last().into_iter().flatten().try_for_each(|output| write!(line, " {output}"))?;
+        line.push('\n');
+        answers.write_all(line.as_bytes())?;
+        Ok(answers.flush()?)
+    })?;
     Ok(())
+}
+
+/// A line of spikes.
+fn spikes(line: &str) -> Result<Vec<u16>> {
+    let of_word = |word: &str| {
+        word.parse().with_context(|| format!("`{word}` is not the number of an input"))
+    };
+    line.split_whitespace().map(of_word).collect()
 }
 
 /// The input of the network.
 struct Driven {
     /// The input spikes, by step.
     steps: Trains,
+    /// How many there are; of spikes as they are the highest is known.
     inputs: usize,
-    shape: Shape,
-    channels: usize,
-    is_signed: bool,
+    /// What the inputs are.
+    words: String,
     /// How long a step is, if that is known.
     step_us: Option<f64>,
     /// The settings of the columns.
@@ -150,19 +192,30 @@ struct Driven {
 }
 
 impl Driven {
-    /// A sentence on the inputs.
-    fn words(&self) -> String {
-        let Self { inputs, shape: Shape { neurons, .. }, channels, is_signed, .. } = self;
-        let directions = if *is_signed { ", each up and down" } else { "" };
-        let columns = if *channels == 1 { "1 column" } else { &format!("{channels} columns") };
-        let of = if *neurons == 1 { String::new() } else { format!("{neurons} neurons of ") };
-        format!("{inputs}, of {of}{columns}{directions}")
+    /// Returns an error unless these are the network's inputs.
+    fn check(&self, trained: &Trained, scheme: Option<Scheme>) -> Result<()> {
+        let (inputs, given) = (trained.inputs(), &self.words);
+        let layer = &trained.layers[0].name;
+        match scheme {
+            Some(scheme) => ensure!(
+                inputs == self.inputs,
+                "{layer} has {inputs} inputs, but {} gives {given}",
+                scheme.name()
+            ),
+            None => ensure!(self.inputs <= inputs, "{layer} has {inputs} inputs, but {given}"),
+        }
+        Ok(())
     }
 }
 
 /// The recording as spikes, with these settings or those that it calibrates.
-fn driven(options: &Network, input: &InputOptions, known: Option<&[Settings]>) -> Result<Driven> {
-    let Network { scheme, sample, parameters, .. } = options;
+fn driven(
+    options: &Network,
+    scheme: Scheme,
+    input: &InputOptions,
+    known: Option<&[Settings]>,
+) -> Result<Driven> {
+    let Network { sample, parameters, .. } = options;
     parameters.check(scheme.info())?;
     let mut source = input.open()?;
     let all = source.rest()?;
@@ -198,7 +251,7 @@ fn driven(options: &Network, input: &InputOptions, known: Option<&[Settings]>) -
         columns.len(),
         settings.len()
     );
-    let mut bank = Bank::new(*scheme, &settings)?;
+    let mut bank = Bank::new(scheme, &settings)?;
     let mut events = Vec::new();
     bank.encode(&columns, &mut events);
     bank.finish(&mut events);
@@ -214,15 +267,37 @@ fn driven(options: &Network, input: &InputOptions, known: Option<&[Settings]>) -
             step.push(event.neuron * directions + falls);
         }
     }
+    let inputs = columns.len() * shape.neurons * usize::from(directions);
+    let columns =
+        if columns.len() == 1 { "1 column" } else { &format!("{} columns", columns.len()) };
+    let neurons = shape.neurons;
+    let of = if neurons == 1 { String::new() } else { format!("{neurons} neurons of ") };
+    let each = if is_signed { ", each up and down" } else { "" };
     Ok(Driven {
         steps,
-        inputs: columns.len() * shape.neurons * usize::from(directions),
-        shape,
-        channels: columns.len(),
-        is_signed,
+        inputs,
+        words: format!("{inputs}, of {of}{columns}{each}"),
         settings,
         step_us: clock.rate().map(|rate| 1e6 / rate / shape.slots as f64),
         notes,
+    })
+}
+
+/// Spikes as they are.
+fn spiking(path: &Path) -> Result<Driven> {
+    let name = || path.display().to_string();
+    let text = fs::read_to_string(path).with_context(|| format!("{}: cannot be read", name()))?;
+    let step = |(at, line)| spikes(line).with_context(|| format!("{}: line {at}", name()));
+    let steps: Trains = (1..).zip(text.lines()).map(step).collect::<Result<_>>()?;
+    ensure!(!steps.is_empty(), "{}: no steps", name());
+    let highest = steps.iter().flatten().max().copied().unwrap_or(0);
+    Ok(Driven {
+        steps,
+        inputs: usize::from(highest) + 1,
+        words: format!("spikes as they are, of input {highest} at most"),
+        step_us: None,
+        settings: Vec::new(),
+        notes: Vec::new(),
     })
 }
 

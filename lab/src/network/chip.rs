@@ -1,7 +1,7 @@
 //! The trait of a chip onto which a network can be brought.
 
 use super::{ReckOn, TinyOdin, Trained, Trains};
-use anyhow::{Result, anyhow};
+use anyhow::{Result, anyhow, bail};
 use spikewire::chip::ChipError;
 use std::fmt::{Debug, Display};
 
@@ -34,6 +34,19 @@ pub trait OnChip {
     /// # Errors
     /// The chip refuses something.
     fn run(&self, inputs: &Trains) -> Result<Ran>;
+
+    /// Loads the network into the chip's model, and runs it on steps as they come: `see` is told what came of each before
+    /// the next is taken, so that what drives the network may depend on what it does. Returns the number of spikes lost.
+    ///
+    /// # Errors
+    /// The chip or `see` refuses something, or the chip's outputs come steps later.
+    fn follow(
+        &self,
+        _steps: &mut dyn Iterator<Item = Result<Vec<u16>>>,
+        _see: &mut dyn FnMut(Stepped) -> Result<()>,
+    ) -> Result<u32> {
+        bail!("this chip's outputs come steps later: only tinyODIN answers step by step here")
+    }
 
     /// For each layer, the number of weights that were larger than the chip's; then that of the outputs, if they have
     /// potentials.
@@ -68,6 +81,14 @@ pub struct Ran {
     pub clocks: Vec<u64>,
     /// How many spikes got lost on their way into the chip.
     pub lost: u32,
+}
+
+/// The result of a step on the chip.
+pub struct Stepped {
+    /// The neurons that fired, by layer.
+    pub fired: Vec<Vec<u16>>,
+    /// The chip's clocks.
+    pub clocks: u64,
 }
 
 /// Remarks for a reader of the file.

@@ -10,7 +10,7 @@ mod tiny_odin;
 mod trained;
 
 pub use bring::{Brought, Figures, LayerFigures, PotentialFigures, Request, WINDOW, bring};
-pub use chip::{CHIPS, Chip, OnChip, Ran, Told};
+pub use chip::{CHIPS, Chip, OnChip, Ran, Stepped, Told};
 pub use distance::Distance;
 pub use reckon::ReckOn;
 pub use tiny_odin::TinyOdin;

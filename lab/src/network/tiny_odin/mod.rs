@@ -4,7 +4,7 @@ mod emit;
 mod quantise;
 mod run;
 
-use super::chip::{Chip, OnChip, Ran, Told};
+use super::chip::{Chip, OnChip, Ran, Stepped, Told};
 use super::{Trained, Trains};
 use anyhow::{Result, bail};
 use quantise::{Quantised, quantise};
@@ -34,6 +34,14 @@ impl Chip for TinyOdin {
 impl OnChip for Quantised {
     fn run(&self, inputs: &Trains) -> Result<Ran> {
         run::run(self, inputs)
+    }
+
+    fn follow(
+        &self,
+        steps: &mut dyn Iterator<Item = Result<Vec<u16>>>,
+        see: &mut dyn FnMut(Stepped) -> Result<()>,
+    ) -> Result<u32> {
+        run::follow(self, steps, see)
     }
 
     fn clipped(&self) -> Vec<usize> {

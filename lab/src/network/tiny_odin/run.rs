@@ -1,7 +1,7 @@
 //! The network on the chip's model, clock by clock, through the crate's driver.
 
 use super::super::Trains;
-use super::super::chip::{Ran, refused};
+use super::super::chip::{Ran, Stepped, refused};
 use super::Quantised;
 use anyhow::Result;
 use silicon::Board;
@@ -13,11 +13,16 @@ const LARGEST: usize = 64 * 1024;
 /// The chip's clocks to one of its SPI.
 const RATIO: u32 = 4;
 
-/// Loads the network, verifies it and runs it. Each step's leak comes first, then its bias, then its inputs in order.
+/// Loads the network, verifies it and runs it on the steps that come. Each step's leak comes first, then its bias, then
+/// its inputs in order. `see` is told what came of each, before the next is taken. Returns how many spikes got lost.
 ///
 /// # Errors
-/// The chip refuses something.
-pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
+/// The chip or `see` refuses something.
+pub(super) fn follow(
+    network: &Quantised,
+    steps: &mut dyn Iterator<Item = Result<Vec<u16>>>,
+    see: &mut dyn FnMut(Stepped) -> Result<()>,
+) -> Result<u32> {
     let board = Board::<silicon::TinyOdin>::new(RATIO, 1);
     board.pins().has_full_pin = true;
     let mut chip = TinyOdin::new(board.spi(), board.port(), TinyOdinInput::MAX_CLOCKS);
@@ -25,19 +30,18 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
     gated.load(network, |_| ()).map_err(|error| refused(&error))?;
     let mut running = gated.run(&network.registers()).map_err(|error| refused(&error))?;
 
-    let mut fired = vec![vec![vec![]; inputs.len()]; network.layers.len()];
-    let mut clocks = Vec::with_capacity(inputs.len());
     let bias = network.has_bias.then(|| network.inputs() - 1);
-    for (step, inputs) in inputs.iter().enumerate() {
+    for (step, inputs) in steps.enumerate() {
         let before = board.pins().chip.clocks;
+        let mut fired = vec![vec![]; network.layers.len()];
         let mut on_output = |neuron: u8| {
             if let Some((layer, place)) = network.place(neuron.into()) {
-                fired[layer][step].push(place as u16);
+                fired[layer].push(place as u16);
             }
         };
         let leak = step > 0 && step.is_multiple_of(network.steps_a_leak);
         let leak = leak.then_some(TinyOdinInput::LeakAll);
-        let driven = bias.into_iter().chain(inputs.iter().copied());
+        let driven = bias.into_iter().chain(inputs?);
         let words = leak.into_iter().chain(driven.filter_map(|input| network.input(input)));
         for word in words {
             running.send(word, &mut on_output).map_err(|error| refused(&error))?;
@@ -46,9 +50,23 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
         while !board.pins().chip.is_idle() {
             running.poll(&mut on_output).map_err(|error| refused(&error))?;
         }
-        clocks.push(board.pins().chip.clocks - before);
+        see(Stepped { fired, clocks: board.pins().chip.clocks - before })?;
     }
-    let lost = board.pins().chip.overflows;
+    Ok(board.pins().chip.overflows)
+}
+
+/// Runs the network on a recording's steps.
+///
+/// # Errors
+/// The chip refuses something.
+pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
+    let mut fired = vec![Vec::with_capacity(inputs.len()); network.layers.len()];
+    let mut clocks = Vec::with_capacity(inputs.len());
+    let lost = follow(network, &mut inputs.iter().cloned().map(Ok), &mut |step| {
+        fired.iter_mut().zip(step.fired).for_each(|(layer, step)| layer.push(step));
+        clocks.push(step.clocks);
+        Ok(())
+    })?;
     Ok(Ran { fired, potentials: vec![], clocks, lost })
 }
 
