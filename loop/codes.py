@@ -14,7 +14,7 @@ from sensor import UNIT
 
 PERIOD = 1_000_000 // RATE
 #: Samples from keyframe to keyframe, or heartbeat: 20 ms.
-KEYFRAME_EVERY = 10
+KEYFRAME_EVERY = RATE // 50
 #: No keyframe but the first.
 NEVER = 1 << 40
 #: The channels that share parameters, with the error that is aimed at: rates in rad/s, then sideways forces and the
@@ -47,7 +47,7 @@ def tuned(name: str, flight: np.ndarray) -> list[dict]:
             best = sw.tune(signals, name, max_rmse=aim, **common)
         except ValueError:  # it does not come so near
             best = sw.tune(signals, name, min_efficiency=-100_000, **common)
-        found.append({**best.scheme.parameters, "instructions": best.figures["costs"]["instructions"]})
+        found.append(best.scheme.parameters)
         shared = {key: best.scheme.parameters[key] for key in takes if key in best.scheme.parameters}
     return found
 
@@ -61,8 +61,7 @@ def schemes(name: str) -> list[sw.Scheme]:
     """The scheme of each channel, as it was tuned."""
     found: list[sw.Scheme | None] = [None] * 6
     for (channels, _), parameters in zip(GROUPS, json.loads(KEPT.read_text())[name]):
-        given = {key: value for key, value in parameters.items() if key != "instructions"}
-        given |= {"seed": 1} if name in CHANCE else {}
+        given = parameters | ({"seed": 1} if name in CHANCE else {})
         for channel in channels:
             found[channel] = sw.schemes[name](**given)
     return found
@@ -70,9 +69,8 @@ def schemes(name: str) -> list[sw.Scheme]:
 
 def instructions(name: str) -> float | None:
     """What encoding a sample of all six channels costs a Cortex-M4F, from the measured table; `None` if not measured."""
-    each = [parameters["instructions"] for parameters in json.loads(KEPT.read_text())[name]]
-    counts = [len(channels) for channels, _ in GROUPS]
-    return None if None in each else sum(own * count for own, count in zip(each, counts))
+    each = [scheme._coder.instructions() for scheme in schemes(name)]
+    return None if None in each else sum(each)
 
 
 class Coded:

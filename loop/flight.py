@@ -1,7 +1,8 @@
-"""A flight: world, sensor, code, link, decoder, cascade, motors, 500 times a second."""
+"""A flight: world, sensor, code, link, decoder, cascade, motors, 500 times a second unless RATE in the environment says."""
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field
 from math import acos, pi
 
@@ -12,7 +13,8 @@ from manoeuvres import Manoeuvre, Pilot
 from sensor import Sensor, physical
 from world import World
 
-RATE = 500
+#: Samples a second.
+RATE = int(os.environ.get("RATE", "500"))
 #: A flight is lost once its thrust points this far from where it should, degrees, or it is so far from its height or
 #: place, m.
 TILT, FALL = 80, 4

@@ -287,7 +287,7 @@ pub(crate) fn tell_each<'a>(notes: impl IntoIterator<Item = &'a String>) {
 }
 
 fn is_setting(name: &str) -> bool {
-    const OWN: [&str; 33] = [
+    const OWN: [&str; 34] = [
         "accept_cut",
         "anyway",
         "baud",
@@ -305,6 +305,7 @@ fn is_setting(name: &str) -> bool {
         "fields",
         "front",
         "hold_out",
+        "loop_bandwidth",
         "max_instructions",
         "max_latency",
         "max_ram",

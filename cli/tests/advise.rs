@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{file, flight, good, spikewire, table};
+use common::{file, flight, good, refused, spikewire, table};
 use serde_json::Value;
 
 /// A budget that a test build gets through in a few seconds.
@@ -34,6 +34,42 @@ fn a_scheme_within_the_error_is_advised_with_its_figures() {
         assert!(page.contains(words), "{words}: {page}");
     }
     assert!(std::fs::read_to_string(picture).unwrap().starts_with("<svg "));
+}
+
+/// At 100 samples a second 20° of 5 Hz are a sample. The signal jumps every 25 samples, further than step forward does when
+/// it is tuned for few spikes.
+#[test]
+fn a_loop_is_advised_no_code_that_is_late_or_falls_behind() {
+    let sample = |place: u32| {
+        let wave = (f64::from(place) / 240.0 * std::f64::consts::TAU).sin();
+        wave + if (place / 25).is_multiple_of(2) { 0.3 } else { -0.3 }
+    };
+    let (_directory, log) = file("log.csv", table(&(0..1200).map(sample).collect::<Vec<_>>()));
+    let ask = |more: &str| {
+        let asked = format!("advise {log} --column x --rate 100 --max-rmse 0.4 --evaluations 16");
+        let ran = good(&format!("{asked} --json {more}"), "");
+        let told: Value = serde_json::from_str(&ran.output).unwrap();
+        let reaching = told[0]["reaching"].as_array().unwrap().iter();
+        let latencies = reaching.map(|one| {
+            let latency = one["costs"]["latency"].as_f64().unwrap();
+            (one["scheme"].as_str().unwrap().to_owned(), latency)
+        });
+        (latencies.collect::<Vec<_>>(), told[0].clone())
+    };
+    let (any, advice) = ask("");
+    assert!(any.iter().any(|(_, latency)| *latency > 1.0), "{any:?}");
+    assert!(any.iter().any(|(scheme, _)| scheme == "sf"), "{any:?}");
+    assert!(advice["loop_latency"].is_null());
+
+    let (within, advice) = ask("--loop-bandwidth 5");
+    assert_eq!(advice["loop_latency"], 1.0);
+    assert!(!within.is_empty(), "{advice:#}");
+    assert!(within.iter().all(|(scheme, latency)| *latency <= 1.0 && scheme != "sf"), "{within:?}");
+    let others = advice["others"].to_string();
+    assert!(others.contains("in a loop sf follows this signal but for"), "{others}");
+    // Without a rate nobody knows what a sample is in the loop's time.
+    let unknown = format!("advise {log} --column x --loop-bandwidth 5");
+    refused(&unknown, "", &["--loop-bandwidth needs the rate of x"]);
 }
 
 /// A flight on which motors shake the sensor moves little more than its noise, and is no noise: deviation 0.206, noise

@@ -4,6 +4,7 @@ use crate::brief::{brief, short};
 use crate::events::{Format, Item};
 use crate::look::{Look, Verdict, known_unit};
 use crate::scheme::Scheme;
+use crate::steep::Steep;
 use crate::trial::{Recording, Trial};
 use crate::tune::problem::Limit;
 use crate::tune::report::{Cut, Row};
@@ -17,6 +18,19 @@ use serde::Serialize;
 use spikewire::{Event, Keyframe, Tick};
 use std::time::{Duration, Instant};
 
+/// What a code's latency may take of a control loop's phase at the loop's bandwidth, in degrees: a third of a phase margin
+/// of 60°. In the flights of `docs/loop.md` codes that take 18° stray, and those that take 80° lose the drone.
+const PHASE: f64 = 20.0;
+
+/// The part of a log's samples at which step forward may fall behind. In those flights a threshold that does so at 0.9 %
+/// flies, and one that does so at 3.9 % loses steps and flips.
+const STEEP: f64 = 0.02;
+
+/// The latency in samples that a loop of this bandwidth bears.
+fn borne(bandwidth: f64, rate: f64) -> f64 {
+    (PHASE / 360.0 * rate / bandwidth).floor()
+}
+
 /// Recordings and what a scheme may cost, for [`advise`].
 pub struct AdviseRequest {
     /// The channels, each of which gets advice of its own.
@@ -27,6 +41,9 @@ pub struct AdviseRequest {
     pub max_rmse: Option<f64>,
     /// Number of samples at most until a code comes out.
     pub max_latency: Option<f64>,
+    /// The frequency up to which the control loop acts that is to fly on the code, in Hz. Codes that are too late for it, or
+    /// that fall behind the signal, are not advised.
+    pub loop_bandwidth: Option<f64>,
     /// Core of the measured table that tells instructions.
     pub core: String,
     /// Number of settings of each scheme and channel to score, 1 or more.
@@ -48,6 +65,7 @@ impl AdviseRequest {
             sample: SampleType::F32,
             max_rmse: None,
             max_latency: None,
+            loop_bandwidth: None,
             core: "M4F".to_owned(),
             evaluations: Self::EVALUATIONS,
             seconds: None,
@@ -69,6 +87,8 @@ pub struct Advice {
     others: Vec<String>,
     /// Whether a search ended before its budget of settings.
     is_cut_short: bool,
+    /// The latency in samples that the control loop bears, if its bandwidth is known.
+    loop_latency: Option<f64>,
     /// Bytes a second that raw samples would take on a wire.
     raw_bytes_per_second: Option<f64>,
     #[serde(skip)]
@@ -101,7 +121,7 @@ pub fn advise(request: &AdviseRequest, watch: &Watch) -> Result<Vec<Advice>> {
     let mut before = 0;
     let mut all = Vec::new();
     for recording in &request.recordings {
-        let mut advice = Advice::new(request, recording);
+        let mut advice = Advice::new(request, recording)?;
         for &scheme in &schemes {
             let words = format!("{} {}", recording.name, scheme.name());
             let tick = |evaluated: usize, _: Option<&_>| {
@@ -134,14 +154,21 @@ impl Advice {
         Some((best.scheme?, &best.row))
     }
 
-    fn new(request: &AdviseRequest, recording: &Recording) -> Self {
+    fn new(request: &AdviseRequest, recording: &Recording) -> Result<Self> {
         /// 14 dB.
         const PART: f64 = 0.2;
         let look = Look::at(recording);
         let objection = look.objection().filter(|_| look.verdict != Verdict::Clipped);
         let bytes = if matches!(request.sample, SampleType::Fixed16 { .. }) { 2.0 } else { 4.0 };
-        Self {
+        let loop_latency = match (request.loop_bandwidth, recording.rate) {
+            (None, _) => None,
+            (Some(bandwidth), Some(rate)) if bandwidth > 0.0 => Some(borne(bandwidth, rate)),
+            (Some(_), None) => bail!("`loop_bandwidth` needs the rate of {}", recording.name),
+            (Some(bandwidth), _) => bail!("`loop_bandwidth` {bandwidth} must be above 0"),
+        };
+        Ok(Self {
             objection,
+            loop_latency,
             max_rmse: request.max_rmse.unwrap_or(PART * look.deviation),
             reaching: Vec::new(),
             others: Vec::new(),
@@ -150,7 +177,7 @@ impl Advice {
             sample: request.sample,
             core: costs::core(&request.core).unwrap_or_default(),
             look,
-        }
+        })
     }
 
     /// Tunes a scheme for a moment.
@@ -166,7 +193,8 @@ impl Advice {
         let (train, held_out) = cut(recording, HoldOut { blocks: 10, part: 0.3 })?;
         let whole = Stretch::whole(recording);
         let cut = Cut { name: recording.name.clone(), train, held_out, whole };
-        let limits = Limits { latency: request.max_latency, ..Limits::default() };
+        let latencies = [request.max_latency, self.loop_latency].into_iter().flatten();
+        let limits = Limits { latency: latencies.reduce(f64::min), ..Limits::default() };
         let goal = Goal::MostEfficient(self.max_rmse);
         let core = self.core.clone();
         let known = (goal, &limits, core.as_str());
@@ -195,6 +223,11 @@ impl Advice {
                 scheme.name(),
                 short(held_out.rmse)
             ));
+            return Ok(());
+        }
+        let steep = Steep::new(scheme, recording, &row.settings).filter(|own| own.part() > STEEP);
+        if let Some(steep) = steep.filter(|_| self.loop_latency.is_some()) {
+            self.others.push(format!("in a loop {}", steep.words()));
             return Ok(());
         }
         let options = row.settings.to_asked(scheme.info());
@@ -253,6 +286,11 @@ impl Advice {
         lines.push(format!("  noise floor {}{band}; clipped {} %", short(*noise), round(*clipped)));
         if let Some(words) = self.look.objection() {
             lines.push(format!("  ! {words}"));
+        }
+        if let Some(latency) = self.loop_latency {
+            lines.push(format!(
+                "  the loop bears a latency of {latency} samples, {PHASE}° at its bandwidth"
+            ));
         }
         if let Some(best) = self.reaching.first() {
             lines.extend(self.reasons(best));

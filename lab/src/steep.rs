@@ -45,6 +45,11 @@ impl Steep {
         })
     }
 
+    /// The part of the samples at which the signal takes a larger step than the code can.
+    pub fn part(&self) -> f64 {
+        self.part
+    }
+
     /// A sentence on both slopes.
     pub fn words(&self) -> String {
         const FEW: f64 = 0.1;

@@ -147,6 +147,7 @@ def advise(
     rate: float | None = None,
     max_rmse: float | None = None,
     max_latency: float | None = None,
+    loop_bandwidth: float | None = None,
     core: str | None = None,
     seconds: float | None = None,
     evaluations: int | None = None,
@@ -158,11 +159,13 @@ def advise(
     """What the signal `x`, (samples,), is like and which scheme suits it: :class:`Advice`, for (channels, samples) a list.
 
     All schemes are tuned for a moment. Of those within `max_rmse`, a fifth of the signal's deviation unless given, the
-    one with the fewest bytes a second on the link is advised.
+    one with the fewest bytes a second on the link is advised. `loop_bandwidth` is the frequency in Hz up to which the
+    control loop acts that is to fly on it: codes that are late for it, or that fall behind the signal, are not advised.
     """
     options = {
         "max_rmse": max_rmse,
         "max_latency": max_latency,
+        "loop_bandwidth": loop_bandwidth,
         "core": core,
         "seconds": seconds,
         "evaluations": evaluations,

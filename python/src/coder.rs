@@ -4,6 +4,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use catalogue::run::{
     Asked, Calibrated, Codec, Known, RunTime, SampleType, Settings, Values, missing,
 };
+use lab::tune::costs::Costs;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -181,6 +182,12 @@ impl Coder {
         let settings = self.of_ramp().map_err(|error| value(&error))?;
         let channel = self.start(&settings);
         channel.map(|channel| channel.latency()).map_err(|error| value(&error))
+    }
+
+    /// Instructions of a Cortex-M4F to encode a sample, by the measured table; none if they were not measured.
+    fn instructions(&self) -> PyResult<Option<f64>> {
+        let settings = self.of_ramp().map_err(|error| value(&error))?;
+        Ok(Costs::new(self.scheme.into(), &settings, self.latency()?, "M4F").instructions)
     }
 
     /// An encoder of this many channels that keeps its state.

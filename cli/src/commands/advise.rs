@@ -38,6 +38,10 @@ pub(crate) struct Advise {
     /// Samples until a code comes out at most
     #[arg(long, value_name = "SAMPLES")]
     max_latency: Option<f64>,
+    /// Hz up to which the control loop acts that is to fly on the code: codes that are late for it, or that fall behind
+    /// the signal, are not advised
+    #[arg(long, value_name = "HZ", value_parser = lab::input::above_zero)]
+    loop_bandwidth: Option<f64>,
     /// Core of the measured table: M0 or M4F
     #[arg(long, default_value = "M4F", value_parser = core)]
     core: String,
@@ -79,6 +83,7 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
         sample: options.sample,
         max_rmse: options.max_rmse,
         max_latency: options.max_latency,
+        loop_bandwidth: options.loop_bandwidth,
         core: options.core.clone(),
         evaluations: options.evaluations,
         seconds: options.seconds,
