@@ -20,7 +20,7 @@ const fn part(name: &'static str, files: &'static str, write: fn() -> Result<()>
 }
 
 /// From the catalogue first, then what measures or draws.
-const PARTS: [Part; 14] = [
+const PARTS: [Part; 15] = [
     part("c", "c/include, c/src/codecs.rs, c/src/sizes.rs, c/tests/flown.h", c_library::write),
     part("python", "python/spikewire/_schemes.pyi", python::write_stub),
     part("schemes", "docs/schemes.md: the table", schemes::write),
