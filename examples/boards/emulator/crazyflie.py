@@ -4,6 +4,7 @@ import stm32f405 as f4
 
 VECTORS, ENTRY = 0x08000000, 0x08004000  # the bootloader's, and the image's, which it starts
 REQUESTS = {(2, 3): "I2C_RX", (4, 3): "I2C_TX", (6, 4): "TX"}  # of DMA1: RM0090, table 42
+MOTORS = (("A", 15), ("A", 1), ("B", 11), ("B", 9))
 START, ADDRESSED, FINISHED = 1 << 0, 1 << 1, 1 << 2  # of SR1: SB, ADDR, BTF
 LOST, REFUSED = 1 << 9, 1 << 10  # ARLO, AF
 
@@ -16,7 +17,12 @@ class Dma(f4.Dma):
 
 
 class Usart(f4.Usart):
-    """USART2, on the slow bus."""
+    """USART2, on the slow bus. By the first frame the motors are held still."""
+
+    def go(self):
+        super().go()
+        if self.stream is not None and not all(self.part.named["GPIO" + port].holds_low(pin) for port, pin in MOTORS):
+            self.core.raise_later(LookupError("a motor's pin is not held low"))
 
     def divider(self):
         return self.words[8] * self.part.rcc.bus(13)[0] / self.part.rcc.bus(10)[0]
@@ -144,12 +150,15 @@ class I2c(f4.Registers):
 class Gpio(f4.Gpio):
     """The sensor's bus is pulled up on the board."""
 
+    def holds_low(self, pin):
+        return self.words[0] >> 2 * pin & 3 == 1 and not self.words[0x14] >> pin & 1
+
     def read(self, offset):
         value = super().read(offset)
         if offset != 0x10:
             return value
         for port, pin, _ in (self.part.SCL, self.part.SDA):
-            is_driven = self.words[0] >> 2 * pin & 3 == 1 and not self.words[0x14] >> pin & 1
+            is_driven = self.holds_low(pin)
             is_held = pin == self.part.SDA[1] and self.part.bench.holds_low()
             if port == self.name and not is_driven and not is_held:
                 value |= 1 << pin

@@ -7,7 +7,7 @@ from unicorn.arm_const import UC_CPU_ARM_CORTEX_M4
 
 MEMORIES = ((0x00000000, 0x100000), (0x20000000, 0x40000))
 VECTORS = 0
-MISO, SELECT, READY = (1, 14), (1, 12), (1, 11)
+SCK, MISO, MOSI, SELECT, READY, TX = (1, 15), (1, 14), (1, 13), (1, 12), (1, 11), (0, 6)
 SLOW_NS = 1e9 / 32_768
 
 
@@ -47,6 +47,12 @@ class Peripheral:
     def fire(self, offset):
         self.registers[offset] = 1
         self.update()
+
+    def wired(self, pins):
+        """Whether the pins are chosen, by their registers; anything else ends the run."""
+        for offset, (port, pin) in pins.items():
+            if self.registers[offset] != port << 5 | pin:
+                self.core.raise_later(LookupError(f"P{port}.{pin} is not the peripheral's"))
 
     def update(self):
         fired = any(self.registers[0x100 + 4 * one] for one in range(32) if self.enabled >> one & 1)
@@ -170,6 +176,7 @@ class Spi(Peripheral):
     def task(self, offset):
         if offset != 0x10:
             return
+        self.wired({0x508: SCK, 0x50C: MOSI, 0x510: MISO})
         get = self.registers.__getitem__
         count = max(get(0x538), get(0x548))
         sent = self.part.ram(get(0x544), get(0x548)).ljust(count, bytes([get(0x5C0) & 0xFF]))
@@ -194,6 +201,7 @@ class Uart(Peripheral):
 
     def task(self, offset):
         if offset == 8:
+            self.wired({0x50C: TX})
             self.bytes = list(self.part.ram(self.registers[0x544], self.registers[0x548]))
             self.sent = 0
             self.fire(0x150)
