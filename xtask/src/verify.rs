@@ -105,7 +105,7 @@ const LONG: &[Step] = &[
     step("py-speed", "the Python package from its source package, and its speed", python::speed),
     step(
         "all-boards",
-        "the other boards' firmware: the Pico's at 8 kHz flown, the rest linked",
+        "the other boards' firmware: five flown in emulators, the Pico 2's linked",
         real_boards::more,
     ),
     step("flies", "a simulated drone on spikes: the picture and a row again", crate::flies::verify),
