@@ -242,7 +242,8 @@ struct Laws<S> {
     schemes: usize,
 }
 
-/// The firings and values of a recording that is cut into pieces of these lengths, over and over.
+/// The firings and values of a recording that is cut into pieces of these lengths, over and over; a piece of one sample
+/// is no slice.
 fn in_pieces<P: Scheme<EncoderState: State>>(
     scheme: &P,
     start: &[u8],
@@ -258,13 +259,19 @@ fn in_pieces<P: Scheme<EncoderState: State>>(
         let (piece, after) = rest.split_at(rest.len().min(*lengths.next().unwrap()));
         rest = after;
         let mut outputs = vec![filler; piece.len()];
-        scheme.encode_slice(&mut state, piece, &mut outputs);
+        match piece {
+            [sample] => outputs[0] = scheme.encode(&mut state, *sample),
+            _ => _ = scheme.encode_slice(&mut state, piece, &mut outputs),
+        }
         let codes: Vec<_> = outputs.into_iter().filter_map(Output::code).collect();
         let silent = piece.len() - codes.len();
         firings.extend(std::iter::repeat_n(None, silent));
         firings.extend(codes.iter().map(|code| Some(code.firings().collect())));
         let mut pieces = vec![P::Sample::default(); codes.len()];
-        scheme.decode_slice(&mut decoder, &codes, &mut pieces);
+        match codes[..] {
+            [code] => pieces[0] = scheme.decode(&mut decoder, code),
+            _ => _ = scheme.decode_slice(&mut decoder, &codes, &mut pieces),
+        }
         values.extend(pieces.into_iter().map(Sample::to_bits32));
     }
     (firings, values)

@@ -1,9 +1,9 @@
 //! Hostile bytes for all that reads bytes: `fuzz` replays the corpora, `fuzz-long` looks for new inputs with libFuzzer.
 
 use crate::{
-    host::tests,
+    host::{tests, triple},
     paths,
-    shell::{self, cargo, command, run},
+    shell::{cargo, command, run},
 };
 use anyhow::{Context, Result, bail, ensure};
 use std::{env, fs, path::PathBuf, process::Command};
@@ -82,11 +82,10 @@ fn told(fuzzer: &mut Command) -> Result<String> {
 
 fn build() -> Result<PathBuf> {
     let target = paths::target().join("fuzz");
-    let version = shell::output(command("rustc").arg("-vV"))?;
-    let host = version.lines().find_map(|line| line.strip_prefix("host: ")).context("rustc -vV")?;
+    let host = triple()?;
     // With a target, the flags are for it alone and not for what is run while building.
     let mut build = cargo("build --profile fuzz --package fuzz --features engine --bin engine");
-    build.args(["--target", host, "--target-dir"]).arg(&target).env("RUSTFLAGS", WATCHED);
+    build.args(["--target", &host, "--target-dir"]).arg(&target).env("RUSTFLAGS", WATCHED);
     run(&mut build)?;
     Ok(target.join(host).join("fuzz/engine"))
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     paths,
-    shell::{cargo, command, lint, run},
+    shell::{cargo, command, lint, output, run},
 };
 use anyhow::{Context, Result};
 use std::{fs, path::PathBuf, process::Command};
@@ -23,6 +23,13 @@ pub fn spikewire(args: &str) -> Result<Command> {
     let mut spikewire = command(paths::target().join("debug/spikewire"));
     spikewire.args(args.split_whitespace());
     Ok(spikewire)
+}
+
+/// The target for which `rustc` builds what runs here.
+pub fn triple() -> Result<String> {
+    let version = output(command("rustc").arg("-vV"))?;
+    let host = version.lines().find_map(|line| line.strip_prefix("host: "));
+    host.map(str::to_owned).context("rustc -vV")
 }
 
 /// Builds one of the examples, and returns where it is.

@@ -91,6 +91,11 @@ const LONG: &[Step] = &[
         crate::c_library::cores,
     ),
     step(
+        "c-asan",
+        "the library for C on the host, under the address sanitizer as the programs in C are",
+        crate::c_library::watched,
+    ),
+    step(
         "ros",
         "ROS nodes in the distribution's ROS, a flight through every scheme",
         crate::ros::ros,

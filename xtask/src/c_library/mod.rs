@@ -10,6 +10,7 @@ mod tests;
 
 use crate::{
     boards::{BOARDS, Board},
+    host::triple,
     paths, shell, toolchain,
     usage::usage,
 };
@@ -23,7 +24,7 @@ use std::{
 pub use cost::cost;
 pub use guides::guides;
 pub use sizes::write as write_sizes;
-pub use tests::{cores, verify};
+pub use tests::{cores, verify, watched};
 
 const ARCHIVE: &str = "libspikewire_c.a";
 
@@ -128,6 +129,17 @@ fn host_archive() -> Result<PathBuf> {
         shell::run(cargo.current_dir(room()).env("CARGO_TARGET_DIR", work()))?;
     }
     apart(&work().join("debug").join(ARCHIVE), "debug-host", "objcopy")
+}
+
+/// The library for the host, each of whose reads and writes the address sanitizer looks at: a flag that only a nightly
+/// compiler takes without being asked to. The sanitizer's own code is that of the C compiler.
+fn watched_archive() -> Result<PathBuf> {
+    let host = triple()?;
+    let mut cargo = shell::cargo("rustc --lib --crate-type staticlib --target");
+    cargo.arg(&host).current_dir(room()).env("CARGO_TARGET_DIR", work());
+    cargo.env("RUSTC_BOOTSTRAP", "1").env("RUSTFLAGS", "-Zsanitizer=address -Zexternal-clangrt");
+    shell::run(&mut cargo)?;
+    apart(&work().join(host).join("debug").join(ARCHIVE), "watched-host", "objcopy")
 }
 
 /// Writes the header with the program that [`host_archive`] built.

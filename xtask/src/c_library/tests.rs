@@ -1,6 +1,6 @@
 //! The library's tests: C programs on the host and on emulated boards, against what the crate does there.
 
-use super::{archive, compiler, ensure_written, host_archive};
+use super::{archive, compiler, ensure_written, host_archive, watched_archive};
 use crate::{
     boards::{BOARDS, Board},
     firmware, qemu, shell,
@@ -26,6 +26,16 @@ pub fn verify() -> Result<()> {
     let flight = compiler::on_host("flight", "c99", &archive, &SAMPLES)?;
     compare("host", &shell::output(&mut Command::new(flight))?, &rust)?;
     fly("M4F", &rust)
+}
+
+/// On the host with the library, too, under the address sanitizer.
+pub fn watched() -> Result<()> {
+    let archive = watched_archive()?;
+    compiler::record()?;
+    let misuse = compiler::on_host("misuse", "c99", &archive, &[])?;
+    print!("{}", shell::output(&mut Command::new(misuse))?);
+    let flight = compiler::on_host("flight", "c99", &archive, &SAMPLES)?;
+    compare("watched host", &shell::output(&mut Command::new(flight))?, &in_rust()?)
 }
 
 /// The other cores, and the host's package as a CMake project takes it: one codec costs what it is, not the whole.
