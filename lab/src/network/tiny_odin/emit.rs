@@ -33,7 +33,8 @@ fn write(text: &mut String, network: &Quantised, told: &Told) -> std::fmt::Resul
     let micros =
         told.step_us.map(|step| format!(", {:.0} µs in the recording", step * every as f64));
     let micros = micros.unwrap_or_default();
-    writeln!(text, "\n/// Steps from one leak of all neurons to the next{micros}.")?;
+    let idle = if network.leaks() { "" } else { " No neuron leaks: none need be sent." };
+    writeln!(text, "\n/// Steps from one leak of all neurons to the next{micros}.{idle}")?;
     writeln!(text, "pub const STEPS_A_LEAK: NonZeroU32 = NonZeroU32::new({every}).unwrap();")?;
     writeln!(text, "\n/// Layers of {names}. Inputs: {}.", told.inputs)?;
     writeln!(text, "#[rustfmt::skip]")?;

@@ -58,11 +58,12 @@ impl OnChip for Quantised {
     }
 
     fn notes(&self) -> Vec<String> {
-        let every = match self.steps_a_leak {
-            1 => "step",
-            steps => &format!("{steps} steps"),
+        let leak = match self.steps_a_leak {
+            _ if !self.leaks() => "no leaks",
+            1 => "a leak every step",
+            steps => &format!("a leak every {steps} steps"),
         };
-        vec![format!("{} of the chip's 256 neurons; a leak every {every}", self.count())]
+        vec![format!("{} of the chip's 256 neurons; {leak}", self.count())]
     }
 
     fn dearest(&self) -> &'static str {

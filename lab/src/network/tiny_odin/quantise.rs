@@ -412,6 +412,11 @@ impl Quantised {
         None
     }
 
+    /// Whether a leak does anything.
+    pub(super) fn leaks(&self) -> bool {
+        self.layers.iter().flat_map(|layer| &layer.neurons).any(|neuron| neuron.leak > 0)
+    }
+
     /// How many neurons.
     pub(super) fn count(&self) -> usize {
         self.layers.iter().map(|layer| layer.neurons.len()).sum()

@@ -13,7 +13,8 @@ const LARGEST: usize = 64 * 1024;
 /// The chip's clocks to one of its SPI.
 const RATIO: u32 = 4;
 
-/// Loads the network, verifies it and runs it on the steps that come. Each step's leak comes first, then its bias, then
+/// Loads the network, verifies it and runs it on the steps that come. Each step's leak comes first, unless no
+/// neuron leaks, then its bias, then
 /// its inputs in order. `see` is told what came of each, before the next is taken. Returns how many spikes got lost.
 ///
 /// # Errors
@@ -31,6 +32,7 @@ pub(super) fn follow(
     let mut running = gated.run(&network.registers()).map_err(|error| refused(&error))?;
 
     let bias = network.has_bias.then(|| network.inputs() - 1);
+    let leaks = network.leaks();
     for (step, inputs) in steps.enumerate() {
         let before = board.pins().chip.clocks;
         let mut fired = vec![vec![]; network.layers.len()];
@@ -39,7 +41,7 @@ pub(super) fn follow(
                 fired[layer].push(place as u16);
             }
         };
-        let leak = step > 0 && step.is_multiple_of(network.steps_a_leak);
+        let leak = leaks && step > 0 && step.is_multiple_of(network.steps_a_leak);
         let leak = leak.then_some(TinyOdinInput::LeakAll);
         let driven = bias.into_iter().chain(inputs?);
         let words = leak.into_iter().chain(driven.filter_map(|input| network.input(input)));
