@@ -38,7 +38,8 @@ impl Received<'_> {
 ///   show that their session goes on, and the sixteenth is a start.
 /// - **Memory:** `N + 104` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
 ///   the first of a frame.
-/// - **Delay:** none; a frame whose length was damaged may delay the frames in the 255 bytes after it.
+/// - **Delay:** none; a frame whose length was damaged, or whose end is missing, may delay the frames in the 255 bytes
+///   after it, which on a quiet link are several keyframes.
 ///
 /// Counters: [`lost_frames`](Self::lost_frames), [`bad_checksums`](Self::bad_checksums),
 /// [`repeated`](Self::repeated), [`late`](Self::late), [`skipped`](Self::skipped).
