@@ -48,13 +48,12 @@ fn there_and_back(
     }
     codec.finish(&mut events);
     let mut codec = scheme.codec(settings).unwrap();
-    let mut done = 0;
+    let (mut left, mut done) = (events.as_slice(), 0);
     for samples in signal.chunks(piece) {
-        let end = done + samples.len() as u64;
-        let now: Vec<Event> =
-            events.iter().copied().filter(|event| (done..end).contains(&event.sample)).collect();
-        codec.decode(samples.len(), &now, &mut values).unwrap();
-        done = end;
+        done += samples.len() as u64;
+        let (now, later) = left.split_at(left.partition_point(|event| event.sample < done));
+        codec.decode(samples.len(), now, &mut values).unwrap();
+        left = later;
     }
     (events, values)
 }

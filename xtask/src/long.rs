@@ -1,9 +1,11 @@
 //! The checks of `cargo verify --long`, which take too long for every change.
 
 use crate::{
-    bench, fifo, paths,
+    bench,
+    checks::check_for,
+    fifo, paths,
     shell::{cargo, run},
-    toolchain::cargo_for,
+    toolchain::{TARGETS, cargo_for},
 };
 use anyhow::{Context, Result, ensure};
 use std::{
@@ -60,6 +62,7 @@ pub fn lints() -> Result<()> {
     run(cargo(library).args(warnings))?;
     let firmware = "clippy --workspace --manifest-path examples/Cargo.toml";
     run(cargo(firmware).args(warnings))?;
+    check_for(&TARGETS, "--all-features")?;
     // One core stands for all: the firmware's source has no conditions on the core.
     run(cargo_for("thumbv7em-none-eabihf", firmware)?.args(warnings))
 }

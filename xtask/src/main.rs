@@ -26,6 +26,7 @@ mod long;
 mod markdown;
 #[cfg(test)]
 mod modules;
+mod mutants;
 mod names;
 mod needs;
 mod new_firmware;
@@ -33,6 +34,7 @@ mod package;
 mod packages;
 mod page;
 mod parts;
+mod passed;
 mod paths;
 mod peers;
 mod picture;

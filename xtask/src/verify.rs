@@ -1,8 +1,8 @@
 //! `cargo verify`: every check, in order, each with its time. A failure does not hide the next one.
 
 use crate::{
-    checks, cpu, fifo, link, logging, long, needs, package, python, rate_loop, real_boards, storm,
-    tuned, usage::usage,
+    checks, cpu, fifo, link, logging, long, needs, package, passed::Passed, python, rate_loop,
+    real_boards, storm, tuned, usage::usage,
 };
 use anyhow::{Result, bail};
 use std::time::Instant;
@@ -11,6 +11,7 @@ const USAGE: &str = "\
 cargo verify [STEP]...     every check, or the named ones
 cargo verify --list        the checks' names
 cargo verify --long        the checks that need more time, by hand before a release
+cargo verify --rest        of all, those that have not passed at this commit; `--long --rest` likewise
 cargo verify --help        this
 
 A check that fails does not hide the next one. Exit status 0: all passed; 1: one failed; 2: no such check.
@@ -40,7 +41,7 @@ const STEPS: &[Step] = &[
     step("doc", "documentation without warnings", checks::doc),
     step("package", "what is published has all that its pages show", package::package),
     step("features", "every feature alone, on the host", checks::each_feature),
-    step("targets", "the crate for every Cortex-M", checks::targets),
+    step("targets", "the crate for every Cortex-M, all of it for the least", checks::targets),
     step("no-panic", "every codec links without a panic handler", checks::no_panic),
     step("c", "the library for C, on the host and on a Cortex-M4F", crate::c_library::verify),
     step(
@@ -82,7 +83,7 @@ const LONG: &[Step] = &[
     ),
     step("loom", "the queue without locks in every order of its loads and stores", long::loom),
     step("deny", "licences and sources of every crate, in every workspace", crate::release::deny),
-    step("lints", "clippy on all at once: every feature, firmware on host and core", long::lints),
+    step("lints", "clippy on all at once, and every feature on every core", long::lints),
     step("capture", "the laptop program with a debug probe's driver", long::capture),
     step("page", "the page in a browser, against the laptop program", crate::page::verify),
     step(
@@ -124,6 +125,11 @@ const LONG: &[Step] = &[
         "no codec's stack is deeper than the bound of its code, nor that above 1 KiB, on two cores",
         crate::bench::verify_stack,
     ),
+    step(
+        "mutants",
+        "changes of the crate's code, one at a time, which the tests have to notice: days in all",
+        crate::mutants::mutants,
+    ),
     step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", checks::bench_m0),
     step("cores", "instruction counts on all five cores", long::cores),
 ];
@@ -146,8 +152,9 @@ struct Outcome {
 
 /// Runs the named steps, or all but the long ones, in the list's order.
 pub fn verify(args: &[String]) -> Result<()> {
-    let args: Vec<&str> = args.iter().map(String::as_str).collect();
-    let chosen: Vec<&Step> = match args[..] {
+    let mut args: Vec<&str> = args.iter().map(String::as_str).collect();
+    let is_rest = args.pop_if(|last| *last == "--rest").is_some();
+    let mut chosen: Vec<&Step> = match args[..] {
         ["--help" | "-h"] => {
             println!("{USAGE}\n");
             list();
@@ -161,10 +168,14 @@ pub fn verify(args: &[String]) -> Result<()> {
         ["--long"] => LONG.iter().collect(),
         _ => named(&args)?,
     };
+    let passed = Passed::at_head(is_rest)?;
+    if is_rest {
+        chosen.retain(|step| !passed.holds(step.name));
+    }
     if !chosen.iter().any(|step| step.name == SETUP) {
         needs::ensure_met()?;
     }
-    let outcomes = run(&chosen);
+    let outcomes = run(&chosen, &passed);
     summary(&outcomes)
 }
 
@@ -187,14 +198,15 @@ fn named(names: &[&str]) -> Result<Vec<&'static Step>> {
     Ok(all().filter(|step| names.contains(&step.name)).collect())
 }
 
-fn run(steps: &[&'static Step]) -> Vec<Outcome> {
+fn run(steps: &[&'static Step], passed: &Passed) -> Vec<Outcome> {
     let mut outcomes = Vec::new();
     for &step in steps {
         println!("\n=== {}: {}", step.name, step.what);
         let (start, before) = (Instant::now(), cpu::seconds());
         let result = (step.run)();
-        if let Err(error) = &result {
-            println!("FAILED: {error:#}");
+        match &result {
+            Ok(()) => passed.add(step.name),
+            Err(error) => println!("FAILED: {error:#}"),
         }
         let (seconds, processor) = (start.elapsed().as_secs_f64(), cpu::seconds() - before);
         println!("--- {}: {seconds:.0} s, {processor:.0} s of processor time", step.name);
