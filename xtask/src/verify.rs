@@ -127,7 +127,7 @@ const LONG: &[Step] = &[
     ),
     step(
         "mutants",
-        "changes of the crate's code, one at a time, which the tests have to notice: days in all",
+        "changes of the crate's code, one at a time, which tests have to notice: days in all",
         crate::mutants::mutants,
     ),
     step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", checks::bench_m0),
