@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// Installs the Python packages in an environment of their own and runs the tests against them.
 pub fn peers() -> Result<()> {
     let python = environment("peers", "host-tests/peers/requirements.txt")?;
-    run(tests("--test all formats_peers -- --ignored")?.env("PEERS_PYTHON", &python))?;
+    run(tests("--test wire formats_peers -- --ignored")?.env("PEERS_PYTHON", &python))?;
     run(tests("--test network -- --ignored")?.env("PEERS_PYTHON", &python))
 }
 

@@ -1,0 +1,24 @@
+//! Queues, links, formats and sinks, as one program: what its files share is compiled and linked once.
+
+mod bus;
+/// Each room's program uses a part of it.
+#[allow(dead_code, unused_imports)]
+mod common;
+mod interleaving_world;
+
+mod formats_bytes;
+mod formats_peers;
+mod formats_pixels;
+mod heapless;
+mod interleaving;
+mod link_adaptive;
+mod link_bytes;
+mod link_drift;
+mod link_frames;
+mod link_loss;
+mod link_outage;
+mod link_readout;
+mod link_receiver;
+mod link_time;
+mod queue;
+mod sink_bus;
