@@ -1,8 +1,6 @@
 //! Chips' drivers against their models, as one program: what its files share is compiled and linked once.
 
 mod bus;
-/// Each room's program uses a part of it.
-#[allow(dead_code, unused_imports)]
 mod common;
 
 mod chip_akd1500;

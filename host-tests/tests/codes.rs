@@ -1,7 +1,5 @@
 //! The codes against the reference, as one program: what its files share is compiled and linked once.
 
-/// Each room's program uses a part of it.
-#[allow(dead_code, unused_imports)]
 mod common;
 
 mod bank;
