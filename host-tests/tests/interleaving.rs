@@ -70,7 +70,7 @@ const SMALL: Case = Case {
     fault: None,
 };
 
-/// Over a million schedules.
+/// Over half a million schedules.
 #[test]
 fn no_order_of_events_makes_a_receiver_wrong() {
     let cases = [
@@ -81,7 +81,7 @@ fn no_order_of_events_makes_a_receiver_wrong() {
         // The line.
         Case { interrupts: 2, line_faults: 2, frames: 3, ..SMALL },
         Case { interrupts: 2, line_faults: 2, frames: 3, room: 32, ..SMALL },
-        Case { interrupts: 2, line_faults: 1, resets: 1, readers: 1, ..SMALL },
+        Case { interrupts: 1, line_faults: 1, resets: 1, readers: 1, ..SMALL },
         // Reboots.
         Case { interrupts: 2, line_faults: 2, reboots: 1, ..SMALL },
         Case { interrupts: 1, line_faults: 3, reboots: 2, frames: 4, ..SMALL },
@@ -90,7 +90,7 @@ fn no_order_of_events_makes_a_receiver_wrong() {
     let schedules: u64 = totals.iter().map(|total| total.0).sum();
     let claims: u64 = totals.iter().map(|total| total.1).sum();
     println!("{schedules} schedules, {claims} times exact");
-    assert!(schedules > 1_000_000 && claims > schedules);
+    assert!(schedules > 500_000 && claims > schedules);
 }
 
 const LARGE: Case = Case {
@@ -127,6 +127,7 @@ fn nor_does_a_long_one() {
 #[ignore = "takes many minutes"]
 fn the_long_search() {
     for case in [
+        Case { interrupts: 2, line_faults: 1, resets: 1, readers: 1, ..SMALL },
         Case { interrupts: 6, ..SMALL },
         Case { interrupts: 5, nested: 3, ..SMALL },
         Case { interrupts: 4, nested: 2, resets: 1, line_faults: 1, ..SMALL },
