@@ -95,6 +95,17 @@ fn looks_a_clock_multiply_the_polls_of_every_wait() {
     assert!((200..210).contains(&one) && (1000..1010).contains(&five), "{one} {five}");
 }
 
+/// The check of the step changes the byte of synapses (255, 248) and (255, 249), and changes it back.
+#[test]
+fn the_byte_that_the_step_check_writes_keeps_its_synapses() {
+    let board = TinyBoard::new(4, 1);
+    let mut chip = TinyOdin::new(board.spi(), board.port(), 1_600);
+    let mut gated = chip.reset(&mut board.clone()).unwrap();
+    gated.set_synapse(255, 249, 3).unwrap();
+    gated.set_synapse(255, 248, -5).unwrap();
+    assert_eq!((gated.synapse(255, 249), gated.synapse(255, 248)), (Ok(3), Ok(-5)));
+}
+
 #[test]
 fn the_bytes_on_the_bus_are_golden() {
     let board = TinyBoard::new(4, 1);
