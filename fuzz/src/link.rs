@@ -56,6 +56,8 @@ struct Sender<'q, P: Start + 'static> {
     session: usize,
     /// By tick, what the decoders hold after the sample.
     history: HashMap<u32, [u32; CHANNELS]>,
+    /// Number of the last frame, if all that was coded is in it or in those before.
+    last: Option<u64>,
 }
 
 impl<'q, P: Start + 'static> Sender<'q, P>
@@ -76,6 +78,7 @@ where
             now,
             session,
             history: HashMap::new(),
+            last: None,
         }
     }
 
@@ -84,6 +87,7 @@ where
     }
 
     fn sample(&mut self, samples: [P::Sample; CHANNELS]) {
+        self.last = None;
         self.now += u64::from(PERIOD);
         self.bank.encode_into(self.tick(), samples, self.queue);
         let mut values = [0; CHANNELS];
@@ -128,6 +132,7 @@ where
         if let Some(number) = last {
             let held = self.decoders.each_ref().map(|own| own.held().map_or(0, Sample::to_bits32));
             sent.insert(number, (self.session, Some(held)));
+            self.last = last;
         }
         frames
     }
@@ -189,7 +194,13 @@ where
             12 if !delayed.is_empty() => {
                 stream = delayed.swap_remove(script.below(delayed.len().min(256)));
             }
-            13 => receiver.advance(sender.tick(), |_, _, _| ()),
+            // Only once all that was sent has arrived, as `advance` asks.
+            13 => {
+                let is_heard = |own: &&Sender<_>| own.last.is_some() && own.last == delivered;
+                if let Some(own) = senders.iter().find(is_heard) {
+                    receiver.advance(own.tick(), |_, _, _| ());
+                }
+            }
             14 => {
                 // A brown-out of the receiver.
                 reader = Reader::new();

@@ -6,12 +6,15 @@
 use super::video::{Rate, Video};
 use anyhow::{Result, anyhow, bail};
 use std::cell::Cell;
-use std::io::{self, Read};
+use std::io::{self, Chain, Cursor, Read};
 use std::rc::Rc;
 use y4m::{Decoder, Error};
 
 /// The first bytes of a YUV4MPEG2 file.
 pub(super) const MAGIC: &[u8] = b"YUV4MPEG2 ";
+
+/// The decoder takes no longer one.
+const LONGEST_HEADER: usize = 1024;
 
 /// A reader that counts what it has read.
 struct Counting<R> {
@@ -27,9 +30,33 @@ impl<R: Read> Read for Counting<R> {
     }
 }
 
+/// The header, up to its end or that of the file, and then the frames.
+type Whole<R> = Chain<Cursor<Vec<u8>>, Counting<R>>;
+
+/// Reads the header, whose columns and rows the decoder multiplies unchecked.
+fn header<R: Read>(mut reader: Counting<R>, name: &str) -> Result<Whole<R>> {
+    let mut header = Vec::new();
+    while !header.ends_with(b"\n") && header.len() < LONGEST_HEADER {
+        let mut byte = [0];
+        if reader.read(&mut byte)? == 0 {
+            break;
+        }
+        header.extend(byte);
+    }
+    for word in header.trim_ascii_end().split(|byte| *byte == b' ').skip(1) {
+        let [field @ (b'W' | b'H'), digits @ ..] = word else { continue };
+        let digits = String::from_utf8_lossy(digits);
+        if !matches!(digits.parse::<u16>(), Ok(1..)) {
+            let field = if *field == b'W' { "columns" } else { "rows" };
+            bail!("{name}: `{digits}` {field} of pixels, where 1 to 65535 are taken");
+        }
+    }
+    Ok(Cursor::new(header).chain(reader))
+}
+
 /// A video of 8 bits a pixel.
 pub(super) struct Y4m<R: Read> {
-    decoder: Decoder<Counting<R>>,
+    decoder: Decoder<Whole<R>>,
     is_limited: bool,
     name: String,
     size: (u16, u16),
@@ -48,7 +75,7 @@ impl<R: Read> Y4m<R> {
     pub(super) fn open(reader: R, name: String, length: Option<u64>) -> Result<Self> {
         let bytes = Rc::new(Cell::new(0));
         let counting = Counting { reader, bytes: Rc::clone(&bytes) };
-        let decoder = Decoder::new(counting).map_err(|error| match error {
+        let decoder = Decoder::new(header(counting, &name)?).map_err(|error| match error {
             Error::UnknownColorspace => anyhow!(
                 "{name}: byte {}: unknown pixel format in the header; 4:2:0, 4:2:2, 4:4:4 and mono of 8 bits are read",
                 bytes.get()
@@ -59,14 +86,7 @@ impl<R: Read> Y4m<R> {
         if decoder.get_bytes_per_sample() != 1 {
             bail!("{name}: pixels of {} bits, where 8 are taken", decoder.get_bit_depth());
         }
-        let size = [decoder.get_width(), decoder.get_height()].map(u16::try_from);
-        let [Ok(width @ 1..), Ok(height @ 1..)] = size else {
-            bail!(
-                "{name}: {} x {} pixels, where 1 to 65535 columns and rows are taken",
-                decoder.get_width(),
-                decoder.get_height()
-            );
-        };
+        let size = (decoder.get_width() as u16, decoder.get_height() as u16);
         let end = bytes.get();
         let frames = length.map(|length| {
             let (pixels, colours) = colours(&decoder);
@@ -75,7 +95,6 @@ impl<R: Read> Y4m<R> {
         let mut words = decoder.get_raw_params().split(|byte| *byte == b' ');
         let is_limited = !matches!(decoder.get_colorspace(), y4m::Colorspace::Cmono)
             && !words.any(|word| word == b"XCOLORRANGE=FULL");
-        let size = (width, height);
         Ok(Self { decoder, is_limited, name, size, bytes, end, index: 0, frames })
     }
 }

@@ -16,10 +16,10 @@ pub struct Rollover {
     previous: Option<i64>,
     /// The last step forward.
     step: i64,
-    offset: i64,
     samples: u64,
-    /// How often it ran over, and the sample before the first time.
-    count: u64,
+    /// How often it ran over, by how much each time, and the sample before the first time.
+    count: i64,
+    range: i64,
     first: u64,
 }
 
@@ -35,25 +35,23 @@ impl Rollover {
                 && (low..high).contains(&previous)
                 && (1..=longest).contains(&(range - step.saturating_abs()))
         };
-        match RANGES.into_iter().find(|range| is_over(*range)) {
+        let ranges = if self.count == 0 { RANGES } else { [self.range; 2] };
+        match ranges.into_iter().find(|range| is_over(*range)) {
             Some(range) if step < 0 => {
                 if self.count == 0 {
                     self.first = self.samples - 1;
                 }
                 self.count += 1;
-                self.offset += range;
+                self.range = range;
             }
             // A sample from before it ran over, out of order.
-            Some(range) if self.offset >= range => {
-                self.count -= 1;
-                self.offset -= range;
-            }
+            Some(_) if self.count > 0 => self.count -= 1,
             _ if step > 0 => self.step = step,
             _ => {}
         }
         self.previous = Some(shown);
         self.samples += 1;
-        shown.saturating_add(self.offset)
+        shown.saturating_add(self.count.saturating_mul(self.range))
     }
 
     /// A note for the user.
@@ -132,6 +130,15 @@ mod tests {
         let shown = [end - 20, end - 10, 5, end - 2, 15, 25];
         let taken = shown.map(|time| rollover.take(time));
         assert_eq!(taken, [end - 20, end - 10, end + 5, end - 2, end + 15, end + 25]);
+    }
+
+    #[test]
+    fn a_clock_of_ms_never_steps_back_by_a_range_of_us() {
+        let (short, long) = (1 << 32, 1000 << 32);
+        let mut rollover = Rollover::default();
+        let shown = [long - 10, 5, short + 1, 10, short + 2, 10];
+        let taken = shown.map(|time| rollover.take(time));
+        assert_eq!(taken, shown.map(|time| if time == long - 10 { time } else { long + time }));
     }
 
     #[test]
