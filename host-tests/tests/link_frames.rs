@@ -4,7 +4,7 @@ use core::num::NonZeroU16;
 
 use proptest::prelude::*;
 use spikewire::link::{
-    Coding, FrameView, Framer, LinkError, MAX_FRAME, MIN_FRAME, Reader, Session,
+    Coding, FrameView, Framer, LinkError, MAX_FRAME, MIN_FRAME, Reader, Received, Session,
 };
 use spikewire::{Event, Keyframe, Polarity, Sample, SampleKind, Tick};
 
@@ -229,6 +229,36 @@ proptest! {
         prop_assert_eq!(numbers, expected);
         prop_assert_eq!(gaps, u32::from(!is_whole && damaged > 0));
         prop_assert_eq!(reader.lost_frames(), gaps);
+    }
+
+    #[test]
+    fn after_a_silence_no_frame_waits_for_the_end_of_another(
+        events in prop::collection::vec(any_event(), 60..200),
+        cut in any::<prop::sample::Index>(),
+        at in any::<prop::sample::Index>(),
+    ) {
+        let frames = frames(Coding::for_channels(6, 1_000), &events, 64);
+        let cut = cut.index(frames.len());
+        let mut reader = Reader::<MAX_FRAME>::new();
+        let mut numbers = Vec::new();
+        let mut read = |received: Received<'_>| numbers.push((received.frame.number() - FIRST) as usize);
+        for (number, (bytes, _)) in frames.iter().enumerate() {
+            let length = if number == cut { at.index(bytes.len()) } else { bytes.len() };
+            let mut arriving = &bytes[..length];
+            while let Some(received) = reader.next_frame(&mut arriving) {
+                read(received);
+            }
+        }
+        while let Some(received) = reader.next_after_silence() {
+            read(received);
+        }
+        let whole: Vec<usize> = (0..frames.len()).filter(|&number| number != cut).collect();
+        prop_assert_eq!(numbers, whole);
+        // Nothing is left that would wait.
+        prop_assert!(reader.next_after_silence().is_none());
+        let mut last = &frames[0].0[..];
+        prop_assert!(reader.next_frame(&mut last).is_none() && last.is_empty());
+        prop_assert_eq!(reader.late() + reader.repeated(), 1);
     }
 
     #[test]

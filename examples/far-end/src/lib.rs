@@ -102,6 +102,10 @@ impl FarEnd {
             return None;
         }
         self.heard = Some(now);
+        // What waits behind a frame without an end is too old to be exact, and must not hold up what comes.
+        while let Some(received) = self.reader.next_after_silence() {
+            self.receiver.apply(&received, |_, _, _| ());
+        }
         self.receiver.mark_stale();
         Some(Command::Neutral)
     }

@@ -131,6 +131,15 @@ fn neutral_after_silence_to_the_next_keyframe() {
     assert!(matches!(after(&mut far, &sender.keyframe()), Some(Command::Damp(_))));
 }
 
+#[test]
+fn a_keyframe_after_silence_does_not_wait_for_the_end_of_a_cut_frame() {
+    let (mut sender, mut far) = running();
+    let whole = sender.sample(0.5);
+    assert_eq!(after(&mut far, &whole[..whole.len() - 1]), None);
+    assert_eq!(far.silence(SILENCE_MS), Some(Command::Neutral));
+    assert!(matches!(after(&mut far, &sender.keyframe()), Some(Command::Damp(_))));
+}
+
 /// A loose wire brings bytes for ever: they must not keep the last command alive.
 #[test]
 fn bytes_that_are_no_frame_are_silence() {

@@ -128,6 +128,7 @@ fn framed<S: Sample>(scheme: &'static StepForward<S>) -> Option<()> {
             receiver.apply(&received, |channel, tick, value| hide((channel, tick, value)));
         }
     }
+    hide(reader.next_after_silence().map(|received| received.is_start));
     hide((reader.frames(), reader.lost_frames(), reader.bad_checksums(), reader.skipped()));
     hide((reader.repeated(), reader.late(), receiver.exact(black_box(1))));
     hide(receiver.withheld(black_box(1)));

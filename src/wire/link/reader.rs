@@ -39,7 +39,7 @@ impl Received<'_> {
 /// - **Memory:** `N + 104` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
 ///   the first of a frame.
 /// - **Delay:** none; a frame whose length was damaged, or whose end is missing, may delay the frames in the 255 bytes
-///   after it, which on a quiet link are several keyframes.
+///   after it, which on a quiet link are several keyframes: see [`next_after_silence`](Self::next_after_silence).
 ///
 /// Counters: [`lost_frames`](Self::lost_frames), [`bad_checksums`](Self::bad_checksums),
 /// [`repeated`](Self::repeated), [`late`](Self::late), [`skipped`](Self::skipped).
@@ -129,8 +129,19 @@ impl<const N: usize> Reader<N> {
 
     /// The next frame. Takes bytes from the front of `input`; when it returns `None`, it has taken all of them.
     pub fn next_frame(&mut self, input: &mut &[u8]) -> Option<Received<'_>> {
+        self.next(input, false)
+    }
+
+    /// The next frame among the bytes that were taken, when no more come: on a line that was silent for longer than a
+    /// frame ever pauses, such as at a serial port's idle interrupt. What waits for its end is given up, and counted
+    /// as [`skipped`](Self::skipped); `None` once no byte is left.
+    pub fn next_after_silence(&mut self) -> Option<Received<'_>> {
+        self.next(&mut [].as_slice(), true)
+    }
+
+    fn next(&mut self, input: &mut &[u8], is_silent: bool) -> Option<Received<'_>> {
         self.start = self.start.wrapping_add(core::mem::take(&mut self.handed_out));
-        let (length, standing) = self.find(input)?;
+        let (length, standing) = self.find(input, is_silent)?;
         self.handed_out = length;
         let end = self.start.wrapping_add(length).wrapping_sub(CHECKSUM);
         let frame = FrameView::read(self.buffer.get(self.start..end)?)?;
@@ -190,7 +201,7 @@ impl<const N: usize> Reader<N> {
     }
 
     /// Finds the next frame to deliver, which then begins at `start`, and returns its length.
-    fn find(&mut self, input: &mut &[u8]) -> Option<(usize, Standing)> {
+    fn find(&mut self, input: &mut &[u8], is_silent: bool) -> Option<(usize, Standing)> {
         loop {
             let bytes = self.buffer.get(self.start..self.end).unwrap_or_default();
             let frame = FrameView::new(bytes);
@@ -208,7 +219,9 @@ impl<const N: usize> Reader<N> {
                     *counter = counter.saturating_add(1);
                     self.start = self.start.wrapping_add(length);
                 }
-                Err(LinkError::Truncated { needed, .. }) if needed <= N => {
+                Err(LinkError::Truncated { needed, .. })
+                    if needed <= N && (!is_silent || bytes.is_empty()) =>
+                {
                     if input.is_empty() {
                         return None;
                     }
