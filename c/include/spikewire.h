@@ -261,6 +261,30 @@ sw_status sw_calibration_q16_16_range(const sw_calibration_q16_16 *calibration, 
 sw_status sw_calibration_q16_16_threshold(const sw_calibration_q16_16 *calibration, float factor, uint8_t of_magnitudes, sw_q16_16 *threshold);
 sw_status sw_calibration_q16_16_counts(const sw_calibration_q16_16 *calibration, sw_calibration_counts *counts);
 
+/* Declares the functions of a codec, which are told at the top. SAMPLE is the type of a sample. */
+#define SW_CODEC(NAME, SAMPLE) \
+    sw_status sw_##NAME##_encoder_start(sw_##NAME##_encoder *encoder, const sw_##NAME *codec); \
+    sw_status sw_##NAME##_encode(sw_##NAME##_encoder *encoder, SAMPLE sample, sw_##NAME##_code *code); \
+    sw_status sw_##NAME##_encode_slice(sw_##NAME##_encoder *encoder, const SAMPLE *samples, \
+        sw_##NAME##_code *codes, size_t count); \
+    sw_status sw_##NAME##_finish(sw_##NAME##_encoder *encoder, sw_##NAME##_code *code); \
+    sw_status sw_##NAME##_prime(sw_##NAME##_encoder *encoder, const SAMPLE *past, size_t count); \
+    sw_status sw_##NAME##_keyframe(const sw_##NAME##_encoder *encoder, SAMPLE *value); \
+    sw_status sw_##NAME##_rejected(const sw_##NAME##_encoder *encoder, uint32_t *count); \
+    sw_status sw_##NAME##_decoder_start(sw_##NAME##_decoder *decoder, const sw_##NAME *codec); \
+    sw_status sw_##NAME##_decode(sw_##NAME##_decoder *decoder, const sw_##NAME##_code *code, SAMPLE *value); \
+    sw_status sw_##NAME##_decode_slice(sw_##NAME##_decoder *decoder, const sw_##NAME##_code *codes, SAMPLE *values, \
+        size_t count); \
+    sw_status sw_##NAME##_held(const sw_##NAME##_decoder *decoder, SAMPLE *value); \
+    sw_status sw_##NAME##_resync(sw_##NAME##_decoder *decoder, SAMPLE value); \
+    sw_status sw_##NAME##_firings(const sw_##NAME##_code *code, sw_neuron_spike *firings, size_t capacity, \
+        size_t *count); \
+    sw_status sw_##NAME##_assemble(const sw_neuron_spike *firings, size_t count, sw_##NAME##_code *code); \
+    sw_status sw_##NAME##_bank(sw_##NAME##_encoder *encoders, const SAMPLE *samples, sw_##NAME##_code *codes, \
+        size_t channels, const sw_stamp *stamp, sw_queue *queue); \
+    sw_status sw_##NAME##_keyframes(sw_##NAME##_encoder *encoders, size_t channels, const sw_stamp *stamp, \
+        sw_queue *queue)
+
 
 #if defined(__cplusplus)
 }

@@ -20,59 +20,101 @@
 /// ```
 #[macro_export]
 macro_rules! codecs {
+    // The same for each of these sample types, which is then `S`: `sf` becomes `sf_f32` and `sf_q8_8`.
+    (for $samples:tt; $($(#[doc = $words:literal])* $name:ident: $scheme:ty { $($how:tt)* })*) => {
+        $(
+            #[doc(hidden)]
+            mod $name {
+                $crate::codecs!(@each $samples; [$($words),*] $name $scheme, { $($how)* });
+            }
+        )*
+
+        /// What is declared here, for the header: for each name its sample types.
+        pub static CODECS: &[(&str, &[fn() -> $crate::Description])] =
+            &[$((stringify!($name), $name::CODECS)),*];
+    };
+
     ($($(#[doc = $words:literal])* $name:ident: $scheme:ty { $($how:tt)* })*) => {
         $(
             #[doc(hidden)]
             mod $name {
                 #[allow(unused_imports)]
                 use super::*;
-                use $crate::Status;
-                use $crate::codec::{self, Codec, Decoder, Encoder};
 
-                type Scheme = $scheme;
-                type Sample = <Scheme as ::spikewire::Scheme>::Sample;
-                type Code = <Scheme as ::spikewire::Scheme>::Code;
-
-                const MARK: u32 = codec::mark(stringify!($name));
-
-                $crate::codecs!(@how $name; $($how)*);
-
-                /// What the header tells of it.
-                pub(super) fn description() -> $crate::Description {
-                    $crate::Description::of::<Scheme>(
-                        stringify!($name),
-                        &[$($words),*],
-                        stringify!($scheme),
-                        CONSTRUCTORS,
-                    )
-                }
-
-                $crate::codecs!(@functions $name;
-                    encoder_start(encoder: *mut Encoder<Scheme>, codec: *const Codec<Scheme>), MARK;
-                    decoder_start(decoder: *mut Decoder<Scheme>, codec: *const Codec<Scheme>), MARK;
-                    encode(encoder: *mut Encoder<Scheme>, sample: Sample, code: *mut Code);
-                    encode_slice(encoder: *mut Encoder<Scheme>, samples: *const Sample, codes: *mut Code, count: usize);
-                    finish(encoder: *mut Encoder<Scheme>, code: *mut Code);
-                    prime(encoder: *mut Encoder<Scheme>, past: *const Sample, count: usize);
-                    keyframe(encoder: *const Encoder<Scheme>, value: *mut Sample);
-                    rejected(encoder: *const Encoder<Scheme>, count: *mut u32);
-                    decode(decoder: *mut Decoder<Scheme>, code: *const Code, value: *mut Sample);
-                    decode_slice(decoder: *mut Decoder<Scheme>, codes: *const Code, values: *mut Sample, count: usize);
-                    held(decoder: *const Decoder<Scheme>, value: *mut Sample);
-                    resync(decoder: *mut Decoder<Scheme>, value: Sample);
-                    firings(code: *const Code, firings: *mut $crate::event::CNeuronSpike, capacity: usize, count: *mut usize);
-                    assemble(firings: *const $crate::event::CNeuronSpike, count: usize, code: *mut Code);
-                    bank(encoders: *mut Encoder<Scheme>, samples: *const Sample, codes: *mut Code, channels: usize, stamp: *const $crate::event::Stamp, queue: *mut $crate::Kept<$crate::Queue>);
-                    keyframes(encoders: *mut Encoder<Scheme>, channels: usize, stamp: *const $crate::event::Stamp, queue: *mut $crate::Kept<$crate::Queue>);
-                );
+                $crate::codecs!(@codec (stringify!($name)) "()", [$($words),*] $scheme { $($how)* });
             }
         )*
 
         /// What is declared here, for the header.
-        pub static CODECS: &[fn() -> $crate::Description] = &[$($name::description),*];
+        pub static CODECS: &[(&str, &[fn() -> $crate::Description])] =
+            &[$((stringify!($name), &[$name::description])),*];
     };
 
-    (@how $name:ident; $($(#[doc = $words:literal])* made $init:ident($($argument:ident: $type:ty),* $(,)?) = $value:expr;)+) => {
+    (@each [$($suffix:ident: $sample:ident),*]; $words:tt $name:ident $scheme:ty, $how:tt) => {
+        $crate::codecs!(@samples $words $name $scheme, $how $($suffix: $sample,)*);
+
+        pub(super) static CODECS: &[fn() -> $crate::Description] = &[$($suffix::description),*];
+    };
+
+    (@samples $words:tt $name:ident $scheme:ty, $how:tt) => {};
+    (@samples $words:tt $name:ident $scheme:ty, $how:tt $suffix:ident: $sample:ident, $($rest:tt)*) => {
+        mod $suffix {
+            #[allow(unused_imports)]
+            use super::super::*;
+
+            type S = $sample;
+
+            $crate::codecs!(
+                @codec (concat!(stringify!($name), "_", stringify!($suffix))) stringify!($sample), $words $scheme $how
+            );
+        }
+
+        $crate::codecs!(@samples $words $name $scheme, $how $($rest)*);
+    };
+
+    (@codec ($name:expr) $sample:expr, [$($words:literal),*] $scheme:ty { $($how:tt)* }) => {
+        use $crate::Status;
+        use $crate::codec::{self, Codec, Decoder, Encoder};
+
+        type Scheme = $scheme;
+        type Sample = <Scheme as ::spikewire::Scheme>::Sample;
+        type Code = <Scheme as ::spikewire::Scheme>::Code;
+
+        const MARK: u32 = codec::mark($name);
+
+        $crate::codecs!(@how $name; $($how)*);
+
+        /// What the header tells of it.
+        pub(super) fn description() -> $crate::Description {
+            $crate::Description::of::<Scheme>(
+                $name,
+                &[$($words),*],
+                (stringify!($scheme), $sample),
+                CONSTRUCTORS,
+            )
+        }
+
+        $crate::codecs!(@functions $name;
+            encoder_start(encoder: *mut Encoder<Scheme>, codec: *const Codec<Scheme>), MARK;
+            decoder_start(decoder: *mut Decoder<Scheme>, codec: *const Codec<Scheme>), MARK;
+            encode(encoder: *mut Encoder<Scheme>, sample: Sample, code: *mut Code);
+            encode_slice(encoder: *mut Encoder<Scheme>, samples: *const Sample, codes: *mut Code, count: usize);
+            finish(encoder: *mut Encoder<Scheme>, code: *mut Code);
+            prime(encoder: *mut Encoder<Scheme>, past: *const Sample, count: usize);
+            keyframe(encoder: *const Encoder<Scheme>, value: *mut Sample);
+            rejected(encoder: *const Encoder<Scheme>, count: *mut u32);
+            decode(decoder: *mut Decoder<Scheme>, code: *const Code, value: *mut Sample);
+            decode_slice(decoder: *mut Decoder<Scheme>, codes: *const Code, values: *mut Sample, count: usize);
+            held(decoder: *const Decoder<Scheme>, value: *mut Sample);
+            resync(decoder: *mut Decoder<Scheme>, value: Sample);
+            firings(code: *const Code, firings: *mut $crate::event::CNeuronSpike, capacity: usize, count: *mut usize);
+            assemble(firings: *const $crate::event::CNeuronSpike, count: usize, code: *mut Code);
+            bank(encoders: *mut Encoder<Scheme>, samples: *const Sample, codes: *mut Code, channels: usize, stamp: *const $crate::event::Stamp, queue: *mut $crate::Kept<$crate::Queue>);
+            keyframes(encoders: *mut Encoder<Scheme>, channels: usize, stamp: *const $crate::event::Stamp, queue: *mut $crate::Kept<$crate::Queue>);
+        );
+    };
+
+    (@how $name:expr; $($(#[doc = $words:literal])* made $init:ident($($argument:ident: $type:ty),* $(,)?) = $value:expr;)+) => {
         const CONSTRUCTORS: &[$crate::Constructor] = &[$($crate::Constructor {
             name: stringify!($init),
             words: &[$($words),*],
@@ -80,7 +122,7 @@ macro_rules! codecs {
         }),+];
 
         $(
-            #[unsafe(export_name = concat!("sw_", stringify!($name), "_", stringify!($init)))]
+            #[unsafe(export_name = concat!("sw_", $name, "_", stringify!($init)))]
             unsafe extern "C" fn $init(
                 codec: *mut Codec<Scheme>,
                 $($argument: <$type as $crate::argument::Argument>::C,)*
@@ -101,16 +143,16 @@ macro_rules! codecs {
         )+
     };
 
-    (@how $name:ident; constant $value:expr;) => {
+    (@how $name:expr; constant $value:expr;) => {
         const CONSTRUCTORS: &[$crate::Constructor] = &[];
 
-        #[unsafe(export_name = concat!("sw_", stringify!($name), "_codec"))]
+        #[unsafe(export_name = concat!("sw_", $name, "_codec"))]
         static CODEC: Codec<Scheme> = Codec::new(MARK, $value);
     };
 
-    (@functions $name:ident; $($function:ident($($argument:ident: $type:ty),*) $(, $more:expr)?;)*) => {
+    (@functions $name:expr; $($function:ident($($argument:ident: $type:ty),*) $(, $more:expr)?;)*) => {
         $(
-            #[unsafe(export_name = concat!("sw_", stringify!($name), "_", stringify!($function)))]
+            #[unsafe(export_name = concat!("sw_", $name, "_", stringify!($function)))]
             unsafe extern "C" fn $function($($argument: $type),*) -> Status {
                 // SAFETY: C's promise.
                 unsafe { codec::$function($($argument),* $(, $more)?) }
@@ -119,16 +161,22 @@ macro_rules! codecs {
     };
 }
 
-/// Checks sizes and alignments: of parameters, of what an encoder and a decoder keep, and of a code.
+/// Checks sizes and alignments, for each type that is `S` in a scheme's: of parameters, of what an encoder and a decoder
+/// keep, and of a code.
 #[macro_export]
 macro_rules! sized {
-    ($($scheme:ty: $codec:tt $encoder:tt $decoder:tt $code:tt;)*) => {
-        $(const _: () = assert!(
-            $crate::Layout::of::<$crate::codec::Codec<$scheme>>().is $codec
-                && $crate::Layout::of::<<$scheme as ::spikewire::Scheme>::EncoderState>().is $encoder
-                && $crate::Layout::of::<<$scheme as ::spikewire::Scheme>::DecoderState>().is $decoder
-                && $crate::Layout::of::<<$scheme as ::spikewire::Scheme>::Code>().is $code,
-            "the header has another size: write it again"
-        );)*
+    ($($scheme:ty: $($sample:ty => $codec:tt $encoder:tt $decoder:tt $code:tt),*;)*) => {
+        $($(const _: () = {
+            #[allow(dead_code)]
+            type S = $sample;
+            type Scheme = $scheme;
+            assert!(
+                $crate::Layout::of::<$crate::codec::Codec<Scheme>>().is $codec
+                    && $crate::Layout::of::<<Scheme as ::spikewire::Scheme>::EncoderState>().is $encoder
+                    && $crate::Layout::of::<<Scheme as ::spikewire::Scheme>::DecoderState>().is $decoder
+                    && $crate::Layout::of::<<Scheme as ::spikewire::Scheme>::Code>().is $code,
+                "the header has another size: write it again"
+            );
+        };)*)*
     };
 }

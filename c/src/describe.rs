@@ -50,8 +50,8 @@ pub struct Description {
     pub constructors: &'static [Constructor],
     /// The type of its samples in C.
     pub sample: &'static str,
-    /// Its type in Rust, within the library.
-    pub rust: &'static str,
+    /// Its type in Rust, within the library, and the type that is called `S` in it; `()` if none is.
+    pub rust: (&'static str, &'static str),
     /// Its parameters.
     pub codec: Layout,
     /// What an encoder keeps, beside a pointer.
@@ -75,7 +75,7 @@ impl Description {
     pub fn of<P: Exported<Sample: Number>>(
         name: &'static str,
         words: &'static [&'static str],
-        rust: &'static str,
+        rust: (&'static str, &'static str),
         constructors: &'static [Constructor],
     ) -> Self {
         Self {

@@ -181,10 +181,10 @@ use spikewire_c::header;
 
 fn main() -> std::io::Result<()> {
     let directory = std::env::args().nth(1).unwrap_or_else(|| \"include\".to_owned());
-    let codecs: Vec<_> = codecs::CODECS.iter().map(|describe| describe()).collect();
+    let codecs: Vec<_> = codecs::CODECS.iter().map(|(_, codec)| codec[0]()).collect();
     std::fs::create_dir_all(&directory)?;
     let name = env!(\"CARGO_PKG_NAME\").replace('-', \"_\");
-    std::fs::write(\"src/sizes.rs\", header::sizes(\"spikewire_c\", &codecs))?;
+    std::fs::write(\"src/sizes.rs\", header::sizes(\"spikewire_c\", codecs.chunks(1)))?;
     std::fs::write(format!(\"{directory}/spikewire.h\"), header::core())?;
     std::fs::write(format!(\"{directory}/{name}.h\"), header::file(&name, &codecs))
 }

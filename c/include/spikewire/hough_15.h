@@ -36,48 +36,8 @@ sw_status sw_hough_15_f32_init(sw_hough_15_f32 *codec, const float taps[15], flo
 /* `shape`: SW_TRIANGULAR, SW_HANN or SW_GAUSSIAN; `peak`: its largest tap; `shift`: what is taken off the samples, at
  * most their minimum. */
 sw_status sw_hough_15_f32_init_peak(sw_hough_15_f32 *codec, uint8_t shape, float peak, float shift, sw_error *error);
-sw_status sw_hough_15_f32_encoder_start(sw_hough_15_f32_encoder *encoder, const sw_hough_15_f32 *codec);
-sw_status sw_hough_15_f32_encode(sw_hough_15_f32_encoder *encoder, float sample, sw_hough_15_f32_code *code);
-sw_status sw_hough_15_f32_encode_slice(
-    sw_hough_15_f32_encoder *encoder,
-    const float *samples,
-    sw_hough_15_f32_code *codes,
-    size_t count);
-sw_status sw_hough_15_f32_finish(sw_hough_15_f32_encoder *encoder, sw_hough_15_f32_code *code);
-sw_status sw_hough_15_f32_prime(sw_hough_15_f32_encoder *encoder, const float *past, size_t count);
-sw_status sw_hough_15_f32_keyframe(const sw_hough_15_f32_encoder *encoder, float *value);
-sw_status sw_hough_15_f32_rejected(const sw_hough_15_f32_encoder *encoder, uint32_t *count);
-sw_status sw_hough_15_f32_decoder_start(sw_hough_15_f32_decoder *decoder, const sw_hough_15_f32 *codec);
-sw_status sw_hough_15_f32_decode(sw_hough_15_f32_decoder *decoder, const sw_hough_15_f32_code *code, float *value);
-sw_status sw_hough_15_f32_decode_slice(
-    sw_hough_15_f32_decoder *decoder,
-    const sw_hough_15_f32_code *codes,
-    float *values,
-    size_t count);
-sw_status sw_hough_15_f32_held(const sw_hough_15_f32_decoder *decoder, float *value);
-sw_status sw_hough_15_f32_resync(sw_hough_15_f32_decoder *decoder, float value);
-sw_status sw_hough_15_f32_firings(
-    const sw_hough_15_f32_code *code,
-    sw_neuron_spike *firings,
-    size_t capacity,
-    size_t *count);
-sw_status sw_hough_15_f32_assemble(const sw_neuron_spike *firings, size_t count, sw_hough_15_f32_code *code);
-sw_status sw_hough_15_f32_bank(
-    sw_hough_15_f32_encoder *encoders,
-    const float *samples,
-    sw_hough_15_f32_code *codes,
-    size_t channels,
-    const sw_stamp *stamp,
-    sw_queue *queue);
-sw_status sw_hough_15_f32_keyframes(
-    sw_hough_15_f32_encoder *encoders,
-    size_t channels,
-    const sw_stamp *stamp,
-    sw_queue *queue);
+SW_CODEC(hough_15_f32, float);
 
-/* Hough spiker (HSA): a value that is never above the signal.
- *
- * Latency: 14 samples. Neurons of a channel: 1. Sub-timesteps of a sample: 1. */
 #define SW_HOUGH_15_I16_LATENCY 14u
 #define SW_HOUGH_15_I16_NEURONS 1u
 #define SW_HOUGH_15_I16_SLOTS 1u
@@ -108,48 +68,8 @@ sw_status sw_hough_15_i16_init_peak(
     int16_t peak,
     int16_t shift,
     sw_error *error);
-sw_status sw_hough_15_i16_encoder_start(sw_hough_15_i16_encoder *encoder, const sw_hough_15_i16 *codec);
-sw_status sw_hough_15_i16_encode(sw_hough_15_i16_encoder *encoder, int16_t sample, sw_hough_15_i16_code *code);
-sw_status sw_hough_15_i16_encode_slice(
-    sw_hough_15_i16_encoder *encoder,
-    const int16_t *samples,
-    sw_hough_15_i16_code *codes,
-    size_t count);
-sw_status sw_hough_15_i16_finish(sw_hough_15_i16_encoder *encoder, sw_hough_15_i16_code *code);
-sw_status sw_hough_15_i16_prime(sw_hough_15_i16_encoder *encoder, const int16_t *past, size_t count);
-sw_status sw_hough_15_i16_keyframe(const sw_hough_15_i16_encoder *encoder, int16_t *value);
-sw_status sw_hough_15_i16_rejected(const sw_hough_15_i16_encoder *encoder, uint32_t *count);
-sw_status sw_hough_15_i16_decoder_start(sw_hough_15_i16_decoder *decoder, const sw_hough_15_i16 *codec);
-sw_status sw_hough_15_i16_decode(sw_hough_15_i16_decoder *decoder, const sw_hough_15_i16_code *code, int16_t *value);
-sw_status sw_hough_15_i16_decode_slice(
-    sw_hough_15_i16_decoder *decoder,
-    const sw_hough_15_i16_code *codes,
-    int16_t *values,
-    size_t count);
-sw_status sw_hough_15_i16_held(const sw_hough_15_i16_decoder *decoder, int16_t *value);
-sw_status sw_hough_15_i16_resync(sw_hough_15_i16_decoder *decoder, int16_t value);
-sw_status sw_hough_15_i16_firings(
-    const sw_hough_15_i16_code *code,
-    sw_neuron_spike *firings,
-    size_t capacity,
-    size_t *count);
-sw_status sw_hough_15_i16_assemble(const sw_neuron_spike *firings, size_t count, sw_hough_15_i16_code *code);
-sw_status sw_hough_15_i16_bank(
-    sw_hough_15_i16_encoder *encoders,
-    const int16_t *samples,
-    sw_hough_15_i16_code *codes,
-    size_t channels,
-    const sw_stamp *stamp,
-    sw_queue *queue);
-sw_status sw_hough_15_i16_keyframes(
-    sw_hough_15_i16_encoder *encoders,
-    size_t channels,
-    const sw_stamp *stamp,
-    sw_queue *queue);
+SW_CODEC(hough_15_i16, int16_t);
 
-/* Hough spiker (HSA): a value that is never above the signal.
- *
- * Latency: 14 samples. Neurons of a channel: 1. Sub-timesteps of a sample: 1. */
 #define SW_HOUGH_15_Q8_8_LATENCY 14u
 #define SW_HOUGH_15_Q8_8_NEURONS 1u
 #define SW_HOUGH_15_Q8_8_SLOTS 1u
@@ -180,51 +100,8 @@ sw_status sw_hough_15_q8_8_init_peak(
     sw_q8_8 peak,
     sw_q8_8 shift,
     sw_error *error);
-sw_status sw_hough_15_q8_8_encoder_start(sw_hough_15_q8_8_encoder *encoder, const sw_hough_15_q8_8 *codec);
-sw_status sw_hough_15_q8_8_encode(sw_hough_15_q8_8_encoder *encoder, sw_q8_8 sample, sw_hough_15_q8_8_code *code);
-sw_status sw_hough_15_q8_8_encode_slice(
-    sw_hough_15_q8_8_encoder *encoder,
-    const sw_q8_8 *samples,
-    sw_hough_15_q8_8_code *codes,
-    size_t count);
-sw_status sw_hough_15_q8_8_finish(sw_hough_15_q8_8_encoder *encoder, sw_hough_15_q8_8_code *code);
-sw_status sw_hough_15_q8_8_prime(sw_hough_15_q8_8_encoder *encoder, const sw_q8_8 *past, size_t count);
-sw_status sw_hough_15_q8_8_keyframe(const sw_hough_15_q8_8_encoder *encoder, sw_q8_8 *value);
-sw_status sw_hough_15_q8_8_rejected(const sw_hough_15_q8_8_encoder *encoder, uint32_t *count);
-sw_status sw_hough_15_q8_8_decoder_start(sw_hough_15_q8_8_decoder *decoder, const sw_hough_15_q8_8 *codec);
-sw_status sw_hough_15_q8_8_decode(
-    sw_hough_15_q8_8_decoder *decoder,
-    const sw_hough_15_q8_8_code *code,
-    sw_q8_8 *value);
-sw_status sw_hough_15_q8_8_decode_slice(
-    sw_hough_15_q8_8_decoder *decoder,
-    const sw_hough_15_q8_8_code *codes,
-    sw_q8_8 *values,
-    size_t count);
-sw_status sw_hough_15_q8_8_held(const sw_hough_15_q8_8_decoder *decoder, sw_q8_8 *value);
-sw_status sw_hough_15_q8_8_resync(sw_hough_15_q8_8_decoder *decoder, sw_q8_8 value);
-sw_status sw_hough_15_q8_8_firings(
-    const sw_hough_15_q8_8_code *code,
-    sw_neuron_spike *firings,
-    size_t capacity,
-    size_t *count);
-sw_status sw_hough_15_q8_8_assemble(const sw_neuron_spike *firings, size_t count, sw_hough_15_q8_8_code *code);
-sw_status sw_hough_15_q8_8_bank(
-    sw_hough_15_q8_8_encoder *encoders,
-    const sw_q8_8 *samples,
-    sw_hough_15_q8_8_code *codes,
-    size_t channels,
-    const sw_stamp *stamp,
-    sw_queue *queue);
-sw_status sw_hough_15_q8_8_keyframes(
-    sw_hough_15_q8_8_encoder *encoders,
-    size_t channels,
-    const sw_stamp *stamp,
-    sw_queue *queue);
+SW_CODEC(hough_15_q8_8, sw_q8_8);
 
-/* Hough spiker (HSA): a value that is never above the signal.
- *
- * Latency: 14 samples. Neurons of a channel: 1. Sub-timesteps of a sample: 1. */
 #define SW_HOUGH_15_Q16_16_LATENCY 14u
 #define SW_HOUGH_15_Q16_16_NEURONS 1u
 #define SW_HOUGH_15_Q16_16_SLOTS 1u
@@ -259,50 +136,7 @@ sw_status sw_hough_15_q16_16_init_peak(
     sw_q16_16 peak,
     sw_q16_16 shift,
     sw_error *error);
-sw_status sw_hough_15_q16_16_encoder_start(sw_hough_15_q16_16_encoder *encoder, const sw_hough_15_q16_16 *codec);
-sw_status sw_hough_15_q16_16_encode(
-    sw_hough_15_q16_16_encoder *encoder,
-    sw_q16_16 sample,
-    sw_hough_15_q16_16_code *code);
-sw_status sw_hough_15_q16_16_encode_slice(
-    sw_hough_15_q16_16_encoder *encoder,
-    const sw_q16_16 *samples,
-    sw_hough_15_q16_16_code *codes,
-    size_t count);
-sw_status sw_hough_15_q16_16_finish(sw_hough_15_q16_16_encoder *encoder, sw_hough_15_q16_16_code *code);
-sw_status sw_hough_15_q16_16_prime(sw_hough_15_q16_16_encoder *encoder, const sw_q16_16 *past, size_t count);
-sw_status sw_hough_15_q16_16_keyframe(const sw_hough_15_q16_16_encoder *encoder, sw_q16_16 *value);
-sw_status sw_hough_15_q16_16_rejected(const sw_hough_15_q16_16_encoder *encoder, uint32_t *count);
-sw_status sw_hough_15_q16_16_decoder_start(sw_hough_15_q16_16_decoder *decoder, const sw_hough_15_q16_16 *codec);
-sw_status sw_hough_15_q16_16_decode(
-    sw_hough_15_q16_16_decoder *decoder,
-    const sw_hough_15_q16_16_code *code,
-    sw_q16_16 *value);
-sw_status sw_hough_15_q16_16_decode_slice(
-    sw_hough_15_q16_16_decoder *decoder,
-    const sw_hough_15_q16_16_code *codes,
-    sw_q16_16 *values,
-    size_t count);
-sw_status sw_hough_15_q16_16_held(const sw_hough_15_q16_16_decoder *decoder, sw_q16_16 *value);
-sw_status sw_hough_15_q16_16_resync(sw_hough_15_q16_16_decoder *decoder, sw_q16_16 value);
-sw_status sw_hough_15_q16_16_firings(
-    const sw_hough_15_q16_16_code *code,
-    sw_neuron_spike *firings,
-    size_t capacity,
-    size_t *count);
-sw_status sw_hough_15_q16_16_assemble(const sw_neuron_spike *firings, size_t count, sw_hough_15_q16_16_code *code);
-sw_status sw_hough_15_q16_16_bank(
-    sw_hough_15_q16_16_encoder *encoders,
-    const sw_q16_16 *samples,
-    sw_hough_15_q16_16_code *codes,
-    size_t channels,
-    const sw_stamp *stamp,
-    sw_queue *queue);
-sw_status sw_hough_15_q16_16_keyframes(
-    sw_hough_15_q16_16_encoder *encoders,
-    size_t channels,
-    const sw_stamp *stamp,
-    sw_queue *queue);
+SW_CODEC(hough_15_q16_16, sw_q16_16);
 
 #if defined(__cplusplus)
 }

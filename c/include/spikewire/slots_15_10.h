@@ -43,51 +43,8 @@ sw_status sw_slots_15_10_f32_init(
     float beta,
     uint16_t floor,
     sw_error *error);
-sw_status sw_slots_15_10_f32_encoder_start(sw_slots_15_10_f32_encoder *encoder, const sw_slots_15_10_f32 *codec);
-sw_status sw_slots_15_10_f32_encode(sw_slots_15_10_f32_encoder *encoder, float sample, sw_slots_15_10_f32_code *code);
-sw_status sw_slots_15_10_f32_encode_slice(
-    sw_slots_15_10_f32_encoder *encoder,
-    const float *samples,
-    sw_slots_15_10_f32_code *codes,
-    size_t count);
-sw_status sw_slots_15_10_f32_finish(sw_slots_15_10_f32_encoder *encoder, sw_slots_15_10_f32_code *code);
-sw_status sw_slots_15_10_f32_prime(sw_slots_15_10_f32_encoder *encoder, const float *past, size_t count);
-sw_status sw_slots_15_10_f32_keyframe(const sw_slots_15_10_f32_encoder *encoder, float *value);
-sw_status sw_slots_15_10_f32_rejected(const sw_slots_15_10_f32_encoder *encoder, uint32_t *count);
-sw_status sw_slots_15_10_f32_decoder_start(sw_slots_15_10_f32_decoder *decoder, const sw_slots_15_10_f32 *codec);
-sw_status sw_slots_15_10_f32_decode(
-    sw_slots_15_10_f32_decoder *decoder,
-    const sw_slots_15_10_f32_code *code,
-    float *value);
-sw_status sw_slots_15_10_f32_decode_slice(
-    sw_slots_15_10_f32_decoder *decoder,
-    const sw_slots_15_10_f32_code *codes,
-    float *values,
-    size_t count);
-sw_status sw_slots_15_10_f32_held(const sw_slots_15_10_f32_decoder *decoder, float *value);
-sw_status sw_slots_15_10_f32_resync(sw_slots_15_10_f32_decoder *decoder, float value);
-sw_status sw_slots_15_10_f32_firings(
-    const sw_slots_15_10_f32_code *code,
-    sw_neuron_spike *firings,
-    size_t capacity,
-    size_t *count);
-sw_status sw_slots_15_10_f32_assemble(const sw_neuron_spike *firings, size_t count, sw_slots_15_10_f32_code *code);
-sw_status sw_slots_15_10_f32_bank(
-    sw_slots_15_10_f32_encoder *encoders,
-    const float *samples,
-    sw_slots_15_10_f32_code *codes,
-    size_t channels,
-    const sw_stamp *stamp,
-    sw_queue *queue);
-sw_status sw_slots_15_10_f32_keyframes(
-    sw_slots_15_10_f32_encoder *encoders,
-    size_t channels,
-    const sw_stamp *stamp,
-    sw_queue *queue);
+SW_CODEC(slots_15_10_f32, float);
 
-/* GRF with sub-timesteps: a value finer than the neurons, by spike time.
- *
- * Latency: 0 samples. Neurons of a channel: 15. Sub-timesteps of a sample: 10. */
 #define SW_SLOTS_15_10_I16_LATENCY 0u
 #define SW_SLOTS_15_10_I16_NEURONS 15u
 #define SW_SLOTS_15_10_I16_SLOTS 10u
@@ -120,54 +77,8 @@ sw_status sw_slots_15_10_i16_init(
     float beta,
     uint16_t floor,
     sw_error *error);
-sw_status sw_slots_15_10_i16_encoder_start(sw_slots_15_10_i16_encoder *encoder, const sw_slots_15_10_i16 *codec);
-sw_status sw_slots_15_10_i16_encode(
-    sw_slots_15_10_i16_encoder *encoder,
-    int16_t sample,
-    sw_slots_15_10_i16_code *code);
-sw_status sw_slots_15_10_i16_encode_slice(
-    sw_slots_15_10_i16_encoder *encoder,
-    const int16_t *samples,
-    sw_slots_15_10_i16_code *codes,
-    size_t count);
-sw_status sw_slots_15_10_i16_finish(sw_slots_15_10_i16_encoder *encoder, sw_slots_15_10_i16_code *code);
-sw_status sw_slots_15_10_i16_prime(sw_slots_15_10_i16_encoder *encoder, const int16_t *past, size_t count);
-sw_status sw_slots_15_10_i16_keyframe(const sw_slots_15_10_i16_encoder *encoder, int16_t *value);
-sw_status sw_slots_15_10_i16_rejected(const sw_slots_15_10_i16_encoder *encoder, uint32_t *count);
-sw_status sw_slots_15_10_i16_decoder_start(sw_slots_15_10_i16_decoder *decoder, const sw_slots_15_10_i16 *codec);
-sw_status sw_slots_15_10_i16_decode(
-    sw_slots_15_10_i16_decoder *decoder,
-    const sw_slots_15_10_i16_code *code,
-    int16_t *value);
-sw_status sw_slots_15_10_i16_decode_slice(
-    sw_slots_15_10_i16_decoder *decoder,
-    const sw_slots_15_10_i16_code *codes,
-    int16_t *values,
-    size_t count);
-sw_status sw_slots_15_10_i16_held(const sw_slots_15_10_i16_decoder *decoder, int16_t *value);
-sw_status sw_slots_15_10_i16_resync(sw_slots_15_10_i16_decoder *decoder, int16_t value);
-sw_status sw_slots_15_10_i16_firings(
-    const sw_slots_15_10_i16_code *code,
-    sw_neuron_spike *firings,
-    size_t capacity,
-    size_t *count);
-sw_status sw_slots_15_10_i16_assemble(const sw_neuron_spike *firings, size_t count, sw_slots_15_10_i16_code *code);
-sw_status sw_slots_15_10_i16_bank(
-    sw_slots_15_10_i16_encoder *encoders,
-    const int16_t *samples,
-    sw_slots_15_10_i16_code *codes,
-    size_t channels,
-    const sw_stamp *stamp,
-    sw_queue *queue);
-sw_status sw_slots_15_10_i16_keyframes(
-    sw_slots_15_10_i16_encoder *encoders,
-    size_t channels,
-    const sw_stamp *stamp,
-    sw_queue *queue);
+SW_CODEC(slots_15_10_i16, int16_t);
 
-/* GRF with sub-timesteps: a value finer than the neurons, by spike time.
- *
- * Latency: 0 samples. Neurons of a channel: 15. Sub-timesteps of a sample: 10. */
 #define SW_SLOTS_15_10_Q8_8_LATENCY 0u
 #define SW_SLOTS_15_10_Q8_8_NEURONS 15u
 #define SW_SLOTS_15_10_Q8_8_SLOTS 10u
@@ -200,54 +111,8 @@ sw_status sw_slots_15_10_q8_8_init(
     float beta,
     uint16_t floor,
     sw_error *error);
-sw_status sw_slots_15_10_q8_8_encoder_start(sw_slots_15_10_q8_8_encoder *encoder, const sw_slots_15_10_q8_8 *codec);
-sw_status sw_slots_15_10_q8_8_encode(
-    sw_slots_15_10_q8_8_encoder *encoder,
-    sw_q8_8 sample,
-    sw_slots_15_10_q8_8_code *code);
-sw_status sw_slots_15_10_q8_8_encode_slice(
-    sw_slots_15_10_q8_8_encoder *encoder,
-    const sw_q8_8 *samples,
-    sw_slots_15_10_q8_8_code *codes,
-    size_t count);
-sw_status sw_slots_15_10_q8_8_finish(sw_slots_15_10_q8_8_encoder *encoder, sw_slots_15_10_q8_8_code *code);
-sw_status sw_slots_15_10_q8_8_prime(sw_slots_15_10_q8_8_encoder *encoder, const sw_q8_8 *past, size_t count);
-sw_status sw_slots_15_10_q8_8_keyframe(const sw_slots_15_10_q8_8_encoder *encoder, sw_q8_8 *value);
-sw_status sw_slots_15_10_q8_8_rejected(const sw_slots_15_10_q8_8_encoder *encoder, uint32_t *count);
-sw_status sw_slots_15_10_q8_8_decoder_start(sw_slots_15_10_q8_8_decoder *decoder, const sw_slots_15_10_q8_8 *codec);
-sw_status sw_slots_15_10_q8_8_decode(
-    sw_slots_15_10_q8_8_decoder *decoder,
-    const sw_slots_15_10_q8_8_code *code,
-    sw_q8_8 *value);
-sw_status sw_slots_15_10_q8_8_decode_slice(
-    sw_slots_15_10_q8_8_decoder *decoder,
-    const sw_slots_15_10_q8_8_code *codes,
-    sw_q8_8 *values,
-    size_t count);
-sw_status sw_slots_15_10_q8_8_held(const sw_slots_15_10_q8_8_decoder *decoder, sw_q8_8 *value);
-sw_status sw_slots_15_10_q8_8_resync(sw_slots_15_10_q8_8_decoder *decoder, sw_q8_8 value);
-sw_status sw_slots_15_10_q8_8_firings(
-    const sw_slots_15_10_q8_8_code *code,
-    sw_neuron_spike *firings,
-    size_t capacity,
-    size_t *count);
-sw_status sw_slots_15_10_q8_8_assemble(const sw_neuron_spike *firings, size_t count, sw_slots_15_10_q8_8_code *code);
-sw_status sw_slots_15_10_q8_8_bank(
-    sw_slots_15_10_q8_8_encoder *encoders,
-    const sw_q8_8 *samples,
-    sw_slots_15_10_q8_8_code *codes,
-    size_t channels,
-    const sw_stamp *stamp,
-    sw_queue *queue);
-sw_status sw_slots_15_10_q8_8_keyframes(
-    sw_slots_15_10_q8_8_encoder *encoders,
-    size_t channels,
-    const sw_stamp *stamp,
-    sw_queue *queue);
+SW_CODEC(slots_15_10_q8_8, sw_q8_8);
 
-/* GRF with sub-timesteps: a value finer than the neurons, by spike time.
- *
- * Latency: 0 samples. Neurons of a channel: 15. Sub-timesteps of a sample: 10. */
 #define SW_SLOTS_15_10_Q16_16_LATENCY 0u
 #define SW_SLOTS_15_10_Q16_16_NEURONS 15u
 #define SW_SLOTS_15_10_Q16_16_SLOTS 10u
@@ -280,57 +145,7 @@ sw_status sw_slots_15_10_q16_16_init(
     float beta,
     uint16_t floor,
     sw_error *error);
-sw_status sw_slots_15_10_q16_16_encoder_start(
-    sw_slots_15_10_q16_16_encoder *encoder,
-    const sw_slots_15_10_q16_16 *codec);
-sw_status sw_slots_15_10_q16_16_encode(
-    sw_slots_15_10_q16_16_encoder *encoder,
-    sw_q16_16 sample,
-    sw_slots_15_10_q16_16_code *code);
-sw_status sw_slots_15_10_q16_16_encode_slice(
-    sw_slots_15_10_q16_16_encoder *encoder,
-    const sw_q16_16 *samples,
-    sw_slots_15_10_q16_16_code *codes,
-    size_t count);
-sw_status sw_slots_15_10_q16_16_finish(sw_slots_15_10_q16_16_encoder *encoder, sw_slots_15_10_q16_16_code *code);
-sw_status sw_slots_15_10_q16_16_prime(sw_slots_15_10_q16_16_encoder *encoder, const sw_q16_16 *past, size_t count);
-sw_status sw_slots_15_10_q16_16_keyframe(const sw_slots_15_10_q16_16_encoder *encoder, sw_q16_16 *value);
-sw_status sw_slots_15_10_q16_16_rejected(const sw_slots_15_10_q16_16_encoder *encoder, uint32_t *count);
-sw_status sw_slots_15_10_q16_16_decoder_start(
-    sw_slots_15_10_q16_16_decoder *decoder,
-    const sw_slots_15_10_q16_16 *codec);
-sw_status sw_slots_15_10_q16_16_decode(
-    sw_slots_15_10_q16_16_decoder *decoder,
-    const sw_slots_15_10_q16_16_code *code,
-    sw_q16_16 *value);
-sw_status sw_slots_15_10_q16_16_decode_slice(
-    sw_slots_15_10_q16_16_decoder *decoder,
-    const sw_slots_15_10_q16_16_code *codes,
-    sw_q16_16 *values,
-    size_t count);
-sw_status sw_slots_15_10_q16_16_held(const sw_slots_15_10_q16_16_decoder *decoder, sw_q16_16 *value);
-sw_status sw_slots_15_10_q16_16_resync(sw_slots_15_10_q16_16_decoder *decoder, sw_q16_16 value);
-sw_status sw_slots_15_10_q16_16_firings(
-    const sw_slots_15_10_q16_16_code *code,
-    sw_neuron_spike *firings,
-    size_t capacity,
-    size_t *count);
-sw_status sw_slots_15_10_q16_16_assemble(
-    const sw_neuron_spike *firings,
-    size_t count,
-    sw_slots_15_10_q16_16_code *code);
-sw_status sw_slots_15_10_q16_16_bank(
-    sw_slots_15_10_q16_16_encoder *encoders,
-    const sw_q16_16 *samples,
-    sw_slots_15_10_q16_16_code *codes,
-    size_t channels,
-    const sw_stamp *stamp,
-    sw_queue *queue);
-sw_status sw_slots_15_10_q16_16_keyframes(
-    sw_slots_15_10_q16_16_encoder *encoders,
-    size_t channels,
-    const sw_stamp *stamp,
-    sw_queue *queue);
+SW_CODEC(slots_15_10_q16_16, sw_q16_16);
 
 #if defined(__cplusplus)
 }

@@ -68,12 +68,22 @@ fn calibration<S: CSample>() -> String {
 /// A header of codecs, by its name without the ending.
 pub fn file(name: &str, codecs: &[Description]) -> String {
     let guard = format!("SPIKEWIRE_{}_H", name.to_uppercase());
-    let codecs: String = codecs.iter().map(codec).collect();
+    let mut said = String::new();
+    let mut declared = String::new();
+    for described in codecs {
+        // Once for all sample types.
+        let words = words(described);
+        if words != said {
+            declared += &words;
+            said = words;
+        }
+        declared += &codec(described);
+    }
     format!(
         "/* Written from the catalogue of spikewire; spikewire.h says what the functions do. */\n\
          #ifndef {guard}\n#define {guard}\n\n#include \"spikewire.h\"\n\n\
          #if defined(__cplusplus)\nextern \"C\" {{\n#endif\n\n\
-         {codecs}\
+         {declared}\
          #if defined(__cplusplus)\n}}\n#endif\n\n#endif\n"
     )
 }
@@ -99,14 +109,19 @@ fn storage(name: &str, pointer: &str, size: &str, layout: Layout) -> String {
     )
 }
 
+/// The comment above a codec.
+fn words(Description { words, latency, neurons, slots, .. }: &Description) -> String {
+    let words = words.join("\n");
+    comment(&format!(
+        "{words}\n\nLatency: {latency} samples. Neurons of a channel: {neurons}. Sub-timesteps of a sample: {slots}."
+    ))
+}
+
 /// The declarations of a codec.
 fn codec(codec: &Description) -> String {
     let Description { name, sample, latency, neurons, slots, .. } = codec;
     let upper = name.to_uppercase();
-    let words = codec.words.join("\n");
-    let mut text = comment(&format!(
-        "{words}\n\nLatency: {latency} samples. Neurons of a channel: {neurons}. Sub-timesteps of a sample: {slots}."
-    ));
+    let mut text = String::new();
     let _ = write!(
         text,
         "\
@@ -141,37 +156,7 @@ fn codec(codec: &Description) -> String {
     for init in codec.constructors {
         text += &constructor(name, init);
     }
-    let functions = [
-        format!("encoder_start(sw_{name}_encoder *encoder, const sw_{name} *codec)"),
-        format!("encode(sw_{name}_encoder *encoder, {sample} sample, {code} *code)"),
-        format!(
-            "encode_slice(sw_{name}_encoder *encoder, const {sample} *samples, {code} *codes, size_t count)"
-        ),
-        format!("finish(sw_{name}_encoder *encoder, {code} *code)"),
-        format!("prime(sw_{name}_encoder *encoder, const {sample} *past, size_t count)"),
-        format!("keyframe(const sw_{name}_encoder *encoder, {sample} *value)"),
-        format!("rejected(const sw_{name}_encoder *encoder, uint32_t *count)"),
-        format!("decoder_start(sw_{name}_decoder *decoder, const sw_{name} *codec)"),
-        format!("decode(sw_{name}_decoder *decoder, const {code} *code, {sample} *value)"),
-        format!(
-            "decode_slice(sw_{name}_decoder *decoder, const {code} *codes, {sample} *values, size_t count)"
-        ),
-        format!("held(const sw_{name}_decoder *decoder, {sample} *value)"),
-        format!("resync(sw_{name}_decoder *decoder, {sample} value)"),
-        format!(
-            "firings(const {code} *code, sw_neuron_spike *firings, size_t capacity, size_t *count)"
-        ),
-        format!("assemble(const sw_neuron_spike *firings, size_t count, {code} *code)"),
-        format!(
-            "bank(sw_{name}_encoder *encoders, const {sample} *samples, {code} *codes, size_t channels, const sw_stamp *stamp, sw_queue *queue)"
-        ),
-        format!(
-            "keyframes(sw_{name}_encoder *encoders, size_t channels, const sw_stamp *stamp, sw_queue *queue)"
-        ),
-    ];
-    for function in functions {
-        text += &prototype(&format!("{name}_{function}"));
-    }
+    let _ = writeln!(text, "SW_CODEC({name}, {sample});");
     text + "\n"
 }
 
@@ -222,19 +207,24 @@ fn constructor(name: &str, init: &Constructor) -> String {
 
 /// Rust that fails to compile for a target on which a size differs from the header's. The library's name is `crate` in
 /// the library itself.
-pub fn sizes(library: &str, codecs: &[Description]) -> String {
+pub fn sizes<'a>(library: &str, codecs: impl Iterator<Item = &'a [Description]>) -> String {
     let mut text = format!(
         "//! The header's sizes, checked on each target as it is compiled. Written with the header.\n\n\
          #[allow(unused_imports)]\nuse fixed::types::{{I8F8, I16F16}};\n\
          #[allow(unused_imports)]\nuse spikewire::{{population, rate, temporal, timing}};\n\n\
          {library}::sized! {{\n"
     );
-    for codec in codecs {
-        let _ = write!(text, "    {}:", codec.rust);
-        for Layout { size, align } in [codec.codec, codec.encoder, codec.decoder, codec.code] {
-            let _ = write!(text, " ({size}, {align})");
-        }
-        text += ";\n";
+    for types in codecs {
+        let Some(Description { rust: (scheme, _), .. }) = types.first() else { continue };
+        let lines: Vec<String> = types.iter().map(sizes_of).collect();
+        let _ = writeln!(text, "    {scheme}: {};", lines.join(", "));
     }
     text + "}\n"
+}
+
+/// `f32 => (8, 4) (8, 4) (4, 4) (1, 1)`.
+fn sizes_of(codec: &Description) -> String {
+    let parts = [codec.codec, codec.encoder, codec.decoder, codec.code];
+    let parts = parts.map(|Layout { size, align }| format!("({size}, {align})"));
+    format!("{} => {}", codec.rust.1, parts.join(" "))
 }

@@ -9,17 +9,18 @@ const SAMPLES: [(&str, &str); 4] =
 
 /// `c/src/codecs.rs`.
 pub fn codecs() -> String {
-    let mut text = String::from(
+    let samples = SAMPLES.map(|(rust, suffix)| format!("{suffix}: {rust}")).join(", ");
+    let mut text = format!(
         "//! Every scheme of the catalogue in its usual shapes. Written by `cargo xtask write c`.\n\n\
-         use fixed::types::{I8F8, I16F16};\n\
-         use spikewire::{Calibration, population, rate, temporal, timing};\n\n\
-         crate::codecs! {\n",
+         use fixed::types::{{I8F8, I16F16}};\n\
+         use spikewire::{{Calibration, population, rate, temporal, timing}};\n\n\
+         crate::codecs! {{\n    for [{samples}];\n",
     );
-    for (info, codec, shape, (rust, suffix)) in all() {
-        let filled = |words: &str| filled(words, shape, rust);
+    for (info, codec, shape) in shapes() {
+        let filled = |words: &str| filled(words, shape);
         let words = format!("{}: {}.", capitalised(info.words), info.good_for);
         let _ = writeln!(text, "    /// {words}");
-        let _ = writeln!(text, "    {}: {} {{", name(codec, shape, suffix), filled(codec.scheme));
+        let _ = writeln!(text, "    {}: {} {{", stem(codec, shape), filled(codec.scheme));
         for made in codec.made {
             let _ = writeln!(text, "        /// {}", made.words);
             let arguments: Vec<String> = made
@@ -41,13 +42,13 @@ pub fn flown() -> String {
         "/* The codecs that fly, as the catalogue flies them. Written by `cargo xtask write c`. */\n",
     );
     // In two halves, for a flash that has no room for more.
-    for (sample, half) in SAMPLES.into_iter().flat_map(|sample| [(sample, 0), (sample, 1)]) {
-        let suffix = sample.1;
+    let samples = SAMPLES.into_iter().map(|(_, suffix)| suffix);
+    for (suffix, half) in samples.flat_map(|suffix| [(suffix, 0), (suffix, 1)]) {
         let _ = writeln!(text, "#if defined(FLY_{suffix}) && (!defined(HALF) || (HALF == {half}))");
-        let own: Vec<_> = all().filter(|(.., own)| *own == sample).collect();
+        let own: Vec<_> = shapes().collect();
         let (first, second) = own.split_at(own.len() / 2);
-        for (_, codec, shape, _) in [first, second][half] {
-            let name = name(codec, shape, suffix);
+        for (_, codec, shape) in [first, second][half] {
+            let name = format!("{}_{suffix}", stem(codec, shape));
             for (label, made) in codec.made.iter().filter_map(|made| Some((made.flies?, made))) {
                 let _ = writeln!(
                     text,
@@ -63,43 +64,25 @@ pub fn flown() -> String {
     text
 }
 
-/// Each codec in its first shape, in each sample type.
-fn all()
--> impl Iterator<Item = (&'static Info, &'static InC, &'static [usize], (&'static str, &'static str))>
-{
-    IN_C.iter().flat_map(|(info, codecs)| codecs.iter().map(move |codec| (*info, codec))).flat_map(
-        |(info, codec)| {
-            let shapes =
-                codec.shapes.iter().flat_map(|shape| SAMPLES.map(|sample| (*shape, sample)));
-            shapes.map(move |(shape, sample)| (info, codec, shape, sample))
-        },
-    )
+/// Each codec in each of its shapes.
+fn shapes() -> impl Iterator<Item = (&'static Info, &'static InC, &'static [usize])> {
+    let codecs = IN_C.iter().flat_map(|(info, codecs)| codecs.iter().map(|codec| (*info, codec)));
+    codecs.flat_map(|(info, codec)| codec.shapes.iter().map(move |shape| (info, codec, *shape)))
 }
 
-/// `threshold_hough_15_f32`.
-fn name(codec: &InC, shape: &[usize], suffix: &str) -> String {
+/// `threshold_hough_15`.
+fn stem(codec: &InC, shape: &[usize]) -> String {
     let shape: String = shape.iter().map(|number| format!("_{number}")).collect();
-    format!("{}{shape}_{suffix}", codec.name)
+    format!("{}{shape}", codec.name)
 }
 
-/// With the shape's numbers and the sample type in their places.
-fn filled(text: &str, shape: &[usize], sample: &str) -> String {
+/// With the shape's numbers in their places.
+fn filled(text: &str, shape: &[usize]) -> String {
     let mut text = text.to_owned();
     for (place, number) in shape.iter().enumerate() {
         text = text.replace(&format!("{{{place}}}"), &number.to_string());
     }
-    let word = |c: char| c.is_alphanumeric() || c == '_';
-    // `S` as a word of its own.
-    let mut filled = String::new();
-    let mut rest = text.as_str();
-    while let Some(at) = rest.find('S') {
-        let (before, after) = (&rest[..at], &rest[at + 1..]);
-        filled += before;
-        let is_word = !before.ends_with(word) && !after.starts_with(word);
-        filled += if is_word { sample } else { "S" };
-        rest = after;
-    }
-    filled + rest
+    text
 }
 
 /// The arguments of an initialisation on the flight, as C writes them.
@@ -126,13 +109,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shapes_and_samples_take_their_places() {
-        assert_eq!(
-            filled("rate::Slots<S, {0}, {1}>", &[15, 10], "f32"),
-            "rate::Slots<f32, 15, 10>"
-        );
-        assert_eq!(filled("rate::Shape", &[], "f32"), "rate::Shape");
-        assert_eq!(filled("[S; {0}]", &[9], "i16"), "[i16; 9]");
+    fn shapes_take_their_places() {
+        assert_eq!(filled("rate::Slots<S, {0}, {1}>", &[15, 10]), "rate::Slots<S, 15, 10>");
     }
 
     /// What the recording flies in Rust, C has, but for what draws from a generator.
