@@ -46,6 +46,7 @@ enum Fault {
     Doubled,
     Late,
     Cut,
+    CutThenIdle,
     Spliced,
     Flipped1000,
     Flipped100,
@@ -68,11 +69,12 @@ enum Fault {
 use Fault::*;
 
 /// Each fault, what one of it is, and what the line of the table says of it.
-const FAULTS: [(Fault, &str, &str); 21] = [
+const FAULTS: [(Fault, &str, &str); 22] = [
     (Lost, "frames", "a third of the frames lost"),
     (Doubled, "frames", "a third of the frames sent twice"),
     (Late, "frames", "a third of the frames overtaken by up to 20 later ones"),
     (Cut, "frames", "a third of the frames cut off"),
+    (CutThenIdle, "frames", "the same, and the reader is told when the line is idle"),
     (Spliced, "frames", "two senders on one line, halves of their frames joined"),
     (Flipped1000, "bits", "bits flipped, 1 in 1000"),
     (Flipped100, "bits", "bits flipped, 1 in 100"),
@@ -128,7 +130,9 @@ impl Line {
     fn carry(&mut self, frame: &[u8]) {
         let mut frame = frame.to_vec();
         let hits = self.random.next_u32().is_multiple_of(3);
-        self.injected += u64::from(hits && matches!(self.fault, Some(Lost | Doubled | Late | Cut)));
+        self.injected += u64::from(
+            hits && matches!(self.fault, Some(Lost | Doubled | Late | Cut | CutThenIdle)),
+        );
         match self.fault {
             Some(Lost) if hits => frame.clear(),
             Some(Doubled) if hits => frame.extend(frame.clone()),
@@ -136,7 +140,9 @@ impl Line {
                 let turns = 1 + self.random.next_u32() as usize % 20;
                 self.delayed.push((turns, std::mem::take(&mut frame)));
             }
-            Some(Cut) if hits => frame.truncate(self.random.next_u32() as usize % frame.len()),
+            Some(Cut | CutThenIdle) if hits => {
+                frame.truncate(self.random.next_u32() as usize % frame.len())
+            }
             Some(Spliced) => {
                 self.injected += 1;
                 // The first half of one frame and the second of the next, mostly of the other sender's.
@@ -624,7 +630,17 @@ where
     fn receive(&mut self, mut bytes: &[u8]) {
         // The reader lends its buffer, which is taken out of this for that time.
         let mut reader = std::mem::take(&mut self.reader);
-        while let Some(received) = reader.next_frame(&mut bytes) {
+        let tells_idle = self.fault == CutThenIdle;
+        loop {
+            let is_idle = tells_idle && bytes.is_empty();
+            let next =
+                if is_idle { reader.next_after_silence() } else { reader.next_frame(&mut bytes) };
+            let Some(received) = next else {
+                if is_idle || !tells_idle {
+                    break;
+                }
+                continue;
+            };
             let session = self.check_frame(&received);
             let exact = |receiver: &Receiver<_, CHANNELS, EVENTS>| {
                 [0, 1].map(|channel| receiver.exact(channel))
