@@ -6,12 +6,12 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::centres::{even, gaussian_spaced, halfway_edges};
-use super::fields::tables;
+use super::fields::{Fields, tables};
 use super::nonlinear::{companded, crossings, own_widths, spacings};
 use super::{Neuron, PositionState, SlotSpikes, SlotsState};
 use crate::error::{positive, within};
-use crate::num::{Distance, DoubleDouble, EvenBins, reach};
-use crate::scheme::cells::{count_preceding, number_by_search};
+use crate::num::{DoubleDouble, EvenBins, reach};
+use crate::scheme::cells::number_by_search;
 use crate::scheme::held::Held;
 use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
 
@@ -198,17 +198,16 @@ pub(super) fn middle<S: Sample>(centres: &[S]) -> Held<S> {
 
 /// Receptive fields of any number of neurons and levels.
 #[derive(Clone, Debug, PartialEq)]
-struct Fields<S: Sample> {
+struct Tables<S: Sample> {
     centres: Vec<S>,
     min: S,
     max: S,
-    /// A value in bin `i` is out of reach of the neurons below `i`.
     bins: EvenBins,
-    /// `reaches[slot]` is the largest distance at which a neuron fires in this slot or an earlier one.
+    near: [S; 2],
     reaches: Vec<S::Reach>,
 }
 
-impl<S: Sample> Fields<S> {
+impl<S: Sample> Tables<S> {
     fn try_new<const M: usize>(
         neurons: usize,
         levels: usize,
@@ -219,53 +218,20 @@ impl<S: Sample> Fields<S> {
         within("slots", levels as f64, 2.0, LEVELS as f32)?;
         let Position { centres, .. } = Position::<S, M>::try_linear(neurons, range)?;
         let mut reaches = vec![reach::<S>(DoubleDouble::ZERO, neurons); levels];
-        let (bins, _) = tables::<S>(neurons, range, beta, &mut reaches);
-        Ok(Self { centres, min: *range.start(), max: *range.end(), bins, reaches })
+        let (bins, near) = tables::<S>(neurons, range, beta, &mut reaches);
+        Ok(Self { centres, min: *range.start(), max: *range.end(), bins, near, reaches })
     }
 
-    fn is_above(&self, value: S, neuron: usize) -> bool {
-        self.centres.get(neuron).is_some_and(|&centre| value > centre)
-    }
-
-    /// The distances of a finite value from this neuron and those after it.
-    fn distances(&self, value: S, first: usize) -> impl Iterator<Item = S::Reach> + '_ {
-        let centres = self.centres.get(first..).unwrap_or_default();
-        centres.iter().zip(first..).map(move |(&centre, neuron)| {
-            S::Reach::between(value, centre, neuron, self.centres.len(), self.min, self.max)
-        })
-    }
-
-    /// The largest distance with at least this level, from 1.
-    fn reach(&self, level: usize) -> Option<S::Reach> {
-        self.reaches.get(self.reaches.len().wrapping_sub(level)).copied()
-    }
-
-    /// The slot at this distance, which is within the reach of level 1: the number of levels minus the level.
-    fn slot(&self, distance: S::Reach) -> usize {
-        count_preceding(self.reaches.len() - 1, |slot| {
-            self.reaches.get(slot).is_some_and(|&reach| distance > reach)
-        })
-    }
-
-    /// The mean of the centres from `first` on, weighted by their levels; `None` if no neuron has a level.
-    fn mean(&self, first: usize, levels: impl Iterator<Item = Option<u32>>) -> Option<S> {
-        let mut weighted = S::Weighted::default();
-        let mut total = 0;
-        let centres = self.centres.get(first..)?;
-        for ((level, &centre), neuron) in levels.zip(centres).zip(first..) {
-            if let Some(level) = level {
-                weighted = S::weigh(weighted, centre, neuron, level);
-                total += level;
-            }
-        }
-        (total > 0).then(|| S::mean(weighted, total, self.centres.len(), self.min, self.max))
+    fn fields(&self) -> Fields<'_, S> {
+        let Self { centres, min, max, bins, near, reaches } = self;
+        Fields { centres, reaches, min: *min, max: *max, bins: *bins, near: *near }
     }
 }
 
 /// [`population::Slots`](crate::population::Slots) with any number of neurons, up to `M`, and 2 to 256 slots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slots<S: Sample, const M: usize = NEURONS> {
-    fields: Fields<S>,
+    fields: Tables<S>,
     floor: u16,
 }
 
@@ -281,7 +247,7 @@ impl<S: Sample, const M: usize> Slots<S, M> {
         range: &RangeInclusive<S>,
         beta: f32,
     ) -> Result<Self, ConfigError> {
-        Ok(Self { fields: Fields::try_new::<M>(neurons, slots, range, beta)?, floor: 1 })
+        Ok(Self { fields: Tables::try_new::<M>(neurons, slots, range, beta)?, floor: 1 })
     }
 
     /// Sets the lowest level that fires; 1 by default.
@@ -307,22 +273,6 @@ impl<S: Sample, const M: usize> Slots<S, M> {
     pub fn encoder(&self) -> Encoder<'_, Self> {
         Encoder::with_state(self, self.state())
     }
-
-    /// Fires the neurons from `first` on, up to one that does not reach a finite sample; false if none fired.
-    fn fire_from(&self, sample: S, first: usize, spikes: &mut SlotSpikes<M, LEVELS>) -> bool {
-        let Some(reach) = self.fields.reach(self.floor.into()) else { return false };
-        let near = self.fields.distances(sample, first).take_while(|&distance| distance <= reach);
-        let mut length = 0;
-        for (slot, distance) in spikes.slots.iter_mut().zip(near) {
-            *slot = self.fields.slot(distance) as u8;
-            length += 1;
-        }
-        if length > 0 {
-            spikes.first = first as u16;
-            spikes.length = length;
-        }
-        length > 0
-    }
 }
 
 impl<S: Sample, const M: usize> Scheme for Slots<S, M> {
@@ -337,13 +287,10 @@ impl<S: Sample, const M: usize> Scheme for Slots<S, M> {
 
     fn encode(&self, state: &mut SlotsState, sample: S) -> SlotSpikes<M, LEVELS> {
         let mut spikes = SlotSpikes::EMPTY;
-        if !sample.is_finite() {
+        if sample.is_finite() {
+            self.fields.fields().fire::<S::Reach, M, LEVELS>(self.floor, sample, &mut spikes);
+        } else {
             state.tally.reject();
-            return spikes;
-        }
-        let mut first = sample.bin(self.fields.bins);
-        while !self.fire_from(sample, first, &mut spikes) && self.fields.is_above(sample, first) {
-            first += 1;
         }
         spikes
     }
@@ -359,8 +306,8 @@ impl<S: Sample, const M: usize> Scheme for Slots<S, M> {
 
     fn decode(&self, state: &mut Held<S>, spikes: SlotSpikes<M, LEVELS>) -> S {
         let levels = self.fields.reaches.len() as u32;
-        let levels = spikes.slots().iter().map(|&slot| levels.checked_sub(slot.into()));
-        state.or_hold(self.fields.mean(spikes.first(), levels))
+        let levels = spikes.slots().iter().map(|&slot| levels.saturating_sub(slot.into()));
+        state.or_hold(self.fields.fields().weighted_mean(spikes.first(), levels))
     }
 
     fn held(&self, state: &Held<S>) -> Option<S> {
@@ -390,7 +337,7 @@ mod random {
 
     use rand_core::Rng;
 
-    use super::{Fields, NEURONS, middle};
+    use super::{LEVELS, NEURONS, Tables, middle};
     use crate::population::{FiredNeurons, Held, ProbabilisticState};
     use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
 
@@ -398,14 +345,11 @@ mod random {
     /// `M`.
     #[derive(Debug)]
     pub struct Probabilistic<S: Sample, G, const M: usize = NEURONS> {
-        fields: Fields<S>,
+        fields: Tables<S>,
         generator: PhantomData<fn() -> G>,
     }
 
     impl<S: Sample, G: Rng, const M: usize> Probabilistic<S, G, M> {
-        /// The number of probabilities.
-        const LEVELS: usize = super::LEVELS;
-
         /// Receptive fields over a range, with responses rounded to 256 probabilities. The smaller `beta`, the
         /// wider the fields.
         ///
@@ -417,7 +361,7 @@ mod random {
             range: &RangeInclusive<S>,
             beta: f32,
         ) -> Result<Self, ConfigError> {
-            let fields = Fields::try_new::<M>(neurons, Self::LEVELS, range, beta)?;
+            let fields = Tables::try_new::<M>(neurons, LEVELS, range, beta)?;
             Ok(Self { fields, generator: PhantomData })
         }
 
@@ -453,18 +397,7 @@ mod random {
                 state.tally.reject();
                 return neurons;
             }
-            let fields = &self.fields;
-            let first = sample.bin(fields.bins);
-            let Some(reach) = fields.reach(1) else { return neurons };
-            let fired = neurons.fired.iter_mut().enumerate().skip(first);
-            for ((neuron, fired), distance) in fired.zip(fields.distances(sample, first)) {
-                if distance <= reach {
-                    let draw = state.generator.next_u32() >> (32 - Self::LEVELS.ilog2());
-                    *fired = fields.reach(draw as usize + 1).is_some_and(|reach| distance <= reach);
-                } else if !fields.is_above(sample, neuron) {
-                    break;
-                }
-            }
+            self.fields.fields().draw::<S::Reach, M>(&mut state.generator, sample, &mut neurons);
             neurons
         }
 
@@ -478,8 +411,9 @@ mod random {
         }
 
         fn decode(&self, state: &mut Held<S>, neurons: FiredNeurons<M>) -> S {
-            let levels = neurons.fired.iter().map(|&fired| fired.then_some(1));
-            state.or_hold(self.fields.mean(0, levels))
+            let count = self.fields.centres.len();
+            let levels = neurons.fired.iter().take(count).map(|&fired| u32::from(fired));
+            state.or_hold(self.fields.fields().weighted_mean(0, levels))
         }
 
         fn held(&self, state: &Held<S>) -> Option<S> {

@@ -135,8 +135,47 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         &self.centres
     }
 
+    /// The fields without their sizes.
+    #[allow(clippy::inline_always)] // lengths of arrays stay known
+    #[inline(always)]
+    pub(super) const fn fields(&self) -> Fields<'_, S> {
+        let Self { centres, min, max, bins, near, reaches, .. } = self;
+        Fields { centres, reaches, min: *min, max: *max, bins: *bins, near: *near }
+    }
+
+    /// The mean of the centres of the neurons that fired; `None` if none did.
+    #[cfg(feature = "rand")]
+    #[inline]
+    pub(super) fn mean_of(&self, neurons: &FiredNeurons<M>) -> Option<S> {
+        // Hidden from the compiler, which would otherwise add up the centres of all neurons and drop most sums, as
+        // most neurons do not fire.
+        let centres = black_box(&self.centres);
+        let mut weighted = S::Weighted::default();
+        let mut total = 0_u32;
+        neurons.for_each(|neuron| {
+            if let Some(&centre) = centres.get(neuron) {
+                weighted = S::weigh(weighted, centre, neuron, 1);
+                total += 1;
+            }
+        });
+        self.fields().mean(weighted, total)
+    }
+}
+
+/// Receptive fields in arrays or on the heap.
+#[derive(Clone, Copy)]
+pub(super) struct Fields<'f, S: Sample> {
+    pub(super) centres: &'f [S],
+    pub(super) reaches: &'f [S::Reach],
+    pub(super) min: S,
+    pub(super) max: S,
+    pub(super) bins: EvenBins,
+    pub(super) near: [S; 2],
+}
+
+impl<'f, S: Sample> Fields<'f, S> {
     pub(super) fn middle(&self) -> S {
-        self.centres.get(M / 2).copied().unwrap_or(S::ZERO)
+        self.centres.get(self.centres.len() / 2).copied().unwrap_or(S::ZERO)
     }
 
     /// Whether the distance of a value from every centre fits `S::Short`, which is quicker.
@@ -161,28 +200,29 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
     /// The distances of a finite value from the centres of neuron `first` and those after it; `None` if there is no
     /// such neuron.
     #[inline]
-    pub(super) fn distances<'f, D: Distance<S> + 'f>(
-        &'f self,
+    pub(super) fn distances<D: Distance<S> + 'f>(
+        self,
         value: S,
         first: usize,
     ) -> Option<impl ExactSizeIterator<Item = D> + 'f> {
-        let &Self { min, max, .. } = self;
-        let centres = self.centres.get(first..).filter(|_| first < M)?;
+        let Self { centres, min, max, .. } = self;
+        let count = centres.len();
+        let centres = centres.get(first..).filter(|_| first < count)?;
         let distance =
-            move |(i, &centre)| D::between(value, centre, first.wrapping_add(i), M, min, max);
+            move |(i, &centre)| D::between(value, centre, first.wrapping_add(i), count, min, max);
         Some(centres.iter().enumerate().map(distance))
     }
 
-    /// The largest distance at which the level is at least this one, 1 to `N`.
+    /// The largest distance at which the level is at least this one, from 1.
     #[inline]
     pub(super) fn reach<D: Distance<S>>(&self, level: usize) -> Option<D> {
-        self.reaches.get(N.wrapping_sub(level)).copied().map(D::of)
+        self.reaches.get(self.reaches.len().wrapping_sub(level)).copied().map(D::of)
     }
 
     /// The slot at this distance, which is within the reach of level 1: `N` minus the level.
     #[inline]
     pub(super) fn slot<D: Distance<S>>(&self, distance: D) -> usize {
-        count_preceding(N - 1, |slot| {
+        count_preceding(self.reaches.len().wrapping_sub(1), |slot| {
             self.reaches.get(slot).is_some_and(|&reach| distance > D::of(reach))
         })
     }
@@ -203,27 +243,8 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         }
         self.mean(weighted, total)
     }
-
-    /// The mean of the centres of the neurons that fired; `None` if none did.
-    #[cfg(feature = "rand")]
     #[inline]
-    pub(super) fn mean_of(&self, neurons: &FiredNeurons<M>) -> Option<S> {
-        // Hidden from the compiler, which would otherwise add up the centres of all neurons and drop most sums, as
-        // most neurons do not fire.
-        let centres = black_box(&self.centres);
-        let mut weighted = S::Weighted::default();
-        let mut total = 0_u32;
-        neurons.for_each(|neuron| {
-            if let Some(&centre) = centres.get(neuron) {
-                weighted = S::weigh(weighted, centre, neuron, 1);
-                total += 1;
-            }
-        });
-        self.mean(weighted, total)
-    }
-
-    #[inline]
-    fn mean(&self, weighted: S::Weighted, levels: u32) -> Option<S> {
-        (levels > 0).then(|| S::mean(weighted, levels, M, self.min, self.max))
+    fn mean(self, weighted: S::Weighted, levels: u32) -> Option<S> {
+        (levels > 0).then(|| S::mean(weighted, levels, self.centres.len(), self.min, self.max))
     }
 }

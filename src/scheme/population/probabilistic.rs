@@ -7,7 +7,7 @@ use core::ops::RangeInclusive;
 use rand_core::Rng;
 
 use super::FiredNeurons;
-use super::fields::ReceptiveFields;
+use super::fields::{Fields, ReceptiveFields};
 use crate::error::unwrap;
 use crate::num::{Distance, Tally};
 use crate::scheme::held::Held;
@@ -141,7 +141,7 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
     ) {
         if !sample.is_finite() {
             state.tally.reject();
-        } else if self.fields.is_near(sample) {
+        } else if self.fields.fields().is_near(sample) {
             self.fire::<S::Short>(&mut state.generator, sample, neurons);
         } else {
             self.fire::<S::Reach>(&mut state.generator, sample, neurons);
@@ -151,16 +151,31 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
     /// Fires the neurons that respond to a finite sample, by chance.
     #[inline(never)] // one copy, with the registers to itself
     fn fire<D: Distance<S>>(&self, generator: &mut G, sample: S, neurons: &mut FiredNeurons<M>) {
-        let fields = &self.fields;
-        let first = fields.first(sample);
-        let Some(reach) = fields.reach::<D>(1) else { return };
-        let Some(distances) = fields.distances::<D>(sample, first) else { return };
+        self.fields.fields().draw::<D, M>(generator, sample, neurons);
+    }
+}
+
+impl<S: Sample> Fields<'_, S> {
+    /// Fires the neurons that respond to a finite sample, by chance: a number drawn for each is below the number of
+    /// levels, a power of two.
+    #[allow(clippy::inline_always)] // lengths of arrays stay known
+    #[inline(always)]
+    pub(super) fn draw<D: Distance<S>, const M: usize>(
+        self,
+        generator: &mut impl Rng,
+        sample: S,
+        neurons: &mut FiredNeurons<M>,
+    ) {
+        let first = self.first(sample);
+        let Some(reach) = self.reach::<D>(1) else { return };
+        let Some(distances) = self.distances::<D>(sample, first) else { return };
+        let bits = self.reaches.len().trailing_zeros();
         let fired = neurons.fired.iter_mut().enumerate().skip(first);
         for ((neuron, fired), distance) in fired.zip(distances) {
             if distance <= reach {
-                let draw = (generator.next_u32() >> (32 - N.ilog2())) as usize;
-                *fired = fields.reach(draw + 1).is_some_and(|reach| distance <= reach);
-            } else if !fields.is_above(sample, neuron) {
+                let draw = (generator.next_u32() >> (32 - bits)) as usize;
+                *fired = self.reach(draw + 1).is_some_and(|reach| distance <= reach);
+            } else if !self.is_above(sample, neuron) {
                 break;
             }
         }
@@ -227,7 +242,7 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Scheme for Probabilistic
 
     /// The middle centre.
     fn decoder_state(&self) -> Held<S> {
-        Held::at(self.fields.middle())
+        Held::at(self.fields.fields().middle())
     }
 
     fn decode(&self, state: &mut Held<S>, neurons: FiredNeurons<M>) -> S {

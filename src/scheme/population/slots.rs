@@ -3,7 +3,7 @@
 use core::ops::RangeInclusive;
 
 use super::SlotSpikes;
-use super::fields::ReceptiveFields;
+use super::fields::{Fields, ReceptiveFields};
 use crate::error::{unwrap, within};
 use crate::num::{Distance, Tally};
 use crate::scheme::held::Held;
@@ -104,7 +104,7 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
     /// Writes the spikes of a finite sample into `spikes`, which must be empty.
     #[inline]
     fn fire(&self, sample: S, spikes: &mut SlotSpikes<M, N>) {
-        if self.fields.is_near(sample) {
+        if self.fields.fields().is_near(sample) {
             self.fire_near(sample, spikes);
         } else {
             self.fire_anywhere::<S::Reach>(sample, spikes);
@@ -114,7 +114,8 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
     /// Writes the spikes of a sample whose distances fit `S::Short`.
     #[inline(never)] // one copy, with the registers to itself
     fn fire_near(&self, sample: S, spikes: &mut SlotSpikes<M, N>) {
-        if !self.fire_from::<S::Short>(sample, self.fields.first(sample), spikes) {
+        let fields = self.fields.fields();
+        if !fields.fire_from::<S::Short, M, N>(self.floor, sample, fields.first(sample), spikes) {
             self.fire_anywhere::<S::Short>(sample, spikes);
         }
     }
@@ -123,29 +124,45 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
     #[cold]
     #[inline(never)]
     fn fire_anywhere<D: Distance<S>>(&self, sample: S, spikes: &mut SlotSpikes<M, N>) {
-        let mut first = self.fields.first(sample);
-        while !self.fire_from::<D>(sample, first, spikes) && self.fields.is_above(sample, first) {
+        self.fields.fields().fire::<D, M, N>(self.floor, sample, spikes);
+    }
+}
+
+impl<S: Sample> Fields<'_, S> {
+    /// Writes the spikes of a finite sample, with this level and higher ones, into `spikes`, which must be empty.
+    #[inline]
+    pub(super) fn fire<D: Distance<S>, const M: usize, const N: usize>(
+        self,
+        floor: u16,
+        sample: S,
+        spikes: &mut SlotSpikes<M, N>,
+    ) {
+        let mut first = self.first(sample);
+        while !self.fire_from::<D, M, N>(floor, sample, first, spikes)
+            && self.is_above(sample, first)
+        {
             first = first.wrapping_add(1);
         }
     }
 
     /// Fires the neurons from `first` on, up to one that does not reach a finite sample; false if none fired.
     #[inline]
-    fn fire_from<D: Distance<S>>(
-        &self,
+    fn fire_from<D: Distance<S>, const M: usize, const N: usize>(
+        self,
+        floor: u16,
         sample: S,
         first: usize,
         spikes: &mut SlotSpikes<M, N>,
     ) -> bool {
-        let reach = self.fields.reach::<D>(self.floor.into());
-        let distances = self.fields.distances::<D>(sample, first);
+        let reach = self.reach::<D>(floor.into());
+        let distances = self.distances::<D>(sample, first);
         let (Some(reach), Some(distances)) = (reach, distances) else { return false };
         let mut length = 0_usize;
         for (slot, distance) in spikes.slots.iter_mut().zip(distances) {
             if distance > reach {
                 break;
             }
-            *slot = self.fields.slot(distance) as u8;
+            *slot = self.slot(distance) as u8;
             length = length.wrapping_add(1);
         }
         if length > 0 {
@@ -218,12 +235,12 @@ impl<S: Sample, const M: usize, const N: usize> Scheme for Slots<S, M, N> {
 
     /// The middle centre.
     fn decoder_state(&self) -> Held<S> {
-        Held::at(self.fields.middle())
+        Held::at(self.fields.fields().middle())
     }
 
     fn decode(&self, state: &mut Held<S>, spikes: SlotSpikes<M, N>) -> S {
         let levels = spikes.slots().iter().map(|&slot| (N as u32).wrapping_sub(slot.into()));
-        state.or_hold(self.fields.weighted_mean(spikes.first(), levels))
+        state.or_hold(self.fields.fields().weighted_mean(spikes.first(), levels))
     }
 
     fn held(&self, state: &Held<S>) -> Option<S> {
