@@ -97,21 +97,6 @@ fn drawn_recordings() {
     drawn!(I32F0, few_lengths);
 }
 
-/// Up to the rounding of floats, the decoded value never exceeds the signal.
-#[test]
-fn never_above_the_signal() {
-    let taps = Taps::try_new([2_i16, 5, 3]).unwrap();
-    let signals = proptest::collection::vec(0..40_i16, 0..100);
-    proptest!(cases(256), |(x in signals)| {
-        let scheme = Hough::new(taps);
-        let values = scheme.decoder();
-        let run = encode(&scheme, &x);
-        for (value, x) in host_tests::compare::decode(&values, &run.codes()).iter().zip(&x) {
-            prop_assert!(value <= x);
-        }
-    });
-}
-
 /// Filters of one and two taps on all pairs of 8 bits, the tail included.
 #[test]
 fn all_pairs_of_8_bits() {

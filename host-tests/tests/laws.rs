@@ -4,7 +4,7 @@
 //! |---|---|
 //! | SF and send-on-delta stay within the threshold of a slow signal, adaptive SF within two | here |
 //! | adaptive SF never overshoots | here |
-//! | strict HSA never exceeds the signal | here, in reals of eighths; `hough` in `i16` |
+//! | strict HSA never exceeds the signal | here, in reals of eighths |
 //! | step codes are silent on a constant that the past does not hide | here |
 //! | population codes decode to within half a cell | here; `rank_order`, timing codes in their files |
 //! | slots decode to within the mean distance of their levels | here; fields of any width in `nonlinear` |

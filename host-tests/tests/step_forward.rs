@@ -96,33 +96,6 @@ fn a_rejected_priming_value_is_counted_and_ignored() {
     assert_eq!(encoder.encode(7.0), Spike::Up);
 }
 
-/// A decoder that lost spikes is right again, to the bit, from the next keyframe on.
-#[test]
-fn a_keyframe_makes_up_for_lost_spikes() {
-    for channel in flight_channels() {
-        let scheme = StepForward::try_new(0.11_f32).unwrap();
-        let (mut encoder, mut whole, mut lossy) =
-            (scheme.encoder(), scheme.decoder(), scheme.decoder());
-        assert_eq!(encoder.keyframe(), None);
-        whole.resync(channel[0]);
-        for (i, &x) in channel.iter().enumerate() {
-            let spike = encoder.encode(x);
-            let value = whole.decode(spike);
-            assert_eq!(encoder.keyframe().map(f32::to_bits), Some(value.to_bits()));
-            if i % 100 == 99 {
-                lossy.resync(encoder.keyframe().unwrap());
-            } else if i % 100 < 50 {
-                lossy.decode(Spike::None);
-            } else {
-                lossy.decode(spike);
-            }
-            if i % 100 == 99 {
-                assert_eq!(lossy.held().map(f32::to_bits), Some(value.to_bits()));
-            }
-        }
-    }
-}
-
 #[test]
 fn flights() {
     for channel in flight_channels() {
@@ -168,22 +141,6 @@ fn drawn<S: Wire + Drawn>() {
 #[test]
 fn drawn_recordings() {
     in_every_type!(drawn);
-}
-
-/// While no sample moves by more than the threshold, the decoded value stays within it.
-#[test]
-fn follows_a_slow_signal() {
-    let walks = proptest::collection::vec(-50..=50_i16, 1..200);
-    proptest!(cases(256), |(moves in walks, threshold in 50..=99_i16)| {
-        let scheme = StepForward::try_new(threshold).unwrap();
-        let (mut encoder, mut decoder) = (scheme.encoder(), scheme.decoder());
-        let mut x = 0;
-        for step in moves {
-            let value = decoder.decode(encoder.encode(x));
-            prop_assert!((x - value).abs() <= threshold);
-            x += step;
-        }
-    });
 }
 
 /// All pairs of base and sample within 8 bits, in the middle and at both ends of the type: the spike
