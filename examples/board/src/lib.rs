@@ -11,6 +11,8 @@ pub mod chip_bus;
 mod count;
 #[cfg(all(target_os = "none", feature = "stopwatch"))]
 pub mod stopwatch;
+#[cfg(all(target_os = "none", feature = "usart"))]
+pub mod usart;
 
 #[cfg(target_os = "none")]
 mod cortex_m;

@@ -6,8 +6,6 @@
 
 #[cfg(target_os = "none")]
 mod listen;
-#[cfg(target_os = "none")]
-mod uart;
 
 #[cfg(target_os = "none")]
 #[board::entry]

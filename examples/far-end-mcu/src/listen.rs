@@ -9,7 +9,7 @@ use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::exception;
 use far_end::FarEnd;
 
-use crate::uart::{Listener, Speaker};
+use board::usart::{Usart1, Usart2};
 
 /// A millisecond at QEMU's 168 MHz.
 const TIMER_RELOAD: u32 = 168_000;
@@ -29,14 +29,14 @@ pub fn run(out: &mut impl Write) -> fmt::Result {
     timer.enable_counter();
     timer.enable_interrupt();
 
-    let (mut line, mut actuators) = (Listener::new(), Speaker::new());
+    let (mut line, mut actuators) = (Usart1::new(), Usart2::new());
     let mut far = FarEnd::default();
     let (mut values, mut hash, mut commands) = (0_u32, 0xcbf2_9ce4_8422_2325_u64, 0_u32);
     loop {
         let now = MILLISECONDS.load(Relaxed);
         // Before the first frame there is only noise. A vehicle is neutral then, and goes on listening after the last one.
         if let (Some(command), true) = (far.silence(now), commands > 0) {
-            actuators.send(command.bytes());
+            actuators.send(&command.bytes());
             break;
         }
         let Some(byte) = line.byte() else { continue };
@@ -53,7 +53,7 @@ pub fn run(out: &mut impl Write) -> fmt::Result {
             },
             |command| {
                 commands += 1;
-                actuators.send(command.bytes());
+                actuators.send(&command.bytes());
             },
         );
     }

@@ -8,7 +8,8 @@ use spikewire::{
     temporal::SendOnDelta,
 };
 
-use crate::{control::Control, uart::Uart};
+use crate::control::Control;
+use board::usart::Usart1;
 
 const CHANNELS: usize = 6;
 type Scheme = SendOnDelta<f32, 10>;
@@ -47,7 +48,7 @@ impl Put for &mut Items {
 }
 
 pub fn run(out: &mut impl fmt::Write) -> fmt::Result {
-    let mut line = Uart::new();
+    let mut line = Usart1::new();
     let mut bank = Bank::<_, CHANNELS>::per_channel(SCHEMES);
     let mut transmitter =
         Transmitter::new(Coding::for_channels(CHANNELS as u16, PERIOD), Session::counted(0));

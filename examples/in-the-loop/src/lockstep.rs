@@ -9,8 +9,6 @@
 mod chain;
 #[cfg(target_os = "none")]
 mod control;
-#[cfg(target_os = "none")]
-mod uart;
 
 #[cfg(target_os = "none")]
 #[board::entry]

@@ -1,6 +1,7 @@
 //! The board: the timer's interrupt samples and encodes, main sends.
 
-use crate::{digest::Digest, flight, uart::Uart};
+use crate::{digest::Digest, flight};
+use board::usart::Usart1;
 use core::{cell::RefCell, fmt};
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::exception;
@@ -99,7 +100,7 @@ pub fn run(out: &mut impl fmt::Write) -> fmt::Result {
 
     let coding = Coding::for_channels(CHANNELS as u16, PERIOD).with_jitter_bits(5);
     let transmitter = Transmitter::new(coding, SESSION);
-    let mut link = SerialSink::<_, _, MAX_FRAME>::new(Uart::new(), transmitter);
+    let mut link = SerialSink::<_, _, MAX_FRAME>::new(Usart1::new(), transmitter);
     let mut bytes = 0;
     loop {
         let is_done = critical_section::with(|cs| SAMPLER.borrow_ref(cs).is_done);

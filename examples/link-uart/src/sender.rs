@@ -11,8 +11,6 @@ mod digest;
 mod flight;
 #[cfg(target_os = "none")]
 mod send;
-#[cfg(target_os = "none")]
-mod uart;
 
 #[cfg(target_os = "none")]
 #[board::entry]
