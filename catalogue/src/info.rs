@@ -153,6 +153,11 @@ impl Parameter {
         }
     }
 
+    /// A whole number without a unit and without a preset.
+    pub const fn count(name: &'static str, help: &'static str) -> Self {
+        Self::new(name, Kind::Count, Unit::None, help)
+    }
+
     /// With the place where a good value is looked for.
     #[must_use]
     pub const fn searched(self, search: Search) -> Self {
@@ -254,6 +259,17 @@ impl Parameter {
     .with_default("1.5")
     .searched(Search::Log(0.3, 4.0));
 
+    /// How many sub-timesteps receptive fields fire in.
+    pub const SLOTS: Self = Self::count("slots", "sub-timesteps a sample, 2 to 256")
+        .with_paper(Paper::Text("10"))
+        .with_example("10")
+        .searched(Search::Whole(2, 32));
+
+    /// The lowest level of receptive fields that fires.
+    pub const FLOOR: Self = Self::count("floor", "neurons below this level of `slots` are silent")
+        .with_default("1")
+        .searched(Search::Whole(1, 2));
+
     /// How the mean of spikes is taken.
     pub const MEAN: Self = Self::new(
         "mean",
@@ -265,34 +281,29 @@ impl Parameter {
     .searched(Search::Words(&["average", "window"]));
 
     /// Over how many samples the mean of spikes is taken.
-    pub const POWER: Self = Self::new(
+    pub const POWER: Self = Self::count(
         "power",
-        Kind::Count,
-        Unit::None,
         "the mean is over about 2^POWER samples: 1 to 15, of a window 0 to 12",
     )
     .with_default("4")
     .searched(Search::Whole(1, 8));
 
     /// The seed of chance.
-    pub const SEED: Self = Self::new(
+    pub const SEED: Self = Self::count(
         "seed",
-        Kind::Count,
-        Unit::None,
         "where the generator starts; each channel draws from a stream of its own",
     )
     .with_default("0");
 
     /// Most spikes a sample.
-    pub const SPIKES: Self =
-        Self::new("spikes", Kind::Count, Unit::None, "most spikes a sample, 1 to 127")
-            .with_example("4")
-            .with_paper(Paper::Text("4"))
-            .searched(Search::Whole(1, 16));
+    pub const SPIKES: Self = Self::count("spikes", "most spikes a sample, 1 to 127")
+        .with_example("4")
+        .with_paper(Paper::Text("4"))
+        .searched(Search::Whole(1, 16));
 
     /// How many neurons there are.
     pub const fn neurons(paper: &'static str) -> Self {
-        Self::new("neurons", Kind::Count, Unit::None, "how many neurons share the range, 3 to 1024")
+        Self::count("neurons", "how many neurons share the range, 3 to 1024")
             .with_paper(Paper::Text(paper))
             .with_example("20")
             .searched(Search::Whole(3, 64))

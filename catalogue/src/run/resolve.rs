@@ -16,8 +16,11 @@ pub struct Known<'a> {
     pub can_calibrate: bool,
 }
 
-/// The parameters in whose place a calibration stands, if one of them is not given.
+/// The parameters in whose place a calibration stands, if one of them is not given. A list of centres needs none.
 pub fn missing(info: &Info, asked: &Asked) -> Option<String> {
+    if let Some(Value::Numbers(_)) = asked.get("centres") {
+        return None;
+    }
     let of_range = |own: &&Parameter| matches!(own.found, Some(Found::Min | Found::Max));
     let found: Vec<&Parameter> = info.parameters.iter().filter(of_range).collect();
     if found.iter().all(|own| asked.get(own.name).is_some()) {
@@ -66,6 +69,23 @@ impl<'a> Resolve<'a> {
             self.settle(parameter.name, &mut settings)?;
         }
         Ok(settings)
+    }
+
+    /// Settings of a population whose `centres` are a list, which says what its neurons and its range would; `None` if
+    /// they are one of these words.
+    ///
+    /// # Errors
+    /// It is neither, or one of those is given, too.
+    pub fn own_centres(&self, words: &[&str]) -> Result<Option<Settings>> {
+        let Some(centres) = self.list("centres", words)? else { return Ok(None) };
+        if let Some(option) =
+            ["neurons", "min", "max"].iter().find(|name| self.user(name).is_some())
+        {
+            bail!("`centres` {} says it all; `{option}` contradicts it", Value::from(centres));
+        }
+        let mut settings = Settings::default();
+        settings.set("centres", centres);
+        Ok(Some(settings))
     }
 
     /// Sets one parameter as given, as in the paper, by default, or as the signal tells.

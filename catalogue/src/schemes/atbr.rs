@@ -8,9 +8,8 @@ use spikewire::{Spike, Start};
 use crate::entry::spike_of;
 use crate::plain::Plain;
 use crate::{
-    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Kind, Made, Paper, Parameter,
-    Scaled, Search, Unit,
-};
+    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Paper, Parameter,
+    Scaled, Search, };
 
 #[cfg(feature = "run")]
 use {
@@ -40,11 +39,7 @@ impl Entry for Scheme {
                 "the smallest threshold, above 0: what a change from sample to sample must exceed at rest",
                 0.1,
             ),
-            Parameter::new(
-                "doublings",
-                Kind::Count,
-                Unit::None,
-                "how often the threshold doubles at most, 0 to 15",
+            Parameter::count("doublings", "how often the threshold doubles at most, 0 to 15",
             )
             .with_example("4")
             .with_paper(Paper::Text("4"))

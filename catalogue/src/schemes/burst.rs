@@ -7,8 +7,7 @@ use spikewire::timing::{Burst, BurstSpikes};
 
 use crate::plain::Plain;
 use crate::{
-    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Parameter, Scaled, Search, Unit,
-};
+    Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled, Search, };
 
 #[cfg(feature = "run")]
 use {
@@ -37,25 +36,17 @@ impl Entry for Scheme {
         is_drawn: false,
         colour: [0x74, 0x7a, 0x3c],
         parameters: &[
-            Parameter::new("slots", Kind::Count, Unit::None, "sub-timesteps a sample, 2 to 256")
+            Parameter::count("slots", "sub-timesteps a sample, 2 to 256")
                 .with_default("19")
                 .searched(Search::Whole(2, 64)),
-            Parameter::new("spikes", Kind::Count, Unit::None, "most spikes a sample, 1 to 255")
+            Parameter::count("spikes", "most spikes a sample, 1 to 255")
                 .with_default("5")
                 .searched(Search::Whole(1, 16)),
-            Parameter::new(
-                "shortest",
-                Kind::Count,
-                Unit::None,
-                "shortest interval in slots, from 1 on",
+            Parameter::count("shortest", "shortest interval in slots, from 1 on",
             )
             .with_default("2")
             .searched(Search::Whole(1, 8)),
-            Parameter::new(
-                "longest",
-                Kind::Count,
-                Unit::None,
-                "longest interval in slots, up to 255",
+            Parameter::count("longest", "longest interval in slots, up to 255",
             )
             .with_default("10")
             .searched(Search::Whole(1, 16)),

@@ -47,11 +47,7 @@ impl Entry for Scheme {
             .with_paper(Paper::Signal(0.8))
             .with_example("1")
             .searched(Search::Log(0.02, 1.0)),
-            Parameter::new(
-                "doublings",
-                Kind::Count,
-                Unit::None,
-                "how often the weight doubles at most, 0 to 14",
+            Parameter::count("doublings", "how often the weight doubles at most, 0 to 14",
             )
             .with_default("3")
             .searched(Search::Whole(0, 6)),

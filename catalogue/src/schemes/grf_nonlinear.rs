@@ -13,7 +13,7 @@ use crate::{
 #[cfg(feature = "run")]
 use {
     crate::run::{
-        Asked, Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape, Value,
+        Asked, Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape,
         Visit, missing, state,
     },
     anyhow::{Context, Result, bail},
@@ -166,9 +166,8 @@ fn quantiles(asked: &Resolve) -> Result<Vec<f64>> {
 /// The signal's range or its quantiles, unless there is a list of centres.
 #[cfg(feature = "run")]
 pub(super) fn needs_signal(asked: &Asked, info: &Info) -> Option<String> {
-    match (asked.get("centres"), asked.word("centres")) {
-        (Some(Value::Numbers(_)), _) => None,
-        (_, Some("quantiles")) => Some("`centres` as a list".to_owned()),
+    match asked.word("centres") {
+        Some("quantiles") => Some("`centres` as a list".to_owned()),
         _ => missing(info, asked),
     }
 }

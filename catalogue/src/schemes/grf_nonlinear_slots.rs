@@ -7,13 +7,13 @@ use super::grf_nonlinear::{CENTRES, COMPANDING, WIDTHS};
 use super::grf_slots::transcribed_decoder;
 use crate::plain::{Plain, response, spaced_widths};
 use crate::{
-    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Paper, Parameter, Scaled,
-    Search, Unit,
+    Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled,
 };
 
 #[cfg(feature = "run")]
 use {
     super::grf_nonlinear,
+    crate::Unit,
     crate::run::{
         Asked, Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape, Visit,
         state,
@@ -45,19 +45,9 @@ impl Entry for Scheme {
             Parameter::neurons("15"),
             Parameter::MIN,
             Parameter::MAX,
-            Parameter::new("slots", Kind::Count, Unit::None, "sub-timesteps a sample, 2 to 256")
-                .with_paper(Paper::Text("10"))
-                .with_example("10")
-                .searched(Search::Whole(2, 32)),
+            Parameter::SLOTS,
             Parameter::BETA,
-            Parameter::new(
-                "floor",
-                Kind::Count,
-                Unit::None,
-                "neurons below this level of `slots` are silent",
-            )
-            .with_default("1")
-            .searched(Search::Whole(1, 2)),
+            Parameter::FLOOR,
         ],
     };
 

@@ -7,8 +7,7 @@ use spikewire::timing::{LatencyPhase, PhaseSpikes};
 
 use crate::plain::Plain;
 use crate::{
-    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Parameter, Scaled, Search, Unit,
-};
+    Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled, Search, };
 
 #[cfg(feature = "run")]
 use {
@@ -37,34 +36,18 @@ impl Entry for Scheme {
         is_drawn: false,
         colour: [0x5c, 0x67, 0x7d],
         parameters: &[
-            Parameter::new(
-                "neurons",
-                Kind::Count,
-                Unit::None,
-                "how many carry each sample, from 1 on",
+            Parameter::count("neurons", "how many carry each sample, from 1 on",
             )
             .with_default("4")
             .searched(Search::Whole(1, 4)),
-            Parameter::new(
-                "latencies",
-                Kind::Count,
-                Unit::None,
-                "how many a sample may have, 2 to 255; with the period at most 257",
+            Parameter::count("latencies", "how many a sample may have, 2 to 255; with the period at most 257",
             )
             .with_default("32")
             .searched(Search::Whole(2, 128)),
-            Parameter::new(
-                "period",
-                Kind::Count,
-                Unit::None,
-                "of the oscillation in slots, a power of 2",
+            Parameter::count("period", "of the oscillation in slots, a power of 2",
             )
             .with_default("4"),
-            Parameter::new(
-                "spacing",
-                Kind::Count,
-                Unit::None,
-                "from one neuron's peaks to the next's, in slots",
+            Parameter::count("spacing", "from one neuron's peaks to the next's, in slots",
             )
             .with_default("1"),
             Parameter::MIN,

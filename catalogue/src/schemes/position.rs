@@ -13,10 +13,9 @@ use crate::{
 #[cfg(feature = "run")]
 use {
     crate::run::{
-        Asked, Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape, Value,
-        Visit, missing, state,
+        Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape,         Visit, state,
     },
-    anyhow::{Result, bail},
+    anyhow::Result,
     spikewire::{Sample, dynamic},
 };
 
@@ -109,24 +108,7 @@ impl Entry for Scheme {
 impl Build for Scheme {
     /// A list of centres says it all.
     fn resolve(asked: &Resolve) -> Result<Settings> {
-        let Some(centres) = asked.list("centres", &["linear", "gaussian"])? else {
-            return asked.all();
-        };
-        if let Some(option) =
-            ["neurons", "min", "max"].iter().find(|name| asked.user(name).is_some())
-        {
-            bail!("`centres` {} says it all; `{option}` contradicts it", Value::from(centres));
-        }
-        let mut settings = Settings::default();
-        settings.set("centres", centres);
-        Ok(settings)
-    }
-
-    fn needs_signal(asked: &Asked) -> Option<String> {
-        match asked.get("centres") {
-            Some(Value::Numbers(_)) => None,
-            _ => missing(&Self::INFO, asked),
-        }
+        asked.own_centres(&["linear", "gaussian"])?.map_or_else(|| asked.all(), Ok)
     }
 
     fn shape(settings: &Settings) -> Result<Shape> {

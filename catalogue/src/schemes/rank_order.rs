@@ -14,10 +14,9 @@ use crate::{
 #[cfg(feature = "run")]
 use {
     crate::run::{
-        Asked, Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape, Value,
-        Visit, missing, state,
+        Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape,         Visit, state,
     },
-    anyhow::{Result, bail},
+    anyhow::Result,
     spikewire::{Sample, dynamic},
 };
 
@@ -48,11 +47,7 @@ impl Entry for Scheme {
             Parameter::neurons("15"),
             Parameter::MIN,
             Parameter::MAX,
-            Parameter::new(
-                "spikes",
-                Kind::Count,
-                Unit::None,
-                "how many neurons fire for a sample, 1 to all, at most 256",
+            Parameter::count("spikes", "how many neurons fire for a sample, 1 to all, at most 256",
             )
             .with_example("3")
             .with_paper(Paper::Text("3"))
@@ -106,25 +101,9 @@ impl Entry for Scheme {
 impl Build for Scheme {
     /// A list of centres says which neurons there are.
     fn resolve(asked: &Resolve) -> Result<Settings> {
-        let Some(centres) = asked.list("centres", &["linear"])? else {
-            return asked.all();
-        };
-        if let Some(option) =
-            ["neurons", "min", "max"].iter().find(|name| asked.user(name).is_some())
-        {
-            bail!("`centres` {} says it all; `{option}` contradicts it", Value::from(centres));
-        }
-        let mut settings = Settings::default();
-        settings.set("centres", centres);
+        let Some(mut settings) = asked.own_centres(&["linear"])? else { return asked.all() };
         asked.settle("spikes", &mut settings)?;
         Ok(settings)
-    }
-
-    fn needs_signal(asked: &Asked) -> Option<String> {
-        match asked.get("centres") {
-            Some(Value::Numbers(_)) => None,
-            _ => missing(&Self::INFO, asked),
-        }
     }
 
     fn shape(settings: &Settings) -> Result<Shape> {

@@ -42,7 +42,7 @@ impl Entry for Scheme {
             )
             .with_default("linear")
             .searched(Search::Words(&["linear", "log"])),
-            Parameter::new("slots", Kind::Count, Unit::None, "sub-timesteps a sample, 2 to 256")
+            Parameter::count("slots", "sub-timesteps a sample, 2 to 256")
                 .with_default("16")
                 .searched(Search::Whole(2, 64)),
             Parameter::new(

@@ -7,8 +7,7 @@ use spikewire::timing::{PhaseBits, WeightedPhase};
 
 use crate::plain::Plain;
 use crate::{
-    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Parameter, Scaled, Search, Unit,
-};
+    Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled, Search, };
 
 #[cfg(feature = "run")]
 use {
@@ -34,7 +33,7 @@ impl Entry for Scheme {
         is_drawn: false,
         colour: [0x8d, 0x99, 0xae],
         parameters: &[
-            Parameter::new("slots", Kind::Count, Unit::None, "digits a sample, 2 to 16")
+            Parameter::count("slots", "digits a sample, 2 to 16")
                 .with_default("8")
                 .searched(Search::Whole(2, 12)),
             Parameter::MIN,
