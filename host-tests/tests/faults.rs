@@ -141,7 +141,7 @@ impl Line {
                 self.delayed.push((turns, std::mem::take(&mut frame)));
             }
             Some(Cut | CutThenIdle) if hits => {
-                frame.truncate(self.random.next_u32() as usize % frame.len())
+                frame.truncate(self.random.next_u32() as usize % frame.len());
             }
             Some(Spliced) => {
                 self.injected += 1;
