@@ -2,10 +2,10 @@
 //! `e1 <= e2 - threshold` or `e1 <= e2 * threshold`; then `r[i+j] -= h[j]`.
 
 use crate::common::rate::{
-    all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle,
+    all_lengths, drawn_recordings, few_lengths, first_taps, pairs_of_8_bits, triangle,
 };
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use crate::common::{Drawn, flight_channels, hostile_recordings};
+use fixed::types::{I8F8, I16F16};
 use host_tests::compare::{Wire, check_rate, decode, encode, reals, signs_of};
 use host_tests::reference::{ben_multiplicative, ben_subtractive};
 use proptest::prelude::*;
@@ -114,34 +114,18 @@ fn hostile() {
     }
 }
 
+fn thresholds<S: Wire + Drawn>() -> impl Strategy<Value = S> {
+    let threshold = prop_oneof![Just(S::default()), S::positive(), S::tap()];
+    threshold.prop_filter("not negative", |value| *value >= S::default())
+}
+
 /// Any ratio that is allowed, exact multiples of 2⁻¹⁴ and halves between them often.
 fn ratios() -> impl Strategy<Value = f32> {
     let grid = (2..131_070_u32).prop_map(|halves| halves as f32 / 32_768.0);
     prop_oneof![grid, crate::common::between(0.1, 1.5), crate::common::between(0.000_062, 3.999)]
 }
 
-macro_rules! drawn {
-    ($sample:ty, $lengths:ident) => {{
-    let shift = <$sample>::shift();
-    let threshold = prop_oneof![Just(<$sample>::default()), <$sample>::positive(), <$sample>::tap()];
-    let threshold = threshold.prop_filter("not negative", |value| *value >= <$sample>::default());
-    let parameters = (recordings::<$sample>(), threshold, ratios(), shift);
-    let cases = &cases(96);
-    proptest!(cases, |(((x, taps), threshold, ratio, shift) in parameters)| {
-        $lengths!(check, $sample, &taps, &x, threshold, ratio, shift);
-    });
-    }};
-}
-
-#[test]
-fn drawn_recordings() {
-    drawn!(f32, all_lengths);
-    drawn!(I16F16, all_lengths);
-    drawn!(i16, all_lengths);
-    drawn!(I8F8, few_lengths);
-    drawn!(I1F15, few_lengths);
-    drawn!(I32F0, few_lengths);
-}
+drawn_recordings!(check, 96, threshold: thresholds::<S>(), ratio: ratios());
 
 /// Filters of one and two taps on all pairs of 8 bits, the tail included.
 #[test]

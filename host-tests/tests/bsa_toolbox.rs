@@ -2,10 +2,10 @@
 //! `e1 <= e2 * threshold`; then `r[i+j+2] -= h[j]`. The last `F` samples never spike.
 
 use crate::common::rate::{
-    all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle,
+    all_lengths, drawn_recordings, few_lengths, first_taps, pairs_of_8_bits, triangle,
 };
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use crate::common::{flight_channels, hostile_recordings};
+use fixed::types::{I8F8, I16F16};
 use host_tests::compare::{Wire, check_rate, encode, reals, signs_of};
 use host_tests::reference::ben_toolbox;
 use proptest::prelude::*;
@@ -79,27 +79,12 @@ fn hostile() {
     }
 }
 
-macro_rules! drawn {
-    ($sample:ty, $lengths:ident) => {{
-    let shift = <$sample>::shift();
-    let threshold = prop_oneof![crate::common::between(0.1, 1.5), crate::common::between(0.000_062, 3.999), Just(1.0_f32)];
-    let parameters = (recordings::<$sample>(), threshold, shift);
-    let cases = &cases(128);
-    proptest!(cases, |(((x, taps), threshold, shift) in parameters)| {
-        $lengths!(check, $sample, &taps, &x, threshold, shift);
-    });
-    }};
+fn thresholds() -> impl Strategy<Value = f32> {
+    let all = crate::common::between(0.000_062, 3.999);
+    prop_oneof![crate::common::between(0.1, 1.5), all, Just(1.0_f32)]
 }
 
-#[test]
-fn drawn_recordings() {
-    drawn!(f32, all_lengths);
-    drawn!(I16F16, all_lengths);
-    drawn!(i16, all_lengths);
-    drawn!(I8F8, few_lengths);
-    drawn!(I1F15, few_lengths);
-    drawn!(I32F0, few_lengths);
-}
+drawn_recordings!(check, 128, threshold: thresholds());
 
 /// Filters of one and two taps on all pairs of 8 bits, between two samples that bring the decision
 /// out.

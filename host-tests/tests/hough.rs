@@ -2,10 +2,10 @@
 //! `r[i+j] -= h[j]`.
 
 use crate::common::rate::{
-    all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle,
+    all_lengths, drawn_recordings, few_lengths, first_taps, pairs_of_8_bits, triangle,
 };
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use crate::common::{flight_channels, hostile_recordings};
+use fixed::types::{I8F8, I16F16};
 use host_tests::compare::{Wire, check_rate, encode, reals, signs_of};
 use host_tests::reference::hough;
 use proptest::prelude::*;
@@ -77,25 +77,7 @@ fn hostile() {
     }
 }
 
-macro_rules! drawn {
-    ($sample:ty, $lengths:ident) => {{
-    let shift = <$sample>::shift();
-    let cases = &cases(128);
-    proptest!(cases, |(((x, taps), shift) in (recordings::<$sample>(), shift))| {
-        $lengths!(check, $sample, &taps, &x, shift);
-    });
-    }};
-}
-
-#[test]
-fn drawn_recordings() {
-    drawn!(f32, all_lengths);
-    drawn!(I16F16, all_lengths);
-    drawn!(i16, all_lengths);
-    drawn!(I8F8, few_lengths);
-    drawn!(I1F15, few_lengths);
-    drawn!(I32F0, few_lengths);
-}
+drawn_recordings!(check, 128);
 
 /// Filters of one and two taps on all pairs of 8 bits, the tail included.
 #[test]

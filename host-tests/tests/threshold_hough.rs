@@ -2,10 +2,10 @@
 //! if `error <= threshold`; then `r[i+j] -= h[j]`.
 
 use crate::common::rate::{
-    all_lengths, few_lengths, first_taps, pairs_of_8_bits, recordings, triangle,
+    all_lengths, drawn_recordings, few_lengths, first_taps, pairs_of_8_bits, triangle,
 };
 use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use fixed::types::{I8F8, I16F16};
 use host_tests::compare::{Wire, check_rate, encode, reals, signs_of};
 use host_tests::reference::threshold_hough;
 use proptest::prelude::*;
@@ -69,27 +69,11 @@ fn hostile() {
     }
 }
 
-macro_rules! drawn {
-    ($sample:ty, $lengths:ident) => {{
-    let shift = <$sample>::shift();
-    let threshold = prop_oneof![Just(<$sample>::default()), <$sample>::positive()];
-    let parameters = (recordings::<$sample>(), threshold, shift);
-    let cases = &cases(128);
-    proptest!(cases, |(((x, taps), threshold, shift) in parameters)| {
-        $lengths!(check, $sample, &taps, &x, threshold, shift);
-    });
-    }};
+fn thresholds<S: Wire + Drawn>() -> impl Strategy<Value = S> {
+    prop_oneof![Just(S::default()), S::positive()]
 }
 
-#[test]
-fn drawn_recordings() {
-    drawn!(f32, all_lengths);
-    drawn!(I16F16, all_lengths);
-    drawn!(i16, all_lengths);
-    drawn!(I8F8, few_lengths);
-    drawn!(I1F15, few_lengths);
-    drawn!(I32F0, few_lengths);
-}
+drawn_recordings!(check, 128, threshold: thresholds::<S>());
 
 /// Thresholds that a window just keeps, and just misses, when it is summed first tap first: another
 /// order of the sum would decide some of them otherwise.
@@ -111,7 +95,7 @@ fn at_the_limit() {
 /// In flight, where windows are whole, a threshold of 0 makes it HSA.
 #[test]
 fn without_tolerance_it_is_the_hough_spiker() {
-    proptest!(cases(128), |((x, taps) in recordings::<f32>())| {
+    proptest!(cases(128), |((x, taps) in crate::common::rate::recordings::<f32>())| {
         let taps = crate::common::rate::first_taps::<f32, 8>(&taps);
         let outputs = encode(&ThresholdHough::try_new(taps, 0.0).unwrap(), &x).outputs;
         prop_assert_eq!(outputs, encode(&Hough::new(taps), &x).outputs);

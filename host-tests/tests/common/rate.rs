@@ -28,7 +28,34 @@ macro_rules! length {
         $check::<$sample, $length>(&crate::common::rate::first_taps($taps), $($argument),*);
     };
 }
-pub(crate) use {all_lengths, few_lengths, length, lengths};
+
+/// The test of a check with drawn recordings, filters and shifts in every sample type, which is `S`, and with
+/// parameters of its own.
+macro_rules! drawn_recordings {
+    ($check:ident, $cases:literal $(, $own:ident: $strategy:expr)*) => {
+        #[test]
+        fn drawn_recordings() {
+            drawn_recordings!(@ f32, all_lengths, $check, $cases $(, $own: $strategy)*);
+            drawn_recordings!(@ fixed::types::I16F16, all_lengths, $check, $cases $(, $own: $strategy)*);
+            drawn_recordings!(@ i16, all_lengths, $check, $cases $(, $own: $strategy)*);
+            drawn_recordings!(@ fixed::types::I8F8, few_lengths, $check, $cases $(, $own: $strategy)*);
+            drawn_recordings!(@ fixed::types::I1F15, few_lengths, $check, $cases $(, $own: $strategy)*);
+            drawn_recordings!(@ fixed::types::I32F0, few_lengths, $check, $cases $(, $own: $strategy)*);
+        }
+    };
+    (@ $sample:ty, $lengths:ident, $check:ident, $cases:literal $(, $own:ident: $strategy:expr)*) => {
+        {
+            type S = $sample;
+            let recordings = crate::common::rate::recordings::<S>();
+            let parameters = (recordings, $($strategy,)* <S as crate::common::Drawn>::shift());
+            let cases = &crate::common::cases($cases);
+            proptest!(cases, |(((x, taps), $($own,)* shift) in parameters)| {
+                $lengths!($check, S, &taps, &x, $($own,)* shift);
+            });
+        }
+    };
+}
+pub(crate) use {all_lengths, drawn_recordings, few_lengths, length, lengths};
 
 /// The first taps of a list, of which at least one is not 0.
 pub(crate) fn first_taps<S: Wire, const F: usize>(list: &[S]) -> Taps<S, F> {
