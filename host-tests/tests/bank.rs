@@ -115,6 +115,21 @@ fn keyframes_and_resets_stand_between_the_events() {
     );
 }
 
+/// A rate code passes over a sample that is not finite, and its decoder would be one behind: a break says so.
+#[test]
+fn a_sample_that_a_code_passes_over_is_a_break() {
+    static HOUGH: Hough<f32, 3> = Hough::new(Taps::triangular(1.0));
+    let queue = EventQueue::<16>::new(Overflow::Refuse);
+    let mut bank = Bank::<_, 1>::new(&HOUGH);
+    let samples = [0.0, 0.0, 0.0, f32::NAN, 0.0];
+    for (tick, sample) in (1..).zip(samples) {
+        bank.encode_into(Tick::from(tick), [sample], &queue);
+    }
+    let mut consumer = queue.consumer().unwrap();
+    let items: Vec<Item> = std::iter::from_fn(|| consumer.take()).map(|taken| taken.item).collect();
+    assert_eq!(items, [Item::Break(Tick::from(4))]);
+}
+
 #[test]
 fn banks_and_queues_can_be_static() {
     use std::sync::Mutex;
@@ -158,7 +173,9 @@ fn banks_share_the_addresses() {
     assert_eq!(addresses, [0xFFFD, 0xFFFE, 0xFFFF]);
     let (parameter, min, max) = ("first address", 0.0, 65_533.0);
     let error = ConfigError::OutOfRange { parameter, value: 65_534.0, min, max };
-    assert_eq!(bank.try_with_first_address(0xFFFE).err(), Some(error));
+    assert_eq!(bank.clone().try_with_first_address(0xFFFE).err(), Some(error));
+    let behind = bank.try_with_first_address(0xFFFD).unwrap();
+    assert!(format!("{behind:?}").ends_with("first_address: 65533, .. }"));
 }
 
 #[test]

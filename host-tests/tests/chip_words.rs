@@ -36,6 +36,40 @@ fn tiny_odin_words_are_golden() {
 }
 
 #[test]
+fn errors_of_a_chip_are_told_in_words() {
+    use spikewire::chip::FormatError;
+    let read_back = ChipError::ReadBack { address: 0x1F, written: 3, read: 0xA };
+    for (error, told) in [
+        (ChipError::Bus("noise"), "the bus failed: \"noise\""),
+        (ChipError::Port(7), "the port failed: 7"),
+        (ChipError::NotReset, "the chip must be reset first"),
+        (read_back, "wrote 0x3 to 0x1f, read back 0xa"),
+        (
+            ChipError::OutOfRange { what: "weight", value: -9, min: -8, max: 7 },
+            "weight -9 must lie in -8..=7",
+        ),
+    ] {
+        assert_eq!(error.to_string(), told);
+    }
+    let short = FormatError::Length { needed: 300, given: 12 };
+    assert_eq!(short.to_string(), "the network takes 300 bytes, not 12");
+}
+
+/// What does not fit into a time step's list is counted, and the next step begins empty.
+#[test]
+fn a_list_of_spikes_counts_what_it_has_no_room_for() {
+    use spikewire::{Event, Polarity, Tick, chip::Spikes};
+    let spike = |address| Event { tick: Tick::from(0), address, polarity: Polarity::Up };
+    let mut spikes = Spikes::<2>::new();
+    (4..8).for_each(|address| spikes.push(spike(address)));
+    assert_eq!((spikes.as_slice(), spikes.lost()), (&[spike(4), spike(5)][..], 2));
+    spikes.clear();
+    assert!(spikes.as_slice().is_empty());
+    spikes.push(spike(8));
+    assert_eq!((spikes.as_slice(), spikes.lost()), (&[spike(8)][..], 2));
+}
+
+#[test]
 fn odin_words_are_those_of_the_documentation() {
     use OdinInput::{
         Bistability, BistabilityAll, Leak, LeakAll, Spike, Synapse, Virtual, VirtualLeak,

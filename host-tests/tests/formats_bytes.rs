@@ -115,6 +115,7 @@ fn event_stream_skips_what_is_not_its_own() {
     let mut decoder = EventStream::decoder();
     assert!(decoder.decode(&stream).eq([event(20, 1, true)]));
     assert_eq!(decoder.skipped(), 2 + 1 + 200);
+    assert!(!decoder.is_foreign());
 
     let mut decoder = EventStream::decoder();
     assert_eq!(decoder.decode(b"Event Stream\x03\0\0\0").count(), 0);
@@ -178,6 +179,25 @@ fn a_stream_that_is_cut_within_an_event_says_so() {
     check!(EventStream::decoder(), &bytes, &[16, 17, 22]);
     let bytes = [b"% end\n", one(Evt2::encoder(), event).as_slice()].concat();
     check!(Evt2::file_decoder(), &bytes, &[6, 10, 14]);
+}
+
+/// A header of lines, short ones too, ends where its last line says, even if a word follows that looks like a line.
+#[test]
+fn evt2_headers_end_where_they_say() {
+    let words = [[0, 0, 0, 0x80], (1_u32 << 28 | 3 << 11).to_le_bytes()].concat();
+    // Words of a type that there is not.
+    let (like_a_line, like_text) = ([b'%', 0, 0, b'A'], [0, b'A', 0, b'A']);
+    for (header, first) in [
+        ("", like_text),
+        ("% evt 2.0\n% end\n", like_a_line),
+        ("%\n% end\n", like_a_line),
+        ("%\n", like_text),
+    ] {
+        let file = [header.as_bytes(), &first, &words].concat();
+        let mut decoder = Evt2::file_decoder();
+        assert!(decoder.decode(&file).eq([event(0, 3, true)]), "{header:?}");
+        assert_eq!(decoder.skipped(), 4, "{header:?}");
+    }
 }
 
 #[test]
@@ -273,6 +293,19 @@ fn a_log_may_begin_long_after_boot() {
         decoder.set_tick(BOOT_TO_LOG.into());
         assert!(decoder.decode(&bytes[..length]).eq([late]));
         assert_eq!(encoder.retimed(), 0);
+    }
+}
+
+/// 2²⁴ µs back is out of order, one more is a silence.
+#[test]
+fn only_events_a_little_back_are_out_of_order() {
+    for (back, retimed) in [(1, 1), (1 << 24, 1), ((1 << 24) + 1, 0)] {
+        let mut encoder = Evt2::encoder();
+        let mut bytes = [0; 8];
+        for tick in [7_u32, 7_u32.wrapping_sub(back)] {
+            encoder.encode(event(tick, 5, true), &mut bytes).unwrap();
+        }
+        assert_eq!(encoder.retimed(), retimed, "{back}");
     }
 }
 

@@ -54,6 +54,9 @@ fn golden_bytes_of_an_event_stream() {
         (decoder.skipped(), decoder.is_partial(), decoder.size()),
         (0, false, Some((320, 240)))
     );
+    assert!(!decoder.is_foreign());
+    // A reset is no event, and takes no time.
+    assert!(decoder.decode(&[0xFE, 0xFE, 0x03, 9, 0, 8, 0]).eq([event(385, 9, 8, up)]));
 }
 
 proptest! {
@@ -116,6 +119,9 @@ fn pixels_outside_and_time_that_goes_back() {
     assert_eq!(encoder.encode(event(100, 1, 1, Polarity::Up), &mut bytes), Ok(5));
     assert_eq!(encoder.encode(event(90, 1, 1, Polarity::Up), &mut bytes), Ok(5));
     assert_eq!(encoder.retimed(), 1);
+    words.encode(event(100, 1, 1, Polarity::Up), &mut bytes).unwrap();
+    words.encode(event(90, 1, 1, Polarity::Up), &mut bytes).unwrap();
+    assert_eq!(words.retimed(), 1);
 }
 
 #[test]
@@ -124,4 +130,30 @@ fn other_files_are_foreign() {
     assert_eq!(generic.decode(b"Event Stream\x02\0\0\0\x01\x06abc").count(), 0);
     assert!(generic.is_foreign() && generic.size().is_none());
     assert_eq!(generic.skipped(), 5);
+}
+
+/// The bytes of an event that is cut off wait for the rest; a word of another type is skipped.
+#[test]
+fn an_event_that_has_not_ended_is_partial() {
+    let mut decoder = Dvs::decoder();
+    for (length, &byte) in CAMERA.header().iter().enumerate() {
+        assert_eq!(decoder.is_partial(), length > 0);
+        decoder.push(byte);
+    }
+    let told = [0xFF, 0x03, 9, 0, 8, 0].map(|byte| {
+        decoder.push(byte);
+        decoder.is_partial()
+    });
+    assert_eq!(told, [false, true, true, true, true, false]);
+
+    let mut bytes = [0; 8];
+    Evt2Pixels::encoder().encode(event(5, 3, 4, Polarity::Up), &mut bytes).unwrap();
+    let mut decoder = Evt2Pixels::decoder();
+    let told = bytes.map(|byte| {
+        decoder.decode(&[byte]).for_each(drop);
+        decoder.is_partial()
+    });
+    assert_eq!(told, [true, true, true, false, true, true, true, false]);
+    decoder.decode(&[0, 0, 0, 0xF0]).for_each(drop);
+    assert_eq!(decoder.skipped(), 4);
 }

@@ -89,6 +89,136 @@ fn the_bytes_are_those_of_the_specification() {
 }
 
 #[test]
+fn errors_are_told_in_words() {
+    for (error, told) in [
+        (LinkError::Truncated { needed: 22, found: 7 }, "the frame has 22 bytes, but 7 are here"),
+        (LinkError::NotAFrame { found: 9 }, "a frame does not begin with 0x09"),
+        (LinkError::Version { found: 2 }, "version 2 of the link is not known"),
+        (
+            LinkError::Checksum { found: 1, computed: 0xABC },
+            "the frame's checksum is 0x00000001, but its bytes give 0x00000abc",
+        ),
+        (LinkError::Full, "the frame is full"),
+    ] {
+        assert_eq!(error.to_string(), told);
+    }
+}
+
+#[test]
+fn a_frame_says_what_it_holds() {
+    let mut framer = Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION));
+    let mut buffer = [0; 64];
+    let mut frame = framer.start(0.into(), &mut buffer).unwrap();
+    assert!(frame.is_empty());
+    frame.keyframe(keyframe(0, 0, 0.5_f32)).unwrap();
+    assert!(!frame.is_empty());
+    frame.event(event(0, 0, true)).unwrap();
+    frame.event(event(0, 1, true)).unwrap();
+    assert_eq!((frame.is_empty(), frame.events()), (false, 2));
+    let mut frame = framer.start(0.into(), &mut buffer).unwrap();
+    frame.event(event(0, 0, true)).unwrap();
+    assert!(!frame.is_empty());
+}
+
+#[test]
+fn keyframes_can_be_read_as_another_type_of_the_same_width() {
+    let mut framer = Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION));
+    let mut buffer = [0; 64];
+    let mut frame = framer.start(0.into(), &mut buffer).unwrap();
+    frame.keyframe(keyframe(0, 0, -2_i16)).unwrap();
+    let (view, _) = FrameView::new(frame.finish()).unwrap();
+    let kind = SampleKind::Fixed16 { fraction: 8 };
+    let tick = Tick::from(0);
+    let expected = Keyframe { tick, address: 0, kind, bits: 0xFFFE };
+    assert!(view.with_kind(kind).unwrap().keyframes().eq([expected]));
+    assert!(view.with_kind(SampleKind::F32).is_none(), "it is wider");
+}
+
+/// As few bits for the address as suit events of few channels at a time.
+#[test]
+fn a_coding_has_bits_for_its_channels() {
+    for (channels, address_bits) in [(1, 0), (7, 0), (8, 1), (16, 2), (64, 4), (u16::MAX, 13)] {
+        let period = NonZeroU16::new(1_000).unwrap();
+        let expected = Coding { period, address_bits, jitter_bits: 0 };
+        assert_eq!(Coding::for_channels(channels, 1_000), expected);
+        assert_eq!(expected.with_jitter_bits(7), Coding { jitter_bits: 7, ..expected });
+    }
+}
+
+#[test]
+fn a_frame_is_full_where_its_buffer_or_its_length_ends() {
+    let mut framer = Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION));
+    // The count and type of keyframes, an address, two bytes of a value.
+    for (room, fits) in [(5, Err(LinkError::Full)), (6, Ok(()))] {
+        let mut buffer = [0; MIN_FRAME + 6];
+        let mut frame = framer.start(0.into(), &mut buffer[..MIN_FRAME + room]).unwrap();
+        assert_eq!(frame.keyframe(keyframe(0, 0, 3_i16)), fits);
+        assert_eq!(frame.is_empty(), fits.is_err());
+    }
+    let mut buffer = [0; 4 * MAX_FRAME];
+    let mut frame = framer.start(0.into(), &mut buffer).unwrap();
+    let count = (0..9_999).take_while(|_| frame.event(event(0, 0, true)).is_ok()).count();
+    let bytes = frame.finish();
+    assert_eq!(bytes.len(), MAX_FRAME);
+    assert_eq!(FrameView::new(bytes).unwrap().0.events().count(), count);
+}
+
+/// A frame whose events are these bytes.
+fn with_events(bytes: &[u8]) -> Vec<u8> {
+    let mut framer = Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION));
+    let mut buffer = [0; MIN_FRAME];
+    let mut frame = framer.start(0.into(), &mut buffer).unwrap().finish().to_vec();
+    frame.truncate(MIN_FRAME - 4);
+    frame[17] = bytes.len() as u8;
+    frame.extend(bytes);
+    frame.extend(crc32(&frame).to_le_bytes());
+    frame
+}
+
+#[test]
+fn bits_that_code_no_event_are_told_from_the_end() {
+    let read = |bytes: &[u8]| {
+        let frame = with_events(bytes);
+        let (view, _) = FrameView::new(&frame).unwrap();
+        let mut events = view.events();
+        (events.by_ref().count(), events.is_complete())
+    };
+    assert_eq!(read(&[]), (0, true));
+    // Three bits are an event: 0, at the frame's tick; 1, of address 0; and the polarity.
+    assert_eq!(read(&[0b0110_0000]), (1, true), "up to 7 bits, all 0, fill the last byte up");
+    assert_eq!(read(&[0b0110_0000, 0]), (1, false), "13 bits are left");
+    assert_eq!(read(&[0]), (0, false), "a whole byte is left");
+    assert_eq!(read(&[0b0110_0001]), (1, false), "what is left is not 0");
+    assert_eq!(read(&[0; 9]), (0, false), "a code of so many zeros is none");
+    // 0, then 16 zeros and 17 bits of a number, and the polarity: addresses 65 535 and 65 536.
+    assert_eq!(read(&[0, 0, 0b0100_0000, 0, 0]), (1, true));
+    assert_eq!(read(&[0, 0, 0b0100_0000, 0, 0b0100_0000]), (0, false), "there is no such address");
+}
+
+/// A sample earlier costs no more than its few bits, and a frame spans 2²⁹ µs to either side.
+#[test]
+fn events_may_be_earlier_than_their_frame() {
+    const MOST: u32 = 1 << 29;
+    let mut framer = Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION));
+    let mut buffer = [0; 64];
+    let mut frame = framer.start(5_000.into(), &mut buffer).unwrap();
+    frame.event(event(4_001, 0, true)).unwrap();
+    // 1; -1 step: zigzag(-2) = 3, code(3, 0) = 00100; jitter 1: code(2, 0) = 011; address 0 and up: 1 1.
+    let bytes = frame.finish();
+    assert_eq!(bytes[18..bytes.len() - 4], [0b1001_0001, 0b1110_0000]);
+
+    for (tick, is_near) in [
+        (MOST, true),
+        (MOST + 1, false),
+        (MOST.wrapping_neg(), true),
+        (MOST.wrapping_neg() - 1, false),
+    ] {
+        let mut frame = framer.start(0.into(), &mut buffer).unwrap();
+        assert_eq!(frame.event(event(tick, 0, true)).is_ok(), is_near, "{tick}");
+    }
+}
+
+#[test]
 fn every_error_says_what_is_wrong() {
     let mut framer = Framer::new(Coding::for_channels(1, 1), Session::counted(SESSION));
     assert_eq!(framer.start(0.into(), &mut [0; MIN_FRAME - 1]).err(), Some(LinkError::Full));

@@ -38,6 +38,21 @@ fn agrees<P: Start<Sample = f32>>(scheme: &P, samples: &[[f32; 3]], start: u32, 
     }
 }
 
+/// Its decoders begin with a known value, go on from it, and begin anew.
+#[test]
+fn a_readout_is_set_and_reset() {
+    let mut readout = Readout::<_, 2>::new(&STEP).try_with_first_address(10).unwrap();
+    let up = |address| Event { tick: Tick::from(0), address, polarity: Polarity::Up };
+    readout.resync(1, 3.0);
+    readout.resync(2, 9.0); // there is no such channel
+    assert_eq!(readout.decode(Tick::from(0), &[up(10), up(9), up(12)]), [0.2, 3.0]);
+    assert_eq!(readout.decode(Tick::from(0), &[up(11)]), [0.2, 3.2]);
+    readout.reset();
+    assert_eq!(readout.decode(Tick::from(0), &[]), [0.0, 0.0]);
+    let error = readout.try_with_first_address(0xFFFF).err().unwrap();
+    assert_eq!(error.to_string(), "first address 65535 must lie in 0..=65534");
+}
+
 /// All 256 slots are legal: the last one too.
 #[test]
 fn the_last_of_256_slots_comes_back() {

@@ -154,6 +154,84 @@ fn what_does_not_belong_is_counted() {
     assert_eq!(f32::from_bits32(2.0_f32.to_bits32()), 2.0);
 }
 
+#[test]
+fn a_first_address_can_be_set_at_run_time() {
+    use spikewire::{FromItems, Item};
+    static STEP: StepForward<f32> = StepForward::new(0.5);
+    let receiver = || Receiver::<_, 2, 0>::new(&STEP);
+    let mut behind = receiver().with_slot_ticks(7).try_with_first_address(10).unwrap();
+    assert_eq!(
+        format!("{behind:?}"),
+        format!("{:?}", receiver().with_slot_ticks(7).with_first_address(10))
+    );
+    let items =
+        [9, 10].map(|address| Item::Keyframe(Keyframe::new(Tick::from(5), address, 1.5_f32)));
+    let mut transmitter = Transmitter::new(Coding::for_channels(2, 1), Session::counted(1));
+    let mut buffer = [0; 64];
+    let mut source = FromItems(items.into_iter());
+    let mut bytes = transmitter.next_frame(&mut source, &mut buffer).unwrap().unwrap();
+    let mut reader = Reader::<MAX_FRAME>::new();
+    behind.apply(&reader.next_frame(&mut bytes).unwrap(), |_, _, _| ());
+    assert_eq!((behind.exact(0), behind.outside()), (Some(1.5), 1));
+    assert_eq!((reader.frames(), transmitter.leaps()), (1, 0));
+    let error = receiver().try_with_first_address(0xFFFF).err().unwrap();
+    assert_eq!(error.to_string(), "first address 65535 must lie in 0..=65534");
+}
+
+/// From the first frame on: ticks say nothing of a silence of more than 2³⁰ µs.
+#[test]
+fn a_transmitter_counts_the_silences_that_it_cannot_measure() {
+    use spikewire::{FromItems, Item};
+    let mut transmitter = Transmitter::new(Coding::for_channels(1, 1), Session::counted(1));
+    transmitter.observe(Tick::from(1 << 31));
+    let mut source = FromItems([Item::Heartbeat { tick: Tick::from(0), address: 0 }].into_iter());
+    let mut buffer = [0; 64];
+    assert!(transmitter.next_frame(&mut source, &mut buffer).unwrap().is_some());
+    for (leaps, now) in [(0, 0), (0, 1 << 30), (1, (1 << 31) + 1), (2, 0)] {
+        transmitter.observe(Tick::from(now));
+        assert_eq!(transmitter.leaps(), leaps, "{now}");
+    }
+}
+
+#[test]
+fn what_is_withheld_has_a_reason_in_words() {
+    let slots = Withheld::Slots { slots: 50, slot_ticks: 21, period: 1_000 };
+    for (reason, told) in [
+        (Withheld::Keyframe, "no keyframe since the start or the last loss"),
+        (Withheld::Samples(3), "3 more samples without a loss are needed"),
+        (slots, "50 sub-timesteps of 21 µs are longer than the link's period of 1000 µs"),
+        (Withheld::Always, "the error of this code fades, and is never 0"),
+    ] {
+        assert_eq!(reason.to_string(), told);
+    }
+}
+
+/// Addresses count neurons: a code of many has as many a channel.
+#[test]
+fn what_does_not_belong_to_a_code_of_many_neurons_is_counted() {
+    use spikewire::{FromItems, Item};
+    static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
+    let tick = Tick::from(5);
+    let mut receiver = Receiver::<_, 2>::new(&POSITION);
+    let mut reader = Reader::<MAX_FRAME>::new();
+    let mut transmitter = Transmitter::new(Coding::for_channels(18, 1), Session::counted(1));
+    let keyframe = |address| Item::Keyframe(Keyframe::new(tick, address, 1.5_f32));
+    let heartbeat = |address| Item::Heartbeat { tick, address };
+    for (items, outside, misfits) in [
+        ([keyframe(0), keyframe(17)], 0, 2),
+        ([keyframe(17), keyframe(18)], 1, 3),
+        ([heartbeat(0), heartbeat(17)], 1, 3),
+        ([heartbeat(17), heartbeat(18)], 2, 3),
+    ] {
+        let mut source = FromItems(items.into_iter());
+        let mut buffer = [0; 64];
+        let mut bytes = transmitter.next_frame(&mut source, &mut buffer).unwrap().unwrap();
+        receiver.apply(&reader.next_frame(&mut bytes).unwrap(), |_, _, _| ());
+        assert_eq!((receiver.outside(), receiver.misfits()), (outside, misfits), "{items:?}");
+        assert_eq!(receiver.exact(0), None, "the code has no keyframes");
+    }
+}
+
 /// A link of one bank, whose samples are frames of their own.
 struct Line<'a, P: Start, const N: usize> {
     bank: Bank<&'a P, N>,

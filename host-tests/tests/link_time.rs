@@ -54,6 +54,16 @@ proptest! {
 }
 
 #[test]
+fn counts_stop_at_their_limit() {
+    let step = NonZeroU32::new(10).unwrap();
+    for (limit, saturated) in [(2, 298), (255, 45)] {
+        let mut bins = Bins::<1>::new(0.into(), step).with_limit(limit);
+        (0..300).for_each(|_| bins.add(up(5, 0)).unwrap());
+        assert_eq!((bins.saturated(), bins.take()), (saturated, [limit]));
+    }
+}
+
+#[test]
 fn a_tick_near_the_ends_of_time_stays_there() {
     assert_eq!(Tick::from(0xFFFF_FFFF).widen(5), 0xFFFF_FFFF); // there is no time -1
     assert_eq!(Tick::from(0).widen(u64::MAX), u64::MAX - 0xFFFF_FFFF);

@@ -207,6 +207,58 @@ fn queues_of_any_room_go_behind_one_reference() {
     assert_eq!(rooms, [1, 9]);
 }
 
+/// As a bank puts an item.
+fn put(mut to: impl Put, item: Item) {
+    to.put(item);
+}
+
+/// Keyframes, breaks and heartbeats are passed over by who needs events alone.
+#[test]
+fn events_alone_come_in_their_order() {
+    let queue = EventQueue::<16>::new(Overflow::Refuse);
+    let without_locks = SpscQueue::<16>::new();
+    let (mut producer, mut events) = without_locks.split().unwrap();
+    for number in 0..15 {
+        queue.push(item(number)).unwrap();
+        put(&mut producer, item(number));
+    }
+    let expected = || {
+        (0..15)
+            .map(item)
+            .filter_map(|item| if let Item::Event(event) = item { Some(event) } else { None })
+    };
+    let mut consumer = queue.consumer().unwrap();
+    assert!(std::iter::from_fn(|| consumer.take_event()).eq(expected()));
+    assert!(std::iter::from_fn(|| events.take_event()).eq(expected()));
+    assert_eq!((consumer.take(), events.take()), (None, None), "all are taken");
+}
+
+#[test]
+fn queues_say_how_full_they_are() {
+    let queue = EventQueue::<2>::new(Overflow::Refuse);
+    assert!(queue.is_empty());
+    queue.push(item(0)).unwrap();
+    assert!(!queue.is_empty());
+    assert_eq!(
+        format!("{queue:?}"),
+        "EventQueue { overflow: Refuse, capacity: 2, len: 1, lost: 0, .. }"
+    );
+    queue.push(item(1)).unwrap();
+    let refused = queue.push(item(7)).unwrap_err();
+    assert_eq!(refused.to_string(), "the queue is full and refused the item of tick 7");
+
+    let without_locks = SpscQueue::<2>::new();
+    let (mut producer, consumer) = without_locks.split().unwrap();
+    assert!(consumer.is_empty());
+    for number in 0..4 {
+        put(&mut producer, item(number));
+    }
+    assert!(!consumer.is_empty());
+    assert_eq!((producer.lost(), consumer.lost()), (3, 3), "there is room for one");
+    put(producer, item(5));
+    assert_eq!(consumer.lost(), 4);
+}
+
 struct Woken(AtomicU32);
 
 impl Wake for Woken {

@@ -131,7 +131,7 @@ impl Clock {
     /// How much later an event is, in microseconds; 0 and true if it is earlier and must be retimed.
     fn since(self, tick: Tick) -> (u32, bool) {
         let delta = tick.since(self.tick).cast_unsigned();
-        let is_earlier = delta > MOST_EARLIER.wrapping_neg();
+        let is_earlier = delta >= MOST_EARLIER.wrapping_neg();
         (if is_earlier { 0 } else { delta }, is_earlier)
     }
 

@@ -96,7 +96,6 @@ impl<'a> FrameView<'a> {
     pub fn length(bytes: &[u8]) -> Result<usize, LinkError> {
         let truncated = LinkError::Truncated { needed: MIN_FRAME, found: bytes.len() };
         match *bytes {
-            [] => return Err(truncated),
             [magic, ..] if magic != MAGIC => return Err(LinkError::NotAFrame { found: magic }),
             [_, version, ..] if version >> 4 != VERSION => {
                 return Err(LinkError::Version { found: version >> 4 });
