@@ -38,6 +38,8 @@ fn the_bytes_on_the_bus_are_golden() {
         write([0x81, 0x20, 0x00, 0x08], &bytes(&words[..4])),
         write([0x80, 0x20, 0x00, 0x0C], &bytes(&words[4..])),
         read([0x60, 0x30, 0x00, 0x00, 0x00], &[1, 2, 3, 4]),
+        read([0x61, 0x20, 0x00, 0x08, 0x00], &bytes(&words[..4])),
+        read([0x60, 0x20, 0x00, 0x0C, 0x00], &bytes(&words[4..])),
     ]
     .concat();
     let mut chip = Akd1500::new(Mock::new(&expected));
@@ -46,6 +48,9 @@ fn the_bytes_on_the_bus_are_golden() {
     let mut word = [0];
     chip.read(0xFCC0_0000, &mut word).unwrap();
     assert_eq!(word, [0x0102_0304]);
+    let mut back = [0; 5];
+    chip.read(0xFC80_0020, &mut back).unwrap();
+    assert_eq!(back, words);
     chip.release().done();
 }
 

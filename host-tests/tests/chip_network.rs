@@ -12,6 +12,7 @@ use spikewire::chip::{
     OdinNeuron, Spikes, TinyOdin, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, neurons_from,
 };
 use spikewire::population::Position;
+use spikewire::temporal::StepForward;
 use spikewire::{
     Bank, Event, EventQueue, FromEvents, Overflow, Polarity, Readout, Scheme, Source, Tick,
 };
@@ -60,6 +61,31 @@ fn a_network_of_64_neurons_flies() {
         assert!((value - rate).abs() <= 0.5 * 16.0 / 62.0 + 1e-5, "{rate} came back as {value}");
     }
     assert_eq!(running.counters().skipped_steps, 0);
+}
+
+#[test]
+fn a_network_is_described_neuron_by_neuron() {
+    assert_eq!(neurons_from::<7, 3>(), [7, 8, 9]);
+    let wide = Inputs::Rows([[5, 0, 0], [0, 5, 0]]);
+    assert_eq!(Inputs::<2, 3>::one_to_one(5), wide);
+    let tall = Inputs::Rows([[5, 0], [0, 5], [0, 0]]);
+    assert_eq!(Inputs::<3, 2>::one_to_one(5), tall, "the last drives none");
+}
+
+/// A code of one neuron with two polarities has an input for each.
+#[test]
+fn events_find_their_inputs() {
+    let step = StepForward::<f32>::new(1.0);
+    let at = |address, polarity| Event { tick: 0.into(), address, polarity };
+    for (address, polarity, input) in
+        [(2, Polarity::Up, 4), (2, Polarity::Down, 5), (31, Polarity::Down, 63)]
+    {
+        let found = NETWORK.input_for(&step, at(address, polarity));
+        assert!(found.is_some() && found == NETWORK.input(input));
+    }
+    assert_eq!(NETWORK.input_for(&step, at(32, Polarity::Up)), None);
+    let found = NETWORK.input_for(&RATE, at(5, Polarity::Up));
+    assert!(found.is_some() && found == NETWORK.input(5));
 }
 
 #[test]

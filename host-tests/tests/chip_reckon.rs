@@ -243,12 +243,97 @@ fn a_target_that_does_not_fit_is_refused_and_the_sample_goes_on() {
     let mut programmed = chip.reset(&mut board.clone()).unwrap();
     programmed.load(&NETWORK, |_| ()).unwrap();
     let mut sample = programmed.run(&ReckOnSettings::POTENTIALS).unwrap().begin().unwrap();
-    for target in [ReckOnTarget::Label(0), ReckOnTarget::Potentials(&[1])] {
-        let step = ReckOnStep { counts: false, target: Some(target) };
-        assert!(matches!(sample.step(step), Err(Error::OutOfRange { .. })));
+    let with = |target| ReckOnStep { counts: false, target: Some(target) };
+    // The chip does not learn.
+    for target in [ReckOnTarget::Label(0), ReckOnTarget::Potentials(&[1, 2, 3])] {
+        assert!(matches!(sample.step(with(target)), Err(Error::OutOfRange { .. })));
     }
     assert!(matches!(sample.send(5), Err(Error::OutOfRange { .. })));
     sample.step(ReckOnStep::default()).unwrap();
+
+    let settings = ReckOnSettings { learning: Some(LEARNING), ..ReckOnSettings::POTENTIALS };
+    let programmed = sample.end().unwrap().1.program().unwrap();
+    let mut sample = programmed.run(&settings).unwrap().begin().unwrap();
+    for target in [ReckOnTarget::Label(0), ReckOnTarget::Potentials(&[1])] {
+        assert!(matches!(sample.step(with(target)), Err(Error::OutOfRange { .. })));
+    }
+    sample.step(with(ReckOnTarget::Potentials(&[1, 2, 3]))).unwrap();
+}
+
+#[test]
+fn settings_that_the_chip_has_no_bits_for_are_refused() {
+    let with = |learning| ReckOnSettings { learning: Some(learning), ..ReckOnSettings::POTENTIALS };
+    let label = ReckOnSettings { task: ReckOnTask::Regression, ..ReckOnSettings::LABEL };
+    for (settings, told) in [
+        (label, "label of a regression 1 must lie in 0..=0"),
+        (with(ReckOnLearning { signal: 16, ..LEARNING }), "signal 16 must lie in 0..=15"),
+        (with(ReckOnLearning { traces: [0, 8, 0], ..LEARNING }), "trace 8 must lie in 0..=7"),
+        (
+            with(ReckOnLearning { slopes: [1, 4, 16, 8, 4], ..LEARNING }),
+            "slope 16 must lie in -16..=15",
+        ),
+        (with(ReckOnLearning { rates: [(8, 32); 3], ..LEARNING }), "rate 32 must lie in 0..=31"),
+    ] {
+        let board = Board::new(10, 1);
+        let mut chip = on(&board);
+        let programmed = chip.reset(&mut board.clone()).unwrap();
+        assert_eq!(programmed.run(&settings).err().unwrap().to_string(), told);
+    }
+}
+
+/// As learning may have moved them.
+#[test]
+fn each_weight_can_be_read() {
+    let board = Board::new(10, 1);
+    let mut chip = on(&board);
+    let mut programmed = chip.reset(&mut board.clone()).unwrap();
+    programmed.load(&NETWORK, |_| ()).unwrap();
+    programmed.verify(&NETWORK).unwrap();
+    for neuron in 0..4_u8 {
+        let at = usize::from(neuron);
+        for input in 0..5_u8 {
+            let weight = programmed.input_weight(input, neuron).unwrap();
+            assert_eq!(weight, NETWORK.inputs[usize::from(input)][at]);
+        }
+        for from in 0..4_u8 {
+            let weight = programmed.recurrent_weight(from, neuron).unwrap();
+            assert_eq!(weight, RECURRENT[usize::from(from)][at]);
+        }
+        for output in 0..3_u8 {
+            let weight = programmed.output_weight(neuron, output).unwrap();
+            assert_eq!(weight, NETWORK.outputs[at][usize::from(output)]);
+        }
+    }
+    assert!(matches!(programmed.output_weight(0, 16), Err(Error::OutOfRange { .. })));
+}
+
+#[test]
+fn loading_says_how_far_it_is() {
+    let board = Board::new(10, 1);
+    let mut chip = on(&board);
+    let mut programmed = chip.reset(&mut board.clone()).unwrap();
+    let mut told = Vec::new();
+    programmed.load(&NETWORK, |progress| told.push(progress)).unwrap();
+    assert!(told.is_sorted_by_key(|progress| progress.done));
+    let last = told.pop().unwrap();
+    assert_eq!(last.done, last.total);
+}
+
+/// A pair of neurons that is not the network's is found, as a weight is.
+#[test]
+fn another_pair_is_not_the_network_that_was_loaded() {
+    static OTHERS: [[ReckOnPair; 2]; 2] = [
+        [PAIRS[0], ReckOnPair { threshold: 251, ..PAIRS[1] }],
+        [PAIRS[0], ReckOnPair { keep: 33_001, ..PAIRS[1] }],
+    ];
+    for pairs in &OTHERS {
+        let board = Board::new(10, 1);
+        let mut chip = on(&board);
+        let mut programmed = chip.reset(&mut board.clone()).unwrap();
+        programmed.load(&NETWORK, |_| ()).unwrap();
+        let other = ReckOnNetwork { pairs, ..NETWORK };
+        assert!(matches!(programmed.verify(&other), Err(Error::ReadBack { .. })));
+    }
 }
 
 #[test]

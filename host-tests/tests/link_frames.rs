@@ -457,6 +457,19 @@ fn read<'a>(
 }
 
 #[test]
+fn a_reader_counts_what_it_passes_over() {
+    let frames = session(7, 2);
+    let mut damaged = frames[0].clone();
+    damaged[6] ^= 1;
+    let stream = [&[1, 2, 3][..], &damaged, &frames[1]].concat();
+    let mut reader = Reader::<MAX_FRAME>::new();
+    let mut rest = &stream[..];
+    while reader.next_frame(&mut rest).is_some() {}
+    assert_eq!((reader.frames(), reader.bad_checksums()), (1, 1));
+    assert_eq!(reader.skipped() as usize, 3 + damaged.len());
+}
+
+#[test]
 fn a_start_in_the_middle_and_a_new_session_are_starts() {
     let (first, second) = (session(1, 5), session(2, 3));
     let stream: Vec<u8> = first.concat();

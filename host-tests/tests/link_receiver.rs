@@ -232,6 +232,33 @@ fn what_does_not_belong_to_a_code_of_many_neurons_is_counted() {
     }
 }
 
+/// A sample is over when the next begins, or another session: its value comes then, if it had events.
+#[test]
+fn the_last_sample_before_a_restart_is_decoded() {
+    use spikewire::{FromItems, Item, Scheme};
+    static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
+    let mut receiver = Receiver::<_, 1>::new(&POSITION);
+    let mut reader = Reader::<MAX_FRAME>::new();
+    let mut send = |session, item| {
+        let session = Session::counted(session);
+        let mut transmitter = Transmitter::new(Coding::for_channels(9, 1_000), session);
+        let mut buffer = [0; 64];
+        let mut source = FromItems([item].into_iter());
+        let mut bytes = transmitter.next_frame(&mut source, &mut buffer).unwrap().unwrap();
+        let mut values = Vec::new();
+        let received = reader.next_frame(&mut bytes).unwrap();
+        receiver.apply(&received, |_, _, value| values.push(value));
+        values
+    };
+    let mut event = None;
+    Bank::<_, 1>::new(&POSITION).encode(Tick::from(1_000), [0.5], |first| event = Some(first));
+    let heartbeat = Item::Heartbeat { tick: Tick::from(9_000), address: 0 };
+    assert!(send(1, Item::Event(event.unwrap())).is_empty());
+    let value = POSITION.decoder().decode(POSITION.encoder().encode(0.5));
+    assert_eq!(send(2, heartbeat), [value]);
+    assert!(send(3, heartbeat).is_empty(), "no event came since");
+}
+
 /// A link of one bank, whose samples are frames of their own.
 struct Line<'a, P: Start, const N: usize> {
     bank: Bank<&'a P, N>,
