@@ -246,8 +246,8 @@ fn the_last_sample_before_a_restart_is_decoded() {
         let mut source = FromItems([item].into_iter());
         let mut bytes = transmitter.next_frame(&mut source, &mut buffer).unwrap().unwrap();
         let mut values = Vec::new();
-        let received = reader.next_frame(&mut bytes).unwrap();
-        receiver.apply(&received, |_, _, value| values.push(value));
+        let frame = reader.next_frame(&mut bytes).unwrap();
+        receiver.apply(&frame, |_, _, value| values.push(value));
         values
     };
     let mut event = None;
