@@ -38,3 +38,19 @@ impl fmt::Display for Refused {
 }
 
 impl core::error::Error for Refused {}
+
+/// The place of a ring at this number, and the number of the place after it. The first place has its own number 0 and
+/// that after the last, so that one comparison guards the access and finds the end of the ring.
+#[inline]
+fn ring_place<T>(places: &[T], at: usize) -> Option<(&T, usize)> {
+    match places.get(at) {
+        Some(place) => Some((place, at.wrapping_add(1))),
+        None => first_place(places),
+    }
+}
+
+#[cold]
+#[inline]
+fn first_place<T>(places: &[T]) -> Option<(&T, usize)> {
+    places.first().map(|place| (place, 1))
+}

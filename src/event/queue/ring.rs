@@ -9,7 +9,7 @@ use core::task::Waker;
 use critical_section::{CriticalSection, Mutex};
 
 use super::slot::Slot;
-use super::{Consumer, Overflow, Refused};
+use super::{Consumer, Overflow, Refused, ring_place};
 use crate::event::{Event, Item, Put, Taken, Tick};
 
 /// A queue of `N` items, shared between interrupts and main: events, keyframes and breaks in one order.
@@ -66,9 +66,9 @@ pub struct Queue<C: ?Sized> {
 pub struct Place(Mutex<Cell<Slot>>);
 
 struct State {
-    /// The place of the oldest item.
+    /// The place of the oldest item, or the number of places for the first.
     head: Cell<usize>,
-    /// The place of the next item.
+    /// The place of the next item, or the number of places for the first.
     tail: Cell<usize>,
     /// How many items there are, plus [`CLOSED`] while items have been lost after the last one.
     len: Cell<usize>,
@@ -244,19 +244,25 @@ impl QueueView {
     #[inline]
     fn append(&self, section: CriticalSection<'_>, slot: Slot) {
         let state = self.state.borrow(section);
+        // Where the capacity is known, this is less code than `ring_place`.
         let tail = state.tail.get();
+        let tail = if tail < self.capacity() { tail } else { 0 };
         if let Some(Place(place)) = self.places.get(tail) {
             place.borrow(section).set(slot);
-            state.tail.set(self.after(tail));
+            state.tail.set(tail.wrapping_add(1));
             state.len.set(state.len.get().wrapping_add(1));
         }
     }
 
-    /// The place after this one.
+    /// The place at a head or tail, and the head or tail after it.
     #[inline]
-    fn after(&self, place: usize) -> usize {
-        let next = place.wrapping_add(1);
-        if next == self.places.len() { 0 } else { next }
+    fn place<'a>(
+        &'a self,
+        section: CriticalSection<'a>,
+        at: usize,
+    ) -> Option<(&'a Cell<Slot>, usize)> {
+        let (Place(place), next) = ring_place(&self.places, at)?;
+        Some((place.borrow(section), next))
     }
 
     /// Adds an item where the queue is full, or where items were lost before it.
@@ -280,12 +286,13 @@ impl QueueView {
         match (self.overflow, refusal) {
             (Overflow::DropOldest, _) => {
                 count(&state.lost);
-                let dropped = self.oldest(section).map_or(0, Slot::lost);
-                self.remove_oldest(section);
+                let dropped = self.oldest(section).map_or(0, |(oldest, next)| {
+                    self.remove_oldest(section, next);
+                    oldest.lost()
+                });
                 self.append(section, slot);
                 // Losses before the dropped item come before the next one, which is the oldest now.
-                if let Some(Place(oldest)) = self.places.get(state.head.get()) {
-                    let oldest = oldest.borrow(section);
+                if let Some((oldest, _)) = self.place(section, state.head.get()) {
                     oldest.set(with_loss(state, oldest.get(), u32::from(dropped) + 1));
                 }
                 true
@@ -340,8 +347,8 @@ impl QueueView {
     fn take_apart(&self) -> Option<Taken> {
         critical_section::with(|section| {
             let state = self.state.borrow(section);
-            if let Some(slot) = self.oldest(section) {
-                self.remove_oldest(section);
+            if let Some((slot, next)) = self.oldest(section) {
+                self.remove_oldest(section, next);
                 let excess = if slot.lost() == u8::MAX { state.excess.take() } else { 0 };
                 let lost = u32::from(slot.lost()).saturating_add(excess);
                 return Some(Taken { lost, item: slot.item() });
@@ -355,24 +362,39 @@ impl QueueView {
     /// Removes the oldest item if it is an event with no loss before it, as nearly all are.
     #[inline]
     fn remove_event(&self, section: CriticalSection<'_>) -> Option<Event> {
-        let event = self.oldest(section)?.plain_event()?;
-        self.remove_oldest(section);
+        let state = self.state.borrow(section);
+        let len = state.len.get();
+        // Neither empty nor closed.
+        if (len as isize) <= 0 {
+            return None;
+        }
+        let (place, next) = self.place(section, state.head.get())?;
+        let event = place.get().plain_event()?;
+        state.head.set(next);
+        state.len.set(len.wrapping_sub(1));
+        if len > state.peak.get() {
+            state.peak.set(len);
+        }
         Some(event)
     }
 
+    /// The oldest item, and the head after it.
     #[inline]
-    fn oldest(&self, section: CriticalSection<'_>) -> Option<Slot> {
+    fn oldest(&self, section: CriticalSection<'_>) -> Option<(Slot, usize)> {
         let state = self.state.borrow(section);
-        let Place(place) = self.places.get(state.head.get()).filter(|_| state.len() > 0)?;
-        Some(place.borrow(section).get())
+        if state.len() == 0 {
+            return None;
+        }
+        let (place, next) = self.place(section, state.head.get())?;
+        Some((place.get(), next))
     }
 
-    /// Removes the oldest item of a queue that has one.
+    /// Removes the oldest item of a queue that has one, before this head.
     #[inline]
-    fn remove_oldest(&self, section: CriticalSection<'_>) {
+    fn remove_oldest(&self, section: CriticalSection<'_>, next: usize) {
         let state = self.state.borrow(section);
         let len = state.len();
-        state.head.set(self.after(state.head.get()));
+        state.head.set(next);
         state.len.set(state.len.get().wrapping_sub(1));
         if len > state.peak.get() {
             state.peak.set(len);

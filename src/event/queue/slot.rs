@@ -11,7 +11,7 @@ use crate::{Polarity, SampleKind};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slot {
     tick: Tick,
-    /// The value of a keyframe, else 0.
+    /// The value of a keyframe, else anything.
     bits: u32,
     rest: u32,
 }
@@ -66,7 +66,7 @@ impl Slot {
     pub(super) fn plain_event(self) -> Option<Event> {
         let Self { tick, rest, .. } = self;
         let polarity = if rest & UP == 0 { Polarity::Down } else { Polarity::Up };
-        (rest >> WHAT_AT == EVENT).then_some(Event { tick, address: rest as u16, polarity })
+        (rest < 2 * UP).then_some(Event { tick, address: rest as u16, polarity })
     }
 
     pub(super) fn item(self) -> Item {
@@ -94,7 +94,8 @@ impl From<Item> for Slot {
         match item {
             Item::Event(Event { tick, address, polarity }) => {
                 let up = if polarity == Polarity::Up { UP } else { 0 };
-                Self { tick, bits: 0, rest: up | u32::from(address) }
+                // The tick is at hand, a 0 would have to be made.
+                Self { tick, bits: tick.micros(), rest: up | u32::from(address) }
             }
             Item::Keyframe(Keyframe { tick, address, kind, bits }) => {
                 let detail = u32::from(kind.to_byte()) << DETAIL_AT;

@@ -2,6 +2,7 @@
 
 use core::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
+use super::ring_place;
 use super::slot::Slot;
 use crate::event::{Event, Item, Put, Source, Taken, Tick};
 
@@ -38,9 +39,10 @@ pub struct SpscQueue<const N: usize>(Ring<[Entry; N]>);
 /// Cortex-M0 has no other atomics.
 #[derive(Debug)]
 struct Ring<C: ?Sized> {
-    /// The index of the oldest item; written by the consumer.
+    /// The index of the oldest item, or `N` for the first entry; written by the consumer.
     head: AtomicUsize,
-    /// The index of the next item; written by the producer. The entry before the head stays empty.
+    /// The index of the next item, or `N` for the first entry; written by the producer. The entry before the head
+    /// stays empty.
     tail: AtomicUsize,
     /// How many items were lost; wraps. Written by the producer.
     lost: AtomicU32,
@@ -72,8 +74,8 @@ impl<const N: usize> SpscQueue<N> {
     pub const fn new() -> Self {
         const { assert!(N >= 2, "a queue has room for at least one item") };
         Self(Ring {
-            head: AtomicUsize::new(0),
-            tail: AtomicUsize::new(0),
+            head: AtomicUsize::new(N),
+            tail: AtomicUsize::new(N),
             lost: AtomicU32::new(0),
             lost_tick: AtomicU32::new(0),
             is_split: AtomicU32::new(0),
@@ -99,14 +101,6 @@ impl<const N: usize> Default for SpscQueue<N> {
     }
 }
 
-impl Ring<[Entry]> {
-    #[inline]
-    fn after(&self, place: usize) -> usize {
-        let next = place.wrapping_add(1);
-        if next == self.entries.len() { 0 } else { next }
-    }
-}
-
 /// The interrupt's end of an [`SpscQueue`].
 #[derive(Debug)]
 pub struct SpscProducer<'a> {
@@ -121,9 +115,8 @@ impl SpscProducer<'_> {
         let (tick, bits, rest) = Slot::from(item.into()).words();
         let lost = ring.lost.load(Ordering::Relaxed);
         let tail = ring.tail.load(Ordering::Relaxed);
-        let next = ring.after(tail);
-        match ring.entries.get(tail) {
-            Some(entry) if next != ring.head.load(Ordering::Acquire) => {
+        match ring_place(&ring.entries, tail) {
+            Some((entry, next)) if next != ring.head.load(Ordering::Acquire) => {
                 entry.tick.store(tick.micros(), Ordering::Relaxed);
                 entry.bits.store(bits, Ordering::Relaxed);
                 entry.rest.store(rest, Ordering::Relaxed);
@@ -189,11 +182,14 @@ impl SpscConsumer<'_> {
         let ring = self.ring;
         let head = ring.head.load(Ordering::Relaxed);
         let tail = ring.tail.load(Ordering::Acquire);
-        let entry = ring.entries.get(head).filter(|_| head != tail)?;
+        if head == tail {
+            return None;
+        }
+        let (entry, next) = ring_place(&ring.entries, head)?;
         let tick = Tick::from(entry.tick.load(Ordering::Relaxed));
         let words = (tick, entry.bits.load(Ordering::Relaxed), entry.rest.load(Ordering::Relaxed));
         let count = entry.lost.load(Ordering::Relaxed);
-        ring.head.store(ring.after(head), Ordering::Release);
+        ring.head.store(next, Ordering::Release);
         Some((self.newly(count), Slot::from_words(words)))
     }
 

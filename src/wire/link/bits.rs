@@ -7,16 +7,16 @@ pub(super) trait PutBits {
     /// Appends a value of `count` bits, up to 32.
     fn put(&mut self, value: u32, count: u32);
 
-    /// Appends `code(value, k)`, for values below 2³²-1 and `k` up to 16.
+    /// Appends `code(value, k)`, for `k` up to 16 and values below 2³²-2ᵏ.
     fn put_code(&mut self, value: u32, k: u32);
 }
 
-/// The parts of `code(value, k)`: the number `(value >> k) + 1`, how many bits it has, and the low `k` bits of `value`.
+/// The parts of `code(value, k)`: how many zeros come first, and then what number in how many bits.
 #[inline]
 fn code(value: u32, k: u32) -> (u32, u32, u32) {
-    let number = value.wrapping_shr(k).wrapping_add(1);
-    let low = value & 1_u32.wrapping_shl(k).wrapping_sub(1);
-    (number, 32 - number.leading_zeros(), low)
+    let number = value.wrapping_add(1_u32.wrapping_shl(k));
+    let bits = 32 - number.leading_zeros();
+    (bits.wrapping_sub(k).wrapping_sub(1), number, bits)
 }
 
 /// A string of fewer than 32 bits. A longer one keeps only its length.
@@ -35,8 +35,8 @@ impl PutBits for Word {
 
     #[inline]
     fn put_code(&mut self, value: u32, k: u32) {
-        let (number, bits, low) = code(value, k);
-        self.put(number.wrapping_shl(k) | low, (2 * bits).wrapping_sub(1).wrapping_add(k));
+        let (zeros, number, bits) = code(value, k);
+        self.put(number, zeros.wrapping_add(bits));
     }
 }
 
@@ -47,8 +47,8 @@ pub(super) struct BitWriter<'a> {
     /// The low `pending` bits, fewer than 32, are not in the buffer yet; the others are.
     bits: u32,
     pending: u32,
-    /// Whether bits were lost for want of room.
-    is_full: bool,
+    /// How many more bits there is room for; negative if bits were lost for want of room.
+    left: i32,
 }
 
 /// A position in the string to go back to.
@@ -57,33 +57,31 @@ pub(super) struct Mark {
     written: usize,
     bits: u32,
     pending: u32,
+    left: i32,
 }
 
 impl<'a> BitWriter<'a> {
     /// Appends to what is written.
     pub(super) fn new(bytes: Cursor<'a>) -> Self {
-        Self { bytes, bits: 0, pending: 0, is_full: false }
+        let left = (bytes.room() as i32).wrapping_mul(8);
+        Self { bytes, bits: 0, pending: 0, left }
     }
 
     pub(super) fn mark(&self) -> Mark {
-        Mark { written: self.bytes.written(), bits: self.bits, pending: self.pending }
+        let Self { bits, pending, left, .. } = *self;
+        Mark { written: self.bytes.written(), bits, pending, left }
     }
 
     pub(super) fn back_to(&mut self, mark: Mark) {
         self.bytes.truncate(mark.written);
-        (self.bits, self.pending, self.is_full) = (mark.bits, mark.pending, false);
+        (self.bits, self.pending, self.left) = (mark.bits, mark.pending, mark.left);
     }
 
     /// Appends a word; `None` if it has 32 bits or more, or does not fit.
     #[inline]
     pub(super) fn put_word(&mut self, word: Word) -> Option<()> {
-        (word.count < 32 && self.fits(word.count)).then(|| self.put(word.bits, word.count))
-    }
-
-    /// Whether there is room for this many more bits.
-    #[inline]
-    fn fits(&self, count: u32) -> bool {
-        self.pending.wrapping_add(count) <= (self.bytes.room() as u32).wrapping_mul(8)
+        let fits = word.count < 32 && word.count as i32 <= self.left;
+        fits.then(|| self.put(word.bits, word.count))
     }
 
     /// Appends bits that complete 32 pending bits, which go to the buffer.
@@ -92,7 +90,7 @@ impl<'a> BitWriter<'a> {
         let free = 32_u32.wrapping_sub(self.pending);
         let rest = count.wrapping_sub(free);
         let bits = self.bits.unbounded_shl(free) | value.wrapping_shr(rest);
-        self.is_full |= self.bytes.put(&bits.to_be_bytes()).is_none();
+        let _ = self.bytes.put(&bits.to_be_bytes());
         self.bits = value;
         self.pending = rest;
     }
@@ -100,6 +98,7 @@ impl<'a> BitWriter<'a> {
     /// Appends whole bytes, before any bits; those that do not fit are left out.
     pub(super) fn put_bytes(&mut self, bytes: &[u8]) {
         let _ = self.bytes.put(bytes);
+        self.left = (self.bytes.room() as i32).wrapping_mul(8);
     }
 
     /// How many whole bytes there is room for.
@@ -107,9 +106,9 @@ impl<'a> BitWriter<'a> {
         self.bytes.room()
     }
 
-    /// Whether there was room for all bits in the buffer, and there is for those that are not in it yet.
+    /// Whether there was room for all bits.
     pub(super) fn is_within_limit(&self) -> bool {
-        !self.is_full && self.fits(0)
+        self.left >= 0
     }
 
     /// Writes the bits that are not in the buffer yet, with the last byte filled up with 0.
@@ -124,6 +123,7 @@ impl<'a> BitWriter<'a> {
 impl PutBits for BitWriter<'_> {
     #[inline]
     fn put(&mut self, value: u32, count: u32) {
+        self.left = self.left.wrapping_sub(count as i32);
         let pending = self.pending.wrapping_add(count);
         if pending < 32 {
             self.bits = self.bits.wrapping_shl(count) | value;
@@ -134,10 +134,9 @@ impl PutBits for BitWriter<'_> {
     }
 
     fn put_code(&mut self, value: u32, k: u32) {
-        let (number, bits, low) = code(value, k);
-        self.put(0, bits.wrapping_sub(1));
+        let (zeros, number, bits) = code(value, k);
+        self.put(0, zeros);
         self.put(number, bits);
-        self.put(low, k);
     }
 }
 

@@ -79,13 +79,12 @@ impl Transmitter {
         }
         let mut frame = self.framer.start(first.item.tick(), buffer)?;
         append(&mut frame, first.item)?;
-        loop {
-            self.held = items.take();
-            match self.held {
+        self.held = loop {
+            match items.take() {
                 Some(next) if !next.is_after_break() && append(&mut frame, next.item).is_ok() => {}
-                _ => break,
+                held => break held,
             }
-        }
+        };
         Ok(Some(frame.finish()))
     }
 }
@@ -94,7 +93,7 @@ impl Transmitter {
 #[inline]
 fn append(frame: &mut FrameWriter<'_, '_>, item: Item) -> Result<(), LinkError> {
     match item {
-        Item::Event(event) => frame.event(event),
+        Item::Event(event) => frame.put(event).ok_or(LinkError::Full),
         Item::Keyframe(keyframe) => frame.keyframe(keyframe),
         Item::Heartbeat { tick, address } => frame.heartbeat(tick, address),
         Item::Break(_) => Ok(()),

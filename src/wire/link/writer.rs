@@ -250,27 +250,33 @@ impl<'a> FrameWriter<'_, 'a> {
     /// [`LinkError::Full`]: the event does not fit, or lies more than 2²⁹ µs (8.9 minutes) from the frame's tick. The
     /// frame is unchanged.
     pub fn event(&mut self, event: Event) -> Result<(), LinkError> {
+        self.put(event).ok_or(LinkError::Full)
+    }
+
+    /// Appends an event; `None` if it does not fit.
+    #[inline(never)]
+    pub(super) fn put(&mut self, event: Event) -> Option<()> {
         let mut word = Word::default();
-        self.place.put(event, self.tick, &mut word).ok_or(LinkError::Full)?;
+        self.place.put(event, self.tick, &mut word)?;
         if self.bits.put_word(word).is_none() {
             self.put_long(event)?;
         }
         self.place.pass(event);
-        self.events = self.events.saturating_add(1);
-        Ok(())
+        self.events = self.events.wrapping_add(1);
+        Some(())
     }
 
-    /// Appends an event that is too long for a word; an error if it does not fit.
+    /// Appends an event that is too long for a word; `None` if it does not fit.
     #[cold]
     #[inline(never)]
-    fn put_long(&mut self, event: Event) -> Result<(), LinkError> {
+    fn put_long(&mut self, event: Event) -> Option<()> {
         let mark = self.bits.mark();
-        self.place.put(event, self.tick, &mut self.bits).ok_or(LinkError::Full)?;
+        self.place.put(event, self.tick, &mut self.bits)?;
         if !self.bits.is_within_limit() {
             self.bits.back_to(mark);
-            return Err(LinkError::Full);
+            return None;
         }
-        Ok(())
+        Some(())
     }
 
     /// How many events it has.
