@@ -18,7 +18,7 @@ const ORDERED: [&str; 6] = [
     "ring.tail.load(Ordering::Acquire)",
     "ring.lost.store(lost.wrapping_add(1), Ordering::Release)",
     "self.ring.lost.load(Ordering::Acquire)",
-    "ring.head.store(ring.after(head), Ordering::Release)",
+    "ring.head.store(next, Ordering::Release)",
     "ring.head.load(Ordering::Acquire)",
 ];
 
@@ -48,16 +48,18 @@ impl Ring {
     fn new(places: usize, orderings: Orderings) -> Self {
         Self {
             orderings,
-            head: AtomicUsize::new(0),
-            tail: AtomicUsize::new(0),
+            head: AtomicUsize::new(places),
+            tail: AtomicUsize::new(places),
             lost: AtomicU32::new(0),
             lost_tick: AtomicU32::new(0),
             entries: (0..places).map(|_| Entry::default()).collect(),
         }
     }
 
-    fn after(&self, place: usize) -> usize {
-        (place + 1) % self.entries.len()
+    /// The entry at a head or tail, the first also at the number of entries, and the head or tail after it.
+    fn place(&self, at: usize) -> (&Entry, usize) {
+        let at = at % self.entries.len();
+        (&self.entries[at], at + 1)
     }
 
     /// Pushes the item of this number.
@@ -65,12 +67,11 @@ impl Ring {
         let [tail_store, _, lost_store, _, _, head_load] = self.orderings;
         let lost = self.lost.load(Relaxed);
         let tail = self.tail.load(Relaxed);
-        let next = self.after(tail);
+        let (entry, next) = self.place(tail);
         if next == self.head.load(head_load) {
             self.lost_tick.store(number, Relaxed);
             self.lost.store(lost + 1, lost_store);
         } else {
-            let entry = &self.entries[tail];
             entry.tick.store(number, Relaxed);
             entry.rest.store(number, Relaxed);
             entry.lost.store(lost, Relaxed);
@@ -110,11 +111,11 @@ impl Consumer {
         if head == ring.tail.load(tail_load) {
             return false;
         }
-        let entry = &ring.entries[head];
+        let (entry, next) = ring.place(head);
         let number = entry.tick.load(Relaxed);
         let rest = entry.rest.load(Relaxed);
         let count = entry.lost.load(Relaxed);
-        ring.head.store(ring.after(head), head_store);
+        ring.head.store(next, head_store);
         assert_eq!(number, rest, "an item comes before its words");
         let lost = count.wrapping_sub(self.known);
         self.known = count;

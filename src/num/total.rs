@@ -34,7 +34,7 @@ pub trait Total: Copy + PartialOrd + Debug + Send + Sync + Stored {
     /// `self * 2^times`.
     fn doubled(self, times: u8) -> Self;
 
-    /// `self / 2^times`; integers are rounded down.
+    /// `self / 2^times`, up to 15 times; integers are rounded down.
     fn halved(self, times: u8) -> Self;
 
     /// `self / 2^times`; integers are rounded to the nearest, halves upwards.
@@ -114,7 +114,7 @@ impl Total for f32 {
 }
 
 macro_rules! integer_total {
-    ($sum:ty, $plus:ident, $minus:ident, $times:ident, $capped:expr, $is_drawn:expr) => {
+    ($sum:ty, $plus:ident, $minus:ident, $times:ident, $halved:expr, $capped:expr, $is_drawn:expr) => {
         impl Total for $sum {
             const ZERO: Self = 0;
 
@@ -151,7 +151,8 @@ macro_rules! integer_total {
 
             #[inline]
             fn halved(self, times: u8) -> Self {
-                self.wrapping_shr(times.into())
+                let halved: fn(Self, u32) -> Self = $halved;
+                halved(self, times.into())
             }
 
             #[inline]
@@ -168,12 +169,26 @@ macro_rules! integer_total {
     };
 }
 
+/// `sum >> times`, for fewer than 32. A Cortex-M0 calls the runtime for a shift of 64 bits.
+#[inline]
+const fn halved_by_words(sum: i64, times: u32) -> i64 {
+    if cfg!(target_pointer_width = "64") {
+        return sum.wrapping_shr(times);
+    }
+    let high = (sum >> 32) as i32;
+    // In two steps, as no 32-bit word is shifted by 32.
+    let carried = (high as u32).wrapping_shl(1).wrapping_shl(31_u32.wrapping_sub(times));
+    let low = (sum as u32).wrapping_shr(times) | carried;
+    (high.wrapping_shr(times) as i64) << 32 | low as i64
+}
+
 // For samples of 16 bits, `2^16 p` and `draw * R + R / 2`, rounded up, fit 32 bits.
 integer_total!(
     i32,
     saturating_add,
     saturating_sub,
     saturating_mul,
+    i32::wrapping_shr,
     |sum| sum,
     |sum, range, draw| {
         let (sum, range) = (sum as u32, range as u32);
@@ -185,6 +200,7 @@ integer_total!(
     wrapping_add,
     wrapping_sub,
     wrapping_mul,
+    halved_by_words,
     |sum| sum.clamp(-(1 << 62), 1 << 62),
     |sum, range, draw| {
         sum.wrapping_shl(17) >= i64::from(draw.wrapping_mul(2).wrapping_add(1)).wrapping_mul(range)

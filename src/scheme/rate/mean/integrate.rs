@@ -136,10 +136,10 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
         self.threshold.offset_from(S::ZERO)
     }
 
-    /// Adds a sample to a potential, and fires. Returns the potential that is left, the number of spikes, negative if
-    /// they go down, and whether the potential has to be looked at, as it may not be finite.
+    /// Adds a sample to a potential, and fires. Returns the potential that is left, and the number of spikes, negative if
+    /// they go down. Without spikes it is finite.
     #[inline]
-    fn advance(&self, mut potential: S::Total, sample: S) -> (S::Total, i32, bool) {
+    fn advance(&self, mut potential: S::Total, sample: S) -> (S::Total, i32) {
         if self.is_leaky {
             potential = leaked(potential, self.power);
         }
@@ -147,26 +147,32 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
         let (threshold, most) = (self.unit(), i32::from(self.most));
         let lowest = S::Total::ZERO.minus(threshold);
         let mut steps = 0_i32;
+        // Only a potential that may not fire any more can be beyond the threshold, and need the cap.
         if potential >= threshold {
             loop {
                 potential = potential.minus(threshold);
                 steps = steps.wrapping_add(1);
-                if steps >= most || potential < threshold {
-                    break;
+                if steps >= most {
+                    return (potential.capped(), steps);
                 }
-            }
-        } else if potential > lowest {
-            return (potential, 0, false);
-        } else {
-            loop {
-                potential = potential.plus(threshold);
-                steps = steps.wrapping_sub(1);
-                if steps <= most.wrapping_neg() || potential > lowest {
-                    break;
+                if potential < threshold {
+                    return (potential, steps);
                 }
             }
         }
-        (potential.capped(), steps, true)
+        if potential > lowest {
+            return (potential, 0);
+        }
+        loop {
+            potential = potential.plus(threshold);
+            steps = steps.wrapping_sub(1);
+            if steps <= most.wrapping_neg() {
+                return (potential.capped(), steps);
+            }
+            if potential > lowest {
+                return (potential, steps);
+            }
+        }
     }
 }
 
@@ -214,8 +220,8 @@ impl<S: Sample, const K: usize> Scheme for IntegrateAndFire<S, K> {
 
     #[inline]
     fn encode(&self, state: &mut IntegrateAndFireState<S>, sample: S) -> Steps<K> {
-        let (potential, steps, has_fired) = self.advance(state.potential, sample);
-        if has_fired && !potential.is_finite() {
+        let (potential, steps) = self.advance(state.potential, sample);
+        if steps != 0 && !potential.is_finite() {
             state.tally.reject();
             return Steps::within(0);
         }
@@ -233,7 +239,7 @@ impl<S: Sample, const K: usize> Scheme for IntegrateAndFire<S, K> {
     ) -> usize {
         let mut potential = state.potential;
         for (output, &sample) in outputs.iter_mut().zip(samples) {
-            let (left, steps, _) = self.advance(potential, sample);
+            let (left, steps) = self.advance(potential, sample);
             potential = left;
             output.write(Steps::within(steps as i8));
         }
