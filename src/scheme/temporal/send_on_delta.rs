@@ -1,5 +1,7 @@
 //! Send-on-delta: step forward with several spikes for a sample, for signals that jump.
 
+use core::hint::black_box;
+
 use super::StepState;
 use super::band::Band;
 use crate::error::{step, unwrap, within};
@@ -244,6 +246,7 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
             if sample > band.upper {
                 check = check.including(sample);
                 loop {
+                    black_box(()); // keeps the compiler from unrolling the loop
                     band = Band::around(band.upper, threshold);
                     steps = steps.wrapping_add(1);
                     if steps >= most || sample <= band.upper {
@@ -253,6 +256,7 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
             } else if band.is_above(sample) {
                 check = check.including(sample);
                 loop {
+                    black_box(());
                     band = Band::around(band.lower, threshold);
                     steps = steps.wrapping_sub(1);
                     if steps <= most.wrapping_neg() || sample >= band.lower {

@@ -1,5 +1,7 @@
 //! Integrate and fire: spikes of two directions whose sum follows the integral of the signal.
 
+use core::hint::black_box;
+
 use crate::error::{offset, step, unwrap, within};
 use crate::num::{Tally, Total, to_f64};
 use crate::scheme::codec::{Until, encode_each};
@@ -150,6 +152,7 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
         // Only a potential that may not fire any more can be beyond the threshold, and need the cap.
         if potential >= threshold {
             loop {
+                stay_rolled();
                 potential = potential.minus(threshold);
                 steps = steps.wrapping_add(1);
                 if steps >= most {
@@ -164,6 +167,7 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
             return (potential, 0);
         }
         loop {
+            stay_rolled();
             potential = potential.plus(threshold);
             steps = steps.wrapping_sub(1);
             if steps <= most.wrapping_neg() {
@@ -173,6 +177,15 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
                 return (potential, steps);
             }
         }
+    }
+}
+
+/// Keeps the compiler from unrolling the loop it is in. On a Cortex-M0, the only core without atomic exchange, the loop
+/// would take more instructions.
+#[inline]
+fn stay_rolled() {
+    if cfg!(target_has_atomic = "32") {
+        black_box(());
     }
 }
 
