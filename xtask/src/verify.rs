@@ -127,7 +127,7 @@ const LONG: &[Step] = &[
     ),
     step(
         "mutants",
-        "changes of the crate's code, one at a time, which tests have to notice: days in all",
+        "thousands of changes of the crate's code, compiled at once, each of which a test has to notice",
         crate::mutants::mutants,
     ),
     step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", checks::bench_m0),

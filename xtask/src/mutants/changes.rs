@@ -1,0 +1,84 @@
+//! The changes to be tried, as cargo-mutants lists them.
+
+use crate::{
+    paths,
+    shell::{cargo, command, output, run},
+};
+use anyhow::Result;
+use serde::Deserialize;
+use std::{
+    collections::{HashMap, HashSet},
+    ffi::OsStr,
+    fs,
+};
+
+/// One change of the crate's source.
+#[derive(Deserialize)]
+pub struct Change {
+    /// The source file, from the repository's top.
+    pub file: String,
+    /// File, line, column, and what is replaced by what.
+    pub name: String,
+    pub replacement: String,
+    genre: String,
+    span: Span,
+}
+
+#[derive(Deserialize)]
+struct Span {
+    start: Place,
+}
+
+#[derive(Deserialize)]
+struct Place {
+    line: usize,
+    column: usize,
+}
+
+/// What a change is found by in the syntax tree: genre, and line and column, from 1.
+pub type Site = (String, usize, usize);
+
+impl Change {
+    pub fn site(&self) -> Site {
+        (self.genre.clone(), self.span.start.line, self.span.start.column)
+    }
+}
+
+/// All changes of the crate.
+pub fn all() -> Result<Vec<Change>> {
+    listed(&[])
+}
+
+/// The names of the changes of lines that differ from a commit's.
+pub fn since(commit: &str) -> Result<HashSet<String>> {
+    let lines = paths::target().join("mutants/lines.diff");
+    fs::create_dir_all(paths::target().join("mutants"))?;
+    fs::write(&lines, output(command("git").args(["diff", commit, "--", "src"]))?)?;
+    let changes = listed(&["--in-diff".as_ref(), lines.as_os_str()])?;
+    Ok(changes.into_iter().map(|change| change.name).collect())
+}
+
+/// What cargo-mutants lists; it is installed first if it is missing.
+fn listed(of: &[&OsStr]) -> Result<Vec<Change>> {
+    let tools = paths::target().join("tools");
+    let program = tools.join("bin/cargo-mutants");
+    if !program.is_file() {
+        let mut install = cargo("install cargo-mutants --locked --root");
+        run(install.arg(&tools).arg("--target-dir").arg(tools.join("build")))?;
+    }
+    let list = ["mutants", "--package", "spikewire", "--list", "--json"];
+    Ok(serde_json::from_str(&output(command(program).args(list).args(of))?)?)
+}
+
+/// Names that an edit above them in the file leaves as they are: without line and column, and numbered where several
+/// are alike.
+pub fn lasting_names(changes: &[Change]) -> Vec<String> {
+    let mut seen = HashMap::new();
+    let lasting = changes.iter().map(|change| {
+        let what = change.name.splitn(4, ':').nth(3).unwrap_or_default();
+        let name = format!("{}:{what}", change.file);
+        let times = seen.entry(name.clone()).and_modify(|times| *times += 1).or_insert(1);
+        if *times == 1 { name } else { format!("{name} ({times})") }
+    });
+    lasting.collect()
+}

@@ -1,0 +1,234 @@
+//! A copy of the repository, whose crate has every change behind a switch.
+
+use super::{
+    Out,
+    changes::Change,
+    schemata::{Sites, switched},
+};
+use crate::{
+    paths,
+    shell::{command, run},
+};
+use anyhow::{Context, Result, ensure};
+use serde_json::Value;
+use std::{
+    collections::BTreeMap,
+    fs,
+    hash::{DefaultHasher, Hash, Hasher},
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+};
+
+/// A program of tests.
+pub struct Program {
+    pub name: String,
+    pub path: PathBuf,
+    /// Where its package is, in which it is started.
+    pub package: PathBuf,
+}
+
+pub struct Copy {
+    top: PathBuf,
+    pub out: BTreeMap<usize, Out>,
+}
+
+impl Copy {
+    /// Below `target/mutants`. All but the crate's source are links.
+    pub fn new() -> Result<Self> {
+        let top = paths::target().join("mutants/tree");
+        fs::create_dir_all(&top)?;
+        for entry in fs::read_dir(paths::root())? {
+            let name = entry?.file_name();
+            if name != "src" && name != "target" && name != ".git" && !top.join(&name).exists() {
+                run(command("ln").arg("-s").arg(paths::root().join(&name)).arg(top.join(&name)))?;
+            }
+        }
+        Ok(Self { top, out: BTreeMap::new() })
+    }
+
+    /// Compiles the tests, without the changes that the compiler does not take. Which these are is kept, while the crate
+    /// is the same.
+    pub fn programs(&mut self, changes: &[Change]) -> Result<Vec<Program>> {
+        let kept = kept()?;
+        self.out = fs::read(&kept)
+            .ok()
+            .and_then(|out| serde_json::from_slice(&out).ok())
+            .unwrap_or_default();
+        self.compile(changes, "check --package spikewire --all-features")?;
+        fs::write(&kept, serde_json::to_string(&self.out)?)?;
+        let told = self.compile(
+            changes,
+            "test --no-run --package spikewire --package host-tests --lib --test chips --test codes --test wire",
+        )?;
+        fs::write(kept, serde_json::to_string(&self.out)?)?;
+        let programs = told.iter().filter_map(|message| {
+            let path = message["executable"].as_str()?.into();
+            let name = message["target"]["name"].as_str()?.to_owned();
+            let package = Path::new(message["manifest_path"].as_str()?).parent()?.to_owned();
+            Some(Program { name, path, package })
+        });
+        Ok(programs.collect())
+    }
+
+    fn compile(&mut self, changes: &[Change], arguments: &str) -> Result<Vec<Value>> {
+        loop {
+            self.write(changes)?;
+            let told =
+                self.cargo().args(arguments.split(' ')).arg("--message-format=json").output()?;
+            let messages: Vec<Value> =
+                told.stdout.split(|byte| *byte == b'\n').flat_map(serde_json::from_slice).collect();
+            if told.status.success() {
+                return Ok(messages);
+            }
+            let before = self.out.len();
+            let errors = messages
+                .iter()
+                .map(|message| &message["message"])
+                .filter(|message| message["level"] == "error");
+            for error in errors {
+                for span in error["spans"].as_array().into_iter().flatten() {
+                    self.take_out(span)?;
+                }
+            }
+            let said = String::from_utf8_lossy(&told.stderr);
+            let shown: Vec<&str> = messages
+                .iter()
+                .filter_map(|message| message["message"]["rendered"].as_str())
+                .collect();
+            ensure!(
+                self.out.len() > before,
+                "the copy does not compile:\n{said}\n{}",
+                shown.join("\n")
+            );
+            println!("{} changes do not compile, or have no switch", self.out.len());
+        }
+    }
+
+    /// The changes that an error points to.
+    fn take_out(&mut self, span: &Value) -> Result<()> {
+        let (Some(file), Some(at)) = (span["file_name"].as_str(), span["byte_start"].as_u64())
+        else {
+            return Ok(());
+        };
+        let file = self.top.join(file);
+        if file.starts_with(self.top.join("src")) && span["is_primary"] == true {
+            let text = fs::read_to_string(file)?;
+            self.out.extend(innermost(&text[..at as usize]));
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, changes: &[Change]) -> Result<()> {
+        let mut files: BTreeMap<&str, Sites> = BTreeMap::new();
+        for (number, change) in
+            changes.iter().enumerate().filter(|(number, _)| !self.out.contains_key(number))
+        {
+            let sites = files.entry(&change.file).or_default();
+            sites.entry(change.site()).or_default().push((number, change.replacement.clone()));
+        }
+        for file in sources(&paths::root().join("src"))? {
+            let name = file.strip_prefix(paths::root())?;
+            let text = fs::read_to_string(&file)?;
+            let sites = files.remove(name.to_str().context("a file's name is no text")?);
+            let (mut text, out) = switched(&text, &sites.unwrap_or_default())?;
+            self.out.extend(out);
+            if name == Path::new("src/lib.rs") {
+                let features = "#![no_std]\n#![feature(core_intrinsics, const_eval_select)]";
+                text = text.replacen("#![no_std]", features, 1);
+                text = text
+                    .replace("#[cfg(test)]\nextern crate std;", "extern crate std;\nmod mutant;");
+            }
+            write_if_new(&self.top.join(name), &text)?;
+        }
+        let switch =
+            format!("{}\nconst CHANGES: usize = {};\n", include_str!("switch.rs"), changes.len());
+        write_if_new(&self.top.join("src/mutant.rs"), &switch)
+    }
+
+    /// Cargo in the copy. Optimised a little: the tests run many times.
+    fn cargo(&self) -> Command {
+        let mut cargo = Command::new("cargo");
+        cargo
+            .current_dir(&self.top)
+            .env("CARGO_TARGET_DIR", paths::target().join("mutants/build"))
+            .env("CARGO_INCREMENTAL", "0")
+            .env("CARGO_PROFILE_DEV_OPT_LEVEL", "1")
+            .env("RUSTFLAGS", "--cap-lints=allow")
+            // The switch asks whether it runs within a constant, which only the compiler's own library may.
+            .env("RUSTC_BOOTSTRAP", "spikewire")
+            .stderr(Stdio::inherit());
+        cargo
+    }
+}
+
+/// The file of what is left out of the crate as it is.
+fn kept() -> Result<PathBuf> {
+    let mut hasher = DefaultHasher::new();
+    for file in sources(&paths::root().join("src"))? {
+        (&file, fs::read(&file)?).hash(&mut hasher);
+    }
+    Ok(paths::target().join(format!("mutants/out-{:016x}.json", hasher.finish())))
+}
+
+fn write_if_new(file: &Path, text: &str) -> Result<()> {
+    if fs::read_to_string(file).is_ok_and(|old| old == text) {
+        return Ok(());
+    }
+    fs::create_dir_all(file.parent().context("a file without a directory")?)?;
+    Ok(fs::write(file, text)?)
+}
+
+/// All Rust files below a directory.
+fn sources(directory: &Path) -> Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(directory)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            files.extend(sources(&path)?);
+        } else {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// The changes within whose marks the text ends, of those that lie within each other the inner ones.
+fn innermost(text: &str) -> Vec<(usize, Out)> {
+    let mut open: Vec<(usize, Out, usize)> = Vec::new();
+    for (start, _) in text.match_indices("/*") {
+        let Some(mark) = text[start + 2..].split_once("*/").map(|(mark, _)| mark) else { continue };
+        let end = start + mark.len() + 4;
+        let number = |digits: Option<&str>| digits.and_then(|digits| digits.parse::<usize>().ok());
+        if let Some(change) = number(mark.strip_prefix('<')) {
+            open.push((change, Out::DoesNotCompile, end));
+        } else if let Some(change) = number(mark.strip_prefix('{')) {
+            open.push((change, Out::NoSwitch, end));
+        } else if let Some(change) = number(mark.strip_suffix(['>', '}']))
+            && let Some(last) = open.iter().rposition(|(opened, ..)| *opened == change)
+        {
+            open.remove(last);
+        }
+    }
+    // Marks of several changes at one place stand side by side.
+    let mut found = Vec::new();
+    let mut before = open.last().map_or(0, |(.., end)| *end);
+    while let Some((change, out, end)) = open.pop().filter(|(.., end)| *end == before) {
+        found.push((change, out));
+        before = end - format!("/*<{change}*/").len();
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_is_that_of_the_innermost_change() {
+        let of = |text| innermost(text).into_iter().map(|(change, _)| change).collect::<Vec<_>>();
+        assert_eq!(of("/*{1*//*{2*/match (/*{3*/a"), [3]);
+        assert_eq!(of("/*{1*//*{2*/match (/*{3*/a/*3}*/)"), [2, 1]);
+        assert_eq!(of("/*<4*/a/*4>*/ /* a comment */ b"), [0; 0]);
+    }
+}

@@ -1,0 +1,47 @@
+//! The committed list that a run is held against: `host-tests/mutants.toml`.
+
+use crate::paths;
+use anyhow::{Context, Result};
+use serde::Deserialize;
+use std::{collections::BTreeSet, fs};
+
+/// Changes that no test notices.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Held {
+    /// Those that no test can tell from the crate as it is.
+    #[serde(default)]
+    equal: Vec<Equal>,
+    /// Those that a test should notice, and none does yet.
+    #[serde(default)]
+    not_noticed_yet: BTreeSet<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Equal {
+    /// Read by people alone.
+    #[serde(rename = "reason")]
+    _reason: String,
+    changes: BTreeSet<String>,
+}
+
+impl Held {
+    pub fn read() -> Result<Self> {
+        let file = paths::root().join("host-tests/mutants.toml");
+        let text = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
+        toml::from_str(&text).context("host-tests/mutants.toml")
+    }
+
+    pub fn is_equal(&self, name: &str) -> bool {
+        self.equal.iter().any(|equal| equal.changes.contains(name))
+    }
+
+    pub fn is_known(&self, name: &str) -> bool {
+        self.not_noticed_yet.contains(name)
+    }
+
+    pub fn names(&self) -> impl Iterator<Item = &String> {
+        self.equal.iter().flat_map(|equal| &equal.changes).chain(&self.not_noticed_yet)
+    }
+}

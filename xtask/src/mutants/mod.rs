@@ -1,0 +1,121 @@
+//! `cargo verify mutants`: changes of the crate's code, each of which the tests have to notice.
+//!
+//! cargo-mutants lists them. A copy of the crate has all of them at once, each behind a switch that is read from the
+//! environment, so that its tests are compiled once. Each test runs alone and records which changes it reaches; then each
+//! change is switched on for the tests that reach it, the quickest first. `host-tests/mutants.toml` lists those that none
+//! notices; any other fails.
+
+mod changes;
+mod copy;
+mod held;
+mod judge;
+mod schemata;
+mod tests;
+mod text;
+
+use anyhow::{Result, bail, ensure};
+use copy::{Copy, Program};
+use held::Held;
+use judge::Verdict;
+use serde::{Deserialize, Serialize};
+use std::{collections::BTreeMap, env};
+
+/// The rooms, which their tests' programs are named after, and where their sources begin.
+const ROOMS: [(&str, &[&str]); 3] = [
+    ("wire", &["src/wire/", "src/event/", "src/out/", "src/serial.rs"]),
+    ("chips", &["src/chip/"]),
+    ("codes", &["src/scheme/", "src/num/", "src/frame/", "src/error/"]),
+];
+
+/// Why a change cannot be switched on.
+#[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Out {
+    /// The compiler does not take it.
+    DoesNotCompile,
+    /// The compiler does not take its switch, or it is in a constant.
+    NoSwitch,
+}
+
+/// `MUTANTS_SINCE=v0.1.0` tries the changes of lines that are not those of that commit, and `MUTANTS_IN=src/wire` those
+/// whose names have this in them. A run that is stopped goes on where it was.
+pub fn mutants() -> Result<()> {
+    let changes = changes::all()?;
+    let names = changes::lasting_names(&changes);
+    let recent =
+        env::var("MUTANTS_SINCE").map(|commit| changes::since(&commit)).ok().transpose()?;
+    let part = env::var("MUTANTS_IN").ok();
+    let is_chosen = |number: &usize| {
+        let name = &changes[*number].name;
+        recent.as_ref().is_none_or(|recent| recent.contains(name))
+            && part.as_ref().is_none_or(|part| name.contains(part))
+    };
+    let chosen: Vec<usize> = (0..changes.len()).filter(is_chosen).collect();
+    ensure!(!chosen.is_empty() || recent.is_some(), "there is no such change");
+
+    let mut copy = Copy::new()?;
+    let programs = copy.programs(&changes)?;
+    let tests = tests::record(&programs)?;
+    let tried: Vec<usize> =
+        chosen.iter().copied().filter(|number| !copy.out.contains_key(number)).collect();
+    println!("{} changes, {} tests", tried.len(), tests.len());
+    let is_own = |change: usize, program: &Program| room(&changes[change].file) == program.name;
+    let verdicts = judge::judge(&tried, &programs, &tests, is_own)?;
+
+    let held = Held::read()?;
+    for (name, _) in ROOMS {
+        let is_here = |number: &&usize| room(&changes[**number].file) == name;
+        let here: Vec<usize> = chosen.iter().filter(is_here).copied().collect();
+        println!("{name}: {}", counts(&here, &names, &verdicts, &copy.out, &held));
+    }
+    let mut wrong = Vec::new();
+    for (number, verdict) in &verdicts {
+        let name = &names[*number];
+        let is_listed = held.is_equal(name) || held.is_known(name);
+        match verdict {
+            Verdict::Missed | Verdict::Quiet if !is_listed => {
+                wrong.push(format!("not noticed: {name}"))
+            }
+            Verdict::NotReached if !is_listed => wrong.push(format!("not reached: {name}")),
+            Verdict::Noticed | Verdict::Endless if is_listed => {
+                wrong.push(format!("listed, but noticed: {name}"));
+            }
+            _ => {}
+        }
+    }
+    let gone = held.names().filter(|name| !names.contains(name));
+    wrong.extend(gone.map(|name| format!("listed, but gone: {name}")));
+    if wrong.is_empty() { Ok(()) } else { bail!("{}", wrong.join("\n")) }
+}
+
+fn room(file: &str) -> &'static str {
+    let is_here =
+        |(_, sources): &&(_, &[&str])| sources.iter().any(|source| file.starts_with(source));
+    ROOMS.iter().find(is_here).map_or("", |(name, _)| name)
+}
+
+/// What became of a room's changes.
+fn counts(
+    here: &[usize],
+    names: &[String],
+    verdicts: &BTreeMap<usize, Verdict>,
+    out: &BTreeMap<usize, Out>,
+    held: &Held,
+) -> String {
+    let judged = |of: &[Verdict]| {
+        let is = |number: &&usize| verdicts.get(number).is_some_and(|verdict| of.contains(verdict));
+        here.iter().filter(is).copied().collect::<Vec<_>>()
+    };
+    let left_out = |why| here.iter().filter(|number| out.get(number) == Some(&why)).count();
+    let missed = judged(&[Verdict::Missed, Verdict::Quiet, Verdict::NotReached]);
+    let equal = missed.iter().filter(|number| held.is_equal(&names[**number])).count();
+    format!(
+        "{} tried: {} noticed, {} without end, {equal} equal, {} not noticed; \
+         {} do not compile, {} without a switch",
+        here.len() - left_out(Out::DoesNotCompile) - left_out(Out::NoSwitch),
+        judged(&[Verdict::Noticed]).len(),
+        judged(&[Verdict::Endless]).len(),
+        missed.len() - equal,
+        left_out(Out::DoesNotCompile),
+        left_out(Out::NoSwitch),
+    )
+}
