@@ -13,7 +13,7 @@ use anyhow::{Context, Result, ensure};
 use serde_json::Value;
 use std::{
     collections::BTreeMap,
-    fs,
+    env, fs,
     hash::{DefaultHasher, Hash, Hasher},
     path::{Path, PathBuf},
     process::{Command, Stdio},
@@ -56,10 +56,10 @@ impl Copy {
             .unwrap_or_default();
         self.compile(changes, "check --package spikewire --all-features")?;
         fs::write(&kept, serde_json::to_string(&self.out)?)?;
-        let told = self.compile(
-            changes,
-            "test --no-run --package spikewire --package host-tests --lib --test chips --test codes --test wire",
-        )?;
+        let tests = env::var("MUTANTS_TESTS").unwrap_or_else(|_| "chips codes wire".into());
+        let tests = tests.split(' ').map(|name| format!(" --test {name}")).collect::<String>();
+        let build = "test --no-run --package spikewire --package host-tests --lib";
+        let told = self.compile(changes, &format!("{build}{tests}"))?;
         fs::write(kept, serde_json::to_string(&self.out)?)?;
         let programs = told.iter().filter_map(|message| {
             let path = message["executable"].as_str()?.into();
