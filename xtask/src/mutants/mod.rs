@@ -37,7 +37,8 @@ pub enum Out {
 }
 
 /// `MUTANTS_SINCE=v0.1.0` tries the changes of lines that are not those of that commit, and `MUTANTS_IN=src/wire` those
-/// whose names have this in them; `MUTANTS_TESTS='chips wire'` leaves the tests of codes out, which compile longest. A run that is stopped goes on where it was.
+/// whose names have this in them; `MUTANTS_TESTS='chips wire'` leaves the tests of codes out, which compile longest. A run
+/// that is stopped goes on where it was.
 pub fn mutants() -> Result<()> {
     let changes = changes::all()?;
     let names = changes::lasting_names(&changes);
