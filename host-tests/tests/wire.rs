@@ -19,3 +19,4 @@ mod link_receiver;
 mod link_time;
 mod queue;
 mod sink_bus;
+mod sink_io06;
