@@ -8,8 +8,9 @@ use spikewire::temporal::AdaptiveStepForward;
 use crate::entry::spike_of;
 use crate::plain::Plain;
 use crate::{
-    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Paper, Parameter,
-    Scaled, Search, };
+    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Paper, Parameter, Scaled,
+    Search,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -39,15 +40,13 @@ impl Entry for Scheme {
                 "the smallest step, above 0: what the distance from the baseline must exceed at rest",
                 0.5,
             ),
-            Parameter::count("doublings", "how often the step doubles at most, 0 to 30",
-            )
-            .with_example("3")
-            .with_paper(Paper::Text("3"))
-            .searched(Search::Whole(0, 8)),
-            Parameter::count("run", "how many spikes in one direction double the step, 1 to 8",
-            )
-            .with_default("2")
-            .searched(Search::Whole(1, 4)),
+            Parameter::count("doublings", "how often the step doubles at most, 0 to 30")
+                .with_example("3")
+                .with_paper(Paper::Text("3"))
+                .searched(Search::Whole(0, 8)),
+            Parameter::count("run", "how many spikes in one direction double the step, 1 to 8")
+                .with_default("2")
+                .searched(Search::Whole(1, 4)),
             Parameter::START,
         ],
     };

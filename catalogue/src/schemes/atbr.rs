@@ -8,8 +8,9 @@ use spikewire::{Spike, Start};
 use crate::entry::spike_of;
 use crate::plain::Plain;
 use crate::{
-    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Paper, Parameter,
-    Scaled, Search, };
+    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Paper, Parameter, Scaled,
+    Search,
+};
 
 #[cfg(feature = "run")]
 use {
@@ -39,11 +40,10 @@ impl Entry for Scheme {
                 "the smallest threshold, above 0: what a change from sample to sample must exceed at rest",
                 0.1,
             ),
-            Parameter::count("doublings", "how often the threshold doubles at most, 0 to 15",
-            )
-            .with_example("4")
-            .with_paper(Paper::Text("4"))
-            .searched(Search::Whole(0, 8)),
+            Parameter::count("doublings", "how often the threshold doubles at most, 0 to 15")
+                .with_example("4")
+                .with_paper(Paper::Text("4"))
+                .searched(Search::Whole(0, 8)),
             Parameter::START,
         ],
     };

@@ -6,8 +6,7 @@ use spikewire::Start;
 use spikewire::timing::{Burst, BurstSpikes};
 
 use crate::plain::Plain;
-use crate::{
-    Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled, Search, };
+use crate::{Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled, Search};
 
 #[cfg(feature = "run")]
 use {
@@ -42,14 +41,12 @@ impl Entry for Scheme {
             Parameter::count("spikes", "most spikes a sample, 1 to 255")
                 .with_default("5")
                 .searched(Search::Whole(1, 16)),
-            Parameter::count("shortest", "shortest interval in slots, from 1 on",
-            )
-            .with_default("2")
-            .searched(Search::Whole(1, 8)),
-            Parameter::count("longest", "longest interval in slots, up to 255",
-            )
-            .with_default("10")
-            .searched(Search::Whole(1, 16)),
+            Parameter::count("shortest", "shortest interval in slots, from 1 on")
+                .with_default("2")
+                .searched(Search::Whole(1, 8)),
+            Parameter::count("longest", "longest interval in slots, up to 255")
+                .with_default("10")
+                .searched(Search::Whole(1, 16)),
             Parameter::MIN,
             Parameter::MAX,
         ],

@@ -13,8 +13,8 @@ use crate::{
 #[cfg(feature = "run")]
 use {
     crate::run::{
-        Asked, Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape,
-        Visit, missing, state,
+        Asked, Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape, Visit,
+        missing, state,
     },
     anyhow::{Context, Result, bail},
     spikewire::dynamic,

@@ -6,9 +6,7 @@ use spikewire::{Sample, Start};
 use super::grf_nonlinear::{CENTRES, COMPANDING, WIDTHS};
 use super::grf_slots::transcribed_decoder;
 use crate::plain::{Plain, response, spaced_widths};
-use crate::{
-    Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled,
-};
+use crate::{Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {

@@ -6,9 +6,7 @@ use spikewire::Start;
 use spikewire::population::{SlotSpikes, Slots};
 
 use crate::plain::{Plain, response};
-use crate::{
-    Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled,
-    };
+use crate::{Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled};
 
 #[cfg(feature = "run")]
 use {

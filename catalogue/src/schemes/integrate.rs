@@ -37,7 +37,9 @@ pub(super) const PARAMETERS: &[Parameter] = &[
     Parameter::new("reference", Kind::Number, Unit::Signal, "the value without spikes")
         .with_default("0")
         .searched(Search::Around(0.0, 1.0)),
-    Parameter::count("power", "the decoder's mean is over about 2^POWER samples, and so long a leak lasts: 1 to 15",
+    Parameter::count(
+        "power",
+        "the decoder's mean is over about 2^POWER samples, and so long a leak lasts: 1 to 15",
     )
     .with_default("4")
     .searched(Search::Whole(1, 8)),

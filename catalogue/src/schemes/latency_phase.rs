@@ -6,8 +6,7 @@ use spikewire::Start;
 use spikewire::timing::{LatencyPhase, PhaseSpikes};
 
 use crate::plain::Plain;
-use crate::{
-    Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled, Search, };
+use crate::{Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled, Search};
 
 #[cfg(feature = "run")]
 use {
@@ -36,20 +35,19 @@ impl Entry for Scheme {
         is_drawn: false,
         colour: [0x5c, 0x67, 0x7d],
         parameters: &[
-            Parameter::count("neurons", "how many carry each sample, from 1 on",
-            )
-            .with_default("4")
-            .searched(Search::Whole(1, 4)),
-            Parameter::count("latencies", "how many a sample may have, 2 to 255; with the period at most 257",
+            Parameter::count("neurons", "how many carry each sample, from 1 on")
+                .with_default("4")
+                .searched(Search::Whole(1, 4)),
+            Parameter::count(
+                "latencies",
+                "how many a sample may have, 2 to 255; with the period at most 257",
             )
             .with_default("32")
             .searched(Search::Whole(2, 128)),
-            Parameter::count("period", "of the oscillation in slots, a power of 2",
-            )
-            .with_default("4"),
-            Parameter::count("spacing", "from one neuron's peaks to the next's, in slots",
-            )
-            .with_default("1"),
+            Parameter::count("period", "of the oscillation in slots, a power of 2")
+                .with_default("4"),
+            Parameter::count("spacing", "from one neuron's peaks to the next's, in slots")
+                .with_default("1"),
             Parameter::MIN,
             Parameter::MAX,
         ],

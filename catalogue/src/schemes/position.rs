@@ -13,7 +13,7 @@ use crate::{
 #[cfg(feature = "run")]
 use {
     crate::run::{
-        Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape,         Visit, state,
+        Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape, Visit, state,
     },
     anyhow::Result,
     spikewire::{Sample, dynamic},

@@ -14,7 +14,7 @@ use crate::{
 #[cfg(feature = "run")]
 use {
     crate::run::{
-        Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape,         Visit, state,
+        Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape, Visit, state,
     },
     anyhow::Result,
     spikewire::{Sample, dynamic},
@@ -47,11 +47,10 @@ impl Entry for Scheme {
             Parameter::neurons("15"),
             Parameter::MIN,
             Parameter::MAX,
-            Parameter::count("spikes", "how many neurons fire for a sample, 1 to all, at most 256",
-            )
-            .with_example("3")
-            .with_paper(Paper::Text("3"))
-            .searched(Search::Whole(1, 16)),
+            Parameter::count("spikes", "how many neurons fire for a sample, 1 to all, at most 256")
+                .with_example("3")
+                .with_paper(Paper::Text("3"))
+                .searched(Search::Whole(1, 16)),
         ],
     };
 

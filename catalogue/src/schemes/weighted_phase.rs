@@ -6,8 +6,7 @@ use spikewire::Start;
 use spikewire::timing::{PhaseBits, WeightedPhase};
 
 use crate::plain::Plain;
-use crate::{
-    Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled, Search, };
+use crate::{Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled, Search};
 
 #[cfg(feature = "run")]
 use {
