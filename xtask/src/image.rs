@@ -2,21 +2,21 @@
 
 use crate::{boards::Board, paths, shell, toolchain};
 use anyhow::{Context, Result};
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    process::Command,
-};
+use std::{ffi::OsStr, fs, path::PathBuf, process::Command};
 
 /// Builds the program for the board, and returns the image.
 pub fn build(program: &str, board: &Board) -> Result<PathBuf> {
     Ok(build_all(program, &[program], board)?.join(program))
 }
 
-/// Builds the program for the board with this path in a variable of the environment, and returns the image.
-pub fn build_with(program: &str, board: &Board, name: &str, path: &Path) -> Result<PathBuf> {
+/// Builds the program for the board with this variable in the environment, and returns the image.
+pub fn build_with(
+    program: &str,
+    board: &Board,
+    (name, value): (&str, impl AsRef<OsStr>),
+) -> Result<PathBuf> {
     let mut cargo = building("build", &format!("--package {program}"), board)?;
-    Ok(kept(cargo.env(name, path), program, &[program], board)?.join(program))
+    Ok(kept(cargo.env(name, value), program, &[program], board)?.join(program))
 }
 
 /// Builds the package's programs for the board, and returns the directory where they are.

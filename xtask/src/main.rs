@@ -52,6 +52,7 @@ mod setup;
 mod shell;
 mod signal;
 mod size;
+mod soak;
 mod storm;
 mod toolchain;
 mod tuned;

@@ -27,7 +27,12 @@ pub fn run_bytes(board: &Board, image: &Path) -> Result<Vec<u8>> {
     run_to_end(PATIENCE, board, emulator(board), image)
 }
 
-/// The same with a clock that goes by instructions, so that every run is the same.
+/// The same of a program that takes its time.
+pub fn run_long(board: &Board, image: &Path) -> Result<String> {
+    run_for(LONG_PATIENCE, board, emulator(board), image)
+}
+
+/// The same as `run` with a clock that goes by instructions, so that every run is the same.
 pub fn run_repeatably(board: &Board, image: &Path) -> Result<String> {
     run_for(PATIENCE, board, counting(board), image)
 }

@@ -81,6 +81,11 @@ const LONG: &[Step] = &[
         "hours of flight in which all goes wrong, and the table of it in SAFETY.md",
         crate::faults::verify,
     ),
+    step(
+        "soak",
+        "hours of flight in which much goes wrong, in two emulated cores",
+        crate::soak::soak,
+    ),
     step("loom", "the queue without locks in every order of its loads and stores", long::loom),
     step("deny", "licences and sources of every crate, in every workspace", crate::release::deny),
     step("lints", "clippy on all at once, and every feature on every core", long::lints),
