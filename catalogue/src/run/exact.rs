@@ -79,6 +79,11 @@ pub fn below(low: f64, high: f64) -> f64 {
     (low + (high - low) * 0.9999).min(high.next_down())
 }
 
+/// The smallest value that is used of an interval without its lower end.
+pub fn above(low: f64, high: f64) -> f64 {
+    high - (high - low) * 0.9999
+}
+
 /// All outcomes of a code that spikes where a sample's distance from its past is above the threshold, whatever it has
 /// sent before. Each stretch is coded by itself, from its first sample. Takes `n log n` steps for `n` samples: from one
 /// threshold to the next lower one a single sample begins to spike, which raises or lowers all counts from it on.

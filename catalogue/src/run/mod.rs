@@ -20,7 +20,7 @@ mod value;
 pub use asked::{Asked, takes_no};
 pub use calibrate::Calibrated;
 pub use codec::{Codec, Event, Samples, Values};
-pub use exact::{Outcome, Outcomes, Parabola, below, outcomes};
+pub use exact::{Outcome, Outcomes, Parabola, above, below, outcomes};
 pub use filter::taps;
 pub use resolve::{Known, Resolve, missing};
 pub use rust::{Constant, Counted, Mean, Rust, lengthened, state};

@@ -11,7 +11,8 @@ use crate::{Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Par
 #[cfg(feature = "run")]
 use {
     crate::run::{
-        Build, Constant, Counted, Outcome, Outcomes, Parabola, Rust, Settings, Visit, below, state,
+        Build, Constant, Counted, Outcome, Outcomes, Parabola, Rust, Settings, Visit, above, below,
+        state,
     },
     anyhow::Result,
     spikewire::Sample,
@@ -110,8 +111,7 @@ impl Build for Scheme {
     }
 }
 
-/// The outcome of step forward on stretches at a threshold or just above it, and the threshold at which its spikes
-/// differ.
+/// The outcome of step forward on stretches just above a threshold, and the next threshold at which its spikes differ.
 #[cfg(feature = "run")]
 fn outcome(stretches: &[&[f64]], threshold: f64) -> (Outcome, f64) {
     let (mut parabola, mut spikes, mut next) = (Parabola::default(), 0, f64::INFINITY);
@@ -119,7 +119,7 @@ fn outcome(stretches: &[&[f64]], threshold: f64) -> (Outcome, f64) {
         let first = values.first().copied().unwrap_or_default();
         let mut count = 0.0;
         for value in values.iter().map(|value| value - first) {
-            // It spikes upwards while `value > (count + 1) * threshold`, and likewise downwards.
+            // Upwards while `value > (count + 1) * threshold`, downwards while `value < (count - 1) * threshold`.
             let (up, down) = (count + 1.0, count - 1.0);
             for multiple in [up, down] {
                 let change = value / multiple;
@@ -127,16 +127,25 @@ fn outcome(stretches: &[&[f64]], threshold: f64) -> (Outcome, f64) {
                     next = change;
                 }
             }
-            if value > up * threshold {
+            // Just above a threshold at which the two sides are equal, the one that grows with it is the greater.
+            if (value > up * threshold && value / up != threshold)
+                || (up < 0.0 && value / up == threshold)
+            {
                 (count, spikes) = (up, spikes + 1);
-            } else if value < down * threshold {
+            } else if (value < down * threshold && value / down != threshold)
+                || (down > 0.0 && value / down == threshold)
+            {
                 (count, spikes) = (down, spikes + 1);
             }
             parabola.observe(value, count);
         }
     }
-    let inside = if next.is_finite() { below(threshold, next) } else { threshold };
-    let step = parabola.lowest().unwrap_or(threshold).clamp(threshold, inside);
+    let (low, high) = if next.is_finite() {
+        (above(threshold, next), below(threshold, next))
+    } else {
+        (threshold, threshold)
+    };
+    let step = parabola.lowest().unwrap_or(low).clamp(low, high);
     let squares = parabola.squares(step);
     (Outcome { threshold: step, step, spikes, squares, apart: squares }, next)
 }
@@ -155,6 +164,36 @@ pub fn transcribed<S: Plain>(input: &[S], threshold: S, spikes: &mut [i8]) {
             base -= threshold;
         } else {
             spikes[i] = 0;
+        }
+    }
+}
+
+#[cfg(all(test, feature = "run"))]
+mod tests {
+    use super::outcome;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Whole numbers, so that samples lie at a threshold exactly.
+        #[test]
+        fn outcomes_are_those_of_the_law(values in prop::collection::vec(-9_i8..9, 2..40)) {
+            let values: Vec<f64> = values.into_iter().map(f64::from).collect();
+            let mut threshold = 0.1;
+            while threshold < 20.0 {
+                let (own, next) = outcome(&[&values], threshold);
+                let (mut count, mut spikes, mut squares) = (0.0, 0, 0.0);
+                for value in values.iter().map(|value| value - values[0]) {
+                    if value > (count + 1.0) * own.threshold {
+                        (count, spikes) = (count + 1.0, spikes + 1);
+                    } else if value < (count - 1.0) * own.threshold {
+                        (count, spikes) = (count - 1.0, spikes + 1);
+                    }
+                    squares += (value - count * own.threshold).powi(2);
+                }
+                prop_assert_eq!(own.spikes, spikes);
+                prop_assert!((own.squares - squares).abs() < 1e-6, "{:?}, but {}", own, squares);
+                threshold = next;
+            }
         }
     }
 }
