@@ -3,7 +3,7 @@
 //! A spell of one second with a fault takes turns with half a second without. Whatever the far end calls exact must have
 //! the bits of a decoder beside the encoder, every frame that it takes must be one that was sent, every frame or item that
 //! is missing must have been counted, and all channels must be exact again by the next keyframe.
-//! `SOAK_SPELLS` at build time says how many spells each fault has; 4 of them are a minute of flight.
+//! `SOAK_SPELLS` at build time says how many spells each fault has; 40 of them are twelve minutes of flight.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -18,7 +18,7 @@ use line::FAULTS;
 use world::World;
 
 fn run(out: &mut impl Write) -> fmt::Result {
-    let spells = option_env!("SOAK_SPELLS").and_then(|spells| spells.parse().ok()).unwrap_or(4);
+    let spells = option_env!("SOAK_SPELLS").and_then(|spells| spells.parse().ok()).unwrap_or(40);
     let mut world = World::new();
     let mut samples = 0;
     for (fault, name) in FAULTS {
