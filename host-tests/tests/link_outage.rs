@@ -272,8 +272,8 @@ where
         after: [Option<P::Sample>; CHANNELS],
     ) {
         let are_all_told = matches!(P::RECOVERY, Recovery::Samples(_) | Recovery::Spike);
-        // Slots lie on a grid, which 2³² µs shift by less than half a period: its ticks are nearer to their samples.
-        let near = if self.slot_ticks > 0 { self.slot_ticks } else { self.period / 2 };
+        // Slots lie on a grid, which 2³² µs shift by more than this: a sample so long ago is not taken for the present one.
+        let near = if self.slot_ticks > 0 { 2 * self.jitter } else { self.period / 2 };
         for channel in 0..CHANNELS {
             let Some(value) = after[channel] else { continue };
             let was_exact = before[channel].is_some();

@@ -312,7 +312,11 @@ fn companded_as_drawn<S: Wire + Drawn + PartialOrd>() {
         let [min, max] = if a < b { [a, b] } else { [b, a] };
         if let Ok(scheme) = Gaussian::<S, 7>::try_companded(min..=max, companding) {
             let exact = companded_centres(min.to_f64(), max.to_f64(), 7, companding.into());
-            assert_eq!(scheme.centres().map(S::to_f64), *exact.into_iter().map(|x| S::nearest(x).to_f64()).collect::<Vec<_>>());
+            for (centre, exact) in scheme.centres().iter().zip(exact) {
+                // Halfway between two samples the reference's own rounding may decide.
+                let about = [exact * (1.0 - 1e-15), exact, exact * (1.0 + 1e-15)].map(S::nearest);
+                assert!(about.contains(centre), "{centre:?}, not {exact}");
+            }
         }
     });
 }

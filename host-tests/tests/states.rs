@@ -10,7 +10,7 @@ use rand_pcg::Pcg32;
 use spikewire::rate::{Average, Hough, IntegrateAndFire, Taps, Window};
 use spikewire::temporal::{MovingWindow, StepForward};
 use spikewire::{
-    Calibration, Code, ConfigError, NeuronSpike, Output, Sample, Scheme, Start, dynamic,
+    Calibration, Code, ConfigError, NeuronSpike, Output, Recovery, Sample, Scheme, Start, dynamic,
 };
 
 /// Roll rate in flight, with a sample that is not finite where the type has such.
@@ -60,6 +60,12 @@ where
                 value,
                 other.map(|code| scheme.decode(&mut decoder_again, code).to_bits32())
             );
+            let held = scheme.held(&decoder).map(P::Sample::to_bits32);
+            assert!(held.is_none() || value.is_none() || held == value);
+            for firing in one.map(firings).into_iter().flatten() {
+                assert!(usize::from(firing.neuron) < scheme.neurons());
+                assert!(usize::from(firing.slot) < scheme.slots());
+            }
         };
         for &sample in piece {
             let code = scheme.encode(&mut encoder, sample).code();
@@ -75,6 +81,10 @@ where
         assert_eq!(write(&decoder), write(&decoder_again));
     }
     assert!(rest.is_empty());
+    let not_finite = samples.iter().filter(|sample| !sample.to_f64().is_finite()).count();
+    assert_eq!(P::rejected(&encoder) as usize, not_finite);
+    let holds = !matches!(P::RECOVERY, Recovery::Samples(_) | Recovery::Fading(_));
+    assert!(!holds || scheme.held(&decoder).is_some());
 }
 
 /// Goes on from states of which some bits, or all, are not what was written; it must end, and tells how many were read.
