@@ -5,6 +5,7 @@ mod common;
 mod bank;
 mod bsa;
 mod bsa_toolbox;
+mod built;
 mod burst;
 mod calibration;
 mod closure;

@@ -85,6 +85,9 @@ where
     assert_eq!(P::rejected(&encoder) as usize, not_finite);
     let holds = !matches!(P::RECOVERY, Recovery::Samples(_) | Recovery::Fading(_));
     assert!(!holds || scheme.held(&decoder).is_some());
+    scheme.resync(&mut decoder, samples[0]);
+    let held = scheme.held(&decoder).map(P::Sample::to_bits32);
+    assert!(held.is_none_or(|held| held == samples[0].to_bits32()));
 }
 
 /// Goes on from states of which some bits, or all, are not what was written; it must end, and tells how many were read.
@@ -218,6 +221,18 @@ fn every_length<S: Sample>() {
     survives(&toolbox(5), toolbox(5).state(), &samples);
     assert!(!toolbox(5).fits(&toolbox(4).state()));
     assert!(!toolbox(5).fits_decoder(&toolbox(4).decoder_state()));
+
+    let range = S::from_f64(-4.0 * one)..=S::from_f64(4.0 * one);
+    let centres: Vec<S> =
+        [-4.0, -1.0, 0.0, 2.0, 3.0].map(|centre| S::from_f64(centre * one)).to_vec();
+    let position = dynamic::Position::<S>::try_new(&centres).unwrap();
+    goes_on(&position, position.state(), &samples);
+    let slots = dynamic::Slots::<S>::try_new(7, 32, &range, 1.5).unwrap();
+    goes_on(&slots, slots.state(), &samples);
+    let ranks = dynamic::RankOrder::<S>::try_new(4, &centres).unwrap();
+    goes_on(&ranks, ranks.state(), &samples);
+    let fields = dynamic::NonLinearSlots::<S>::try_spaced(32, &centres, 1.5).unwrap();
+    goes_on(&fields, fields.state(), &samples);
 
     goes_on(&window(6), window(6).state(), &samples);
     survives(&window(6), window(6).state(), &samples);

@@ -1,0 +1,88 @@
+//! What is built at run time is what a constant is, and can be asked for what it was built from.
+
+use rand_pcg::Pcg32;
+use spikewire::frame::{FrameDecoder, FrameEncoder, Intensity};
+use spikewire::population::{NonLinearSlots, Probabilistic, Slots};
+use spikewire::rate::{Average, Bernoulli, BsaToolbox, IntegrateAndFire, Shape, Taps};
+use spikewire::temporal::{AdaptiveStepForward, SendOnDelta};
+use spikewire::{Conditions, Event, Item, Polarity, Put, Scheme, Spike, Tick, dynamic};
+
+#[derive(Debug, Default)]
+struct Items(Vec<Item>);
+
+impl Put for &mut Items {
+    fn put(&mut self, item: Item) {
+        self.0.push(item);
+    }
+}
+
+#[test]
+fn options_at_run_time_are_those_of_constants() {
+    const REST: Conditions<f32> = Conditions::new(4, -10.0..=10.0, 1.0);
+    const STILL: Conditions<f32> = REST.with_stillness(2.0);
+    assert_eq!(REST.try_with_stillness(2.0), Ok(STILL));
+
+    const STEPS: SendOnDelta<f32, 4> = SendOnDelta::new(0.5);
+    const FEWER: SendOnDelta<f32, 4> = STEPS.with_most(2);
+    assert_eq!(STEPS.try_with_most(2), Ok(FEWER));
+    assert_ne!(STEPS, FEWER);
+
+    const ADAPTIVE: AdaptiveStepForward<f32> = AdaptiveStepForward::new(0.5, 4);
+    const LATER: AdaptiveStepForward<f32> = ADAPTIVE.with_run(5);
+    assert_eq!(ADAPTIVE.try_with_run(5), Ok(LATER));
+    assert_ne!(ADAPTIVE, LATER);
+
+    const FIRE: IntegrateAndFire<f32, 4> = IntegrateAndFire::new(0.5, 3);
+    const ONCE: IntegrateAndFire<f32, 4> = FIRE.with_most(1);
+    assert_eq!(FIRE.try_with_most(1), Ok(ONCE));
+    assert_ne!(FIRE, ONCE);
+}
+
+#[test]
+fn parameters_can_be_asked_for() {
+    assert_eq!(Intensity::new(7).threshold(), 7);
+    assert_eq!(BsaToolbox::<f32, 5>::new(Taps::triangular(1.0), 1.25).threshold(), 1.25);
+    let window = dynamic::MovingWindow::try_new(0.75_f32, 6).unwrap();
+    assert_eq!((window.threshold(), window.count()), (0.75, 6));
+    assert_eq!([0, 1, 2].map(|k| Shape::Triangular.at(k, 3)), [0.5, 1.0, 0.5]);
+}
+
+#[test]
+fn schemes_by_chance_are_compared_by_their_parameters() {
+    type Chance = Bernoulli<f32, Pcg32, Average>;
+    let one = Chance::new(0.0..=1.0, Average::new(3));
+    assert!(one == Chance::new(0.0..=1.0, Average::new(3)));
+    assert!(one != Chance::new(0.0..=2.0, Average::new(3)));
+    assert!(one != Chance::new(0.0..=1.0, Average::new(4)));
+    type Fields = Probabilistic<f32, Pcg32, 5, 256>;
+    assert!(Fields::new(0.0..=1.0, 1.5) == Fields::new(0.0..=1.0, 1.5));
+    assert!(Fields::new(0.0..=1.0, 1.5) != Fields::new(0.0..=1.0, 2.0));
+}
+
+#[test]
+fn codes_say_whether_they_are_empty() {
+    let scheme = Slots::<f32, 5, 8>::new(0.0..=1.0, 1.5);
+    let mut encoder = scheme.encoder();
+    assert!(!encoder.encode(0.5).is_empty());
+    assert!(encoder.encode(900.0).is_empty());
+    let scheme = NonLinearSlots::<f32, 5, 8>::companded(0.0..=1.0, 2.0, 1.5);
+    let mut encoder = scheme.encoder();
+    assert!(!encoder.encode(0.5).is_empty());
+    assert!(encoder.encode(900.0).is_empty());
+    assert_eq!([Polarity::Up, Polarity::Down].map(Spike::from), [Spike::Up, Spike::Down]);
+}
+
+#[test]
+fn a_camera_takes_addresses_of_its_own_at_run_time() {
+    let code = Intensity::new(10);
+    let mut camera = FrameEncoder::<_, 2, 1>::new(code).try_with_first_address(100).unwrap();
+    let mut decoder = FrameDecoder::<_, 2, 1>::new(code).try_with_first_address(100).unwrap();
+    let mut items = Items::default();
+    camera.encode_frame_into(Tick::from(1), &[[50, 50]], &mut items);
+    camera.encode_frame_into(Tick::from(2), &[[50, 61]], &mut items);
+    let [Item::Event(event)] = items.0[..] else { panic!("not one event, but {items:?}") };
+    assert_eq!(event, Event { tick: Tick::from(2), address: 101, polarity: Polarity::Up });
+    decoder.start(&[[50, 50]]);
+    decoder.event(event);
+    assert_eq!(decoder.base(1, 0), Some(60));
+}
