@@ -48,8 +48,9 @@ enum Role {
     Length,
     Shape,
     Alpha,
-    /// The logarithm of the filter's sum in this unit.
-    Sum(f64),
+    /// The logarithm of the filter's sum in heights of the mean above the shift: of the samples to a spike at the mean.
+    /// The sum lies between these.
+    Sum(f64, f64),
     /// A tap in this unit.
     Tap(f64),
 }
@@ -95,7 +96,7 @@ impl Space {
         let mut axes: Vec<Axis> = Vec::new();
         for axis in &self.axes {
             match axis.role {
-                Role::Length | Role::Shape | Role::Alpha | Role::Sum(_) => {}
+                Role::Length | Role::Shape | Role::Alpha | Role::Sum(..) => {}
                 Role::Whole | Role::Words(_) => {
                     if let Some(value) = found.get(axis.name) {
                         fixed.set(axis.name, value.clone());
@@ -127,7 +128,7 @@ impl Space {
             scheme.info().parameters.iter().any(|parameter| parameter.name == "threshold");
         let is_inner = |axis: &Axis| match axis.role {
             Role::OfFilter => true,
-            Role::Sum(_) => !has_threshold,
+            Role::Sum(..) => !has_threshold,
             _ => false,
         };
         let axis = self.axes.iter().position(is_inner)?;
@@ -139,9 +140,7 @@ impl Space {
     /// reaches the largest sample, and the mean with as many spikes as may be.
     pub(crate) fn starts(&self, seed: u64, count: usize, share: f64) -> Vec<Vec<f64>> {
         let mut chance = Chance::new(seed);
-        let Extent { min, mean, .. } = self.extent;
-        let range = self.extent.range().max(f64::MIN_POSITIVE);
-        let reach = ((mean - min) / range / share.max(0.02)).max(1.0);
+        let apart = 1.0 / share.clamp(0.02, 1.0);
         let has_filter = self.axes.iter().any(|axis| axis.role == Role::Length);
         let mut points = vec![Vec::new(); count];
         for axis in &self.axes {
@@ -157,7 +156,7 @@ impl Space {
                     // 1.5 to 48 taps.
                     Role::Length => (1.5_f64 * 32_f64.powf(even)).ln(),
                     Role::Alpha => (0.8 + 2.0 * even).ln(),
-                    Role::Sum(_) => (reach * (0.75 + 0.6 * even)).ln(),
+                    Role::Sum(..) => (apart * (0.75 + 0.6 * even)).ln(),
                     // At the signal's minimum, or somewhat off it.
                     Role::Around(..) if has_filter && stratum % 3 == 0 => 0.0,
                     Role::Around(..) if has_filter => 0.4 * (even - 0.4),
@@ -203,6 +202,11 @@ impl Space {
         let point = numbers.as_slice();
         let mut options = self.fixed.clone();
         let (mut filter, mut free) = (Shaped::default(), Vec::new());
+        let shifts = self.axes.iter().zip(point).find_map(|(axis, value)| match axis.role {
+            Role::Around(base, unit) => Some(base + value * unit),
+            _ => None,
+        });
+        let shift = shifts.or_else(|| self.fixed.number("shift"));
         for (axis, &value) in self.axes.iter().zip(point) {
             let whole = value.round();
             match axis.role {
@@ -216,7 +220,9 @@ impl Space {
                 Role::Length => filter.length = value.exp().round() as usize,
                 Role::Shape => filter.shape = SHAPES[whole as usize],
                 Role::Alpha => filter.alpha = value.exp(),
-                Role::Sum(unit) => filter.sum = value.exp() * unit,
+                Role::Sum(low, high) => {
+                    filter.sum = (value.exp() * self.height(shift)).clamp(low, high);
+                }
                 Role::Tap(unit) => free.push(value * unit),
                 Role::OfFilter => {}
             }
@@ -234,6 +240,12 @@ impl Space {
             }
         }
         options
+    }
+
+    /// How far the signal's mean lies above a shift, or its minimum; at least a little.
+    fn height(&self, shift: Option<f64>) -> f64 {
+        let Extent { min, mean, .. } = self.extent;
+        (mean - shift.unwrap_or(min)).max(0.01 * self.extent.range())
     }
 
     /// The point that means these options, as far as there is one; the middle of an axis otherwise.
@@ -261,7 +273,9 @@ impl Space {
                 }
                 Role::Tap(unit) => next_tap.next().map(|tap| tap / unit),
                 Role::Length => Some((taps.len() as f64).ln()),
-                Role::Sum(unit) => Some((taps.iter().sum::<f64>() / unit).ln()),
+                Role::Sum(..) => {
+                    Some((taps.iter().sum::<f64>() / self.height(number("shift"))).ln())
+                }
                 Role::Words(_) | Role::Shape | Role::Alpha => None,
             };
             let value = value.filter(|value| value.is_finite());
@@ -322,7 +336,7 @@ fn axes_of(parameter: &'static Parameter, search: Search, extent: Extent) -> Vec
             axis(Role::Length, 0.0, f64::from(longest).ln()),
             axis(Role::Shape, 0.0, SHAPES.len() as f64 - 1.0),
             axis(Role::Alpha, 0.1_f64.ln(), 8_f64.ln()),
-            axis(Role::Sum(extent.range()), low.ln(), high.ln()),
+            axis(Role::Sum(low * extent.range(), high * extent.range()), 0.8_f64.ln(), 60_f64.ln()),
         ],
     }
 }
