@@ -59,7 +59,7 @@ impl<D: SpiDevice> Akd1500<D> {
     /// Writes words from an address on.
     ///
     /// # Errors
-    /// The bus failed, and some blocks may be written; or the address is out of range.
+    /// Returns an error if the bus failed, and some blocks may be written; or the address is out of range.
     pub fn write(&mut self, address: u32, words: &[u32]) -> Result<(), ChipError<D::Error>> {
         check(address, words.len())?;
         for (address, code, block) in blocks(address, words) {
@@ -80,7 +80,7 @@ impl<D: SpiDevice> Akd1500<D> {
     /// Reads words from an address on.
     ///
     /// # Errors
-    /// The bus failed, or the address is out of range.
+    /// Returns an error if the bus failed, or the address is out of range.
     pub fn read(&mut self, address: u32, words: &mut [u32]) -> Result<(), ChipError<D::Error>> {
         check(address, words.len())?;
         let mut address = address;
@@ -104,7 +104,7 @@ impl<D: SpiDevice> Akd1500<D> {
     /// Writes words and reads them back.
     ///
     /// # Errors
-    /// The errors of [`write`](Self::write), or the first word that reads back differently.
+    /// Returns the errors of [`write`](Self::write), or the first word that reads back differently.
     pub fn program(&mut self, address: u32, words: &[u32]) -> Result<(), ChipError<D::Error>> {
         self.write(address, words)?;
         for (address, _, block) in blocks(address, words) {
@@ -185,7 +185,7 @@ impl ConvolutionEvent {
     /// The words of the event.
     ///
     /// # Errors
-    /// A value has too many bits.
+    /// Returns an error if a value has too many bits.
     pub fn words<E>(self) -> Result<[u32; 2], ChipError<E>> {
         let [x, y, feature] = [self.x, self.y, self.feature].map(u32::from);
         at_most("x", x, 0xFFF)?;
@@ -233,7 +233,7 @@ impl DenseEvent {
     /// The words of the event.
     ///
     /// # Errors
-    /// A value has too many bits.
+    /// Returns an error if a value has too many bits.
     pub fn words<E>(self) -> Result<[u32; 2], ChipError<E>> {
         at_most("feature", self.feature, Self::MAX_FEATURE)?;
         at_most("activation", self.activation, Self::MAX_ACTIVATION)?;

@@ -10,13 +10,13 @@ pub trait Registers {
     /// Writes a register.
     ///
     /// # Errors
-    /// The bus failed.
+    /// Returns an error if the bus failed.
     fn write(&mut self, address: u16, value: u32) -> Result<(), Self::Error>;
 
     /// Reads a register.
     ///
     /// # Errors
-    /// The bus failed.
+    /// Returns an error if the bus failed.
     fn read(&mut self, address: u16) -> Result<u32, Self::Error>;
 }
 
@@ -136,8 +136,8 @@ impl<R: Registers> Xylo<R> {
     /// Sets the counts of a time step.
     ///
     /// # Errors
-    /// The bus failed: then set them again. [`Unfinished`](ChipError::Unfinished): a step is under way, and nothing was
-    /// written.
+    /// Returns an error if the bus failed: then set them again. Returns [`Unfinished`](ChipError::Unfinished) if a
+    /// step is under way: nothing was written.
     pub fn set_input(
         &mut self,
         bank: InputBank,
@@ -158,7 +158,7 @@ impl<R: Registers> Xylo<R> {
     /// Reads which bank of counts the next time step reads; `None` if the map does not tell where that stands.
     ///
     /// # Errors
-    /// The bus failed. [`Unfinished`](ChipError::Unfinished): a step is under way.
+    /// Returns an error if the bus failed, and [`Unfinished`](ChipError::Unfinished) if a step is under way.
     pub fn next_bank(&mut self) -> Result<Option<InputBank>, ChipError<R::Error>> {
         if self.is_under_way {
             return Err(ChipError::Unfinished);
@@ -192,9 +192,9 @@ impl<R: Registers> Xylo<R> {
     /// Runs a time step and returns the outputs that fired: bit `i` is output `i`.
     ///
     /// # Errors
-    /// [`Unfinished`](ChipError::Unfinished): the step is not done yet; call this again, which waits for it. The bus
-    /// failed: call this again. If it failed after the trigger, nothing is lost; if it failed at the trigger, the step
-    /// may have begun, and the next call triggers again.
+    /// Returns [`Unfinished`](ChipError::Unfinished) if the step is not done yet; call this again, which waits for
+    /// it. Returns another error if the bus failed: call this again. If it failed after the trigger, nothing is lost;
+    /// if it failed at the trigger, the step may have begun, and the next call triggers again.
     pub fn step(&mut self) -> Result<u32, ChipError<R::Error>> {
         let XyloMap { control, trigger, status, done, outputs, output_bits, .. } = self.map;
         if !self.is_under_way {

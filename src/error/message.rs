@@ -6,7 +6,7 @@ use super::ConfigError;
 /// fails the build.
 ///
 /// # Panics
-/// On an error.
+/// Panics on an error.
 #[track_caller]
 pub(crate) const fn unwrap<T: Copy>(result: Result<T, ConfigError>) -> T {
     match result {

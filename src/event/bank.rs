@@ -89,7 +89,7 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
     /// Sets the first address, 0 by default, so that several banks can share a queue.
     ///
     /// # Panics
-    /// If the last address is above 65 535; at compile time where it initialises a constant.
+    /// Panics if the last address is above 65 535; at compile time where it initialises a constant.
     #[must_use]
     pub const fn with_first_address(mut self, first_address: u16) -> Self {
         error::unwrap(error::first_address(first_address, Self::ADDRESSES));
@@ -100,7 +100,7 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
     /// Sets the first address, 0 by default.
     ///
     /// # Errors
-    /// The last address is above 65 535.
+    /// Returns an error if the last address is above 65 535.
     pub fn try_with_first_address(self, first_address: u16) -> Result<Self, ConfigError> {
         error::first_address(first_address, Self::ADDRESSES)?;
         Ok(Self { first_address, ..self })

@@ -65,7 +65,7 @@ impl<const N: usize> Bins<N> {
     /// Counts an event.
     ///
     /// # Errors
-    /// The event lies after the time step and is not counted yet.
+    /// Returns an error if the event lies after the time step and is not counted yet.
     pub fn add(&mut self, event: Event) -> Result<(), StepOver> {
         let since = event.tick.since(self.start);
         if since >= self.step as i32 {

@@ -45,7 +45,7 @@ pub trait Container {
     /// Appends an element.
     ///
     /// # Errors
-    /// The container is full; the element is returned.
+    /// Returns an error if the container is full; the element is returned.
     fn append(&mut self, element: Self::Element) -> Result<(), Self::Element>;
 }
 

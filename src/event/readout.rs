@@ -95,7 +95,7 @@ impl<T: Schemes<N>, const N: usize> Readout<T, N> {
     /// Sets the first address, 0 by default; events of lower addresses are left out.
     ///
     /// # Panics
-    /// If the last address is above 65 535.
+    /// Panics if the last address is above 65 535.
     #[must_use]
     pub const fn with_first_address(mut self, first_address: u16) -> Self {
         error::unwrap(error::first_address(first_address, Self::ADDRESSES));
@@ -106,7 +106,7 @@ impl<T: Schemes<N>, const N: usize> Readout<T, N> {
     /// Sets the first address, 0 by default.
     ///
     /// # Errors
-    /// The last address is above 65 535.
+    /// Returns an error if the last address is above 65 535.
     pub fn try_with_first_address(self, first_address: u16) -> Result<Self, ConfigError> {
         error::first_address(first_address, Self::ADDRESSES)?;
         Ok(Self { addresses: Addresses { first: first_address, ..self.addresses }, ..self })

@@ -42,7 +42,7 @@ impl<C: PixelCode, const W: usize, const H: usize> FrameDecoder<C, W, H> {
     /// This decoder with the encoder's first address.
     ///
     /// # Panics
-    /// The last address is above 65 535.
+    /// Panics if the last address is above 65 535.
     #[must_use]
     pub const fn with_first_address(mut self, address: u16) -> Self {
         unwrap(first_address(address, Self::ADDRESSES));
@@ -53,7 +53,7 @@ impl<C: PixelCode, const W: usize, const H: usize> FrameDecoder<C, W, H> {
     /// This decoder with the encoder's first address.
     ///
     /// # Errors
-    /// The last address is above 65 535.
+    /// Returns an error if the last address is above 65 535.
     pub fn try_with_first_address(self, address: u16) -> Result<Self, ConfigError> {
         first_address(address, Self::ADDRESSES)?;
         Ok(Self { first_address: address, ..self })

@@ -43,7 +43,7 @@ impl<C: PixelCode> DynamicFrameEncoder<C> {
     /// Pixels that wait for their first frame, with this code and no budget.
     ///
     /// # Errors
-    /// Width or height are 0.
+    /// Returns an error if width or height are 0.
     pub fn try_new(code: C, width: u16, height: u16) -> Result<Self, ConfigError> {
         within("width", width.into(), 1.0, u16::MAX.into())?;
         within("height", height.into(), 1.0, u16::MAX.into())?;
@@ -54,7 +54,7 @@ impl<C: PixelCode> DynamicFrameEncoder<C> {
     /// This encoder with at most this many events a frame.
     ///
     /// # Errors
-    /// The budget is 0.
+    /// Returns an error if the budget is 0.
     pub fn try_with_budget(self, events: u32) -> Result<Self, ConfigError> {
         Ok(Self { budget: Budget::try_new(events)?, ..self })
     }
@@ -63,7 +63,7 @@ impl<C: PixelCode> DynamicFrameEncoder<C> {
     /// [`FrameEncoder::encode_frame`](super::FrameEncoder::encode_frame).
     ///
     /// # Errors
-    /// The frame has another size; nothing was done with it.
+    /// Returns an error if the frame has another size; nothing was done with it.
     pub fn encode_frame(
         &mut self,
         tick: Tick,
@@ -82,7 +82,7 @@ impl<C: PixelCode> DynamicFrameEncoder<C> {
     /// [`FrameEncoder::encode_interpolated`](super::FrameEncoder::encode_interpolated).
     ///
     /// # Errors
-    /// The frame has another size; nothing was done with it.
+    /// Returns an error if the frame has another size; nothing was done with it.
     pub fn encode_interpolated(
         &mut self,
         tick: Tick,

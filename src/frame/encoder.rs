@@ -76,7 +76,7 @@ impl<C: PixelCode, const W: usize, const H: usize> FrameEncoder<C, W, H> {
     /// This encoder with at most this many events a frame, for constants: 0 fails the build.
     ///
     /// # Panics
-    /// The budget is 0.
+    /// Panics if the budget is 0.
     #[must_use]
     pub const fn with_budget(mut self, events: u32) -> Self {
         self.budget = unwrap(Budget::try_new(events));
@@ -86,7 +86,7 @@ impl<C: PixelCode, const W: usize, const H: usize> FrameEncoder<C, W, H> {
     /// This encoder with at most this many events a frame.
     ///
     /// # Errors
-    /// The budget is 0.
+    /// Returns an error if the budget is 0.
     pub fn try_with_budget(self, events: u32) -> Result<Self, ConfigError> {
         Ok(Self { budget: Budget::try_new(events)?, ..self })
     }
@@ -94,7 +94,7 @@ impl<C: PixelCode, const W: usize, const H: usize> FrameEncoder<C, W, H> {
     /// This encoder with addresses from this one on instead of 0, so that it shares a queue with others.
     ///
     /// # Panics
-    /// If the last address is above 65 535; at compile time where it initialises a constant.
+    /// Panics if the last address is above 65 535; at compile time where it initialises a constant.
     #[must_use]
     pub const fn with_first_address(mut self, address: u16) -> Self {
         unwrap(first_address(address, Self::ADDRESSES));
@@ -105,7 +105,7 @@ impl<C: PixelCode, const W: usize, const H: usize> FrameEncoder<C, W, H> {
     /// This encoder with addresses from this one on instead of 0.
     ///
     /// # Errors
-    /// The last address is above 65 535.
+    /// Returns an error if the last address is above 65 535.
     pub fn try_with_first_address(self, address: u16) -> Result<Self, ConfigError> {
         first_address(address, Self::ADDRESSES)?;
         Ok(Self { first_address: address, ..self })

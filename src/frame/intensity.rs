@@ -43,7 +43,7 @@ impl Intensity {
     /// threshold fails the build.
     ///
     /// # Panics
-    /// The threshold is not within 1 to 254.
+    /// Panics if the threshold is not within 1 to 254.
     pub const fn new(threshold: u8) -> Self {
         unwrap(Self::try_new(threshold))
     }
@@ -51,7 +51,7 @@ impl Intensity {
     /// A code with this threshold, in grey levels, and one event a pixel and frame.
     ///
     /// # Errors
-    /// The threshold is not within 1 to 254.
+    /// Returns an error if the threshold is not within 1 to 254.
     pub const fn try_new(threshold: u8) -> Result<Self, ConfigError> {
         match within("threshold", threshold as f64, 1.0, 254.0) {
             Ok(()) => Ok(Self { threshold, most: NonZeroU8::MIN }),
@@ -62,7 +62,7 @@ impl Intensity {
     /// This code with at most this many events a pixel and frame, for constants: a bad number fails the build.
     ///
     /// # Panics
-    /// The number is 0.
+    /// Panics if the number is 0.
     #[must_use]
     pub const fn with_most(self, most: u8) -> Self {
         unwrap(self.try_with_most(most))
@@ -71,7 +71,7 @@ impl Intensity {
     /// This code with at most this many events a pixel and frame.
     ///
     /// # Errors
-    /// The number is 0.
+    /// Returns an error if the number is 0.
     pub const fn try_with_most(self, most: u8) -> Result<Self, ConfigError> {
         match super::pixel::most(most) {
             Ok(most) => Ok(Self { most, ..self }),

@@ -143,7 +143,7 @@ impl<L: Level> LogIntensity<L> {
     /// A code with these thresholds, in levels, of brighter and darker samples, and one event a pixel and frame.
     ///
     /// # Errors
-    /// A threshold is 0, or no less than the whole range of levels.
+    /// Returns an error if a threshold is 0, or no less than the whole range of levels.
     pub fn try_new(on: L, off: L) -> Result<Self, ConfigError> {
         let most = f32::from(L::TOP - 1);
         within("ON threshold", f64::from(on.into()), 1.0, most)?;
@@ -154,7 +154,7 @@ impl<L: Level> LogIntensity<L> {
     /// This code with at most this many events a pixel and frame, for constants: a bad number fails the build.
     ///
     /// # Panics
-    /// The number is 0.
+    /// Panics if the number is 0.
     #[must_use]
     pub const fn with_most(self, most: u8) -> Self {
         unwrap(self.try_with_most(most))
@@ -163,7 +163,7 @@ impl<L: Level> LogIntensity<L> {
     /// This code with at most this many events a pixel and frame.
     ///
     /// # Errors
-    /// The number is 0.
+    /// Returns an error if the number is 0.
     pub const fn try_with_most(self, most: u8) -> Result<Self, ConfigError> {
         match super::pixel::most(most) {
             Ok(most) => Ok(Self { on: self.on, off: self.off, most }),
@@ -188,7 +188,7 @@ macro_rules! constant {
             /// frame. For constants, where a bad threshold fails the build.
             ///
             /// # Panics
-            /// A threshold is 0, or no less than the whole range of levels.
+            /// Panics if a threshold is 0, or no less than the whole range of levels.
             pub const fn new(on: $level, off: $level) -> Self {
                 let most = (<$level as Sealed>::TOP - 1) as f32;
                 unwrap(within("ON threshold", on as f64, 1.0, most));

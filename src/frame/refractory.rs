@@ -36,7 +36,7 @@ impl<C: PixelCode> Refractory<C> {
     /// This code with this many frames of silence after an event, for constants: a bad number fails the build.
     ///
     /// # Panics
-    /// The number is 0.
+    /// Panics if the number is 0.
     pub const fn new(code: C, frames: u8) -> Self {
         unwrap(Self::try_new(code, frames))
     }
@@ -44,7 +44,7 @@ impl<C: PixelCode> Refractory<C> {
     /// This code with this many frames of silence after an event.
     ///
     /// # Errors
-    /// The number is 0.
+    /// Returns an error if the number is 0.
     pub const fn try_new(code: C, frames: u8) -> Result<Self, ConfigError> {
         match within("refractory frames", frames as f64, 1.0, 255.0) {
             Ok(()) => Ok(Self { code, frames }),

@@ -57,7 +57,7 @@ impl<W: Write, B: Batch, const N: usize> SerialSink<W, B, N> {
     /// Sends a batch, and returns how many bytes the port took; 0 if there were no items.
     ///
     /// # Errors
-    /// The port failed, or takes no more bytes.
+    /// Returns an error if the port failed, or takes no more bytes.
     pub fn send(&mut self, mut events: impl Source) -> Result<usize, SinkError<W::Error>> {
         self.refill(&mut events);
         self.write(|_| Ok(true))
@@ -67,7 +67,7 @@ impl<W: Write, B: Batch, const N: usize> SerialSink<W, B, N> {
     /// returned 0, so that the end of a burst goes out.
     ///
     /// # Errors
-    /// The port failed, or takes no more bytes.
+    /// Returns an error if the port failed, or takes no more bytes.
     pub fn flush(&mut self) -> Result<(), SinkError<W::Error>> {
         self.write(|_| Ok(true))?;
         self.port.flush().map_err(SinkError::Bus)
@@ -119,8 +119,8 @@ impl<W: Write + WriteReady, B: Batch, const N: usize> SerialSink<W, B, N> {
     /// Sends a batch without waiting: asks the port before each write.
     ///
     /// # Errors
-    /// [`SinkError::Busy`]: the port has no room, and the rest waits for the next call. Otherwise those of
-    /// [`send`](Self::send).
+    /// Returns [`SinkError::Busy`] if the port has no room, and the rest waits for the next call. Otherwise returns
+    /// those of [`send`](Self::send).
     pub fn try_send(&mut self, mut events: impl Source) -> Result<usize, SinkError<W::Error>> {
         self.refill(&mut events);
         self.write(W::write_ready)

@@ -65,7 +65,7 @@ macro_rules! spi_sink {
             /// Sends a batch, and returns how many bytes it had; 0 if there were no items.
             ///
             /// # Errors
-            /// The receiver is not ready, its pin cannot be read, or the bus failed.
+            /// Returns an error if the receiver is not ready, its pin cannot be read, or the bus failed.
             pub $($asynchronous)? fn send(
                 &mut self,
                 mut events: impl Source,

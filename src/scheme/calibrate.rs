@@ -60,7 +60,7 @@ impl Differences {
     /// `mean + factor * deviation`.
     ///
     /// # Errors
-    /// The factor is not finite.
+    /// Returns an error if the factor is not finite.
     pub fn threshold(&self, factor: f32) -> Result<f64, ConfigError> {
         let factor = f64::from(factor);
         finite("factor", factor)?;
@@ -154,7 +154,7 @@ impl<S: Sample> Calibration<S> {
     /// Mean and standard deviation of `x[i] - x[i-1]`.
     ///
     /// # Errors
-    /// Fewer than three samples.
+    /// Returns an error if there are fewer than three samples.
     pub fn differences(&self) -> Result<Differences, ConfigError> {
         Ok(Differences::from_sums(self.count()?, self.sum, self.sum_of_squares))
     }
@@ -162,7 +162,7 @@ impl<S: Sample> Calibration<S> {
     /// Mean and standard deviation of `|x[i] - x[i-1]|`.
     ///
     /// # Errors
-    /// Fewer than three samples.
+    /// Returns an error if there are fewer than three samples.
     pub fn magnitudes(&self) -> Result<Differences, ConfigError> {
         Ok(Differences::from_sums(self.count()?, self.sum_of_magnitudes, self.sum_of_squares))
     }

@@ -68,7 +68,7 @@ impl<S: Sample, const B: usize> Histogram<S, B> {
     /// An empty histogram. For constants, where bad parameters fail the build.
     ///
     /// # Panics
-    /// As [`try_new`](Self::try_new) fails.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>, limit: u16) -> Self {
         unwrap(Self::of(&range, limit))
     }
@@ -76,7 +76,7 @@ impl<S: Sample, const B: usize> Histogram<S, B> {
     /// An empty histogram.
     ///
     /// # Errors
-    /// The ends are not finite, or do not rise; the limit is 0.
+    /// Returns an error if the ends are not finite, or do not rise; the limit is 0.
     pub const fn try_new(range: RangeInclusive<S>, limit: u16) -> Result<Self, ConfigError> {
         Self::of(&range, limit)
     }
@@ -190,7 +190,7 @@ impl<S: Sample, const B: usize> Histogram<S, B> {
     /// The quantiles `(2i + 1) / 2M`: centres of a population, dense where the samples are.
     ///
     /// # Errors
-    /// Two are alike in the sample type.
+    /// Returns an error if two are alike in the sample type.
     pub fn centres<const M: usize>(&self) -> Result<[S; M], ConfigError> {
         const { assert!(M >= 1 && M <= 1024, "a population takes up to 1024 neurons") };
         let mut centres = [S::ZERO; M];
@@ -201,7 +201,7 @@ impl<S: Sample, const B: usize> Histogram<S, B> {
     /// Fills `centres` with the [`centres`](Self::centres) of as many neurons as it has room for, 1 to 1024.
     ///
     /// # Errors
-    /// Two are alike in the sample type, or there is room for none or for more than 1024.
+    /// Returns an error if two are alike in the sample type, or there is room for none or for more than 1024.
     pub fn write_centres(&self, centres: &mut [S]) -> Result<(), ConfigError> {
         within("neurons", centres.len() as f64, 1.0, 1024.0)?;
         let parts = 2 * centres.len() as u16;

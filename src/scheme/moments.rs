@@ -77,7 +77,7 @@ impl<S: Sample> Moments<S> {
     /// The mean, in the samples' unit.
     ///
     /// # Errors
-    /// No sample.
+    /// Returns an error if there is no sample.
     pub fn mean(&self) -> Result<f64, ConfigError> {
         self.needs(1)?;
         Ok(self.sums.mean(self.seen) * one::<S>())
@@ -86,7 +86,7 @@ impl<S: Sample> Moments<S> {
     /// The standard deviation with N-1, in the samples' unit.
     ///
     /// # Errors
-    /// Fewer than two samples.
+    /// Returns an error if there are fewer than two samples.
     pub fn deviation(&self) -> Result<f64, ConfigError> {
         self.needs(2)?;
         let degrees = f64::from(self.seen.saturating_sub(1));

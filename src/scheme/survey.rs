@@ -31,7 +31,7 @@ impl<S: Sample> Conditions<S> {
     /// The conditions of a channel, for constants, where bad ones fail the build; see [`try_new`](Self::try_new).
     ///
     /// # Panics
-    /// As [`try_new`](Self::try_new) fails.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(samples: u32, limits: RangeInclusive<S>, largest_change: S) -> Self {
         unwrap(Self::of(samples, &limits, largest_change))
     }
@@ -44,8 +44,8 @@ impl<S: Sample> Conditions<S> {
     ///   ones, above 0, in the samples' unit.
     ///
     /// # Errors
-    /// Fewer than 3 samples; limits that are not finite or do not rise; a change that is not above 0 or not
-    /// finite.
+    /// Returns an error if `samples` is below 3, the limits are not finite or do not rise, or the change is not above
+    /// 0 or not finite.
     pub const fn try_new(
         samples: u32,
         limits: RangeInclusive<S>,
@@ -76,7 +76,7 @@ impl<S: Sample> Conditions<S> {
     /// condition the vehicle may move. For constants, where a bad distance fails the build.
     ///
     /// # Panics
-    /// The distance is not above 0, or not finite.
+    /// Panics if the distance is not above 0, or not finite.
     #[must_use]
     pub const fn with_stillness(self, distance: S) -> Self {
         unwrap(self.try_with_stillness(distance))
@@ -86,7 +86,7 @@ impl<S: Sample> Conditions<S> {
     /// condition the vehicle may move.
     ///
     /// # Errors
-    /// The distance is not above 0, or not finite.
+    /// Returns an error if the distance is not above 0, or not finite.
     pub const fn try_with_stillness(self, distance: S) -> Result<Self, ConfigError> {
         match positive("stillness", to_f64(distance)) {
             Ok(()) => Ok(Self { stillness: Some(distance), ..self }),
@@ -228,7 +228,7 @@ impl<S: Sample, const B: usize> Survey<S, B> {
     /// The channel, if it is fit to fly.
     ///
     /// # Errors
-    /// Why it is unfit. More samples may mend [`Unfit::TooFewSamples`]; the others call for a
+    /// Returns why the channel is unfit. More samples may mend [`Unfit::TooFewSamples`]; the others call for a
     /// [`reset`](Self::reset).
     pub fn verdict(&self) -> Result<Fit<'_, S, B>, Unfit> {
         let Conditions { samples: needed, stillness, .. } = self.conditions;
@@ -291,7 +291,7 @@ impl<'a, S: Sample, const B: usize> Fit<'a, S, B> {
     /// up to the rounding of the threshold. Fewer spikes cost a larger error.
     ///
     /// # Errors
-    /// The number is not within 0 to 1, or the threshold rounds to 0 in the sample type.
+    /// Returns an error if the number is not within 0 to 1, or the threshold rounds to 0 in the sample type.
     pub fn step_forward(&self, spikes: f32) -> Result<StepForward<S>, ConfigError> {
         check_spikes(spikes)?;
         let mean = self.calibration().magnitudes()?.mean;
@@ -305,7 +305,7 @@ impl<'a, S: Sample, const B: usize> Fit<'a, S, B> {
     /// the older ones count less.
     ///
     /// # Errors
-    /// The number is not within 0 to 1, or a larger part of the changes is in the last cell.
+    /// Returns an error if the number is not within 0 to 1, or a larger part of the changes is in the last cell.
     pub fn temporal_contrast(&self, spikes: f32) -> Result<TemporalContrast<S>, ConfigError> {
         check_spikes(spikes)?;
         let counts = self.changes().counts();

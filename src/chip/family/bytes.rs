@@ -110,7 +110,7 @@ impl<'a, I: Input> NetworkBytes<'a, I> {
     /// Reads the header, and checks the length.
     ///
     /// # Errors
-    /// The bytes are no network for this chip.
+    /// Returns an error if the bytes are no network for this chip.
     pub fn new(bytes: &'a [u8]) -> Result<Self, FormatError> {
         let (header, rest) = bytes.split_at_checked(HEADER).ok_or(FormatError::Magic)?;
         let &[a, b, c, d, kind, flags, n0, n1, i0, i1, o0, o1] = header else {
@@ -146,7 +146,7 @@ impl<'a, I: Input> NetworkBytes<'a, I> {
     /// Writes a network into a buffer. Returns its length.
     ///
     /// # Errors
-    /// The buffer is too small, or the network has a value out of its range.
+    /// Returns an error if the buffer is too small, or the network has a value out of its range.
     pub fn write(network: &impl Describe<I>, buffer: &mut [u8]) -> Result<usize, FormatError> {
         let shape = Shape {
             neurons: network.neurons(),

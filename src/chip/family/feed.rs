@@ -17,9 +17,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     /// counted as [late](super::Counters::late_events).
     ///
     /// # Errors
-    /// The errors of [`send`](Self::send). After any error call it again with the events that remain: no event is lost
-    /// or sent twice, except those that a reset [counts](super::Counters::repeated_events) and those whose input is not
-    /// valid, which are dropped.
+    /// Returns the errors of [`send`](Self::send). After any error call it again with the events that remain: no
+    /// event is lost or sent twice, except those that a reset [counts](super::Counters::repeated_events) and those
+    /// whose input is not valid, which are dropped.
     pub fn feed<A: Into<Option<I>>>(
         &mut self,
         mut events: impl Source,

@@ -41,8 +41,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// other than 0 takes 17 more, each neuron that cannot be probed 4 or 16.
     ///
     /// # Errors
-    /// A value is out of its range, or [`NoProbe`](ChipError::NoProbe): the chip is still gated. Or the bus or the port
-    /// failed, or the chip does not read back or answer: then reset it.
+    /// Returns an error if a value is out of its range, or [`NoProbe`](ChipError::NoProbe): the chip is still gated.
+    /// Also if the bus or the port failed, or the chip does not read back or answer: then reset it.
     pub fn run(self, registers: &I::Registers) -> Outcome<Running<'a, I, D, P>, D, P> {
         I::check_registers(registers)?;
         let chip = self.chip;
@@ -59,7 +59,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Writes a neuron's parameters and state.
     ///
     /// # Errors
-    /// The value is out of its range; or the bus failed, or it does not read back: then reset the chip.
+    /// Returns an error if the value is out of its range; or the bus failed, or it does not read back: then reset the
+    /// chip.
     pub fn set_neuron(&mut self, neuron: u8, value: &I::Neuron) -> Outcome<(), D, P> {
         let bytes = I::neuron_bytes(value)?;
         let bytes = (0..I::NEURON_BYTES).zip(bytes);
@@ -69,7 +70,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Reads a neuron's parameters and state, and checks that the bus is in step.
     ///
     /// # Errors
-    /// The bus failed or is out of step: then reset the chip.
+    /// Returns an error if the bus failed or is out of step: then reset the chip.
     pub fn neuron(&mut self, neuron: u8) -> Outcome<I::Neuron, D, P> {
         Ok(I::neuron(self.chip.fetch(bytes_of::<I>(neuron))?))
     }
@@ -77,7 +78,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Writes the synapse from `pre` to `post`.
     ///
     /// # Errors
-    /// The value is out of its range; or the bus failed, or it does not read back: then reset the chip.
+    /// Returns an error if the value is out of its range; or the bus failed, or it does not read back: then reset the
+    /// chip.
     pub fn set_synapse(&mut self, pre: u8, post: u8, synapse: I::Synapse) -> Outcome<(), D, P> {
         let bits = I::synapse_bits(synapse)?;
         let (keep, value) = if post & 1 == 0 { (0xF0, bits) } else { (0x0F, bits << 4) };
@@ -87,7 +89,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Reads the synapse from `pre` to `post`, and checks that the bus is in step.
     ///
     /// # Errors
-    /// The bus failed or is out of step: then reset the chip.
+    /// Returns an error if the bus failed or is out of step: then reset the chip.
     pub fn synapse(&mut self, pre: u8, post: u8) -> Outcome<I::Synapse, D, P> {
         let [byte, ..] = self.chip.fetch([Address::synapse(pre, post)].into_iter())?;
         Ok(I::synapse(if post & 1 == 0 { byte & 0xF } else { byte >> 4 }))
@@ -96,7 +98,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Writes a byte of a neuron, for fields that [`Input::Neuron`] does not have.
     ///
     /// # Errors
-    /// There is no such byte, the bus failed, or it does not read back: then reset the chip.
+    /// Returns an error if there is no such byte, the bus failed, or it does not read back: then reset the chip.
     pub fn set_neuron_byte(&mut self, neuron: u8, byte: u8, value: u8) -> Outcome<(), D, P> {
         at_most("byte", byte.into(), u32::from(I::NEURON_BYTES) - 1)?;
         self.chip.store([(Address::neuron(neuron, byte), 0, value)].into_iter())
@@ -105,7 +107,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Reads a byte of a neuron, and checks that the bus is in step.
     ///
     /// # Errors
-    /// There is no such byte, or the bus failed or is out of step: then reset the chip.
+    /// Returns an error if there is no such byte, or the bus failed or is out of step: then reset the chip.
     pub fn neuron_byte(&mut self, neuron: u8, byte: u8) -> Outcome<u8, D, P> {
         at_most("byte", byte.into(), u32::from(I::NEURON_BYTES) - 1)?;
         let [value, ..] = self.chip.fetch([Address::neuron(neuron, byte)].into_iter())?;
@@ -115,7 +117,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Checks that the chip is gated and in step, which [`run`](Self::run) does too.
     ///
     /// # Errors
-    /// The bus failed, or the chip does not read back what is written: then reset it.
+    /// Returns an error if the bus failed, or the chip does not read back what is written: then reset it.
     pub fn check_step(&mut self) -> Outcome<(), D, P> {
         self.chip.check_step()
     }

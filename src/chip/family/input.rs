@@ -38,7 +38,7 @@ pub trait Input: Copy {
     /// The word of the input.
     ///
     /// # Errors
-    /// A value is out of its range, or a virtual event has weight 0.
+    /// Returns an error if a value is out of its range, or a virtual event has weight 0.
     fn word<B, P>(self) -> Result<u32, ChipError<B, P>>;
 
     /// The input of a spike from outside.
@@ -53,7 +53,7 @@ pub trait Input: Copy {
     /// A neuron's bytes.
     ///
     /// # Errors
-    /// A value is out of its range.
+    /// Returns an error if a value is out of its range.
     fn neuron_bytes<B, P>(neuron: &Self::Neuron) -> Result<[u8; 16], ChipError<B, P>>;
 
     /// The neuron of these bytes.
@@ -65,13 +65,13 @@ pub trait Input: Copy {
     /// A signed weight's 4 bits.
     ///
     /// # Errors
-    /// The weight is out of its range.
+    /// Returns an error if the weight is out of its range.
     fn weight_bits<B, P>(weight: i8) -> Result<u8, ChipError<B, P>>;
 
     /// A synapse's 4 bits.
     ///
     /// # Errors
-    /// The weight is out of its range.
+    /// Returns an error if the weight is out of its range.
     fn synapse_bits<B, P>(synapse: Self::Synapse) -> Result<u8, ChipError<B, P>>;
 
     /// The synapse of these 4 bits.
@@ -87,7 +87,7 @@ pub trait Input: Copy {
     /// Calls `write` with the number and value of each register but the gate.
     ///
     /// # Errors
-    /// The error of `write`.
+    /// Returns the error of `write`.
     fn each_register<E>(
         registers: &Self::Registers,
         write: impl FnMut(u16, u32) -> Result<(), E>,
@@ -96,7 +96,7 @@ pub trait Input: Copy {
     /// Checks the values of the registers.
     ///
     /// # Errors
-    /// A value is out of its range.
+    /// Returns an error if a value is out of its range.
     fn check_registers<B, P>(registers: &Self::Registers) -> Result<(), ChipError<B, P>>;
 
     /// Whether the loop is open: the neurons' spikes do not go to other neurons.

@@ -28,8 +28,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
     /// tinyODIN with 256 rows take 67 584 frames, 4.1 s at 656 kHz.
     ///
     /// # Errors
-    /// The network does not fit: then no byte is written. Or the bus failed, or the chip does not read back what was
-    /// written: then reset it.
+    /// Returns an error if the network does not fit: then no byte is written. Also if the bus failed, or the chip
+    /// does not read back what was written: then reset it.
     pub fn load(
         &mut self,
         network: &impl Describe<I>,
@@ -56,8 +56,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
     /// Compares the chip's memories with a network. This includes potentials, which change when the network runs.
     ///
     /// # Errors
-    /// The network does not fit; [`ReadBack`](ChipError::ReadBack) at the first difference: then reset the
-    /// chip. The bus failed.
+    /// Returns an error if the network does not fit or the bus failed, and [`ReadBack`](ChipError::ReadBack) at the
+    /// first difference: then reset the chip.
     pub fn verify(
         &mut self,
         network: &impl Describe<I>,

@@ -148,7 +148,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// [`Running::feed`] that the chip has not acknowledged, it is held and sent again.
     ///
     /// # Errors
-    /// The port or the bus failed, or the chip does not read back what is written.
+    /// Returns an error if the port or the bus failed, or the chip does not read back what is written.
     pub fn reset(&mut self, delay: &mut impl DelayNs) -> Outcome<Gated<'_, I, D, P>, D, P> {
         self.state = State::NotReset;
         let (under_way, is_output_lost) = self.aer.reset().map_err(ChipError::Port)?;
@@ -166,7 +166,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// The chip, if it is gated.
     ///
     /// # Errors
-    /// [`NotReset`](ChipError::NotReset) or [`NotGated`](ChipError::NotGated).
+    /// Returns [`NotReset`](ChipError::NotReset) or [`NotGated`](ChipError::NotGated).
     pub fn gated(&mut self) -> Outcome<Gated<'_, I, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),
@@ -178,7 +178,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// The chip, if it runs.
     ///
     /// # Errors
-    /// [`NotReset`](ChipError::NotReset) or [`Gated`](ChipError::Gated).
+    /// Returns [`NotReset`](ChipError::NotReset) or [`Gated`](ChipError::Gated).
     pub fn running(&mut self) -> Outcome<Running<'_, I, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),

@@ -21,7 +21,7 @@ pub trait AerPort {
     /// Puts a word on the input bus. It must have settled at the chip when this returns.
     ///
     /// # Errors
-    /// The port failed.
+    /// Returns an error if the port failed.
     fn set_input(&mut self, word: u32) -> Result<(), Self::Error>;
 
     /// Drives the input bus's REQ.

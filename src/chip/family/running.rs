@@ -27,9 +27,9 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
     /// still works on it: 2 clocks for every neuron in use.
     ///
     /// # Errors
-    /// The input is not valid, the chip does not answer, or the port failed. With [`Phase::Idle`](super::Phase::Idle) the
-    /// input was not sent; with any other [`Handshake`](ChipError::Handshake) error it is under way, and must not be
-    /// sent again.
+    /// Returns an error if the input is not valid, the chip does not answer, or the port failed. With
+    /// [`Phase::Idle`](super::Phase::Idle) the input was not sent; with any other [`Handshake`](ChipError::Handshake)
+    /// error it is under way, and must not be sent again.
     pub fn send(&mut self, input: I, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         let word = input.word()?;
         let aer = &mut self.chip.aer;
@@ -41,7 +41,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
     /// only: call it often, as the chip stands still while an output waits.
     ///
     /// # Errors
-    /// The port failed. No output is passed on twice.
+    /// Returns an error if the port failed. No output is passed on twice.
     pub fn poll(&mut self, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         self.chip.aer.poll(&mut on_output).map_err(ChipError::Port)
     }
@@ -53,9 +53,9 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
     /// its queue can hold, 66 000 clocks for tinyODIN's 256 neurons.
     ///
     /// # Errors
-    /// [`Busy`](ChipError::Busy): outputs come without end, as from a network that drives itself; see
-    /// [`open_loop`](Self::open_loop). Or the chip does not take a word under way, or the port failed. The chip still
-    /// runs.
+    /// Returns [`Busy`](ChipError::Busy) if outputs come without end, as from a network that drives itself; see
+    /// [`open_loop`](Self::open_loop). Returns another error if the chip does not take a word under way, or the port
+    /// failed. The chip still runs.
     pub fn quiesce(&mut self, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         let chip = &mut *self.chip;
         chip.aer.finish(&mut on_output)?;
@@ -78,8 +78,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
     /// accessed, and the neurons keep their potentials.
     ///
     /// # Errors
-    /// Those of [`quiesce`](Self::quiesce), after which the chip still runs. Or the bus failed, or the chip does not read
-    /// back what is written: then reset it.
+    /// Returns the errors of [`quiesce`](Self::quiesce), after which the chip still runs. Also if the bus failed, or the
+    /// chip does not read back what is written: then reset it.
     pub fn gate(mut self, on_output: impl FnMut(u8)) -> Outcome<Gated<'a, I, D, P>, D, P> {
         self.quiesce(on_output)?;
         self.chip.shut()?;
@@ -90,7 +90,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
     /// [`run`](Gated::run). This write cannot be verified; [`gate`](Self::gate) verifies its own.
     ///
     /// # Errors
-    /// The bus failed: then reset the chip.
+    /// Returns an error if the bus failed: then reset the chip.
     pub fn open_loop(self) -> Outcome<Self, D, P> {
         let result = self.chip.wire.configure(I::OPEN_LOOP, 1);
         self.chip.heed(result)?;

@@ -36,7 +36,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     /// [counted](super::Counters::skipped_steps). (255 leaks of 1 may not bring a potential of 12 bits to 0.)
     ///
     /// # Errors
-    /// The errors of [`send`](Self::send). Time steps that were not sent are due the next time.
+    /// Returns the errors of [`send`](Self::send). Time steps that were not sent are due the next time.
     pub fn advance(&mut self, now: Tick, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         self.advance_with(now, &mut on_output)
     }

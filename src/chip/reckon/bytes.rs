@@ -57,7 +57,7 @@ impl<'a> ReckOnBytes<'a> {
     /// Reads the header, and checks the length and every value.
     ///
     /// # Errors
-    /// The bytes are no network for this chip.
+    /// Returns an error if the bytes are no network for this chip.
     pub fn new(bytes: &'a [u8]) -> Result<Self, FormatError> {
         let (header, rest) = bytes.split_at_checked(HEADER).ok_or(FormatError::Magic)?;
         let &[a, b, c, d, kind, flags, n0, n1, i0, i1, o0, o1, s0, s1, s2, keep] = header else {
@@ -90,7 +90,7 @@ impl<'a> ReckOnBytes<'a> {
     /// Writes a network into a buffer. Returns its length.
     ///
     /// # Errors
-    /// The buffer is too small, or the network has a value out of its range.
+    /// Returns an error if the buffer is too small, or the network has a value out of its range.
     pub fn write(network: &impl DescribeReckOn, buffer: &mut [u8]) -> Result<usize, FormatError> {
         let sizes = [network.neurons(), network.inputs(), network.outputs()];
         check_sizes(sizes)?;

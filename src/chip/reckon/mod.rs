@@ -154,7 +154,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
     /// held; registers do not.
     ///
     /// # Errors
-    /// The port or the bus failed, or the chip does not read back what is written.
+    /// Returns an error if the port or the bus failed, or the chip does not read back what is written.
     pub fn reset(&mut self, delay: &mut impl DelayNs) -> Outcome<Programmed<'_, D, P>, D, P> {
         self.state = State::NotReset;
         self.clear_pins().map_err(ChipError::Port)?;
@@ -181,7 +181,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
     /// The chip, if its memories can be accessed.
     ///
     /// # Errors
-    /// [`NotReset`](ChipError::NotReset) or [`NotGated`](ChipError::NotGated).
+    /// Returns [`NotReset`](ChipError::NotReset) or [`NotGated`](ChipError::NotGated).
     pub fn programmed(&mut self) -> Outcome<Programmed<'_, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),
@@ -193,7 +193,8 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
     /// The chip, if it runs and is between samples.
     ///
     /// # Errors
-    /// [`NotReset`](ChipError::NotReset), [`Gated`](ChipError::Gated), or [`Busy`](ChipError::Busy) within a sample.
+    /// Returns [`NotReset`](ChipError::NotReset), [`Gated`](ChipError::Gated), or [`Busy`](ChipError::Busy) within a
+    /// sample.
     pub fn started(&mut self) -> Outcome<Started<'_, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),
@@ -206,8 +207,8 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
     /// The chip, if it is within a sample.
     ///
     /// # Errors
-    /// [`NotReset`](ChipError::NotReset), [`Gated`](ChipError::Gated), or [`NotStarted`](ChipError::NotStarted) between
-    /// samples.
+    /// Returns [`NotReset`](ChipError::NotReset), [`Gated`](ChipError::Gated), or
+    /// [`NotStarted`](ChipError::NotStarted) between samples.
     pub fn sample(&mut self) -> Outcome<ReckOnSample<'_, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),

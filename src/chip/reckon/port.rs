@@ -19,7 +19,7 @@ pub trait ReckOnPort {
     /// Puts a byte on `AERIN_ADDR`, and drives `AERIN_TAR_EN`. Both must have settled at the chip when this returns.
     ///
     /// # Errors
-    /// The port failed.
+    /// Returns an error if the port failed.
     fn set_input(&mut self, byte: u8, is_target: bool) -> Result<(), Self::Error>;
 
     /// Drives `AERIN_REQ`.

@@ -28,8 +28,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
     /// neurons and 16 outputs take 68 608 transfers, 4.4 s at 1 MHz.
     ///
     /// # Errors
-    /// The network does not fit: then nothing is written. Or the bus failed, or the chip does not read back what was
-    /// written: then reset it, and load again.
+    /// Returns an error if the network does not fit: then nothing is written. Also if the bus failed, or the chip
+    /// does not read back what was written: then reset it, and load again.
     pub fn load(
         &mut self,
         network: &impl DescribeReckOn,
@@ -73,8 +73,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
     /// Compares the chip's memories with a network, as to weights that may have learnt.
     ///
     /// # Errors
-    /// The network does not fit; [`ReadBack`](ChipError::ReadBack) at the first difference; the bus failed. Then reset
-    /// the chip.
+    /// Returns an error if the network does not fit or the bus failed, and [`ReadBack`](ChipError::ReadBack) at the
+    /// first difference. Then reset the chip.
     pub fn verify(&mut self, network: &impl DescribeReckOn) -> Outcome<(), D, P> {
         check::<D::Error, P::Error>(network)?;
         let chip = &mut *self.chip;
@@ -100,7 +100,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
     /// The weight from an input to a neuron, as learning may have moved it.
     ///
     /// # Errors
-    /// The bus failed or is out of step: then reset the chip.
+    /// Returns an error if the bus failed or is out of step: then reset the chip.
     pub fn input_weight(&mut self, input: u8, neuron: u8) -> Outcome<i8, D, P> {
         self.weight(Address::input(input.into()), neuron)
     }
@@ -116,7 +116,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
     /// The weight from a neuron to an output.
     ///
     /// # Errors
-    /// There is no such output; see [`input_weight`](Self::input_weight).
+    /// Returns an error if there is no such output; see [`input_weight`](Self::input_weight).
     pub fn output_weight(&mut self, neuron: u8, output: u8) -> Outcome<i8, D, P> {
         at_most("output", output.into(), 15)?;
         self.weight(Address::output(neuron.into()), output)
@@ -136,7 +136,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
     /// in step. Register 0 opens the memories and is the driver's.
     ///
     /// # Errors
-    /// There is no such register; or the bus failed or is out of step: then reset the chip.
+    /// Returns an error if there is no such register; or the bus failed or is out of step: then reset the chip.
     pub fn set_register(&mut self, register: u16, value: u32) -> Outcome<(), D, P> {
         in_range("register", register.into(), 1, 104)?;
         self.configure(register, value)
@@ -153,8 +153,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
     /// another did.
     ///
     /// # Errors
-    /// A value is out of its range: the chip is as it was. Or the bus failed or is out of step, or the memories are still
-    /// open: then reset the chip.
+    /// Returns an error if a value is out of its range: the chip is as it was. Also if the bus failed or is out of
+    /// step, or the memories are still open: then reset the chip.
     pub fn run(mut self, settings: &ReckOnSettings) -> Outcome<Started<'a, D, P>, D, P> {
         check_settings::<D::Error, P::Error>(settings)?;
         let answers = settings.answers;

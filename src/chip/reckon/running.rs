@@ -52,7 +52,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Started<'a, D, P> {
     /// Begins a sample with a first tick: all potentials are 0.
     ///
     /// # Errors
-    /// The chip does not take the tick, or the port failed: then reset the chip.
+    /// Returns an error if the chip does not take the tick, or the port failed: then reset the chip.
     pub fn begin(self) -> Outcome<ReckOnSample<'a, D, P>, D, P> {
         let chip = self.chip;
         let result = begin(chip);
@@ -64,7 +64,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Started<'a, D, P> {
     /// Opens the memories again, as to read what was learnt.
     ///
     /// # Errors
-    /// The bus failed or is out of step: then reset the chip.
+    /// Returns an error if the bus failed or is out of step: then reset the chip.
     pub fn program(self) -> Outcome<Programmed<'a, D, P>, D, P> {
         let chip = self.chip;
         let result = chip.wire.configure(OPEN, 1);
@@ -79,7 +79,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
     /// Sends an input's spike, which acts after the next tick. Sent twice within a step, it counts once.
     ///
     /// # Errors
-    /// There is no such input. Or the chip does not answer, or the port failed: then reset the chip.
+    /// Returns an error if there is no such input. Also if the chip does not answer, or the port failed: then reset
+    /// the chip.
     pub fn send(&mut self, input: u8) -> Outcome<(), D, P> {
         at_most("input", input.into(), self.chip.sizes.input.into())?;
         self.chip.send(input, false)
@@ -89,8 +90,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
     /// asked for in each step.
     ///
     /// # Errors
-    /// The target is not one of the network or of the settings: nothing was sent. Or the chip does not finish its step,
-    /// does not take the tick, or the port failed: then reset the chip.
+    /// Returns an error if the target is not one of the network or of the settings: nothing was sent. Also if the
+    /// chip does not finish its step, does not take the tick, or the port failed: then reset the chip.
     pub fn step(&mut self, step: ReckOnStep<'_>) -> Outcome<Option<ReckOnAnswer>, D, P> {
         self.check(&step)?;
         let result = self.try_step(step);
@@ -100,7 +101,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
     /// Ends the sample with a last tick, and returns the chip's answer. Then all potentials are 0.
     ///
     /// # Errors
-    /// The chip does not finish, or the port failed: then reset the chip.
+    /// Returns an error if the chip does not finish, or the port failed: then reset the chip.
     pub fn end(mut self) -> Outcome<(ReckOnAnswer, Started<'a, D, P>), D, P> {
         let result = self.try_end();
         let answer = self.chip.heed(result)?;

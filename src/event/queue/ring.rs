@@ -159,7 +159,7 @@ impl QueueView {
     /// Puts an item, such as an event, at the end.
     ///
     /// # Errors
-    /// The queue is full and its policy is [`Overflow::Refuse`]; never under another policy.
+    /// Returns an error if the queue is full and its policy is [`Overflow::Refuse`]; never under another policy.
     #[inline]
     pub fn push(&self, item: impl Into<Item>) -> Result<(), Refused> {
         let item = item.into();

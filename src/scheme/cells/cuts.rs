@@ -41,7 +41,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
     /// Cells that all end where the range does, until [set](Self::set).
     ///
     /// # Errors
-    /// The ends are not finite, or do not rise.
+    /// Returns an error if the ends are not finite, or do not rise.
     pub(in crate::scheme) const fn new(
         range: &RangeInclusive<S>,
         count: usize,
@@ -68,7 +68,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
     /// Cells of one width: edges at `min + cR/count`, each of which belongs to the upper cell.
     ///
     /// # Errors
-    /// As for [`new`](Self::new).
+    /// Returns an error if [`new`](Self::new) does.
     pub(in crate::scheme) const fn even(
         range: &RangeInclusive<S>,
         count: usize,
@@ -89,7 +89,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
     /// the points, each of which belongs to the lower cell.
     ///
     /// # Errors
-    /// As for [`new`](Self::new).
+    /// Returns an error if [`new`](Self::new) does.
     pub(in crate::scheme) const fn points(
         range: &RangeInclusive<S>,
         count: usize,
@@ -180,7 +180,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
     /// The cells as they are looked up, each of which stands for its middle.
     ///
     /// # Errors
-    /// A cell holds no sample.
+    /// Returns an error if a cell holds no sample.
     pub(in crate::scheme) const fn partition(&self) -> Result<Partition<S, C>, ConfigError> {
         let mut middles = [S::ZERO; C];
         let mut cell = 0;
@@ -194,7 +194,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
     /// The cells as they are looked up, each of which stands for a value.
     ///
     /// # Errors
-    /// A cell holds no sample.
+    /// Returns an error if a cell holds no sample.
     pub(in crate::scheme) const fn partition_of(
         &self,
         values: [S; C],
@@ -208,7 +208,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
     /// Checks that every cell holds a sample.
     ///
     /// # Errors
-    /// A cell holds no sample.
+    /// Returns an error if a cell holds no sample.
     const fn check(&self) -> Result<(), ConfigError> {
         let mut cell = 0;
         while cell < self.count && cell < C {

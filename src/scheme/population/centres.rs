@@ -60,7 +60,7 @@ const fn is_at_most(value: f64, sum: f64, error: f64) -> bool {
 /// Sets each edge but the last to the largest value not above halfway between two centres.
 ///
 /// # Errors
-/// A centre is not finite, or does not exceed the one before.
+/// Returns an error if a centre is not finite, or does not exceed the one before.
 #[allow(clippy::indexing_slicing)] // constants have no iterators
 pub(super) const fn halfway_edges<S: Sample>(
     centres: &[S],
@@ -91,7 +91,8 @@ pub(super) const fn halfway_edges<S: Sample>(
 /// Sets even centres over a range, and the edges halfway between them before they are rounded.
 ///
 /// # Errors
-/// The ends are not finite, or do not rise, or the sample type is too coarse to tell the centres apart.
+/// Returns an error if the ends are not finite, or do not rise, or the sample type is too coarse to tell the centres
+/// apart.
 #[allow(clippy::indexing_slicing)] // constants have no iterators
 pub(super) const fn even<S: Sample>(
     over: &RangeInclusive<S>,
@@ -122,7 +123,7 @@ pub(super) const fn even<S: Sample>(
 /// Sets centres over a range spaced as the quantiles of a normal distribution.
 ///
 /// # Errors
-/// The ends are not finite, or do not rise.
+/// Returns an error if the ends are not finite, or do not rise.
 #[allow(clippy::indexing_slicing)] // constants have no iterators
 pub(super) const fn gaussian_spaced<S: Sample>(
     over: &RangeInclusive<S>,
@@ -161,7 +162,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
     /// The user's own centres, strictly rising.
     ///
     /// # Errors
-    /// A centre is not finite, or does not exceed the one before.
+    /// Returns an error if a centre is not finite, or does not exceed the one before.
     pub(super) const fn try_new(values: [S; M]) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
         let mut edges = values;
@@ -176,7 +177,8 @@ impl<S: Sample, const M: usize> Centres<S, M> {
     /// halfway between the centres before rounding.
     ///
     /// # Errors
-    /// The ends are not finite, or do not rise, or the sample type is too coarse to tell the centres apart.
+    /// Returns an error if the ends are not finite, or do not rise, or the sample type is too coarse to tell the
+    /// centres apart.
     pub(super) const fn try_linear(range: &RangeInclusive<S>) -> Result<Self, ConfigError> {
         let mut values = [S::ZERO; M];
         let mut edges = [S::ZERO; M];
@@ -189,7 +191,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
     /// Centres over a range spaced as the quantiles of a normal distribution: dense around the middle.
     ///
     /// # Errors
-    /// As for [`try_linear`](Self::try_linear).
+    /// Returns an error if [`try_linear`](Self::try_linear) does.
     pub(super) const fn try_gaussian_spaced(
         range: &RangeInclusive<S>,
     ) -> Result<Self, ConfigError> {

@@ -44,7 +44,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// The user's own centres, strictly rising.
     ///
     /// # Errors
-    /// There are not 3 to `M` centres; a centre is not finite, or does not exceed the one before.
+    /// Returns an error if there are not 3 to `M` centres; a centre is not finite, or does not exceed the one before.
     pub fn try_new(centres: &[S]) -> Result<Self, ConfigError> {
         check_neurons(centres.len(), M)?;
         let mut edges = centres.to_vec();
@@ -55,8 +55,8 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// Even centres over a range, half a spacing beyond it at either end.
     ///
     /// # Errors
-    /// There are not 3 to `M` neurons; the ends are not finite, or do not rise, or the sample type is too
-    /// coarse to tell the centres apart.
+    /// Returns an error if there are not 3 to `M` neurons; the ends are not finite, or do not rise, or the sample
+    /// type is too coarse to tell the centres apart.
     pub fn try_linear(neurons: usize, range: &RangeInclusive<S>) -> Result<Self, ConfigError> {
         check_neurons(neurons, M)?;
         let (mut centres, mut edges) = (vec![S::ZERO; neurons], vec![S::ZERO; neurons]);
@@ -67,7 +67,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// Centres over a range spaced as the quantiles of a normal distribution.
     ///
     /// # Errors
-    /// As for [`try_linear`](Self::try_linear).
+    /// Returns an error if [`try_linear`](Self::try_linear) does.
     pub fn try_gaussian_spaced(
         neurons: usize,
         range: &RangeInclusive<S>,
@@ -81,7 +81,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// Receptive fields with these centres and widths `sigma`, of which the strongest response fires.
     ///
     /// # Errors
-    /// There are not 3 to `M` centres and as many widths; otherwise as for
+    /// Returns an error if there are not 3 to `M` centres and as many widths; otherwise as for
     /// [`population::Position`](crate::population::Position::try_with_widths).
     pub fn try_with_widths(centres: &[S], widths: &[f32]) -> Result<Self, ConfigError> {
         check_neurons(centres.len(), M)?;
@@ -94,7 +94,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// Receptive fields with these centres, each as wide as the distance between its neighbours.
     ///
     /// # Errors
-    /// There are not 3 to `M` centres; otherwise as for
+    /// Returns an error if there are not 3 to `M` centres; otherwise as for
     /// [`population::Position`](crate::population::Position::try_spaced).
     pub fn try_spaced(centres: &[S]) -> Result<Self, ConfigError> {
         check_neurons(centres.len(), M)?;
@@ -106,7 +106,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// Companded centres, dense in the middle of the range, with fields as wide as their spacing.
     ///
     /// # Errors
-    /// There are not 3 to `M` neurons; otherwise as for
+    /// Returns an error if there are not 3 to `M` neurons; otherwise as for
     /// [`population::Position`](crate::population::Position::try_companded).
     pub fn try_companded(
         neurons: usize,
@@ -239,8 +239,8 @@ impl<S: Sample, const M: usize> Slots<S, M> {
     /// Receptive fields over a range, with every level from 1 firing. The smaller `beta`, the wider the fields.
     ///
     /// # Errors
-    /// There are not 3 to `M` neurons or not 2 to 256 slots; the ends are not finite, or do not rise, or the
-    /// sample type is too coarse to tell the centres apart; `beta` is not above 0.
+    /// Returns an error if there are not 3 to `M` neurons or not 2 to 256 slots; the ends are not finite, or do not
+    /// rise, or the sample type is too coarse to tell the centres apart; `beta` is not above 0.
     pub fn try_new(
         neurons: usize,
         slots: usize,
@@ -253,7 +253,7 @@ impl<S: Sample, const M: usize> Slots<S, M> {
     /// Sets the lowest level that fires; 1 by default.
     ///
     /// # Errors
-    /// The floor is not within 1 to the number of slots.
+    /// Returns an error if the floor is not within 1 to the number of slots.
     pub fn try_with_floor(self, floor: u16) -> Result<Self, ConfigError> {
         within("floor", floor as f64, 1.0, self.fields.reaches.len() as f32)?;
         Ok(Self { floor, ..self })
@@ -354,8 +354,8 @@ mod random {
         /// wider the fields.
         ///
         /// # Errors
-        /// There are not 3 to `M` neurons; the ends are not finite, or do not rise, or the sample type is
-        /// too coarse to tell the centres apart; `beta` is not above 0.
+        /// Returns an error if there are not 3 to `M` neurons; the ends are not finite, or do not rise, or the sample
+        /// type is too coarse to tell the centres apart; `beta` is not above 0.
         pub fn try_new(
             neurons: usize,
             range: &RangeInclusive<S>,

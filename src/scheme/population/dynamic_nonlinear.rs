@@ -27,7 +27,7 @@ impl<S: Sample, const M: usize> NonLinearSlots<S, M> {
     /// Fields with these centres and widths `sigma`.
     ///
     /// # Errors
-    /// There are not 3 to `M` centres and as many widths, or not 2 to 256 slots; otherwise as for
+    /// Returns an error if there are not 3 to `M` centres and as many widths, or not 2 to 256 slots; otherwise as for
     /// [`population::NonLinearSlots`](crate::population::NonLinearSlots::try_new).
     pub fn try_new(slots: usize, centres: &[S], widths: &[f32]) -> Result<Self, ConfigError> {
         check_neurons(centres.len(), M)?;
@@ -41,7 +41,7 @@ impl<S: Sample, const M: usize> NonLinearSlots<S, M> {
     /// wider.
     ///
     /// # Errors
-    /// There are not 3 to `M` centres, or not 2 to 256 slots; otherwise as for
+    /// Returns an error if there are not 3 to `M` centres, or not 2 to 256 slots; otherwise as for
     /// [`population::NonLinearSlots`](crate::population::NonLinearSlots::try_spaced).
     pub fn try_spaced(slots: usize, centres: &[S], beta: f32) -> Result<Self, ConfigError> {
         check_neurons(centres.len(), M)?;
@@ -54,7 +54,7 @@ impl<S: Sample, const M: usize> NonLinearSlots<S, M> {
     /// Companded centres, dense in the middle of the range, with fields as wide as their spacing.
     ///
     /// # Errors
-    /// There are not 3 to `M` neurons, or not 2 to 256 slots; otherwise as for
+    /// Returns an error if there are not 3 to `M` neurons, or not 2 to 256 slots; otherwise as for
     /// [`population::NonLinearSlots`](crate::population::NonLinearSlots::try_companded).
     pub fn try_companded(
         neurons: usize,
@@ -83,7 +83,7 @@ impl<S: Sample, const M: usize> NonLinearSlots<S, M> {
     /// Sets the lowest level that fires; 1 by default.
     ///
     /// # Errors
-    /// The floor is not within 1 to the number of slots.
+    /// Returns an error if the floor is not within 1 to the number of slots.
     pub fn try_with_floor(mut self, floor: u16) -> Result<Self, ConfigError> {
         within("floor", floor.into(), 1.0, self.radii.len() as f32)?;
         reach::<S>(&self.scales, &self.radii, floor.into(), &mut self.reaches);

@@ -30,8 +30,8 @@ impl<S: Sample, const M: usize> RankOrder<S, M> {
     /// The user's own centres, strictly rising.
     ///
     /// # Errors
-    /// There are not 3 to `M` centres; the spikes a sample are not 1 to as many, at most 256; otherwise as for
-    /// [`population::RankOrder`](crate::population::RankOrder::try_new).
+    /// Returns an error if there are not 3 to `M` centres; the spikes a sample are not 1 to as many, at most 256;
+    /// otherwise as for [`population::RankOrder`](crate::population::RankOrder::try_new).
     pub fn try_new(spikes: usize, centres: &[S]) -> Result<Self, ConfigError> {
         let end = |centre: Option<&S>| centre.copied().unwrap_or(S::ZERO);
         Self::over(spikes, centres.to_vec(), end(centres.first()), end(centres.last()))
@@ -40,8 +40,8 @@ impl<S: Sample, const M: usize> RankOrder<S, M> {
     /// Even centres over a range, half a spacing beyond it at either end.
     ///
     /// # Errors
-    /// There are not 3 to `M` neurons; the spikes a sample are not 1 to as many, at most 256; otherwise as for
-    /// [`population::RankOrder`](crate::population::RankOrder::try_linear).
+    /// Returns an error if there are not 3 to `M` neurons; the spikes a sample are not 1 to as many, at most 256;
+    /// otherwise as for [`population::RankOrder`](crate::population::RankOrder::try_linear).
     pub fn try_linear(
         neurons: usize,
         spikes: usize,

@@ -114,7 +114,7 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
     /// Fields over a range. The smaller `beta`, the wider the fields.
     ///
     /// # Errors
-    /// `beta` is not above 0, or as for [`Centres::try_linear`].
+    /// Returns an error if `beta` is not above 0, or as for [`Centres::try_linear`].
     pub(super) const fn try_new(range: &RangeInclusive<S>, beta: f32) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
         if let Err(error) = positive("beta", beta as f64) {

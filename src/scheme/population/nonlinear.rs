@@ -37,7 +37,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// Fields with these centres and widths `sigma`. For constants, where bad ones fail the build.
     ///
     /// # Panics
-    /// [`try_with_widths`](Self::try_with_widths) returns an error.
+    /// Panics if [`try_with_widths`](Self::try_with_widths) returns an error.
     pub const fn with_widths(centres: [S; M], widths: [f32; M]) -> Self {
         unwrap(Self::try_with_widths(centres, widths))
     }
@@ -45,8 +45,8 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// Fields with these centres and widths `sigma`.
     ///
     /// # Errors
-    /// A centre is not finite, or does not exceed the one before; a width is not above 0 and finite; a field wins
-    /// where two others meet, or wins nowhere.
+    /// Returns an error if a centre is not finite, or does not exceed the one before; a width is not above 0 and
+    /// finite; a field wins where two others meet, or wins nowhere.
     pub const fn try_with_widths(centres: [S; M], widths: [f32; M]) -> Result<Self, ConfigError> {
         let mut sigmas = [0.0; M];
         match own_widths(&widths, &mut sigmas) {
@@ -59,7 +59,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// centres fail the build.
     ///
     /// # Panics
-    /// [`try_spaced`](Self::try_spaced) returns an error.
+    /// Panics if [`try_spaced`](Self::try_spaced) returns an error.
     pub const fn spaced(centres: [S; M]) -> Self {
         unwrap(Self::try_spaced(centres))
     }
@@ -68,8 +68,9 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// `sigma[i] = (mu[i+1] - mu[i-1]) / 2 beta`, and the one spacing over `beta` at either end.
     ///
     /// # Errors
-    /// A centre is not finite, or does not exceed the one before; a field wins where two others meet, as may happen
-    /// beside a gap many times as wide as the spacings before it: then take [equal widths](Self::try_new).
+    /// Returns an error if a centre is not finite, or does not exceed the one before; a field wins where two others
+    /// meet, as may happen beside a gap many times as wide as the spacings before it: then take [equal
+    /// widths](Self::try_new).
     pub const fn try_spaced(centres: [S; M]) -> Result<Self, ConfigError> {
         let mut sigmas = [0.0; M];
         spacings(&centres, &mut sigmas);
@@ -80,7 +81,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// For constants, where bad parameters fail the build.
     ///
     /// # Panics
-    /// [`try_companded`](Self::try_companded) returns an error.
+    /// Panics if [`try_companded`](Self::try_companded) returns an error.
     pub const fn companded(range: RangeInclusive<S>, companding: f32) -> Self {
         unwrap(Self::companded_over(&range, companding))
     }
@@ -92,8 +93,8 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// - **Companding:** `A` above 0; the larger, the denser the middle. Telephony takes 255.
     ///
     /// # Errors
-    /// The ends are not finite, or do not rise; the companding is not above 0 and finite; the sample type is too
-    /// coarse to tell the centres apart.
+    /// Returns an error if the ends are not finite, or do not rise; the companding is not above 0 and finite; the
+    /// sample type is too coarse to tell the centres apart.
     pub const fn try_companded(
         range: RangeInclusive<S>,
         companding: f32,
@@ -125,7 +126,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
 /// Copies the user's widths as doubles.
 ///
 /// # Errors
-/// A width is not above 0 and finite.
+/// Returns an error if a width is not above 0 and finite.
 #[allow(clippy::indexing_slicing)] // constants have no iterators
 pub(super) const fn own_widths(widths: &[f32], sigmas: &mut [f64]) -> Result<(), ConfigError> {
     let mut i = 0;
@@ -168,7 +169,8 @@ pub(super) const fn spacings<S: Sample>(centres: &[S], widths: &mut [f64]) {
 /// Sets each edge but the last to the largest value not above where the next field begins to win.
 ///
 /// # Errors
-/// A centre is not finite, or does not exceed the one before; a field wins where two others meet, or wins nowhere.
+/// Returns an error if a centre is not finite, or does not exceed the one before; a field wins where two others meet,
+/// or wins nowhere.
 #[allow(clippy::indexing_slicing)] // constants have no iterators
 pub(super) const fn crossings<S: Sample>(
     centres: &[S],
@@ -208,7 +210,7 @@ pub(super) const fn crossings<S: Sample>(
 /// Sets companded centres over a range.
 ///
 /// # Errors
-/// The ends are not finite, or do not rise; the companding is not above 0 and finite.
+/// Returns an error if the ends are not finite, or do not rise; the companding is not above 0 and finite.
 #[allow(clippy::indexing_slicing)] // constants have no iterators
 pub(super) const fn companded<S: Sample>(
     over: &RangeInclusive<S>,

@@ -81,7 +81,7 @@ impl<S: Sample, const M: usize, const N: usize> NonLinearSlots<S, M, N> {
     /// Fields with these centres and widths `sigma`. For constants, where bad ones fail the build.
     ///
     /// # Panics
-    /// [`try_new`](Self::try_new) returns an error.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(centres: [S; M], widths: [f32; M]) -> Self {
         unwrap(Self::try_new(centres, widths))
     }
@@ -89,8 +89,9 @@ impl<S: Sample, const M: usize, const N: usize> NonLinearSlots<S, M, N> {
     /// Fields with these centres and widths `sigma`, in the samples' unit.
     ///
     /// # Errors
-    /// A centre is not finite, or does not exceed the one before; a width is not above 0 and finite; a field wins
-    /// where two others meet, or wins nowhere; in `f32` a centre or a width is too large, or a width too small.
+    /// Returns an error if a centre is not finite, or does not exceed the one before; a width is not above 0 and
+    /// finite; a field wins where two others meet, or wins nowhere; in `f32` a centre or a width is too large, or a
+    /// width too small.
     pub const fn try_new(centres: [S; M], widths: [f32; M]) -> Result<Self, ConfigError> {
         let mut sigmas = [0.0; M];
         match own_widths(&widths, &mut sigmas) {
@@ -103,7 +104,7 @@ impl<S: Sample, const M: usize, const N: usize> NonLinearSlots<S, M, N> {
     /// parameters fail the build.
     ///
     /// # Panics
-    /// [`try_spaced`](Self::try_spaced) returns an error.
+    /// Panics if [`try_spaced`](Self::try_spaced) returns an error.
     pub const fn spaced(centres: [S; M], beta: f32) -> Self {
         unwrap(Self::try_spaced(centres, beta))
     }
@@ -112,8 +113,8 @@ impl<S: Sample, const M: usize, const N: usize> NonLinearSlots<S, M, N> {
     /// `sigma[i] = (mu[i+1] - mu[i-1]) / 2 beta`, and the one spacing over `beta` at either end.
     ///
     /// # Errors
-    /// A centre is not finite, or does not exceed the one before; `beta` is not above 0 and finite; a field wins where
-    /// two others meet.
+    /// Returns an error if a centre is not finite, or does not exceed the one before; `beta` is not above 0 and
+    /// finite; a field wins where two others meet.
     pub const fn try_spaced(centres: [S; M], beta: f32) -> Result<Self, ConfigError> {
         if let Err(error) = positive("beta", beta as f64) {
             return Err(error);
@@ -127,7 +128,7 @@ impl<S: Sample, const M: usize, const N: usize> NonLinearSlots<S, M, N> {
     /// [as wide as their spacing](Self::spaced). For constants, where bad parameters fail the build.
     ///
     /// # Panics
-    /// [`try_companded`](Self::try_companded) returns an error.
+    /// Panics if [`try_companded`](Self::try_companded) returns an error.
     pub const fn companded(range: RangeInclusive<S>, companding: f32, beta: f32) -> Self {
         unwrap(Self::companded_over(&range, companding, beta))
     }
@@ -136,8 +137,8 @@ impl<S: Sample, const M: usize, const N: usize> NonLinearSlots<S, M, N> {
     /// [as wide as their spacing](Self::try_spaced).
     ///
     /// # Errors
-    /// The ends are not finite, or do not rise; the companding or `beta` is not above 0 and finite; the sample type
-    /// is too coarse to tell the centres apart.
+    /// Returns an error if the ends are not finite, or do not rise; the companding or `beta` is not above 0 and
+    /// finite; the sample type is too coarse to tell the centres apart.
     pub const fn try_companded(
         range: RangeInclusive<S>,
         companding: f32,
@@ -177,7 +178,7 @@ impl<S: Sample, const M: usize, const N: usize> NonLinearSlots<S, M, N> {
     /// Sets the lowest level that fires; 1 by default. For constants, where a bad floor fails the build.
     ///
     /// # Panics
-    /// The floor is not within 1 to `N`.
+    /// Panics if the floor is not within 1 to `N`.
     #[must_use]
     pub const fn with_floor(self, floor: u16) -> Self {
         unwrap(self.try_with_floor(floor))
@@ -186,7 +187,7 @@ impl<S: Sample, const M: usize, const N: usize> NonLinearSlots<S, M, N> {
     /// Sets the lowest level that fires; 1 by default.
     ///
     /// # Errors
-    /// The floor is not within 1 to `N`.
+    /// Returns an error if the floor is not within 1 to `N`.
     pub const fn try_with_floor(self, floor: u16) -> Result<Self, ConfigError> {
         if let Err(error) = within("floor", floor as f64, 1.0, N as f32) {
             return Err(error);
@@ -230,7 +231,7 @@ pub(super) const fn spaced_widths<S: Sample>(centres: &[S], beta: f32, sigmas: &
 /// Sets the scale of each neuron, and the radius of each level in widths.
 ///
 /// # Errors
-/// A centre is too large for `f32`, or a width too small or too large.
+/// Returns an error if a centre is too large for `f32`, or a width too small or too large.
 #[allow(clippy::indexing_slicing)] // constants have no iterators
 pub(super) const fn tables<S: Sample>(
     centres: &[S],

@@ -56,7 +56,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// The user's own centres, strictly rising. For constants, where bad centres fail the build.
     ///
     /// # Panics
-    /// [`try_new`](Self::try_new) returns an error.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(centres: [S; M]) -> Self {
         unwrap(Self::try_new(centres))
     }
@@ -64,7 +64,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// The user's own centres, strictly rising.
     ///
     /// # Errors
-    /// A centre is not finite, or does not exceed the one before.
+    /// Returns an error if a centre is not finite, or does not exceed the one before.
     pub const fn try_new(centres: [S; M]) -> Result<Self, ConfigError> {
         Self::of(Centres::try_new(centres))
     }
@@ -74,7 +74,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// where a bad range fails the build.
     ///
     /// # Panics
-    /// [`try_linear`](Self::try_linear) returns an error.
+    /// Panics if [`try_linear`](Self::try_linear) returns an error.
     pub const fn linear(range: RangeInclusive<S>) -> Self {
         unwrap(Self::of(Centres::try_linear(&range)))
     }
@@ -83,7 +83,8 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// `mu[i] = min + (2i - 1) / 2 * (max - min) / (M - 2)`, rounded to the sample type.
     ///
     /// # Errors
-    /// The ends are not finite, or do not rise, or the sample type is too coarse to tell the centres apart.
+    /// Returns an error if the ends are not finite, or do not rise, or the sample type is too coarse to tell the
+    /// centres apart.
     pub const fn try_linear(range: RangeInclusive<S>) -> Result<Self, ConfigError> {
         Self::of(Centres::try_linear(&range))
     }
@@ -92,7 +93,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// an error around its set point. For constants, where a bad range fails the build.
     ///
     /// # Panics
-    /// [`try_gaussian_spaced`](Self::try_gaussian_spaced) returns an error.
+    /// Panics if [`try_gaussian_spaced`](Self::try_gaussian_spaced) returns an error.
     pub const fn gaussian_spaced(range: RangeInclusive<S>) -> Self {
         unwrap(Self::of(Centres::try_gaussian_spaced(&range)))
     }
@@ -101,7 +102,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// an error around its set point.
     ///
     /// # Errors
-    /// As for [`try_linear`](Self::try_linear).
+    /// Returns an error if [`try_linear`](Self::try_linear) does.
     pub const fn try_gaussian_spaced(range: RangeInclusive<S>) -> Result<Self, ConfigError> {
         Self::of(Centres::try_gaussian_spaced(&range))
     }

@@ -86,7 +86,7 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
     /// build.
     ///
     /// # Panics
-    /// [`try_new`](Self::try_new) returns an error.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>, beta: f32) -> Self {
         unwrap(Self::try_of(&range, beta))
     }
@@ -94,8 +94,8 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
     /// Fields over a range. The smaller `beta`, the wider the fields.
     ///
     /// # Errors
-    /// The ends are not finite, or do not rise, or the sample type is too coarse to tell the centres apart;
-    /// `beta` is not above 0.
+    /// Returns an error if the ends are not finite, or do not rise, or the sample type is too coarse to tell the
+    /// centres apart; `beta` is not above 0.
     pub const fn try_new(range: RangeInclusive<S>, beta: f32) -> Result<Self, ConfigError> {
         Self::try_of(&range, beta)
     }

@@ -68,7 +68,7 @@ impl<S: Sample, const M: usize, const K: usize> RankOrder<S, M, K> {
     /// The user's own centres, strictly rising. For constants, where bad centres fail the build.
     ///
     /// # Panics
-    /// [`try_new`](Self::try_new) returns an error.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(centres: [S; M]) -> Self {
         unwrap(Self::try_new(centres))
     }
@@ -76,8 +76,8 @@ impl<S: Sample, const M: usize, const K: usize> RankOrder<S, M, K> {
     /// The user's own centres, strictly rising.
     ///
     /// # Errors
-    /// A centre is not finite, or does not exceed the one before, or is so close to it that two middles are alike; in
-    /// `f32` it is more than 10³¹ from 0.
+    /// Returns an error if a centre is not finite, or does not exceed the one before, or is so close to it that two
+    /// middles are alike; in `f32` it is more than 10³¹ from 0.
     pub const fn try_new(centres: [S; M]) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
         Self::over(centres, centres[0], centres[M - 1])
@@ -88,7 +88,7 @@ impl<S: Sample, const M: usize, const K: usize> RankOrder<S, M, K> {
     /// range fails the build.
     ///
     /// # Panics
-    /// [`try_linear`](Self::try_linear) returns an error.
+    /// Panics if [`try_linear`](Self::try_linear) returns an error.
     pub const fn linear(range: RangeInclusive<S>) -> Self {
         unwrap(Self::linear_over(&range))
     }
@@ -97,8 +97,8 @@ impl<S: Sample, const M: usize, const K: usize> RankOrder<S, M, K> {
     /// `mu[i] = min + (2i - 1) / 2 * (max - min) / (M - 2)`, rounded to the sample type.
     ///
     /// # Errors
-    /// The ends are not finite, or do not rise, or the sample type is too coarse to tell the centres apart; in `f32`
-    /// an outermost centre is more than 10³¹ from 0.
+    /// Returns an error if the ends are not finite, or do not rise, or the sample type is too coarse to tell the
+    /// centres apart; in `f32` an outermost centre is more than 10³¹ from 0.
     pub const fn try_linear(range: RangeInclusive<S>) -> Result<Self, ConfigError> {
         Self::linear_over(&range)
     }
@@ -167,8 +167,8 @@ impl<S: Sample, const M: usize, const K: usize> RankOrder<S, M, K> {
 /// Sets each edge but the last to the middle of two centres.
 ///
 /// # Errors
-/// A centre is not finite, or does not exceed the one before, or is so close to it that two middles are alike; in `f32`
-/// it is more than 10³¹ from 0.
+/// Returns an error if a centre is not finite, or does not exceed the one before, or is so close to it that two
+/// middles are alike; in `f32` it is more than 10³¹ from 0.
 #[allow(clippy::indexing_slicing)] // constants have no iterators
 pub(super) const fn middles<S: Sample>(centres: &[S], edges: &mut [S]) -> Result<(), ConfigError> {
     if let Err(error) = halfway_edges(centres, edges) {

@@ -55,7 +55,7 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
     /// where bad parameters fail the build.
     ///
     /// # Panics
-    /// [`try_new`](Self::try_new) returns an error.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>, beta: f32) -> Self {
         unwrap(Self::try_of(&range, beta))
     }
@@ -63,8 +63,8 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
     /// Fields over a range, with every level from 1 firing. The smaller `beta`, the wider the fields.
     ///
     /// # Errors
-    /// The ends are not finite, or do not rise, or the sample type is too coarse to tell the centres apart;
-    /// `beta` is not above 0.
+    /// Returns an error if the ends are not finite, or do not rise, or the sample type is too coarse to tell the
+    /// centres apart; `beta` is not above 0.
     pub const fn try_new(range: RangeInclusive<S>, beta: f32) -> Result<Self, ConfigError> {
         Self::try_of(&range, beta)
     }
@@ -79,7 +79,7 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
     /// Sets the lowest level that fires; 1 by default. For constants, where a bad floor fails the build.
     ///
     /// # Panics
-    /// The floor is not within 1 to `N`.
+    /// Panics if the floor is not within 1 to `N`.
     #[must_use]
     pub const fn with_floor(self, floor: u16) -> Self {
         unwrap(self.try_with_floor(floor))
@@ -88,7 +88,7 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
     /// Sets the lowest level that fires; 1 by default.
     ///
     /// # Errors
-    /// The floor is not within 1 to `N`.
+    /// Returns an error if the floor is not within 1 to `N`.
     pub const fn try_with_floor(self, floor: u16) -> Result<Self, ConfigError> {
         match within("floor", floor as f64, 1.0, N as f32) {
             Ok(()) => Ok(Self { floor, ..self }),

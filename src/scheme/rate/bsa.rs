@@ -66,7 +66,7 @@ impl<S: Sample, const F: usize> Bsa<S, F> {
     /// A scheme with these taps and this criterion. For constants, where a bad threshold fails the build.
     ///
     /// # Panics
-    /// The threshold is out of its range, or not finite.
+    /// Panics if the threshold is out of its range, or not finite.
     pub const fn new(taps: Taps<S, F>, criterion: Criterion<S>) -> Self {
         unwrap(Self::try_new(taps, criterion))
     }
@@ -74,7 +74,7 @@ impl<S: Sample, const F: usize> Bsa<S, F> {
     /// A scheme with these taps and this criterion.
     ///
     /// # Errors
-    /// The threshold is out of its range, or not finite.
+    /// Returns an error if the threshold is out of its range, or not finite.
     pub const fn try_new(taps: Taps<S, F>, criterion: Criterion<S>) -> Result<Self, ConfigError> {
         let (checked, limit) = match criterion {
             Criterion::Subtractive(threshold) => {
@@ -93,7 +93,7 @@ impl<S: Sample, const F: usize> Bsa<S, F> {
     /// A scheme that spikes if `e1 <= e2 - threshold`. For constants, where a bad threshold fails the build.
     ///
     /// # Panics
-    /// The threshold is negative or not finite.
+    /// Panics if the threshold is negative or not finite.
     pub const fn subtractive(taps: Taps<S, F>, threshold: S) -> Self {
         unwrap(Self::try_subtractive(taps, threshold))
     }
@@ -101,7 +101,7 @@ impl<S: Sample, const F: usize> Bsa<S, F> {
     /// A scheme that spikes if `e1 <= e2 - threshold`.
     ///
     /// # Errors
-    /// The threshold is negative or not finite.
+    /// Returns an error if the threshold is negative or not finite.
     pub const fn try_subtractive(taps: Taps<S, F>, threshold: S) -> Result<Self, ConfigError> {
         Self::try_new(taps, Criterion::Subtractive(threshold))
     }
@@ -109,7 +109,7 @@ impl<S: Sample, const F: usize> Bsa<S, F> {
     /// A scheme that spikes if `e1 <= e2 * threshold`. For constants, where a bad threshold fails the build.
     ///
     /// # Panics
-    /// The threshold is not within 2⁻¹⁴ to 4 - 2⁻¹⁴.
+    /// Panics if the threshold is not within 2⁻¹⁴ to 4 - 2⁻¹⁴.
     pub const fn multiplicative(taps: Taps<S, F>, threshold: f32) -> Self {
         unwrap(Self::try_multiplicative(taps, threshold))
     }
@@ -117,7 +117,7 @@ impl<S: Sample, const F: usize> Bsa<S, F> {
     /// A scheme that spikes if `e1 <= e2 * threshold`.
     ///
     /// # Errors
-    /// The threshold is not within 2⁻¹⁴ to 4 - 2⁻¹⁴.
+    /// Returns an error if the threshold is not within 2⁻¹⁴ to 4 - 2⁻¹⁴.
     pub const fn try_multiplicative(taps: Taps<S, F>, threshold: f32) -> Result<Self, ConfigError> {
         Self::try_new(taps, Criterion::Multiplicative(threshold))
     }

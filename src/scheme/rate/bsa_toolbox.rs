@@ -41,7 +41,7 @@ impl<S: Sample, const F: usize> BsaToolbox<S, F> {
     /// A scheme with these taps and this threshold. For constants, where a bad threshold fails the build.
     ///
     /// # Panics
-    /// The threshold is not within 2⁻¹⁴ to 4 - 2⁻¹⁴.
+    /// Panics if the threshold is not within 2⁻¹⁴ to 4 - 2⁻¹⁴.
     pub const fn new(taps: Taps<S, F>, threshold: f32) -> Self {
         unwrap(Self::try_new(taps, threshold))
     }
@@ -49,7 +49,7 @@ impl<S: Sample, const F: usize> BsaToolbox<S, F> {
     /// A scheme with these taps and this threshold.
     ///
     /// # Errors
-    /// The threshold is not within 2⁻¹⁴ to 4 - 2⁻¹⁴.
+    /// Returns an error if the threshold is not within 2⁻¹⁴ to 4 - 2⁻¹⁴.
     pub const fn try_new(taps: Taps<S, F>, threshold: f32) -> Result<Self, ConfigError> {
         match ratio("threshold", threshold) {
             Ok(()) => Ok(Self { filtered: Filtered::new(taps), ratio: Ratio::new(threshold) }),

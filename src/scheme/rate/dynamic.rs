@@ -25,8 +25,8 @@ impl<S: Sample> Taps<S> {
     /// Taps of any sign.
     ///
     /// # Errors
-    /// There are none, or more than 4096; a tap is not finite, all are 0, or their magnitudes sum up to more
-    /// than the type holds (10³¹ in `f32`).
+    /// Returns an error if there are none, or more than 4096; a tap is not finite, all are 0, or their magnitudes sum
+    /// up to more than the type holds (10³¹ in `f32`).
     pub fn try_new(taps: &[S]) -> Result<Self, ConfigError> {
         within("filter length", taps.len() as f64, 1.0, LONGEST as f32)?;
         Ok(Self { magnitude: magnitude(taps)?, twice: [taps, taps].concat() })
@@ -125,7 +125,7 @@ impl<S: Sample> Hough<S> {
     /// A scheme with these taps.
     ///
     /// # Errors
-    /// None: every filter will do. It returns a `Result` as the other schemes do.
+    /// Never returns an error: every filter will do. It returns a `Result` as the other schemes do.
     pub fn try_new(taps: Taps<S>) -> Result<Self, ConfigError> {
         Ok(Self { rule: hough::Hough::new(taps.one()?), taps, shift: S::ZERO })
     }
@@ -135,7 +135,7 @@ impl<S: Sample> ThresholdHough<S> {
     /// A scheme with these taps and this threshold.
     ///
     /// # Errors
-    /// The threshold is negative or not finite.
+    /// Returns an error if the threshold is negative or not finite.
     pub fn try_new(taps: Taps<S>, threshold: S) -> Result<Self, ConfigError> {
         let rule = threshold_hough::ThresholdHough::try_new(taps.one()?, threshold)?;
         Ok(Self { taps, shift: S::ZERO, rule })
@@ -146,7 +146,7 @@ impl<S: Sample> Bsa<S> {
     /// A scheme with these taps and this criterion.
     ///
     /// # Errors
-    /// The threshold is out of its range, or not finite.
+    /// Returns an error if the threshold is out of its range, or not finite.
     pub fn try_new(taps: Taps<S>, criterion: Criterion<S>) -> Result<Self, ConfigError> {
         let rule = bsa::Bsa::try_new(taps.one()?, criterion)?;
         Ok(Self { taps, shift: S::ZERO, rule })
@@ -159,7 +159,7 @@ macro_rules! filtered {
         /// Sets the shift, the signal's minimum; 0 by default.
         ///
         /// # Errors
-        /// The shift is not finite, or beyond ±10³¹ in `f32`.
+        /// Returns an error if the shift is not finite, or beyond ±10³¹ in `f32`.
         pub fn try_with_shift(self, shift: S) -> Result<Self, ConfigError> {
             offset("shift", to_f64(shift))?;
             Ok(Self { shift, ..self })
@@ -323,7 +323,7 @@ impl<S: Sample> BsaToolbox<S> {
     /// A scheme with these taps and this threshold.
     ///
     /// # Errors
-    /// The threshold is not within 2⁻¹⁴ to 4 - 2⁻¹⁴.
+    /// Returns an error if the threshold is not within 2⁻¹⁴ to 4 - 2⁻¹⁴.
     pub fn try_new(taps: Taps<S>, threshold: f32) -> Result<Self, ConfigError> {
         ratio("threshold", threshold)?;
         Ok(Self { taps, shift: S::ZERO, ratio: Ratio::new(threshold) })

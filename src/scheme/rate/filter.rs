@@ -140,7 +140,7 @@ impl Shape {
 /// The sum of the taps' magnitudes.
 ///
 /// # Errors
-/// A tap is not finite, all are 0, or the sum is more than the type holds.
+/// Returns an error if a tap is not finite, all are 0, or the sum is more than the type holds.
 #[allow(clippy::indexing_slicing)] // constants have no iterators
 pub(super) const fn magnitude<S: Sample>(taps: &[S]) -> Result<S::Residual, ConfigError> {
     let mut magnitude = 0.0;
@@ -185,7 +185,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
     /// The user's own taps, of any sign. For constants, where bad taps fail the build.
     ///
     /// # Panics
-    /// [`try_new`](Self::try_new) returns an error.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(taps: [S; F]) -> Self {
         unwrap(Self::try_new(taps))
     }
@@ -193,7 +193,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
     /// The user's own taps, of any sign.
     ///
     /// # Errors
-    /// A tap is not finite, all are 0, or their magnitudes sum up to more than the type holds
+    /// Returns an error if a tap is not finite, all are 0, or their magnitudes sum up to more than the type holds
     /// (10³¹ in `f32`).
     pub const fn try_new(taps: [S; F]) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
@@ -206,7 +206,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
     /// A shape, scaled and rounded to the sample type. For constants, where a bad scale fails the build.
     ///
     /// # Panics
-    /// [`try_shaped`](Self::try_shaped) returns an error.
+    /// Panics if [`try_shaped`](Self::try_shaped) returns an error.
     pub const fn shaped(shape: Shape, scale: Scale<S>) -> Self {
         unwrap(Self::try_shaped(shape, scale))
     }
@@ -214,7 +214,8 @@ impl<S: Sample, const F: usize> Taps<S, F> {
     /// A shape, scaled and rounded to the sample type.
     ///
     /// # Errors
-    /// The scale or `alpha` is not above 0 and finite, or the taps are refused by [`try_new`](Self::try_new).
+    /// Returns an error if the scale or `alpha` is not above 0 and finite, or the taps are refused by
+    /// [`try_new`](Self::try_new).
     pub const fn try_shaped(shape: Shape, scale: Scale<S>) -> Result<Self, ConfigError> {
         let (is_sum, target) = match scale {
             Scale::Peak(peak) => (false, to_f64(peak)),
@@ -241,7 +242,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
     /// build.
     ///
     /// # Panics
-    /// [`try_triangular`](Self::try_triangular) returns an error.
+    /// Panics if [`try_triangular`](Self::try_triangular) returns an error.
     pub const fn triangular(peak: S) -> Self {
         unwrap(Self::try_triangular(peak))
     }
@@ -249,7 +250,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
     /// [`Shape::Triangular`] with this value where the shape is 1.
     ///
     /// # Errors
-    /// As for [`try_shaped`](Self::try_shaped).
+    /// Returns an error if [`try_shaped`](Self::try_shaped) does.
     pub const fn try_triangular(peak: S) -> Result<Self, ConfigError> {
         Self::try_shaped(Shape::Triangular, Scale::Peak(peak))
     }

@@ -40,7 +40,7 @@ macro_rules! with_shift {
         /// Sets the shift, the signal's minimum; 0 by default. For constants, where a bad shift fails the build.
         ///
         /// # Panics
-        /// The shift is not finite, or beyond ±10³¹ in `f32`.
+        /// Panics if the shift is not finite, or beyond ±10³¹ in `f32`.
         #[must_use]
         pub const fn with_shift(self, shift: S) -> Self {
             unwrap(self.try_with_shift(shift))
@@ -49,7 +49,7 @@ macro_rules! with_shift {
         /// Sets the shift, the signal's minimum; 0 by default.
         ///
         /// # Errors
-        /// The shift is not finite, or beyond ±10³¹ in `f32`.
+        /// Returns an error if the shift is not finite, or beyond ±10³¹ in `f32`.
         #[allow(clippy::needless_update)] // HSA has no other field
         pub const fn try_with_shift(self, shift: S) -> Result<Self, ConfigError> {
             match self.filtered.try_with_shift(shift) {

@@ -44,7 +44,7 @@ impl<S: Sample, const F: usize> ThresholdHough<S, F> {
     /// A scheme with these taps and this threshold. For constants, where a bad threshold fails the build.
     ///
     /// # Panics
-    /// The threshold is negative or not finite.
+    /// Panics if the threshold is negative or not finite.
     pub const fn new(taps: Taps<S, F>, threshold: S) -> Self {
         unwrap(Self::try_new(taps, threshold))
     }
@@ -52,7 +52,7 @@ impl<S: Sample, const F: usize> ThresholdHough<S, F> {
     /// A scheme with these taps and this threshold.
     ///
     /// # Errors
-    /// The threshold is negative or not finite.
+    /// Returns an error if the threshold is negative or not finite.
     pub const fn try_new(taps: Taps<S, F>, threshold: S) -> Result<Self, ConfigError> {
         match not_negative("threshold", to_f64(threshold)) {
             Ok(()) => Ok(Self { filtered: Filtered::new(taps), threshold }),

@@ -63,7 +63,7 @@ impl<S: Sample> AdaptiveStepForward<S> {
     /// fail the build.
     ///
     /// # Panics
-    /// As [`try_new`](Self::try_new) fails.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(threshold: S, doublings: u8) -> Self {
         unwrap(Self::try_new(threshold, doublings))
     }
@@ -71,8 +71,8 @@ impl<S: Sample> AdaptiveStepForward<S> {
     /// A scheme with this threshold, whose step doubles at most `doublings` times.
     ///
     /// # Errors
-    /// The threshold is not above 0, or not finite; there are more than 30 doublings; the largest step is more than the
-    /// sample type holds, or above 10³¹ in `f32`.
+    /// Returns an error if the threshold is not above 0, or not finite; there are more than 30 doublings; the largest
+    /// step is more than the sample type holds, or above 10³¹ in `f32`.
     pub const fn try_new(threshold: S, doublings: u8) -> Result<Self, ConfigError> {
         match doublings::check(threshold, doublings, MOST_DOUBLINGS, "largest step") {
             Ok(()) => Ok(Self { threshold, doublings, run: 2 }),
@@ -84,7 +84,7 @@ impl<S: Sample> AdaptiveStepForward<S> {
     /// bad number fails the build.
     ///
     /// # Panics
-    /// The number is not within 1 to 8.
+    /// Panics if the number is not within 1 to 8.
     #[must_use]
     pub const fn with_run(self, run: u8) -> Self {
         unwrap(self.try_with_run(run))
@@ -93,7 +93,7 @@ impl<S: Sample> AdaptiveStepForward<S> {
     /// Sets after how many spikes in one direction, one a sample, the step grows; 2 by default.
     ///
     /// # Errors
-    /// The number is not within 1 to 8.
+    /// Returns an error if the number is not within 1 to 8.
     pub const fn try_with_run(self, run: u8) -> Result<Self, ConfigError> {
         match within("run", run as f64, 1.0, LONGEST_RUN as f32) {
             Ok(()) => Ok(Self { run, ..self }),

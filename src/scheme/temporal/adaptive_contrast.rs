@@ -60,7 +60,7 @@ impl<S: Sample> AdaptiveContrast<S> {
     /// parameters fail the build.
     ///
     /// # Panics
-    /// As [`try_new`](Self::try_new) fails.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(threshold: S, doublings: u8) -> Self {
         unwrap(Self::try_new(threshold, doublings))
     }
@@ -68,8 +68,8 @@ impl<S: Sample> AdaptiveContrast<S> {
     /// A scheme with this smallest threshold, which doubles at most `doublings` times.
     ///
     /// # Errors
-    /// The threshold is not above 0, or not finite; there are more than 15 doublings; the largest threshold is more
-    /// than the sample type holds, or above 10³¹ in `f32`.
+    /// Returns an error if the threshold is not above 0, or not finite; there are more than 15 doublings; the largest
+    /// threshold is more than the sample type holds, or above 10³¹ in `f32`.
     pub const fn try_new(threshold: S, doublings: u8) -> Result<Self, ConfigError> {
         match doublings::check(threshold, doublings, MOST_DOUBLINGS, "largest threshold") {
             Ok(()) => Ok(Self { threshold, doublings }),

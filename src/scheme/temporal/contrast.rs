@@ -43,7 +43,7 @@ impl<S: Sample> TemporalContrast<S> {
     /// A scheme whose decoder steps by the threshold. For constants, where a bad threshold fails the build.
     ///
     /// # Panics
-    /// The threshold is not above 0, or not finite.
+    /// Panics if the threshold is not above 0, or not finite.
     pub const fn new(threshold: S) -> Self {
         unwrap(Self::try_new(threshold))
     }
@@ -51,7 +51,7 @@ impl<S: Sample> TemporalContrast<S> {
     /// A scheme whose decoder steps by the threshold.
     ///
     /// # Errors
-    /// The threshold is not above 0, or not finite.
+    /// Returns an error if the threshold is not above 0, or not finite.
     pub const fn try_new(threshold: S) -> Result<Self, ConfigError> {
         match positive("threshold", to_f64(threshold)) {
             Ok(()) => Ok(Self { threshold, step: threshold }),
@@ -63,7 +63,7 @@ impl<S: Sample> TemporalContrast<S> {
     /// where a bad step fails the build.
     ///
     /// # Panics
-    /// The step is not above 0, or not finite.
+    /// Panics if the step is not above 0, or not finite.
     #[must_use]
     pub const fn with_step(self, step: S) -> Self {
         unwrap(self.try_with_step(step))
@@ -72,7 +72,7 @@ impl<S: Sample> TemporalContrast<S> {
     /// Sets the decoder's step, in the samples' unit; the paper's figures take twice the threshold.
     ///
     /// # Errors
-    /// The step is not above 0, or not finite.
+    /// Returns an error if the step is not above 0, or not finite.
     pub const fn try_with_step(self, step: S) -> Result<Self, ConfigError> {
         match positive("step", to_f64(step)) {
             Ok(()) => Ok(Self { step, ..self }),
@@ -83,8 +83,9 @@ impl<S: Sample> TemporalContrast<S> {
     /// The paper's threshold, `mean(d) + factor * std(d)`, over the differences of a calibration.
     ///
     /// # Errors
-    /// The factor is not finite; the calibration saw fewer than three samples; or the threshold comes out at 0 or
-    /// below, as for a signal that falls more than it varies: then use [`from_magnitudes`](Self::from_magnitudes).
+    /// Returns an error if the factor is not finite; the calibration saw fewer than three samples; or the threshold
+    /// comes out at 0 or below, as for a signal that falls more than it varies: then use
+    /// [`from_magnitudes`](Self::from_magnitudes).
     pub fn from_calibration(
         calibration: &Calibration<S>,
         factor: f32,
@@ -96,8 +97,8 @@ impl<S: Sample> TemporalContrast<S> {
     /// that moves, if the factor is 0 or more.
     ///
     /// # Errors
-    /// The factor is not finite; the calibration saw fewer than three samples; or the threshold comes out at 0 or
-    /// below, as for a signal that never moved.
+    /// Returns an error if the factor is not finite; the calibration saw fewer than three samples; or the threshold
+    /// comes out at 0 or below, as for a signal that never moved.
     pub fn from_magnitudes(calibration: &Calibration<S>, factor: f32) -> Result<Self, ConfigError> {
         Self::try_new(S::from_f64(calibration.magnitudes()?.threshold(factor)?))
     }

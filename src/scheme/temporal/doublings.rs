@@ -7,8 +7,8 @@ use crate::{ConfigError, Sample};
 /// Checks a threshold and how often it doubles, at most `most` times.
 ///
 /// # Errors
-/// The threshold is not above 0, or not finite; there are more doublings; the threshold doubled as often, which the
-/// error names `largest`, is more than the sample type holds, or above 10³¹ in `f32`.
+/// Returns an error if the threshold is not above 0, or not finite; there are more doublings; the threshold doubled
+/// as often, which the error names `largest`, is more than the sample type holds, or above 10³¹ in `f32`.
 pub(super) const fn check<S: Sample>(
     threshold: S,
     doublings: u8,

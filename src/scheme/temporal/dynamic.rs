@@ -36,7 +36,7 @@ impl<S: Sample> MovingWindow<S> {
     /// A scheme with this threshold, which is also the decoder's step, and the mean of `count` samples.
     ///
     /// # Errors
-    /// The threshold is not above 0, or not finite; the count is 0 or above 16 384.
+    /// Returns an error if the threshold is not above 0, or not finite; the count is 0 or above 16 384.
     pub fn try_new(threshold: S, count: usize) -> Result<Self, ConfigError> {
         positive("threshold", to_f64(threshold))?;
         within("samples of the mean", count as f64, 1.0, WIDEST as f32)?;

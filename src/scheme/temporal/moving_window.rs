@@ -73,7 +73,7 @@ impl<S: Sample, const N: usize> MovingWindow<S, N> {
     /// fails the build.
     ///
     /// # Panics
-    /// The threshold is not above 0, or not finite.
+    /// Panics if the threshold is not above 0, or not finite.
     pub const fn new(threshold: S) -> Self {
         unwrap(Self::try_new(threshold))
     }
@@ -81,7 +81,7 @@ impl<S: Sample, const N: usize> MovingWindow<S, N> {
     /// A scheme with this threshold, which is also the decoder's step.
     ///
     /// # Errors
-    /// The threshold is not above 0, or not finite.
+    /// Returns an error if the threshold is not above 0, or not finite.
     pub const fn try_new(threshold: S) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
         match positive("threshold", to_f64(threshold)) {

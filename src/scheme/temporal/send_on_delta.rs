@@ -60,7 +60,7 @@ impl<S: Sample, const K: usize> SendOnDelta<S, K> {
     /// fails the build.
     ///
     /// # Panics
-    /// The threshold is not above 0, not finite, or above 10³¹.
+    /// Panics if the threshold is not above 0, not finite, or above 10³¹.
     pub const fn new(threshold: S) -> Self {
         unwrap(Self::try_new(threshold))
     }
@@ -68,7 +68,7 @@ impl<S: Sample, const K: usize> SendOnDelta<S, K> {
     /// A scheme with this threshold, which is also the decoder's step.
     ///
     /// # Errors
-    /// The threshold is not above 0, not finite, or above 10³¹.
+    /// Returns an error if the threshold is not above 0, not finite, or above 10³¹.
     pub const fn try_new(threshold: S) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
         match step("threshold", to_f64(threshold)) {
@@ -80,7 +80,7 @@ impl<S: Sample, const K: usize> SendOnDelta<S, K> {
     /// Allows at most this many spikes a sample; `K` by default. For constants, where a bad number fails the build.
     ///
     /// # Panics
-    /// The number is not within 1 to `K`.
+    /// Panics if the number is not within 1 to `K`.
     #[must_use]
     pub const fn with_most(self, most: u8) -> Self {
         unwrap(self.try_with_most(most))
@@ -89,7 +89,7 @@ impl<S: Sample, const K: usize> SendOnDelta<S, K> {
     /// Allows at most this many spikes a sample; `K` by default.
     ///
     /// # Errors
-    /// The number is not within 1 to `K`.
+    /// Returns an error if the number is not within 1 to `K`.
     pub const fn try_with_most(self, most: u8) -> Result<Self, ConfigError> {
         match within("most spikes a sample", most as f64, 1.0, K as f32) {
             Ok(()) => Ok(Self { most: most as i8, ..self }),

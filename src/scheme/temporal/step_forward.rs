@@ -54,7 +54,7 @@ impl<S: Sample> StepForward<S> {
     /// fails the build.
     ///
     /// # Panics
-    /// The threshold is not above 0, not finite, or above 10³¹.
+    /// Panics if the threshold is not above 0, not finite, or above 10³¹.
     pub const fn new(threshold: S) -> Self {
         unwrap(Self::try_new(threshold))
     }
@@ -62,7 +62,7 @@ impl<S: Sample> StepForward<S> {
     /// A scheme with this threshold, which is also the decoder's step.
     ///
     /// # Errors
-    /// The threshold is not above 0, not finite, or above 10³¹.
+    /// Returns an error if the threshold is not above 0, not finite, or above 10³¹.
     pub const fn try_new(threshold: S) -> Result<Self, ConfigError> {
         match step("threshold", to_f64(threshold)) {
             Ok(()) => Ok(Self { threshold }),

@@ -72,7 +72,7 @@ impl<S: Sample, const N: usize> Burst<S, N> {
     /// bad parameters fail the build.
     ///
     /// # Panics
-    /// As [`try_new`](Self::try_new) fails.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>, spikes: u8, intervals: RangeInclusive<u8>) -> Self {
         unwrap(Self::of(&range, spikes, [*intervals.start(), *intervals.end()], N))
     }
@@ -80,8 +80,9 @@ impl<S: Sample, const N: usize> Burst<S, N> {
     /// Bursts of up to `spikes` spikes, at intervals in slots from the shortest to the longest.
     ///
     /// # Errors
-    /// The ends are not finite or do not rise; the number of spikes or an interval is 0, or the shortest interval
-    /// exceeds the longest; a burst takes more than `N` slots; or the sample type is too coarse for so many spikes.
+    /// Returns an error if the ends are not finite or do not rise; the number of spikes or an interval is 0, or the
+    /// shortest interval exceeds the longest; a burst takes more than `N` slots; or the sample type is too coarse for
+    /// so many spikes.
     pub const fn try_new(
         range: RangeInclusive<S>,
         spikes: u8,

@@ -26,7 +26,7 @@ impl<S: Sample> FirstSpike<S> {
     /// [`try_linear`](Self::try_linear) with this many slots.
     ///
     /// # Errors
-    /// There are not 2 to 256 slots, or as for [`try_linear`](Self::try_linear).
+    /// Returns an error if there are not 2 to 256 slots, or as for [`try_linear`](Self::try_linear).
     pub fn try_linear_of(slots: usize, range: &RangeInclusive<S>) -> Result<Self, ConfigError> {
         check("slots", slots, 2, SLOTS)?;
         Self::of_points(range, slots)
@@ -35,7 +35,7 @@ impl<S: Sample> FirstSpike<S> {
     /// [`try_logarithmic`](Self::try_logarithmic) with this many slots.
     ///
     /// # Errors
-    /// There are not 2 to 256 slots, or as for [`try_logarithmic`](Self::try_logarithmic).
+    /// Returns an error if there are not 2 to 256 slots, or as for [`try_logarithmic`](Self::try_logarithmic).
     pub fn try_logarithmic_of(
         slots: usize,
         range: &RangeInclusive<S>,
@@ -48,7 +48,7 @@ impl<S: Sample> FirstSpike<S> {
     /// [`try_new`](Self::try_new) with a slot for each edge.
     ///
     /// # Errors
-    /// There are not 2 to 256 edges, or as for [`try_new`](Self::try_new).
+    /// Returns an error if there are not 2 to 256 edges, or as for [`try_new`](Self::try_new).
     pub fn try_new_of(edges: &[S], range: &RangeInclusive<S>) -> Result<Self, ConfigError> {
         check("edges", edges.len(), 2, SLOTS)?;
         Self::of_own(range, edges)
@@ -59,8 +59,8 @@ impl<S: Sample> LatencyPhase<S> {
     /// [`try_new`](Self::try_new) with this many neurons and latencies, and a period of `period` slots.
     ///
     /// # Errors
-    /// There are not 2 to 256 latencies, or more than 256 slots; the period is no power of 2, or has no slot for each
-    /// neuron; or as for [`try_new`](Self::try_new).
+    /// Returns an error if there are not 2 to 256 latencies, or more than 256 slots; the period is no power of 2, or
+    /// has no slot for each neuron; or as for [`try_new`](Self::try_new).
     pub fn try_of(
         neurons: usize,
         latencies: usize,
@@ -82,7 +82,7 @@ impl<S: Sample> Burst<S> {
     /// [`try_new`](Self::try_new) with this many slots.
     ///
     /// # Errors
-    /// There are not 2 to 256 slots, or as for [`try_new`](Self::try_new).
+    /// Returns an error if there are not 2 to 256 slots, or as for [`try_new`](Self::try_new).
     pub fn try_of(
         slots: usize,
         range: &RangeInclusive<S>,

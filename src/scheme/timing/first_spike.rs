@@ -80,7 +80,7 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
     /// from `N-1` down to 0.
     ///
     /// # Panics
-    /// As [`try_new`](Self::try_new) fails.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>, edges: [S; N]) -> Self {
         unwrap(Self::of_own(&range, &edges))
     }
@@ -89,7 +89,7 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
     /// not exceed.
     ///
     /// # Errors
-    /// The ends or an edge are not finite or do not rise; or no sample lies between two of them.
+    /// Returns an error if the ends or an edge are not finite or do not rise; or no sample lies between two of them.
     pub const fn try_new(range: RangeInclusive<S>, edges: [S; N]) -> Result<Self, ConfigError> {
         Self::of_own(&range, &edges)
     }
@@ -98,7 +98,7 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
     /// halfway between two in the later. For constants, where a bad range fails the build.
     ///
     /// # Panics
-    /// As [`try_linear`](Self::try_linear) fails.
+    /// Panics if [`try_linear`](Self::try_linear) returns an error.
     pub const fn linear(range: RangeInclusive<S>) -> Self {
         unwrap(Self::of_points(&range, N))
     }
@@ -107,7 +107,8 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
     /// halfway between two in the later.
     ///
     /// # Errors
-    /// The ends are not finite or do not rise; or the sample type is too coarse for so many slots.
+    /// Returns an error if the ends are not finite or do not rise; or the sample type is too coarse for so many
+    /// slots.
     pub const fn try_linear(range: RangeInclusive<S>) -> Result<Self, ConfigError> {
         Self::of_points(&range, N)
     }
@@ -119,7 +120,7 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
     /// `N` slots has `D = e^(N/τ)`.
     ///
     /// # Panics
-    /// As [`try_logarithmic`](Self::try_logarithmic) fails.
+    /// Panics if [`try_logarithmic`](Self::try_logarithmic) returns an error.
     pub const fn logarithmic(range: RangeInclusive<S>, dynamic_range: f32) -> Self {
         unwrap(Self::of_logarithms(&range, dynamic_range, N))
     }
@@ -128,8 +129,8 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
     /// to the lowest threshold have no spike.
     ///
     /// # Errors
-    /// The ends are not finite or do not rise; the dynamic range is not above 1 and finite; or the sample type is
-    /// too coarse for so many slots.
+    /// Returns an error if the ends are not finite or do not rise; the dynamic range is not above 1 and finite; or
+    /// the sample type is too coarse for so many slots.
     pub const fn try_logarithmic(
         range: RangeInclusive<S>,
         dynamic_range: f32,

@@ -73,7 +73,7 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
     /// Neurons whose peaks are `spacing` slots apart. For constants, where bad parameters fail the build.
     ///
     /// # Panics
-    /// As [`try_new`](Self::try_new) fails.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>, spacing: u16) -> Self {
         unwrap(Self::of_shape(&range, spacing))
     }
@@ -81,8 +81,8 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
     /// Neurons whose peaks are `spacing` slots apart.
     ///
     /// # Errors
-    /// The ends are not finite or do not rise; the sample type is too coarse for so many cells; or the spacing is 0,
-    /// or `M` times the spacing exceeds the period.
+    /// Returns an error if the ends are not finite or do not rise; the sample type is too coarse for so many cells;
+    /// or the spacing is 0, or `M` times the spacing exceeds the period.
     pub const fn try_new(range: RangeInclusive<S>, spacing: u16) -> Result<Self, ConfigError> {
         Self::of_shape(&range, spacing)
     }
@@ -120,7 +120,7 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
     /// phase fails the build.
     ///
     /// # Panics
-    /// The phase is not below the period.
+    /// Panics if the phase is not below the period.
     #[must_use]
     pub const fn with_phase(self, phase: u16) -> Self {
         unwrap(self.try_with_phase(phase))
@@ -129,7 +129,7 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
     /// Sets the phase, the slot below the period in which neuron 0 peaks; 0 by default.
     ///
     /// # Errors
-    /// The phase is not below the period.
+    /// Returns an error if the phase is not below the period.
     pub const fn try_with_phase(self, phase: u16) -> Result<Self, ConfigError> {
         match within("phase", phase as f64, 0.0, self.period.saturating_sub(1) as f32) {
             Ok(()) => Ok(Self { phase, ..self }),

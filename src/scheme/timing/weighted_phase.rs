@@ -60,7 +60,7 @@ impl<S: Sample, const K: usize> WeightedPhase<S, K> {
     /// A scheme for a range, with `K` slots. For constants, where a bad range fails the build.
     ///
     /// # Panics
-    /// As [`try_new`](Self::try_new) fails.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>) -> Self {
         unwrap(Self::of(&range))
     }
@@ -68,7 +68,7 @@ impl<S: Sample, const K: usize> WeightedPhase<S, K> {
     /// A scheme for a range, with `K` slots.
     ///
     /// # Errors
-    /// The ends are not finite or do not rise; in `f32` `max - min` is more than `f32::MAX / 2`.
+    /// Returns an error if the ends are not finite or do not rise; in `f32` `max - min` is more than `f32::MAX / 2`.
     pub const fn try_new(range: RangeInclusive<S>) -> Result<Self, ConfigError> {
         Self::of(&range)
     }
@@ -90,7 +90,7 @@ impl<S: Sample, const K: usize> WeightedPhase<S, K> {
     /// Uses this many slots instead of `K`. For constants, where a bad number fails the build.
     ///
     /// # Panics
-    /// The number is not within 2 to `K`.
+    /// Panics if the number is not within 2 to `K`.
     #[must_use]
     pub const fn with_slots(self, slots: u8) -> Self {
         unwrap(self.try_with_slots(slots))
@@ -99,7 +99,7 @@ impl<S: Sample, const K: usize> WeightedPhase<S, K> {
     /// Uses this many slots instead of `K`.
     ///
     /// # Errors
-    /// The number is not within 2 to `K`.
+    /// Returns an error if the number is not within 2 to `K`.
     pub const fn try_with_slots(self, slots: u8) -> Result<Self, ConfigError> {
         match within("slots", slots as f64, 2.0, K as f32) {
             Ok(()) => Ok(Self { slots, ..self }),

@@ -26,7 +26,7 @@ const MAX_KEYS: u8 = u8::MAX;
 /// all keys.
 ///
 /// # Errors
-/// The keys do not fit the buffer, or are more than 255.
+/// Returns an error if the keys do not fit the buffer, or are more than 255.
 pub fn encode(
     timestamp: Option<u32>,
     keys: impl IntoIterator<Item = u32>,

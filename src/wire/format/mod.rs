@@ -45,7 +45,7 @@ pub trait EventFormat<E = Event> {
     /// Writes an event at the start of `bytes` and returns its length.
     ///
     /// # Errors
-    /// The event does not fit, or the format has no word for its address.
+    /// Returns an error if the event does not fit, or the format has no word for its address.
     fn encode(&mut self, event: E, bytes: &mut [u8]) -> Result<usize, FormatError>;
 
     /// How many events will be read at another time than their own.

@@ -59,8 +59,8 @@ impl<'a> FrameView<'a> {
     /// The frame that these bytes begin with, and how long it is.
     ///
     /// # Errors
-    /// The bytes begin no frame, only part of one, or a damaged one: every error but [`Full`](LinkError::Full) and
-    /// [`KeyframeOrder`](LinkError::KeyframeOrder).
+    /// Returns an error if the bytes begin no frame, only part of one, or a damaged one: every error but
+    /// [`Full`](LinkError::Full) and [`KeyframeOrder`](LinkError::KeyframeOrder).
     pub fn new(bytes: &'a [u8]) -> Result<(Self, usize), LinkError> {
         let length = Self::length(bytes)?;
         let truncated = LinkError::Truncated { needed: length, found: bytes.len() };
@@ -92,7 +92,7 @@ impl<'a> FrameView<'a> {
     /// The length of the frame that these bytes begin with, from its header.
     ///
     /// # Errors
-    /// The header is incomplete, or the bytes begin no frame.
+    /// Returns an error if the header is incomplete, or the bytes begin no frame.
     pub fn length(bytes: &[u8]) -> Result<usize, LinkError> {
         let truncated = LinkError::Truncated { needed: MIN_FRAME, found: bytes.len() };
         match *bytes {

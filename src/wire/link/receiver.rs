@@ -131,7 +131,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
     /// [outside](Self::outside).
     ///
     /// # Panics
-    /// If the last address is above 65 535.
+    /// Panics if the last address is above 65 535.
     #[must_use]
     pub const fn with_first_address(mut self, first_address: u16) -> Self {
         error::unwrap(error::first_address(first_address, Self::ADDRESSES));
@@ -142,7 +142,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
     /// Sets the first address, 0 by default.
     ///
     /// # Errors
-    /// The last address is above 65 535.
+    /// Returns an error if the last address is above 65 535.
     pub fn try_with_first_address(self, first_address: u16) -> Result<Self, ConfigError> {
         error::first_address(first_address, Self::ADDRESSES)?;
         Ok(Self { addresses: Addresses { first: first_address, ..self.addresses }, ..self })

@@ -58,7 +58,8 @@ impl Transmitter {
     /// returns `None`.
     ///
     /// # Errors
-    /// [`LinkError::Full`]: the buffer has no room for a single item. No item is lost; 64 bytes are always enough.
+    /// Returns [`LinkError::Full`] if the buffer has no room for a single item. No item is lost; 64 bytes are always
+    /// enough.
     pub fn next_frame<'a>(
         &mut self,
         mut items: impl Source,

@@ -139,7 +139,7 @@ impl Framer {
     /// [finished](FrameWriter::finish) takes no number.
     ///
     /// # Errors
-    /// [`LinkError::Full`]: the buffer is shorter than [`MIN_FRAME`](super::MIN_FRAME).
+    /// Returns [`LinkError::Full`] if the buffer is shorter than [`MIN_FRAME`](super::MIN_FRAME).
     pub fn start<'f, 'a>(
         &'f mut self,
         tick: Tick,
@@ -201,8 +201,8 @@ impl<'a> FrameWriter<'_, 'a> {
     /// Appends a keyframe, at the frame's tick.
     ///
     /// # Errors
-    /// The frame is full, has another tick, or already has events or a keyframe of another sample type. It is
-    /// unchanged.
+    /// Returns an error if the frame is full, has another tick, or already has events or a keyframe of another sample
+    /// type. It is unchanged.
     pub fn keyframe(&mut self, keyframe: Keyframe) -> Result<(), LinkError> {
         let Keyframe { tick, address, kind, bits } = keyframe;
         self.entry(tick, address, Some(kind), bits)
@@ -211,7 +211,7 @@ impl<'a> FrameWriter<'_, 'a> {
     /// Appends a [heartbeat](crate::Item::Heartbeat), at the frame's tick.
     ///
     /// # Errors
-    /// The frame is full, has another tick, or already has events or keyframes. It is unchanged.
+    /// Returns an error if the frame is full, has another tick, or already has events or keyframes. It is unchanged.
     pub fn heartbeat(&mut self, tick: Tick, address: u16) -> Result<(), LinkError> {
         self.entry(tick, address, None, 0)
     }
@@ -247,8 +247,8 @@ impl<'a> FrameWriter<'_, 'a> {
     /// Appends an event.
     ///
     /// # Errors
-    /// [`LinkError::Full`]: the event does not fit, or lies more than 2²⁹ µs (8.9 minutes) from the frame's tick. The
-    /// frame is unchanged.
+    /// Returns [`LinkError::Full`] if the event does not fit, or lies more than 2²⁹ µs (8.9 minutes) from the frame's
+    /// tick. The frame is unchanged.
     pub fn event(&mut self, event: Event) -> Result<(), LinkError> {
         self.put(event).ok_or(LinkError::Full)
     }

@@ -120,7 +120,7 @@ impl<const WORDS: usize> Window<WORDS> {
     /// A window of the last `2^power` samples. For constants, where a bad number fails the build.
     ///
     /// # Panics
-    /// `2^power` is more than `32 WORDS`.
+    /// Panics if `2^power` is more than `32 WORDS`.
     pub const fn new(power: u8) -> Self {
         unwrap(Self::try_new(power))
     }
@@ -128,7 +128,7 @@ impl<const WORDS: usize> Window<WORDS> {
     /// A window of the last `2^power` samples.
     ///
     /// # Errors
-    /// `2^power` is more than `32 WORDS`.
+    /// Returns an error if `2^power` is more than `32 WORDS`.
     pub const fn try_new(power: u8) -> Result<Self, ConfigError> {
         match within("power of the window", power as f64, 0.0, Self::MOST.ilog2() as f32) {
             Ok(()) => Ok(Self { power }),
@@ -213,7 +213,7 @@ impl Average {
     /// An average over about the last `2^power` samples. For constants, where a bad number fails the build.
     ///
     /// # Panics
-    /// The power is not within 1 to 15.
+    /// Panics if the power is not within 1 to 15.
     pub const fn new(power: u8) -> Self {
         unwrap(Self::try_new(power))
     }
@@ -221,7 +221,7 @@ impl Average {
     /// An average over about the last `2^power` samples.
     ///
     /// # Errors
-    /// The power is not within 1 to 15.
+    /// Returns an error if the power is not within 1 to 15.
     pub const fn try_new(power: u8) -> Result<Self, ConfigError> {
         match within("power of the average", power as f64, 1.0, Self::MOST as f32) {
             Ok(()) => Ok(Self { power }),

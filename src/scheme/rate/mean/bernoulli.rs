@@ -84,7 +84,7 @@ impl<S: Sample, G: Rng, A: Averaging> Bernoulli<S, G, A> {
     /// A scheme for a range. For constants, where a bad range fails the build.
     ///
     /// # Panics
-    /// As [`try_new`](Self::try_new) fails.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>, averaging: A) -> Self {
         let range = unwrap(Range::try_new(*range.start(), *range.end()));
         Self { range, averaging, generator: PhantomData }
@@ -93,7 +93,7 @@ impl<S: Sample, G: Rng, A: Averaging> Bernoulli<S, G, A> {
     /// A scheme for a range.
     ///
     /// # Errors
-    /// The ends are not finite, or do not rise, or are more than 10³¹ from 0.
+    /// Returns an error if the ends are not finite, or do not rise, or are more than 10³¹ from 0.
     pub const fn try_new(range: RangeInclusive<S>, averaging: A) -> Result<Self, ConfigError> {
         match Range::try_new(*range.start(), *range.end()) {
             Ok(range) => Ok(Self { range, averaging, generator: PhantomData }),

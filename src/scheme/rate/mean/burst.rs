@@ -52,7 +52,7 @@ impl<S: Sample, A: Averaging> WeightedBurst<S, A> {
     /// where bad parameters fail the build.
     ///
     /// # Panics
-    /// As [`try_new`](Self::try_new) fails.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>, weight: S, doublings: u8, averaging: A) -> Self {
         let range = unwrap(Self::checked(*range.start(), *range.end(), weight, doublings));
         Self { range, weight, doublings, averaging }
@@ -61,8 +61,8 @@ impl<S: Sample, A: Averaging> WeightedBurst<S, A> {
     /// A scheme for a range, whose spikes weigh `weight` at first and double at most `doublings` times.
     ///
     /// # Errors
-    /// The ends are not finite, or do not rise, or are more than 10³¹ from 0; the weight is not above 0; there are more
-    /// than 14 doublings; the largest weight is less than the range, or above 10³¹.
+    /// Returns an error if the ends are not finite, or do not rise, or are more than 10³¹ from 0; the weight is not
+    /// above 0; there are more than 14 doublings; the largest weight is less than the range, or above 10³¹.
     pub const fn try_new(
         range: RangeInclusive<S>,
         weight: S,

@@ -62,7 +62,7 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
     /// parameters fail the build.
     ///
     /// # Panics
-    /// As [`try_new`](Self::try_new) fails.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(threshold: S, power: u8) -> Self {
         unwrap(Self::try_new(threshold, power))
     }
@@ -70,7 +70,7 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
     /// A scheme with this threshold, which decodes to a mean over about `2^power` samples.
     ///
     /// # Errors
-    /// The threshold is not above 0, not finite, or above 10³¹; the power is not within 1 to 15.
+    /// Returns an error if the threshold is not above 0, not finite, or above 10³¹; the power is not within 1 to 15.
     pub const fn try_new(threshold: S, power: u8) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
         match (
@@ -91,7 +91,7 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
     /// Sets the reference, the value without spikes; 0 by default. For constants, where a bad value fails the build.
     ///
     /// # Panics
-    /// The reference is not within 10³¹ of 0.
+    /// Panics if the reference is not within 10³¹ of 0.
     #[must_use]
     pub const fn with_reference(self, reference: S) -> Self {
         unwrap(self.try_with_reference(reference))
@@ -100,7 +100,7 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
     /// Sets the reference, the value without spikes; 0 by default.
     ///
     /// # Errors
-    /// The reference is not within 10³¹ of 0.
+    /// Returns an error if the reference is not within 10³¹ of 0.
     pub const fn try_with_reference(self, reference: S) -> Result<Self, ConfigError> {
         match offset("reference", to_f64(reference)) {
             Ok(()) => Ok(Self { reference, ..self }),
@@ -111,7 +111,7 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
     /// Allows at most this many spikes a sample; `K` by default. For constants, where a bad number fails the build.
     ///
     /// # Panics
-    /// The number is not within 1 to `K`.
+    /// Panics if the number is not within 1 to `K`.
     #[must_use]
     pub const fn with_most(self, most: u8) -> Self {
         unwrap(self.try_with_most(most))
@@ -120,7 +120,7 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
     /// Allows at most this many spikes a sample; `K` by default.
     ///
     /// # Errors
-    /// The number is not within 1 to `K`.
+    /// Returns an error if the number is not within 1 to `K`.
     pub const fn try_with_most(self, most: u8) -> Result<Self, ConfigError> {
         match within("most spikes a sample", most as f64, 1.0, K as f32) {
             Ok(()) => Ok(Self { most: most as i8, ..self }),

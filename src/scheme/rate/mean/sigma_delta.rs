@@ -45,7 +45,7 @@ impl<S: Sample, A: Averaging> SigmaDelta<S, A> {
     /// A scheme for a range. For constants, where a bad range fails the build.
     ///
     /// # Panics
-    /// As [`try_new`](Self::try_new) fails.
+    /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>, averaging: A) -> Self {
         Self { range: unwrap(Range::try_new(*range.start(), *range.end())), averaging }
     }
@@ -53,7 +53,7 @@ impl<S: Sample, A: Averaging> SigmaDelta<S, A> {
     /// A scheme for a range.
     ///
     /// # Errors
-    /// The ends are not finite, or do not rise, or are more than 10³¹ from 0.
+    /// Returns an error if the ends are not finite, or do not rise, or are more than 10³¹ from 0.
     pub const fn try_new(range: RangeInclusive<S>, averaging: A) -> Result<Self, ConfigError> {
         match Range::try_new(*range.start(), *range.end()) {
             Ok(range) => Ok(Self { range, averaging }),
