@@ -1,7 +1,7 @@
 //! Sensor samples to spikes and back, on a flight controller.
 //!
 //! Streaming encoders and decoders for the spike codes of neuromorphic robotics, one sample at a
-//! time, in memory of fixed size: no heap, no panic, no unsafe code, and the same bits on every machine.
+//! time, in memory of fixed size: no heap, no panic, no unsafe code, and the same bits on every core.
 //!
 //! ```
 //! use spikewire::{Scheme, temporal::StepForward};
@@ -44,19 +44,19 @@
 //! | | [`Slots`](population::Slots) | a value finer than the neurons, by spike time |
 //! | | `Probabilistic` | a value by chance (feature `rand`) |
 //! | | [`Gaussian::companded`](population::Gaussian::companded), [`with_widths`](population::Gaussian::with_widths) | a value, finer where it is most of the time |
-//! | | [`NonLinearSlots`](population::NonLinearSlots) | as those, finer by spike time |
+//! | | [`NonLinearSlots`](population::NonLinearSlots) | the same, with finer values by spike time |
 //! | | [`RankOrder`](population::RankOrder) | a value finer than the neurons, by who fires first |
 //! | [`timing`] | [`FirstSpike`](timing::FirstSpike) (TTFS) | a value by one spike's time, fine where it is small |
 //! | | [`LatencyPhase`](timing::LatencyPhase) | many channels on one line |
-//! | | [`WeightedPhase`](timing::WeightedPhase) | a value in binary: the finest in few slots |
+//! | | [`WeightedPhase`](timing::WeightedPhase) | a value in binary: the finest value in few slots |
 //! | | [`Burst`](timing::Burst) | a value by the count and interval of its spikes |
 //!
-//! The paper is Dupeyroux, Stroobants and de Croon, *A toolbox for neuromorphic perception in
-//! robotics*, 2022.
+//! *The paper*, in the documentation of the schemes, is Dupeyroux, Stroobants and de Croon,
+//! *A toolbox for neuromorphic perception in robotics*, 2022.
 //!
 //! # Features
 //!
-//! All off by default; each only adds.
+//! All features are off by default, and additive.
 //!
 //! | feature | adds |
 //! |---|---|
@@ -67,12 +67,12 @@
 //! | `serde` | `Serialize` on public data; `Deserialize` where nothing has to be checked, and on [states](Encoder::with_state) |
 //! | `queue` | bounded queues from interrupts to main; `EventQueue` needs a `critical-section` implementation in the program |
 //! | `heapless` | `heapless::Vec`, `Deque`, `spsc` and `mpmc` as ends of queues, by way of `Counted` |
-//! | `portable-atomic` | the same of `mpmc` on a Cortex-M0; needs a `critical-section` implementation in the program |
+//! | `portable-atomic` | `heapless::mpmc` on a Cortex-M0; needs a `critical-section` implementation in the program |
 //! | `link` | `link`: framed events over any byte transport |
 //! | `embedded-hal` | [`out`]: SPI; `chip`: neuromorphic chips |
 //! | `async` | [`out`]: asynchronous SPI; waiting on a queue |
 //! | `embedded-io` | [`out`]: UART and USB serial, over ports of `embedded-io` 0.7 |
-//! | `embedded-io-06` | the same over ports of version 0.6 |
+//! | `embedded-io-06` | [`out`]: the same over ports of `embedded-io` 0.6 |
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -16,28 +16,28 @@ pub(crate) use message::unwrap;
 pub enum ConfigError {
     /// The value must be above 0 and finite.
     NotPositive {
-        /// Which parameter.
+        /// The name of the parameter.
         parameter: &'static str,
         /// Its value.
         value: f32,
     },
     /// The value must be 0 or more and finite.
     Negative {
-        /// Which parameter.
+        /// The name of the parameter.
         parameter: &'static str,
         /// Its value.
         value: f32,
     },
     /// The value must be finite.
     NotFinite {
-        /// Which parameter.
+        /// The name of the parameter.
         parameter: &'static str,
         /// Its value.
         value: f32,
     },
     /// The value must lie in `min..=max`.
     OutOfRange {
-        /// Which parameter.
+        /// The name of the parameter.
         parameter: &'static str,
         /// Its value.
         value: f32,
@@ -48,30 +48,30 @@ pub enum ConfigError {
     },
     /// A list must rise strictly, and `values[index]` does not exceed its predecessor.
     NotRising {
-        /// Which parameter.
+        /// The name of the parameter.
         parameter: &'static str,
         /// The index of the value that does not rise.
         index: usize,
-        /// That value.
+        /// The value that does not rise.
         value: f32,
         /// The value before it, which it must exceed.
         previous: f32,
     },
     /// All taps are 0: spikes would add 0 to the decoded value.
     AllZero {
-        /// Which parameter.
+        /// The name of the parameter.
         parameter: &'static str,
     },
     /// A cell holds no sample: the sample type is too coarse for this many cells, or an edge lies outside the range.
     EmptyCell {
-        /// Which cell, from 0, the lowest.
+        /// The number of the cell, from 0 for the lowest.
         cell: usize,
-        /// How many cells there are.
+        /// The number of cells.
         cells: usize,
     },
     /// A receptive field is so wide that its response is the strongest where two others meet.
     FieldTooWide {
-        /// Which field, from 0, the lowest.
+        /// The number of the field, from 0 for the lowest.
         field: usize,
         /// The lower of the two fields that meet; the other is the next one.
         lower: usize,

@@ -119,8 +119,8 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         self.encode_or_skip(tick, samples, emit, || ());
     }
 
-    /// [`encode`](Self::encode), and calls `skip` for each sample of which its encoder takes no notice: one that is not
-    /// finite, of a rate code with a filter.
+    /// [`encode`](Self::encode), and calls `skip` for each sample that its encoder leaves out: one that is not finite,
+    /// for a rate code with a filter.
     #[inline]
     fn encode_or_skip(
         &mut self,
@@ -174,8 +174,8 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
     /// Encodes one sample of every channel, in the interrupt that brings them, and puts the events into a queue.
     /// Never blocks; the queue counts events that do not fit as lost, under any policy.
     ///
-    /// The encoder of a rate code with a filter leaves out a sample that is not finite, of which a receiver that counts
-    /// samples knows nothing. A [break](Item::Break) then tells it.
+    /// A rate code with a filter leaves out a sample that is not finite. So that a receiver, which counts samples,
+    /// knows of it, this then puts a [break](Item::Break) too.
     #[inline]
     pub fn encode_into(&mut self, tick: Tick, samples: [SampleOf<T, N>; N], mut queue: impl Put) {
         let mut skips = false;
@@ -186,9 +186,9 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         }
     }
 
-    /// Puts a keyframe of every channel that has one into a queue, after the events of the samples so far; where none
-    /// has one, as of rate and population codes, a [heartbeat](Item::Heartbeat), which tells the far end the time. Call
-    /// it about once a second in the interrupt that encodes; `tick` is that of the last sample.
+    /// Puts a keyframe of every channel that has one into a queue. If no channel has one, as with rate and population
+    /// codes, puts a [heartbeat](Item::Heartbeat), which tells the far end when a sample was taken. Call it in the
+    /// interrupt that encodes, after a sample, 1 to 20 times a second; `tick` is that of the sample.
     pub fn keyframe_into(&self, tick: Tick, mut queue: impl Put) {
         let mut address = self.first_address;
         let mut has_keyframe = false;
@@ -229,7 +229,7 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         scheme.keyframe(state)
     }
 
-    /// How many samples were not finite, over all channels.
+    /// Number of samples that were not finite, over all channels.
     pub fn rejected(&self) -> u32 {
         let each = T::each(&self.channels).map(|(_, state)| T::Scheme::rejected(state));
         each.fold(0, u32::saturating_add)

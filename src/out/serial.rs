@@ -104,7 +104,7 @@ impl<W: Write, B: Batch, const N: usize> SerialSink<W, B, N> {
         &mut self.batch
     }
 
-    /// How many bytes wait for the next [`send`](Self::send).
+    /// Number of bytes that wait for the next [`send`](Self::send).
     pub const fn waiting(&self) -> usize {
         self.end.wrapping_sub(self.start)
     }

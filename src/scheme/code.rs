@@ -3,7 +3,7 @@
 use core::cmp::Ordering;
 use core::mem::MaybeUninit;
 
-/// What a temporal or rate code emits for one sample.
+/// The spike of a temporal or rate code for one sample, or none.
 ///
 /// One byte. Rate codes use only [`Spike::Up`] and [`Spike::None`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

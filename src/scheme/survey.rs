@@ -8,7 +8,7 @@ use crate::num::to_f64;
 use crate::temporal::{StepForward, TemporalContrast};
 use crate::{Calibration, ConfigError, Histogram, Moments, Sample};
 
-/// What a channel must show before it is [`Fit`] to fly.
+/// The conditions that a channel must meet before it is [`Fit`] to fly.
 ///
 /// ```
 /// use spikewire::Conditions;
@@ -97,8 +97,8 @@ impl<S: Sample> Conditions<S> {
 
 /// Watches one channel before arming, one sample at a time, and says whether it is fit to fly.
 ///
-/// It keeps minimum, maximum, mean and deviation of the signal, mean and deviation of its changes, and a
-/// [`Histogram`] of `B` cells of each. Thresholds come from a channel that is [`Fit`] alone.
+/// A survey keeps minimum, maximum, mean and deviation of the signal, mean and deviation of its changes, and a
+/// [`Histogram`] of `B` cells of each. Only a channel that is [`Fit`] gives thresholds.
 ///
 /// - **Memory:** `4 B` bytes, and 184 in `f32`.
 /// - **Work:** some arithmetic in double precision a sample, in software where the core has no such unit: run it
@@ -133,7 +133,7 @@ pub struct Survey<S: Sample, const B: usize> {
     at_limits: u32,
 }
 
-/// Why a channel should not fly. Where several hold, the first of this list.
+/// The reason why a channel should not fly; of several, the first in this list.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -141,19 +141,19 @@ pub struct Survey<S: Sample, const B: usize> {
 pub enum Unfit {
     /// Samples were not finite.
     NotFinite {
-        /// How many.
+        /// Number of such samples.
         samples: u32,
     },
-    /// It has not seen enough finite samples yet.
+    /// The survey has not seen enough finite samples yet.
     TooFewSamples {
-        /// How many it has seen.
+        /// Number of finite samples seen.
         seen: u32,
-        /// How many it needs.
+        /// Number of samples needed.
         needed: u32,
     },
     /// Samples were at a limit of the sensor or beyond it: the signal was cut off.
     Saturated {
-        /// How many.
+        /// Number of such samples.
         samples: u32,
     },
     /// All samples were alike: a sensor that works has noise.

@@ -16,7 +16,7 @@ use crate::event::{Event, Item, Put, Taken, Tick};
 ///
 /// - **Any number of interrupts** [push](QueueView::push), nested ones too; one
 ///   [consumer](QueueView::consumer) takes.
-/// - **Never blocks.** Each call holds off interrupts for the copy of one item.
+/// - **Never blocks.** Each call masks interrupts while it copies one item.
 /// - **Memory:** `12 N + 44` bytes on a 32-bit part, 8 more with the feature `async`.
 /// - **Losses:** each item taken comes with the number of items lost before it. If items were lost after the last
 ///   one, that number comes with a [break](Item::Break). See also [`lost`](QueueView::lost) and
@@ -172,32 +172,32 @@ impl QueueView {
         (!had_one).then(|| Consumer::new(self))
     }
 
-    /// How many items it has room for.
+    /// Number of items that the queue has room for.
     pub const fn capacity(&self) -> usize {
         self.places.len()
     }
 
-    /// How many items it holds.
+    /// Number of items in the queue.
     pub fn len(&self) -> usize {
         self.with(State::len)
     }
 
-    /// Whether it holds none.
+    /// Whether the queue is empty.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// How many items were dropped since the start, up to `u32::MAX`. [`Taken::lost`] counts those before each item.
+    /// Number of items dropped since the start, up to `u32::MAX`. [`Taken::lost`] counts those before each item.
     pub fn lost(&self) -> u32 {
         self.with(|state| state.lost.get())
     }
 
-    /// How many items were refused since the start, up to `u32::MAX`.
+    /// Number of items refused since the start, up to `u32::MAX`.
     pub fn refused(&self) -> u32 {
         self.with(|state| state.refused.get())
     }
 
-    /// The most items that it ever held: the capacity that would have been enough.
+    /// The most items that the queue ever held: the capacity that would have been enough.
     pub fn peak(&self) -> usize {
         self.with(|state| state.peak.get().max(state.len()))
     }

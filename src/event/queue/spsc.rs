@@ -16,7 +16,7 @@ use crate::event::{Event, Item, Put, Source, Taken, Tick};
 /// - **Ends:** [`split`](Self::split) makes an [`SpscProducer`] for the interrupt and an [`SpscConsumer`]
 ///   for main.
 /// - **Memory:** `16 N + 20` bytes on a 32-bit part.
-/// - **Losses:** as with [`EventQueue`](super::EventQueue); between two items taken they count modulo 2³².
+/// - **Losses:** as with [`EventQueue`](super::EventQueue); the number lost between two items taken wraps at 2³².
 ///
 /// ```
 /// use spikewire::{Event, Polarity, Source, SpscQueue, Tick};
@@ -159,7 +159,7 @@ pub struct SpscConsumer<'a> {
 }
 
 impl SpscConsumer<'_> {
-    /// How many items are in the queue.
+    /// Number of items in the queue.
     pub fn len(&self) -> usize {
         let [head, tail] = [&self.ring.head, &self.ring.tail].map(|at| at.load(Ordering::Relaxed));
         let turn = if tail >= head { 0 } else { self.ring.entries.len() };

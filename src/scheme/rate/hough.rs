@@ -9,8 +9,8 @@ use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 
 /// The Hough spike algorithm (HSA).
 ///
-/// With `r = x - shift`: a spike at `i` if `r[i+j] >= h[j]` for all `j`; then `r[i+j] -= h[j]`.
-/// The last `F - 1` samples of a recording, over which the filter does not fit, never spike.
+/// With the signal `x`, the taps `h` and `r = x - shift`: a spike at `i` if `r[i+j] >= h[j]` for all `j`; then `r[i+j]
+/// -= h[j]`. The last `F - 1` samples of a recording, over which the filter does not fit, never spike.
 ///
 /// - **Latency:** `F - 1` samples. **Memory:** `4 F + 8` bytes a channel in `f32`, and `16 F` of residuals on the
 ///   stack for slices, at most 424 bytes of stack in all with 15 taps on a Cortex-M4F.

@@ -10,9 +10,9 @@ use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 
 /// The threshold Hough spike algorithm (T-HSA).
 ///
-/// With `r = x - shift` and `error = sum over j of max(0, h[j] - r[i+j])`: a spike at `i` if
-/// `error <= threshold`; then `r[i+j] -= h[j]`. Samples past the end of a recording add
-/// no error, so that a tail of zeros can spike.
+/// With the signal `x`, the taps `h`, `r = x - shift` and `error = sum over j of max(0, h[j] - r[i+j])`: a spike at
+/// `i` if `error <= threshold`; then `r[i+j] -= h[j]`. Samples past the end of a recording add no error, so that a
+/// tail of zeros can spike.
 ///
 /// - **Threshold:** 0 or more, in the samples' unit; 0 makes it [`Hough`](super::Hough).
 /// - **Latency:** `F - 1` samples. **Memory:** `4 F + 8` bytes a channel in `f32`, and `16 F` of residuals on the

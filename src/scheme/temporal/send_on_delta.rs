@@ -149,7 +149,7 @@ impl<const K: usize> Steps<K> {
         })
     }
 
-    /// The same of a count that is within already.
+    /// [`new`](Self::new) for a count that is within the limits already.
     #[inline]
     pub(crate) const fn within(count: i8) -> Self {
         Self(count)

@@ -19,8 +19,8 @@ use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 /// - **Exactness:** `f32` rounds `base ± threshold` once; fixed point is exact.
 /// - **Error:** while `|x[i] - x[i-1]| <= threshold`, the decoded value stays within the threshold
 ///   of the signal. It never overshoots.
-/// - **Silence:** a constant signal gives no spike once the baseline is near it. A larger threshold mostly gives fewer
-///   spikes, but not always: `0, 3, 5, 1` gives two with a threshold of 1, and three with 2.
+/// - **Silence:** a constant signal gives no spike once the baseline is within a threshold of it. A larger threshold
+///   gives fewer spikes as a rule, but not always: `0, 3, 5, 1` gives two with a threshold of 1, and three with 2.
 ///
 /// Source: paper, section II-C, algorithm 7 (whose second `base + threshold` is a slip for `-`).
 ///

@@ -8,7 +8,7 @@ use super::{FrameView, LinkError, MIN_FRAME, session};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gap {
-    /// How many are missing, from 1 on.
+    /// Number of missing frames, from 1 on.
     pub lost_frames: u32,
 }
 
@@ -35,7 +35,7 @@ impl Received<'_> {
 ///
 /// - **Order:** a frame that was already delivered, or that comes up to 256 frames late, is left out. So is a late
 ///   frame of the three sessions before, until the present one has delivered 256 frames. Sixteen such frames in a row
-///   show that their session goes on, and the sixteenth is a start.
+///   show that their session goes on, and the sixteenth counts as a start.
 /// - **Memory:** `N + 104` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
 ///   the first of a frame.
 /// - **Delay:** none; a frame whose length was damaged, or whose end is missing, may delay the frames in the 255 bytes
@@ -132,9 +132,9 @@ impl<const N: usize> Reader<N> {
         self.next(input, false)
     }
 
-    /// The next frame among the bytes that were taken, when no more come: on a line that was silent for longer than a
-    /// frame ever pauses, such as at a serial port's idle interrupt. What waits for its end is given up, and counted
-    /// as [`skipped`](Self::skipped); `None` once no byte is left.
+    /// The next frame among the bytes that were taken, when no more come; `None` once no byte is left. Call it after a
+    /// silence longer than any pause within a frame, such as at a serial port's idle interrupt. A frame whose end is
+    /// missing is given up, and its bytes are counted as [`skipped`](Self::skipped).
     pub fn next_after_silence(&mut self) -> Option<Received<'_>> {
         self.next(&mut [].as_slice(), true)
     }
@@ -168,12 +168,12 @@ impl<const N: usize> Reader<N> {
         Some(Received { gap, is_start, frame })
     }
 
-    /// How many frames arrived whole.
+    /// Number of frames that arrived whole.
     pub const fn frames(&self) -> u32 {
         self.frames
     }
 
-    /// How many frames are missing, over all gaps.
+    /// Number of frames that are missing, over all gaps.
     pub const fn lost_frames(&self) -> u32 {
         self.lost_frames
     }
@@ -184,18 +184,18 @@ impl<const N: usize> Reader<N> {
         self.bad_checksums
     }
 
-    /// How many frames had the number of the one before, as on a bus that repeats what was not acknowledged; they are
-    /// left out.
+    /// Number of frames with the number of the one before, as on a bus that repeats what was not acknowledged; they
+    /// are left out.
     pub const fn repeated(&self) -> u32 {
         self.repeated
     }
 
-    /// How many frames came after later ones; they are left out, and were counted as lost.
+    /// Number of frames that came after later ones; they are left out, and were counted as lost.
     pub const fn late(&self) -> u32 {
         self.late
     }
 
-    /// How many bytes belonged to no frame.
+    /// Number of bytes that belonged to no frame.
     pub const fn skipped(&self) -> u32 {
         self.skipped
     }

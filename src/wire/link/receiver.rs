@@ -22,7 +22,7 @@ use crate::{Code, ConfigError, NeuronSpike, Recovery, Scheme, error};
 /// - **Temporal codes whose step adapts** ([`Recovery::TimedKeyframe`]) are exact from their next keyframe on too. The
 ///   sender must take its samples every period, as for rate codes.
 /// - **Population codes** ([`Recovery::Spike`]) are exact from the next whole sample in which the channel fires. A
-///   sample is over when an event of a later one arrives, a heartbeat, or by [`advance`](Self::advance).
+///   sample is over when an event of a later one or a heartbeat arrives, or at [`advance`](Self::advance).
 /// - **Rate codes** ([`Recovery::Samples`]) are exact after as many whole samples as the filter has taps. The sender
 ///   must take a sample every [period](super::Coding::period) of the link, with a jitter of each tick below a quarter of
 ///   a period, since samples without events are decoded, too: after as many of them as the filter has taps the value no
@@ -248,14 +248,14 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         })
     }
 
-    /// How many events and keyframes had an address of no channel.
+    /// Number of events and keyframes whose address belongs to no channel.
     pub const fn outside(&self) -> u32 {
         self.outside
     }
 
-    /// How many keyframes had another sample type or came for a code without keyframes, plus how many frames had bits
-    /// that code no event, plus how many events were more than the `EVENTS` of a sample, came after their sample was over,
-    /// or lay in none of its sub-timesteps.
+    /// Number of things that do not fit the schemes: keyframes of another sample type or for a code without keyframes;
+    /// frames with bits that code no event; events beyond the `EVENTS` of a sample, after their sample was over, or in
+    /// none of its sub-timesteps.
     pub const fn misfits(&self) -> u32 {
         self.misfits
     }

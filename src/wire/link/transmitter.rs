@@ -6,11 +6,11 @@ use crate::wire::Batch;
 
 /// Takes items from a source and turns them into frames, in their order.
 ///
-/// - **Keyframes and heartbeats** come first in a frame: one after an event starts the next frame.
+/// - **Keyframes and heartbeats** come first in a frame: a keyframe or heartbeat after an event starts the next frame.
 /// - **Losses and breaks** also start a frame, with the flag *lost*: a temporal decoder is then wrong until its next
 ///   keyframe.
-/// - **Time:** a tick wraps after 71.6 minutes, so that a longer silence cannot be told from a short one. Where there may
-///   be no item for 17.9 minutes, as of a rate code at rest without heartbeats, call [`observe`](Self::observe).
+/// - **Time:** a tick wraps after 71.6 minutes, so that a longer silence cannot be told from a short one. If there may
+///   be no item for 17.9 minutes, as with a rate code at rest without heartbeats, call [`observe`](Self::observe).
 /// - **Memory:** 48 bytes on a 32-bit part.
 ///
 /// ```
@@ -42,8 +42,9 @@ impl Transmitter {
         Self { framer: Framer::new(coding, session), held: None }
     }
 
-    /// Tells the time, which items do not while there are none. An item or this must come at least every 2³⁰ µs (17.9
-    /// minutes): at each turn of the main loop, for one. A [heartbeat](Item::Heartbeat) a second does as well.
+    /// Tells the transmitter the time while there are no items. An item or this call must come at least every 2³⁰ µs
+    /// (17.9 minutes): call it at each turn of the main loop, for example. A [heartbeat](Item::Heartbeat) a second
+    /// does as well.
     pub fn observe(&mut self, now: Tick) {
         self.framer.observe(now);
     }
