@@ -6,23 +6,23 @@
 pub struct Counters {
     /// Samples that were encoded.
     pub samples: u32,
-    /// Samples left out, as the sensor had just been started or counts as dead.
+    /// Samples left out, as the sensor had just been started or counted as dead.
     pub discarded: u32,
     /// Samples that never came: a data-ready edge was later than a period.
     pub missed: u32,
-    /// Samples that a read did not bring: it failed, or what it brought was none.
+    /// Samples that a read should have brought: the read failed, or what it brought was no sample.
     pub failed: u32,
-    /// How often a channel had as many spikes in a sample as its code can, or of a code with one spike a sample had it in
-    /// two samples in a row: there the signal may have outrun it.
+    /// Samples with as many spikes of a channel as its code allows, or, for a code with one spike a sample, with a spike
+    /// right after another: there the signal may have outrun the code.
     pub at_limit: u32,
     /// How often the sensor was found dead.
     pub deaths: u32,
-    /// How often it was started, with success.
+    /// How often the sensor was started, with success.
     pub starts: u32,
 }
 
 impl Counters {
-    /// What has been counted since an earlier look.
+    /// Returns the counts since `earlier`.
     #[must_use]
     pub const fn since(&self, earlier: &Self) -> Self {
         Self {
