@@ -17,9 +17,9 @@
 //! }
 //! ```
 //!
-//! A [`Scheme`] holds parameters, in a `const` or a `static`. An [`Encoder`] or a [`Decoder`] is a reference to it
-//! and a small state; a [`Bank`] is one scheme with a state for each channel. Events and keyframes leave the
-//! interrupt as one stream of [items](Item), in order, through a queue to a link, a sink or a chip.
+//! A [`Scheme`] is a code with its parameters, in a `const` or a `static`. An [`Encoder`] or a [`Decoder`] is a
+//! reference to it and a small state; a [`Bank`] is one scheme with a state for each channel. Events and keyframes
+//! leave the interrupt as one stream of [items](Item), in order, through a queue to a link, a sink or a chip.
 //!
 //! # Schemes
 //!

@@ -13,7 +13,7 @@
 //!
 //! # A network on tinyODIN
 //!
-//! Described as constant data, loaded and verified, fed with events and read out:
+//! A network that is constant data is loaded and verified, then fed with events and read out:
 //!
 //! ```
 //! use embedded_hal::{delay::DelayNs, spi::SpiDevice};

@@ -34,8 +34,8 @@ macro_rules! spi_sink {
         /// - **Ready pin:** high when the receiver takes bytes; invert a busy pin. It is read once a batch, and
         ///   never waited for.
         /// - **Errors:** the sink keeps the batch, and the next [`send`](Self::send) sends all of it again. A bus
-        ///   that failed halfway may have delivered a part before, which the checksum and sequence of a link
-        ///   sort out.
+        ///   that failed halfway may have delivered a part before, which the checksum and the number of a link's
+        ///   frame sort out.
         /// - **Memory:** `N` bytes, the device, the pin and the batch.
         #[derive(Debug)]
         pub struct $name<D, B, const N: usize, R = AlwaysReady> {
