@@ -197,7 +197,7 @@ impl QueueView {
         self.with(|state| state.refused.get())
     }
 
-    /// The most items that the queue ever held: the capacity that would have been enough.
+    /// The most items that the queue ever held: where none was lost, the capacity that is enough.
     pub fn peak(&self) -> usize {
         self.with(|state| state.peak.get().max(state.len()))
     }
