@@ -68,7 +68,7 @@ impl<S: Sample, const F: usize> BsaToolbox<S, F> {
     fn encode_one(
         &self,
         residuals: &mut [S::Residual; F],
-        state: &mut Registers<S::Residual, F>,
+        state: &mut Registers<S::Residual>,
         sample: S,
     ) -> Option<Spike> {
         let taps = &self.filtered.taps;
@@ -79,9 +79,9 @@ impl<S: Sample, const F: usize> BsaToolbox<S, F> {
         let residual = self.filtered.residual(sample).minus(state.owed);
         state.owed = S::Residual::ZERO;
         let without = without_filter(residuals);
-        let newest = state.cursor.next();
+        let newest = state.cursor.next(F);
         *residuals.get_mut(newest)? = residual;
-        if !state.cursor.advance() {
+        if !state.cursor.advance(F) {
             return None;
         }
         let with = with_filter(residuals, taps.starting_at(newest + 1));
@@ -89,7 +89,7 @@ impl<S: Sample, const F: usize> BsaToolbox<S, F> {
             return Some(Spike::None);
         }
         // The first tap belongs to the residual after the oldest, so that the last one belongs to the next sample.
-        let oldest = state.cursor.next();
+        let oldest = state.cursor.next(F);
         let kept = residuals.get(oldest).copied()?;
         subtract(cells(residuals), taps.starting_at(oldest + 1));
         *residuals.get_mut(oldest)? = kept;
@@ -102,7 +102,7 @@ impl<S: Sample, const F: usize> BsaToolbox<S, F> {
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 pub struct BsaToolboxState<S: Sample, const F: usize> {
-    registers: Registers<S::Residual, F>,
+    registers: Registers<S::Residual>,
     #[cfg_attr(feature = "serde", serde(with = "crate::serial::array"))]
     residuals: [S::Residual; F],
 }
@@ -110,15 +110,18 @@ pub struct BsaToolboxState<S: Sample, const F: usize> {
 /// The state besides the residuals, which a slice keeps in registers.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Registers<R, const F: usize> {
+struct Registers<R> {
     /// What the last sample's spike still subtracts from the next sample: its last tap, or 0 without a spike.
     owed: R,
-    cursor: Cursor<F>,
+    cursor: Cursor,
     tally: Tally,
 }
 
-impl<R: Residual, const F: usize> Registers<R, F> {
-    const START: Self = Self { owed: R::ZERO, cursor: Cursor::new(F), tally: Tally::NONE };
+impl<R: Residual> Registers<R> {
+    /// The state before the first sample, with this many taps.
+    const fn new(length: usize) -> Self {
+        Self { owed: R::ZERO, cursor: Cursor::new(length), tally: Tally::NONE }
+    }
 }
 
 /// The sum of `|r|` over the window.
@@ -139,7 +142,7 @@ pub(super) fn with_filter<S: Sample>(
 
 impl<S: Sample, const F: usize> Start for BsaToolbox<S, F> {
     const START: BsaToolboxState<S, F> =
-        BsaToolboxState { registers: Registers::START, residuals: [S::Residual::ZERO; F] };
+        BsaToolboxState { registers: Registers::new(F), residuals: [S::Residual::ZERO; F] };
 }
 
 impl<S: Sample, const F: usize> Scheme for BsaToolbox<S, F> {
@@ -177,16 +180,11 @@ impl<S: Sample, const F: usize> Scheme for BsaToolbox<S, F> {
 
     /// The last `F` samples never spike.
     fn finish_next(&self, state: &mut BsaToolboxState<S, F>) -> Option<Spike> {
-        let cursor = &mut state.registers.cursor;
-        if cursor.missing() >= F {
-            return None;
-        }
-        cursor.pop();
-        Some(Spike::None)
+        state.registers.cursor.pop(F).then_some(Spike::None)
     }
 
     fn fits(&self, state: &BsaToolboxState<S, F>) -> bool {
-        state.registers.cursor.fits()
+        state.registers.cursor.fits(F)
     }
 
     fn rejected(state: &BsaToolboxState<S, F>) -> u32 {

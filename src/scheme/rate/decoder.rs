@@ -35,19 +35,33 @@ impl<S: Sample, const F: usize> RateDecoderState<S, F> {
 
     #[inline(always)]
     pub(super) fn decode(&mut self, filtered: &Filtered<S, F>, spike: Spike) -> S {
-        let next = (self.next as usize).min(F - 1);
-        self.next = if next + 1 < F { next as u16 + 1 } else { 0 };
-        if spike == Spike::Up {
-            for (sum, tap) in self.pending.iter_mut().zip(filtered.taps.starting_at(next)) {
-                *sum = sum.plus(tap.widen());
-            }
-        }
-        let mut sum = S::Residual::ZERO;
-        if let Some(pending) = self.pending.get_mut(next) {
-            core::mem::swap(&mut sum, pending);
-        }
-        filtered.shift.restore(sum)
+        let taps = |slot| filtered.taps.starting_at(slot).as_slice();
+        filtered.shift.restore(decode(&mut self.pending, &mut self.next, taps, spike))
     }
+}
+
+/// Takes the sum of the next value out of the slot `next` of a ring, which is in an array or on the heap. `taps`
+/// returns the taps rotated to a slot.
+#[inline(always)]
+pub(super) fn decode<'t, S: Sample>(
+    pending: &mut [S::Residual],
+    next: &mut u16,
+    taps: impl FnOnce(usize) -> &'t [S],
+    spike: Spike,
+) -> S::Residual {
+    let slot = usize::from(*next).min(pending.len().wrapping_sub(1));
+    let after = slot.wrapping_add(1);
+    *next = if after < pending.len() { after as u16 } else { 0 };
+    if spike == Spike::Up {
+        for (sum, tap) in pending.iter_mut().zip(taps(slot)) {
+            *sum = sum.plus(tap.widen());
+        }
+    }
+    let mut sum = S::Residual::ZERO;
+    if let Some(pending) = pending.get_mut(slot) {
+        core::mem::swap(&mut sum, pending);
+    }
+    sum
 }
 
 /// The decoding half of a rate code's [`Scheme`](crate::Scheme), with a field `filtered`.

@@ -3,6 +3,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::cursor::Cursor;
+use super::decoder;
 use super::encoder::{Rule, cells, decide_in_order, pairs, subtract};
 use super::filter::magnitude;
 use super::{Criterion, bsa, bsa_toolbox, hough, threshold_hough};
@@ -55,36 +57,6 @@ impl<S: Sample> Taps<S> {
     }
 }
 
-/// The position in a ring of residuals, whose length is that of the taps.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Cursor {
-    /// The slot that is written next, which holds the oldest residual.
-    next: usize,
-    /// How many residuals must come before the next one completes a window.
-    missing: usize,
-}
-
-impl Cursor {
-    /// Goes on from the slot that was written, and returns whether that completed a window.
-    fn advance(&mut self, length: usize) -> bool {
-        self.next = if self.next + 1 < length { self.next + 1 } else { 0 };
-        let is_whole = self.missing == 0;
-        self.missing = self.missing.saturating_sub(1);
-        is_whole
-    }
-
-    fn oldest(self, length: usize) -> usize {
-        let slot = self.next.saturating_add(self.missing);
-        if slot < length { slot } else { slot - length }
-    }
-
-    /// Whether the position lies in a ring of this length, and at most the whole ring is missing.
-    fn fits(self, length: usize) -> bool {
-        self.next < length && self.missing <= length
-    }
-}
-
 /// The state of a rate code's encoder: what past spikes have left of the last samples.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
@@ -100,7 +72,7 @@ pub struct RateState<S: Sample> {
 pub struct RateDecoderState<S: Sample> {
     /// A ring of sums, of which the one in slot `next` belongs to the next value.
     pending: Vec<S::Residual>,
-    next: usize,
+    next: u16,
 }
 
 /// A rate code that looks ahead over a filter of any length; `R` is its rule.
@@ -190,22 +162,14 @@ macro_rules! decode {
         }
 
         fn decode(&self, state: &mut RateDecoderState<S>, spike: Spike) -> S {
-            if spike == Spike::Up {
-                let taps = self.taps.starting_at(state.next);
-                for (sum, tap) in state.pending.iter_mut().zip(taps) {
-                    *sum = sum.plus(tap.widen());
-                }
-            }
-            let pending = state.pending.get_mut(state.next);
-            let sum =
-                pending.map_or(S::Residual::ZERO, |sum| core::mem::replace(sum, S::Residual::ZERO));
-            state.next = if state.next < self.taps.length() - 1 { state.next + 1 } else { 0 };
-            self.shift.restore(sum)
+            let taps = |slot| self.taps.starting_at(slot);
+            let RateDecoderState { pending, next } = state;
+            self.shift.restore(decoder::decode(pending, next, taps, spike))
         }
 
         fn fits_decoder(&self, state: &RateDecoderState<S>) -> bool {
             let length = self.taps.length();
-            state.pending.len() == length && state.next < length
+            state.pending.len() == length && usize::from(state.next) < length
         }
 
         /// Forgets past spikes. The value is unused, since the values of a rate code come from spikes alone.
@@ -224,7 +188,7 @@ impl<S: Sample, R: Rule<S, 1>> Rate<S, R> {
         let length = self.taps.length();
         RateState {
             residuals: vec![S::Residual::ZERO; length],
-            cursor: Cursor { next: 0, missing: length - 1 },
+            cursor: Cursor::new(length - 1),
             tally: Tally::NONE,
         }
     }
@@ -233,7 +197,7 @@ impl<S: Sample, R: Rule<S, 1>> Rate<S, R> {
     /// shorter than the filter.
     fn decide_in_order(&self, state: &mut RateState<S>) -> Option<Spike> {
         let Taps { magnitude, .. } = self.taps;
-        let (oldest, missing) = (state.cursor.oldest(self.taps.length()), state.cursor.missing);
+        let (oldest, missing) = (state.cursor.oldest(self.taps.length()), state.cursor.missing());
         let residuals = cells(&mut state.residuals);
         decide_in_order(&self.rule, self.taps.as_slice(), magnitude, residuals, oldest, missing)
     }
@@ -256,14 +220,15 @@ impl<S: Sample, R: Rule<S, 1>> Scheme for Rate<S, R> {
             return None;
         }
         let magnitude = self.taps.magnitude;
-        *state.residuals.get_mut(state.cursor.next)? = sample.residual(self.shift, magnitude);
+        *state.residuals.get_mut(state.cursor.next(self.taps.length()))? =
+            sample.residual(self.shift, magnitude);
         if !state.cursor.advance(self.taps.length()) {
             return None;
         }
         if R::IN_ORDER {
             return self.decide_in_order(state);
         }
-        let taps = self.taps.starting_at(state.cursor.next);
+        let taps = self.taps.starting_at(state.cursor.next(self.taps.length()));
         let residuals = cells(&mut state.residuals);
         if !self.rule.fits(|| magnitude, pairs(residuals, taps), true) {
             return Some(Spike::None);
@@ -273,11 +238,8 @@ impl<S: Sample, R: Rule<S, 1>> Scheme for Rate<S, R> {
     }
 
     fn finish_next(&self, state: &mut RateState<S>) -> Option<Spike> {
-        if state.cursor.missing >= self.taps.length() - 1 {
-            return None;
-        }
-        state.cursor.missing += 1;
-        self.decide_in_order(state)
+        let is_left = state.cursor.pop(self.taps.length() - 1);
+        is_left.then(|| self.decide_in_order(state)).flatten()
     }
 
     fn fits(&self, state: &RateState<S>) -> bool {
@@ -336,7 +298,7 @@ impl<S: Sample> BsaToolbox<S> {
         let length = self.taps.length();
         BsaToolboxState {
             residuals: vec![S::Residual::ZERO; length],
-            cursor: Cursor { next: 0, missing: length },
+            cursor: Cursor::new(length),
             owed: S::Residual::ZERO,
             tally: Tally::NONE,
         }
@@ -361,11 +323,11 @@ impl<S: Sample> Scheme for BsaToolbox<S> {
         let residual = sample.residual(self.shift, self.taps.magnitude).minus(state.owed);
         state.owed = S::Residual::ZERO;
         let without = bsa_toolbox::without_filter(&state.residuals);
-        *state.residuals.get_mut(state.cursor.next)? = residual;
+        *state.residuals.get_mut(state.cursor.next(self.taps.length()))? = residual;
         if !state.cursor.advance(self.taps.length()) {
             return None;
         }
-        let oldest = state.cursor.next;
+        let oldest = state.cursor.next(self.taps.length());
         let with = bsa_toolbox::with_filter(&state.residuals, self.taps.starting_at(oldest));
         if !S::Residual::at_most(with, without, self.ratio) {
             return Some(Spike::None);
@@ -380,11 +342,7 @@ impl<S: Sample> Scheme for BsaToolbox<S> {
 
     /// The last samples, as many as there are taps, never spike.
     fn finish_next(&self, state: &mut BsaToolboxState<S>) -> Option<Spike> {
-        if state.cursor.missing >= self.taps.length() {
-            return None;
-        }
-        state.cursor.missing += 1;
-        Some(Spike::None)
+        state.cursor.pop(self.taps.length()).then_some(Spike::None)
     }
 
     fn fits(&self, state: &BsaToolboxState<S>) -> bool {

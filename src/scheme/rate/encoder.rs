@@ -48,7 +48,7 @@ pub(super) trait Rule<S: Sample, const F: usize> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 #[repr(C)] // loops over residuals at the very start would take two more instructions a turn
 pub struct RateState<S: Sample, const F: usize> {
-    cursor: Cursor<F>,
+    cursor: Cursor,
     tally: Tally,
     #[cfg_attr(feature = "serde", serde(with = "crate::serial::array"))]
     residuals: [S::Residual; F],
@@ -63,7 +63,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
     }
 
     pub(super) fn fits(&self) -> bool {
-        self.cursor.fits()
+        self.cursor.fits(F)
     }
 
     /// Stores the residual of a sample, and returns its slot if that completes a window.
@@ -73,9 +73,9 @@ impl<S: Sample, const F: usize> RateState<S, F> {
             self.tally.reject();
             return None;
         }
-        let slot = self.cursor.next();
+        let slot = self.cursor.next(F);
         *self.residuals.get_mut(slot)? = filtered.residual(sample);
-        self.cursor.advance().then_some(slot)
+        self.cursor.advance(F).then_some(slot)
     }
 
     /// Encodes a sample, with the residuals in their ring.
@@ -158,7 +158,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         let (shift, magnitude) = (filtered.shift, filtered.taps.magnitude());
         let mut line = [self.residuals; 4];
         let line = line.as_flattened_mut();
-        let oldest = self.cursor.next();
+        let oldest = self.cursor.next(F);
         let (newest, windows) = {
             let line = cells(line);
             let after = line.get(oldest + 1..).unwrap_or_default();
@@ -202,17 +202,13 @@ impl<S: Sample, const F: usize> RateState<S, F> {
     #[inline(never)]
     fn encode_apart(&mut self, rule: &impl Rule<S, F>) -> Option<Spike> {
         let taps = &rule.filtered().taps;
-        let (oldest, missing) = (self.cursor.oldest(), self.cursor.missing());
+        let (oldest, missing) = (self.cursor.oldest(F), self.cursor.missing());
         let residuals = cells(&mut self.residuals);
         decide_in_order(rule, taps.as_array(), taps.magnitude(), residuals, oldest, missing)
     }
 
     pub(super) fn finish_next(&mut self, rule: &impl Rule<S, F>) -> Option<Spike> {
-        if self.cursor.missing() + 1 >= F {
-            return None;
-        }
-        self.cursor.pop();
-        self.encode_apart(rule)
+        self.cursor.pop(F - 1).then(|| self.encode_apart(rule)).flatten()
     }
 }
 
