@@ -56,10 +56,16 @@ impl Copy {
             .unwrap_or_default();
         self.compile(changes, "check --package spikewire --all-features")?;
         fs::write(&kept, serde_json::to_string(&self.out)?)?;
-        let tests = env::var("MUTANTS_TESTS").unwrap_or_else(|_| "chips codes wire".into());
-        let tests = tests.split(' ').map(|name| format!(" --test {name}")).collect::<String>();
+        let tests =
+            env::var("MUTANTS_TESTS").unwrap_or_else(|_| "catalogue chips codes wire".into());
+        let (own, tests): (Vec<_>, Vec<_>) =
+            tests.split(' ').partition(|name| *name == "catalogue");
+        let tests = tests.iter().map(|name| format!(" --test {name}")).collect::<String>();
         let build = "test --no-run --package spikewire --package host-tests --lib";
-        let told = self.compile(changes, &format!("{build}{tests}"))?;
+        let mut told = self.compile(changes, &format!("{build}{tests}"))?;
+        if !own.is_empty() {
+            told.extend(self.compile(changes, "test --no-run --package catalogue --lib")?);
+        }
         fs::write(kept, serde_json::to_string(&self.out)?)?;
         let programs = told.iter().filter_map(|message| {
             let path = message["executable"].as_str()?.into();

@@ -37,7 +37,7 @@ pub enum Out {
 }
 
 /// `MUTANTS_SINCE=v0.1.0` tries the changes of lines that are not those of that commit, and `MUTANTS_IN=src/wire` those
-/// whose names have this in them; `MUTANTS_TESTS='chips wire'` leaves the tests of codes out, which compile longest. A run
+/// whose names have this in them; `MUTANTS_AGAIN=1` those of the list; `MUTANTS_TESTS='chips wire'` leaves the tests of codes out, which compile longest. A run
 /// that is stopped goes on where it was.
 pub fn mutants() -> Result<()> {
     let changes = changes::all()?;
@@ -45,10 +45,14 @@ pub fn mutants() -> Result<()> {
     let recent =
         env::var("MUTANTS_SINCE").map(|commit| changes::since(&commit)).ok().transpose()?;
     let part = env::var("MUTANTS_IN").ok();
+    let held = Held::read()?;
+    let is_listed = |name: &String| held.is_equal(name) || held.is_known(name);
+    let again = env::var("MUTANTS_AGAIN").is_ok();
     let is_chosen = |number: &usize| {
         let name = &changes[*number].name;
         recent.as_ref().is_none_or(|recent| recent.contains(name))
             && part.as_ref().is_none_or(|part| name.contains(part))
+            && (!again || is_listed(&names[*number]))
     };
     let chosen: Vec<usize> = (0..changes.len()).filter(is_chosen).collect();
     ensure!(!chosen.is_empty() || recent.is_some(), "there is no such change");
@@ -62,7 +66,6 @@ pub fn mutants() -> Result<()> {
     let is_own = |change: usize, program: &Program| room(&changes[change].file) == program.name;
     let verdicts = judge::judge(&tried, &programs, &tests, is_own)?;
 
-    let held = Held::read()?;
     for (name, _) in ROOMS {
         let is_here = |number: &&usize| room(&changes[**number].file) == name;
         let here: Vec<usize> = chosen.iter().filter(is_here).copied().collect();
@@ -71,7 +74,7 @@ pub fn mutants() -> Result<()> {
     let mut wrong = Vec::new();
     for (number, verdict) in &verdicts {
         let name = &names[*number];
-        let is_listed = held.is_equal(name) || held.is_known(name);
+        let is_listed = is_listed(name);
         match verdict {
             Verdict::Missed | Verdict::Quiet if !is_listed => {
                 wrong.push(format!("not noticed: {name}"))

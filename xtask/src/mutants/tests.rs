@@ -13,7 +13,7 @@ use std::{
 };
 
 /// Seconds of processor time: a test that takes longer is left out, since a change that none notices is tried with all.
-const LONGEST: u64 = 2;
+const LONGEST: u64 = 20;
 
 /// Kilobytes that a test may have: a change may ask for all there is.
 const MEMORY: u64 = 6 << 20;
