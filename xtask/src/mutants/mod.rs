@@ -36,9 +36,9 @@ pub enum Out {
     NoSwitch,
 }
 
-/// `MUTANTS_SINCE=v0.1.0` tries the changes of lines that are not those of that commit, and `MUTANTS_IN=src/wire` those
-/// whose names have this in them; `MUTANTS_AGAIN=1` those of the list; `MUTANTS_TESTS='chips wire'` leaves the tests of codes out, which compile longest. A run
-/// that is stopped goes on where it was.
+/// `MUTANTS_SINCE=v0.1.0` tries the changes of lines that are not those of that commit, `MUTANTS_IN=src/wire` those whose
+/// names have this in them, and `MUTANTS_AGAIN=1` those of the list. `MUTANTS_TESTS='chips wire'` leaves the tests of
+/// codes out, which compile longest. A run that is stopped goes on where it was.
 pub fn mutants() -> Result<()> {
     let changes = changes::all()?;
     let names = changes::lasting_names(&changes);
