@@ -1,9 +1,10 @@
-"""Million samples a second of each scheme, beside plain Python and other libraries, in one run.
+"""Million samples a second of each scheme, beside plain Python, NumPy and other libraries, in one run.
 
-    python python/examples/speed.py            # a table
+    python python/examples/speed.py            # tables: medians, with the least and the most of all rounds
     python python/examples/speed.py --check    # fails if a scheme is not as many times faster as it should be
 
-Plain Python is the pseudo-code of the paper line by line, on NumPy arrays: what one writes first.
+Plain Python is the pseudo-code of the paper line by line, on NumPy arrays: what one writes first. NumPy is the same
+work on whole arrays, where a code has such a form.
 """
 
 import argparse
@@ -18,8 +19,11 @@ import spikewire as sw
 
 BENCH = Path(__file__).parents[2] / "cli" / "python" / "toolbox_bench.py"
 
-#: The signal: ten thousand samples for plain Python, as long as it likes, and more of the same for the package.
+#: The signal: ten thousand samples for loops in Python, and more of the same for all else.
 SHORT, TIMES = 10_000, 400
+
+#: What is compared takes turns, so that a machine with other work slows both.
+ROUNDS = 9
 
 
 def plain():
@@ -41,14 +45,22 @@ def gaussian(x, neurons):
     return spikes
 
 
-def seconds(call, times=7, clock=time.process_time):
-    """The least of several runs: of processor time, which leaves out what else the machine does."""
-    least = float("inf")
-    for _ in range(times):
-        start = clock()
-        call()
-        least = min(least, clock() - start)
-    return least
+def seconds(call, clock=time.process_time):
+    """One run: of processor time, which leaves out what else the machine does."""
+    start = clock()
+    call()
+    return clock() - start
+
+
+def rates(call, samples, rounds=ROUNDS, clock=time.process_time):
+    """Million samples a second, round by round."""
+    return np.array([samples / seconds(call, clock) * 1e-6 for _ in range(rounds)])
+
+
+def spread(values, digits=1):
+    """Median, least and most."""
+    low, middle, high = (f"{value:.{digits}f}" for value in (values.min(), np.median(values), values.max()))
+    return f"{middle} ({low} to {high})"
 
 
 def signal(samples):
@@ -57,8 +69,45 @@ def signal(samples):
     return (clean - 0.5 * np.random.default_rng(1).random(samples)).astype(np.float32)
 
 
-def others(long, ends):
-    """What other libraries encode the same signal with, where they are installed, and the scheme that is nearest."""
+def vectors(long, ends):
+    """The same work on whole arrays in NumPy, and the scheme: name, call, samples, scheme."""
+    low, range_ = np.float32(ends["min"]), np.float32(ends["max"] - ends["min"])
+    random = np.random.default_rng(2)
+
+    def contrast():
+        steps = np.diff(long, prepend=long[:1])
+        return (steps > 0.3).astype(np.int8) - (steps < -0.3)
+
+    def phase():
+        digits = np.minimum((long - low) * (256 / range_), 255).astype(np.uint8)
+        return np.unpackbits(digits[:, None], axis=1)
+
+    def chance():
+        return (random.random(len(long), dtype=np.float32) < (long - low) / range_).astype(np.int8)
+
+    yield "NumPy, differences", contrast, len(long), sw.TemporalContrast(threshold=0.3)
+    yield "NumPy `unpackbits`", phase, len(long), sw.WeightedPhase(slots=8, **ends)
+    yield "NumPy `random`", chance, len(long), sw.Bernoulli(**ends)
+
+
+def others(x, long, ends):
+    """What other libraries encode the same signal with, where they are installed, and the nearest scheme."""
+    try:
+        from spikify.encoders.temporal import contrast, global_referenced
+
+        short = x.astype(np.float64)
+        window = sw.MovingWindow(threshold=0.25, window=5)
+        each = np.repeat(short, 8)  # its phase code has one value for as many samples as digits
+        yield "spikify `threshold_based_representation`", (
+            lambda: contrast.threshold_based_representation(long.astype(np.float64), 1.0)
+        ), len(long), sw.TemporalContrast(threshold=0.3)
+        yield "spikify `step_forward`", lambda: contrast.step_forward(short, 0.5), len(x), sw.StepForward(threshold=0.5)
+        yield "spikify `moving_window`", lambda: contrast.moving_window(short, 5, 0.25), len(x), window
+        yield "spikify `phase_encoding`", (
+            lambda: global_referenced.phase_encoding(each, 8)
+        ), len(x), sw.WeightedPhase(slots=8, **ends)
+    except ImportError:
+        pass
     try:
         import torch
 
@@ -72,16 +121,18 @@ def others(long, ends):
         from snntorch import spikegen
 
         delta = sw.TemporalContrast(threshold=0.3)
-        yield "snnTorch `spikegen.delta`", lambda: spikegen.delta(data, threshold=0.3, off_spike=True), delta
+        yield "snnTorch `spikegen.delta`", (
+            lambda: spikegen.delta(data, threshold=0.3, off_spike=True)
+        ), len(long), delta
     except ImportError:
         pass
     try:
         from spikingjelly.activation_based import encoding
 
         phase, first = sw.WeightedPhase(slots=8, **ends), sw.FirstSpike(slots=8, **ends)
-        yield "SpikingJelly `PoissonEncoder`", lambda: encoding.PoissonEncoder()(unit), sw.Bernoulli(**ends)
-        yield "SpikingJelly `WeightedPhaseEncoder`", lambda: encoding.WeightedPhaseEncoder(8)(unit), phase
-        yield "SpikingJelly `LatencyEncoder`", lambda: encoding.LatencyEncoder(8)(unit), first
+        yield "SpikingJelly `PoissonEncoder`", lambda: encoding.PoissonEncoder()(unit), len(long), sw.Bernoulli(**ends)
+        yield "SpikingJelly `WeightedPhaseEncoder`", lambda: encoding.WeightedPhaseEncoder(8)(unit), len(long), phase
+        yield "SpikingJelly `LatencyEncoder`", lambda: encoding.LatencyEncoder(8)(unit), len(long), first
     except ImportError:
         pass
 
@@ -115,26 +166,31 @@ def main():
     print("|---|--:|--:|--:|--:|--:|")
     both = np.stack([long, long])
     for name, wanted, scheme, transcription in rows:
-        by_hand = len(x) / seconds(transcription, times=1)
-        own = len(long) / seconds(lambda: scheme.encode(long, progress=False))
-        two = both.size / seconds(lambda: scheme.encode(both, progress=False), clock=time.perf_counter)
+        by_hand = rates(transcription, len(x), rounds=1)[0]
+        own = rates(lambda: scheme.encode(long, progress=False), len(long))
+        two = rates(lambda: scheme.encode(both, progress=False), both.size, clock=time.perf_counter)
         spikes = scheme.encode(long, progress=False)
-        back = len(long) / seconds(lambda: spikes.decode(progress=False))
-        times = own / by_hand
+        back = rates(lambda: spikes.decode(progress=False), len(long))
+        times = np.median(own) / by_hand
         print(
-            f"| {name} | {by_hand * 1e-6:.3f} | {own * 1e-6:.1f} | {times:.0f} | {back * 1e-6:.1f} | {two * 1e-6:.1f} |",
+            f"| {name} | {by_hand:.3f} | {spread(own)} | {times:.0f} | {spread(back)} | {np.median(two):.1f} |",
             flush=True,
         )
         if times < wanted:
             slow.append(f"{name} is {times:.0f} times as fast, not {wanted}")
-    beside = list(others(long, ends))
-    print("\n| another library, M samples/s | | spikewire | | times |" if beside else "\nNo other library is installed.")
-    print("|---|--:|---|--:|--:|" if beside else "`pip install snntorch spikingjelly` beside the package does it.")
-    for name, call, scheme in beside:
-        theirs = len(long) / seconds(call)
-        own = len(long) / seconds(lambda: scheme.encode(long, progress=False))
-        kind = type(scheme).__name__
-        print(f"| {name} | {theirs * 1e-6:.1f} | `{kind}` | {own * 1e-6:.1f} | {own / theirs:.1f} |", flush=True)
+    print("\n| on whole arrays | M samples/s | spikewire | M samples/s | times |")
+    print("|---|--:|---|--:|--:|")
+    for name, call, samples, scheme in [*vectors(long, ends), *others(x, long, ends)]:
+        pairs = [
+            (samples / seconds(call) * 1e-6, len(long) / seconds(lambda: scheme.encode(long, progress=False)) * 1e-6)
+            for _ in range(ROUNDS)
+        ]
+        theirs, own = np.array(pairs).T
+        print(
+            f"| {name} | {spread(theirs, 1 if theirs.max() > 1 else 3)} | `{type(scheme).__name__}` | {spread(own)} "
+            f"| {spread(own / theirs)} |",
+            flush=True,
+        )
     if check and slow:
         sys.exit("; ".join(slow))
 

@@ -63,19 +63,11 @@ const STEPS: &[Step] = &[
     step("bench", "instruction counts of a Cortex-M4F against the baseline", checks::bench),
 ];
 
-/// Those that take too long for every change.
+/// Those that take too long for every change: the longest last.
 const LONG: &[Step] = &[
     step("recordings", "the flights come out of the published logs again", long::recordings),
-    step(
-        "sweeps",
-        "all tests, optimised, with twenty times as many cases, from a fresh seed",
-        long::sweeps,
-    ),
-    step(
-        "fuzz-long",
-        "the same under libFuzzer, a minute a target (FUZZ_SECONDS), going on from the last run",
-        crate::fuzz::long,
-    ),
+    step("deny", "licences and sources of every crate, in every workspace", crate::release::deny),
+    step("loom", "the queue without locks in every order of its loads and stores", long::loom),
     step(
         "faults",
         "hours of flight in which all goes wrong, and the table of it in SAFETY.md",
@@ -86,11 +78,16 @@ const LONG: &[Step] = &[
         "hours of flight in which much goes wrong, in two emulated cores",
         crate::soak::soak,
     ),
-    step("loom", "the queue without locks in every order of its loads and stores", long::loom),
-    step("deny", "licences and sources of every crate, in every workspace", crate::release::deny),
+    step(
+        "stack",
+        "no codec's stack is deeper than the bound of its code, nor that above 1 KiB, on two cores",
+        crate::bench::verify_stack,
+    ),
+    step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", checks::bench_m0),
+    step("panic-free", "every codec without a panic handler, on two cores", checks::no_panic_all),
     step("lints", "clippy on all at once, and every feature on every core", long::lints),
     step("capture", "the laptop program with a debug probe's driver", long::capture),
-    step("page", "the page in a browser, against the laptop program", crate::page::verify),
+    step("logs", "logs of every kind, read as independent readers do", crate::peers::logs),
     step(
         "c-cores",
         "the library for C on the other four cores, and as the host has it",
@@ -101,17 +98,13 @@ const LONG: &[Step] = &[
         "the library for C on the host, under the address sanitizer as the programs in C are",
         crate::c_library::watched,
     ),
+    step("c-cost", "what the calls of C take beside the crate's", crate::c_library::cost),
+    step("page", "the page in a browser, against the laptop program", crate::page::verify),
+    step("ros2", "ROS 2 nodes against Cyclone DDS, on loopback alone", crate::ros::ros2),
     step(
         "ros",
         "ROS nodes in the distribution's ROS, a flight through every scheme",
         crate::ros::ros,
-    ),
-    step("ros2", "ROS 2 nodes against Cyclone DDS, on loopback alone", crate::ros::ros2),
-    step("logs", "logs of every kind, read as independent readers do", crate::peers::logs),
-    step(
-        "tuner",
-        "`spikewire tune` beside other optimisers, at equal numbers of settings",
-        crate::peers::tuner,
     ),
     step("py-speed", "the Python package from its source package, and its speed", python::speed),
     step(
@@ -123,20 +116,27 @@ const LONG: &[Step] = &[
     step("flown", "the same, on an emulated board: bit for bit", crate::flies::board),
     step("chip-flies", "the same, on a network on tinyODIN's model", crate::flies::chip),
     step("reckon", "the model of ReckOn against the chip's own code", crate::rtl::reckon),
-    step("c-cost", "what the calls of C take beside the crate's", crate::c_library::cost),
-    step("panic-free", "every codec without a panic handler, on two cores", checks::no_panic_all),
+    step("cores", "instruction counts on all five cores", long::cores),
     step(
-        "stack",
-        "no codec's stack is deeper than the bound of its code, nor that above 1 KiB, on two cores",
-        crate::bench::verify_stack,
+        "tuner",
+        "`spikewire tune` beside other optimisers, at equal numbers of settings",
+        crate::peers::tuner,
+    ),
+    step(
+        "fuzz-long",
+        "the same under libFuzzer, a minute a target (FUZZ_SECONDS), going on from the last run",
+        crate::fuzz::long,
+    ),
+    step(
+        "sweeps",
+        "all tests, optimised, with twenty times as many cases, from a fresh seed",
+        long::sweeps,
     ),
     step(
         "mutants",
         "thousands of changes of the crate's code, compiled at once, each of which a test has to notice",
         crate::mutants::mutants,
     ),
-    step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", checks::bench_m0),
-    step("cores", "instruction counts on all five cores", long::cores),
 ];
 
 const SETUP: &str = "setup";
