@@ -1,11 +1,15 @@
 """The link's two ends: the bits are those of the stream's encoder and decoder, and a loss is known."""
 
+import importlib.util
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import spikewire as sw
 
 PERIOD = 2000
+TOP = Path(__file__).parents[2]
 
 
 def signal(samples=400):
@@ -81,3 +85,12 @@ def test_what_makes_no_bank_is_refused():
         else:
             with pytest.raises(ValueError, match=words):
                 sw.Sender(schemes, PERIOD)
+
+
+def test_usage_has_the_table_of_keyframes():
+    spec = importlib.util.spec_from_file_location("keyframes", TOP / "python" / "examples" / "keyframes.py")
+    example = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(example)
+    usage = (TOP / "docs" / "usage.md").read_text(encoding="utf-8")
+    for row in example.table():
+        assert row in usage
