@@ -1,69 +1,31 @@
 //! Set-up and checks. `cargo xtask` lists the commands.
+//!
+//! Each room uses those before it: `common`, `setup` (what a machine needs), `programs` (built for the host and for
+//! emulated boards, and run), `figures` (tables and pictures of the pages), `products` (what others take from here) and
+//! `checks`. `verify` lists the checks, `write` what is generated.
 
-mod bench;
-mod bits;
-mod boards;
-mod c_library;
 mod checks;
-mod core_library;
-mod cpu;
-mod demo;
-mod distribution;
-mod drawing;
-mod emulator;
-mod faults;
-mod fifo;
-mod firmware;
-mod flies;
-mod flown;
-mod fuzz;
-mod host;
-mod image;
-mod jumps;
-mod link;
-mod logging;
-mod long;
-mod markdown;
+mod common;
+mod figures;
 #[cfg(test)]
 mod modules;
 mod mutants;
-mod names;
-mod needs;
-mod new_firmware;
-mod package;
-mod packages;
-mod page;
-mod parts;
-mod passed;
-mod paths;
-mod peers;
-mod picture;
-mod progress;
-mod python;
-mod qemu;
-mod rate_loop;
-mod real_boards;
+mod products;
+mod programs;
 mod release;
-mod ros;
-mod ros_figure;
-mod rtl;
-mod schemes;
 mod setup;
-mod shell;
-mod signal;
-mod size;
-mod soak;
-mod storm;
-mod toolchain;
-mod tuned;
-mod usage;
 mod verify;
-mod video;
 mod write;
 
 use anyhow::Result;
+use checks::{firmware, simulated_drone};
+use common::{
+    progress,
+    usage::{Usage, usage},
+};
+use figures::{bench, demo};
+use products::{c_library, new_firmware, page};
 use std::{env, process::ExitCode};
-use usage::{Usage, usage};
 
 const USAGE: &str = "\
 cargo xtask <command>
@@ -112,7 +74,7 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "new-firmware" => new_firmware::new_firmware(args),
         "page" => page::page(args),
         "demo" => demo::demo(args),
-        "loop" => flies::fly(args),
+        "loop" => simulated_drone::fly(args),
         "release" => release::release(),
         "verify" => verify::verify(args),
         "" | "help" | "-h" | "--help" => {

@@ -1,8 +1,12 @@
 //! `cargo xtask release`: all that stands before an upload, which it leaves to the owner; and the check of licences.
 
 use crate::{
-    package, paths,
-    shell::{cargo, command, output, run},
+    checks::package,
+    common::{
+        paths,
+        shell::{cargo, command, output, run},
+    },
+    programs::{published, python},
 };
 use anyhow::{Context, Result, bail, ensure};
 use serde_json::json;
@@ -16,7 +20,7 @@ const WORKSPACES: [&str; 5] = [".", "c", "examples", "page", "ros/node"];
 
 /// Does everything but the upload, and says what the owner still has to fill in.
 pub fn release() -> Result<()> {
-    let version = package::version()?;
+    let version = published::version()?;
     let changes = fs::read_to_string(paths::root().join("CHANGELOG.md"))?;
     let heading = changes.lines().find(|line| line.starts_with(&format!("## [{version}]")));
     let heading = heading.with_context(|| format!("CHANGELOG.md says nothing of {version}"))?;
@@ -27,7 +31,7 @@ pub fn release() -> Result<()> {
     run(&mut cargo("publish --package spikewire --dry-run --allow-dirty"))?;
     let materials = bill_of_materials(&version)?;
     println!("\n{} tells what the crate is built of.", materials.display());
-    python()?;
+    python_package()?;
 
     let mut left = Vec::new();
     if !heading.contains(" - ") {
@@ -118,14 +122,11 @@ fn bill_of_materials(version: &str) -> Result<PathBuf> {
 }
 
 /// Packs the Python package's source and has twine look at its metadata, which a wheel of it has too.
-fn python() -> Result<()> {
-    let (tools, packed) = (paths::target().join("release"), paths::target().join("release/packed"));
-    let python = tools.join("bin/python");
-    if !python.is_file() {
-        run(command("python3").args(["-m", "venv"]).arg(&tools))?;
-    }
-    run(command(&python).args(["-m", "pip", "install", "--quiet", "maturin>=1.9,<2", "twine"]))?;
-    run(command(tools.join("bin/maturin"))
+fn python_package() -> Result<()> {
+    let packed = paths::target().join("release/packed");
+    let python = python::environment("release")?;
+    python::install(&python, &["maturin>=1.9,<2", "twine"])?;
+    run(command(python.with_file_name("maturin"))
         .args(["sdist", "--manifest-path", "python/Cargo.toml", "--out"])
         .arg(&packed))?;
     for one in fs::read_dir(&packed)? {

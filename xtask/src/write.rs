@@ -1,8 +1,10 @@
 //! `cargo xtask write`: all that is generated, written again.
 
 use crate::{
-    bench, c_library, demo, faults, firmware, flies, jumps, page, python, ros, schemes,
-    usage::usage, video,
+    checks::{firmware, ros, simulated_drone, video},
+    common::usage::usage,
+    figures::{bench, demo, faults, jumps, schemes},
+    products::{c_library, page, python_package},
 };
 use anyhow::{Context, Result};
 use std::collections::HashSet;
@@ -22,12 +24,12 @@ const fn part(name: &'static str, files: &'static str, write: fn() -> Result<()>
 /// From the catalogue first, then what measures or draws.
 const PARTS: [Part; 15] = [
     part("c", "c/include, c/src/codecs.rs, c/src/sizes.rs, c/tests/flown.h", c_library::write),
-    part("python", "python/spikewire/_schemes.pyi", python::write_stub),
+    part("python", "python/spikewire/_schemes.pyi", python_package::write_stub),
     part("schemes", "docs/schemes.md: the table", schemes::write),
     part("jumps", "docs/jumps.svg", jumps::write),
     part("flight", "docs/flight.svg", demo::write),
-    part("loop", "docs/loop.md: the table; docs/loop.svg; some 15 minutes", flies::write),
-    part("chip", "docs/loop.md: the chip's flights", flies::write_chip),
+    part("loop", "docs/loop.md: the table; docs/loop.svg; some 15 minutes", simulated_drone::write),
+    part("chip", "docs/loop.md: the chip's flights", simulated_drone::write_chip),
     part("frames", "docs/frames.png", video::write),
     part("page", "docs/page.png", page::write),
     part("ros", "docs/ros.svg", ros::write),

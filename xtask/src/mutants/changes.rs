@@ -1,6 +1,6 @@
 //! The changes to be tried, as cargo-mutants lists them.
 
-use crate::{
+use crate::common::{
     paths,
     shell::{cargo, command, output, run},
 };

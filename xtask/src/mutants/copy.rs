@@ -5,7 +5,7 @@ use super::{
     changes::Change,
     schemata::{Sites, switched},
 };
-use crate::{
+use crate::common::{
     paths,
     shell::{command, run},
 };

@@ -1,6 +1,6 @@
 //! The committed list that a run is held against: `host-tests/mutants.toml`.
 
-use crate::paths;
+use crate::common::paths;
 use anyhow::{Context, Result};
 use serde::Deserialize;
 use std::{collections::BTreeSet, fs};

@@ -1,7 +1,7 @@
 //! The tests, each alone: how long it takes, and which changes it reaches.
 
 use super::copy::Program;
-use crate::{cpu, paths, shell::output};
+use crate::common::{cpu, paths, shell::output};
 use anyhow::{Context, Result};
 use std::{
     fs,

@@ -1,0 +1,133 @@
+//! The steps of `cargo verify`, one function each; `verify` lists them.
+
+use crate::{
+    common::{
+        paths,
+        shell::{cargo, output, run},
+    },
+    figures::{jumps, schemes},
+    programs::{
+        boards::Board,
+        host::{features, spikewire, tests},
+        image,
+    },
+    setup::toolchain::{TARGETS, cargo_for_each},
+};
+use anyhow::{Result, ensure};
+use std::{fs, process::Command};
+
+pub fn fmt() -> Result<()> {
+    run(&mut cargo("fmt --all --check"))?;
+    run(&mut cargo("fmt --all --check --manifest-path examples/Cargo.toml"))?;
+    run(&mut cargo("fmt --check --manifest-path c/Cargo.toml"))?;
+    run(&mut cargo("fmt --check --manifest-path page/Cargo.toml"))?;
+    // Modules that a macro declares are unknown to `cargo fmt`.
+    let mut schemes = Command::new("rustfmt");
+    schemes.args(["--edition", "2024", "--check"]);
+    for scheme in paths::root().join("catalogue/src/schemes").read_dir()? {
+        schemes.arg(scheme?.path());
+    }
+    run(&mut schemes)
+}
+
+/// The tests need all that is linted here of the host's code, compiled. Of the firmware one core stands for all.
+pub fn clippy() -> Result<()> {
+    run(&mut tests("--no-run")?)?;
+    image::lint_all(Board::with("M4F")?)
+}
+
+pub fn test() -> Result<()> {
+    run(&mut tests("")?)
+}
+
+/// Each page with code is the documentation of an item in `pages`, which exists for doctests only.
+pub fn readme() -> Result<()> {
+    let said = output(&mut tests("--doc -- pages")?)?;
+    print!("{said}");
+    for page in ["Readme", "Usage", "Frames"] {
+        ensure!(
+            said.contains(&format!(" - pages::{page} (line ")),
+            "no doctest of `pages::{page}`: is the page included in src/lib.rs?"
+        );
+    }
+    Ok(())
+}
+
+pub fn doc() -> Result<()> {
+    run(cargo("doc --package spikewire --no-deps --all-features")
+        .env("RUSTDOCFLAGS", "-D warnings"))
+}
+
+pub fn each_feature() -> Result<()> {
+    run(&mut cargo("check --package spikewire --no-default-features"))?;
+    for feature in features()? {
+        run(cargo("check --package spikewire --no-default-features --features").arg(feature))?;
+    }
+    Ok(())
+}
+
+/// The crate alone for every core; with every feature for the one that has least, no compare-and-swap and no FPU. The
+/// firmware is compiled for all of them elsewhere; `cargo verify lints` has every feature on every core.
+pub fn targets() -> Result<()> {
+    check_for(&TARGETS, "--no-default-features")?;
+    check_for(&TARGETS[..1], "--all-features")
+}
+
+/// Checks the crate with these features for Cortex-M targets.
+pub fn check_for(targets: &[&str], features: &str) -> Result<()> {
+    for mut cargo in cargo_for_each(targets, &format!("check --package spikewire {features}"))? {
+        run(&mut cargo)?;
+    }
+    Ok(())
+}
+
+/// The program has no panic handler: one path to a panic that the compiler cannot rule out, and it does not link. It
+/// links with overflow checks too: no arithmetic can overflow unnoticed in a release build, or panic in a debug build.
+/// Here one core stands for each; `cargo verify panic-free` links both on both.
+pub fn no_panic() -> Result<()> {
+    image::build("no-panic", Board::with("M4F")?)?;
+    image::link_checked("no-panic", Board::with("M0")?)
+}
+
+pub fn no_panic_all() -> Result<()> {
+    for core in ["M0", "M4F"] {
+        image::build("no-panic", Board::with(core)?)?;
+        image::link_checked("no-panic", Board::with(core)?)?;
+    }
+    Ok(())
+}
+
+/// The laptop program on the recorded flight, its hardest second, and the paper's tables in full.
+pub fn laptop() -> Result<()> {
+    let spikewire = |args: &str| output(&mut spikewire(args)?);
+    let flight = "--column gyro_x data/hexarotor.csv";
+    let target = paths::root().join("target");
+    fs::create_dir_all(&target)?;
+    let (spikes, picture) = (target.join("flight-spikes.csv"), target.join("flight.svg"));
+    spikewire(&format!("encode --scheme sf --threshold 0.1 {flight} -o {}", spikes.display()))?;
+    let decoded = spikewire(&format!("decode {}", spikes.display()))?;
+    ensure!(decoded.lines().count() == 1 + 3627, "the flight decodes to another number of samples");
+    let (stream, events) = (target.join("flight.es"), target.join("flight-events.csv"));
+    spikewire(&format!("convert --from csv --to es {} -o {}", spikes.display(), stream.display()))?;
+    spikewire(&format!(
+        "convert --from csv --to csv {} -o {}",
+        spikes.display(),
+        events.display()
+    ))?;
+    ensure!(
+        spikewire(&format!("listen --from es {}", stream.display()))?
+            == fs::read_to_string(events)?,
+        "the flight's events come out of an Event Stream otherwise"
+    );
+    print!("{}", spikewire(&format!("score {flight}"))?);
+    schemes::ensure_written()?;
+    jumps::jumps()?;
+    spikewire(&format!("plot --all {flight} -o {}", picture.display()))?;
+    let tables = spikewire("bench")?;
+    print!("{tables}");
+    ensure!(
+        tables.ends_with("\n60 of 60 means within sampling error\n"),
+        "the benchmark differs from the paper"
+    );
+    Ok(())
+}

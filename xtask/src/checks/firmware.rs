@@ -1,0 +1,175 @@
+//! `cargo xtask firmware`: every example program on every emulated board, compared with the host.
+
+use crate::{
+    common::paths,
+    figures::bits,
+    programs::{
+        boards::{BOARDS, Board},
+        host, image, qemu, size,
+    },
+    setup::needs,
+};
+use anyhow::{Result, bail, ensure};
+use std::{fs, path::PathBuf, thread};
+
+/// Runs the named programs, or all, and fails if a board prints another line than the host.
+pub fn firmware(names: &[String]) -> Result<()> {
+    needs::ensure_met()?;
+    let all = programs()?;
+    let chosen = if names.is_empty() { &all } else { names };
+    let mut differing = Vec::new();
+    for program in chosen {
+        ensure!(all.contains(program), "no program `{program}`; there are {all:?}");
+        if !compare(program)? {
+            differing.push(program.as_str());
+        }
+    }
+    if !differing.is_empty() {
+        bail!("boards and host differ in {}", differing.join(", "));
+    }
+    Ok(())
+}
+
+/// Puts spike counts, and which bits agree, into the page of bits.
+pub fn write() -> Result<()> {
+    needs::ensure_met()?;
+    let (host, outcomes) = run(bits::PROGRAM)?;
+    bits::write(&table(&host, &outcomes))
+}
+
+/// A program is a directory of the firmware workspace with a `src/main.rs`. What is only linked, or prints
+/// too much for a table, calls it otherwise; what is for one part alone is a workspace of its own.
+fn programs() -> Result<Vec<String>> {
+    let mut names = Vec::new();
+    for entry in fs::read_dir(paths::examples())? {
+        let entry = entry?;
+        let path = entry.path();
+        if path.join("src/main.rs").is_file() && !path.join("Cargo.lock").is_file() {
+            names.push(entry.file_name().to_string_lossy().into_owned());
+        }
+    }
+    names.sort();
+    Ok(names)
+}
+
+/// What one board did.
+struct Outcome {
+    board: &'static Board,
+    image: PathBuf,
+    printed: Result<String>,
+}
+
+impl Outcome {
+    fn agrees(&self, host: &str) -> bool {
+        self.printed.as_ref().is_ok_and(|printed| printed == host)
+    }
+
+    /// The table's mark for one of the host's lines.
+    fn mark(&self, line: &str) -> &'static str {
+        match &self.printed {
+            Ok(printed) if printed.lines().any(|printed| printed == line) => "=",
+            Ok(_) => "DIFF",
+            Err(_) => "FAIL",
+        }
+    }
+}
+
+/// Runs one program everywhere: what the host printed, and what became of it on the boards.
+fn run(program: &str) -> Result<(String, Vec<Outcome>)> {
+    let host = host::on_host(program)?;
+    ensure!(!host.is_empty(), "{program} prints nothing on the host");
+    let images =
+        BOARDS.iter().map(|board| image::build(program, board)).collect::<Result<Vec<_>>>()?;
+
+    let outcomes = thread::scope(|scope| {
+        let runs: Vec<_> = BOARDS
+            .iter()
+            .zip(&images)
+            .map(|(board, image)| scope.spawn(|| qemu::run(board, image)))
+            .collect();
+        BOARDS
+            .iter()
+            .zip(images.iter().zip(runs))
+            .map(|(board, (image, run))| Outcome {
+                board,
+                image: image.clone(),
+                printed: run.join().unwrap_or_else(|_| bail!("its thread panicked")),
+            })
+            .collect()
+    });
+    Ok((host, outcomes))
+}
+
+/// Runs one program everywhere and prints the table. True if every board agrees with the host.
+fn compare(program: &str) -> Result<bool> {
+    let (host, outcomes) = run(program)?;
+    print_table(program, &host, &outcomes);
+    for outcome in &outcomes {
+        print_difference(&host, outcome);
+    }
+    for Outcome { board, image, .. } in &outcomes {
+        println!("{:4} {}", board.core, size::of(image, board)?);
+    }
+    let agree = outcomes.iter().all(|outcome| outcome.agrees(&host));
+    if program == bits::PROGRAM {
+        bits::ensure_written(&table(&host, &outcomes))?;
+    }
+    if agree {
+        let (lines, boards) = (host.lines().count(), outcomes.len());
+        println!("Every bit agrees: {lines} lines, host and {boards} boards.");
+    }
+    Ok(agree)
+}
+
+/// Spike counts and what agrees, for the page of bits.
+fn table(host: &str, outcomes: &[Outcome]) -> String {
+    bits::table(host, |line| {
+        let marks: Vec<_> = outcomes.iter().map(|outcome| outcome.mark(line)).collect();
+        marks.join(" ")
+    })
+}
+
+/// One row for each of the host's lines, one column for each board.
+fn print_table(program: &str, host: &str, outcomes: &[Outcome]) {
+    let width = host.lines().map(|line| label(line).len()).max().unwrap_or(0);
+    let width = width.max(program.len());
+    print!("\n{program:width$}");
+    for outcome in outcomes {
+        print!(" {:>5}", outcome.board.core);
+    }
+    println!();
+    for line in host.lines() {
+        print!("{:width$}", label(line));
+        for outcome in outcomes {
+            print!(" {:>5}", outcome.mark(line));
+        }
+        println!();
+    }
+    println!();
+}
+
+/// The line without its two columns of hexadecimal, which are for the comparison.
+fn label(line: &str) -> &str {
+    line.split_once(" rmse=").map_or(line, |(label, _)| label)
+}
+
+/// The lines on which board and host disagree, one below the other.
+fn print_difference(host: &str, outcome: &Outcome) {
+    let core = outcome.board.core;
+    match &outcome.printed {
+        Err(error) => println!("{core} failed: {error:#}"),
+        Ok(_) if outcome.agrees(host) => {}
+        Ok(printed) => {
+            let only_in = |one: &str, other: &str, name: &str| {
+                for line in one.lines() {
+                    if !other.lines().any(|same| same == line) {
+                        println!("only {name:4} {line}");
+                    }
+                }
+            };
+            println!("{core} and the host differ:");
+            only_in(host, printed, "host");
+            only_in(printed, host, core);
+        }
+    }
+}

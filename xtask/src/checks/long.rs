@@ -1,0 +1,81 @@
+//! The checks of `cargo verify --long`, which take too long for every change.
+
+use crate::{
+    checks::{everyday::check_for, fifo},
+    common::{
+        paths,
+        shell::{cargo, run},
+    },
+    figures::bench,
+    setup::toolchain::{TARGETS, cargo_for},
+};
+use anyhow::{Context, Result, ensure};
+use std::{
+    fs,
+    time::{SystemTime, UNIX_EPOCH},
+};
+
+/// The recordings, and what they are extracted into for the comparison.
+const RECORDINGS: [&str; 2] = ["hexarotor.csv", "vtol_at_rest.csv"];
+
+/// Extracts the flights from the logs in two published crates, and compares them with the files in `data`.
+pub fn recordings() -> Result<()> {
+    let extracted = paths::target().join("recordings");
+    fs::create_dir_all(&extracted)?;
+    let program = "run --package host-tests --features extract --bin extract_flight --";
+    run(cargo(program).arg(&extracted))?;
+    for name in RECORDINGS {
+        let read = |path: std::path::PathBuf| {
+            fs::read_to_string(&path).with_context(|| path.display().to_string())
+        };
+        let (kept, new) =
+            (read(paths::root().join("data").join(name))?, read(extracted.join(name))?);
+        ensure!(kept == new, "data/{name} is not what the log holds");
+    }
+    println!("{} are what the logs hold.", RECORDINGS.join(" and "));
+    Ok(())
+}
+
+/// Every test, optimised, with many more cases, drawn from a fresh seed unless `SWEEPS_SEED` is set. Those against
+/// other people's programs, and the flights with faults, have checks of their own.
+pub fn sweeps() -> Result<()> {
+    let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH)?;
+    let seed = std::env::var("SWEEPS_SEED").unwrap_or_else(|_| since_1970.as_micros().to_string());
+    println!("SWEEPS_SEED={seed} draws these cases again.");
+    let tests = "test --release --package spikewire --package host-tests --package lab --package spikewire-cli --tests";
+    let mut all = cargo(&format!(
+        "{tests} --no-fail-fast -- --include-ignored --skip formats_peers --skip hours_of_flight"
+    ));
+    run(all.env("CASES_TIMES", "20").env("PROPTEST_RNG_SEED", &seed))?;
+    let mut catalogue = cargo("test --release --package catalogue --lib");
+    run(catalogue.env("PROPTEST_CASES", "5120").env("PROPTEST_RNG_SEED", &seed))
+}
+
+/// Explores the orders of memory of the queue without locks.
+pub fn loom() -> Result<()> {
+    run(&mut cargo("test --package host-tests --features loom --test loom -- --test-threads 1"))
+}
+
+/// What `clippy` and the builds of firmware lint, and what they leave out.
+pub fn lints() -> Result<()> {
+    let warnings = ["--", "-D", "warnings"];
+    run(cargo("clippy --workspace --all-targets --all-features").args(warnings))?;
+    let library = "clippy --manifest-path c/Cargo.toml --features header --all-targets";
+    run(cargo(library).args(warnings))?;
+    let firmware = "clippy --workspace --manifest-path examples/Cargo.toml";
+    run(cargo(firmware).args(warnings))?;
+    check_for(&TARGETS, "--all-features")?;
+    // One core stands for all: the firmware's source has no conditions on the core.
+    run(cargo_for("thumbv7em-none-eabihf", firmware)?.args(warnings))
+}
+
+/// Tests the part of the laptop program that a feature brings.
+pub fn capture() -> Result<()> {
+    run(&mut cargo("test --package spikewire-cli --all-features --test capture"))
+}
+
+/// The counts of the cores that `cargo verify` leaves out are shown; there is no baseline of them.
+pub fn cores() -> Result<()> {
+    bench::bench(&[])?;
+    fifo::count("M7")
+}

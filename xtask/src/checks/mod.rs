@@ -1,0 +1,21 @@
+//! The steps of `cargo verify`, as far as they belong to no figure and no product; `verify` lists them all.
+
+mod emulator;
+pub mod everyday;
+pub mod fifo;
+pub mod firmware;
+pub mod fuzz;
+pub mod link;
+pub mod logging;
+pub mod long;
+pub mod package;
+pub mod peers;
+pub mod rate_loop;
+pub mod real_boards;
+pub mod reckon;
+pub mod ros;
+pub mod simulated_drone;
+pub mod soak;
+pub mod storm;
+pub mod tuned;
+pub mod video;

@@ -1,0 +1,47 @@
+//! Other people's programs, to read what we write and write what we read.
+
+use crate::{
+    common::{
+        paths,
+        shell::{cargo, command, run},
+    },
+    programs::{host::tests, python},
+};
+use anyhow::Result;
+use std::path::PathBuf;
+
+/// Installs the Python packages in an environment of their own and runs the tests against them.
+pub fn peers() -> Result<()> {
+    let python = environment("peers", "host-tests/peers/requirements.txt")?;
+    run(tests("--test wire formats_peers -- --ignored")?.env("PEERS_PYTHON", &python))?;
+    run(tests("--test network -- --ignored")?.env("PEERS_PYTHON", &python))
+}
+
+/// Logs of every kind, written and read by other people's programs.
+pub fn logs() -> Result<()> {
+    let python = environment("logs", "cli/python/logs_requirements.txt")?;
+    run(&mut cargo("build --package spikewire-cli"))?;
+    let program = paths::target().join("debug/spikewire");
+    let place = paths::target().join("logs-check");
+    let recording = paths::root().join("data/hexarotor.csv");
+    let check = paths::root().join("cli/python/logs_check.py");
+    run(command(&python).arg(check).args([program, recording, place]))
+}
+
+/// `spikewire tune` beside other people's optimisers, at equal numbers of settings.
+pub fn tuner() -> Result<()> {
+    let python = environment("tuner", "cli/python/tune_requirements.txt")?;
+    run(&mut cargo("build --release --package spikewire-cli"))?;
+    let program = paths::target().join("release/spikewire");
+    let results = paths::target().join("tuner/peers.json");
+    let recording = paths::root().join("data/hexarotor.csv");
+    let check = paths::root().join("cli/python/tune_peers.py");
+    run(command(&python).arg(check).args([program, recording, results]))
+}
+
+/// The Python of an environment of this name, with these packages.
+fn environment(name: &str, requirements: &str) -> Result<PathBuf> {
+    let python = python::environment(name)?;
+    python::install(&python, &["--requirement", requirements])?;
+    Ok(python)
+}

@@ -1,0 +1,172 @@
+//! The firmware for real boards: each built in a project of its own, as its reader would build it.
+
+use crate::{
+    checks::emulator,
+    common::{
+        paths,
+        shell::{cargo, command, lint, output, run},
+    },
+    products::{
+        new_firmware::{self, Origin},
+        parts::{BOARDS, Part},
+    },
+    programs::published,
+    setup::toolchain::cargo_for,
+};
+use anyhow::{Context, Result, ensure};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// How many lines a board's file may have.
+const MOST_LINES: usize = 150;
+
+/// The board that flies every day; the others take too long.
+const EVERY_DAY: &str = "pico";
+
+/// The sensors' drivers on the host, and a Pico's image, built as it is flashed and flown.
+pub fn boards() -> Result<()> {
+    let bodies =
+        "test --quiet --manifest-path examples/Cargo.toml --package flight --package icm42688p";
+    run(cargo(&format!("{bodies} --features flight/bmi323"))
+        .env("CARGO_TARGET_DIR", paths::target()))?;
+    run(cargo("fmt --check").current_dir(paths::examples().join("boards")))?;
+    BOARDS.iter().filter(|part| part.name == EVERY_DAY).try_for_each(fly)
+}
+
+/// The other images that an emulator has, flown; and those that none here has: compiled and linked, and looked at. `BOARD`
+/// in the environment names one of them alone.
+pub fn more() -> Result<()> {
+    let asked = std::env::var("BOARD").ok();
+    let is_asked = |part: &Part| match &asked {
+        Some(name) => part.name == name,
+        None => part.name != EVERY_DAY,
+    };
+    BOARDS.iter().filter(|part| is_asked(part)).try_for_each(|part| {
+        if emulator::has(part) { fly(part) } else { build(part, true).map(drop) }
+    })
+}
+
+fn fly(part: &Part) -> Result<()> {
+    emulator::fly(part, &build(part, false)?)
+}
+
+/// Builds a board's image in a project that `new-firmware` writes, with the crate as it would be published. `quickly` is for
+/// images that nobody runs: whether all fits together needs no optimised code.
+fn build(part: &Part, quickly: bool) -> Result<PathBuf> {
+    let file = paths::examples().join(format!("boards/src/board/{}.rs", part.board));
+    let lines = fs::read_to_string(&file)?.lines().count();
+    println!("{}: {lines} lines of its own", part.name);
+    ensure!(lines <= MOST_LINES, "{}: a board's file has {MOST_LINES} lines at most", part.name);
+
+    let elsewhere = tempfile::tempdir()?;
+    let project = elsewhere.path().join(part.name);
+    new_firmware::write(&project, part, &Origin::Path(paths::root()))?;
+    let patch = format!(
+        "patch.crates-io.spikewire.path={:?}",
+        published::unpacked()?.display().to_string()
+    );
+    let target = paths::thumb_target().join(if quickly { "parts" } else { "boards" });
+    let mut cargo = cargo_for(part.target, "build --release")?;
+    cargo.current_dir(&project).args(["--config", &patch]).env("CARGO_TARGET_DIR", &target);
+    if quickly {
+        cargo.env("CARGO_PROFILE_RELEASE_LTO", "off");
+        cargo.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1");
+        cargo.env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16");
+    }
+    run(lint(&mut cargo))?;
+    let image = target.join(part.target).join("release").join(part.name);
+    stack_ends_the_memory(&image)?;
+    match part.memory {
+        "stm32h743" => dma_has_its_memory(&image)?,
+        "crazyflie" => the_bootloader_stays(&image)?,
+        _ => {}
+    }
+    if part.memory.starts_with("stm32") || part.memory == "crazyflie" {
+        a_binary_begins_with_the_vectors(&image)?;
+    }
+    Ok(image)
+}
+
+/// The lowest address, and length, of each section.
+fn section(image: &Path, name: &str) -> Result<(u32, u32)> {
+    let sections = output(command("arm-none-eabi-objdump").arg("-h").arg(image))?;
+    let mut lines = sections.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
+    let line = lines.find(|words| words.get(1) == Some(&name));
+    let line = line.with_context(|| format!("no section `{name}`"))?;
+    let number = |at: usize| u32::from_str_radix(line.get(at).unwrap_or(&""), 16);
+    Ok((number(3)?, number(2)?))
+}
+
+/// What DMA moves lies where DMA reaches, and where `part.rs` keeps the cache out.
+fn dma_has_its_memory(image: &Path) -> Result<()> {
+    let (start, length) = section(image, ".dma")?;
+    println!("DMA: {length} bytes from {start:#x} on");
+    ensure!(start == 0x3000_0000 && length >= 132, "the buffer is not in SRAM1");
+    Ok(())
+}
+
+/// The Crazyflie's radio bootloader has the first 16 KiB.
+fn the_bootloader_stays(image: &Path) -> Result<()> {
+    let (start, _) = section(image, ".vector_table")?;
+    ensure!(start == 0x0800_4000, "the image begins at {start:#x}, over the bootloader");
+    Ok(())
+}
+
+/// What `objcopy` makes of the image for DFU and the radio begins with the stack's address, and has no gap up to another memory.
+fn a_binary_begins_with_the_vectors(image: &Path) -> Result<()> {
+    let binary = image.with_extension("bin");
+    run(command("arm-none-eabi-objcopy").args(["-O", "binary"]).arg(image).arg(&binary))?;
+    let bytes = fs::read(&binary)?;
+    println!("for DFU: {} bytes", bytes.len());
+    ensure!(bytes.first_chunk() == Some(&0x2000_4000_u32.to_le_bytes()), "no stack's address");
+    ensure!(bytes.len() < 256 * 1024, "{} bytes of a firmware of some 60 kB", bytes.len());
+    Ok(())
+}
+
+/// The stack ends where the memory does: one that overflows meets no static, but a fault.
+fn stack_ends_the_memory(image: &Path) -> Result<()> {
+    let symbols = output(command("arm-none-eabi-nm").arg(image))?;
+    let [start, end, statics] = ["_stack_start", "_stack_end", "__sdata"].map(|name| {
+        let line = symbols.lines().find(|line| line.ends_with(&format!(" {name}")))?;
+        u32::from_str_radix(line.split(' ').next()?, 16).ok()
+    });
+    let (start, end) = (start.context("no stack")?, end.context("no stack's end")?);
+    println!("stack: {} bytes from {end:#x} on", start - end);
+    ensure!(end == 0x2000_0000, "below the stack is memory");
+    ensure!(statics.context("no statics")? >= start, "statics lie in the stack's way");
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_has_each_boards_port_and_code() {
+        let page = fs::read_to_string(paths::root().join("docs/firmware.md")).unwrap();
+        let rows = page.lines().filter(|line| line.starts_with("| `"));
+        let rows: Vec<_> = rows.skip(1).collect();
+        assert_eq!(rows.len(), BOARDS.len());
+        let mut listen = "";
+        for row in rows {
+            let of_row = |part: &&Part| row.starts_with(&format!("| `{}` |", part.name));
+            let part = BOARDS.iter().find(of_row).unwrap_or_else(|| panic!("{row}"));
+            assert!(row.replace(' ', "").contains(&format!(",{}|", part.baud)), "{row}");
+            if !row.ends_with("| the same |") {
+                listen = part.listen;
+                assert!(row.ends_with(&format!("| `{listen}` |")), "{row}");
+            }
+            assert_eq!(part.listen, listen, "{row}");
+        }
+    }
+
+    /// A log that waits for a debug probe stops the firmware when somebody pulls the probe.
+    #[test]
+    fn no_log_waits_for_a_probe() {
+        let text = fs::read_to_string(paths::examples().join("boards/Cargo.toml")).unwrap();
+        let log = text.lines().find(|line| line.starts_with("defmt-rtt = ")).unwrap();
+        assert!(log.contains("\"disable-blocking-mode\""), "{log}");
+    }
+}

@@ -1,0 +1,111 @@
+//! `cargo xtask loop`: a drone in RotorPy that flies on spikes, in an environment of its own.
+
+use crate::{
+    common::{
+        paths,
+        shell::{cargo, command, output, run},
+        usage::usage,
+    },
+    figures::{drawing, markdown},
+    programs::{boards::Board, image, python},
+};
+use anyhow::{Result, ensure};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+const PAGE: &str = "docs/loop.md";
+const MARKER: &str = "loop";
+const CHIP: &str = "chip";
+const PICTURE: &str = "docs/loop.svg";
+
+/// The row that a check flies again.
+const AGAIN: &str = "sod";
+
+/// Flies a flip on the spikes of a code, and draws it.
+pub fn fly(args: &[String]) -> Result<()> {
+    if args.len() > 1 {
+        return Err(usage("cargo xtask loop [CODE]".into()));
+    }
+    let python = environment()?;
+    let picture = paths::target().join("loop.svg");
+    run(program(&python, "picture.py").arg(&picture).args(args))?;
+    println!("{} shows it, in a browser.", picture.display());
+    Ok(())
+}
+
+/// Flies all codes, and puts table and picture into the page.
+pub fn write() -> Result<()> {
+    let python = environment()?;
+    let picture = draw(&python)?;
+    drawing::keep(&picture, PICTURE)?;
+    let table = output(&mut program(&python, "table.py"))?;
+    markdown::write(PAGE, MARKER, &format!("\n{table}\n"))
+}
+
+/// The control is steady, links carry what codecs make, the same seeds give the page's picture and one of its rows.
+pub fn verify() -> Result<()> {
+    let python = environment()?;
+    run(&mut program(&python, "test_loop.py"))?;
+    run(&mut program(&python, "steps.py"))?;
+    let drawn = fs::read(draw(&python)?)?;
+    ensure!(drawn == fs::read(paths::root().join(PICTURE))?, "{PICTURE} shows another flight");
+    let table = output(program(&python, "table.py").arg(AGAIN))?;
+    let page = fs::read_to_string(paths::root().join(PAGE))?;
+    let row = table.lines().last().unwrap_or_default();
+    println!("{row}");
+    ensure!(
+        page.lines().any(|line| line == row),
+        "{PAGE} has another row; `cargo xtask write loop` flies all"
+    );
+    Ok(())
+}
+
+/// A network on the model of tinyODIN flies all manoeuvres: what the page has of it comes again from the committed graph.
+pub fn chip() -> Result<()> {
+    markdown::ensure_written(PAGE, CHIP, &on_chip()?, "cargo xtask write chip")
+}
+
+/// Flies them, and puts the table into the page.
+pub fn write_chip() -> Result<()> {
+    markdown::write(PAGE, CHIP, &on_chip()?)
+}
+
+fn on_chip() -> Result<String> {
+    let python = environment()?;
+    run(&mut cargo("build --package spikewire-cli"))?;
+    let flown = output(program(&python, "chip.py").arg(paths::target().join("debug/spikewire")))?;
+    println!("{flown}");
+    Ok(format!("\n{flown}\n"))
+}
+
+/// An emulated board flies a short manoeuvre, in lockstep with the world: each bit of it must be the laptop's.
+pub fn board() -> Result<()> {
+    let python = environment()?;
+    let image = image::build("in-the-loop", Board::with("M4F")?)?;
+    run(program(&python, "board.py").arg(image))
+}
+
+fn draw(python: &Path) -> Result<PathBuf> {
+    let picture = paths::target().join("loop.svg");
+    run(program(python, "picture.py").arg(&picture))?;
+    Ok(picture)
+}
+
+/// A program of `loop`, with this Python.
+fn program(python: &Path, name: &str) -> Command {
+    let mut program = command(python);
+    program.arg(paths::root().join("loop").join(name));
+    program
+}
+
+/// `RotorPy`, and the package of this repository, compiled as its tests are.
+fn environment() -> Result<PathBuf> {
+    println!("Installs in target/loop, from PyPI: what loop/requirements.txt names, 0.5 GB.");
+    let python = python::environment("loop")?;
+    python::install(&python, &["--requirement", "loop/requirements.txt"])?;
+    python::package(&python, "dev")?;
+    Ok(python)
+}

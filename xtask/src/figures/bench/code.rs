@@ -1,0 +1,102 @@
+//! How many bytes of code a codec is, from the image's symbols and its listing.
+
+use crate::common::shell;
+use anyhow::{Context, Result};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
+
+/// Rust's functions by their address. The runtime's (`memcpy`, floats without a unit) are left out:
+/// a program has them once, whatever codecs it uses.
+pub struct Code(BTreeMap<u32, Function>);
+
+#[derive(Default)]
+struct Function {
+    bytes: u32,
+    /// Where it branches to, its own loops among them.
+    branches: BTreeSet<u32>,
+}
+
+impl Code {
+    pub fn read(image: &Path) -> Result<Self> {
+        let symbols = shell::output(shell::command("arm-none-eabi-nm").arg("-S").arg(image))?;
+        let mut functions: BTreeMap<u32, Function> = symbols.lines().filter_map(function).collect();
+
+        let mut objdump = shell::command("arm-none-eabi-objdump");
+        let listing = shell::output(objdump.args(["-d", "--no-show-raw-insn"]).arg(image))?;
+        for (from, to) in listing.lines().filter_map(branch) {
+            if let Some((_, function)) = functions.range_mut(..=from).next_back() {
+                function.branches.insert(to);
+            }
+        }
+        Ok(Self(functions))
+    }
+
+    /// The bytes of the function there, and of those that it calls and that were not inlined.
+    ///
+    /// A slice form that falls back on the sample form, for what comes before the first sample and for
+    /// samples that are not finite, is counted with it: it does not work without. Who takes one sample
+    /// at a time links the sample form alone, which is counted for itself.
+    pub fn bytes(&self, address: u32) -> u32 {
+        let (mut found, mut waiting) = (BTreeSet::new(), vec![address & !1]);
+        let mut bytes = 0;
+        while let Some(address) = waiting.pop() {
+            if let Some(function) = self.0.get(&address)
+                && found.insert(address)
+            {
+                bytes += function.bytes;
+                waiting.extend(&function.branches);
+            }
+        }
+        bytes
+    }
+}
+
+/// `08000400 0000003e t _RNv…`: address, size, kind and name.
+fn function(line: &str) -> Option<(u32, Function)> {
+    let mut words = line.split(' ');
+    let address = u32::from_str_radix(words.next()?, 16).ok()?;
+    let bytes = u32::from_str_radix(words.next()?, 16).ok()?;
+    let (kind, name) = (words.next()?, words.next()?);
+    let counts = kind.eq_ignore_ascii_case("t") && name.starts_with("_R");
+    counts.then(|| (address, Function { bytes, ..Function::default() }))
+}
+
+/// ` 8000404:`, a tab, `bl`, a tab, `8000458 <_RNv…>`: from where and to where.
+fn branch(line: &str) -> Option<(u32, u32)> {
+    let (from, instruction) = line.trim_start().split_once(":\t")?;
+    let (name, operands) = instruction.split_once('\t')?;
+    let to = operands.split(' ').next()?;
+    if !name.starts_with('b') {
+        return None;
+    }
+    Some((u32::from_str_radix(from, 16).ok()?, u32::from_str_radix(to, 16).ok()?))
+}
+
+/// `rustc version 1.96.0 (…)`, as the compiler wrote it into the image.
+pub fn compiler(image: &Path) -> Result<String> {
+    let mut readelf = shell::command("arm-none-eabi-readelf");
+    let comment = shell::output(readelf.args(["-p", ".comment"]).arg(image))?;
+    let line = comment.lines().find_map(|line| line.find("rustc").map(|at| line[at..].to_owned()));
+    line.context("the image does not say which compiler made it")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn branches_are_found() {
+        assert_eq!(branch(" 8000404:\tbl\t8000458 <_RNv>"), Some((0x800_0404, 0x800_0458)));
+        assert_eq!(branch(" 8000404:\tbx\tlr"), None);
+        assert_eq!(branch(" 8000404:\tadds\tr0, #1"), None);
+    }
+
+    #[test]
+    fn callees_count_once_and_the_runtime_does_not() {
+        let function = |bytes, branches: [u32; 2]| Function { bytes, branches: branches.into() };
+        let code = Code([(16, function(10, [16, 32])), (32, function(6, [16, 64]))].into());
+        assert_eq!(code.bytes(17), 16);
+    }
+}

@@ -1,0 +1,322 @@
+//! What an event costs on its way, and six channels in all.
+
+use super::figures::{self, cycles_max, cycles_mean, mean};
+use crate::programs::boards::Board;
+use anyhow::{Context, Result, ensure};
+use serde::{Deserialize, Serialize};
+
+/// What one direction of a link, format or chip costs; instructions are those of an event, or of a
+/// set of samples.
+#[derive(Serialize)]
+pub struct Event {
+    kind: &'static str,
+    subject: String,
+    direction: String,
+    /// `event`, `sample set` or `pixel`.
+    per: String,
+    /// Where one has a part in it.
+    sample: Option<String>,
+    core: &'static str,
+    count: u32,
+    pub instructions_mean: f64,
+    /// Of the worst; where many go together, of the worst batch's mean.
+    instructions_max: u32,
+    /// The lower and the upper bound, as a codec's.
+    cycles_mean: Option<[f64; 2]>,
+    cycles_max: Option<[u32; 2]>,
+    /// Null where nothing is written.
+    bytes_mean: Option<f64>,
+}
+
+/// A line that the firmware prints.
+#[derive(Deserialize)]
+struct Printed {
+    subject: String,
+    direction: String,
+    per: String,
+    sample: Option<String>,
+    count: u32,
+    total: u32,
+    total_cycles: [u32; 2],
+    max: u32,
+    max_cycles: [u32; 2],
+    bytes: u32,
+}
+
+/// The sample type of each of the tables' cores.
+const SAMPLES: [&str; 2] = ["f32", "q16.16"];
+
+/// Six channels a second, and the core and clock that they are promised for.
+const RATE: f64 = 8_000.0;
+pub const PROMISED: (&str, &str) = ("M4F", "f32");
+const CLOCK: f64 = 168e6;
+const SHARE: f64 = 0.02;
+
+impl Event {
+    pub fn read(board: &Board, line: &str) -> Result<Self> {
+        let printed: Printed = serde_json::from_str(line).with_context(|| line.to_owned())?;
+        Ok(Self {
+            kind: "event",
+            core: board.core,
+            instructions_mean: mean(printed.total, printed.count),
+            instructions_max: printed.max,
+            cycles_mean: cycles_mean(printed.total_cycles, printed.count),
+            cycles_max: cycles_max(printed.max_cycles),
+            bytes_mean: (printed.bytes > 0).then(|| mean(printed.bytes, printed.count)),
+            subject: printed.subject,
+            direction: printed.direction,
+            per: printed.per,
+            sample: printed.sample,
+            count: printed.count,
+        })
+    }
+
+    /// What tells it from others.
+    pub fn key(&self) -> String {
+        let Self { core, subject, direction, sample, .. } = self;
+        let sample = sample.as_ref().map(|sample| format!(" {sample}")).unwrap_or_default();
+        format!("{core} {subject}{sample} {direction}")
+    }
+
+    fn bytes(&self) -> String {
+        self.bytes_mean.map_or("–".into(), |bytes| format!("{bytes:.2}"))
+    }
+}
+
+/// Every figure.
+pub fn text(events: &[Event]) -> String {
+    let mut text = String::new();
+    let mut table = None;
+    for event in events {
+        if table != Some((event.core, &event.per)) {
+            let title = format!("{}, each {}", event.core, event.per);
+            text += &format!(
+                "\n{title:46} {:>8} {:>8} {:>6} {:>15}\n",
+                "mean", "worst", "bytes", "cycles"
+            );
+            table = Some((event.core, &event.per));
+        }
+        let cycles = figures::cell(event.cycles_mean);
+        text += &format!(
+            "{:20} {:12} {:12} {:>8.1} {:>8} {:>6} {cycles:>15}\n",
+            event.subject,
+            event.direction,
+            event.sample.as_deref().unwrap_or_default(),
+            event.instructions_mean,
+            event.instructions_max,
+            event.bytes(),
+        );
+    }
+    text
+}
+
+/// Those of docs/costs.md.
+pub fn markdown(events: &[Event]) -> Result<String> {
+    let tables = [each_event(events), frames(events), banks(events)?, six_channels(events)?];
+    Ok(format!("\n{}\n", tables.join("\n")))
+}
+
+/// A line for each subject, with both directions and both cores.
+fn each_event(events: &[Event]) -> String {
+    let [first, second] = figures::CORES;
+    let mut text = format!(
+        "| an event | bytes | {first} write | cycles | worst | read | cycles | worst | {second} write | cycles | worst | read | cycles | worst |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
+    );
+    for (subject, name) in NAMES {
+        let of = |core, directions: &[&str]| {
+            events.iter().find(|event| {
+                (event.core, event.subject.as_str()) == (core, subject)
+                    && directions.contains(&event.direction.as_str())
+            })
+        };
+        let cell = |event: Option<&Event>| match event {
+            Some(Event { instructions_mean, instructions_max, cycles_mean, .. }) => {
+                let cycles = figures::cell(*cycles_mean);
+                format!("{instructions_mean:.1} | {cycles} | {instructions_max}")
+            }
+            None => "– | – | –".into(),
+        };
+        let Some(write) = of(first, &["encode", "push"]) else { continue };
+        let cells = figures::CORES.map(|core| {
+            let [write, read] = [of(core, &["encode", "push"]), of(core, &["decode", "pop"])];
+            format!("{} | {}", cell(write), cell(read))
+        });
+        text += &format!("| {name} | {} | {} |\n", write.bytes(), cells.join(" | "));
+    }
+    text
+}
+
+/// The subjects as a reader of the tables knows them.
+const NAMES: [(&str, &str); 19] = [
+    ("queue", "queue: push, pop"),
+    ("queue-lock-free", "queue, lock-free: push, pop"),
+    ("raw", "raw: tick, address, sign"),
+    ("link-full", "link, full frames"),
+    ("link-100ms", "link, a frame every 100 ms"),
+    ("edvs-e0", "eDVS E0, without time"),
+    ("edvs-e1", "eDVS E1"),
+    ("edvs-e2", "eDVS E2"),
+    ("edvs-e3", "eDVS E3"),
+    ("edvs-e4", "eDVS E4"),
+    ("event-stream", "Event Stream"),
+    ("evt2", "EVT2"),
+    ("eieio", "EIEIO, a datagram a sample"),
+    ("tinyodin-word", "tinyODIN, the word of 10 bits"),
+    ("tinyodin", "tinyODIN, word and handshake"),
+    ("odin-word", "ODIN, the word of 17 bits"),
+    ("akd1500-convolution", "AKD1500, convolutional layer"),
+    ("akd1500-dense", "AKD1500, dense layer"),
+    ("xylo", "Xylo, counts of 10 ms"),
+];
+
+/// A pixel of a camera's row, on both cores.
+fn frames(events: &[Event]) -> String {
+    let [first, second] = figures::CORES;
+    let mut text = format!(
+        "| a pixel of a camera's row | RAM, bytes | {first}: nothing changes | an edge passes | all change | {second}: nothing changes | an edge passes | all change |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|\n"
+    );
+    for (subject, name, bytes) in PIXELS {
+        text += &format!("| {name} | {bytes} |");
+        for core in figures::CORES {
+            for scene in ["rest", "edge", "all"] {
+                let mean = events.iter().find(|event| {
+                    (event.core, event.subject.as_str(), event.direction.as_str())
+                        == (core, subject, scene)
+                });
+                let mean =
+                    mean.map_or("–".into(), |event| format!("{:.1}", event.instructions_mean));
+                text += &format!(" {mean} |");
+            }
+        }
+        text += "\n";
+    }
+    text
+}
+
+/// The codes of pixels: the subject, its name, and the bytes that a pixel takes.
+const PIXELS: [(&str, &str, u32); 4] = [
+    ("frame-intensity", "`Intensity`, threshold 10", 1),
+    ("frame-log-u8", "`LogIntensity<u8>`, 0.2", 1),
+    ("frame-log-u16", "`LogIntensity<u16>`, 0.2", 2),
+    ("frame-refractory", "`Refractory<Intensity>`, 1 frame", 2),
+];
+
+/// Six samples into a bank, on both cores.
+fn banks(events: &[Event]) -> Result<String> {
+    let mut text = String::from(
+        "| the bank alone | SF | cycles | worst | HSA, 15 taps | cycles | worst | T-HSA, 15 taps | cycles | worst |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+    );
+    for (core, sample) in figures::CORES.into_iter().zip(SAMPLES) {
+        text += &format!("| {core}, `{sample}` |");
+        for bank in ["bank-sf-6", "bank-hsa-6", "bank-t-hsa-6"] {
+            let bank = find(events, core, bank, "encode", sample)?;
+            let (mean, worst) = (bank.instructions_mean, bank.instructions_max);
+            text += &format!(" {mean:.1} | {} | {worst} |", figures::cell(bank.cycles_mean));
+        }
+        text += "\n";
+    }
+    Ok(text)
+}
+
+/// From six samples to frames, at both rates and on both cores.
+fn six_channels(events: &[Event]) -> Result<String> {
+    let mut text = String::from(
+        "| SF, queue and frames | interrupt: bank, queue | cycles | worst | main: frames | cycles | all | cycles | worst 100 ms |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+    );
+    for (core, sample) in figures::CORES.into_iter().zip(SAMPLES) {
+        for (path, rate) in [("path-8khz", "8 kHz"), ("path-200hz", "200 Hz")] {
+            let of = |direction| find(events, core, path, direction, sample);
+            let (interrupt, main, all) = (of("interrupt")?, of("main")?, of("all")?);
+            text += &format!(
+                "| {core}, `{sample}`, {rate} | {:.1} | {} | {} | {:.1} | {} | {:.1} | {} | {} |\n",
+                interrupt.instructions_mean,
+                figures::cell(interrupt.cycles_mean),
+                interrupt.instructions_max,
+                main.instructions_mean,
+                figures::cell(main.cycles_mean),
+                all.instructions_mean,
+                figures::cell(all.cycles_mean),
+                all.instructions_max,
+            );
+        }
+    }
+    Ok(format!("{text}\n{}", in_a_sentence(events)?))
+}
+
+/// What six channels take of the core.
+pub fn in_a_sentence(events: &[Event]) -> Result<String> {
+    let set = set(events)?;
+    let cycles = set.cycles_mean.context("no cycles are counted")?;
+    let [second, share] = [1e6, CLOCK / 100.0].map(|of| cycles.map(|cycles| cycles * RATE / of));
+    let two = |[least, most]: [f64; 2]| format!("{least:.2} to {most:.2}");
+    Ok(format!(
+        "Six channels at 8 kHz, from samples to frames, are {:.1} instructions and {} cycles a set, {} million cycles\n\
+         a second: {} % of a Cortex-M4F at 168 MHz.\n",
+        set.instructions_mean,
+        figures::between(cycles),
+        two(second),
+        two(share),
+    ))
+}
+
+/// Of the promised core, from six samples to frames.
+fn set(events: &[Event]) -> Result<&Event> {
+    let (core, sample) = PROMISED;
+    find(events, core, "path-8khz", "all", sample)
+}
+
+fn find<'a>(
+    events: &'a [Event],
+    core: &str,
+    subject: &str,
+    direction: &str,
+    sample: &str,
+) -> Result<&'a Event> {
+    let is_it = |event: &&Event| {
+        (event.core, event.subject.as_str(), event.direction.as_str(), event.sample.as_deref())
+            == (core, subject, direction, Some(sample))
+    };
+    let found = events.iter().find(is_it);
+    found.with_context(|| format!("no {subject} {direction} in {sample} on {core}"))
+}
+
+/// Fails if six channels at 8 kHz may take more of the core than is promised.
+pub fn ensure_six_channels_fit(events: &[Event]) -> Result<()> {
+    let [_, set] = set(events)?.cycles_mean.context("no cycles are counted")?;
+    let most = SHARE * CLOCK / RATE;
+    ensure!(set < most, "six channels take up to {set:.1} cycles a set, and may take {most:.0}");
+    println!(
+        "Six channels at 8 kHz: up to {set:.1} cycles a set, under {most:.0}, 2 % of 168 MHz."
+    );
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_per_cent_are_the_bound() {
+        let path = |most| Event {
+            kind: "event",
+            subject: "path-8khz".into(),
+            direction: "all".into(),
+            per: "sample set".into(),
+            sample: Some("f32".into()),
+            core: "M4F",
+            count: 1,
+            instructions_mean: 100.0,
+            instructions_max: 0,
+            cycles_mean: Some([100.0, most]),
+            cycles_max: None,
+            bytes_mean: None,
+        };
+        assert!(ensure_six_channels_fit(&[path(419.9)]).is_ok());
+        assert!(ensure_six_channels_fit(&[path(420.0)]).is_err());
+        assert!(ensure_six_channels_fit(&[]).is_err());
+    }
+}

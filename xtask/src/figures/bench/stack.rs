@@ -1,0 +1,244 @@
+//! How deep a function's stack can get: what each function of the image takes, along the deepest way of its calls.
+//!
+//! The compiler's own instructions tell both. Every push and every step of the stack pointer in a function is added up,
+//! though some lie on ways that exclude each other; a jump to another function counts as a call. So nothing is left out
+//! but a call through a pointer, of which the crate has one: the waker of the program that waits on a queue.
+
+use crate::common::shell;
+use anyhow::{Context, Result, bail, ensure};
+use std::{
+    cell::RefCell,
+    collections::{BTreeMap, BTreeSet, HashMap},
+    path::Path,
+};
+
+/// The linker fills gaps between functions with D4 D4, which reads as a jump this far back, and is never reached.
+const FILLING: u32 = 84;
+
+/// All functions of an image by their address.
+pub struct Stack {
+    functions: BTreeMap<u32, Function>,
+    known: RefCell<HashMap<u32, Depth>>,
+}
+
+#[derive(Default)]
+struct Function {
+    name: String,
+    frame: u32,
+    calls: BTreeSet<u32>,
+    /// Whether it calls through a pointer.
+    is_blind: bool,
+    /// An instruction that takes the stack by what is not known here.
+    unknown: Option<String>,
+}
+
+/// How deep a function gets.
+#[derive(Clone, Copy)]
+pub struct Depth {
+    pub bytes: u32,
+    /// Whether what a pointer leads to comes on top.
+    pub is_blind: bool,
+}
+
+impl Stack {
+    pub fn read(image: &Path) -> Result<Self> {
+        let symbols = shell::output(shell::command("arm-none-eabi-nm").arg("-C").arg(image))?;
+        let mut functions: BTreeMap<u32, Function> = symbols.lines().filter_map(symbol).collect();
+        let mut objdump = shell::command("arm-none-eabi-objdump");
+        let listing = shell::output(objdump.args(["-d", "--no-show-raw-insn"]).arg(image))?;
+        for line in listing.lines() {
+            let Some((at, name, operands)) = instruction(line) else { continue };
+            let target = jump(name, operands);
+            if name == "bmi" && target == Some(at.wrapping_sub(FILLING)) {
+                continue;
+            }
+            let owner = |at: u32| functions.range(..=at).next_back().map(|(own, _)| *own);
+            let (Some(own), to) = (owner(at), target.and_then(owner)) else { continue };
+            let function = functions.get_mut(&own).context("an owner is a function")?;
+            match frame(name, operands) {
+                Ok(bytes) => function.frame += bytes,
+                Err(error) => function.unknown = Some(format!("{error}: {}", line.trim())),
+            }
+            match to {
+                // To its own start a loop is no call, but `bl` is; a Cortex-M0 also jumps far with it within a function.
+                Some(to) if to != own || name == "bl" && target == Some(own) => {
+                    function.calls.extend([to])
+                }
+                _ => {}
+            }
+            let is_return = name == "bx" && operands == "lr";
+            function.is_blind |= name.starts_with("blx") && target.is_none()
+                || name == "bx" && !is_return && operands != "pc";
+        }
+        Ok(Self { functions, known: RefCell::default() })
+    }
+
+    /// The deepest that the function there gets, its own frame and the deepest of its callees'.
+    pub fn depth(&self, address: u32) -> Result<Depth> {
+        self.deepest(address & !1, &mut Vec::new())
+    }
+
+    /// What lies between the function and who paints the stack, of the closure that calls it and was not inlined.
+    pub fn between(&self, address: u32) -> u32 {
+        let address = address & !1;
+        let painters =
+            self.functions.values().filter(|one| one.name.contains("stopwatch::stack_depth"));
+        let closures = painters.flat_map(|one| &one.calls).filter_map(|at| self.functions.get(at));
+        let calling = closures.filter(|closure| closure.calls.contains(&address));
+        calling.map(|closure| closure.frame).max().unwrap_or(0)
+    }
+
+    /// The deepest of the functions below these paths, with its name.
+    pub fn deepest_of(&self, paths: &[&str]) -> Result<Option<(Depth, &str)>> {
+        let within =
+            |name: &str| paths.iter().any(|path| name.trim_start_matches('<').starts_with(path));
+        let mut deepest: Option<(Depth, &str)> = None;
+        for (address, function) in self.functions.iter().filter(|(_, one)| within(&one.name)) {
+            let depth = self.depth(*address)?;
+            if deepest.is_none_or(|(most, _)| depth.bytes > most.bytes) {
+                deepest = Some((depth, &function.name));
+            }
+        }
+        Ok(deepest)
+    }
+
+    fn deepest(&self, address: u32, way: &mut Vec<u32>) -> Result<Depth> {
+        if let Some(known) = self.known.borrow().get(&address) {
+            return Ok(*known);
+        }
+        let function =
+            self.functions.get(&address).with_context(|| format!("no function at {address:#x}"))?;
+        ensure!(!way.contains(&address), "{} calls itself: its stack has no bound", function.name);
+        if let Some(unknown) = &function.unknown {
+            bail!("{}: {unknown}", function.name);
+        }
+        way.push(address);
+        let mut depth = Depth { bytes: 0, is_blind: function.is_blind };
+        for callee in &function.calls {
+            let below = self.deepest(*callee, way)?;
+            depth.bytes = depth.bytes.max(below.bytes);
+            depth.is_blind |= below.is_blind;
+        }
+        way.pop();
+        depth.bytes += function.frame;
+        self.known.borrow_mut().insert(address, depth);
+        Ok(depth)
+    }
+}
+
+/// `08000400 t name`: functions, by their address without the bit of Thumb.
+fn symbol(line: &str) -> Option<(u32, Function)> {
+    let (address, rest) = line.split_once(' ')?;
+    let (kind, name) = rest.split_once(' ')?;
+    let address = u32::from_str_radix(address, 16).ok()? & !1;
+    let is_code = matches!(kind, "t" | "T" | "w" | "W");
+    (is_code && !name.starts_with('$'))
+        .then(|| (address, Function { name: name.into(), ..Function::default() }))
+}
+
+/// ` 8000404:`, a tab, `bl`, a tab, `8000458 <_RNv…>`: where, what without its width, and with what.
+fn instruction(line: &str) -> Option<(u32, &str, &str)> {
+    let (at, rest) = line.trim_start().split_once(":\t")?;
+    let (name, operands) = rest.split_once('\t').unwrap_or((rest, ""));
+    let name = name.trim_end_matches(".w").trim_end_matches(".n");
+    let operands = operands.split(['@', ';']).next()?.trim();
+    Some((u32::from_str_radix(at, 16).ok()?, name, operands))
+}
+
+/// Where it goes on, if it does not go on with the next instruction alone.
+fn jump(name: &str, operands: &str) -> Option<u32> {
+    let target = match name {
+        "cbz" | "cbnz" => operands.split_once(", ")?.1,
+        "bic" | "bics" | "bfi" | "bfc" | "bkpt" => return None,
+        _ if name.starts_with('b') => operands,
+        _ => return None,
+    };
+    u32::from_str_radix(target.split(' ').next()?, 16).ok()
+}
+
+/// By how much it takes the stack down, in bytes.
+fn frame(name: &str, operands: &str) -> Result<u32> {
+    let number = |text: &str| -> Result<u32> { Ok(text.trim_end_matches(['!', ']']).parse()?) };
+    let on_stack = operands.starts_with("sp!");
+    match name {
+        "push" => Ok(4 * registers(operands)?),
+        "stmdb" | "stmfd" if on_stack => Ok(4 * registers(operands)?),
+        "vpush" => vector(operands),
+        "vstmdb" if on_stack => vector(operands),
+        "sub" | "subw" | "subs" if operands.starts_with("sp, ") => {
+            match operands.rsplit_once('#') {
+                Some((_, bytes)) => number(bytes),
+                None => bail!("the stack grows by what is not known"),
+            }
+        }
+        "add" if operands.starts_with("sp, ") && !operands.contains('#') => {
+            // So a Cortex-M0 takes frames of more than half a kibibyte; none of what is bounded here does.
+            bail!("the stack moves by what a register holds")
+        }
+        _ => match operands.split_once("[sp, #-") {
+            Some((_, bytes)) if bytes.ends_with("]!") => number(bytes),
+            _ => Ok(0),
+        },
+    }
+}
+
+fn vector(operands: &str) -> Result<u32> {
+    let size = if operands.contains("{d") { 8 } else { 4 };
+    Ok(size * registers(operands)?)
+}
+
+/// How many: `{r4, r5, r6, lr}` or `sp!, {r4-r11, lr}`.
+fn registers(operands: &str) -> Result<u32> {
+    let list = operands.split_once('{').and_then(|(_, rest)| rest.split_once('}'));
+    let number = |name: &str| name.trim_start_matches(char::is_alphabetic).parse::<u32>();
+    let mut count = 0;
+    for one in list.context("no registers")?.0.split(", ") {
+        count += match one.split_once('-') {
+            Some((first, last)) => number(last)? + 1 - number(first)?,
+            None => 1,
+        };
+    }
+    Ok(count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_read() {
+        let of = |line: &str| {
+            let (_, name, operands) = instruction(line).unwrap();
+            frame(name, operands).ok()
+        };
+        assert_eq!(of(" 8000404:\tpush\t{r4, r5, r6, lr}"), Some(16));
+        assert_eq!(of(" 8000404:\tstmdb\tsp!, {r4-r11, lr}"), Some(36));
+        assert_eq!(of(" 8000404:\tvpush\t{d8-d10}"), Some(24));
+        assert_eq!(of(" 8000404:\tsub.w\tsp, sp, #1040\t@ 0x410"), Some(1040));
+        assert_eq!(of(" 8000404:\tstr.w\tfp, [sp, #-4]!"), Some(4));
+        assert_eq!(of(" 8000404:\tstr\tr0, [sp, #4]"), Some(0));
+        assert_eq!(of(" 8000404:\tsub.w\tsp, sp, r4"), None, "a frame without a bound");
+    }
+
+    #[test]
+    fn the_deepest_way_counts_and_a_circle_has_no_bound() {
+        let function = |frame, calls: &[u32]| Function {
+            frame,
+            calls: calls.iter().copied().collect(),
+            ..Function::default()
+        };
+        let stack = |functions: [(u32, Function); 3]| Stack {
+            functions: functions.into(),
+            known: RefCell::default(),
+        };
+        let tree = stack([
+            (16, function(8, &[32, 48])),
+            (32, function(4, &[48])),
+            (48, function(100, &[])),
+        ]);
+        assert_eq!(tree.depth(17).unwrap().bytes, 112);
+        let circle =
+            stack([(16, function(8, &[32])), (32, function(4, &[16])), (48, function(1, &[]))]);
+        assert!(circle.depth(16).is_err());
+    }
+}

@@ -1,0 +1,313 @@
+//! The figures as tables to read.
+
+use super::stack::Stack;
+use super::{
+    events,
+    figures::{CORES, Row, between_whole, cell},
+    measured::Measured,
+};
+use crate::{
+    figures::markdown,
+    programs::{boards::Board, image},
+};
+use anyhow::Result;
+
+/// Where the tables stand: the file, and the comments between which they are.
+const CODECS: (&str, &str) = ("docs/costs.md", "bench-target");
+const EVENTS: (&str, &str) = ("docs/costs.md", "bench-target events");
+const BRIEF: (&str, &str) = ("README.md", "bench-target brief");
+
+/// The codecs of the short table.
+const FEW: [&str; 6] = ["tbr", "sf", "sod-4", "t-hsa-15", "position-20", "weighted-phase-8"];
+
+/// What a line of a table tells: one codec, in one sample type, on one core and signal.
+struct Line<'a> {
+    encode: &'a Row,
+    encode_sample: &'a Row,
+    decode: &'a Row,
+    decode_sample: &'a Row,
+}
+
+/// Each codec's rows as one line, in the order that they were measured in.
+fn lines(rows: &[Row]) -> impl Iterator<Item = Line<'_>> {
+    let of = |one: &Row, direction, form| {
+        rows.iter().find(|row| {
+            (row.core, &row.signal, &row.codec, &row.sample)
+                == (one.core, &one.signal, &one.codec, &one.sample)
+                && (row.direction.as_str(), row.form.as_str()) == (direction, form)
+        })
+    };
+    rows.iter().filter(|row| row.direction == "encode" && row.form == "slice").filter_map(
+        move |encode| {
+            Some(Line {
+                encode,
+                encode_sample: of(encode, "encode", "sample")?,
+                decode: of(encode, "decode", "slice")?,
+                decode_sample: of(encode, "decode", "sample")?,
+            })
+        },
+    )
+}
+
+impl Line<'_> {
+    /// The plain transcription's mean, and how many times this codec's it is.
+    fn plain(&self) -> (String, String) {
+        match self.encode.plain_mean {
+            Some(plain) => {
+                let ratio = plain / self.encode.instructions_mean;
+                (format!("{plain:.1}"), format!("{ratio:.1}"))
+            }
+            None => ("–".into(), "–".into()),
+        }
+    }
+}
+
+/// Every figure. Instructions are those of a sample, memory is in bytes.
+pub fn text(rows: &[Row]) -> String {
+    let mut text = String::new();
+    let mut table = String::new();
+    for line in lines(rows) {
+        let Line { encode, encode_sample, decode, decode_sample } = &line;
+        let title = format!("{}, {} signal, {}", encode.core, encode.signal, encode.sample);
+        if title != table {
+            text += &format!(
+                "\n{title:18} {:>8} {:>15} {:>8} {:>15} {:>6} {:>8} {:>8} {:>6} {:>9} {:>6} {:>6} {:>8} {:>6} {:>5} {:>5} {:>5}\n",
+                "encode",
+                "cycles",
+                "1 sample",
+                "cycles",
+                "worst",
+                "decode",
+                "1 sample",
+                "worst",
+                "plain",
+                "ratio",
+                "code",
+                "1 sample",
+                "decode",
+                "state",
+                "flash",
+                "stack",
+            );
+            table = title;
+        }
+        let (plain, ratio) = line.plain();
+        text += &format!(
+            "{:24} {:>8.1} {:>15} {:>8.1} {:>15} {:>6} {:>8.1} {:>8.1} {:>6} {:>9} {:>6} {:>6} {:>8} {:>6} {:>5} {:>5} {:>5}\n",
+            encode.codec,
+            encode.instructions_mean,
+            cell(encode.cycles_mean),
+            encode_sample.instructions_mean,
+            cell(encode_sample.cycles_mean),
+            encode_sample.instructions_max,
+            decode.instructions_mean,
+            decode_sample.instructions_mean,
+            decode_sample.instructions_max,
+            plain,
+            ratio,
+            encode.code_bytes,
+            encode_sample.code_bytes,
+            decode.code_bytes,
+            encode.state_bytes,
+            encode.flash_bytes,
+            encode.stack_bytes.max(decode.stack_bytes),
+        );
+    }
+    text
+}
+
+/// The tables of the costs' page.
+pub fn markdown(measured: &Measured) -> Result<String> {
+    let tables = tables(measured)?.into_iter().filter(|(place, _)| *place != BRIEF);
+    Ok(tables.map(|(_, table)| table).collect())
+}
+
+/// Those of what was measured, each with its place.
+fn tables(Measured { rows, events, .. }: &Measured) -> Result<Vec<((&str, &str), String)>> {
+    let mut tables = vec![(EVENTS, events::markdown(events)?)];
+    if !rows.is_empty() {
+        tables.insert(0, (CODECS, codecs(rows)));
+        tables.push((BRIEF, brief(rows) + &events::in_a_sentence(events)? + "\n"));
+    }
+    Ok(tables)
+}
+
+/// A few codecs on the usual core.
+fn brief(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "\n| Cortex-M4F, `f32` | cycles to encode a sample | µs at 168 MHz | worst, cycles | cycles to decode | RAM, bytes |\n\
+         |---|---:|---:|---:|---:|---:|\n",
+    );
+    for Line { encode, encode_sample, decode, .. } in lines(rows) {
+        let of = (encode.core, encode.sample.as_str(), encode.signal.as_str());
+        if of == (CORES[0], "f32", "paper") && FEW.contains(&encode.codec.as_str()) {
+            text += &format!(
+                "| {} | {} | {} | {} | {} | {} |\n",
+                name(&encode.codec),
+                cell(encode_sample.cycles_mean),
+                encode_sample.cycles_mean.map_or("–".into(), microseconds),
+                encode_sample.cycles_max.map_or("–".into(), between_whole),
+                cell(decode.cycles_mean),
+                encode.state_bytes,
+            );
+        }
+    }
+    text + "\n"
+}
+
+/// Of an STM32F405's core.
+fn microseconds(cycles: [f64; 2]) -> String {
+    let [least, most] = cycles.map(|cycles| format!("{:.2}", cycles / 168.0));
+    if least == most { least } else { format!("{least}–{most}") }
+}
+
+/// `f32` where there is a floating-point unit, fixed point where there is none.
+fn codecs(rows: &[Row]) -> String {
+    let mut text = String::new();
+    for (core, sample) in CORES.into_iter().zip(["f32", "q16.16"]) {
+        text += &format!(
+            "\nCortex-{core}, `{sample}`:\n\n\
+             | codec | encode slice | cycles | encode sample | cycles | worst sample | cycles | decode | cycles | plain | ratio | code slice | code sample | state | flash |\n\
+             |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
+        );
+        for line in lines(rows) {
+            let Line { encode, encode_sample, decode, .. } = &line;
+            if (encode.core, encode.sample.as_str(), encode.signal.as_str())
+                == (core, sample, "paper")
+            {
+                let (plain, ratio) = line.plain();
+                text += &format!(
+                    "| {} | {:.1} | {} | {:.1} | {} | {} | {} | {:.1} | {} | {plain} | {ratio} | {} | {} | {} | {} |\n",
+                    name(&encode.codec),
+                    encode.instructions_mean,
+                    cell(encode.cycles_mean),
+                    encode_sample.instructions_mean,
+                    cell(encode_sample.cycles_mean),
+                    encode_sample.instructions_max,
+                    encode_sample.cycles_max.map_or("–".into(), between_whole),
+                    decode.instructions_mean,
+                    cell(decode.cycles_mean),
+                    encode.code_bytes,
+                    encode_sample.code_bytes,
+                    encode.state_bytes,
+                    encode.flash_bytes,
+                );
+            }
+        }
+    }
+    text + "\n"
+}
+
+/// The rooms of the crate beside the codecs, and what paths they have in an image.
+const ROOMS: [(&str, &[&str]); 6] = [
+    ("bank and queues", &["spikewire::event::"]),
+    ("link", &["spikewire::wire::link::"]),
+    ("formats and batches", &["spikewire::wire::format::", "spikewire::wire::batch::"]),
+    ("sinks", &["spikewire::out::"]),
+    ("chips", &["spikewire::chip::"]),
+    ("cameras", &["spikewire::frame::"]),
+];
+
+/// What the stacks of a core are told as: the largest bound of all sample types, and what painting saw of it.
+fn stack(core: &str, measured: &Measured) -> Result<String> {
+    let mut codecs: Vec<&str> = Vec::new();
+    let rows = || measured.rows.iter().filter(|row| row.core == core);
+    for row in rows() {
+        if !codecs.contains(&row.codec.as_str()) {
+            codecs.push(&row.codec);
+        }
+    }
+    let mut text = String::from(
+        "\n| codec | encode sample | encode slice | decode sample | decode slice |\n|---|---:|---:|---:|---:|\n",
+    );
+    for codec in codecs {
+        text += &format!("| {}", name(codec));
+        for (direction, form) in
+            [("encode", "sample"), ("encode", "slice"), ("decode", "sample"), ("decode", "slice")]
+        {
+            let of = rows().filter(|row| {
+                (row.codec.as_str(), row.direction.as_str(), row.form.as_str())
+                    == (codec, direction, form)
+            });
+            let (bound, seen) = of.fold((0, 0), |(bound, seen): (u32, u32), row| {
+                (bound.max(row.stack_bound_bytes.unwrap_or(u32::MAX)), seen.max(row.stack_bytes))
+            });
+            text += &format!(" | {bound} ({seen})");
+        }
+        text += " |\n";
+    }
+    // Of the usual core alone: this is another image to build.
+    if core != CORES[0] {
+        return Ok(text + "\n");
+    }
+    text += "\n| everything else | at most | its deepest function |\n|---|---:|---|\n";
+    let image = image::build("no-panic", Board::with(core)?)?;
+    let image = Stack::read(&image)?;
+    for (room, paths) in ROOMS {
+        let Some((depth, deepest)) = image.deepest_of(paths)? else {
+            text += &format!("| {room} | – | all inlined into their callers |\n");
+            continue;
+        };
+        let waker = if depth.is_blind { " and the program's waker" } else { "" };
+        text += &format!("| {room} | {}{waker} | `{}` |\n", depth.bytes, short(deepest));
+    }
+    Ok(text + "\n")
+}
+
+/// A function's path without its modules and what it is generic in.
+fn short(path: &str) -> String {
+    let (mut depth, mut plain) = (0, String::new());
+    for letter in path.trim_start_matches('<').chars() {
+        match letter {
+            '<' => depth += 1,
+            '>' if depth > 0 => depth -= 1,
+            '>' => {}
+            _ if depth == 0 => plain.push(letter),
+            _ => {}
+        }
+    }
+    let words: Vec<&str> = plain.split("::").filter(|word| !word.is_empty()).collect();
+    let word = |word: &str| word.split(" as ").next().unwrap_or_default().to_owned();
+    match words[..] {
+        [.., kind, method] => format!("{}::{}", word(kind), word(method)),
+        _ => plain,
+    }
+}
+
+fn stack_marker(core: &str) -> String {
+    format!("bench-target stack {core}")
+}
+
+/// Puts the table of a core's stacks into the page of costs.
+pub fn write_stack(core: &str, measured: &Measured) -> Result<()> {
+    markdown::write(CODECS.0, &stack_marker(core), &stack(core, measured)?)
+}
+
+/// The codec as a reader of the tables knows it.
+fn name(codec: &str) -> &str {
+    match codec {
+        "tbr" => "TBR",
+        "sf" => "SF",
+        "sod-4" => "send-on-delta, 4 spikes",
+        "weighted-phase-8" => "weighted phase, 8 digits",
+        "mw-5" => "MW, W = 5",
+        "mw-63" => "MW, W = 63",
+        "hsa-15" => "HSA, 15 taps",
+        "t-hsa-15" => "T-HSA, 15 taps",
+        "bsa-24" => "BSA, 24 taps",
+        "bsa-24-busy" => "BSA, 24 taps, spiking nearly always",
+        "bsa-toolbox-9" => "BSA as in the toolbox, 9 taps",
+        "position-20" => "position, 20 neurons",
+        "grf-20" => "GRF, 20 neurons",
+        "grf-slots-15x10" => "GRF, 15 neurons, 10 slots",
+        "grf-random-15x16" => "GRF, 15 neurons, by chance",
+        other => other,
+    }
+}
+
+/// Puts the tables into their files.
+pub fn write(measured: &Measured) -> Result<()> {
+    tables(measured)?
+        .into_iter()
+        .try_for_each(|((file, marker), table)| markdown::write(file, marker, &table))
+}

@@ -1,0 +1,73 @@
+//! The page of bits that agree: spike counts, and a mark for each board.
+
+use crate::figures::{markdown, names::full_name};
+use anyhow::Result;
+
+/// The program whose lines it shows.
+pub const PROGRAM: &str = "flight-log";
+
+const PAGE: &str = "docs/bits.md";
+const MARKER: &str = "bits";
+
+/// One row for each scheme, one column for each sample type. A cell is the host's spike count, then a mark for
+/// each board. The lines are those of `flight-log`: `sf f32 spikes=2074 …`.
+pub fn table(host: &str, marks: impl Fn(&str) -> String) -> String {
+    let schemes = distinct(host, 0);
+    let samples = distinct(host, 1);
+    let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+
+    let heads = ["scheme"].iter().chain(&samples).map(ToString::to_string);
+    let rule = vec!["---".to_owned(); 1 + samples.len()];
+    let body = schemes.iter().map(|scheme| {
+        let cells = samples.iter().map(|sample| {
+            let start = format!("{scheme} {sample} spikes=");
+            let cell = host.lines().find_map(|line| {
+                let spikes = line.strip_prefix(&start)?.split(' ').next()?;
+                Some(format!("{spikes} {}", marks(line)))
+            });
+            cell.unwrap_or_default()
+        });
+        row([full_name(scheme).to_owned()].into_iter().chain(cells).collect())
+    });
+    [row(heads.collect()), row(rule)].into_iter().chain(body).collect()
+}
+
+/// Puts the table into the page.
+pub fn write(table: &str) -> Result<()> {
+    markdown::write(PAGE, MARKER, &format!("\n{table}\n"))
+}
+
+/// Fails if the page has another table.
+pub fn ensure_written(table: &str) -> Result<()> {
+    let command = "cargo xtask write bits";
+    markdown::ensure_written(PAGE, MARKER, &format!("\n{table}\n"), command)
+}
+
+/// The words at one place of the lines, each once.
+fn distinct(lines: &str, place: usize) -> Vec<&str> {
+    let mut words = Vec::new();
+    for word in lines.lines().filter_map(|line| line.split(' ').nth(place)) {
+        if !words.contains(&word) {
+            words.push(word);
+        }
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn schemes_in_rows_and_samples_in_columns() {
+        let host =
+            "sf f32 spikes=7 x\nhsa f32 spikes=8 x\nsf i16 spikes=9 x\nhsa i16 spikes=10 x\n";
+        let marks = |line: &str| if line.contains("=8") { "= DIFF" } else { "= =" }.to_owned();
+        let expected = "\
+            | scheme | f32 | i16 |\n\
+            | --- | --- | --- |\n\
+            | step forward (SF) | 7 = = | 9 = = |\n\
+            | Hough spiker (HSA) | 8 = DIFF | 10 = = |\n";
+        assert_eq!(table(host, marks), expected);
+    }
+}

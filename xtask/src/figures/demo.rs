@@ -1,0 +1,85 @@
+//! `cargo demo`: real flight data through encoder, emulated flight controller and decoder.
+
+use crate::{
+    common::{paths, usage::usage},
+    figures::{
+        drawing,
+        flown::{self, Flown},
+        names::full_name,
+        picture,
+        signal::Signal,
+    },
+    programs::{boards::Board, host, image, qemu},
+    setup,
+};
+use anyhow::{Result, bail};
+use std::path::PathBuf;
+
+/// The firmware program.
+const PROGRAM: &str = "demo";
+
+pub fn demo(args: &[String]) -> Result<()> {
+    if !args.is_empty() {
+        return Err(usage("`cargo demo` takes no arguments".into()));
+    }
+    println!("=== What this needs");
+    setup::setup()?;
+    fly().map(drop)
+}
+
+/// Draws the flight into the page.
+pub fn write() -> Result<()> {
+    drawing::keep(&fly()?, "docs/flight.svg")
+}
+
+/// Flies, and draws the flight below the target directory.
+pub fn fly() -> Result<PathBuf> {
+    println!("\n=== The flight, in the firmware of an emulated flight controller");
+    let board = Board::with("M4F")?;
+    let image = image::build(PROGRAM, board)?;
+    let flown = flown::parse(&qemu::run(board, &image)?)?;
+    let here = flown::parse(&host::on_host(PROGRAM)?)?;
+    let signal = Signal::read();
+
+    print_table(&signal, &flown, &here);
+
+    let path = paths::target().join("demo.svg");
+    picture::draw(&path, &signal, &flown)?;
+    println!("The signal, its spikes and its reconstruction: {}", path.display());
+    println!("Every sample type on every core, and all other checks: cargo verify");
+
+    if flown != here {
+        bail!("the board and this computer differ");
+    }
+    Ok(path)
+}
+
+fn print_table(signal: &Signal, flown: &[Flown], here: &[Flown]) {
+    let (samples, seconds) = (signal.rates.len(), signal.duration());
+    println!(
+        "\nThe yaw rate of a hexarotor that takes off, flies and lands hard: {seconds:.1} s, {samples} samples.\n\
+         Encoded and decoded on an STM32F405 (Cortex-M4F), and once more on this computer.\n"
+    );
+    println!(
+        "{:37} {:>6} {:>8} {:>10} {:>11} {:>17}  every bit",
+        "scheme", "spikes", "spikes/s", "efficiency", "RMSE, rad/s", "latency"
+    );
+    for (flown, here) in flown.iter().zip(here) {
+        let spikes = flown.spikes();
+        let latency = match flown.latency {
+            0 => "none".into(),
+            late => format!("{late} = {:.0} ms", late as f64 * signal.interval() * 1e3),
+        };
+        println!(
+            "{:37} {spikes:>6} {:>8.1} {:>8.1} % {:>11.3} {latency:>17}  {}",
+            full_name(&flown.scheme),
+            spikes as f64 / seconds,
+            100.0 - 100.0 * spikes as f64 / samples as f64,
+            flown.rmse(&signal.rates),
+            if flown == here { "agrees" } else { "DIFFERS" },
+        );
+    }
+    println!(
+        "\nEfficiency: 100 % without a spike, 0 % with one a sample, negative beyond. Latency: samples of look-ahead.\n"
+    );
+}

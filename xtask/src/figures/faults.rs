@@ -1,0 +1,28 @@
+//! The table of faults in SAFETY.md: hours of flight in which one thing after the other goes wrong.
+
+use crate::{
+    common::shell::{cargo, output},
+    figures::markdown,
+};
+use anyhow::{Result, ensure};
+
+const PAGE: &str = "SAFETY.md";
+const MARKER: &str = "faults";
+
+/// Flies, and puts the table into its page.
+pub fn write() -> Result<()> {
+    markdown::write(PAGE, MARKER, &table()?)
+}
+
+/// Flies, and fails if a promise is broken or the page has other figures.
+pub fn verify() -> Result<()> {
+    markdown::ensure_written(PAGE, MARKER, &table()?, "cargo xtask write faults")
+}
+
+fn table() -> Result<String> {
+    let mut flights = cargo("test --release --package host-tests --test faults");
+    let printed = output(flights.args(["--", "--ignored", "--nocapture"]))?;
+    let rows: Vec<&str> = printed.lines().filter(|line| line.starts_with('|')).collect();
+    ensure!(rows.len() > 20, "the flights print no table:\n{printed}");
+    Ok(format!("\n{}\n\n", rows.join("\n")))
+}

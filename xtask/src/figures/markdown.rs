@@ -1,0 +1,49 @@
+//! Tables in pages, between two comments.
+
+use crate::common::paths;
+use anyhow::{Context, Result, ensure};
+use std::fs;
+
+/// Puts a table between its markers in a page.
+pub fn write(page: &str, marker: &str, table: &str) -> Result<()> {
+    let text = between(&read(page)?, marker, table)?;
+    fs::write(paths::root().join(page), text)?;
+    println!("{page} has the table `{marker}`.");
+    Ok(())
+}
+
+/// Fails if a page has another table, and says which command writes this one.
+pub fn ensure_written(page: &str, marker: &str, table: &str, command: &str) -> Result<()> {
+    let text = read(page)?;
+    ensure!(
+        between(&text, marker, table)? == text,
+        "{page} has other figures; `{command}` puts these there:\n{table}"
+    );
+    Ok(())
+}
+
+fn read(page: &str) -> Result<String> {
+    fs::read_to_string(paths::root().join(page)).with_context(|| page.to_owned())
+}
+
+/// The page with the table in the place of what stood between its markers.
+fn between(page: &str, marker: &str, table: &str) -> Result<String> {
+    let (start, end) = (format!("<!-- {marker} -->\n"), format!("<!-- /{marker} -->"));
+    let missing = || format!("no `{}` … `{end}`", start.trim_end());
+    let (before, rest) = page.split_once(&start).with_context(missing)?;
+    let (_, after) = rest.split_once(&end).with_context(missing)?;
+    Ok(format!("{before}{start}{table}{end}{after}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_is_between_the_markers_changes() {
+        let page = "a\n<!-- x -->\nold\n<!-- /x -->\nb\n<!-- x y -->\n<!-- /x y -->\n";
+        let new = "a\n<!-- x -->\nnew\n<!-- /x -->\nb\n<!-- x y -->\n<!-- /x y -->\n";
+        assert_eq!(between(page, "x", "new\n").unwrap(), new);
+        assert!(between("a", "x", "new\n").is_err());
+    }
+}

@@ -1,0 +1,15 @@
+//! Tables and pictures of the pages: each is measured or drawn here, written into its page, and compared with it.
+
+pub mod bench;
+pub mod bits;
+pub mod demo;
+pub mod drawing;
+pub mod faults;
+mod flown;
+pub mod jumps;
+pub mod markdown;
+mod names;
+mod picture;
+pub mod ros_figure;
+pub mod schemes;
+pub mod signal;

@@ -1,0 +1,91 @@
+//! `cargo xtask guides`: the guides against the firmwares that they are for, in a checkout of one.
+
+use super::{archive, package, put, room, work};
+use crate::{
+    common::{paths, shell, usage::usage},
+    programs::boards::Board,
+    setup,
+};
+use anyhow::{Context, Result, ensure};
+use std::{fs, path::Path};
+
+/// Builds a guide within a checkout of its firmware, which has its submodules.
+pub fn guides(args: &[String]) -> Result<()> {
+    let args: Vec<&str> = args.iter().map(String::as_str).collect();
+    let (guide, checkout): (fn(&Path) -> Result<()>, _) = match args[..] {
+        ["crazyflie", checkout] => (crazyflie, checkout),
+        ["betaflight", checkout] => (betaflight, checkout),
+        _ => return Err(usage("cargo xtask guides (crazyflie or betaflight) CHECKOUT".into())),
+    };
+    let checkout = fs::canonicalize(checkout).with_context(|| checkout.to_owned())?;
+    let mut git = shell::command("git");
+    git.arg("-C").arg(&checkout).args(["log", "-1", "--format=%H of %cs"]);
+    println!("{}: {}", args[0], shell::output(&mut git)?.trim());
+    guide(&checkout)
+}
+
+/// A whole image of the firmware's own build, with the guide as its app.
+fn crazyflie(checkout: &Path) -> Result<()> {
+    setup::packages(
+        "what builds a Crazyflie",
+        &["gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "make"],
+    )?;
+    let board = Board::with("M4F")?;
+    package::package(board.cpu, &archive(board)?, &[])?;
+    let app = work().join("guides/crazyflie");
+    fs::create_dir_all(&app)?;
+    fs::copy(room().join("guides/crazyflie.c"), app.join("spikes.c"))?;
+    put(&app.join("Kbuild"), KBUILD)?;
+    put(&app.join("app-config"), CONFIG)?;
+    let makefile = format!("CRAZYFLIE_BASE := {}\n{MAKEFILE}", checkout.display());
+    put(&app.join("Makefile"), &makefile)?;
+    let library = paths::target().join("c-library").join(board.cpu);
+    for target in ["cf2_defconfig", "all"] {
+        let mut make = shell::command("make");
+        make.arg("-C").arg(&app).arg("-j2").arg(format!("SPIKEWIRE={}", library.display()));
+        shell::run(make.arg(format!("PWD={}", app.display())).arg(target))?;
+    }
+    let mut nm = shell::command("arm-none-eabi-nm");
+    let symbols = shell::output(nm.arg(app.join("build/cf2.elf")))?;
+    for symbol in ["appMain", "sw_step_forward_f32_bank", "sw_writer_next_frame"] {
+        let ends = format!(" {symbol}");
+        ensure!(symbols.lines().any(|line| line.ends_with(&ends)), "the image lacks {symbol}");
+    }
+    println!("crazyflie: {}", app.join("build/cf2.bin").display());
+    Ok(())
+}
+
+const KBUILD: &str = "\
+obj-y += spikes.o spikewire.o
+ccflags-y += -I$(SPIKEWIRE)/include
+$(obj)/spikewire.o: $(SPIKEWIRE)/lib/libspikewire.a
+\t$(LD) -r -nostdlib -Wl,--whole-archive $< -o $@
+";
+
+const CONFIG: &str = "CONFIG_APP_ENABLE=y\nCONFIG_APP_PRIORITY=1\nCONFIG_APP_STACKSIZE=600\n";
+
+const MAKEFILE: &str = "\
+OOT_CONFIG := $(PWD)/app-config
+include $(CRAZYFLIE_BASE)/tools/make/oot.mk
+";
+
+/// The guide with the headers of the firmware's simulation in the loop, which needs no vendor's.
+fn betaflight(checkout: &Path) -> Result<()> {
+    let mut gcc = shell::command("gcc");
+    gcc.args(["-std=gnu17", "-Wall", "-Wextra", "-Werror", "-fsyntax-only"]);
+    gcc.args(["-DSITL", "-DSIMULATOR_BUILD", "-DTARGET_FLASH_SIZE=2048", "-DHSE_VALUE=8000000"]);
+    for directory in [
+        "src/main",
+        "src/main/target",
+        "src/platform",
+        "src/platform/common/include",
+        "src/platform/SIMULATOR",
+        "src/platform/SIMULATOR/include",
+        "src/platform/SIMULATOR/target/SITL",
+        "lib/main/dyad",
+    ] {
+        gcc.arg("-I").arg(checkout.join(directory));
+    }
+    gcc.arg("-I").arg(room().join("include")).arg(room().join("guides/betaflight.c"));
+    shell::run(&mut gcc)
+}

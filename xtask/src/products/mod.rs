@@ -1,0 +1,7 @@
+//! What others take from here: the library for C, the Python package, the page, firmware for a board.
+
+pub mod c_library;
+pub mod new_firmware;
+pub mod page;
+pub mod parts;
+pub mod python_package;

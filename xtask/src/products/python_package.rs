@@ -1,0 +1,80 @@
+//! The Python package, installed as its user installs it.
+
+use crate::{
+    common::{
+        paths,
+        shell::{command, output, run},
+    },
+    programs::{
+        host,
+        python::{environment, install, package, pip},
+    },
+};
+use anyhow::{Result, ensure};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// The package's version, as in `python/Cargo.toml`.
+const VERSION: &str = "0.1.0";
+
+/// Installs the package in an environment of its own and runs its tests, its doctests, its README and its example.
+///
+/// It is compiled as the other tests are, so that they share the dependencies.
+pub fn python() -> Result<()> {
+    let python = environment("python")?;
+    install(&python, &["--requirement", "python/requirements.txt"])?;
+    package(&python, "dev")?;
+
+    let (flight, printed) = (paths::target().join("flight-log.txt"), host::example("flight-log")?);
+    fs::write(&flight, output(&mut command(printed))?)?;
+    let pytest =
+        "-m pytest --quiet -rP --no-header --doctest-modules python/tests --pyargs spikewire";
+    run(command(&python).args(pytest.split_whitespace()).env("FLIGHT_LOG", &flight))?;
+    run(command(&python).arg("python/examples/flight.py").env("FLIGHT_LOG", &flight))?;
+    source_package(&python).map(drop)
+}
+
+/// Writes the type stub of the schemes' classes.
+pub fn write_stub() -> Result<()> {
+    let python = environment("python")?;
+    install(&python, &["--requirement", "python/requirements.txt"])?;
+    package(&python, "dev")?;
+    let stub = output(command(&python).arg("python/tests/stubs.py"))?;
+    fs::write(paths::root().join("python/spikewire/_schemes.pyi"), stub)?;
+    Ok(())
+}
+
+/// The package built from its source package, optimised, and its speed beside plain Python and other libraries.
+pub fn speed() -> Result<()> {
+    let python = environment("python-speed")?;
+    install(&python, &["--requirement", "python/requirements.txt"])?;
+    let packed = source_package(&python)?;
+    let mut pip = pip(&python);
+    // A build of its own, as a user has it.
+    pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall"]).arg(packed);
+    run(&mut pip)?;
+    run(command(&python).args(["python/examples/speed.py", "--check"]))
+}
+
+/// The source package, which has all that the package is built from.
+fn source_package(python: &Path) -> Result<PathBuf> {
+    let place = paths::target().join("python-source");
+    let maturin = python.with_file_name("maturin");
+    let manifest = "python/Cargo.toml";
+    run(command(maturin).args(["sdist", "--manifest-path", manifest, "--out"]).arg(&place))?;
+    let packed = place.join(format!("spikewire-{}.tar.gz", VERSION));
+    let listed = output(command("tar").arg("--list").arg("--file").arg(&packed))?;
+    for file in [
+        "LICENSE-MIT",
+        "LICENSE-APACHE",
+        "README.md",
+        "baseline.json",
+        "py.typed",
+        "catalogue/src/lib.rs",
+    ] {
+        ensure!(listed.contains(file), "the source package lacks {file}");
+    }
+    Ok(packed)
+}

@@ -1,0 +1,131 @@
+//! The emulated boards, one for each Cortex-M core that the crate promises.
+
+use crate::common::paths;
+use anyhow::{Context, Result};
+use std::{fs, path::PathBuf};
+
+/// A board as QEMU knows it. Its memory map is `examples/board/memory/<machine>.x`.
+pub struct Board {
+    /// Column heading in the tables.
+    pub core: &'static str,
+    /// QEMU's name for it.
+    pub machine: &'static str,
+    /// Rust's name for what it runs.
+    pub target: &'static str,
+    /// The compiler's name for its core: code is tuned for it, and uses all the instructions it has.
+    pub cpu: &'static str,
+    /// Its clock in Hz, which counts instructions.
+    pub clock: u64,
+    /// For counting, an instruction takes 2^icount ns: 2 and more ticks of that clock.
+    pub icount: u32,
+}
+
+pub const BOARDS: [Board; 5] = [
+    Board {
+        core: "M0",
+        machine: "microbit",
+        target: "thumbv6m-none-eabi",
+        cpu: "cortex-m0",
+        clock: 16_000_000,
+        icount: 8,
+    },
+    Board {
+        core: "M3",
+        machine: "lm3s6965evb",
+        target: "thumbv7m-none-eabi",
+        cpu: "cortex-m3",
+        clock: 12_500_000,
+        icount: 8,
+    },
+    Board {
+        core: "M4F",
+        machine: "netduinoplus2", // an STM32F405: the top-level memory.x
+        target: "thumbv7em-none-eabihf",
+        cpu: "cortex-m4",
+        clock: 168_000_000,
+        icount: 4,
+    },
+    Board {
+        core: "M7",
+        machine: "mps2-an500",
+        target: "thumbv7em-none-eabihf",
+        cpu: "cortex-m7",
+        clock: 25_000_000,
+        icount: 7,
+    },
+    Board {
+        core: "M33",
+        machine: "mps2-an505",
+        target: "thumbv8m.main-none-eabihf",
+        cpu: "cortex-m33",
+        clock: 20_000_000,
+        icount: 7,
+    },
+];
+
+impl Board {
+    /// Returns the board with this core.
+    pub fn with(core: &str) -> Result<&'static Self> {
+        let board = BOARDS.iter().find(|board| board.core.eq_ignore_ascii_case(core));
+        board.with_context(|| format!("no core `{core}`"))
+    }
+
+    /// What the clock counts in 10^9 instructions.
+    pub fn ticks_per_gigainstruction(&self) -> u64 {
+        self.clock << self.icount
+    }
+
+    /// The linker's memory map.
+    pub fn memory_map(&self) -> PathBuf {
+        match self.machine {
+            "netduinoplus2" => paths::root().join("memory.x"),
+            other => paths::examples().join(format!("board/memory/{other}.x")),
+        }
+    }
+
+    /// Bytes of flash and of RAM, read from the map that the firmware is linked with.
+    pub fn memory(&self) -> Result<(u32, u32)> {
+        let path = self.memory_map();
+        Ok((length(&path, "FLASH")?, length(&path, "RAM")?))
+    }
+}
+
+/// `LENGTH` of the region's line in a linker's memory map, written in K.
+fn length(path: &PathBuf, region: &str) -> Result<u32> {
+    let map = fs::read_to_string(path).with_context(|| path.display().to_string())?;
+    map.lines()
+        .filter(|line| line.trim_start().starts_with(region))
+        .find_map(|line| {
+            let (_, length) = line.split_once("LENGTH = ")?;
+            let kibibytes: u32 = length.trim().strip_suffix('K')?.parse().ok()?;
+            Some(kibibytes * 1024)
+        })
+        .with_context(|| format!("no `{region} : … LENGTH = <n>K` in {}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_board_has_a_map_and_a_known_target() {
+        for board in &BOARDS {
+            let (flash, ram) = board.memory().unwrap();
+            assert!(flash >= 128 * 1024 && ram >= 16 * 1024, "{}", board.machine);
+            assert!(crate::setup::toolchain::TARGETS.contains(&board.target));
+        }
+    }
+
+    #[test]
+    fn rounding_ticks_gives_exact_counts() {
+        for board in &BOARDS {
+            assert!(board.ticks_per_gigainstruction() >= 2_000_000_000, "{}", board.machine);
+        }
+    }
+
+    #[test]
+    fn the_default_map_is_the_stm32f405() {
+        let board = BOARDS.iter().find(|board| board.core == "M4F").unwrap();
+        assert_eq!(board.memory().unwrap(), (1024 * 1024, 128 * 1024));
+    }
+}

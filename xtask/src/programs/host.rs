@@ -1,0 +1,60 @@
+//! What the checks build for the host. All of them build the same, so that each crate is compiled once.
+
+use crate::common::{
+    paths,
+    shell::{cargo, command, lint, output, run},
+};
+use anyhow::{Context, Result};
+use std::{fs, path::PathBuf, process::Command};
+
+/// `cargo test` of the whole workspace with every feature but the debug probe's driver, linted as it is compiled.
+pub fn tests(args: &str) -> Result<Command> {
+    let features = features()?.into_iter().map(|name| format!("spikewire/{name}"));
+    let features: Vec<_> = features.chain(["host-tests/extract".into()]).collect();
+    let mut cargo = cargo("test --workspace --features");
+    cargo.arg(features.join(",")).args(args.split_whitespace());
+    lint(&mut cargo);
+    Ok(cargo)
+}
+
+/// The laptop program as its tests build it, its arguments separated by blanks.
+pub fn spikewire(args: &str) -> Result<Command> {
+    run(&mut tests("--quiet --no-run --test pipes")?)?; // a test that runs the program, so that cargo builds that too
+    let mut spikewire = command(paths::target().join("debug/spikewire"));
+    spikewire.args(args.split_whitespace());
+    Ok(spikewire)
+}
+
+/// The target for which `rustc` builds what runs here.
+pub fn triple() -> Result<String> {
+    let version = output(command("rustc").arg("-vV"))?;
+    let host = version.lines().find_map(|line| line.strip_prefix("host: "));
+    host.map(str::to_owned).context("rustc -vV")
+}
+
+/// Builds one of the examples, and returns where it is.
+pub fn example(program: &str) -> Result<PathBuf> {
+    let target = paths::target();
+    let mut cargo = cargo("build --quiet --manifest-path examples/Cargo.toml --package");
+    run(cargo.arg(program).env("CARGO_TARGET_DIR", &target))?;
+    Ok(target.join("debug").join(program))
+}
+
+/// What the example prints here.
+pub fn on_host(program: &str) -> Result<String> {
+    output(&mut command(example(program)?))
+}
+
+/// The names in Cargo.toml's `[features]`, so that a new feature is checked without a word here.
+pub fn features() -> Result<Vec<String>> {
+    let manifest = fs::read_to_string(paths::root().join("Cargo.toml"))?;
+    let (_, rest) = manifest.split_once("[features]\n").context("Cargo.toml has no [features]")?;
+    let names = rest
+        .lines()
+        .take_while(|line| !line.starts_with('['))
+        .filter(|line| !line.starts_with('#'))
+        .filter_map(|line| line.split_once(" = "))
+        .map(|(name, _)| name.to_owned())
+        .collect();
+    Ok(names)
+}

@@ -1,0 +1,72 @@
+//! Builds firmware.
+
+use crate::{
+    common::{paths, shell},
+    programs::boards::Board,
+    setup::toolchain,
+};
+use anyhow::{Context, Result};
+use std::{ffi::OsStr, fs, path::PathBuf, process::Command};
+
+/// Builds the program for the board, and returns the image.
+pub fn build(program: &str, board: &Board) -> Result<PathBuf> {
+    Ok(build_all(program, &[program], board)?.join(program))
+}
+
+/// Builds the program for the board with this variable in the environment, and returns the image.
+pub fn build_with(
+    program: &str,
+    board: &Board,
+    (name, value): (&str, impl AsRef<OsStr>),
+) -> Result<PathBuf> {
+    let mut cargo = building("build", &format!("--package {program}"), board)?;
+    Ok(kept(cargo.env(name, value), program, &[program], board)?.join(program))
+}
+
+/// Builds the package's programs for the board, and returns the directory where they are.
+pub fn build_all(package: &str, programs: &[&str], board: &Board) -> Result<PathBuf> {
+    let mut cargo = building("build", &format!("--package {package}"), board)?;
+    kept(&mut cargo, package, programs, board)
+}
+
+fn kept(cargo: &mut Command, package: &str, programs: &[&str], board: &Board) -> Result<PathBuf> {
+    let built = paths::thumb_target().join(board.target).join("release");
+    shell::run(cargo).with_context(|| format!("{package} for {}", board.machine))?;
+
+    let images = paths::thumb_target().join(board.machine);
+    fs::create_dir_all(&images)?;
+    for program in programs {
+        fs::copy(built.join(program), images.join(program)).context(program.to_string())?;
+    }
+    Ok(images)
+}
+
+/// Lints all programs, as they are built for the board. Apart from building: clippy's compiler leaves out
+/// optimisations, and the code that it makes is not what a user gets.
+pub fn lint_all(board: &Board) -> Result<()> {
+    shell::run(shell::lint(&mut building("check", "--workspace", board)?))
+        .with_context(|| format!("lints of the firmware for {}", board.machine))
+}
+
+/// Links the program for the board with a panic for every integer that overflows, in a directory of its own.
+pub fn link_checked(program: &str, board: &Board) -> Result<()> {
+    let mut cargo = building("build", &format!("--package {program}"), board)?;
+    cargo
+        .env("CARGO_PROFILE_RELEASE_OVERFLOW_CHECKS", "true")
+        .env("CARGO_TARGET_DIR", paths::thumb_target().join("checked"));
+    shell::run(&mut cargo).with_context(|| format!("{program} for {}, checked", board.machine))
+}
+
+/// All boards and checks share one directory and one profile, so that each crate is compiled once for a core. What
+/// differs between two boards is in the compiler's flags, which cargo tells apart. The images have a place for each
+/// board, as two of them share a target.
+fn building(command: &str, packages: &str, board: &Board) -> Result<Command> {
+    let build = format!("{command} --release {packages} --manifest-path examples/Cargo.toml");
+    let mut cargo = toolchain::cargo_for(board.target, &build)?;
+    cargo
+        .env("BOARD", board.machine)
+        .env("TICKS_PER_GIGAINSTRUCTION", board.ticks_per_gigainstruction().to_string())
+        // Names that tell Rust's functions from the runtime's, for `figures/bench/code.rs`.
+        .env("RUSTFLAGS", format!("-C target-cpu={} -C symbol-mangling-version=v0", board.cpu));
+    Ok(cargo)
+}

@@ -1,0 +1,62 @@
+//! The crate as it would be published, for programs that take it as their reader would.
+
+use crate::common::{
+    paths,
+    shell::{cargo, command, run},
+};
+use anyhow::{Context, Result, ensure};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+use tempfile::TempDir;
+
+/// Packs the crate as it would be published, and returns the directory that it is unpacked into.
+pub fn unpacked() -> Result<PathBuf> {
+    run(&mut cargo("package --package spikewire --no-verify --allow-dirty --quiet"))?;
+    let packed = paths::target().join("package");
+    let version = version()?;
+    let archive = packed.join(format!("spikewire-{version}.crate"));
+    // With the time of now: those in the archive never change, and cargo would take the last version's build for this one's.
+    run(command("tar").arg("-xzmf").arg(&archive).arg("-C").arg(&packed))?;
+    Ok(packed.join(format!("spikewire-{version}")))
+}
+
+pub fn version() -> Result<String> {
+    let manifest = fs::read_to_string(paths::root().join("Cargo.toml"))?;
+    let line = manifest.lines().find_map(|line| line.strip_prefix("version = \""));
+    Ok(line.context("Cargo.toml has no version")?.trim_end_matches('"').into())
+}
+
+/// A copy of an example and of what is copied beside it, and what tells cargo of the crate as it would be published.
+pub fn copied(name: &str, shared: &[&str]) -> Result<(TempDir, String)> {
+    const PATCH: &str = "[patch.crates-io]\nspikewire = { path = \"../..\" }\n";
+
+    let elsewhere = tempfile::tempdir()?;
+    for name in shared.iter().chain([&name]) {
+        copy(&paths::examples().join(name), &elsewhere.path().join(name))?;
+    }
+    let manifest = elsewhere.path().join(name).join("Cargo.toml");
+    let text = fs::read_to_string(&manifest)?;
+    ensure!(text.contains(PATCH), "{} does not patch the crate", manifest.display());
+    fs::write(manifest, text.replace(PATCH, ""))?;
+    Ok((
+        elsewhere,
+        format!("patch.crates-io.spikewire.path={:?}", unpacked()?.display().to_string()),
+    ))
+}
+
+/// Copies a directory's files, without what cargo has built there.
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
+        let (entry, target) = (entry?, to);
+        let target = target.join(entry.file_name());
+        match entry.file_type()? {
+            kind if !kind.is_dir() => drop(fs::copy(entry.path(), target)?),
+            _ if entry.file_name() == "target" => {}
+            _ => copy(&entry.path(), &target)?,
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,49 @@
+//! Environments of Python below the target directory, and the package of this repository in them.
+
+use crate::common::{
+    paths,
+    shell::{command, lint, run},
+};
+use anyhow::Result;
+use std::{
+    env,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+/// An environment of this name, below the target directory.
+pub fn environment(name: &str) -> Result<PathBuf> {
+    let place = paths::target().join(name);
+    let python = place.join("bin/python");
+    if !python.is_file() {
+        run(command("python3").args(["-m", "venv"]).arg(&place))?;
+    }
+    Ok(python)
+}
+
+/// `pip install` in the environment.
+pub fn pip(python: &Path) -> Command {
+    let mut pip = command(python);
+    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
+    // The builder is a program of the environment.
+    let own = python.parent().map(PathBuf::from).into_iter();
+    let others = env::var_os("PATH").unwrap_or_default();
+    let all: Vec<PathBuf> = own.chain(env::split_paths(&others)).collect();
+    if let Ok(path) = env::join_paths(all) {
+        pip.env("PATH", path);
+    }
+    pip
+}
+
+/// Installs packages from PyPI.
+pub fn install(python: &Path, what: &[&str]) -> Result<()> {
+    run(pip(python).args(what))
+}
+
+/// Compiles the package in a profile of cargo, linted as the other crates are, and installs it.
+pub fn package(python: &Path, profile: &str) -> Result<()> {
+    let mut pip = pip(python);
+    pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall", "./python"]);
+    pip.env("MATURIN_PEP517_ARGS", format!("--profile {profile}")).env("CARGO_INCREMENTAL", "0");
+    run(lint(&mut pip))
+}

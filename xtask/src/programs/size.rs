@@ -1,0 +1,27 @@
+//! How much of a board an image takes.
+
+use crate::{common::shell, programs::boards::Board};
+use anyhow::{Context, Result};
+use std::path::Path;
+
+/// "flash 12.3 of 256 KiB, RAM 1.0 of 16 KiB": what is static; the stack comes on top.
+pub fn of(image: &Path, board: &Board) -> Result<String> {
+    let table = shell::output(shell::command("arm-none-eabi-size").arg(image))?;
+    let [text, data, bss] = sections(&table).context("arm-none-eabi-size prints something else")?;
+    let (flash, ram) = board.memory()?;
+    let kib = |bytes: u32| f64::from(bytes) / 1024.0;
+    Ok(format!(
+        "flash {:.1} of {} KiB, static RAM {:.1} of {} KiB",
+        kib(text + data), // initial values are stored in flash
+        kib(flash),
+        kib(data + bss),
+        kib(ram),
+    ))
+}
+
+/// The first three numbers of the second line.
+fn sections(table: &str) -> Option<[u32; 3]> {
+    let mut numbers = table.lines().nth(1)?.split_whitespace();
+    let mut next = || numbers.next()?.parse().ok();
+    Some([next()?, next()?, next()?])
+}

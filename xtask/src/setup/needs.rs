@@ -1,0 +1,71 @@
+//! What the checks need of a machine, and which of it is not there.
+
+use crate::{
+    common::shell,
+    setup::{distribution, toolchain},
+};
+use anyhow::{Result, ensure};
+
+/// A program that a package of the distribution brings.
+pub struct Tool {
+    pub package: &'static str,
+    pub program: &'static str,
+    pub why: &'static str,
+}
+
+pub const TOOLS: [Tool; 4] = [
+    Tool { package: "qemu-system-arm", program: "qemu-system-arm", why: "emulates the boards" },
+    Tool {
+        package: "binutils-arm-none-eabi",
+        program: "arm-none-eabi-nm",
+        why: "reads the firmware's size and symbols",
+    },
+    Tool {
+        package: "gcc-arm-none-eabi",
+        program: "arm-none-eabi-gcc",
+        why: "compiles the tests of the library for C",
+    },
+    Tool { package: "g++", program: "g++", why: "compiles its header as C++" },
+];
+
+/// What is not there.
+pub struct Missing {
+    /// Those for which neither compiler has a core library.
+    pub targets: Vec<&'static str>,
+    pub tools: Vec<&'static Tool>,
+}
+
+impl Missing {
+    pub fn is_empty(&self) -> bool {
+        self.targets.is_empty() && self.tools.is_empty()
+    }
+
+    /// A line for each.
+    pub fn lines(&self) -> Vec<String> {
+        let targets = self.targets.iter().map(|target| format!("the core library for {target}"));
+        let tools = self.tools.iter().map(|tool| format!("{}, which {}", tool.program, tool.why));
+        targets.chain(tools).collect()
+    }
+}
+
+pub fn missing() -> Result<Missing> {
+    let mut targets = Vec::new();
+    for target in toolchain::TARGETS {
+        if !toolchain::has_core(target)? && !distribution::has_core(target)? {
+            targets.push(target);
+        }
+    }
+    let tools = TOOLS.iter().filter(|tool| !shell::has(tool.program)).collect();
+    Ok(Missing { targets, tools })
+}
+
+/// Fails if something is missing, and says what installs it.
+pub fn ensure_met() -> Result<()> {
+    let missing = missing()?;
+    ensure!(
+        missing.is_empty(),
+        "`cargo xtask setup` installs what is missing:\n  {}",
+        missing.lines().join("\n  ")
+    );
+    Ok(())
+}

@@ -1,0 +1,68 @@
+//! Which cargo builds for a Cortex-M.
+
+use crate::{
+    common::{paths, shell},
+    setup::distribution,
+};
+use anyhow::{Result, ensure};
+use std::{fs, path::PathBuf, process::Command};
+
+/// The Cortex-M cores that the crate is built for.
+pub const TARGETS: [&str; 4] = [
+    "thumbv6m-none-eabi",
+    "thumbv7m-none-eabi",
+    "thumbv7em-none-eabihf",
+    "thumbv8m.main-none-eabihf",
+];
+
+/// Cargo for a Cortex-M target: `cargo …` where the toolchain in use has its core library, and
+/// `cargo +thumb …`, the distribution's compiler as `cargo xtask setup` prepares it, where it has not.
+/// It builds into a directory of its own, since that may be another compiler.
+pub fn cargo_for(target: &str, args: &str) -> Result<Command> {
+    let by_default = has_core(target)?;
+    ensure!(
+        by_default || distribution::has_core(target)?,
+        "nothing here builds for {target}; `cargo xtask setup` mends that"
+    );
+    Ok(cargo(by_default, &[target], args))
+}
+
+/// The same for several targets: one cargo for all that a compiler builds for, which shares what runs on the host.
+pub fn cargo_for_each(targets: &[&str], args: &str) -> Result<Vec<Command>> {
+    let (mut by_default, mut by_distribution) = (Vec::new(), Vec::new());
+    for &target in targets {
+        if has_core(target)? { &mut by_default } else { &mut by_distribution }.push(target);
+    }
+    let both = [(true, by_default), (false, by_distribution)];
+    let some = both.iter().filter(|(_, targets)| !targets.is_empty());
+    Ok(some.map(|(by_default, targets)| cargo(*by_default, targets, args)).collect())
+}
+
+fn cargo(by_default: bool, targets: &[&str], args: &str) -> Command {
+    let mut cargo = shell::command("cargo");
+    if !by_default && shell::has("rustup") {
+        cargo.arg("+thumb");
+    }
+    cargo.args(args.split_whitespace());
+    for target in targets {
+        cargo.args(["--target", target]);
+    }
+    cargo.env("CARGO_TARGET_DIR", paths::thumb_target());
+    // What a debugger needs is a fifth of the building time, and most of the disk.
+    cargo.env("CARGO_PROFILE_RELEASE_DEBUG", "false");
+    cargo.env("CARGO_INCREMENTAL", "0");
+    cargo
+}
+
+/// Whether the toolchain in use can build for the target.
+pub fn has_core(target: &str) -> Result<bool> {
+    let mut rustc = shell::command("rustc");
+    rustc.args(["--print", "target-libdir", "--target", target]);
+    let libraries = PathBuf::from(shell::output(&mut rustc)?.trim());
+    let found = fs::read_dir(libraries).is_ok_and(|mut files| {
+        files.any(|file| {
+            file.is_ok_and(|file| file.file_name().to_string_lossy().starts_with("libcore-"))
+        })
+    });
+    Ok(found)
+}

@@ -1,0 +1,273 @@
+//! `cargo verify`: every check, in order, each with its time. A failure does not hide the next one.
+
+mod passed;
+
+use crate::{
+    checks::{
+        everyday, fifo, firmware, fuzz, link, logging, long, package, peers, rate_loop,
+        real_boards, reckon, ros, simulated_drone, soak, storm, tuned, video,
+    },
+    common::{cpu, usage::usage},
+    figures::{bench, demo, faults},
+    mutants,
+    products::{c_library, page, python_package},
+    release,
+    setup::{needs, setup},
+};
+use anyhow::{Result, bail};
+use passed::Passed;
+use std::time::Instant;
+
+const USAGE: &str = "\
+cargo verify [STEP]...     every check, or the named ones
+cargo verify --list        the checks' names
+cargo verify --long        the checks that need more time, by hand before a release
+cargo verify --rest        of all, those that have not passed at this commit; `--long --rest` likewise
+cargo verify --help        this
+
+A check that fails does not hide the next one. Exit status 0: all passed; 1: one failed; 2: no such check.
+The summary gives each check's time on the clock, and its processor time over all cores.
+Without names, `setup` comes first and installs what is missing: it says what, and what it does as root.";
+
+/// A check that `cargo verify <name>` runs alone.
+struct Step {
+    name: &'static str,
+    what: &'static str,
+    run: fn() -> Result<()>,
+}
+
+/// To add a check: write a function in a room of `checks`, and a line here.
+const STEPS: &[Step] = &[
+    step(SETUP, "compiler targets, QEMU, binutils", setup),
+    step("fmt", "rustfmt", everyday::fmt),
+    step(
+        "clippy",
+        "clippy on host code, which builds the tests, and on firmware",
+        everyday::clippy,
+    ),
+    step("test", "host tests and doctests", everyday::test),
+    step(
+        "fuzz",
+        "hostile bytes for every reader, link, chip and codec: corpora and mutants",
+        fuzz::replay,
+    ),
+    step("peers", "event formats against other programs", peers::peers),
+    step("readme", "the code of README and docs runs", everyday::readme),
+    step("doc", "documentation without warnings", everyday::doc),
+    step("package", "what is published has all that its pages show", package::package),
+    step("features", "every feature alone, on the host", everyday::each_feature),
+    step("targets", "the crate for every Cortex-M, all of it for the least", everyday::targets),
+    step("no-panic", "every codec links without a panic handler", everyday::no_panic),
+    step("c", "the library for C, on the host and on a Cortex-M4F", c_library::verify),
+    step(
+        "boards",
+        "a Pico's firmware as it is flashed, in an emulator, and all that breaks",
+        real_boards::boards,
+    ),
+    step("fifo", "a sensor at 8 kHz: driver, and instructions", fifo::fifo),
+    step("demo", "the demo's table and picture", || demo::fly().map(drop)),
+    step("firmware", "emulated boards against the host", || firmware::firmware(&[])),
+    step("storm", "more events than main takes, on emulated boards and host", storm::storm),
+    step("logging", "defmt out of emulated boards, decoded on the host", logging::logging),
+    step("link", "a flight over a serial line, board against host", link::link),
+    step("loop", "a flight through a chip's model, board against host", rate_loop::rate_loop),
+    step("tuned", "a constant from `spikewire tune`, in QEMU, spike by spike", tuned::tuned),
+    step("laptop", "the laptop program on a flight, and the paper's tables", everyday::laptop),
+    step("python", "the Python package: tests, hashes, README, example", python_package::python),
+    step("video", "the paper's figure of a video, from a packaged clip", video::video),
+    step("bench", "instruction counts of a Cortex-M4F against the baseline", || {
+        bench::verify("M4F")
+    }),
+];
+
+/// Those that take too long for every change: the longest last.
+const LONG: &[Step] = &[
+    step("recordings", "the flights come out of the published logs again", long::recordings),
+    step("deny", "licences and sources of every crate, in every workspace", release::deny),
+    step("loom", "the queue without locks in every order of its loads and stores", long::loom),
+    step(
+        "faults",
+        "hours of flight in which all goes wrong, and the table of it in SAFETY.md",
+        faults::verify,
+    ),
+    step("soak", "hours of flight in which much goes wrong, in two emulated cores", soak::soak),
+    step(
+        "stack",
+        "no codec's stack is deeper than the bound of its code, nor that above 1 KiB, on two cores",
+        bench::verify_stack,
+    ),
+    step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", || {
+        bench::verify("M0")
+    }),
+    step("panic-free", "every codec without a panic handler, on two cores", everyday::no_panic_all),
+    step("lints", "clippy on all at once, and every feature on every core", long::lints),
+    step("capture", "the laptop program with a debug probe's driver", long::capture),
+    step("logs", "logs of every kind, read as independent readers do", peers::logs),
+    step(
+        "c-cores",
+        "the library for C on the other four cores, and as the host has it",
+        c_library::cores,
+    ),
+    step(
+        "c-asan",
+        "the library for C on the host, under the address sanitizer as the programs in C are",
+        c_library::watched,
+    ),
+    step("c-cost", "what the calls of C take beside the crate's", c_library::cost),
+    step("page", "the page in a browser, against the laptop program", page::verify),
+    step("ros2", "ROS 2 nodes against Cyclone DDS, on loopback alone", ros::ros2),
+    step("ros", "ROS nodes in the distribution's ROS, a flight through every scheme", ros::ros),
+    step(
+        "py-speed",
+        "the Python package from its source package, and its speed",
+        python_package::speed,
+    ),
+    step(
+        "all-boards",
+        "the other boards' firmware: five flown in emulators, the Pico 2's linked",
+        real_boards::more,
+    ),
+    step(
+        "flies",
+        "a simulated drone on spikes: the picture and a row again",
+        simulated_drone::verify,
+    ),
+    step("flown", "the same, on an emulated board: bit for bit", simulated_drone::board),
+    step("chip-flies", "the same, on a network on tinyODIN's model", simulated_drone::chip),
+    step("reckon", "the model of ReckOn against the chip's own code", reckon::reckon),
+    step("cores", "instruction counts on all five cores", long::cores),
+    step(
+        "tuner",
+        "`spikewire tune` beside other optimisers, at equal numbers of settings",
+        peers::tuner,
+    ),
+    step(
+        "fuzz-long",
+        "the same under libFuzzer, a minute a target (FUZZ_SECONDS), going on from the last run",
+        fuzz::long,
+    ),
+    step(
+        "sweeps",
+        "all tests, optimised, with twenty times as many cases, from a fresh seed",
+        long::sweeps,
+    ),
+    step(
+        "mutants",
+        "thousands of changes of the crate's code, compiled at once, each of which a test has to notice",
+        mutants::mutants,
+    ),
+];
+
+const SETUP: &str = "setup";
+
+const fn step(name: &'static str, what: &'static str, run: fn() -> Result<()>) -> Step {
+    Step { name, what, run }
+}
+
+/// What became of a step.
+struct Outcome {
+    step: &'static Step,
+    good: bool,
+    /// On the clock.
+    seconds: f64,
+    /// Of the processor, over all cores.
+    processor: f64,
+}
+
+/// Runs the named steps, or all but the long ones, in the list's order.
+pub fn verify(args: &[String]) -> Result<()> {
+    let mut args: Vec<&str> = args.iter().map(String::as_str).collect();
+    let is_rest = args.pop_if(|last| *last == "--rest").is_some();
+    let mut chosen: Vec<&Step> = match args[..] {
+        ["--help" | "-h"] => {
+            println!("{USAGE}\n");
+            list();
+            return Ok(());
+        }
+        ["--list"] => {
+            list();
+            return Ok(());
+        }
+        [] => STEPS.iter().collect(),
+        ["--long"] => LONG.iter().collect(),
+        _ => named(&args)?,
+    };
+    let passed = Passed::at_head(is_rest)?;
+    if is_rest {
+        chosen.retain(|step| !passed.holds(step.name));
+    }
+    if !chosen.iter().any(|step| step.name == SETUP) {
+        needs::ensure_met()?;
+    }
+    let outcomes = run(&chosen, &passed);
+    summary(&outcomes)
+}
+
+fn list() {
+    let lines = |steps: &[Step]| {
+        for step in steps {
+            println!("  {:10} {}", step.name, step.what);
+        }
+    };
+    lines(STEPS);
+    println!("with --long:");
+    lines(LONG);
+}
+
+fn named(names: &[&str]) -> Result<Vec<&'static Step>> {
+    let all = || STEPS.iter().chain(LONG);
+    if let Some(name) = names.iter().find(|name| all().all(|step| step.name != **name)) {
+        return Err(usage(format!("no check `{name}`; `cargo verify --help` lists them")));
+    }
+    Ok(all().filter(|step| names.contains(&step.name)).collect())
+}
+
+fn run(steps: &[&'static Step], passed: &Passed) -> Vec<Outcome> {
+    let mut outcomes = Vec::new();
+    for &step in steps {
+        println!("\n=== {}: {}", step.name, step.what);
+        let (start, before) = (Instant::now(), cpu::seconds());
+        let result = (step.run)();
+        match &result {
+            Ok(()) => passed.add(step.name),
+            Err(error) => println!("FAILED: {error:#}"),
+        }
+        let (seconds, processor) = (start.elapsed().as_secs_f64(), cpu::seconds() - before);
+        println!("--- {}: {seconds:.0} s, {processor:.0} s of processor time", step.name);
+        outcomes.push(Outcome { step, good: result.is_ok(), seconds, processor });
+        if step.name == SETUP && result.is_err() {
+            break; // nothing below can work
+        }
+    }
+    outcomes
+}
+
+fn summary(outcomes: &[Outcome]) -> Result<()> {
+    println!("\n=== summary: time, processor time");
+    for Outcome { step, good, seconds, processor } in outcomes {
+        let verdict = if *good { "ok" } else { "FAILED" };
+        println!("{verdict:6} {seconds:6.1} s {processor:6.1} s  {:10} {}", step.name, step.what);
+    }
+    let total = |of: fn(&Outcome) -> f64| outcomes.iter().map(of).sum::<f64>();
+    let (seconds, processor) = (total(|one| one.seconds), total(|one| one.processor));
+    println!("{:6} {seconds:6.1} s {processor:6.1} s", "all");
+    let failed: Vec<&str> =
+        outcomes.iter().filter(|one| !one.good).map(|one| one.step.name).collect();
+    if failed.is_empty() { Ok(()) } else { bail!("failed: {}", failed.join(", ")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_check_has_a_name_of_its_own() {
+        let names: Vec<&str> = STEPS.iter().chain(LONG).map(|step| step.name).collect();
+        for (index, name) in names.iter().enumerate() {
+            assert!(!names[..index].contains(name), "two checks are called {name}");
+            assert!(name.len() <= 10, "{name} does not fit its column");
+        }
+        assert!(named(&["fmt", "sweeps"]).is_ok_and(|steps| steps.len() == 2));
+        assert!(named(&["fmt", "none"]).is_err());
+    }
+}
