@@ -103,8 +103,8 @@ def others(x, long, ends):
         ), len(long), sw.TemporalContrast(threshold=0.3)
         yield "spikify `step_forward`", lambda: contrast.step_forward(short, 0.5), len(x), sw.StepForward(threshold=0.5)
         yield "spikify `moving_window`", lambda: contrast.moving_window(short, 5, 0.25), len(x), window
-        yield "spikify `phase_encoding`", (
-            lambda: global_referenced.phase_encoding(each, 8)
+        yield "spikify `phase`", (
+            lambda: global_referenced.phase(each, 8)
         ), len(x), sw.WeightedPhase(slots=8, **ends)
     except ImportError:
         pass

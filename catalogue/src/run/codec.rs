@@ -3,10 +3,14 @@
 //! The code of a sample is a row of cells, one for each neuron of each sub-timestep. A cell holds how many spikes went
 //! up less how many went down: -1, 0 or 1, or more where a code sends several spikes a sample.
 
+use std::{any::Any, array, iter};
+
 use anyhow::Result;
 #[cfg(feature = "states")]
 use anyhow::{Context, ensure};
-use spikewire::{Code, NeuronSpike, Output, Polarity, Sample, SampleKind, Scheme};
+use spikewire::{
+    Code, NeuronSpike, Output, Polarity, Sample, SampleKind, Scheme, timing::PhaseBits,
+};
 
 use super::{Settings, Shape, Visit};
 use crate::State;
@@ -164,7 +168,7 @@ impl Shape {
     fn put_all(self, events: &[Event], row: &mut [i8]) -> bool {
         events.iter().all(|event| {
             let cell = self.cell(event.neuron, event.slot).and_then(|cell| row.get_mut(cell));
-            let step = if event.polarity == Polarity::Up { 1 } else { -1 };
+            let step = step(event.polarity);
             cell.is_some_and(|cell| {
                 let is_good = i32::from(*cell) * i32::from(step) >= 0;
                 let sum = cell.checked_add(step);
@@ -184,23 +188,36 @@ enum Sink<'a> {
 }
 
 impl Sink<'_> {
-    fn put<C: Code>(&mut self, code: C) {
+    fn put(&mut self, codes: impl Iterator<Item: Code + 'static>) {
         match self {
             Self::Cells { rows, shape, made } => {
                 let width = shape.neurons * shape.slots;
-                if let Some(row) = rows.get_mut(*made * width..(*made + 1) * width) {
-                    put(code, *shape, row);
-                    *made += 1;
+                let rows = rows.get_mut(*made * width..).unwrap_or_default();
+                if width == 1 {
+                    for (cell, code) in rows.iter_mut().zip(codes) {
+                        *cell = code
+                            .firings()
+                            .fold(0, |sum: i8, firing| sum.saturating_add(step(firing.polarity)));
+                        *made += 1;
+                    }
+                } else {
+                    for (row, code) in rows.chunks_exact_mut(width).zip(codes) {
+                        put(code, *shape, row);
+                        *made += 1;
+                    }
                 }
             }
             Self::Events { events, sample } => {
-                events.extend(code.firings().map(|NeuronSpike { neuron, slot, polarity }| Event {
-                    sample: *sample,
-                    neuron,
-                    slot,
-                    polarity,
-                }));
-                *sample += 1;
+                for code in codes {
+                    let of = |NeuronSpike { neuron, slot, polarity }| Event {
+                        sample: *sample,
+                        neuron,
+                        slot,
+                        polarity,
+                    };
+                    events.extend(code.firings().map(of));
+                    *sample += 1;
+                }
             }
         }
     }
@@ -214,11 +231,27 @@ impl Sink<'_> {
     }
 }
 
-fn put<C: Code>(code: C, shape: Shape, row: &mut [i8]) {
+/// Adds a code's spikes to a row.
+fn put<C: Code + 'static>(code: C, shape: Shape, row: &mut [i8]) {
+    // Digit by digit, which costs less than to look for the ones.
+    if let Some(bits) = (&code as &dyn Any).downcast_ref::<PhaseBits<8>>()
+        && let Ok(row) = <&mut [i8; 8]>::try_from(&mut *row)
+    {
+        *row = array::from_fn(|slot| (bits.digits() >> (7 - slot) & 1) as i8);
+        return;
+    }
     for NeuronSpike { neuron, slot, polarity } in code.firings() {
         if let Some(cell) = shape.cell(neuron, slot).and_then(|cell| row.get_mut(cell)) {
-            *cell = cell.saturating_add(if polarity == Polarity::Up { 1 } else { -1 });
+            *cell = cell.saturating_add(step(polarity));
         }
+    }
+}
+
+/// What a spike adds to its cell.
+fn step(polarity: Polarity) -> i8 {
+    match polarity {
+        Polarity::Up => 1,
+        Polarity::Down => -1,
     }
 }
 
@@ -295,7 +328,7 @@ struct Channel<P: Scheme> {
     seen: Vec<i8>,
 }
 
-impl<P: Scheme> Channel<P> {
+impl<P: Scheme + 'static> Channel<P> {
     /// Encodes in blocks, which schemes have faster code for.
     fn encode_all(
         &mut self,
@@ -303,22 +336,17 @@ impl<P: Scheme> Channel<P> {
         sink: &mut Sink,
     ) {
         const BLOCK: usize = 512;
-        let mut put = |output: P::Output| {
-            if let Some(code) = output.code() {
-                sink.put(code);
-            }
-        };
         let Some(first) = samples.next() else { return };
         // It also stands in the room for the others.
         let first = self.scheme.encode(&mut self.encoder, first);
-        put(first);
+        sink.put(first.code().into_iter());
         let most = samples.len().min(BLOCK);
         let (mut block, mut outputs) = (Vec::with_capacity(most), vec![first; most]);
         while samples.len() > 0 {
             block.clear();
             block.extend(samples.by_ref().take(most));
             let count = self.scheme.encode_slice(&mut self.encoder, &block, &mut outputs);
-            outputs.iter().take(count).for_each(|output| put(*output));
+            sink.put(outputs.iter().take(count).filter_map(|output| output.code()));
         }
     }
 
@@ -364,7 +392,7 @@ impl<P: Scheme> Channel<P> {
     }
 }
 
-impl<P: Scheme<EncoderState: State, DecoderState: State>> Running for Channel<P> {
+impl<P: Scheme<EncoderState: State, DecoderState: State> + 'static> Running for Channel<P> {
     fn latency(&self) -> usize {
         self.scheme.latency()
     }
@@ -385,7 +413,7 @@ impl<P: Scheme<EncoderState: State, DecoderState: State>> Running for Channel<P>
 
     fn finish(&mut self, sink: &mut Sink) {
         while let Some(code) = self.scheme.finish_next(&mut self.encoder) {
-            sink.put(code);
+            sink.put(iter::once(code));
         }
     }
 
