@@ -3,7 +3,7 @@
 use crate::{
     checks::{firmware, ros, simulated_drone, video},
     common::usage::usage,
-    figures::{bench, demo, faults, jumps, schemes},
+    figures::{bench, demo, faults, flash, jumps, schemes},
     products::{c_library, page, python_package},
 };
 use anyhow::{Context, Result};
@@ -22,7 +22,7 @@ const fn part(name: &'static str, files: &'static str, write: fn() -> Result<()>
 }
 
 /// From the catalogue first, then what measures or draws.
-const PARTS: [Part; 15] = [
+const PARTS: [Part; 16] = [
     part("c", "c/include, c/src/codecs.rs, c/src/sizes.rs, c/tests/flown.h", c_library::write),
     part("python", "python/spikewire/_schemes.pyi", python_package::write_stub),
     part("schemes", "docs/schemes.md: the table", schemes::write),
@@ -37,6 +37,7 @@ const PARTS: [Part; 15] = [
     part("c-sizes", "c/README.md: the table of sizes", c_library::write_sizes),
     part("costs", "docs/costs.md, README.md: the tables of costs", bench::write),
     part("faults", "SAFETY.md: the table of faults", faults::write),
+    part("flash", "docs/costs.md: the table of flash", flash::write),
     part("stack", "docs/costs.md: the tables of stacks", bench::write_stack),
 ];
 

@@ -5,6 +5,7 @@ pub mod bits;
 pub mod demo;
 pub mod drawing;
 pub mod faults;
+pub mod flash;
 mod flown;
 pub mod jumps;
 pub mod markdown;

@@ -19,6 +19,13 @@ pub fn of(image: &Path, board: &Board) -> Result<String> {
     ))
 }
 
+/// The bytes of code and of constants.
+pub fn flash(image: &Path) -> Result<u32> {
+    let table = shell::output(shell::command("arm-none-eabi-size").arg(image))?;
+    let [text, data, _] = sections(&table).context("arm-none-eabi-size prints something else")?;
+    Ok(text + data)
+}
+
 /// The first three numbers of the second line.
 fn sections(table: &str) -> Option<[u32; 3]> {
     let mut numbers = table.lines().nth(1)?.split_whitespace();

@@ -8,7 +8,7 @@ use crate::{
         real_boards, reckon, ros, simulated_drone, soak, storm, tuned, video,
     },
     common::{cpu, usage::usage},
-    figures::{bench, demo, faults},
+    figures::{bench, demo, faults, flash},
     mutants,
     products::{c_library, page, python_package},
     release,
@@ -96,6 +96,7 @@ const LONG: &[Step] = &[
         "no codec's stack is deeper than the bound of its code, nor that above 1 KiB, on two cores",
         bench::verify_stack,
     ),
+    step("flash", "the flash of one codec as linked, with two bounds", flash::verify),
     step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", || {
         bench::verify("M0")
     }),
