@@ -30,6 +30,21 @@ pub struct Info {
 }
 
 impl Info {
+    /// A description to fill in: spikes have no direction, and the decoder adds up no steps.
+    pub(crate) const BLANK: Self = Self {
+        name: "",
+        type_name: "",
+        title: "",
+        words: "",
+        good_for: "",
+        is_signed: false,
+        has_first_value: false,
+        climbs_by: None,
+        is_drawn: false,
+        colour: [0; 3],
+        parameters: &[],
+    };
+
     /// The parameter of this name.
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|own| own.name == name)

@@ -14,6 +14,7 @@ mod entry;
 mod in_c;
 mod info;
 pub mod plain;
+mod prelude;
 #[cfg(feature = "run")]
 pub mod run;
 mod signal;
@@ -36,6 +37,7 @@ fn apart<R>(call: impl FnOnce() -> R) -> R {
 macro_rules! schemes {
     ($($module:ident),* $(,)?) => {
         /// The entries, a file each.
+        #[allow(clippy::needless_range_loop)] // transcriptions go index by index, as pseudo-code does
         pub mod schemes {
             $(pub mod $module;)*
         }

@@ -1,23 +1,8 @@
 //! Adaptive step forward.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the definition
-
-use spikewire::Start;
 use spikewire::temporal::AdaptiveStepForward;
 
-use crate::entry::spike_of;
-use crate::plain::Plain;
-use crate::{
-    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Paper, Parameter, Scaled,
-    Search,
-};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{Build, Constant, Counted, Rust, Settings, Visit, state},
-    anyhow::Result,
-    spikewire::Sample,
-};
+use crate::prelude::*;
 
 /// Adaptive step forward.
 #[derive(Clone, Copy, Debug)]
@@ -32,8 +17,6 @@ impl Entry for Scheme {
         good_for: "following a signal that jumps, with one spike a sample at most",
         is_signed: true,
         has_first_value: true,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0x5b, 0x8c, 0x3a],
         parameters: &[
             Parameter::threshold(
@@ -49,6 +32,7 @@ impl Entry for Scheme {
                 .searched(Search::Whole(1, 4)),
             Parameter::START,
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

@@ -1,23 +1,9 @@
 //! Adaptive temporal contrast.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the definition
-
 use spikewire::temporal::AdaptiveContrast;
-use spikewire::{Spike, Start};
+use spikewire::Spike;
 
-use crate::entry::spike_of;
-use crate::plain::Plain;
-use crate::{
-    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Paper, Parameter, Scaled,
-    Search,
-};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{Build, Constant, Counted, Rust, Settings, Visit, state},
-    anyhow::Result,
-    spikewire::Sample,
-};
+use crate::prelude::*;
 
 /// Adaptive temporal contrast.
 #[derive(Clone, Copy, Debug)]
@@ -32,8 +18,6 @@ impl Entry for Scheme {
         good_for: "changes whose size differs much between rest and flight; drifts",
         is_signed: true,
         has_first_value: true,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0x6c, 0x8f, 0xc9],
         parameters: &[
             Parameter::threshold(
@@ -46,6 +30,7 @@ impl Entry for Scheme {
                 .searched(Search::Whole(0, 8)),
             Parameter::START,
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

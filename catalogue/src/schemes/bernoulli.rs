@@ -1,23 +1,14 @@
 //! Bernoulli, the random rate code.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the definition
-
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 use spikewire::Spike;
 use spikewire::rate::{Average, Bernoulli};
 
-use crate::entry::spike_of;
-use crate::plain::{self, Plain};
-use crate::{Channel, Count, Entry, Flight, InC, Info, Parameter, Scaled};
+use crate::prelude::*;
 
 #[cfg(feature = "run")]
-use {
-    crate::run::{Build, Settings, Visit},
-    anyhow::Result,
-    rand_chacha::ChaCha8Rng,
-    spikewire::{Sample, rate::Window},
-};
+use {rand_chacha::ChaCha8Rng, spikewire::rate::Window};
 
 /// Bernoulli.
 #[derive(Clone, Copy, Debug)]
@@ -30,10 +21,6 @@ impl Entry for Scheme {
         title: "Bernoulli",
         words: "Bernoulli (random rate)",
         good_for: "a mean by chance, from your generator, as networks are trained with",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0x8f, 0x8a, 0xa8],
         parameters: &[
             Parameter::MIN,
@@ -42,6 +29,7 @@ impl Entry for Scheme {
             Parameter::POWER,
             Parameter::SEED,
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[];

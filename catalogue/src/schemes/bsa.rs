@@ -1,26 +1,12 @@
 //! Ben's spiker (BSA), as published and as in the paper's toolbox.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
-
 use spikewire::rate::{Bsa, BsaToolbox, Scale, Shape, Taps};
-use spikewire::{Sample, Start};
 
-use crate::plain::{Plain, magnitude};
-use crate::{
-    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Kind, Made, Paper, Parameter,
-    Scaled, Search, Unit,
-};
+use crate::plain::magnitude;
+use crate::prelude::*;
 
 #[cfg(feature = "run")]
-use {
-    crate::run::{
-        Asked, Build, Constant, Counted, LANES, Resolve, Rule, Rust, Settings, Value, Visit,
-        lengthened, state, sweep,
-    },
-    anyhow::{Result, bail},
-    spikewire::dynamic,
-    spikewire::rate::Criterion,
-};
+use spikewire::rate::Criterion;
 
 /// Ben's spiker.
 #[derive(Clone, Copy, Debug)]
@@ -37,9 +23,6 @@ impl Entry for Scheme {
         title: "BSA",
         words: "Ben's spiker (BSA)",
         good_for: "a rate code of either sign of taps; with the toolbox's indices the paper's tables",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
         is_drawn: true,
         colour: [0x8a, 0x5c, 0xb0],
         parameters: &[
@@ -70,6 +53,7 @@ impl Entry for Scheme {
             .searched(Search::OfFilter(0.0, 1.0))
             .of_encoder(),
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[

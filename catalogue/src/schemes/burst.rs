@@ -1,19 +1,8 @@
 //! Burst coding.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the definition
-
-use spikewire::Start;
 use spikewire::timing::{Burst, BurstSpikes};
 
-use crate::plain::Plain;
-use crate::{Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled, Search};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{Build, Constant, Counted, Rust, Settings, Visit, state},
-    anyhow::Result,
-    spikewire::{Sample, dynamic},
-};
+use crate::prelude::*;
 
 /// Burst coding.
 #[derive(Clone, Copy, Debug)]
@@ -29,10 +18,6 @@ impl Entry for Scheme {
         title: "Burst",
         words: "burst coding",
         good_for: "a value by the count and the interval of its spikes",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0x74, 0x7a, 0x3c],
         parameters: &[
             Parameter::count("slots", "sub-timesteps a sample, 2 to 256")
@@ -50,6 +35,7 @@ impl Entry for Scheme {
             Parameter::MIN,
             Parameter::MAX,
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

@@ -1,23 +1,12 @@
 //! Bursts whose spikes double in weight.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the definition
-
 use spikewire::rate::{Average, WeightedBurst};
-use spikewire::{Spike, Start};
+use spikewire::Spike;
 
-use crate::entry::spike_of;
-use crate::plain::{self, Plain};
-use crate::{
-    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Kind, Made, Paper, Parameter,
-    Scaled, Search, Unit,
-};
+use crate::prelude::*;
 
 #[cfg(feature = "run")]
-use {
-    crate::run::{Build, Constant, Counted, Mean, Rust, Settings, Visit, state},
-    anyhow::Result,
-    spikewire::{Sample, rate::Window},
-};
+use spikewire::rate::Window;
 
 /// Bursts whose spikes double in weight.
 #[derive(Clone, Copy, Debug)]
@@ -30,10 +19,6 @@ impl Entry for Scheme {
         title: "Weighted burst",
         words: "bursts of doubling weight",
         good_for: "a mean from one neuron, where few spikes may tell little and many in a row much",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0xa8, 0x6f, 0x9c],
         parameters: &[
             Parameter::MIN,
@@ -54,6 +39,7 @@ impl Entry for Scheme {
             Parameter::MEAN,
             Parameter::POWER,
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

@@ -1,19 +1,9 @@
 //! Gaussian receptive fields (GRF), winner takes all.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
-
-use spikewire::Start;
 use spikewire::population::Gaussian;
 
-use crate::plain::{Plain, response};
-use crate::{Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{Build, BuildPopulation, Constant, Counted, Rust, Settings, Visit, state},
-    anyhow::Result,
-    spikewire::{Sample, dynamic},
-};
+use crate::plain::response;
+use crate::prelude::*;
 
 /// Gaussian receptive fields, one spike a sample.
 #[derive(Clone, Copy, Debug)]
@@ -26,12 +16,10 @@ impl Entry for Scheme {
         title: "GRF",
         words: "Gaussian receptive fields (GRF)",
         good_for: "a value over an even range",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
         is_drawn: true,
         colour: [0xd9, 0x88, 0x80],
         parameters: &[Parameter::neurons("20"), Parameter::MIN, Parameter::MAX],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

@@ -1,24 +1,9 @@
 //! Non-linear Gaussian receptive fields, winner takes all.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the definition
-
 use spikewire::population::Gaussian;
-use spikewire::{Sample, Start};
 
-use crate::plain::{Plain, response, spaced_widths};
-use crate::{
-    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Parameter, Scaled, Search, Unit,
-};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{
-        Asked, Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape, Visit,
-        missing, state,
-    },
-    anyhow::{Context, Result, bail},
-    spikewire::dynamic,
-};
+use crate::plain::{response, spaced_widths};
+use crate::prelude::*;
 
 /// Non-linear Gaussian receptive fields, one spike a sample.
 #[derive(Clone, Copy, Debug)]
@@ -60,10 +45,6 @@ impl Entry for Scheme {
         title: "GRF, non-linear",
         words: "non-linear Gaussian receptive fields (GRF)",
         good_for: "a value, finer where it is most of the time",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0xe0, 0x7a, 0x5f],
         parameters: &[
             CENTRES,
@@ -73,6 +54,7 @@ impl Entry for Scheme {
             Parameter::MIN,
             Parameter::MAX,
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

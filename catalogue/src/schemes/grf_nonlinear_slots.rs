@@ -1,24 +1,14 @@
 //! Non-linear Gaussian receptive fields with sub-timesteps.
 
 use spikewire::population::{NeuronSlots, NonLinearSlots};
-use spikewire::{Sample, Start};
 
 use super::grf_nonlinear::{CENTRES, COMPANDING, WIDTHS};
 use super::grf_slots::transcribed_decoder;
-use crate::plain::{Plain, response, spaced_widths};
-use crate::{Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled};
+use crate::plain::{response, spaced_widths};
+use crate::prelude::*;
 
 #[cfg(feature = "run")]
-use {
-    super::grf_nonlinear,
-    crate::Unit,
-    crate::run::{
-        Asked, Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape, Visit,
-        state,
-    },
-    anyhow::Result,
-    spikewire::dynamic,
-};
+use super::grf_nonlinear;
 
 /// Non-linear Gaussian receptive fields with sub-timesteps.
 #[derive(Clone, Copy, Debug)]
@@ -31,10 +21,6 @@ impl Entry for Scheme {
         title: "GRF, non-linear, slots",
         words: "non-linear GRF with sub-timesteps",
         good_for: "a value finer than the neurons, by spike time, and finest where it is most of the time",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0x9c, 0x66, 0x44],
         parameters: &[
             CENTRES,
@@ -47,6 +33,7 @@ impl Entry for Scheme {
             Parameter::BETA,
             Parameter::FLOOR,
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

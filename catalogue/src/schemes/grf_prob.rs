@@ -1,20 +1,11 @@
 //! Gaussian receptive fields with probabilistic spiking.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
-
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 use spikewire::population::{FiredNeurons, Probabilistic};
 
-use crate::plain::{Plain, response};
-use crate::{Channel, Count, Entry, Flight, InC, Info, Parameter, Scaled};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{Build, BuildPopulation, Settings, Visit},
-    anyhow::Result,
-    spikewire::{Sample, dynamic},
-};
+use crate::plain::response;
+use crate::prelude::*;
 
 /// Gaussian receptive fields with probabilistic spiking.
 #[derive(Clone, Copy, Debug)]
@@ -27,10 +18,6 @@ impl Entry for Scheme {
         title: "GRF, probabilistic",
         words: "GRF with probabilistic spiking",
         good_for: "a value by chance, from your generator",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0xb5, 0x83, 0x8d],
         parameters: &[
             Parameter::neurons("15"),
@@ -39,6 +26,7 @@ impl Entry for Scheme {
             Parameter::BETA,
             Parameter::SEED,
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[];

@@ -1,19 +1,9 @@
 //! Gaussian receptive fields with sub-timesteps.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
-
-use spikewire::Start;
 use spikewire::population::{SlotSpikes, Slots};
 
-use crate::plain::{Plain, response};
-use crate::{Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{Build, BuildPopulation, Constant, Counted, Rust, Settings, Visit, state},
-    anyhow::Result,
-    spikewire::{Sample, dynamic},
-};
+use crate::plain::response;
+use crate::prelude::*;
 
 /// Gaussian receptive fields with sub-timesteps.
 #[derive(Clone, Copy, Debug)]
@@ -26,10 +16,6 @@ impl Entry for Scheme {
         title: "GRF, slots",
         words: "GRF with sub-timesteps",
         good_for: "a value finer than the neurons, by spike time",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0x8e, 0x3b, 0x46],
         parameters: &[
             Parameter::neurons("15"),
@@ -39,6 +25,7 @@ impl Entry for Scheme {
             Parameter::BETA,
             Parameter::FLOOR,
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

@@ -1,21 +1,8 @@
 //! Hough spiker (HSA).
 
-#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
-
-use spikewire::Start;
 use spikewire::rate::{Hough, Scale, Shape, Taps};
 
-use crate::plain::Plain;
-use crate::{Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Parameter, Scaled};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{
-        Build, Constant, Counted, LANES, Rule, Rust, Settings, Visit, lengthened, state, sweep,
-    },
-    anyhow::Result,
-    spikewire::{Sample, dynamic},
-};
+use crate::prelude::*;
 
 /// Hough spiker.
 #[derive(Clone, Copy, Debug)]
@@ -28,12 +15,10 @@ impl Entry for Scheme {
         title: "HSA",
         words: "Hough spiker (HSA)",
         good_for: "a value that is never above the signal",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
         is_drawn: true,
         colour: [0x5b, 0xa8, 0x5a],
         parameters: &[Parameter::filter("triang:15"), Parameter::SHIFT],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

@@ -1,23 +1,9 @@
 //! Integrate and fire (IF).
 
-#![allow(clippy::needless_range_loop)] // index by index, as the definition
-
-use spikewire::Start;
 use spikewire::rate::IntegrateAndFire;
 use spikewire::temporal::Steps;
 
-use crate::plain::Plain;
-use crate::{
-    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Kind, Made, Paper, Parameter,
-    Scaled, Search, Unit,
-};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{Build, Constant, Counted, Rust, Settings, Shape, Visit, state},
-    anyhow::Result,
-    spikewire::Sample,
-};
+use crate::prelude::*;
 
 /// Integrate and fire.
 #[derive(Clone, Copy, Debug)]
@@ -54,11 +40,9 @@ impl Entry for Scheme {
         words: "integrate and fire (IF)",
         good_for: "a mean, and an integral that never drifts: a gyroscope's angle",
         is_signed: true,
-        has_first_value: false,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0x2f, 0x9e, 0x8f],
         parameters: PARAMETERS,
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

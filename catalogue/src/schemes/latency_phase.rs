@@ -1,19 +1,8 @@
 //! Latency-phase.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the definition
-
-use spikewire::Start;
 use spikewire::timing::{LatencyPhase, PhaseSpikes};
 
-use crate::plain::Plain;
-use crate::{Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled, Search};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{Build, Constant, Counted, Rust, Settings, Shape, Visit, state},
-    anyhow::Result,
-    spikewire::{Sample, dynamic},
-};
+use crate::prelude::*;
 
 /// Latency-phase.
 #[derive(Clone, Copy, Debug)]
@@ -29,10 +18,6 @@ impl Entry for Scheme {
         title: "LPC",
         words: "latency-phase",
         good_for: "channels that share one line, told apart by the phase of their spikes",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0x5c, 0x67, 0x7d],
         parameters: &[
             Parameter::count("neurons", "how many carry each sample, from 1 on")
@@ -51,6 +36,7 @@ impl Entry for Scheme {
             Parameter::MIN,
             Parameter::MAX,
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

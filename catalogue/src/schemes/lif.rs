@@ -1,19 +1,13 @@
 //! Leaky integrate and fire (LIF).
 
-use spikewire::Start;
 use spikewire::rate::IntegrateAndFire;
 use spikewire::temporal::Steps;
 
 use super::integrate::{PARAMETERS, transcribed, transcribed_decoder};
-use crate::{Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Scaled};
+use crate::prelude::*;
 
 #[cfg(feature = "run")]
-use {
-    super::integrate,
-    crate::run::{Build, Constant, Counted, Rust, Settings, Shape, Visit, state},
-    anyhow::Result,
-    spikewire::Sample,
-};
+use super::integrate;
 
 /// Leaky integrate and fire.
 #[derive(Clone, Copy, Debug)]
@@ -27,11 +21,9 @@ impl Entry for Scheme {
         words: "leaky integrate and fire (LIF)",
         good_for: "a mean that forgets, silent for what stays small",
         is_signed: true,
-        has_first_value: false,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0x3f, 0x7f, 0x93],
         parameters: PARAMETERS,
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

@@ -1,25 +1,8 @@
 //! Moving window (MW).
 
-#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
-
-use spikewire::Start;
 use spikewire::temporal::MovingWindow;
 
-use crate::plain::Plain;
-use crate::{
-    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Kind, Made, Paper, Parameter,
-    Scaled, Search, Unit,
-};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{
-        Asked, Build, Constant, Counted, Outcomes, Rust, Settings, Visit, lengthened, outcomes,
-        state,
-    },
-    anyhow::Result,
-    spikewire::{Sample, dynamic},
-};
+use crate::prelude::*;
 
 /// Moving window.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +17,6 @@ impl Entry for Scheme {
         good_for: "changes against a short past; drifts",
         is_signed: true,
         has_first_value: true,
-        climbs_by: None,
         is_drawn: true,
         colour: [0xe0, 0x85, 0x3a],
         parameters: &[
@@ -51,6 +33,7 @@ impl Entry for Scheme {
             .searched(Search::Whole(0, 127)),
             Parameter::START,
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

@@ -1,23 +1,9 @@
 //! Position coding.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
-
-use spikewire::Start;
 use spikewire::population::{Neuron, Position};
 
-use crate::plain::{self, Plain, magnitude};
-use crate::{
-    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Parameter, Scaled, Search, Unit,
-};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{
-        Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape, Visit, state,
-    },
-    anyhow::Result,
-    spikewire::{Sample, dynamic},
-};
+use crate::plain::magnitude;
+use crate::prelude::*;
 
 /// Position coding.
 #[derive(Clone, Copy, Debug)]
@@ -30,10 +16,6 @@ impl Entry for Scheme {
         title: "Position",
         words: "position",
         good_for: "a value, dense where it matters",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0xc0, 0x50, 0x4d],
         parameters: &[
             Parameter::new(
@@ -48,6 +30,7 @@ impl Entry for Scheme {
             Parameter::MIN,
             Parameter::MAX,
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

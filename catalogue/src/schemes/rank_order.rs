@@ -1,24 +1,8 @@
 //! Rank order coding.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the definition
-
-use spikewire::Start;
 use spikewire::population::{RankOrder, SlotSpikes};
 
-use crate::plain::Plain;
-use crate::{
-    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Paper, Parameter, Scaled,
-    Search, Unit,
-};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{
-        Build, BuildPopulation, Constant, Counted, Resolve, Rust, Settings, Shape, Visit, state,
-    },
-    anyhow::Result,
-    spikewire::{Sample, dynamic},
-};
+use crate::prelude::*;
 
 /// Rank order coding.
 #[derive(Clone, Copy, Debug)]
@@ -31,10 +15,6 @@ impl Entry for Scheme {
         title: "Rank order",
         words: "rank order",
         good_for: "a value finer than the neurons, by who fires first",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0x6d, 0x4c, 0x41],
         parameters: &[
             Parameter::new(
@@ -52,6 +32,7 @@ impl Entry for Scheme {
                 .with_paper(Paper::Text("3"))
                 .searched(Search::Whole(1, 16)),
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

@@ -1,22 +1,8 @@
 //! Step forward (SF).
 
-#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
-
-use spikewire::Start;
 use spikewire::temporal::StepForward;
 
-use crate::plain::Plain;
-use crate::{Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Parameter, Scaled};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{
-        Build, Constant, Counted, Outcome, Outcomes, Parabola, Rust, Settings, Visit, above, below,
-        state,
-    },
-    anyhow::Result,
-    spikewire::Sample,
-};
+use crate::prelude::*;
 
 /// Step forward.
 #[derive(Clone, Copy, Debug)]

@@ -1,20 +1,9 @@
 //! Sigma-delta, the regular rate code.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the definition
-
 use spikewire::rate::{Average, SigmaDelta, Window};
-use spikewire::{Spike, Start};
+use spikewire::Spike;
 
-use crate::entry::spike_of;
-use crate::plain::{self, Plain};
-use crate::{Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{Build, Constant, Counted, Mean, Rust, Settings, Visit, state},
-    anyhow::Result,
-    spikewire::Sample,
-};
+use crate::prelude::*;
 
 /// Sigma-delta.
 #[derive(Clone, Copy, Debug)]
@@ -27,12 +16,9 @@ impl Entry for Scheme {
         title: "Sigma-delta",
         words: "sigma-delta (regular rate)",
         good_for: "a mean from one neuron, the more exact the longer it is taken",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0x6d, 0x6a, 0xb5],
         parameters: &[Parameter::MIN, Parameter::MAX, Parameter::MEAN, Parameter::POWER],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[

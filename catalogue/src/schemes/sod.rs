@@ -1,21 +1,8 @@
 //! Send-on-delta: step forward with several spikes a sample.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the definition
-
-use spikewire::Start;
 use spikewire::temporal::{SendOnDelta, Steps};
 
-use crate::plain::Plain;
-use crate::{Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Parameter, Scaled};
-
-#[cfg(feature = "run")]
-use {
-    anyhow::Result,
-    {
-        crate::run::{Build, Constant, Counted, Rust, Settings, Shape, Visit, state},
-        spikewire::Sample,
-    },
-};
+use crate::prelude::*;
 
 /// Send-on-delta.
 #[derive(Clone, Copy, Debug)]
@@ -30,8 +17,6 @@ impl Entry for Scheme {
         good_for: "following a signal that jumps by several thresholds a sample",
         is_signed: true,
         has_first_value: true,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0xb8, 0x6b, 0x2f],
         parameters: &[
             Parameter::threshold(
@@ -41,6 +26,7 @@ impl Entry for Scheme {
             Parameter::SPIKES,
             Parameter::START,
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

@@ -1,23 +1,8 @@
 //! Threshold Hough spiker (T-HSA).
 
-#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
-
-use spikewire::Start;
 use spikewire::rate::{Scale, Shape, Taps, ThresholdHough};
 
-use crate::plain::Plain;
-use crate::{
-    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Made, Parameter, Scaled, Search,
-};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{
-        Build, Constant, Counted, LANES, Rule, Rust, Settings, Visit, lengthened, state, sweep,
-    },
-    anyhow::Result,
-    spikewire::{Sample, dynamic},
-};
+use crate::prelude::*;
 
 /// Threshold Hough spiker.
 #[derive(Clone, Copy, Debug)]
@@ -30,9 +15,6 @@ impl Entry for Scheme {
         title: "T-HSA",
         words: "threshold Hough spiker (T-HSA)",
         good_for: "the nearest reconstruction of the rate codes at the paper's settings",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
         is_drawn: true,
         colour: [0x3f, 0xb6, 0xc4],
         parameters: &[
@@ -45,6 +27,7 @@ impl Entry for Scheme {
             .searched(Search::OfFilter(0.0, 1.0))
             .of_encoder(),
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

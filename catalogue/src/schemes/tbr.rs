@@ -1,24 +1,8 @@
 //! Temporal contrast (TBR).
 
-#![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
-
-use spikewire::Start;
 use spikewire::temporal::TemporalContrast;
 
-use crate::plain::Plain;
-use crate::{
-    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Kind, Made, Paper, Parameter,
-    Scaled, Search, Unit,
-};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{
-        Asked, Build, Constant, Counted, Outcomes, Resolve, Rust, Settings, Visit, outcomes, state,
-    },
-    anyhow::{Context, Result, bail},
-    spikewire::Sample,
-};
+use crate::prelude::*;
 
 /// Temporal contrast.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +17,6 @@ impl Entry for Scheme {
         good_for: "changes, as an event camera sees them; drifts",
         is_signed: true,
         has_first_value: true,
-        climbs_by: None,
         is_drawn: true,
         colour: [0x3b, 0x6f, 0xb6],
         parameters: &[
@@ -72,6 +55,7 @@ impl Entry for Scheme {
             .searched(Search::Thresholds(0.1, 20.0)),
             Parameter::START,
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

@@ -1,21 +1,9 @@
 //! Time to first spike.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the definition
-
 use spikewire::timing::{FirstSpike, Slot};
-use spikewire::{Scheme as _, Start};
+use spikewire::Scheme as _;
 
-use crate::plain::Plain;
-use crate::{
-    Argument, Channel, Count, Entry, Flight, InC, Info, Kind, Made, Parameter, Scaled, Search, Unit,
-};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{Build, Constant, Counted, Resolve, Rust, Settings, Shape, Visit, state},
-    anyhow::{Result, bail},
-    spikewire::{Sample, dynamic},
-};
+use crate::prelude::*;
 
 /// Time to first spike.
 #[derive(Clone, Copy, Debug)]
@@ -28,10 +16,6 @@ impl Entry for Scheme {
         title: "TTFS",
         words: "time to first spike",
         good_for: "a value by one spike's time, the larger the earlier",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0x2b, 0x2d, 0x42],
         parameters: &[
             Parameter::new(
@@ -56,6 +40,7 @@ impl Entry for Scheme {
             Parameter::MIN,
             Parameter::MAX,
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

@@ -1,19 +1,8 @@
 //! Weighted phase.
 
-#![allow(clippy::needless_range_loop)] // index by index, as the definition
-
-use spikewire::Start;
 use spikewire::timing::{PhaseBits, WeightedPhase};
 
-use crate::plain::Plain;
-use crate::{Argument, Channel, Count, Entry, Flight, InC, Info, Made, Parameter, Scaled, Search};
-
-#[cfg(feature = "run")]
-use {
-    crate::run::{Build, Constant, Counted, Rust, Settings, Shape, Visit, state},
-    anyhow::Result,
-    spikewire::{Sample, dynamic},
-};
+use crate::prelude::*;
 
 /// Weighted phase.
 #[derive(Clone, Copy, Debug)]
@@ -26,10 +15,6 @@ impl Entry for Scheme {
         title: "Phase",
         words: "weighted phase",
         good_for: "a value in binary digits: the finest in few sub-timesteps",
-        is_signed: false,
-        has_first_value: false,
-        climbs_by: None,
-        is_drawn: false,
         colour: [0x8d, 0x99, 0xae],
         parameters: &[
             Parameter::count("slots", "digits a sample, 2 to 16")
@@ -38,6 +23,7 @@ impl Entry for Scheme {
             Parameter::MIN,
             Parameter::MAX,
         ],
+        ..Info::BLANK
     };
 
     const IN_C: &'static [InC] = &[InC {

@@ -1,0 +1,21 @@
+//! What the file of a scheme needs.
+
+pub(crate) use spikewire::{Sample, Start};
+
+pub(crate) use crate::entry::spike_of;
+pub(crate) use crate::plain::{self, Plain};
+pub(crate) use crate::{
+    Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Kind, Made, Paper, Parameter,
+    Scaled, Search, Unit,
+};
+
+#[cfg(feature = "run")]
+pub(crate) use {
+    crate::run::{
+        Asked, Build, BuildPopulation, Constant, Counted, LANES, Mean, Outcome, Outcomes, Parabola,
+        Resolve, Rule, Rust, Settings, Shape, Value, Visit, above, below, lengthened, missing,
+        outcomes, state, sweep,
+    },
+    anyhow::{Context, Result, bail},
+    spikewire::dynamic,
+};
