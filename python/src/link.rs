@@ -4,8 +4,8 @@ use std::any::Any;
 use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Result, anyhow, bail};
-use catalogue::run::{RunTime, SampleType, Settings, Visit};
-use catalogue::{State, for_sample_type};
+use catalogue::for_sample_type;
+use catalogue::run::{RunTime, Runs, SampleType, Settings, Visit};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
 use spikewire::link::{Coding, MAX_FRAME, Reader, Received, Receiver, Session, Transmitter};
@@ -106,48 +106,29 @@ struct Build<'a> {
 impl<S: Sample> Visit<S> for Build<'_> {
     type Output = Ends;
 
-    fn visit<P>(self, _: P, _: P::EncoderState) -> Result<Ends>
-    where
-        P: Scheme<
-                Sample = S,
-                EncoderState: State + Send + Sync,
-                DecoderState: State + Send + Sync,
-                Code: Send + Sync,
-            > + Send
-            + Sync
-            + 'static,
-    {
-        self.ends::<P, EVENTS>()
+    fn visit<P: Runs<S>>(self, _: P, _: P::EncoderState) -> Result<Ends> {
+        self.ends::<S, P, EVENTS>()
     }
 
-    fn visit_steps<P>(self, _: P, _: P::EncoderState) -> Result<Ends>
-    where
-        P: Scheme<
-                Sample = S,
-                Code = Spike,
-                EncoderState: State + Send + Sync,
-                DecoderState: State + Send + Sync,
-            > + Send
-            + Sync
-            + 'static,
-    {
+    fn visit_steps<P: Runs<S> + Scheme<Code = Spike>>(
+        self,
+        _: P,
+        _: P::EncoderState,
+    ) -> Result<Ends> {
         if P::RECOVERY == Recovery::Keyframe {
-            self.ends::<P, 0>()
+            self.ends::<S, P, 0>()
         } else {
-            self.ends::<P, CHANNELS>()
+            self.ends::<S, P, CHANNELS>()
         }
     }
 }
 
 impl Build<'_> {
-    fn ends<P, const EVENTS: usize>(self) -> Result<Ends>
-    where
-        P: Scheme<EncoderState: Send + 'static, DecoderState: Send> + Send + Sync + 'static,
-    {
+    fn ends<S: Sample, P: Runs<S>, const EVENTS: usize>(self) -> Result<Ends> {
         let Self { scheme, settings, sample, period } = self;
         let mut channels = Vec::new();
         for own in settings {
-            let built = catalogue::visit::<P::Sample, _>(scheme.info().name, own, Boxed)?;
+            let built = catalogue::visit::<S, _>(scheme.info().name, own, Boxed)?;
             let Ok(built) = built.downcast::<(P, P::EncoderState)>() else {
                 bail!("the channels of a bank differ in more than numbers")
             };
@@ -190,17 +171,7 @@ struct Boxed;
 impl<S: Sample> Visit<S> for Boxed {
     type Output = Box<dyn Any>;
 
-    fn visit<P>(self, scheme: P, start: P::EncoderState) -> Result<Box<dyn Any>>
-    where
-        P: Scheme<
-                Sample = S,
-                EncoderState: State + Send + Sync,
-                DecoderState: State + Send + Sync,
-                Code: Send + Sync,
-            > + Send
-            + Sync
-            + 'static,
-    {
+    fn visit<P: Runs<S>>(self, scheme: P, start: P::EncoderState) -> Result<Box<dyn Any>> {
         Ok(Box::new((scheme, start)))
     }
 }

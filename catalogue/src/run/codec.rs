@@ -12,7 +12,7 @@ use spikewire::{
     Code, NeuronSpike, Output, Polarity, Sample, SampleKind, Scheme, timing::PhaseBits,
 };
 
-use super::{Settings, Shape, Visit};
+use super::{Runs, Settings, Shape, Visit};
 use crate::State;
 
 /// One neuron's spike for one sample.
@@ -278,17 +278,7 @@ pub(super) struct Start<'a> {
 impl<S: Sample> Visit<S> for Start<'_> {
     type Output = Codec;
 
-    fn visit<P>(self, scheme: P, mut encoder: P::EncoderState) -> Result<Codec>
-    where
-        P: Scheme<
-                Sample = S,
-                EncoderState: State + Send + Sync,
-                DecoderState: State + Send + Sync,
-                Code: Send + Sync,
-            > + Send
-            + Sync
-            + 'static,
-    {
+    fn visit<P: Runs<S>>(self, scheme: P, mut encoder: P::EncoderState) -> Result<Codec> {
         let Self { settings, shape, first } = self;
         let one = settings.sample.one();
         let sample = |value: f64| S::from_f64(value * one);

@@ -46,6 +46,31 @@ pub struct Shape {
     pub slots: usize,
 }
 
+/// A scheme in a sample type, which threads may share and whose states can be written.
+pub trait Runs<S>:
+    Scheme<
+        Sample = S,
+        EncoderState: State + Send + Sync,
+        DecoderState: State + Send + Sync,
+        Code: Send + Sync,
+    > + Send
+    + Sync
+    + 'static
+{
+}
+
+impl<S, P> Runs<S> for P where
+    P: Scheme<
+            Sample = S,
+            EncoderState: State + Send + Sync,
+            DecoderState: State + Send + Sync,
+            Code: Send + Sync,
+        > + Send
+        + Sync
+        + 'static
+{
+}
+
 /// Takes a scheme of any type in a sample type.
 pub trait Visit<S: Sample> {
     /// The result of the visit.
@@ -55,31 +80,18 @@ pub trait Visit<S: Sample> {
     ///
     /// # Errors
     /// The visitor's own.
-    fn visit<P>(self, scheme: P, start: P::EncoderState) -> Result<Self::Output>
-    where
-        P: Scheme<
-                Sample = S,
-                EncoderState: State + Send + Sync,
-                DecoderState: State + Send + Sync,
-                Code: Send + Sync,
-            > + Send
-            + Sync
-            + 'static;
+    fn visit<P: Runs<S>>(self, scheme: P, start: P::EncoderState) -> Result<Self::Output>;
 
     /// Takes a scheme whose decoder adds up steps.
     ///
     /// # Errors
     /// The visitor's own.
-    fn visit_steps<P>(self, scheme: P, start: P::EncoderState) -> Result<Self::Output>
+    fn visit_steps<P: Runs<S> + Scheme<Code = Spike>>(
+        self,
+        scheme: P,
+        start: P::EncoderState,
+    ) -> Result<Self::Output>
     where
-        P: Scheme<
-                Sample = S,
-                Code = Spike,
-                EncoderState: State + Send + Sync,
-                DecoderState: State + Send + Sync,
-            > + Send
-            + Sync
-            + 'static,
         Self: Sized,
     {
         self.visit(scheme, start)
