@@ -1,10 +1,9 @@
 //! Where samples come from, and how events go through, as options.
 
+use clap::Args;
 use clap::builder::{MapValueParser, PossibleValuesParser, TypedValueParser};
-use clap::{ArgMatches, Args, Command, Error, FromArgMatches};
 use lab::input::{self, Delimiter, TimeUnit, above_zero};
-use std::ops::Deref;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// How events go through.
 #[derive(Args, Clone, Copy, Debug)]
@@ -19,18 +18,18 @@ pub(crate) struct StreamOptions {
 
 /// Where samples come from.
 #[derive(Args, Clone, Debug)]
-struct InputArgs {
+pub(crate) struct InputOptions {
     /// CSV table with a header, also compressed by gzip, or log: PX4's `ULog`, bag of ROS 1 or
     /// 2, MCAP, Betaflight's blackbox; `-` is a CSV table on
     /// standard input
-    input: PathBuf,
+    pub input: PathBuf,
     #[command(flatten)]
-    channel: ChannelArgs,
+    channel: ChannelOptions,
 }
 
 /// What of a recording is read, and how.
 #[derive(Args, Clone, Debug)]
-struct ChannelArgs {
+pub(crate) struct ChannelOptions {
     /// Column of a CSV table, by name or by number from 1; `encode` takes several
     #[arg(long, help_heading = "Input")]
     column: Vec<String>,
@@ -89,92 +88,31 @@ fn units() -> MapValueParser<PossibleValuesParser, fn(String) -> TimeUnit> {
     })
 }
 
-impl From<InputArgs> for input::InputOptions {
-    fn from(args: InputArgs) -> Self {
-        Self { input: args.input, channel: args.channel.into() }
+impl InputOptions {
+    /// The options as the library has them.
+    pub(crate) fn to_lab(&self) -> input::InputOptions {
+        self.channel.of(&self.input)
     }
 }
 
-impl From<ChannelArgs> for input::ChannelOptions {
-    fn from(args: ChannelArgs) -> Self {
-        let ChannelArgs {
-            column,
-            columns,
-            time,
-            time_unit,
-            delimiter,
-            topic,
-            field,
-            fields,
-            rate,
-            gap,
-            skip_non_finite,
-            accept_cut,
-        } = args;
-        Self {
-            column,
-            columns,
-            time,
-            time_unit,
-            delimiter,
-            topic,
-            field,
-            fields,
-            rate,
-            gap,
-            skip_non_finite,
-            accept_cut,
-        }
+impl ChannelOptions {
+    /// The options for a recording, as the library has them.
+    pub(crate) fn of(&self, input: &Path) -> input::InputOptions {
+        let own = self.clone();
+        let channel = input::ChannelOptions {
+            column: own.column,
+            columns: own.columns,
+            time: own.time,
+            time_unit: own.time_unit,
+            delimiter: own.delimiter,
+            topic: own.topic,
+            field: own.field,
+            fields: own.fields,
+            rate: own.rate,
+            gap: own.gap,
+            skip_non_finite: own.skip_non_finite,
+            accept_cut: own.accept_cut,
+        };
+        input::InputOptions { input: input.to_owned(), channel }
     }
 }
-
-/// Declares options that are read as `$args` and then stand for `$options` of the library.
-macro_rules! options {
-    ($(#[$doc:meta])* $name:ident, $args:ident, $options:ty) => {
-        $(#[$doc])*
-        #[derive(Clone, Debug)]
-        pub(crate) struct $name(pub $options);
-
-        impl Deref for $name {
-            type Target = $options;
-
-            fn deref(&self) -> &$options {
-                &self.0
-            }
-        }
-
-        impl Args for $name {
-            fn augment_args(command: Command) -> Command {
-                $args::augment_args(command)
-            }
-
-            fn augment_args_for_update(command: Command) -> Command {
-                $args::augment_args_for_update(command)
-            }
-        }
-
-        impl FromArgMatches for $name {
-            fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
-                Ok(Self($args::from_arg_matches(matches)?.into()))
-            }
-
-            fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
-                *self = Self::from_arg_matches(matches)?;
-                Ok(())
-            }
-        }
-    };
-}
-
-options!(
-    /// Where samples come from.
-    InputOptions,
-    InputArgs,
-    input::InputOptions
-);
-options!(
-    /// What of a recording is read, and how.
-    ChannelOptions,
-    ChannelArgs,
-    input::ChannelOptions
-);

@@ -4,17 +4,16 @@ use anyhow::{Result as Checked, bail};
 use catalogue::run::{Asked, SET, SampleType, Value};
 use catalogue::{Found, Info, Kind, Parameter, Unit};
 use clap::builder::{MapValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command};
 use lab::coding::Coding as File;
 use lab::scheme::Scheme;
 use std::fmt::{Display, Write};
-use std::ops::Deref;
 
 /// The scheme to run and its settings: from the command line, and from a file if that leaves some open.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Coding {
     /// The scheme, unless --params says which
-    #[arg(long, value_parser = schemes(Scheme::all()))]
+    #[arg(long, value_parser = schemes())]
     scheme: Option<Scheme>,
     /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8; f32 unless given
     #[arg(long)]
@@ -32,7 +31,7 @@ pub(crate) fn read(path: &str) -> Result<File, String> {
 }
 
 /// A scheme if one was named, the sample type, and the parameters given.
-pub(crate) type Chosen = (Option<Scheme>, SampleType, SchemeOptions);
+pub(crate) type Chosen = (Option<Scheme>, SampleType, Asked);
 
 impl Coding {
     /// The scheme, if one is named, the sample type and the parameters.
@@ -41,11 +40,11 @@ impl Coding {
     /// The file is of another scheme.
     pub(crate) fn chosen(&self) -> Checked<Chosen> {
         let Self { scheme, sample, params, parameters } = self;
-        let mut chosen = (*scheme, sample.unwrap_or_default(), parameters.clone());
+        let mut chosen = (*scheme, sample.unwrap_or_default(), parameters.0.clone());
         if let Some(params) = params {
             let scheme = agreed(params, *scheme)?;
             let sample = sample.unwrap_or(params.sample);
-            chosen = (Some(scheme), sample, SchemeOptions(parameters.or(&params.asked)));
+            chosen = (Some(scheme), sample, parameters.0.or(&params.asked));
         }
         Ok(chosen)
     }
@@ -54,7 +53,7 @@ impl Coding {
     ///
     /// # Errors
     /// None is, or the file is of another.
-    pub(crate) fn one(&self) -> Checked<(Scheme, SampleType, SchemeOptions)> {
+    pub(crate) fn one(&self) -> Checked<(Scheme, SampleType, Asked)> {
         let (scheme, sample, parameters) = self.chosen()?;
         let Some(scheme) = scheme else {
             let names: Vec<&str> = Scheme::all().map(Scheme::name).collect();
@@ -82,69 +81,69 @@ pub(crate) fn agreed(file: &File, named: Option<Scheme>) -> Checked<Scheme> {
     }
 }
 
-/// Takes the name of one of these schemes.
-pub(crate) fn schemes(
-    schemes: impl Iterator<Item = Scheme>,
-) -> MapValueParser<PossibleValuesParser, fn(String) -> Scheme> {
-    let values = schemes.map(|scheme| PossibleValue::new(scheme.name()).help(scheme.info().words));
+/// Takes the name of a scheme.
+pub(crate) fn schemes() -> MapValueParser<PossibleValuesParser, fn(String) -> Scheme> {
+    let values = catalogue::INFO.iter().map(|info| PossibleValue::new(info.name).help(info.words));
     PossibleValuesParser::new(values.collect::<Vec<_>>()).map(|name| {
         // The parser lets no other name pass.
         Scheme::named(&name).unwrap_or_default()
     })
 }
 
+/// Makes a type that holds [`Asked`] a group of options: how they are declared, and how they are read.
+macro_rules! option_group {
+    ($name:ident, $declare:expr, $read:expr) => {
+        impl clap::Args for $name {
+            fn augment_args(command: clap::Command) -> clap::Command {
+                $declare(command)
+            }
+
+            fn augment_args_for_update(command: clap::Command) -> clap::Command {
+                Self::augment_args(command)
+            }
+        }
+
+        impl clap::FromArgMatches for $name {
+            fn from_arg_matches(matches: &clap::ArgMatches) -> Result<Self, clap::Error> {
+                Ok(Self($read(matches)))
+            }
+
+            fn update_from_arg_matches(
+                &mut self,
+                matches: &clap::ArgMatches,
+            ) -> Result<(), clap::Error> {
+                *self = Self::from_arg_matches(matches)?;
+                Ok(())
+            }
+        }
+    };
+}
+pub(crate) use option_group;
+
 /// The parameters of any scheme that a user gave.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct SchemeOptions(pub Asked);
 
-impl Deref for SchemeOptions {
-    type Target = Asked;
-
-    fn deref(&self) -> &Asked {
-        &self.0
+option_group!(
+    SchemeOptions,
+    |command| augment(command, |_| true).arg(
+        Arg::new("paper").long("paper").action(ArgAction::SetTrue).help_heading(PARAMETERS).help(
+            "Settings of the paper's benchmark, scaled to the signal's range, for what is not given"
+        ),
+    ),
+    |matches: &ArgMatches| {
+        let mut asked = given(matches, |_| true);
+        asked.paper = matches.get_flag("paper");
+        asked
     }
-}
+);
 
 const PARAMETERS: &str = "Parameters";
 const CALIBRATION: &str = "Instead of calibration";
 
-impl Args for SchemeOptions {
-    fn augment_args(command: Command) -> Command {
-        let command = augment(command, |_| true, |_| true);
-        command.arg(
-            Arg::new("paper")
-                .long("paper")
-                .action(ArgAction::SetTrue)
-                .help_heading(PARAMETERS)
-                .help("Settings of the paper's benchmark, scaled to the signal's range, for what is not given"),
-        )
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for SchemeOptions {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
-        let mut options = given(matches, |_| true, |_| true);
-        options.paper = matches.get_flag("paper");
-        Ok(Self(options))
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
-    }
-}
-
-/// Adds an option for each of these parameters of these schemes, where several schemes have it for all of them.
-pub(crate) fn augment(
-    mut command: Command,
-    takes: fn(&Info) -> bool,
-    is_taken: fn(&Parameter) -> bool,
-) -> Command {
-    for (name, owners) in parameters(takes, is_taken) {
+/// Adds an option for each of these parameters, where several schemes have it for all of them.
+pub(crate) fn augment(mut command: Command, is_taken: fn(&Parameter) -> bool) -> Command {
+    for (name, owners) in parameters(is_taken) {
         let Some(&(_, parameter)) = owners.first() else { continue };
         let heading = if parameter.found.is_some() { CALIBRATION } else { PARAMETERS };
         let arg = Arg::new(name).long(name).help(help(&owners)).help_heading(heading);
@@ -168,13 +167,9 @@ pub(crate) fn augment(
 }
 
 /// Those of these parameters that were given.
-pub(crate) fn given(
-    matches: &ArgMatches,
-    takes: fn(&Info) -> bool,
-    is_taken: fn(&Parameter) -> bool,
-) -> Asked {
+pub(crate) fn given(matches: &ArgMatches, is_taken: fn(&Parameter) -> bool) -> Asked {
     let mut asked = Asked::default();
-    for (name, owners) in parameters(takes, is_taken) {
+    for (name, owners) in parameters(is_taken) {
         if owners.first().is_some_and(|(_, parameter)| parameter.kind == Kind::Flag) {
             if matches.get_flag(name) {
                 asked.set(name, SET);
@@ -200,9 +195,9 @@ pub(crate) const FREE: &str = "free";
 /// A name, and the schemes that have a parameter of it, with what it is there.
 type Owned = (&'static str, Vec<(&'static Info, &'static Parameter)>);
 
-fn parameters(takes: fn(&Info) -> bool, is_taken: fn(&Parameter) -> bool) -> Vec<Owned> {
+fn parameters(is_taken: fn(&Parameter) -> bool) -> Vec<Owned> {
     let mut all: Vec<Owned> = Vec::new();
-    for scheme in Scheme::all().map(|scheme| scheme.info()).filter(|info| takes(info)) {
+    for scheme in catalogue::INFO {
         for parameter in scheme.parameters.iter().filter(|parameter| is_taken(parameter)) {
             match all.iter_mut().find(|(name, _)| *name == parameter.name) {
                 Some((_, owners)) => owners.push((scheme, parameter)),

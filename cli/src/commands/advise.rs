@@ -43,7 +43,7 @@ pub(crate) struct Advise {
     #[arg(long, value_name = "HZ", value_parser = lab::input::above_zero)]
     loop_bandwidth: Option<f64>,
     /// Core of the measured table: M0 or M4F
-    #[arg(long, default_value = "M4F", value_parser = core)]
+    #[arg(long, default_value = "M4F", value_parser = costs::core)]
     core: String,
     /// Stop after so many seconds in all, which makes the advice depend on the machine's speed; Ctrl-C stops as well
     #[arg(long, value_parser = lab::input::above_zero)]
@@ -62,16 +62,12 @@ pub(crate) struct Advise {
     json: bool,
 }
 
-fn core(name: &str) -> Result<String> {
-    costs::core(name)
-}
-
 /// Runs the command.
 ///
 /// # Errors
 /// The log or the options are not good, or there is nothing to say of any channel.
 pub(crate) fn run(options: &Advise) -> Result<()> {
-    let recordings = Recording::read_all(&options.input.or_all()?)?;
+    let recordings = Recording::read_all(&options.input.to_lab().or_all()?)?;
     if options.picture.is_some() && recordings.len() > 1 {
         bail!("--picture draws one channel; --channel says which");
     }

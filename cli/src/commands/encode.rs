@@ -39,7 +39,7 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
     let (scheme, sample, parameters) = coding.one()?;
     let format = output.as_deref().and_then(Format::of);
     let open = || Output::open(output.as_deref(), &input.input);
-    let (output, notes) = encode(input, scheme, sample, &parameters, format, open)?;
+    let (output, notes) = encode(&input.to_lab(), scheme, sample, &parameters, format, open)?;
     output.finish()?;
     tell_each(&notes);
     Ok(())

@@ -2,12 +2,12 @@
 
 use crate::inputs::StreamOptions;
 use crate::live::Live;
-use crate::options::{agreed, augment, given, schemes, tell};
+use crate::options::{agreed, augment, given, option_group, schemes, tell};
 use crate::stop::Stop;
 use anyhow::{Result, bail};
 use catalogue::Parameter;
 use catalogue::run::{Asked, Known, SampleType, Settings};
-use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
+use clap::{Args, value_parser};
 use lab::coding::Coding;
 use lab::events::{EventReader, Format, LinkReader, Stream, Values, values_writer};
 use lab::fit::rounding;
@@ -54,7 +54,7 @@ pub(crate) struct Listen {
     #[command(flatten)]
     stream: StreamOptions,
     /// Decode a link's frames by this scheme, the sender's
-    #[arg(long, value_parser = schemes(Scheme::all()))]
+    #[arg(long, value_parser = schemes())]
     scheme: Option<Scheme>,
     /// Sample type of the sender: f32, i16, i32, or fixed point such as q16.16 or q8.8; f32 unless given
     #[arg(long)]
@@ -74,46 +74,15 @@ fn is_recorded(parameter: &Parameter) -> bool {
 }
 
 /// The parameters that decoding takes.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct DecoderOptions(Asked);
 
-impl Args for DecoderOptions {
-    fn augment_args(command: Command) -> Command {
-        augment(command, |_| true, is_recorded).arg(
-            Arg::new("thresholds")
-                .long("thresholds")
-                .value_delimiter(',')
-                .value_parser(value_parser!(f64))
-                .allow_negative_numbers(true)
-                .action(ArgAction::Append)
-                .conflicts_with("threshold")
-                .help_heading("Parameters")
-                .help(
-                    "Instead of --threshold, one for each channel from address 0 on: `0.1,0.1,0.5`",
-                ),
-        )
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for DecoderOptions {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
-        let thresholds = matches.get_many("thresholds").into_iter().flatten().copied();
-        let mut asked = given(matches, |_| true, is_recorded);
-        if matches.contains_id("thresholds") {
-            asked.set("threshold", thresholds.collect::<Vec<f64>>());
-        }
-        Ok(Self(asked))
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
-    }
-}
+option_group!(
+    DecoderOptions,
+    |command| augment(command, is_recorded)
+        .mut_arg("threshold", |arg| arg.visible_alias("thresholds")),
+    |matches| given(matches, is_recorded)
+);
 
 /// Runs the command.
 ///

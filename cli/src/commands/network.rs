@@ -2,20 +2,21 @@
 
 use crate::inputs::InputOptions;
 use crate::options::{SchemeOptions, schemes, tell_each};
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 use catalogue::run::{Calibrated, Known, SampleType, Settings};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::bank::Bank;
 use lab::fit::rounding;
-use lab::input::{Clock, above_zero};
+use lab::input::{InputOptions as Input, above_zero};
 use lab::network::{
     Brought, CHIPS, Chip, Figures, File, OnChip, Request, Stepped, Told, Trained, Trains, WINDOW,
     bring,
 };
 use lab::output::Output;
 use lab::scheme::Scheme;
+use lab::trial::Recording;
 use spikewire::Polarity;
 use std::fmt::Write as _;
 use std::fs;
@@ -45,7 +46,7 @@ pub(crate) struct Network {
     /// The scheme that makes the inputs: one for each neuron of each column, of codes with a direction two, up and
     /// down. Without it INPUT holds the spikes themselves: a line for each step, with the numbers of the inputs that fire,
     /// in order
-    #[arg(long, value_parser = schemes(Scheme::all()))]
+    #[arg(long, value_parser = schemes())]
     scheme: Option<Scheme>,
     /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8
     #[arg(long, default_value_t)]
@@ -86,7 +87,8 @@ fn chips() -> impl TypedValueParser<Value = &'static str> {
 /// # Errors
 /// The network, the recording, the parameters or the output are not good, or the network does not fit the chip.
 pub(crate) fn run(options: &Network) -> Result<()> {
-    let Network { trained: path, dt, input, output, .. } = options;
+    let Network { trained: path, dt, output, .. } = options;
+    let input = &options.input.to_lab();
     let file = File::read(path)?;
     ensure!(
         !input.is_stdin(),
@@ -101,8 +103,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     let trained = file.in_steps(dt.or(seconds)).map_err(|error| error.context(name.clone()))?;
     driven.check(&trained, options.scheme).with_context(|| name.clone())?;
     let held_out = options.held_out.as_ref().map(|path| {
-        let mut input = input.clone();
-        input.0.input.clone_from(path);
+        let input = Input { input: path.clone(), ..input.clone() };
         match options.scheme {
             Some(scheme) => self::driven(options, scheme, &input, Some(&driven.settings)),
             None => spiking(path),
@@ -212,27 +213,16 @@ impl Driven {
 fn driven(
     options: &Network,
     scheme: Scheme,
-    input: &InputOptions,
+    input: &Input,
     known: Option<&[Settings]>,
 ) -> Result<Driven> {
-    let Network { sample, parameters, .. } = options;
+    let Network { sample, parameters: SchemeOptions(parameters), .. } = options;
     parameters.check(scheme.info())?;
-    let mut source = input.open()?;
-    let all = source.rest()?;
-    let mut clock = Clock::new(&all.times, input.rate, input.gap);
-    clock.observe(&all.times);
-    let rows = all.finite_rows();
-    let columns = all.kept(&rows);
-    let samples = columns.first().map_or(0, Vec::len);
-    if samples == 0 {
-        bail!("{}: none of the {} samples is finite", input.name(), rows.len());
-    }
-    let mut notes = source.notes().to_vec();
-    if samples < rows.len() {
-        let count = rows.len() - samples;
-        notes.push(format!("{count} samples were not finite or missing and emitted nothing"));
-    }
-    notes.push(clock.to_string());
+    let recordings = Recording::read_all(input)?;
+    let first = recordings.first().context("there is no channel")?;
+    let (samples, rate) = (first.values.len(), first.rate);
+    let mut notes: Vec<String> = first.notes().lines().map(str::to_owned).collect();
+    let columns: Vec<Vec<f64>> = recordings.into_iter().map(|own| own.values).collect();
 
     let mut settings = known.unwrap_or_default().to_vec();
     for (channel, column) in columns.iter().enumerate().skip(settings.len()) {
@@ -278,7 +268,7 @@ fn driven(
         inputs,
         words: format!("{inputs}, of {of}{columns}{each}"),
         settings,
-        step_us: clock.rate().map(|rate| 1e6 / rate / shape.slots as f64),
+        step_us: rate.map(|rate| 1e6 / rate / shape.slots as f64),
         notes,
     })
 }

@@ -1,9 +1,9 @@
 //! `spikewire score`: how few spikes, and how near to the signal.
 
 use crate::inputs::InputOptions;
-use crate::options::{Coding, SchemeOptions, tell};
+use crate::options::{Coding, tell};
 use anyhow::{Result, bail};
-use catalogue::run::SampleType;
+use catalogue::run::{Asked, SampleType};
 use clap::Args;
 use lab::scheme::Scheme;
 use lab::score::Figures;
@@ -52,7 +52,7 @@ enum Scored {
 pub(crate) fn run(options: &Score) -> Result<()> {
     let Score { coding, input, json } = options;
     let (schemes, sample, parameters) = chosen(coding)?;
-    let recording = Recording::read(input)?;
+    let recording = Recording::read(&input.to_lab())?;
     let is_single = schemes.len() == 1;
     let mut scored = Vec::new();
     for scheme in schemes {
@@ -94,11 +94,11 @@ pub(crate) fn run(options: &Score) -> Result<()> {
 ///
 /// # Errors
 /// Parameters without a scheme to take them.
-pub(crate) fn chosen(coding: &Coding) -> Result<(Vec<Scheme>, SampleType, SchemeOptions)> {
+pub(crate) fn chosen(coding: &Coding) -> Result<(Vec<Scheme>, SampleType, Asked)> {
     let (scheme, sample, mut parameters) = coding.chosen()?;
     match scheme {
         Some(scheme) => {
-            parameters.0.paper |= parameters.is_empty();
+            parameters.paper |= parameters.is_empty();
             Ok((vec![scheme], sample, parameters))
         }
         None if !parameters.is_empty() => {
@@ -107,7 +107,7 @@ pub(crate) fn chosen(coding: &Coding) -> Result<(Vec<Scheme>, SampleType, Scheme
             )
         }
         None => {
-            parameters.0.paper = true;
+            parameters.paper = true;
             Ok((Scheme::all().collect(), sample, parameters))
         }
     }

@@ -1,14 +1,13 @@
 //! `spikewire tune`: the parameters of a scheme, from flight logs.
 
 use crate::inputs::ChannelOptions;
-use crate::options::{FREE, SchemeOptions, augment, given, spelled, tell};
+use crate::options::{FREE, augment, given, option_group, spelled, tell};
 use crate::stop::Stop;
 use anyhow::{Context, Result, bail};
 use catalogue::Parameter;
-use catalogue::run::SampleType;
-use clap::{ArgMatches, Args, Command, Error, FromArgMatches, ValueEnum};
+use catalogue::run::{Asked, SampleType};
+use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use lab::input::InputOptions;
 use lab::look::known_unit;
 use lab::output::Output;
 use lab::plot::draw_fronts;
@@ -72,7 +71,7 @@ pub(crate) struct Tune {
     #[arg(long, value_name = "RATE", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_rate: Option<f64>,
     /// Core of the measured table: M0 or M4F
-    #[arg(long, default_value = "M4F", value_parser = core, help_heading = "Limits")]
+    #[arg(long, default_value = "M4F", value_parser = costs::core, help_heading = "Limits")]
     core: String,
     /// The part of the blocks that is held out; 0 holds out nothing
     #[arg(long, value_name = "PART", default_value_t = 0.3, help_heading = "Search")]
@@ -124,10 +123,6 @@ fn which(name: &str) -> Result<Which> {
     Ok(Which::One(scheme))
 }
 
-fn core(name: &str) -> Result<String> {
-    costs::core(name)
-}
-
 /// `40Hz`, `40 Hz` or `40`.
 fn hertz(text: &str) -> Result<f64, String> {
     let number = text.trim_end_matches("Hz").trim_end();
@@ -144,33 +139,14 @@ enum Emit {
 }
 
 /// Parameters that stay as they are given.
-#[derive(Clone, Debug, Default)]
-struct Kept(SchemeOptions);
+#[derive(Clone, Debug)]
+struct Kept(Asked);
+
+option_group!(Kept, |command| augment(command, is_kept), |matches| given(matches, is_kept));
 
 /// The search has a seed of its own.
 fn is_kept(parameter: &Parameter) -> bool {
     parameter.name != "seed"
-}
-
-impl Args for Kept {
-    fn augment_args(command: Command) -> Command {
-        augment(command, |_| true, is_kept)
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for Kept {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
-        Ok(Self(SchemeOptions(given(matches, |_| true, is_kept))))
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
-    }
 }
 
 /// Runs the command.
@@ -235,7 +211,7 @@ impl Tune {
             }
             Which::All => Scheme::all().collect(),
         };
-        let mut fixed = self.parameters.0.0.clone();
+        let mut fixed = self.parameters.0.clone();
         let free_taps = fixed.word("filter") == Some(FREE);
         if free_taps {
             fixed.unset("filter");
@@ -272,8 +248,7 @@ impl Tune {
     fn logs(&self) -> Result<Vec<Vec<Recording>>> {
         let mut logs = Vec::new();
         for input in &self.inputs {
-            let input = InputOptions { input: input.clone(), channel: self.channel.0.clone() };
-            let recordings = Recording::read_all(&input)?;
+            let recordings = Recording::read_all(&self.channel.of(input))?;
             if let Some(first) = recordings.first() {
                 tell(first.notes());
             }
