@@ -35,6 +35,18 @@ pub fn short(value: f64) -> String {
     }
 }
 
+/// A parameter for programs: a number, a list of numbers, or a word.
+pub(crate) fn json(value: &Value) -> serde_json::Value {
+    let text = value.to_string();
+    let numbers: Option<Vec<serde_json::Value>> =
+        text.split(',').map(|number| serde_json::from_str(number).ok()).collect();
+    match numbers.as_deref() {
+        Some([number]) => number.clone(),
+        Some(numbers) => numbers.into(),
+        None => text.into(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::{brief, short};

@@ -132,7 +132,7 @@ impl Resolution {
 }
 
 /// A value as a type holds it, cut to its range.
-fn held(sample: SampleType, value: f64) -> f64 {
+pub(crate) fn held(sample: SampleType, value: f64) -> f64 {
     let (low, high) = sample.range();
     match sample.step() {
         0.0 => f64::from(value as f32),

@@ -1,6 +1,6 @@
 //! Scores a trial: how few spikes it has, and how near they come to the signal.
 
-use crate::brief::brief;
+use crate::brief::{brief, json};
 use crate::steep::Steep;
 use crate::trial::{Recording, Trial};
 use serde::Serialize;
@@ -59,23 +59,9 @@ impl Figures {
                 .filter(|seconds| *seconds > 0.0)
                 .map(|seconds| trial.events.len() as f64 / seconds),
             brief: brief(parameters),
-            parameters: parameters
-                .iter()
-                .map(|(key, value)| (*key, value_of(&value.to_string())))
-                .collect(),
+            parameters: parameters.iter().map(|(key, value)| (*key, json(value))).collect(),
             slope: Steep::new(trial.scheme, recording, &trial.settings),
             notes: trial.notes.clone(),
         }
-    }
-}
-
-/// A number, a list of numbers, or a word.
-fn value_of(text: &str) -> Value {
-    let numbers: Option<Vec<Value>> =
-        text.split(',').map(|number| serde_json::from_str(number).ok()).collect();
-    match numbers.as_deref() {
-        Some([number]) => number.clone(),
-        Some(numbers) => numbers.into(),
-        None => text.into(),
     }
 }

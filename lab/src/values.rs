@@ -1,11 +1,11 @@
 //! Decodes frames to values, with the receiver that runs on boards, in any sample type.
 
-use crate::events::{Held, Item, Known, Values};
+use crate::events::{Held, Item, Known, LinkTally, Values};
 use crate::scheme::Scheme as Chosen;
 use anyhow::{Context, Result, bail};
 use catalogue::for_sample_type;
 use catalogue::run::{SampleType, Settings, Visit};
-use spikewire::link::{Received, Receiver, Withheld};
+use spikewire::link::{Received, Receiver};
 use spikewire::{Recovery, Sample, SampleKind, Scheme, Spike, Tick};
 use std::any::Any;
 
@@ -323,25 +323,13 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Values for Receiving<'_, P,
         }
     }
 
-    fn outside(&self) -> u64 {
-        self.outside + u64::from(self.receiver.outside())
-    }
-
-    fn misfits(&self) -> u64 {
-        u64::from(self.receiver.misfits()).saturating_sub(self.unused_keyframes)
-    }
-
-    fn unused_keyframes(&self) -> u64 {
-        self.unused_keyframes
-    }
-
-    fn held(&self) -> Held {
-        self.held
-    }
-
-    fn withheld(&self) -> Option<Withheld> {
+    fn count(&self, tally: &mut LinkTally) {
+        tally.outside = self.outside + u64::from(self.receiver.outside());
+        tally.misfits = u64::from(self.receiver.misfits()).saturating_sub(self.unused_keyframes);
+        tally.unused_keyframes = self.unused_keyframes;
+        tally.held = self.held;
         let heard = self.has_fired.iter().position(|has_fired| *has_fired).unwrap_or(0);
-        let why = self.receiver.withheld(heard as u16);
-        why.filter(|_| !self.has_exact)
+        let is_heard = tally.frames > 0 && !self.has_exact;
+        tally.withheld = self.receiver.withheld(heard as u16).filter(|_| is_heard);
     }
 }

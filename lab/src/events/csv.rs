@@ -258,8 +258,4 @@ impl EventWriter for Writer {
     fn finish(&mut self, output: &mut dyn Write) -> Result<()> {
         self.begin(output)
     }
-
-    fn notes(&self) -> Vec<String> {
-        Vec::new()
-    }
 }

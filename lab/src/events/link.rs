@@ -1,8 +1,8 @@
 //! The crate's link.
 
-use super::{EventReader, EventWriter, Held, Item, LinkTally, Tally};
+use super::{EventReader, EventWriter, Item, LinkTally, Tally};
 use anyhow::Result;
-use spikewire::link::{Coding, Framer, LinkError, MAX_FRAME, Reader, Received, Session, Withheld};
+use spikewire::link::{Coding, Framer, LinkError, MAX_FRAME, Reader, Received, Session};
 use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;
 
@@ -14,20 +14,8 @@ pub trait Values {
     /// Adds the values of the last sample, after the last frame.
     fn finish(&mut self, items: &mut Vec<Item>);
 
-    /// How many events and keyframes had an address without a decoder.
-    fn outside(&self) -> u64;
-
-    /// How many keyframes were of another sample type.
-    fn misfits(&self) -> u64;
-
-    /// How many keyframes came for a scheme that has none.
-    fn unused_keyframes(&self) -> u64;
-
-    /// The comparison of keyframes with the values before them.
-    fn held(&self) -> Held;
-
-    /// The reason that no value was exact so far; `None` if one was.
-    fn withheld(&self) -> Option<Withheld>;
+    /// Adds the decoders' counts to those of the link.
+    fn count(&self, tally: &mut LinkTally);
 }
 
 /// Reads a link: its events, or its values.
@@ -68,19 +56,16 @@ impl EventReader for LinkReader<'_> {
 
     fn tally(&self) -> Tally {
         let reader = &self.reader;
-        let values = self.values.as_deref();
-        let link = LinkTally {
+        let mut link = LinkTally {
             frames: reader.frames().into(),
             lost: reader.lost_frames().into(),
             bad_checksums: reader.bad_checksums().into(),
             repeated: reader.repeated().into(),
-            outside: values.map_or(0, Values::outside),
-            misfits: values.map_or(0, Values::misfits),
-            unused_keyframes: values.map_or(0, Values::unused_keyframes),
-            held: values.map_or_else(Held::default, Values::held),
-            withheld: values.filter(|_| reader.frames() > 0).and_then(Values::withheld),
             ..self.tally
         };
+        if let Some(values) = &self.values {
+            values.count(&mut link);
+        }
         let skipped = u64::from(reader.skipped()).saturating_sub(self.padding);
         Tally { skipped, link: Some(link), ..Tally::default() }
     }
@@ -249,9 +234,5 @@ impl EventWriter for Writer {
 
     fn finish(&mut self, output: &mut dyn Write) -> Result<()> {
         self.all_frames(output)
-    }
-
-    fn notes(&self) -> Vec<String> {
-        Vec::new()
     }
 }

@@ -97,10 +97,10 @@ pub trait EventWriter {
     ///
     /// # Errors
     /// The output failed.
-    fn finish(&mut self, _: &mut dyn Write) -> Result<()> {
-        Ok(())
-    }
+    fn finish(&mut self, output: &mut dyn Write) -> Result<()>;
 
     /// Sentences on what the format could not hold.
-    fn notes(&self) -> Vec<String>;
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
 }

@@ -3,7 +3,7 @@
 use super::problem::{Goal, Tally};
 use super::search::Found;
 use super::{Costs, Figures, Problem, Scored, Stretch};
-use crate::brief::{brief, short};
+use crate::brief::{brief, json, short};
 use anyhow::{Context, Result};
 use catalogue::run::{Asked, SampleType, Settings};
 use serde::Serialize;
@@ -105,11 +105,7 @@ impl Row {
         let mut row = Self {
             scheme: problem.scheme.name(),
             sample: sample.to_string(),
-            parameters: settings
-                .entries()
-                .iter()
-                .map(|(key, value)| (*key, value_of(&value.to_string())))
-                .collect(),
+            parameters: settings.entries().iter().map(|(key, value)| (*key, json(value))).collect(),
             tuned_on,
             held_out: held_out(&best.options)?,
             whole: figures(&best.options, sample, &cut.whole)?,
@@ -227,17 +223,6 @@ impl Row {
             ),
             format!("RMSE {}{held_out}.", short(tuned_on.rmse)),
         ]
-    }
-}
-
-/// A number, a list of numbers, or a word.
-fn value_of(text: &str) -> Value {
-    let numbers: Option<Vec<Value>> =
-        text.split(',').map(|number| serde_json::from_str(number).ok()).collect();
-    match numbers.as_deref() {
-        Some([number]) => number.clone(),
-        Some(numbers) => numbers.into(),
-        None => text.into(),
     }
 }
 

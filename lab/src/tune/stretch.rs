@@ -1,5 +1,6 @@
 //! Stretches of recordings, some to tune on and some held out.
 
+use crate::resolution::held;
 use crate::trial::Recording;
 use anyhow::{Result, bail};
 use catalogue::run::SampleType;
@@ -26,12 +27,7 @@ impl Stretch {
 
     /// The samples as a sample type holds them.
     pub fn rounded(&self, sample: SampleType) -> Vec<f64> {
-        let (step, (low, high)) = (sample.step(), sample.range());
-        if sample == SampleType::F32 {
-            return self.values.iter().map(|value| f64::from(*value as f32)).collect();
-        }
-        let round = |value: &f64| ((value / step + 0.5).floor() * step).clamp(low, high);
-        self.values.iter().map(round).collect()
+        self.values.iter().map(|value| held(sample, *value)).collect()
     }
 }
 
