@@ -1,4 +1,4 @@
-//! A chip on a board: the SPI device and the port of a driver, which share it.
+//! A chip on a board: the SPI device and the port of a driver, which share it, and the port of tinyODIN and ODIN.
 //!
 //! Time goes on with what the driver does: an SPI clock takes `ratio` clocks of the chip, every call of
 //! the port a number of its own.
@@ -12,6 +12,21 @@ use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 use spikewire::chip::AerPort;
 
 use super::chip::{Chip, Kind};
+
+/// A chip's model: its clock and the pins of its SPI.
+pub trait Model: Default {
+    /// So many clocks.
+    fn run(&mut self, clocks: u32);
+
+    /// The line to the master.
+    fn miso(&self) -> bool;
+
+    /// SCK rises.
+    fn rise(&mut self, bit: bool);
+
+    /// SCK falls.
+    fn fall(&mut self);
+}
 
 /// What befalls an SPI clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,10 +48,10 @@ pub enum CallFault {
 
 /// Chip and wires.
 #[derive(Debug)]
-pub struct Pins<K> {
+pub struct Pins<C> {
     /// The chip.
-    pub chip: Chip<K>,
-    /// Clocks of the chip to one of SCK, 1 and above.
+    pub chip: C,
+    /// Clocks of the chip to one of SCK, 1 and above; 2 and above for `ReckOn`.
     pub ratio: u32,
     /// Clocks of the chip to a call of the port.
     pub call_clocks: u32,
@@ -56,19 +71,19 @@ pub struct Pins<K> {
 
 /// Where a driver and a test meet.
 #[derive(Debug)]
-pub struct Board<K>(Rc<RefCell<Pins<K>>>);
+pub struct Board<C>(Rc<RefCell<Pins<C>>>);
 
-impl<K> Clone for Board<K> {
+impl<C> Clone for Board<C> {
     fn clone(&self) -> Self {
         Self(self.0.clone())
     }
 }
 
-impl<K: Kind> Board<K> {
+impl<C: Model> Board<C> {
     /// A chip as after power-up, `ratio` clocks to one of SCK and `call_clocks` to a call of the port.
     pub fn new(ratio: u32, call_clocks: u32) -> Self {
         Self(Rc::new(RefCell::new(Pins {
-            chip: Chip::default(),
+            chip: C::default(),
             ratio,
             call_clocks,
             output_delays: VecDeque::new(),
@@ -84,17 +99,17 @@ impl<K: Kind> Board<K> {
     ///
     /// # Panics
     /// They are in use.
-    pub fn pins(&self) -> RefMut<'_, Pins<K>> {
+    pub fn pins(&self) -> RefMut<'_, Pins<C>> {
         self.0.borrow_mut()
     }
 
     /// The SPI device.
-    pub fn spi(&self) -> Spi<K> {
+    pub fn spi(&self) -> Spi<C> {
         Spi(self.clone())
     }
 
     /// The port.
-    pub fn port(&self) -> Port<K> {
+    pub fn port(&self) -> Port<C> {
         Port(self.clone())
     }
 
@@ -106,22 +121,23 @@ impl<K: Kind> Board<K> {
 
 /// The chip's SPI pins.
 #[derive(Debug)]
-pub struct Spi<K>(Board<K>);
+pub struct Spi<C>(Board<C>);
 
-impl<K> ErrorType for Spi<K> {
+impl<C> ErrorType for Spi<C> {
     type Error = ErrorKind;
 }
 
-impl<K: Kind> Pins<K> {
+impl<C: Model> Pins<C> {
     fn spi_bit(&mut self, bit: bool) -> bool {
         self.chip.run(self.ratio / 2);
         let fault = due(&mut self.clock_faults, self.spi_clocks);
         self.spi_clocks += 1;
+        let out = self.chip.miso();
         if fault == Some(ClockFault::Lost) {
             self.chip.run(self.ratio.div_ceil(2));
-            return false;
+            return out;
         }
-        let out = self.chip.rise(bit);
+        self.chip.rise(bit);
         if fault == Some(ClockFault::Doubled) {
             self.chip.run(1);
             self.chip.fall();
@@ -134,7 +150,7 @@ impl<K: Kind> Pins<K> {
     }
 }
 
-impl<K: Kind> SpiDevice for Spi<K> {
+impl<C: Model> SpiDevice for Spi<C> {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
         let mut pins = self.0.pins();
         transact(operations, |bit| pins.spi_bit(bit))
@@ -142,7 +158,7 @@ impl<K: Kind> SpiDevice for Spi<K> {
 }
 
 /// The bytes of a transaction, the highest bit first.
-pub(crate) fn transact(
+fn transact(
     operations: &mut [Operation<'_, u8>],
     mut exchange: impl FnMut(bool) -> bool,
 ) -> Result<(), ErrorKind> {
@@ -166,7 +182,7 @@ pub(crate) fn transact(
 }
 
 /// The fault that is due now.
-pub(crate) fn due<T: Copy>(faults: &mut VecDeque<(u64, T)>, now: u64) -> Option<T> {
+fn due<T: Copy>(faults: &mut VecDeque<(u64, T)>, now: u64) -> Option<T> {
     let &(at, fault) = faults.front()?;
     (at == now).then(|| {
         faults.pop_front();
@@ -176,11 +192,11 @@ pub(crate) fn due<T: Copy>(faults: &mut VecDeque<(u64, T)>, now: u64) -> Option<
 
 /// The chip's parallel pins.
 #[derive(Debug)]
-pub struct Port<K>(Board<K>);
+pub struct Port<C>(Board<C>);
 
-impl<K: Kind> Port<K> {
+impl<C: Model> Port<C> {
     /// Time passes, then `act` does what the call is for. The error is the call's number.
-    fn call<T>(&mut self, act: impl FnOnce(&mut Pins<K>) -> T) -> Result<T, u64> {
+    pub(crate) fn call<T>(&mut self, act: impl FnOnce(&mut Pins<C>) -> T) -> Result<T, u64> {
         let mut pins = self.0.pins();
         let call = pins.calls;
         pins.calls += 1;
@@ -195,7 +211,7 @@ impl<K: Kind> Port<K> {
     }
 }
 
-impl<K: Kind> AerPort for Port<K> {
+impl<K: Kind> AerPort for Port<Chip<K>> {
     type Error = u64;
 
     fn set_input(&mut self, word: u32) -> Result<(), u64> {
@@ -239,7 +255,7 @@ impl<K: Kind> AerPort for Port<K> {
 }
 
 /// Delays are of the chip's clock, taken as 10 MHz.
-impl<K: Kind> DelayNs for Board<K> {
+impl<C: Model> DelayNs for Board<C> {
     fn delay_ns(&mut self, ns: u32) {
         self.run(ns.div_ceil(100));
     }

@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use core::fmt::Debug;
 use core::marker::PhantomData;
 
+use super::board::{self, Model};
 use super::output::Output;
 use super::spi::SpiSlave;
 
@@ -184,6 +185,44 @@ impl<K: Kind> Default for Chip<K> {
     }
 }
 
+/// Chip and wires.
+pub type Pins<K> = board::Pins<Chip<K>>;
+
+/// Where a driver and a test meet.
+pub type Board<K> = board::Board<Chip<K>>;
+
+/// The chip's SPI pins.
+pub type Spi<K> = board::Spi<Chip<K>>;
+
+/// The chip's parallel pins.
+pub type Port<K> = board::Port<Chip<K>>;
+
+impl<K: Kind> Model for Chip<K> {
+    fn run(&mut self, clocks: u32) {
+        self.run(clocks);
+    }
+
+    fn miso(&self) -> bool {
+        self.spi.output()
+    }
+
+    fn rise(&mut self, bit: bool) {
+        if let Some(written) = self.spi.rise(bit)
+            && let Some(register) = self.registers.0.get_mut(usize::from(written.register))
+        {
+            *register = written.value;
+            self.is_still = false;
+        }
+    }
+
+    fn fall(&mut self) {
+        let before = self.spi;
+        self.spi.fall(self.neuron_read, self.synapses_read);
+        let asks = |spi: &SpiSlave| (spi.is_reading, spi.is_writing);
+        self.is_still &= asks(&before) == asks(&self.spi);
+    }
+}
+
 impl<K: Kind> Chip<K> {
     /// The input bus's ACK.
     pub fn acknowledge(&self) -> bool {
@@ -219,26 +258,6 @@ impl<K: Kind> Chip<K> {
     pub fn synapse(&self, pre: u8, post: u8) -> u8 {
         let word = self.synapses[usize::from(pre) << 5 | usize::from(post) >> 3];
         (word >> (4 * (post & 7)) & 0xF) as u8
-    }
-
-    /// SCK rises, with this bit on its line. Returns the bit that the master samples.
-    pub fn rise(&mut self, bit: bool) -> bool {
-        let out = self.spi.output();
-        if let Some(written) = self.spi.rise(bit)
-            && let Some(register) = self.registers.0.get_mut(usize::from(written.register))
-        {
-            *register = written.value;
-            self.is_still = false;
-        }
-        out
-    }
-
-    /// SCK falls.
-    pub fn fall(&mut self) {
-        let before = self.spi;
-        self.spi.fall(self.neuron_read, self.synapses_read);
-        let asks = |spi: &SpiSlave| (spi.is_reading, spi.is_writing);
-        self.is_still &= asks(&before) == asks(&self.spi);
     }
 
     /// Drives RST.

@@ -28,8 +28,7 @@ pub mod reckon;
 pub mod spi;
 mod tiny_odin;
 
-pub use board::{Board, Pins, Port, Spi};
-pub use chip::{Chip, Kind};
+pub use chip::{Board, Chip, Kind, Pins, Port, Spi};
 pub use odin::Odin;
 pub use reckon::ReckOn;
 pub use tiny_odin::TinyOdin;
