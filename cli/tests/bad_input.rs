@@ -29,7 +29,7 @@ fn columns_topics_and_fields() {
     refused(
         &format!("{SF} --topic sensor_combined --field gyro_rad {log}"),
         "",
-        &["no field `gyro_rad`", "gyro_rad[0]"],
+        &["field `gyro_rad` is not one number but several", "gyro_rad[0..3]"],
     );
 }
 

@@ -8,8 +8,8 @@ use std::sync::OnceLock;
 use lab::coding::Coding;
 use lab::events::{Format, read_events};
 use lab::frames;
-use lab::input::messages::{Reading, kind_of, overview};
-use lab::input::{ChannelOptions, Chunk, InputOptions, Log};
+use lab::input::messages::{Kind, Reading, kind_of, overview};
+use lab::input::{ChannelOptions, Chunk, InputOptions};
 use lab::network;
 use lab::spikes::{self, Item, Spikes};
 
@@ -55,9 +55,7 @@ pub fn logs(bytes: &[u8]) {
 pub fn ulog(bytes: &[u8]) {
     let path = file("log.ulg", bytes);
     for accept_cut in [false, true] {
-        if let Ok(log) = Log::read(&path, accept_cut) {
-            let _ = log.topics();
-        }
+        let _ = overview(&path, Kind::Ulog, accept_cut, 1.5).is_ok();
     }
     let channel = ChannelOptions {
         topic: Some("sensor_combined".into()),

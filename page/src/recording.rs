@@ -4,8 +4,8 @@ use crate::host::{Dropped, send};
 use anyhow::{Context, Result, bail};
 use lab::bench::signal::{RATE, Waveform};
 use lab::files::{Bytes, lend, take_back};
-use lab::input::messages::overview;
-use lab::input::{ChannelOptions, InputOptions, Log, LogKind, log_kind};
+use lab::input::messages::{kind_of, overview};
+use lab::input::{ChannelOptions, InputOptions};
 use lab::look::known_unit;
 use lab::trial::Recording;
 use serde::Deserialize;
@@ -104,7 +104,7 @@ fn paper() -> String {
 fn list(path: &Path, accept_cut: bool) -> Result<Value> {
     FILE.set(path.to_owned());
     let topic = |name: &str, fields: Vec<String>, about: String| json!({ "name": name, "fields": fields, "about": about });
-    let (topics, notes) = match log_kind(path)? {
+    let (topics, notes) = match kind_of(path)? {
         None => {
             let mut options = options(None);
             options.columns = vec!["all".to_owned()];
@@ -113,22 +113,14 @@ fn list(path: &Path, accept_cut: bool) -> Result<Value> {
             let names = names.split(',').map(str::to_owned).collect();
             (vec![topic("", names, String::new())], source.notes().to_vec())
         }
-        Some(LogKind::Ulog) => {
-            let log = Log::read(path, accept_cut)?;
-            let topics = log.topics().into_iter().filter(|(_, own)| !own.fields.is_empty());
-            let topics = topics.map(|(name, own)| {
-                let about = format!("{} samples", own.times.len());
-                topic(&name, own.fields, about)
-            });
-            (topics.collect(), log.findings.to_string().lines().map(str::to_owned).collect())
-        }
-        Some(LogKind::Messages(kind)) => {
+        Some(kind) => {
             let (topics, notes) = overview(path, kind, accept_cut, GAP)?;
             let topics =
                 topics.into_iter().filter(|own| own.unread.is_none() && !own.fields.is_empty());
             let topics = topics.map(|own| {
                 let fields = own.fields.iter().flat_map(|field| each(field)).collect();
-                topic(&own.name, fields, format!("{} messages {}", own.count, own.kind))
+                let about = format!("{} messages {}", own.count, own.kind);
+                topic(&own.name, fields, about.trim_end().to_owned())
             });
             (topics.collect(), notes)
         }

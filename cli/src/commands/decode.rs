@@ -5,7 +5,8 @@ use anyhow::{Context, Result, anyhow, bail};
 use catalogue::run::{Event, SampleType};
 use clap::Args;
 use lab::bank::Bank;
-use lab::input::{LogKind, log_kind, text};
+use lab::input::messages::kind_of;
+use lab::input::text;
 use lab::output::Output;
 use lab::spikes::{Header, Item, Messages, Reader, Spikes};
 use lab::timeline::Timeline;
@@ -43,9 +44,9 @@ const BUFFER: usize = 1 << 18;
 pub(crate) fn run(options: &Decode) -> Result<()> {
     let Decode { spikes, output, accept_cut } = options;
     let is_stdin = spikes == Path::new("-");
-    let kind = if is_stdin { None } else { log_kind(spikes)? };
+    let kind = if is_stdin { None } else { kind_of(spikes)? };
     let open = || Output::open(output.as_deref(), spikes);
-    if let Some(LogKind::Messages(kind)) = kind {
+    if let Some(kind) = kind {
         let (log, header) = Messages::open(spikes, kind, *accept_cut)?;
         return decode(log, &header, &spikes.display().to_string(), open);
     }

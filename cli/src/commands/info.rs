@@ -2,8 +2,8 @@
 
 use anyhow::{Result, bail};
 use clap::Args;
-use lab::input::messages::{Overview, overview};
-use lab::input::{Clock, Log, LogKind, Rollover, Topic, above_zero, log_kind};
+use lab::input::above_zero;
+use lab::input::messages::{Overview, kind_of, overview};
 use std::io::{Write, stdout};
 use std::path::PathBuf;
 
@@ -33,11 +33,10 @@ pub(crate) struct Info {
 /// The log cannot be read.
 pub(crate) fn run(options: &Info) -> Result<()> {
     let Info { log, gap, accept_cut } = options;
-    let (topics, notes) = match log_kind(log)? {
-        Some(LogKind::Ulog) => of_ulog(options)?,
-        Some(LogKind::Messages(kind)) => overview(log, kind, *accept_cut, *gap)?,
-        None => bail!("{}: not a log that is known; {KINDS}", log.display()),
+    let Some(kind) = kind_of(log)? else {
+        bail!("{}: not a log that is known; {KINDS}", log.display())
     };
+    let (topics, notes) = overview(log, kind, *accept_cut, *gap)?;
     let mut output = stdout().lock();
     for note in notes {
         writeln!(output, "{note}")?;
@@ -46,30 +45,6 @@ pub(crate) fn run(options: &Info) -> Result<()> {
         write(topic, &mut output)?;
     }
     Ok(())
-}
-
-/// A PX4 log, which is read as a whole.
-fn of_ulog(options: &Info) -> Result<(Vec<Overview>, Vec<String>)> {
-    let log = Log::read(&options.log, options.accept_cut)?;
-    let overview = |(name, topic): (String, Topic)| {
-        let mut rollover = Rollover::default();
-        let times: Vec<i64> = topic.times.iter().map(|time| rollover.take(*time)).collect();
-        let mut clock = Clock::new(&times, None, options.gap);
-        clock.observe(&times);
-        Overview {
-            name,
-            kind: String::new(),
-            fields: joined(&topic.fields),
-            texts: topic.texts,
-            unread: None,
-            count: times.len() as u64,
-            clock,
-            rollover,
-            missing: 0,
-        }
-    };
-    let topics = log.topics().into_iter().map(overview).collect();
-    Ok((topics, log.findings.to_string().lines().map(str::to_owned).collect()))
 }
 
 fn write(topic: &Overview, output: &mut impl Write) -> Result<()> {
@@ -103,19 +78,4 @@ fn write(topic: &Overview, output: &mut impl Write) -> Result<()> {
         writeln!(output, "  text: {}", topic.texts.join(", "))?;
     }
     Ok(())
-}
-
-/// The fields with arrays joined: `gyro_rad[0..3]`.
-fn joined(names: &[String]) -> Vec<String> {
-    let runs = names.chunk_by(|a, b| a.contains('[') && array(a) == array(b));
-    let joined = runs.map(|run| match run {
-        [one] => one.clone(),
-        [first, ..] => format!("{}[0..{}]", array(first), run.len()),
-        [] => String::new(),
-    });
-    joined.collect()
-}
-
-fn array(name: &str) -> &str {
-    name.rsplit_once('[').map_or(name, |(array, _)| array)
 }

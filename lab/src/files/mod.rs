@@ -20,16 +20,6 @@ pub fn has_bytes(path: &Path) -> bool {
     File::open(path).is_ok_and(|mut file| file.read(&mut [0]).is_ok_and(|read| read > 0))
 }
 
-/// Reads a whole file.
-///
-/// # Errors
-/// Returns an error if the file is missing or cannot be read.
-pub fn read(path: &Path) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    File::open(path)?.read_to_end(&mut bytes)?;
-    Ok(bytes)
-}
-
 /// Reads a whole file of text.
 ///
 /// # Errors

@@ -7,18 +7,15 @@ mod names;
 mod rollover;
 mod text;
 mod time;
-mod ulog;
 
 pub use clock::{Clock, Kind, Step};
 pub use names::near;
 pub use rollover::Rollover;
 pub use text::{shown, text};
-pub use ulog::{Log, Topic};
 
-use crate::files::{self, File};
+use crate::files::File;
 use anyhow::{Context, Result, bail};
-use flate2::read::MultiGzDecoder;
-use std::io::{self, Cursor, Read};
+use std::io;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -230,18 +227,15 @@ impl InputOptions {
             self.refuse(&of_logs, "a CSV table")?;
             return Ok(Box::new(csv::Table::open(io::stdin(), "standard input", self)?));
         }
-        if let Some(kind) = log_kind(&self.input)? {
+        if let Some(kind) = messages::kind_of(&self.input)? {
             if let Some(named) = self.named_by_topic() {
                 return named.open_as_is();
             }
             self.refuse(&of_tables, "a log")?;
-            return Ok(match kind {
-                LogKind::Ulog => {
-                    self.refuse(&of_times, "a flight log")?;
-                    Box::new(ulog::Channel::open(self)?)
-                }
-                LogKind::Messages(kind) => Box::new(messages::Channel::open(self, kind)?),
-            });
+            if kind == messages::Kind::Ulog {
+                self.refuse(&of_times, "a flight log")?;
+            }
+            return Ok(Box::new(messages::Channel::open(self, kind)?));
         }
         let name = self.input.display().to_string();
         let file = File::open(&self.input).with_context(|| format!("{name}: cannot be opened"))?;
@@ -273,7 +267,8 @@ impl InputOptions {
     /// The file cannot be opened.
     pub fn or_all(&self) -> Result<Self> {
         let mut own = self.clone();
-        if self.columns().next().is_none() && (self.is_stdin() || log_kind(&self.input)?.is_none())
+        if self.columns().next().is_none()
+            && (self.is_stdin() || messages::kind_of(&self.input)?.is_none())
         {
             own.channel.columns = vec![ALL.to_owned()];
         }
@@ -331,42 +326,4 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
         Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
         _ => Err("must be a number above 0 and finite".to_owned()),
     }
-}
-
-/// The kinds of logs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LogKind {
-    /// PX4's.
-    Ulog,
-    /// A log that is read message by message.
-    Messages(messages::Kind),
-}
-
-/// Finds a file's kind from its first bytes, packed or not; `None` if it may be a table.
-///
-/// # Errors
-/// Returns an error if the file cannot be opened.
-pub fn log_kind(path: &Path) -> Result<Option<LogKind>> {
-    if files::is_dir(path) {
-        return Ok(messages::kind_of(path)?.map(LogKind::Messages));
-    }
-    let start = |input: &mut dyn Read| {
-        let mut start = Vec::new();
-        input.take(4).read_to_end(&mut start).map(|_| start)
-    };
-    let mut file =
-        File::open(path).with_context(|| format!("{}: cannot be opened", path.display()))?;
-    let mut found = start(&mut file).with_context(|| format!("{}", path.display()))?;
-    if found.starts_with(&text::GZIP) {
-        let all = Cursor::new(found).chain(file);
-        found = start(&mut MultiGzDecoder::new(all)).unwrap_or_default();
-    }
-    if found == b"ULog" || path.extension().is_some_and(|own| own == "ulg") {
-        return Ok(Some(LogKind::Ulog));
-    }
-    // What can be read only once is no log.
-    if !files::is_file(path) {
-        return Ok(None);
-    }
-    Ok(messages::kind_of(path)?.map(LogKind::Messages))
 }

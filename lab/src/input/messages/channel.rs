@@ -44,7 +44,8 @@ impl Channel {
     pub fn open(options: &InputOptions, kind: Kind) -> Result<Self> {
         let file = options.name();
         let fields: Vec<String> = options.fields().map(str::to_owned).collect();
-        let topic = options.topic.clone().or_else(|| kind.usual_topic().map(str::to_owned));
+        let first = |topic: &str| topic.strip_suffix(":0").unwrap_or(topic).to_owned();
+        let topic = options.topic.as_deref().or(kind.usual_topic()).map(first);
         let Some(topic) = topic.filter(|_| !fields.is_empty()) else {
             bail!("{file}: a log needs `topic` and `field`; `spikewire info` lists them");
         };

@@ -1,4 +1,4 @@
-//! Definitions of ROS messages: `type name` lines, and those of the messages within after `MSG: package/Type`.
+//! Definitions of messages: `type name` lines, and in ROS those of the messages within after `MSG: package/Type`.
 
 use super::known::known;
 use std::collections::HashMap;
@@ -26,7 +26,11 @@ pub(super) struct Field {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Number(Number),
+    /// A number that no one asks for by name.
+    Hidden(Number),
     Text,
+    /// A character of a text that has a length.
+    Character,
     /// Text of two or four bytes a character, by the writer's taste.
     WideText,
     /// Another message, by its place in the definition.
@@ -48,6 +52,18 @@ pub(super) enum Number {
     F64,
 }
 
+impl Number {
+    /// How many bytes it takes.
+    pub(super) fn size(self) -> usize {
+        match self {
+            Self::Bool | Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::I64 | Self::U64 | Self::F64 => 8,
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shape {
     One,
@@ -62,6 +78,7 @@ pub(super) enum Shape {
 pub(super) enum Dialect {
     Ros1,
     Ros2,
+    Px4,
 }
 
 /// The steps to a number within a message.
@@ -94,6 +111,10 @@ pub(super) struct Stamp {
 const DEEPEST: usize = 16;
 /// Longer arrays of a fixed length do not fit a message.
 const LONGEST: usize = 1 << 28;
+/// The field with the time at which PX4 logged a message.
+const TIME: &str = "timestamp";
+/// The start of the names of PX4's padding.
+const PADDING: &str = "_padding";
 
 impl Definition {
     /// Reads the text in a log, for a message of this type, such as `sensor_msgs/Imu`.
@@ -121,9 +142,37 @@ impl Definition {
         }
         let name = short(name);
         texts.entry(name.clone()).or_insert(own);
-        let mut parser = Parser { texts, dialect, structs: Vec::new(), places: HashMap::new() };
-        parser.add(&name, 0)?;
-        Ok(Self { structs: parser.structs })
+        Parser::parse(&name, &texts, dialect)
+    }
+
+    /// Finds a message among the definitions of a PX4 log.
+    ///
+    /// # Errors
+    /// Returns an error that names what cannot be understood.
+    pub(super) fn of_px4(name: &str, texts: &HashMap<String, String>) -> Result<Self, String> {
+        Parser::parse(name, texts, Dialect::Px4)
+    }
+
+    /// The place of the time at which PX4 logged a message.
+    pub(super) fn time(&self) -> Option<Path> {
+        let is_time = |field: &Field| {
+            let is_one = (field.kind, field.shape) == (Kind::Hidden(Number::U64), Shape::One);
+            field.name == TIME && is_one
+        };
+        let place = self.root().fields.iter().position(is_time)?;
+        Some(Path(vec![Step::Field(place)]))
+    }
+
+    /// How many bytes of padding end a message of PX4.
+    pub(super) fn padding(&self) -> usize {
+        let fields = self.root().fields.iter().rev();
+        let padding = fields.take_while(|field| field.name.starts_with(PADDING));
+        let size = |field: &Field| match (field.kind, field.shape) {
+            (Kind::Hidden(number), Shape::Fixed(count)) => number.size() * count,
+            (Kind::Hidden(number), _) => number.size(),
+            _ => 0,
+        };
+        padding.map(size).sum()
     }
 
     pub(super) fn root(&self) -> &Struct {
@@ -138,8 +187,9 @@ impl Definition {
     pub(super) fn number(&self, asked: &str) -> Result<Path, NoNumber> {
         match self.find(asked)? {
             (path, Kind::Number(_)) => Ok(path),
-            (_, Kind::Text | Kind::WideText) => Err(NoNumber::Text),
+            (_, Kind::Text | Kind::WideText | Kind::Character) => Err(NoNumber::Text),
             (_, Kind::Nested(_)) => Err(NoNumber::Several),
+            (_, Kind::Hidden(_)) => Err(NoNumber::Missing),
         }
     }
 
@@ -178,6 +228,7 @@ impl Definition {
                 (Shape::Fixed(count), Some(item)) if item < count => path.0.push(Step::Item(item)),
                 (Shape::Counted, Some(item)) => path.0.push(Step::Item(item)),
                 (Shape::One, Some(_)) if field.kind == Kind::Text => return Err(NoNumber::Text),
+                (_, None) if field.kind == Kind::Character => return Err(NoNumber::Text),
                 (Shape::Fixed(_) | Shape::Counted, None) => return Err(NoNumber::Several),
                 (Shape::One | Shape::Fixed(_), Some(_)) => return Err(NoNumber::Missing),
             }
@@ -212,7 +263,9 @@ impl Definition {
             };
             match field.kind {
                 Kind::Number(_) => numbers.push(name),
+                Kind::Hidden(_) => {}
                 Kind::Text | Kind::WideText => texts.push(name),
+                Kind::Character => texts.push(format!("{prefix}{}", field.name)),
                 Kind::Nested(place) => {
                     self.add_names(self.nested(place), &format!("{name}."), numbers, texts);
                 }
@@ -226,14 +279,24 @@ pub(super) fn short(name: &str) -> String {
     name.replacen("/msg/", "/", 1)
 }
 
-struct Parser {
-    texts: HashMap<String, String>,
+struct Parser<'a> {
+    texts: &'a HashMap<String, String>,
     dialect: Dialect,
     structs: Vec<Struct>,
     places: HashMap<String, usize>,
 }
 
-impl Parser {
+impl<'a> Parser<'a> {
+    fn parse(
+        name: &str,
+        texts: &'a HashMap<String, String>,
+        dialect: Dialect,
+    ) -> Result<Definition, String> {
+        let mut parser = Self { texts, dialect, structs: Vec::new(), places: HashMap::new() };
+        parser.add(name, 0)?;
+        Ok(Definition { structs: parser.structs })
+    }
+
     /// The place of a message, which is read now unless it was before.
     fn add(&mut self, name: &str, depth: usize) -> Result<usize, String> {
         if depth > DEEPEST {
@@ -283,16 +346,17 @@ impl Parser {
         let kind = match base {
             "bool" => Kind::Number(Number::Bool),
             "byte" if self.dialect == Dialect::Ros1 => Kind::Number(Number::I8),
-            "int8" => Kind::Number(Number::I8),
-            "uint8" | "char" | "byte" => Kind::Number(Number::U8),
-            "int16" => Kind::Number(Number::I16),
-            "uint16" => Kind::Number(Number::U16),
-            "int32" => Kind::Number(Number::I32),
-            "uint32" => Kind::Number(Number::U32),
-            "int64" => Kind::Number(Number::I64),
-            "uint64" => Kind::Number(Number::U64),
-            "float32" => Kind::Number(Number::F32),
-            "float64" => Kind::Number(Number::F64),
+            "int8" | "int8_t" => Kind::Number(Number::I8),
+            "char" if self.dialect == Dialect::Px4 => Kind::Character,
+            "uint8" | "uint8_t" | "char" | "byte" => Kind::Number(Number::U8),
+            "int16" | "int16_t" => Kind::Number(Number::I16),
+            "uint16" | "uint16_t" => Kind::Number(Number::U16),
+            "int32" | "int32_t" => Kind::Number(Number::I32),
+            "uint32" | "uint32_t" => Kind::Number(Number::U32),
+            "int64" | "int64_t" => Kind::Number(Number::I64),
+            "uint64" | "uint64_t" => Kind::Number(Number::U64),
+            "float32" | "float" => Kind::Number(Number::F32),
+            "float64" | "double" => Kind::Number(Number::F64),
             "string" => Kind::Text,
             "wstring" => Kind::WideText,
             "time" | "duration" if self.dialect == Dialect::Ros1 => {
@@ -304,7 +368,7 @@ impl Parser {
                 if nested.is_empty() || !nested.bytes().all(is_name) {
                     return Err(not_understood());
                 }
-                let nested = if nested.contains('/') {
+                let nested = if nested.contains('/') || self.dialect == Dialect::Px4 {
                     short(nested)
                 } else {
                     let package = of.split_once('/').map_or("", |(package, _)| package);
@@ -313,12 +377,21 @@ impl Parser {
                 Kind::Nested(self.add(&nested, depth + 1)?)
             }
         };
+        let is_time = depth == 0 && name == TIME;
+        let kind = match kind {
+            Kind::Number(number)
+                if self.dialect == Dialect::Px4 && (is_time || name.starts_with(PADDING)) =>
+            {
+                Kind::Hidden(number)
+            }
+            kind => kind,
+        };
         Ok(Field { name: name.to_owned(), kind, shape })
     }
 }
 
 /// The type and name of a line that declares a field, none of a constant or a comment.
-fn declared(line: &str) -> Option<(&str, &str)> {
+pub(super) fn declared(line: &str) -> Option<(&str, &str)> {
     let line = line.split('#').next().unwrap_or(line).trim();
     let (kind, rest) = line.split_once(char::is_whitespace)?;
     let rest = rest.trim_start();
@@ -413,6 +486,34 @@ uint8 MOST = 5
         let (numbers, texts) = parsed.names();
         assert_eq!(numbers.join(" "), "header.stamp.sec header.stamp.nanosec few[] gain");
         assert_eq!(texts, ["header.frame_id", "word"]);
+    }
+
+    #[test]
+    fn px4s_time_and_padding_have_no_names() {
+        use Step::{Field, Item};
+        let texts = [
+            ("inner", "uint16_t a\nchar[5] word"),
+            ("outer", "bool on\nuint64_t timestamp\ninner[2] two\nuint8_t[3] _padding0"),
+            ("endless", "uint64_t timestamp\nendless again"),
+        ];
+        let texts = texts.map(|(name, text)| (name.to_owned(), text.to_owned())).into();
+        let outer = Definition::of_px4("outer", &texts).unwrap();
+        assert_eq!(
+            outer.names(),
+            (vec!["on".into(), "two[0..2].a".into()], vec!["two[0..2].word".into()])
+        );
+        assert_eq!((outer.time(), outer.padding()), (Some(Path(vec![Field(1)])), 3));
+        for (name, found) in [
+            ("two[1].a", Ok(Path(vec![Field(2), Item(1), Field(0)]))),
+            ("two[1].word", Err(NoNumber::Text)),
+            ("two[1].word[0]", Err(NoNumber::Text)),
+            ("timestamp", Err(NoNumber::Missing)),
+            ("_padding0[0]", Err(NoNumber::Missing)),
+        ] {
+            assert_eq!(outer.number(name), found, "{name}");
+        }
+        assert!(Definition::of_px4("endless", &texts).is_err());
+        assert_eq!(Definition::of_px4("inner", &texts).unwrap().time(), None);
     }
 
     #[test]

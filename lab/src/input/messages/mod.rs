@@ -1,6 +1,7 @@
-//! Logs of messages on topics: ROS bags, MCAP files, Betaflight's blackbox.
+//! Logs of messages on topics: ROS bags, MCAP files, Betaflight's blackbox, PX4's flight logs.
 //!
-//! Each kind of log gives its messages one after the other, in the order of the file, so that memory does not grow.
+//! Each kind of log gives its messages one after the other, in the order of the file, so that memory does not grow but
+//! for PX4's.
 
 mod bag;
 mod blackbox;
@@ -20,14 +21,15 @@ mod reading;
 mod rosbag2;
 mod sqlite;
 mod topic;
+mod ulog;
 mod wire;
 
 pub use channel::Channel;
 pub use reading::Reading;
 pub use topic::{Overview, overview};
 
-use crate::files;
-use anyhow::Result;
+use crate::files::{self, File};
+use anyhow::{Context, Result};
 use bytes::Bytes;
 use faults::Faults;
 use std::path::Path;
@@ -77,6 +79,8 @@ pub enum Kind {
     Directory,
     /// Betaflight's.
     Blackbox,
+    /// PX4's.
+    Ulog,
 }
 
 impl Kind {
@@ -84,7 +88,7 @@ impl Kind {
     fn usual_topic(self) -> Option<&'static str> {
         match self {
             Self::Blackbox => Some(blackbox::MAIN),
-            Self::Bag | Self::Mcap | Self::Sqlite | Self::Directory => None,
+            Self::Bag | Self::Mcap | Self::Sqlite | Self::Directory | Self::Ulog => None,
         }
     }
 }
@@ -97,6 +101,14 @@ pub fn kind_of(path: &Path) -> Result<Option<Kind>> {
     const START: u64 = 32;
     if files::is_dir(path) || path.file_name().is_some_and(|name| name == rosbag2::METADATA) {
         return Ok(Some(Kind::Directory));
+    }
+    if path.extension().is_some_and(|own| own == "ulg") {
+        return Ok(Some(Kind::Ulog));
+    }
+    // What can be read only once is no log.
+    if !files::is_file(path) {
+        File::open(path).with_context(|| format!("{}: cannot be opened", path.display()))?;
+        return Ok(None);
     }
     let mut start = Vec::new();
     // What cannot be unpacked is no log.
@@ -113,6 +125,7 @@ fn kind(start: &[u8]) -> Option<Kind> {
         (mcap::START, Kind::Mcap),
         (sqlite::START, Kind::Sqlite),
         (blackbox::START, Kind::Blackbox),
+        (ulog::START, Kind::Ulog),
     ];
     kinds.into_iter().find(|(own, _)| start.starts_with(own)).map(|(_, kind)| kind)
 }
@@ -129,6 +142,7 @@ fn open(path: &Path, kind: Kind, accept_cut: bool) -> Result<Box<dyn Log>> {
         Kind::Mcap => Box::new(mcap::Mcap::open(path, faults)?),
         Kind::Sqlite => Box::new(rosbag2::Sqlite::open(path, faults)?),
         Kind::Blackbox => Box::new(blackbox::Blackbox::open(path, faults)?),
+        Kind::Ulog => Box::new(ulog::Ulog::open(path, faults)?),
         Kind::Directory => Box::new(rosbag2::Directory::open(path, faults)?),
     })
 }

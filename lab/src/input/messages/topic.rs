@@ -21,7 +21,7 @@ impl Topic {
     /// A topic whose messages have a definition in this dialect.
     pub(super) fn new(name: String, kind: String, dialect: Dialect, text: &str) -> Self {
         let wire = match dialect {
-            Dialect::Ros1 => Wire::Ros1,
+            Dialect::Ros1 | Dialect::Px4 => Wire::Ros1,
             Dialect::Ros2 => Wire::Cdr,
         };
         let definition = Definition::parse(&kind, text, dialect);

@@ -42,7 +42,7 @@ pub(super) fn number(
 ) -> Result<Option<f64>, Fault> {
     let mut input = Input::new(wire, message)?;
     match input.go(definition, path)? {
-        Some(Kind::Number(kind)) => input.number(kind).map(Some),
+        Some(Kind::Number(kind) | Kind::Hidden(kind)) => input.number(kind).map(Some),
         _ => Ok(None),
     }
 }
@@ -50,11 +50,14 @@ pub(super) fn number(
 /// Whether a message goes on behind its definition; CDR may fill up to four bytes.
 pub(super) fn is_longer(wire: Wire, definition: &Definition, message: &[u8]) -> bool {
     let filling = if wire == Wire::Cdr { 3 } else { 0 };
-    let end = Input::new(wire, message).and_then(|mut input| {
-        input.skip_struct(definition, definition.root())?;
-        Ok(input.at + filling < input.bytes.len())
-    });
-    end.unwrap_or(false)
+    length(wire, definition, message).is_ok_and(|length| length + filling < message.len())
+}
+
+/// How long a message is by its definition.
+pub(super) fn length(wire: Wire, definition: &Definition, message: &[u8]) -> Result<usize, Fault> {
+    let mut input = Input::new(wire, message)?;
+    input.skip_struct(definition, definition.root())?;
+    Ok(message.len() - input.bytes.len() + input.at)
 }
 
 /// The text at a place.
@@ -191,11 +194,12 @@ impl<'a> Input<'a> {
             return Ok(());
         }
         match kind {
-            Kind::Number(number) => {
-                let size = size(number);
+            Kind::Number(number) | Kind::Hidden(number) => {
+                let size = number.size();
                 self.align(size);
                 self.skip(size.checked_mul(count).ok_or(Fault::Short)?)
             }
+            Kind::Character => self.skip(count),
             Kind::Text => (0..count).try_for_each(|_| {
                 let length = self.count()?;
                 self.skip(length)
@@ -225,15 +229,6 @@ impl<'a> Input<'a> {
             .fields
             .iter()
             .try_for_each(|field| self.skip_field(definition, field.kind, field.shape))
-    }
-}
-
-fn size(number: Number) -> usize {
-    match number {
-        Number::Bool | Number::I8 | Number::U8 => 1,
-        Number::I16 | Number::U16 => 2,
-        Number::I32 | Number::U32 | Number::F32 => 4,
-        Number::I64 | Number::U64 | Number::F64 => 8,
     }
 }
 

@@ -1,16 +1,20 @@
 //! The messages of a log one by one, and which of them can be read.
 
-use super::format::{Format, Formats, Number};
+use super::super::definition::{Definition, Path, declared};
+use super::super::topic::Topic;
+use super::super::wire::{self, Wire};
 use std::collections::HashMap;
 use std::fmt;
 use std::ops::Range;
 
 /// The length of the file's header.
 pub(super) const HEADER: usize = 16;
+/// What comes before the content of a message of data: length, kind and id.
+pub(super) const DATA: usize = 5;
 
 /// Findings on a log besides its data.
 #[derive(Debug, Default)]
-pub struct Findings {
+pub(super) struct Findings {
     unregistered: Found,
     formats: Found,
     lengths: Found,
@@ -81,44 +85,35 @@ struct Message {
 /// The walk over a log.
 pub(super) struct Scan<'a> {
     bytes: &'a [u8],
-    formats: Formats,
-    /// The present meaning of each registered id, as an index of `series`.
+    /// The definitions by name, a line for each field.
+    formats: HashMap<String, String>,
+    /// The present meaning of each registered id, as an index of `topics`.
     registered: HashMap<u16, usize>,
-    series: Vec<Series>,
-    messages: Vec<(usize, Range<usize>)>,
-    findings: Findings,
-}
-
-/// The readable part of a log.
-pub(super) struct Scanned {
-    /// The series of messages, by id.
+    /// What was registered.
+    pub topics: Vec<Topic>,
+    /// More about each of them.
     pub series: Vec<Series>,
     /// The good messages of data in their order: which of the above, and where in the file.
-    pub messages: Vec<(usize, Range<usize>)>,
+    pub messages: Vec<(usize, usize)>,
     pub findings: Findings,
 }
 
-/// An instance of a topic, as it was registered.
+/// The messages of a topic.
 pub(super) struct Series {
-    /// The topic, later instances as `topic:1`.
-    pub name: String,
-    /// Its numbers.
-    pub numbers: Vec<(String, Number)>,
-    /// Its fields of text.
-    pub texts: Vec<String>,
     /// The place of the time at which a message was logged.
-    pub time: Number,
-    /// How long a message is, without and with padding at its end.
-    lengths: (usize, usize),
+    pub time: Path,
+    /// How long a message is, without the padding at its end, which is seldom logged, and with it.
+    pub lengths: (usize, usize),
 }
 
 impl<'a> Scan<'a> {
     /// Takes all messages of a log that is as long as its header at least.
-    pub(super) fn run(bytes: &'a [u8]) -> Scanned {
+    pub(super) fn run(bytes: &'a [u8]) -> Self {
         let mut scan = Self {
             bytes,
-            formats: Formats::new(),
+            formats: HashMap::new(),
             registered: HashMap::new(),
+            topics: Vec::new(),
             series: Vec::new(),
             messages: Vec::new(),
             findings: Findings::default(),
@@ -129,8 +124,7 @@ impl<'a> Scan<'a> {
         if let Some(start) = appended {
             scan.part(start..bytes.len(), false);
         }
-        let Self { series, messages, findings, .. } = scan;
-        Scanned { series, messages, findings }
+        scan
     }
 
     /// The place at which data was appended later, such as after a crash.
@@ -221,8 +215,7 @@ impl<'a> Scan<'a> {
                 match id.map(|id| self.registered.get(&id)) {
                     Some(None) => self.findings.unregistered.at(message.at),
                     Some(Some(&series)) if self.is_good(message) => {
-                        let data = message.content.start + 2..message.content.end;
-                        self.messages.push((series, data));
+                        self.messages.push((series, message.at));
                     }
                     _ => self.findings.lengths.at(message.at),
                 }
@@ -241,37 +234,49 @@ impl<'a> Scan<'a> {
         }
     }
 
+    /// Keeps a definition, `name:type field;type[8] field;`.
     fn define(&mut self, at: usize, content: &[u8]) {
-        let Some(format) = Format::parse(content) else {
-            self.findings.formats.at(at);
-            return;
+        let defined = str::from_utf8(content).ok().and_then(|text| text.split_once(':'));
+        let fields = |fields: &str| fields.replace(';', "\n");
+        let defined = defined.map(|(name, own)| (name.to_owned(), fields(own)));
+        let are_fields = |fields: &str| {
+            fields.lines().all(|field| field.trim().is_empty() || declared(field).is_some())
         };
-        self.formats.insert(format.name.clone(), format);
+        match defined.filter(|(_, fields)| are_fields(fields)) {
+            Some((name, fields)) => drop(self.formats.insert(name, fields)),
+            None => self.findings.formats.at(at),
+        }
     }
 
     fn register(&mut self, at: usize, content: &[u8]) {
+        /// More than the longest message.
+        const NOTHING: &[u8] = &[0; 1 << 16];
         let registered = || {
             let (&[instance, low, high], name) = content.split_first_chunk()?;
-            let format = self.formats.get(str::from_utf8(name).ok()?)?;
-            let name = match instance {
-                0 => format.name.clone(),
-                instance => format!("{}:{instance}", format.name),
-            };
+            let name = str::from_utf8(name).ok()?;
+            let definition = Definition::of_px4(name, &self.formats).ok()?;
+            let length = wire::length(Wire::Ros1, &definition, NOTHING).ok()?;
             let series = Series {
-                name,
-                lengths: format.lengths(&self.formats)?,
-                time: format.time(&self.formats)?,
-                numbers: format.numbers(&self.formats),
-                texts: format.texts().map(|field| field.name.clone()).collect(),
+                time: definition.time()?,
+                lengths: (length - definition.padding(), length),
             };
-            Some((u16::from_le_bytes([low, high]), series))
+            let name = match instance {
+                0 => name.to_owned(),
+                instance => format!("{name}:{instance}"),
+            };
+            let topic =
+                Topic { name, kind: String::new(), wire: Wire::Ros1, definition: Ok(definition) };
+            Some((u16::from_le_bytes([low, high]), topic, series))
         };
-        let Some((id, series)) = registered() else {
+        let Some((id, topic, series)) = registered() else {
             self.findings.formats.at(at);
             return;
         };
-        self.registered.insert(id, self.series.len());
-        self.series.push(series);
+        let place = topic.place_in(&mut self.topics);
+        if place == self.series.len() {
+            self.series.push(series);
+        }
+        self.registered.insert(id, place);
     }
 }
 
