@@ -6,9 +6,10 @@ use proptest::prelude::*;
 use spikewire::population::{Position, Slots};
 use spikewire::rate::{Hough, Taps};
 use spikewire::temporal::StepForward;
+use spikewire::timing::FirstSpike;
 use spikewire::{
     Bank, Code, ConfigError, Event, EventQueue, Item, Keyframe, Output, Overflow, Polarity,
-    Schemes, Source, SpscQueue, Start, Tick,
+    Readout, Scheme, Schemes, Source, SpscQueue, Start, Tick, dynamic,
 };
 
 static GYRO: StepForward<f32> = StepForward::new(1.0);
@@ -128,6 +129,43 @@ fn a_sample_that_a_code_passes_over_is_a_break() {
     let mut consumer = queue.consumer().unwrap();
     let items: Vec<Item> = std::iter::from_fn(|| consumer.take()).map(|taken| taken.item).collect();
     assert_eq!(items, [Item::Break(Tick::from(4))]);
+}
+
+/// A code without sub-timesteps does not become one that has some.
+#[test]
+fn a_length_of_slots_changes_nothing_without_slots() {
+    static HOUGH: Hough<f32, 3> = Hough::new(Taps::triangular(1.0));
+    let queue = EventQueue::<4>::new(Overflow::Refuse);
+    let mut bank = Bank::<_, 1>::new(&HOUGH).with_slot_ticks(5);
+    bank.encode_into(Tick::from(1), [f32::NAN], &queue);
+    assert_eq!(
+        queue.consumer().unwrap().take().map(|taken| taken.item),
+        Some(Item::Break(1.into()))
+    );
+}
+
+/// Without a length of slots events come by rising address, whichever slot is earlier.
+#[test]
+fn slots_without_a_length_are_one_time() {
+    let scheme = FirstSpike::<i16, 4>::linear(0..=30);
+    let mut bank = Bank::<_, 2>::new(&scheme);
+    let mut addresses = Vec::new();
+    bank.encode(Tick::from(1), [0, 30], |event| addresses.push((event.tick, event.address)));
+    assert_eq!(addresses, [(1.into(), 0), (1.into(), 1)]);
+}
+
+/// Room for 1024 neurons, and 5 of them used: a channel's addresses end where the next one's begin.
+#[test]
+fn channels_whose_size_is_chosen_at_run_time_lie_side_by_side() {
+    let scheme = dynamic::Slots::<i16>::try_new(5, 10, &(0..=30), 1.5).unwrap();
+    let mut bank = Bank::<_, 2>::with_states(&scheme, [scheme.state(); 2]).with_slot_ticks(1);
+    let mut readout = Readout::<_, 2>::new(&scheme).with_slot_ticks(1);
+    for samples in [[0, 30], [30, 0], [12, 17]] {
+        let (tick, mut events) = (Tick::from(1), Vec::new());
+        bank.encode(tick, samples, |event| events.push(event));
+        let expected = samples.map(|x| scheme.decoder().decode(scheme.encoder().encode(x)));
+        assert_eq!(readout.decode(tick, &events), expected);
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use rand_pcg::Pcg32;
 use spikewire::frame::{FrameDecoder, FrameEncoder, Intensity};
 use spikewire::population::{NonLinearSlots, Probabilistic, Slots};
 use spikewire::rate::{Average, Bernoulli, BsaToolbox, IntegrateAndFire, Shape, Taps};
-use spikewire::temporal::{AdaptiveStepForward, SendOnDelta};
+use spikewire::temporal::{AdaptiveStepForward, SendOnDelta, Steps};
 use spikewire::{Conditions, Event, Item, Polarity, Put, Scheme, Spike, Tick, dynamic};
 
 #[derive(Debug, Default)]
@@ -55,6 +55,16 @@ fn schemes_by_chance_are_compared_by_their_parameters() {
     assert!(one != Chance::new(0.0..=1.0, Average::new(4)));
     assert!(Fields::new(0.0..=1.0, 1.5) == Fields::new(0.0..=1.0, 1.5));
     assert!(Fields::new(0.0..=1.0, 1.5) != Fields::new(0.0..=1.0, 2.0));
+}
+
+/// A potential of the value times the length of the mean, which leaks from the next sample on.
+#[test]
+fn a_leaky_decoder_can_be_told_a_value() {
+    let scheme = IntegrateAndFire::<i16, 4>::new(100, 4).with_reference(50);
+    let mut decoder = scheme.decoder();
+    decoder.resync(850);
+    let silent = Steps::new(0);
+    assert_eq!([(); 3].map(|()| decoder.decode(silent)), [800, 753, 709]);
 }
 
 #[test]

@@ -75,10 +75,26 @@ fn refusals() {
         told(Burst::try_new(0..=99, 200, 1..=2)),
         "slots of the longest burst 395 must lie in 1..=256"
     );
+    // In a range of one step every burst but the longest is of no value.
+    assert_eq!(
+        Burst::<i16, 2>::try_new(0..=1, 3, 1..=1).unwrap_err().to_string(),
+        "slots 2 must lie in 3..=256"
+    );
     assert!(told(Burst::try_new(9..=9, 5, 2..=10)).starts_with("min and max"));
     assert!(dynamic::Burst::<f32>::try_of(18, &(0.0..=1.0), 5, &(2..=10)).is_err());
     assert!(dynamic::Burst::<f32>::try_of(257, &(0.0..=1.0), 5, &(2..=10)).is_err());
     assert!(dynamic::Burst::<f32>::try_of(19, &(0.0..=1.0), 5, &(2..=10)).is_ok());
+}
+
+/// One sample in the cell, and both its edges in the gap above it: the cell ends with its count.
+#[test]
+fn edges_between_two_floats() {
+    let samples: Vec<f32> = (0..4).map(|at| f32::from_bits(1.0_f32.to_bits() + at)).collect();
+    let scheme = Burst::<f32, 16>::new(1.0..=samples[3], 3, 1..=3);
+    let burst = scheme.encoder().encode(samples[1]);
+    assert_eq!((burst.count(), burst.interval()), (1, 0));
+    // Half a step above the minimum, rounded to even.
+    assert_eq!(scheme.decoder().decode(burst), 1.0);
 }
 
 #[test]

@@ -126,7 +126,19 @@ fn the_bytes_on_the_bus_are_golden() {
     gated.set_synapse(7, 4, -5).unwrap();
     assert_eq!(ends(taken()), [read, [0x64, 0x0E, 0, 0xF0, 0x0B], read]);
     assert_eq!((gated.synapse(7, 5), gated.synapse(7, 4)), (Ok(3), Ok(-5)));
+    // The check changes its byte, also where that is the check's own, and looks at a byte that is not 0.
+    gated.set_synapse(255, 248, 5).unwrap();
+    gated.set_synapse(255, 249, -6).unwrap();
+    for leak in [3, 0] {
+        let neuron = TinyOdinNeuron { threshold: 9, leak, ..TinyOdinNeuron::REST };
+        gated.set_neuron(5, &neuron).unwrap();
+    }
     taken();
+    gated.check_step().unwrap();
+    let check = taken();
+    let written: Vec<_> = check.iter().filter(|frame| frame[0] == 0x61).copied().collect();
+    assert_eq!(written, [[0x61, 0xFF, 0xF0, 0, 0x5A], [0x61, 0xFF, 0xF0, 0, 0xA5]]);
+    assert_eq!(check.len(), 5);
     gated.run(&TinyOdinRegisters { last_neuron: 32, ..OPEN }).unwrap();
     let all = taken();
     let registers = |frame: &&[u8; 5]| frame[0] == 0;
@@ -163,6 +175,7 @@ fn what_is_out_of_order_or_range_is_refused_without_a_byte() {
     let clocks = board.pins().spi_clocks;
     let out_of_range = |result| matches!(result, Err(ChipError::OutOfRange { .. }));
     assert!(out_of_range(gated.set_neuron_byte(0, 4, 0)));
+    assert!(out_of_range(gated.neuron_byte(0, 4).map(drop)));
     assert!(out_of_range(gated.set_synapse(0, 0, 8)));
     assert!(out_of_range(
         gated.set_neuron(0, &TinyOdinNeuron { threshold: 0, ..TinyOdinNeuron::REST })
@@ -204,10 +217,18 @@ fn an_error_at_every_transfer_asks_for_a_reset() {
     }
 }
 
-/// A port whose input ACK can be held.
+/// A port whose input ACK can be held, and whose output bus may never come to rest; counts how often that is read.
 struct Held<P> {
     port: P,
     acknowledge: Rc<Cell<Option<bool>>>,
+    is_noisy: Rc<Cell<bool>>,
+    looks: Rc<Cell<u32>>,
+}
+
+impl<P> Held<P> {
+    fn new(port: P, acknowledge: Rc<Cell<Option<bool>>>) -> Self {
+        Self { port, acknowledge, is_noisy: Rc::default(), looks: Rc::default() }
+    }
 }
 
 impl<P: AerPort> AerPort for Held<P> {
@@ -224,7 +245,9 @@ impl<P: AerPort> AerPort for Held<P> {
         Ok(self.acknowledge.get().unwrap_or(pin))
     }
     fn output_request(&mut self) -> Result<bool, P::Error> {
-        self.port.output_request()
+        self.looks.set(self.looks.get() + 1);
+        let pin = self.port.output_request()?;
+        Ok(if self.is_noisy.get() { self.looks.get() % 2 == 1 } else { pin })
     }
     fn output(&mut self) -> Result<u8, P::Error> {
         self.port.output()
@@ -237,12 +260,45 @@ impl<P: AerPort> AerPort for Held<P> {
     }
 }
 
+/// No pin shows that the chip is at rest: the driver waits as long as it may work without an output, and longer where
+/// outputs come.
+#[test]
+fn rest_is_waited_for_as_long_as_the_chip_may_work() {
+    let waits = |is_open_loop: bool, is_noisy: bool| {
+        let board = TinyBoard::new(4, 1);
+        let port = Held::new(board.port(), Rc::default());
+        let (noise, looks) = (port.is_noisy.clone(), port.looks.clone());
+        let mut chip = TinyOdin::new(board.spi(), port, 1_600);
+        let gated = chip.reset(&mut board.clone()).unwrap();
+        board.pins().chip.neurons.fill(1 << 31);
+        let registers = TinyOdinRegisters { is_open_loop, last_neuron: 9, ..OPEN };
+        let mut running = gated.run(&registers).unwrap();
+        noise.set(is_noisy);
+        looks.set(0);
+        let result = running.quiesce(drop);
+        assert_eq!(result, if is_noisy { Err(ChipError::Busy) } else { Ok(()) });
+        looks.get()
+    };
+    // A sweep of ten neurons takes 24 clocks at most: four of them, or one for each place of the queue and two more.
+    let (open, closed) = (4 * 24 + 32, (128 + 2) * 24 + 32);
+    assert_eq!((waits(true, false), waits(false, false)), (open, closed));
+    assert_eq!(waits(true, true), 4 * open + (1 << 15));
+}
+
+/// Without a pin for it, a port does not know whether the queue is full.
+#[test]
+fn a_port_may_have_no_pin_for_the_queue() {
+    let port = TinyBoard::new(4, 1).port();
+    let mut port = Held::new(port, Rc::default());
+    assert_eq!(port.queue_full(), Ok(None));
+}
+
 #[test]
 fn a_silent_chip_times_out_in_every_phase() {
     for (held, phase) in [(true, Phase::Idle), (false, Phase::Acknowledge)] {
         let board = TinyBoard::new(4, 1);
         let acknowledge = Rc::new(Cell::new(None));
-        let port = Held { port: board.port(), acknowledge: acknowledge.clone() };
+        let port = Held::new(board.port(), acknowledge.clone());
         let mut chip = TinyOdin::new(board.spi(), port, 50);
         let gated = chip.reset(&mut board.clone()).unwrap();
         board.pins().chip.neurons.fill(1 << 31);
@@ -257,7 +313,7 @@ fn a_silent_chip_times_out_in_every_phase() {
 fn a_chip_that_does_not_answer_is_not_started() {
     let board = TinyBoard::new(4, 1);
     let acknowledge = Rc::new(Cell::new(Some(false)));
-    let port = Held { port: board.port(), acknowledge };
+    let port = Held::new(board.port(), acknowledge);
     let mut chip = TinyOdin::new(board.spi(), port, 50);
     let gated = chip.reset(&mut board.clone()).unwrap();
     board.pins().chip.neurons.fill(1 << 31);

@@ -231,6 +231,37 @@ fn a_network_that_does_not_fit_is_refused_before_a_byte_is_written() {
     assert_eq!(gated.load(&mixed, |_| ()), Err(ChipError::MixedSigns { pre: 1 }));
 }
 
+#[test]
+fn a_network_may_have_all_neurons_of_the_chip() {
+    let board = TinyBoard::new(4, 1);
+    let mut chip = tiny(&board);
+    let mut gated = chip.reset(&mut board.clone()).unwrap();
+    let network = TinyOdinNetwork::<1, 256, 1> {
+        neurons: [TinyOdinNeuron::REST; 256],
+        inputs: Inputs::Rows([[1; 256]]),
+        recurrent: &[],
+        outputs: [255],
+    };
+    assert_eq!(gated.load(&network, |_| ()), Ok(()));
+}
+
+/// The address in the chip's memory, and the bits that are the network's, at the first difference.
+#[test]
+fn what_differs_from_the_network_is_told() {
+    let board = TinyBoard::new(4, 1);
+    let mut chip = tiny(&board);
+    let mut gated = chip.reset(&mut board.clone()).unwrap();
+    gated.load(&NETWORK, |_| ()).unwrap();
+    for (neuron, bits, address, written, read) in
+        [(200, 0x7F00_0000, 0x1_03C8, 0x80, 0), (5, 0x0300_F000, 0x1_0105, 0x70, 0xF0)]
+    {
+        board.pins().chip.neurons[neuron] = bits;
+        let error = gated.verify(&NETWORK, |_| ()).unwrap_err();
+        assert_eq!(error, ChipError::ReadBack { address, written, read });
+        gated = chip.reset(&mut board.clone()).unwrap();
+    }
+}
+
 /// Two layers: an input drives a neuron, which drives another, which holds the first one down.
 #[test]
 fn a_recurrent_network_runs_in_closed_loop_on_either_chip() {
@@ -480,6 +511,28 @@ fn bytes_that_are_no_network_say_why() {
     assert_eq!(changed(9, 1), Err(FormatError::Size));
     let given = length - 1;
     assert_eq!(new(&buffer[..given]), Err(FormatError::Length { needed: length, given }));
+    // Beyond the last neuron there is no weight, though the next row follows.
+    let square = TinyOdinNetwork::<2, 2, 1> {
+        neurons: [TinyOdinNeuron::REST; 2],
+        inputs: Inputs::Rows([[1, 2], [3, 4]]),
+        recurrent: &[],
+        outputs: [0],
+    };
+    let mut room = [0; 30];
+    let end = NetworkBytes::write(&square, &mut room).unwrap();
+    let read = NetworkBytes::<TinyOdinInput>::new(&room[..end]).unwrap();
+    assert_eq!([0, 1, 2].map(|post| read.input_weight(0, post)), [1, 2, 0]);
+    // Weights of four bits, either of two in a byte.
+    for weights in [[8, 0], [0, 8], [-9, 0], [0, -9]] {
+        let wrong = TinyOdinNetwork::<1, 2, 1> {
+            neurons: [TinyOdinNeuron::REST; 2],
+            inputs: Inputs::Rows([weights]),
+            recurrent: &[],
+            outputs: [0],
+        };
+        let error = NetworkBytes::write(&wrong, &mut [0; 200]);
+        assert_eq!(error, Err(FormatError::Value), "{weights:?}");
+    }
     let mut small = [0; 20];
     let error = NetworkBytes::write(&network, &mut small);
     assert_eq!(error, Err(FormatError::Length { needed: length, given: 20 }));

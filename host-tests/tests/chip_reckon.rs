@@ -2,14 +2,17 @@
 
 #![allow(clippy::needless_range_loop, reason = "a neuron's number is its column in several tables")]
 
+use std::cell::Cell;
+
 use embedded_hal::spi::{ErrorKind, SpiDevice};
 use host_tests::silicon::board::{CallFault, ClockFault};
 use host_tests::silicon::reckon::{Board, Port, Spi, State};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 use spikewire::chip::{
-    ChipError, DescribeReckOn, FormatError, ReckOn, ReckOnAnswer, ReckOnBytes, ReckOnLearning,
-    ReckOnNetwork, ReckOnPair, ReckOnSettings, ReckOnShared, ReckOnStep, ReckOnTarget, ReckOnTask,
+    ChipError, DescribeReckOn, FormatError, Phase, ReckOn, ReckOnAnswer, ReckOnBytes,
+    ReckOnLearning, ReckOnNetwork, ReckOnPair, ReckOnPort, ReckOnSample, ReckOnSettings,
+    ReckOnShared, ReckOnStep, ReckOnTarget, ReckOnTask,
 };
 use spikewire::{Bank, Tick, population::Position};
 
@@ -147,6 +150,12 @@ fn a_network_as_bytes_is_the_same_and_damaged_bytes_are_refused() {
     assert_eq!(ReckOnBytes::new(&bytes[..length - 1]).unwrap_err(), short);
     let small = ReckOnBytes::write(&NETWORK, &mut [0; 71]).unwrap_err();
     assert_eq!(small, FormatError::Length { needed: length, given: 71 });
+
+    // Without weights between neurons it has no rows of them.
+    let shared = ReckOnShared { resets_to_zero: true, ..NETWORK.shared };
+    let layer = ReckOnNetwork { recurrent: &[[0; 4]; 4], shared, ..NETWORK };
+    assert_eq!(ReckOnBytes::write(&layer, &mut buffer), Ok(length - 16));
+    assert_eq!(buffer[5], 2, "it has no flag but that of neurons that return to 0");
 }
 
 #[test]
@@ -319,10 +328,187 @@ fn loading_says_how_far_it_is() {
     assert_eq!(last.done, last.total);
 }
 
+/// Two words a row of outputs; four registers of pairs whose potential grows, those at rest among them.
+#[test]
+fn many_pairs_and_outputs_are_loaded() {
+    static MOSTLY_GROW: [ReckOnPair; 33] = {
+        let mut pairs = [ReckOnPair { keep: 36_000, threshold: 9 }; 33];
+        pairs[32].keep = 32_000;
+        pairs
+    };
+    let wide = ReckOnNetwork::<1, 66, 5> {
+        pairs: &MOSTLY_GROW,
+        inputs: [[1; 66]],
+        recurrent: &[[0; 66]; 66],
+        outputs: [[1; 5]; 66],
+        shared: NETWORK.shared,
+    };
+    let board = Board::new(10, 1);
+    let mut chip = on(&board);
+    let mut programmed = chip.reset(&mut board.clone()).unwrap();
+    let mut told = Vec::new();
+    programmed.load(&wide, |progress| told.push(progress)).unwrap();
+    let last = told.pop().unwrap();
+    assert_eq!(last.done, last.total);
+    let grows = [65, 66, 67, 68].map(|register| board.pins().chip.register_value(register));
+    assert_eq!(grows, [u32::MAX, !1, u32::MAX, u32::MAX], "one of 128 does not");
+}
+
+/// Slopes have five bits and a sign.
+#[test]
+fn learning_is_told_in_registers() {
+    let board = Board::new(10, 1);
+    let mut chip = on(&board);
+    let learning = ReckOnLearning { slopes: [-16, -1, 0, 5, 15], ..LEARNING };
+    let settings = ReckOnSettings { learning: Some(learning), ..ReckOnSettings::POTENTIALS };
+    chip.reset(&mut board.clone()).unwrap().run(&settings).unwrap();
+    let slopes = [74, 75, 76, 77, 78].map(|register| board.pins().chip.register_value(register));
+    assert_eq!(slopes, [16, 31, 0, 5, 15]);
+}
+
+/// Lines that stay as they are: `AERIN_ACK` and `OUT_REQ`; and an answer of so many bytes.
+#[derive(Default)]
+struct Lines {
+    acknowledge: Cell<Option<bool>>,
+    request: Cell<Option<bool>>,
+    bytes: Cell<Option<u32>>,
+}
+
+/// A port of a chip whose lines are not as they should be.
+struct Odd<'a> {
+    port: Port,
+    lines: &'a Lines,
+    is_taken: bool,
+}
+
+impl ReckOnPort for Odd<'_> {
+    type Error = u64;
+
+    fn set_input(&mut self, byte: u8, is_target: bool) -> Result<(), u64> {
+        self.port.set_input(byte, is_target)
+    }
+    fn set_input_request(&mut self, is_high: bool) -> Result<(), u64> {
+        self.port.set_input_request(is_high)
+    }
+    fn input_acknowledge(&mut self) -> Result<bool, u64> {
+        let pin = self.port.input_acknowledge()?;
+        Ok(self.lines.acknowledge.get().unwrap_or(pin))
+    }
+    fn output_request(&mut self) -> Result<bool, u64> {
+        let pin = self.port.output_request()?;
+        let told = self.lines.bytes.get().map(|left| left > 0 && !self.is_taken);
+        Ok(self.lines.request.get().or(told).unwrap_or(pin))
+    }
+    fn output(&mut self) -> Result<u8, u64> {
+        self.port.output()
+    }
+    fn set_output_acknowledge(&mut self, is_high: bool) -> Result<(), u64> {
+        if !is_high && self.is_taken {
+            self.lines.bytes.set(self.lines.bytes.get().map(|left| left - 1));
+        }
+        self.is_taken = is_high && self.lines.bytes.get().is_some();
+        self.port.set_output_acknowledge(is_high)
+    }
+    fn set_sample(&mut self, is_high: bool) -> Result<(), u64> {
+        self.port.set_sample(is_high)
+    }
+    fn set_tick(&mut self, is_high: bool) -> Result<(), u64> {
+        self.port.set_tick(is_high)
+    }
+    fn set_target_valid(&mut self, is_high: bool) -> Result<(), u64> {
+        self.port.set_target_valid(is_high)
+    }
+    fn set_infer(&mut self, is_high: bool) -> Result<(), u64> {
+        self.port.set_infer(is_high)
+    }
+    fn ready(&mut self) -> Result<bool, u64> {
+        let pin = self.port.ready()?;
+        Ok(pin || self.lines.bytes.get() == Some(0))
+    }
+    fn set_reset(&mut self, is_high: bool) -> Result<(), u64> {
+        self.port.set_reset(is_high)
+    }
+}
+
+/// A sample on a chip without a network, which has 16 outputs, with lines that are set once it has begun.
+fn odd<T>(
+    settings: &ReckOnSettings,
+    set: impl Fn(&Lines),
+    act: impl Fn(&mut ReckOnSample<'_, Spi, Odd<'_>>) -> T,
+) -> T {
+    let (board, lines) = (Board::new(10, 1), Lines::default());
+    let port = Odd { port: board.port(), lines: &lines, is_taken: false };
+    let mut chip = ReckOn::new(board.spi(), port, Chip::MAX_CLOCKS);
+    let started = chip.reset(&mut board.clone()).unwrap().run(settings).unwrap();
+    let mut sample = started.begin().unwrap();
+    set(&lines);
+    act(&mut sample)
+}
+
+#[test]
+fn a_line_that_stays_as_it_is_ends_the_handshake() {
+    let settings = &ReckOnSettings::POTENTIALS;
+    let silent = odd(settings, |lines| lines.acknowledge.set(Some(false)), |sample| sample.send(0));
+    assert_eq!(silent, Err(Error::Handshake(Phase::Acknowledge)));
+    let stuck = odd(
+        settings,
+        |lines| lines.request.set(Some(true)),
+        |sample| sample.step(ReckOnStep::default()),
+    );
+    assert_eq!(stuck, Err(Error::Handshake(Phase::Release)));
+}
+
+/// Two bytes for each of 16 outputs, or one for a label.
+#[test]
+fn an_answer_of_another_length_is_none() {
+    let answer = |settings, bytes| {
+        let set = |lines: &Lines| lines.bytes.set(Some(bytes));
+        odd(settings, set, |sample| sample.step(ReckOnStep::default()))
+    };
+    let potentials = |bytes| answer(&ReckOnSettings::POTENTIALS, bytes);
+    assert!(matches!(potentials(32), Ok(Some(ReckOnAnswer::Potentials(_)))));
+    assert_eq!([1, 31, 33].map(potentials), [1, 31, 33].map(|_| Err(Error::Unfinished)));
+    let label = |bytes| answer(&ReckOnSettings::LABEL, bytes);
+    assert!(matches!(label(1), Ok(Some(ReckOnAnswer::Label(_)))));
+    assert_eq!([2, 32].map(label), [2, 32].map(|_| Err(Error::Unfinished)));
+}
+
+/// A chip that does not hear that its memories are to be closed.
+#[derive(Debug)]
+struct Open(Spi);
+
+impl embedded_hal::spi::ErrorType for Open {
+    type Error = ErrorKind;
+}
+
+impl SpiDevice for Open {
+    fn transaction(
+        &mut self,
+        operations: &mut [embedded_hal::spi::Operation<'_, u8>],
+    ) -> Result<(), ErrorKind> {
+        // A register, one word, register 0.
+        let close = [0, 1, 0, 0, 0, 0, 0, 0];
+        match operations {
+            [embedded_hal::spi::Operation::Write(bytes)] if **bytes == close => Ok(()),
+            operations => self.0.transaction(operations),
+        }
+    }
+}
+
+#[test]
+fn a_chip_whose_memories_stay_open_is_not_started() {
+    let board = Board::new(10, 1);
+    let mut chip = ReckOn::new(Open(board.spi()), board.port(), Chip::MAX_CLOCKS);
+    let programmed = chip.reset(&mut board.clone()).unwrap();
+    let error = programmed.run(&ReckOnSettings::POTENTIALS).map(drop).unwrap_err();
+    assert_eq!(error, Error::NotStarted);
+}
+
 /// A pair of neurons that is not the network's is found, as a weight is.
 #[test]
 fn another_pair_is_not_the_network_that_was_loaded() {
-    static OTHERS: [[ReckOnPair; 2]; 2] = [
+    static OTHERS: [[ReckOnPair; 2]; 3] = [
+        [PAIRS[0], ReckOnPair { keep: 0x88E8, ..PAIRS[1] }],
         [PAIRS[0], ReckOnPair { threshold: 251, ..PAIRS[1] }],
         [PAIRS[0], ReckOnPair { keep: 33_001, ..PAIRS[1] }],
     ];
@@ -331,6 +517,9 @@ fn another_pair_is_not_the_network_that_was_loaded() {
         let mut chip = on(&board);
         let mut programmed = chip.reset(&mut board.clone()).unwrap();
         programmed.load(&NETWORK, |_| ()).unwrap();
+        // A part of a potential, which changes as the network runs.
+        board.pins().chip.neurons[1] ^= 0xF << 96;
+        programmed.verify(&NETWORK).unwrap();
         let other = ReckOnNetwork { pairs, ..NETWORK };
         assert!(matches!(programmed.verify(&other), Err(Error::ReadBack { .. })));
     }

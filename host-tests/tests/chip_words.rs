@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use spikewire::chip::{
-    ChipError, Input, OdinInput, OdinLearning, OdinNeuron, OdinSynapse, TinyOdinInput,
-    TinyOdinNeuron,
+    ChipError, Input, OdinInput, OdinLearning, OdinNeuron, OdinRegisters, OdinSynapse,
+    OutputSource, TinyOdinInput, TinyOdinNeuron, TinyOdinRegisters,
 };
 
 type Word = Result<u32, ChipError<(), ()>>;
@@ -33,6 +33,8 @@ fn tiny_odin_words_are_golden() {
         let got: Word = input.word();
         assert!(matches!(got, Err(ChipError::OutOfRange { .. })), "{input:?}");
     }
+    let low: Word = Virtual { neuron: 0, weight: -9 }.word();
+    assert_eq!(low, Err(ChipError::OutOfRange { what: "weight", value: -9, min: -8, max: 7 }));
 }
 
 #[test]
@@ -94,6 +96,57 @@ fn odin_words_are_those_of_the_documentation() {
     assert!(matches!(wide, Err(ChipError::OutOfRange { what: "weight", .. })));
 }
 
+#[test]
+fn a_virtual_event_of_odin_has_its_sign_apart() {
+    for (weight, is_inhibitory) in [(-7_i8, true), (-1, true), (0, false), (3, false)] {
+        let event = OdinInput::Virtual { neuron: 9, weight: weight.unsigned_abs(), is_inhibitory };
+        assert_eq!(OdinInput::virtual_event(9, weight), event);
+    }
+}
+
+/// What a time step without a spike turns into the neuron: its potential falls by the leak.
+#[test]
+fn before_a_time_step_a_neuron_of_odin_was_higher() {
+    let neuron = |potential| OdinNeuron { threshold: 100, leak: 5, potential, ..OdinNeuron::REST };
+    let before = |neuron| OdinInput::before_step(&neuron);
+    assert_eq!(before(neuron(0)), Some(neuron(0)), "it stays at rest");
+    assert_eq!([1, 99].map(|at| before(neuron(at))), [6, 104].map(|at| Some(neuron(at))));
+    assert_eq!(before(neuron(100)), None, "it would have fired");
+    let high = OdinNeuron { threshold: 255, ..neuron(251) };
+    assert_eq!(before(high), None, "no neuron is as high");
+    let fires = OdinNeuron { threshold: 0, ..neuron(0) };
+    assert_eq!(before(fires), None, "memory that was never written");
+    let silent = OdinNeuron { is_disabled: true, ..neuron(100) };
+    assert_eq!(before(silent), Some(silent));
+    let learning = OdinLearning { potential: 9, calcium: [1, 2, 3], calcium_leak: 0 };
+    assert_eq!(before(OdinNeuron { learning: Some(learning), ..neuron(0) }), None);
+}
+
+/// Registers by number, and what they say of the loop and of the longest sweep.
+#[test]
+fn registers_are_those_of_the_documentation() {
+    fn written<I: Input>(registers: &I::Registers) -> Vec<(u16, u32)> {
+        let mut all = Vec::new();
+        let write = |register, value| {
+            all.push((register, value));
+            Ok::<_, ()>(())
+        };
+        I::each_register(registers, write).unwrap();
+        all
+    }
+    let (output_source, last_neuron) = (OutputSource::Queue, 99);
+    let tiny = TinyOdinRegisters { is_open_loop: false, output_source, last_neuron };
+    assert_eq!(written::<TinyOdinInput>(&tiny), [(2, 1), (3, 99), (1, 0)]);
+    assert_eq!(TinyOdinInput::sweep_clocks(&tiny), 2 * 100 + 4);
+    let open = TinyOdinRegisters { is_open_loop: true, ..tiny };
+    assert_eq!([&tiny, &open].map(TinyOdinInput::is_open_loop), [false, true]);
+
+    let odin = OdinRegisters { is_open_loop: false, output_source, ..OdinRegisters::PLAIN };
+    let registers = written::<OdinInput>(&odin);
+    assert!(registers.contains(&(19, 1)) && registers.contains(&(1, 0)));
+    assert_eq!([&odin, &OdinRegisters::PLAIN].map(OdinInput::is_open_loop), [false, true]);
+}
+
 type Bytes = Result<[u8; 16], ChipError<(), ()>>;
 
 #[test]
@@ -146,6 +199,9 @@ fn weights_are_signed_in_tiny_odin_and_have_a_mapping_bit_in_odin() {
     assert!(bits.is_err());
     let bits: Bits = OdinInput::synapse_bits(OdinSynapse { weight: 5, is_mapped: true });
     assert_eq!(bits, Ok(0xD));
+    for (bits, weight, is_mapped) in [(7, 7, false), (8, 0, true), (0xD, 5, true)] {
+        assert_eq!(OdinInput::synapse(bits), OdinSynapse { weight, is_mapped });
+    }
 }
 
 proptest! {

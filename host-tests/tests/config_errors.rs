@@ -5,7 +5,7 @@ use fixed::types::{I8F8, I16F16};
 use rand_pcg::Pcg32;
 use spikewire::population::{Position, Probabilistic, Slots};
 use spikewire::rate::{Bsa, BsaToolbox, Criterion, Hough, Scale, Shape, Taps, ThresholdHough};
-use spikewire::temporal::{MovingWindow, StepForward, TemporalContrast};
+use spikewire::temporal::{AdaptiveStepForward, MovingWindow, StepForward, TemporalContrast};
 use spikewire::{Calibration, ConfigError};
 
 const BAD: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
@@ -98,6 +98,12 @@ fn thresholds_of_the_temporal_codes() {
     let expected = ConfigError::OutOfRange { parameter, value, min, max };
     assert_eq!(StepForward::try_new(value), Err(expected));
     assert!(StepForward::try_new(I16F16::DELTA).is_ok());
+    // What doubles must fit the type.
+    let (half, quarter) = (I8F8::from_num(64), I8F8::from_num(63.9));
+    assert!(AdaptiveStepForward::try_new(half, 1).is_err());
+    assert!(AdaptiveStepForward::try_new(quarter, 1).is_ok());
+    assert!(AdaptiveStepForward::try_new(I16F16::from_num(16_384), 1).is_err());
+    assert!(AdaptiveStepForward::try_new(I16F16::from_num(16_383), 1).is_ok());
 }
 
 #[test]

@@ -36,6 +36,10 @@ struct Said {
     keyframes: Vec<Option<u32>>,
     values: Vec<u32>,
     rejected: u32,
+    neurons: usize,
+    slots: usize,
+    /// What the decoder holds at the end, and after it was told a value.
+    held: [Option<u32>; 2],
 }
 
 fn said<P: Scheme>(
@@ -63,8 +67,12 @@ fn said<P: Scheme>(
     while let Some(code) = scheme.finish_next(&mut state) {
         take(Some(code));
     }
+    let last = scheme.held(&decoder).map(Sample::to_bits32);
+    scheme.resync(&mut decoder, signal[0]);
+    let held = [last, scheme.held(&decoder).map(Sample::to_bits32)];
+    let (neurons, slots) = (scheme.neurons(), scheme.slots());
     let (latency, rejected) = (scheme.latency(), P::rejected(&state));
-    Said { latency, codes, keyframes, values, rejected }
+    Said { latency, codes, keyframes, values, rejected, neurons, slots, held }
 }
 
 /// Compares both on signals with and without a past, and says how many samples fired.
@@ -187,7 +195,8 @@ fn populations<S: Sample, const M: usize>(one: f64) {
     let scheme = population::Probabilistic::<S, Pcg32, M, 256>::try_new(range(), 1.5).unwrap();
     let other = AnyProbabilistic::<S>::try_new(M, &range(), 1.5).unwrap();
     let state = || Pcg32::seed_from_u64(7);
-    let signal = signal::<S>(7, 2.0 * one);
+    let mut signal = signal::<S>(7, 2.0 * one);
+    signal[1000] = S::from_f64(f64::NAN);
     let one =
         said(&scheme, population::Probabilistic::<S, _, M, 256>::state(state()), &[], &signal);
     let two = said(&other, AnyProbabilistic::<S>::state(state()), &[], &signal);
@@ -202,6 +211,7 @@ fn slots<S: Sample, const M: usize, const N: usize>(one: f64) {
         let scheme = scheme.try_with_floor(floor).unwrap();
         let other = AnySlots::try_new(M, N, &range(), beta).unwrap();
         let other = other.try_with_floor(floor).unwrap();
+        assert_eq!(scheme.centres(), other.centres());
         let what = format!("{M} neurons, {N} slots, beta {beta}, floor {floor}, {:?}", S::KIND);
         let signal = &signal::<S>(5, 2.0 * one)[..1000];
         let fixed = said(&scheme, population::Slots::<S, M, N>::START, &[], signal);
@@ -228,6 +238,7 @@ fn nonlinear<S: Sample, const M: usize, const N: usize>(one: f64) {
         for floor in [1, N as u16 / 2] {
             let scheme = scheme.try_with_floor(floor).unwrap();
             let other = other.clone().try_with_floor(floor).unwrap();
+            assert_eq!(scheme.centres(), other.centres());
             let fixed = said(&scheme, population::NonLinearSlots::<S, M, N>::START, &[], &signal);
             assert!(fixed == said(&other, other.state(), &[], &signal), "{what}, floor {floor}");
             assert!(fixed.codes.iter().flatten().any(|code| !code.is_empty()), "{what}");

@@ -78,6 +78,22 @@ fn silence_is_a_value_below_thresholds_and_none_without() {
     assert_eq!(values, [0.5, 1.25, 2.0, 2.75, 0.5]);
 }
 
+/// Where silence has no value, a decoder starts from the middle.
+#[test]
+fn before_its_first_spike_a_decoder_has_the_middle_cell() {
+    let scheme = FirstSpike::<i16, 5>::linear(0..=40);
+    assert_eq!(*scheme.values(), [2, 10, 20, 30, 38]);
+    assert_eq!(scheme.decoder().held(), Some(20));
+}
+
+/// Neither 0 exceeds an edge of -0.
+#[test]
+fn an_edge_of_minus_zero() {
+    let scheme = FirstSpike::<f32, 2>::new(-1.0..=1.0, [-0.5, -0.0]);
+    let slots = [-0.0, 0.0, 1e-45].map(|x| scheme.encoder().encode(x).map(Slot::index));
+    assert_eq!(slots, [Some(1), Some(1), Some(0)]);
+}
+
 /// A leaky integrate-and-fire neuron at a constant input, step by step.
 #[test]
 fn a_neuron_with_a_leak() {
@@ -109,6 +125,10 @@ fn refusals() {
     assert_eq!(told(FirstSpike::try_new(0..=9, [1, 2, 3, 9])), empty(4, 5));
     assert_eq!(told(FirstSpike::try_logarithmic(0..=100, 1000.0)), empty(1, 5));
     assert_eq!(names(FirstSpike::try_new(0..=9, [1, 2, 2, 4])), "edges");
+    assert_eq!(
+        told(FirstSpike::try_new(0..=9, [1, 3, 2, 4])),
+        Some(ConfigError::NotRising { parameter: "edges", index: 2, value: 2.0, previous: 3.0 })
+    );
     assert_eq!(names(FirstSpike::try_linear(3..=3)), "min");
     for ratio in [1.0, 0.0, -2.0, f32::NAN, f32::INFINITY] {
         assert_eq!(names(FirstSpike::try_logarithmic(0..=9999, ratio)), "dynamic");

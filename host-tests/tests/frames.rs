@@ -1,5 +1,7 @@
 //! Frames to events: pixels in their codes against the reference, by rows, by frames and interpolated.
 
+use core::num::NonZeroU8;
+
 use crate::camera::{self, FRAMES, Line, PERIOD, SIZE};
 use crate::common::cases;
 use host_tests::reference::{
@@ -421,12 +423,59 @@ fn what_is_of_no_pixel_is_counted() {
     assert_eq!(picture.row(0), Some([10, 77, 0, 0]));
 }
 
+/// A code of the user's own, without a quick way to find quiet pixels.
+#[derive(Clone, Copy)]
+struct Own(Intensity);
+
+impl PixelCode for Own {
+    type Base = u8;
+    type Pixel = u8;
+    const START: u8 = Intensity::START;
+
+    fn most(&self) -> NonZeroU8 {
+        self.0.most()
+    }
+    fn base(&self, sample: u8) -> u8 {
+        self.0.base(sample)
+    }
+    fn begin(&self, sample: u8) -> u8 {
+        self.0.begin(sample)
+    }
+    fn base_of(&self, pixel: u8) -> u8 {
+        self.0.base_of(pixel)
+    }
+    fn steps(&self, pixel: u8, sample: u8) -> i16 {
+        self.0.steps(pixel, sample)
+    }
+    fn follow(&self, pixel: &mut u8, steps: i16) {
+        self.0.follow(pixel, steps);
+    }
+    fn moved(&self, base: u8, steps: i16) -> u8 {
+        self.0.moved(base, steps)
+    }
+    fn value(&self, base: u8) -> u8 {
+        self.0.value(base)
+    }
+}
+
+#[test]
+fn a_pixel_is_quiet_where_no_event_is_due() {
+    let own = Own(Intensity::new(10));
+    for sample in 0..=255 {
+        assert_eq!(own.is_quiet(100, sample), (90..=110).contains(&sample), "{sample}");
+    }
+    let row = [100, 95, 111, 105];
+    assert_eq!(own.quiet(&[100; 4], &row), 2);
+}
+
 #[test]
 fn pixels_and_addresses() {
     let event = PixelEvent { tick: Tick::from(9), x: 319, y: 204, polarity: Polarity::Down };
     assert_eq!(event.to_event(320, 0), None); // 65 599
     let address = event.to_event(320, 0).map(|event| event.address);
     assert_eq!(address, None);
+    let last = PixelEvent { x: 255, ..event }.to_event(320, 0);
+    assert_eq!(last.map(|event| event.address), Some(65_535));
     let event = PixelEvent { y: 203, ..event };
     let at = event.to_event(320, 100).unwrap();
     assert_eq!(at.address, 65_379);

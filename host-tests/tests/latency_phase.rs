@@ -70,6 +70,9 @@ fn any_spikes_are_decoded() {
         prop_assert_eq!(i64::from(decoder.decode(spikes)), value.unwrap_or(7));
     });
     assert_eq!(PhaseSpikes::<1, 16, 4>::new([Some(19)]), None);
+    assert_eq!(code_of::<PhaseSpikes<1, 16, 4>>(&[(0, 19)]), PhaseSpikes::SILENT);
+    // Before its first spikes a decoder has the lower end of the middle cell.
+    assert_eq!(scheme.decoder().held(), Some(scheme.starts()[8]));
 }
 
 #[test]

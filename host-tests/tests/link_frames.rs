@@ -582,6 +582,12 @@ fn what_was_on_its_way_before_a_reboot_is_late() {
     ]);
     assert_eq!(told, [(1, 0, 0, true), (2, 0, 0, true), (3, 0, 0, true), (3, 1, 0, false)]);
     assert_eq!(reader.late(), 3);
+    // Up to 255 frames after what was delivered of it, a session was on its way; farther on it has gone on.
+    for (number, is_start) in [(256, false), (257, true)] {
+        let (told, reader) = read([frame(0, 0), frame(1, 0), frame(0, number)]);
+        assert_eq!((told.len(), reader.late()), if is_start { (3, 0) } else { (2, 1) }, "{number}");
+        assert_eq!(reader.frames() as usize, told.len());
+    }
     // A number that comes again much later is a session of its own.
     let (told, reader) =
         read(sessions[0][..1].iter().chain(&sessions[1][..256]).chain(&sessions[0][1..3]));

@@ -6,11 +6,11 @@ use rand_pcg::Pcg32;
 use spikewire::link::{Coding, MAX_FRAME, Reader, Receiver, Session, Transmitter, Withheld};
 use spikewire::population::{Position, Slots};
 use spikewire::rate::{BsaToolbox, Hough, Taps, ThresholdHough};
-use spikewire::temporal::StepForward;
+use spikewire::temporal::{AdaptiveStepForward, StepForward};
 use spikewire::timing::FirstSpike;
 use spikewire::{
-    Bank, EventQueue, Keyframe, Output, Overflow, Recovery, Sample, Source, Spike, Start, Tick,
-    dynamic,
+    Bank, EventQueue, FromItems, Item, Keyframe, Output, Overflow, Recovery, Sample, Source, Spike,
+    Start, Tick, dynamic,
 };
 
 const CHANNELS: usize = 2;
@@ -176,7 +176,7 @@ fn a_sample_is_over_when_time_has_passed() {
 
 #[test]
 fn what_does_not_belong_is_counted() {
-    use spikewire::{Event, FromItems, Item, Polarity};
+    use spikewire::{Event, Polarity};
     static STEP: StepForward<f32> = StepForward::new(0.5);
     assert_eq!(<StepForward<f32> as spikewire::Scheme>::RECOVERY, Recovery::Keyframe);
     let tick = Tick::from(5);
@@ -203,7 +203,6 @@ fn what_does_not_belong_is_counted() {
 
 #[test]
 fn a_first_address_can_be_set_at_run_time() {
-    use spikewire::{FromItems, Item};
     static STEP: StepForward<f32> = StepForward::new(0.5);
     let receiver = || Receiver::<_, 2, 0>::new(&STEP);
     let mut behind = receiver().with_slot_ticks(7).try_with_first_address(10).unwrap();
@@ -228,7 +227,6 @@ fn a_first_address_can_be_set_at_run_time() {
 /// From the first frame on: ticks say nothing of a silence of more than 2³⁰ µs.
 #[test]
 fn a_transmitter_counts_the_silences_that_it_cannot_measure() {
-    use spikewire::{FromItems, Item};
     let mut transmitter = Transmitter::new(Coding::for_channels(1, 1), Session::counted(1));
     transmitter.observe(Tick::from(1 << 31));
     let mut source = FromItems([Item::Heartbeat { tick: Tick::from(0), address: 0 }].into_iter());
@@ -256,7 +254,6 @@ fn what_is_withheld_has_a_reason_in_words() {
 /// Addresses count neurons: a code of many has as many a channel.
 #[test]
 fn what_does_not_belong_to_a_code_of_many_neurons_is_counted() {
-    use spikewire::{FromItems, Item};
     static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
     let tick = Tick::from(5);
     let mut receiver = Receiver::<_, 2>::new(&POSITION);
@@ -282,7 +279,7 @@ fn what_does_not_belong_to_a_code_of_many_neurons_is_counted() {
 /// A sample is over when the next begins, or another session: its value comes then, if it had events.
 #[test]
 fn the_last_sample_before_a_restart_is_decoded() {
-    use spikewire::{FromItems, Item, Scheme};
+    use spikewire::Scheme;
     static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
     let mut receiver = Receiver::<_, 1>::new(&POSITION);
     let mut reader = Reader::<MAX_FRAME>::new();
@@ -394,6 +391,64 @@ fn without_its_sub_timesteps_a_code_has_no_value() {
         Receiver::<_, 1>::new(&SLOTS).with_slot_ticks(20).withheld(0),
         Some(Withheld::Heartbeat)
     );
+}
+
+/// A rank of one spike has a single sub-timestep, whose length nobody needs to know.
+#[test]
+fn a_code_of_one_sub_timestep_needs_no_length_of_it() {
+    let scheme = dynamic::RankOrder::<f32>::try_linear(9, 1, &(0.0..=2.0)).unwrap();
+    let mut transmitter = Transmitter::new(Coding::for_channels(9, 1_000), Session::counted(1));
+    let mut receiver = Receiver::<_, 1>::new(&scheme);
+    let mut reader = Reader::<MAX_FRAME>::new();
+    for sample in 0..3 {
+        let frame = spikes_at(&mut transmitter, sample * 1_000);
+        receiver.apply(&reader.next_frame(&mut &frame[..]).unwrap(), |_, _, _| ());
+    }
+    assert_eq!((receiver.exact(0), receiver.withheld(0)), (Some(scheme.centres()[1]), None));
+}
+
+/// What a receiver of two channels passes on of keyframes a second apart.
+fn passed_on<P: Start<Sample = f32>>(scheme: &P, address: u16) -> Vec<u16> {
+    let mut receiver = Receiver::<_, 2>::new(scheme);
+    let mut reader = Reader::<MAX_FRAME>::new();
+    let mut transmitter = Transmitter::new(Coding::for_channels(9, 1_000), Session::counted(1));
+    let mut channels = Vec::new();
+    for seconds in 1..4_u32 {
+        let keyframe = Keyframe::new(Tick::from(seconds * 1_000_000), address, 1.5_f32);
+        let mut source = FromItems([Item::Keyframe(keyframe)].into_iter());
+        let mut buffer = [0; 64];
+        let mut bytes = transmitter.next_frame(&mut source, &mut buffer).unwrap().unwrap();
+        let frame = reader.next_frame(&mut bytes).unwrap();
+        receiver.apply(&frame, |channel, _, _| channels.push(channel));
+    }
+    channels
+}
+
+/// A keyframe is a sample's end only where samples are counted, and only if it belongs to a channel.
+#[test]
+fn a_keyframe_passes_on_its_own_channel() {
+    static STEP: StepForward<f32> = StepForward::new(0.5);
+    static ADAPTIVE: AdaptiveStepForward<f32> = AdaptiveStepForward::new(0.5, 4);
+    assert_eq!(passed_on(&STEP, 1), [1, 1, 1]);
+    assert!(passed_on(&STEP, 2).is_empty() && passed_on(&ADAPTIVE, 2).is_empty());
+    let ends = passed_on(&ADAPTIVE, 1);
+    assert!(ends.len() > 3 && ends.contains(&0), "{ends:?}");
+}
+
+/// Ten sub-timesteps of 20 µs in a period of 1000: what comes later than the last belongs to none.
+#[test]
+fn an_event_after_the_last_sub_timestep_is_a_misfit() {
+    static LINEAR: FirstSpike<f32, 10> = FirstSpike::linear(0.0..=9.0);
+    let misfits = |slot: u32| {
+        let mut line = Line::<_, 2>::new(&LINEAR, 20);
+        let mut receiver = Receiver::new(&LINEAR).with_slot_ticks(20);
+        line.send(1.0, false, &mut receiver);
+        let at = line.now + PERIOD + slot * 20;
+        let frame = spikes_at(&mut line.transmitter, at.micros().into());
+        receiver.apply(&line.reader.next_frame(&mut &frame[..]).unwrap(), |_, _, _| ());
+        receiver.misfits()
+    };
+    assert_eq!([0, 9, 10, 11].map(misfits), [0, 0, 1, 1]);
 }
 
 /// A frame of events of channel 1 at these samples.

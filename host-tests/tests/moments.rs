@@ -51,7 +51,7 @@ fn check<S: Wire>(x: &[S]) {
 #[test]
 fn cases_by_hand() {
     let moments = observed(&[2.0_f32, 4.0, f32::NAN, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0]);
-    assert_eq!((moments.seen(), moments.rejected()), (8, 1));
+    assert_eq!((moments.seen(), moments.ignored(), moments.rejected()), (8, 0, 1));
     assert_eq!(moments.mean(), Ok(5.0));
     assert!((moments.deviation().unwrap() - (32.0_f64 / 7.0).sqrt()).abs() < 1e-15);
     let quarters = [0.25, 0.5, 0.75].map(I8F8::from_num);

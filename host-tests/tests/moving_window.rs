@@ -9,7 +9,7 @@ use host_tests::compare::{
 use host_tests::reference::{moving_window, step_decode_from_first};
 use proptest::prelude::*;
 use spikewire::temporal::MovingWindow;
-use spikewire::{Scheme, Spike};
+use spikewire::{Scheme, Spike, dynamic};
 
 /// Encoder and decoder against the reference, unprimed and primed with a window drawn from `fill`.
 fn check<S: Wire, const N: usize>(x: &[S], threshold: S, fill: &[S]) {
@@ -223,6 +223,35 @@ fn hostile() {
             check_all(&x, threshold, &[1.0, -0.0, 3.0]);
         }
     }
+}
+
+/// The most samples that there may be, one by one and in slices. Slices must not forget the sample in the last slot, or
+/// keep it: at the end it has left the window, so that the mean is 0, and -1 is within its band.
+#[test]
+fn the_longest_window() {
+    static LONGEST: MovingWindow<i16, 16_384> = MovingWindow::new(1);
+    let mut x = vec![0; 3 * 16_384];
+    (x[16_383], x[20_000]) = (1000, 3);
+    *x.last_mut().unwrap() = -1;
+    let mut one_by_one = LONGEST.encoder();
+    let expected: Vec<_> = x.iter().map(|&x| one_by_one.encode(x)).collect();
+    assert_eq!(expected.iter().filter(|spike| spike.is_fired()).count(), 1);
+    let mut in_slices = LONGEST.encoder();
+    let mut spikes = vec![Spike::None; x.len()];
+    for (x, spikes) in x.chunks(9999).zip(spikes.chunks_mut(9999)) {
+        in_slices.encode_slice(x, spikes);
+    }
+    assert_eq!(spikes, expected);
+}
+
+/// A window chosen at run time takes a past, and forgets no sample that it rejected.
+#[test]
+fn a_past_leaves_the_count_of_rejected_samples() {
+    let scheme = dynamic::MovingWindow::try_new(1.0_f32, 2).unwrap();
+    let mut encoder = scheme.encoder();
+    encoder.encode(f32::NAN);
+    encoder.prime(&[3.0, 4.0]);
+    assert_eq!((encoder.rejected(), encoder.keyframe()), (1, Some(4.0)));
 }
 
 /// The sum must not remember samples that have left the window.

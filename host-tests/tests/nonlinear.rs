@@ -11,6 +11,33 @@ use proptest::prelude::*;
 use spikewire::population::{Gaussian, Neuron, NeuronSlots, NonLinearSlots, Position};
 use spikewire::{Code, ConfigError, Histogram, Sample, Scheme};
 
+/// A level's distance itself still has the level.
+#[test]
+fn the_last_sample_of_a_level() {
+    let scheme = NonLinearSlots::<f32, 3, 10>::new([-9.0, 0.0, 9.0], [1.0; 3]);
+    for (level, radius) in (1..=10_u16).zip(level_radii(10)) {
+        let nearest = radius as f32;
+        let last = if f64::from(nearest) > radius { nearest.next_down() } else { nearest };
+        let slots = [last, last.next_up()].map(|x| {
+            let spikes = scheme.encoder().encode(x);
+            spikes.iter().find(|&(neuron, _)| neuron == 1).map(|(_, slot)| slot)
+        });
+        assert_eq!(slots, [Some(10 - level), (level > 1).then(|| 11 - level)], "{level}");
+    }
+}
+
+/// Fields wider than all of a type: every neuron fires at every sample.
+#[test]
+fn fields_wider_than_the_type() {
+    let centres = [-30_000, 0, 30_000].map(I16F16::from_num);
+    for width in [65_536.0, 1e6, 1e30] {
+        let scheme = NonLinearSlots::<I16F16, 3, 10>::new(centres, [width; 3]);
+        for x in [I16F16::MIN, I16F16::ZERO, I16F16::MAX] {
+            assert_eq!(scheme.encoder().encode(x).len(), 3, "{x} in {width}");
+        }
+    }
+}
+
 /// A sample type and what its receptive fields are in the reference.
 trait Fields: Wire {
     /// The level of each neuron.
@@ -270,6 +297,15 @@ fn constants() {
     assert_eq!(COMPANDED, Gaussian::try_companded(-9.0..=9.1, 255.0).unwrap());
     assert_eq!(OWN.centres().len(), 3);
     assert_eq!(SLOTS, NonLinearSlots::try_companded(-3000..=4000, 20.0, 1.5).unwrap());
+}
+
+/// So little companding that `(1 + A)^t` is 1 in every digit.
+#[test]
+fn hardly_companded_centres_are_even() {
+    for companding in [f32::MIN_POSITIVE, 1e-30, 1e-20, 1e-9] {
+        let scheme = Gaussian::<f32, 5>::try_companded(-1.0..=1.0, companding).unwrap();
+        assert_eq!(*scheme.centres(), [-1.0, -0.5, 0.0, 0.5, 1.0], "{companding:e}");
+    }
 }
 
 /// Every size to 64, and several strengths.

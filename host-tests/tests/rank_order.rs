@@ -113,12 +113,27 @@ fn refusals() {
     let one = 1.0_f32;
     let close = [one.next_up(), one.next_up().next_up(), one.next_up().next_up().next_up()];
     assert!(matches!(RankOrder::<_, 3, 2>::try_new(close), Err(ConfigError::EmptyCell { .. })));
+    // A middle that is rounded to the last centre is still a middle of its own.
+    assert!(RankOrder::<_, 3, 2>::try_new([0.0, close[0], close[1]]).is_ok());
     for (spikes, neurons) in [(0, 5), (6, 5), (257, 300)] {
         let scheme =
             spikewire::dynamic::RankOrder::<i16>::try_linear(neurons, spikes, &(-3000..=3000));
         let most = neurons.min(256);
         let message = format!("spikes a sample {spikes} must lie in 1..={most}");
         assert_eq!(scheme.unwrap_err().to_string(), message);
+    }
+}
+
+/// In a range so wide that its centres, rounded, have their middle below the minimum.
+#[test]
+fn what_lies_outside_is_the_end_of_the_range() {
+    for max in [1e8, 3e8, 1e9, 3e30] {
+        let scheme = RankOrder::<f32, 7, 3>::linear(1.0..=max);
+        let encode = |x| scheme.encoder().encode(x);
+        for x in [-max, -3.0, 0.0, 1.0_f32.next_down()] {
+            assert_eq!(encode(x), encode(1.0), "{x} below 1..={max}");
+        }
+        assert_eq!(encode(2.0 * max), encode(max));
     }
 }
 

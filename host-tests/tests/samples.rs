@@ -4,7 +4,7 @@ use crate::common::{cases, float};
 use fixed::types::{I0F16, I0F32, I1F15, I8F8, I16F0, I16F16, I32F0};
 use host_tests::compare::Wire;
 use proptest::prelude::*;
-use spikewire::Sample;
+use spikewire::{Sample, SampleKind};
 
 /// All inputs of a 16-bit type there and back, and halfway to the next.
 fn check<S: Wire>(from_bits: impl Fn(i16) -> S) {
@@ -68,4 +68,17 @@ fn floats() {
     proptest!(cases(4096), |(x in float())| {
         prop_assert_eq!(f32::from_f64(x.to_f64()).to_bits(), (f64::from(x) as f32).to_bits());
     });
+}
+
+/// The number of a type leaves no room for more fraction than it has bits.
+#[test]
+fn fractions_end_with_their_bits() {
+    for (kind, byte) in [
+        (SampleKind::Fixed16 { fraction: 16 }, 17),
+        (SampleKind::Fixed16 { fraction: 99 }, 17),
+        (SampleKind::Fixed32 { fraction: 32 }, 50),
+        (SampleKind::Fixed32 { fraction: 99 }, 50),
+    ] {
+        assert_eq!(kind.to_byte(), byte, "{kind:?}");
+    }
 }

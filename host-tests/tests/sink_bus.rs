@@ -15,8 +15,8 @@ use embedded_hal_mock::eh1::spi::{Mock, Transaction};
 use embedded_io::WriteReady;
 use spikewire::format::{Edvs, EdvsEncoder, EdvsTime};
 use spikewire::link::{Coding, MAX_FRAME, Reader, Session, Transmitter};
-use spikewire::out::{AsyncSpiSink, Formatted, SerialSink, SinkError, SpiSink};
-use spikewire::{Event, EventQueue, FromEvents, Overflow, Polarity, Tick};
+use spikewire::out::{AlwaysReady, AsyncSpiSink, Formatted, SerialSink, SinkError, SpiSink};
+use spikewire::{Event, EventQueue, FromEvents, Item, Overflow, Polarity, Put, Source, Tick};
 
 const FORMAT: Edvs = Edvs::new(EdvsTime::None);
 
@@ -135,6 +135,27 @@ fn the_asynchronous_sink_does_the_same() {
     assert_eq!(now(sink.send(&mut source)), Ok(4));
     assert_eq!(now(sink.send(&mut source)), Ok(0));
     sink.release().0.done();
+}
+
+/// A transmitter may be lent, and a receiver without a pin is always ready.
+#[test]
+fn a_batch_that_is_lent_is_filled() {
+    let mut batch = batch();
+    let mut sink = SpiSink::<_, _, 9>::new(Mock::new(&write(bytes(0..3))), &mut batch);
+    assert_eq!(sink.send(FromEvents(events(3).into_iter())), Ok(6));
+    sink.release().0.done();
+    assert_eq!([AlwaysReady.is_high(), AlwaysReady.is_low()], [Ok(true), Ok(false)]);
+}
+
+/// Every item goes to both ends of a fork.
+#[test]
+fn a_fork_puts_into_two_queues() {
+    let queues = [(); 2].map(|()| EventQueue::<4>::new(Overflow::Refuse));
+    let item = Item::Event(events(1)[0]);
+    (&queues[0], &queues[1]).put(item);
+    for queue in &queues {
+        assert_eq!(queue.consumer().unwrap().take().map(|taken| taken.item), Some(item));
+    }
 }
 
 #[test]

@@ -178,6 +178,59 @@ fn a_floor_halfway_between_two_neurons() {
     });
 }
 
+/// Fields that reach so far that an `f32` there does not tell the neurons apart.
+#[test]
+fn fields_far_wider_than_their_range() {
+    for beta in [1e-8, 1e-7, 1e-5] {
+        let last = (1.0 / f64::from(beta) * (2.0 * 16.0_f64.ln()).sqrt()) as f32;
+        let up: Vec<_> =
+            std::iter::successors(Some(last), |x| Some(x.next_up())).take(40).collect();
+        let down = std::iter::successors(Some(last), |x| Some(x.next_down())).take(40);
+        let x: Vec<_> = down.chain(up).flat_map(|x| [x, -x]).collect();
+        check::<f32, 5, 8>(0.0, 3.0, beta, 1, &x);
+    }
+}
+
+/// Fields whose distances do not fit 32 bits, over a range whose distances do.
+#[test]
+fn wide_fields_over_a_short_range() {
+    let [min, max] = [0, 65_536].map(I32F0::from_bits);
+    let x: Vec<_> = (-20..=20).map(|x| I32F0::from_bits(x * 10_000)).collect();
+    check::<I32F0, 5, 8>(min, max, 1e-4, 1, &x);
+}
+
+/// Ranges of a few steps, where a spacing of centres has a fraction.
+#[test]
+fn short_ranges() {
+    let x: Vec<i16> = (-120..=140).collect();
+    let words: Vec<_> = x.iter().map(|&x| I32F0::from_bits(x.into())).collect();
+    for (min, width) in [-5, 0, 7_i16].into_iter().flat_map(|min| (2..=40).map(move |w| (min, w))) {
+        for beta in [0.5, 1.5, 3.0] {
+            check_all(min, min + width, beta, &x);
+            let ends = [min, min + width].map(|end| I32F0::from_bits(end.into()));
+            check_all(ends[0], ends[1], beta, &words);
+        }
+    }
+}
+
+/// Levels that end a two-thousandth of a step above a sample, where a bin of values must not begin.
+#[test]
+fn levels_that_end_next_to_a_sample() {
+    let x: Vec<i16> = (-80..=80).collect();
+    let words: Vec<_> = x.iter().map(|&x| I32F0::from_bits(x.into())).collect();
+    for (min, width, beta) in [
+        (7, 4, 3.262_031_3),
+        (0, 10, 0.741_707_74),
+        (7, 10, 0.339_957_74),
+        (0, 20, 0.815_895_2),
+        (7, 20, 0.494_486_8),
+    ] {
+        check::<i16, 5, 10>(min, min + width, beta, 1, &x);
+        let ends = [min, min + width].map(|end| I32F0::from_bits(end.into()));
+        check::<I32F0, 5, 10>(ends[0], ends[1], beta, 1, &words);
+    }
+}
+
 /// Ranges whose distances just fit 32 bits, and just do not; values up to where they leave them.
 #[test]
 fn distances_about_32_bits_long() {

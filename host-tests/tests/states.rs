@@ -7,7 +7,7 @@ use fixed::types::{I8F8, I16F16};
 use host_tests::flight;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
-use spikewire::rate::{Average, Hough, IntegrateAndFire, Taps, Window};
+use spikewire::rate::{Average, BsaToolbox, Hough, IntegrateAndFire, Taps, Window};
 use spikewire::temporal::{MovingWindow, StepForward};
 use spikewire::{
     Calibration, Code, ConfigError, NeuronSpike, Output, Recovery, Sample, Scheme, Start, dynamic,
@@ -164,6 +164,9 @@ impl<S: Sample> Flight for Reboots<S> {
         P: Scheme<Sample = S, EncoderState: State, DecoderState: State>,
     {
         let fresh = write(&start);
+        let first = scheme.encode(&mut read(&fresh), self.samples[0]);
+        let taken = scheme.encode_slice(&mut read(&fresh), &self.samples[..9], &mut [first; 5]);
+        assert_eq!(taken, 5, "{name}");
         goes_on(scheme, start, &self.samples);
         assert!(survives(scheme, read(&fresh), &self.samples) > 20, "{name}");
         self.schemes += 1;
@@ -237,6 +240,9 @@ fn every_length<S: Sample>() {
     goes_on(&window(6), window(6).state(), &samples);
     survives(&window(6), window(6).state(), &samples);
     assert!(!window(6).fits(&window(7).state()));
+    let mut beyond = serde_json::to_value(window(6).state()).unwrap();
+    beyond["next"] = 6.into();
+    assert!(!window(6).fits(&serde_json::from_value(beyond).unwrap()));
 }
 
 #[test]
@@ -276,6 +282,12 @@ fn a_position_outside_its_ring_does_not_fit() {
     let mut decoder = serde_json::to_value(scheme.decoder().state()).unwrap();
     decoder["next"] = 5.into();
     assert!(!scheme.fits_decoder(&serde_json::from_value(decoder).unwrap()));
+
+    let toolbox = BsaToolbox::<f32, 5>::new(Taps::triangular(1.0), 1.1);
+    let mut state = serde_json::to_value(toolbox.encoder().state()).unwrap();
+    assert!(toolbox.fits(&serde_json::from_value(state.clone()).unwrap()));
+    state["registers"]["cursor"]["next"] = 5.into();
+    assert!(!toolbox.fits(&serde_json::from_value(state).unwrap()));
 
     let scheme = MovingWindow::<f32, 6>::new(1.0);
     let mut state = serde_json::to_value(MovingWindow::<f32, 6>::START).unwrap();

@@ -27,6 +27,7 @@ fn verdicts() {
         (&[9.0, 9.5, 10.0, 9.5], Err(Unfit::Saturated { samples: 1 })),
         (&[-10.0, -10.0, -12.0, -10.0], Err(Unfit::Saturated { samples: 4 })),
         (&[0.0, 1.0, 2.0, 1.0], Ok(())), // as far as allowed
+        (&[8.0, 9.0, 8.0, 9.0], Ok(())),
         (&[0.0, 1.0, 2.5, 1.0], Err(Unfit::Moving { distance: 2.5, stillness: 2.0 })),
         (&[0.0, 1.0, f32::NAN, 1.0, 0.0], Err(Unfit::NotFinite { samples: 1 })),
     ] {

@@ -97,6 +97,20 @@ fn drawn_shapes() {
     });
 }
 
+/// Down to where an exponential is taken for 0.
+#[test]
+fn the_flanks_of_narrow_bells() {
+    let bell = |alpha| Shape::Gaussian { alpha };
+    let last = 1380.0_f64.sqrt();
+    let about = [last.next_down().next_down(), last.next_down(), last, last.next_up()];
+    assert!(about.iter().any(|alpha| alpha * alpha == 1380.0));
+    for alpha in (1..80).map(|halves| f64::from(halves) / 2.0).chain(about).chain([50.0, 1e9]) {
+        let exact = if alpha * alpha > 1380.0 { 0.0 } else { (-0.5 * alpha * alpha).exp() };
+        let [left, middle, right] = [0, 1, 2].map(|k| bell(alpha).at(k, 3));
+        assert!(middle == 1.0 && left == right && (left - exact).abs() <= 1e-12 * exact, "{alpha}");
+    }
+}
+
 /// What is built at compile time is what is built in flight.
 #[test]
 fn constants() {

@@ -8,6 +8,7 @@ use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I8F8, I16F16};
 use host_tests::compare::{Wire, check_rate, encode, reals, signs_of};
 use host_tests::reference::threshold_hough;
+use proptest::collection::vec;
 use proptest::prelude::*;
 use spikewire::rate::{Hough, Taps, ThresholdHough};
 use spikewire::{Scheme, Spike};
@@ -40,6 +41,23 @@ fn cases_by_hand() {
         let scheme = ThresholdHough::try_new(taps, threshold).unwrap();
         assert_eq!(signs_of(&encode(&scheme, x).codes()), expected, "{name}");
     }
+}
+
+/// A threshold that the first spike's shortfall hits exactly, in numbers so large that the order of a sum decides.
+#[test]
+fn a_threshold_that_a_large_shortfall_hits() {
+    const LARGE: f32 = (1 << 30) as f32;
+    let numbers = |count| vec(0.0..LARGE, count);
+    proptest!(cases(256), |(taps in numbers(15), x in numbers(40))| {
+        let short = |window: &[f32]| {
+            window.iter().zip(&taps).fold(0.0, |sum, (x, tap)| sum + (tap - x).max(0.0))
+        };
+        let least = x.windows(15).map(short).fold(f32::INFINITY, f32::min);
+        let taps = Taps::try_new(taps.as_slice().try_into().unwrap()).unwrap();
+        for threshold in [least.next_down().max(0.0), least, least.next_up()] {
+            check::<f32, 15>(&taps, &x, threshold, 0.0);
+        }
+    });
 }
 
 #[test]

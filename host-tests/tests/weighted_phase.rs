@@ -1,6 +1,6 @@
 //! Weighted phase: the binary digits of a value's place in its range.
 
-use crate::common::timing::{Lined, assert_law, check, rising};
+use crate::common::timing::{Lined, assert_law, check, code_of, rising};
 use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::reference::{Line, edge, weighted_phase};
@@ -69,6 +69,13 @@ fn check_values() {
     let scheme = WeightedPhase::<f32, 4>::new(-1.0..=1.0);
     let digits = [-9.0, -1.0, 0.0, 1.0, 9.0, f32::NAN].map(|x| scheme.encoder().encode(x).digits());
     assert_eq!(digits, [0, 0, 8, 15, 15, 0]);
+}
+
+/// As from a chip: two spikes in a slot are one, and slots that there are not do not count.
+#[test]
+fn any_spikes_are_a_code() {
+    let code = code_of::<PhaseBits<4>>(&[(0, 3), (0, 1), (0, 3), (0, 4), (1, 0)]);
+    assert_eq!(code, PhaseBits::new(0b0101));
 }
 
 #[test]

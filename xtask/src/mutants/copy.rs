@@ -1,4 +1,4 @@
-//! A copy of the repository, whose crate has every change behind a switch.
+//! A copy of the repository, whose crate has each change behind a switch.
 
 use super::{
     Out,
@@ -29,12 +29,14 @@ pub struct Program {
 
 pub struct Copy {
     top: PathBuf,
+    /// The changes that get a switch.
+    switched: Vec<usize>,
     pub out: BTreeMap<usize, Out>,
 }
 
 impl Copy {
     /// Below `target/mutants`. All but the crate's source are links.
-    pub fn new() -> Result<Self> {
+    pub fn new(switched: Vec<usize>) -> Result<Self> {
         let top = paths::target().join("mutants/tree");
         fs::create_dir_all(&top)?;
         for entry in fs::read_dir(paths::root())? {
@@ -43,7 +45,7 @@ impl Copy {
                 run(command("ln").arg("-s").arg(paths::root().join(&name)).arg(top.join(&name)))?;
             }
         }
-        Ok(Self { top, out: BTreeMap::new() })
+        Ok(Self { top, switched, out: BTreeMap::new() })
     }
 
     /// Compiles the tests, without the changes that the compiler does not take. Which these are is kept, while the crate
@@ -126,11 +128,10 @@ impl Copy {
 
     fn write(&mut self, changes: &[Change]) -> Result<()> {
         let mut files: BTreeMap<&str, Sites> = BTreeMap::new();
-        for (number, change) in
-            changes.iter().enumerate().filter(|(number, _)| !self.out.contains_key(number))
-        {
+        for number in self.switched.iter().filter(|number| !self.out.contains_key(number)) {
+            let change = &changes[*number];
             let sites = files.entry(&change.file).or_default();
-            sites.entry(change.site()).or_default().push((number, change.replacement.clone()));
+            sites.entry(change.site()).or_default().push((*number, change.replacement.clone()));
         }
         for file in sources(&paths::root().join("src"))? {
             let name = file.strip_prefix(paths::root())?;

@@ -37,27 +37,33 @@ pub enum Out {
 }
 
 /// `MUTANTS_SINCE=v0.1.0` tries the changes of lines that are not those of that commit, `MUTANTS_IN=src/wire` those whose
-/// names have this in them, and `MUTANTS_AGAIN=1` those of the list. `MUTANTS_TESTS='chips wire'` leaves the tests of
-/// codes out, which compile longest. A run that is stopped goes on where it was.
+/// names have this in them, `MUTANTS_AGAIN=1` those of the list that no test notices yet, and `MUTANTS_AGAIN=all` the equal
+/// ones too. `MUTANTS_TESTS='chips wire'` leaves the tests of codes out, which compile longest. A run that is stopped goes
+/// on where it was.
 pub fn mutants() -> Result<()> {
     let changes = changes::all()?;
     let names = changes::lasting_names(&changes);
     let recent =
         env::var("MUTANTS_SINCE").map(|commit| changes::since(&commit)).ok().transpose()?;
     let part = env::var("MUTANTS_IN").ok();
+    let again = env::var("MUTANTS_AGAIN").ok();
     let held = Held::read()?;
     let is_listed = |name: &String| held.is_equal(name) || held.is_known(name);
-    let again = env::var("MUTANTS_AGAIN").is_ok();
-    let is_chosen = |number: &usize| {
-        let name = &changes[*number].name;
-        recent.as_ref().is_none_or(|recent| recent.contains(name))
-            && part.as_ref().is_none_or(|part| name.contains(part))
-            && (!again || is_listed(&names[*number]))
+    let is_asked = |number: &usize| {
+        let name = &names[*number];
+        recent.as_ref().is_none_or(|recent| recent.contains(&changes[*number].name))
+            && again
+                .as_ref()
+                .is_none_or(|again| held.is_known(name) || again == "all" && held.is_equal(name))
     };
-    let chosen: Vec<usize> = (0..changes.len()).filter(is_chosen).collect();
+    let is_chosen =
+        |number: &usize| part.as_ref().is_none_or(|part| changes[*number].name.contains(part));
+    // Few changes compile soon; all parts of a run have the same ones, so that they compile once.
+    let asked: Vec<usize> = (0..changes.len()).filter(is_asked).collect();
+    let chosen: Vec<usize> = asked.iter().copied().filter(is_chosen).collect();
     ensure!(!chosen.is_empty() || recent.is_some(), "there is no such change");
 
-    let mut copy = Copy::new()?;
+    let mut copy = Copy::new(asked)?;
     let programs = copy.programs(&changes)?;
     let tests = tests::record(&programs)?;
     let tried: Vec<usize> =
