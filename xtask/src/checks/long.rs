@@ -56,6 +56,16 @@ pub fn loom() -> Result<()> {
     run(&mut cargo("test --package host-tests --features loom --test loom -- --test-threads 1"))
 }
 
+/// Prints how fast slices are beside another crate's, which compiles with less than the Rust that it asks for.
+pub fn beside() -> Result<()> {
+    let program = "run --release --quiet --ignore-rust-version --manifest-path";
+    let mut beside = cargo(program);
+    run(beside
+        .arg("host-tests/beside/Cargo.toml")
+        .arg("--target-dir")
+        .arg(paths::target().join("beside")))
+}
+
 /// What `clippy` and the builds of firmware lint, and what they leave out.
 pub fn lints() -> Result<()> {
     let warnings = ["--", "-D", "warnings"];

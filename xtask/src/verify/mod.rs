@@ -97,6 +97,7 @@ const LONG: &[Step] = &[
         bench::verify_stack,
     ),
     step("flash", "the flash of one codec as linked, with two bounds", flash::verify),
+    step("beside", "slices on this machine beside another crate's", long::beside),
     step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", || {
         bench::verify("M0")
     }),
