@@ -14,38 +14,12 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// The bytes of one sample in the compact form.
-    pub const SIZE: usize = 28;
-
     /// Gyroscope x, y, z, then accelerometer x, y, z.
     pub fn channels(&self) -> [f32; 6] {
         let mut channels = [0.0; 6];
         channels[..3].copy_from_slice(&self.gyro);
         channels[3..].copy_from_slice(&self.accel);
         channels
-    }
-
-    /// Reads a sample as the compact form holds it: time and six channels, little endian.
-    pub fn from_bytes(bytes: &[u8; Self::SIZE]) -> Self {
-        let word = |index: usize| {
-            let at = 4 * index;
-            [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]
-        };
-        let float = |index| f32::from_le_bytes(word(index));
-        Self {
-            time_us: u32::from_le_bytes(word(0)),
-            gyro: [float(1), float(2), float(3)],
-            accel: [float(4), float(5), float(6)],
-        }
-    }
-
-    /// Writes a sample as [`Self::from_bytes`] reads it.
-    pub fn to_bytes(&self) -> [u8; Self::SIZE] {
-        let mut bytes = [0; Self::SIZE];
-        let floats = self.channels().map(f32::to_le_bytes);
-        bytes[..4].copy_from_slice(&self.time_us.to_le_bytes());
-        bytes[4..].copy_from_slice(floats.as_flattened());
-        bytes
     }
 }
 
@@ -67,11 +41,25 @@ pub fn channel(samples: &[Sample], index: usize) -> Vec<f32> {
     samples.iter().map(|sample| sample.channels()[index]).collect()
 }
 
+/// A channel of the hexarotor's flight in a sample type, where `unit` is 1 rad/s or 1 m/s².
+pub fn flown<S: spikewire::Sample>(index: usize, unit: f64) -> Vec<S> {
+    let channel = channel(&hexarotor(), index);
+    channel.into_iter().map(|value| S::from_f64(f64::from(value) * unit)).collect()
+}
+
+/// A calibration that has seen the samples.
+pub fn calibrated<S: spikewire::Sample>(samples: &[S]) -> spikewire::Calibration<S> {
+    let mut calibration = spikewire::Calibration::new();
+    samples.iter().for_each(|&sample| calibration.observe(sample));
+    calibration
+}
+
 fn read(bytes: &[u8]) -> Vec<Sample> {
-    bytes
-        .chunks(Sample::SIZE)
-        .map(|chunk| Sample::from_bytes(chunk.try_into().expect("a flight is whole samples")))
-        .collect()
+    let sample = |record: flight_data::Record| {
+        let [rx, ry, rz, ax, ay, az] = record.channels;
+        Sample { time_us: record.micros, gyro: [rx, ry, rz], accel: [ax, ay, az] }
+    };
+    flight_data::records(bytes).map(sample).collect()
 }
 
 #[cfg(test)]
@@ -105,7 +93,8 @@ mod tests {
             let parsed = parse_csv(csv);
             assert_eq!(parsed.len(), compact.len());
             for (parsed, compact) in parsed.iter().zip(&compact) {
-                assert_eq!(parsed.to_bytes(), compact.to_bytes());
+                let bits = |sample: &Sample| (sample.time_us, sample.channels().map(f32::to_bits));
+                assert_eq!(bits(parsed), bits(compact));
             }
         }
     }

@@ -7,18 +7,11 @@
 use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
 use fixed::types::{I8F8, I16F16};
 use host_tests::compare::{Wire, finite};
+use host_tests::flight::calibrated;
 use host_tests::reference::{Moments, calibrate};
 use proptest::prelude::*;
 use spikewire::temporal::TemporalContrast;
 use spikewire::{Calibration, ConfigError, Differences};
-
-fn observed<S: Wire>(x: &[S]) -> Calibration<S> {
-    let mut calibration = Calibration::new();
-    for &x in x {
-        calibration.observe(x);
-    }
-    calibration
-}
 
 /// The same mean, and a variance that differs by no more than rounding.
 fn assert_moments(ours: Differences, reference: Moments, count: f64) {
@@ -30,7 +23,7 @@ fn assert_moments(ours: Differences, reference: Moments, count: f64) {
 }
 
 fn check<S: Wire>(x: &[S]) {
-    let ours = observed(x);
+    let ours = calibrated(x);
     let recording = finite(x);
     let count = recording.accepted.len();
     assert_eq!(ours.seen() as usize, count);
@@ -53,7 +46,7 @@ fn check<S: Wire>(x: &[S]) {
 #[test]
 fn cases_by_hand() {
     // Differences 1, 3, -2: mean 2/3, squares 14.
-    let calibration = observed(&[0.0_f32, 1.0, f32::NAN, 4.0, 2.0, f32::INFINITY]);
+    let calibration = calibrated(&[0.0_f32, 1.0, f32::NAN, 4.0, 2.0, f32::INFINITY]);
     assert_eq!((calibration.min(), calibration.max()), (Some(0.0), Some(4.0)));
     assert_eq!((calibration.seen(), calibration.rejected()), (4, 2));
     let differences = calibration.differences().unwrap();
@@ -71,7 +64,7 @@ fn cases_by_hand() {
 #[test]
 fn a_falling_ramp() {
     let ramp: Vec<_> = (0..=10).rev().map(|i| i as f32).collect();
-    let calibration = observed(&ramp);
+    let calibration = calibrated(&ramp);
     assert_eq!(
         TemporalContrast::from_calibration(&calibration, 1.0),
         Err(ConfigError::NotPositive { parameter: "threshold", value: -1.0 })
@@ -84,7 +77,7 @@ fn a_falling_ramp() {
 fn thresholds_of_the_flights() {
     for channel in flight_channels() {
         let reference = calibrate(&channel).unwrap();
-        let calibration = observed(&channel);
+        let calibration = calibrated(&channel);
         let thresholds = [
             (TemporalContrast::from_calibration(&calibration, 0.5), reference.differences),
             (TemporalContrast::from_magnitudes(&calibration, 0.5), reference.magnitudes),
@@ -96,7 +89,7 @@ fn thresholds_of_the_flights() {
 
         let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
         let expected = calibrate(&host_tests::compare::reals(&fixed)).unwrap();
-        let scheme = TemporalContrast::from_magnitudes(&observed(&fixed), 0.5).unwrap();
+        let scheme = TemporalContrast::from_magnitudes(&calibrated(&fixed), 0.5).unwrap();
         let expected = I16F16::nearest(expected.magnitudes.threshold(0.5));
         assert_eq!(scheme.threshold(), expected);
     }

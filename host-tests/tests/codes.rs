@@ -26,7 +26,6 @@ mod population_sizes;
 mod position;
 mod probabilistic;
 mod rank_order;
-mod rooms;
 mod samples;
 mod serde;
 mod slots;
@@ -37,13 +36,7 @@ mod survey;
 mod taps;
 mod temporal_contrast;
 mod threshold_hough;
-mod transcriptions;
 mod weighted_phase;
-
-/// The signals that codecs are counted on.
-#[allow(clippy::pedantic, dead_code, unreachable_pub)]
-#[path = "../../examples/bench-target/src/signal.rs"]
-mod signal;
 
 /// What the firmware program `camera` prints.
 #[allow(clippy::pedantic, dead_code, unreachable_pub)]

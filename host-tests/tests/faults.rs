@@ -18,8 +18,8 @@ use spikewire::link::{
 };
 use spikewire::out::{Batch, SerialSink};
 use spikewire::{
-    Bank, Calibration, Code, ConfigError, EventQueue, Item, Output, Overflow, Put, QueueView,
-    Recovery, Sample, Scheme, Source, Taken, Tick,
+    Bank, Code, ConfigError, EventQueue, Item, Output, Overflow, Put, QueueView, Recovery, Sample,
+    Scheme, Source, Taken, Tick,
 };
 
 const CHANNELS: usize = 2;
@@ -910,15 +910,10 @@ fn inverse(odd: u64) -> u64 {
 }
 
 fn soak<S: Sample>(unit: f64, faults: &[Fault], spells: u32) -> Tally {
-    let flight = flight::channel(&flight::hexarotor(), 0);
-    let samples: Vec<S> =
-        flight.into_iter().map(|value| S::from_f64(f64::from(value) * unit)).collect();
-    let mut calibration = Calibration::new();
-    for &sample in &samples {
-        calibration.observe(sample);
-    }
+    let samples = flight::flown::<S>(0, unit);
+    let channel = Channel::new(0, flight::calibrated(&samples));
     let mut visitor = Soak { samples, faults, spells, seed: 0, tally: Tally::default() };
-    catalogue::fly(&Channel::new(0, calibration), &mut visitor).unwrap();
+    catalogue::fly(&channel, &mut visitor).unwrap();
     visitor.tally
 }
 

@@ -26,9 +26,7 @@ use spikewire::rate::{Hough, Taps};
 use spikewire::temporal::{
     AdaptiveContrast, AdaptiveStepForward, MovingWindow, SendOnDelta, StepForward, TemporalContrast,
 };
-use spikewire::{
-    Calibration, Code, ConfigError, NeuronSpike, Output, Recovery, Sample, Scheme, Spike, Start,
-};
+use spikewire::{Code, ConfigError, NeuronSpike, Output, Recovery, Sample, Scheme, Spike, Start};
 
 /// What a decoder beside the encoder holds after each sample, from the first sample on.
 fn followed<P: Start>(scheme: &P, x: &[P::Sample]) -> Vec<P::Sample> {
@@ -338,15 +336,10 @@ impl<S: Sample> Flight for Laws<S> {
 #[test]
 fn cuts_never_matter_and_keyframes_mend_in_every_scheme() {
     fn check<S: Sample>(unit: f64, lengths: Vec<usize>) {
-        let flight = flight::channel(&flight::hexarotor(), 1);
-        let samples: Vec<_> =
-            flight.iter().step_by(3).map(|&value| S::from_f64(f64::from(value) * unit)).collect();
-        let mut calibration = Calibration::new();
-        for &sample in &samples {
-            calibration.observe(sample);
-        }
+        let samples: Vec<S> = flight::flown(1, unit).into_iter().step_by(3).collect();
+        let channel = Channel::new(1, flight::calibrated(&samples));
         let mut visitor = Laws { samples, lengths, schemes: 0 };
-        catalogue::fly(&Channel::new(1, calibration), &mut visitor).unwrap();
+        catalogue::fly(&channel, &mut visitor).unwrap();
         assert!(visitor.schemes >= catalogue::INFO.len());
     }
     proptest!(cases(2), |(lengths in vec(1..70_usize, 1..9))| {

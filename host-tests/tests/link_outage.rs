@@ -11,8 +11,7 @@ use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 use spikewire::link::{Coding, MAX_FRAME, Reader, Receiver, Session, Transmitter};
 use spikewire::{
-    Bank, Calibration, Code, ConfigError, FromItems, Item, Output, Put, Recovery, Sample, Scheme,
-    Tick,
+    Bank, Code, ConfigError, FromItems, Item, Output, Put, Recovery, Sample, Scheme, Tick,
 };
 
 const CHANNELS: usize = 2;
@@ -494,15 +493,10 @@ impl<S: Sample> Flight for Outages<S> {
 
 /// How many values were called exact, in every scheme. All of them were.
 fn claims<S: Sample>(unit: f64, seeds: std::ops::Range<u64>, turns: u32) -> u64 {
-    let flight = flight::channel(&flight::hexarotor(), 0);
-    let samples: Vec<S> =
-        flight.into_iter().map(|value| S::from_f64(f64::from(value) * unit)).collect();
-    let mut calibration = Calibration::new();
-    for &sample in &samples {
-        calibration.observe(sample);
-    }
+    let samples = flight::flown::<S>(0, unit);
+    let channel = Channel::new(0, flight::calibrated(&samples));
     let mut visitor = Outages { samples, seeds, turns, claims: 0, schemes: 0 };
-    catalogue::fly(&Channel::new(0, calibration), &mut visitor).unwrap();
+    catalogue::fly(&channel, &mut visitor).unwrap();
     assert!(visitor.schemes >= catalogue::INFO.len());
     visitor.claims
 }

@@ -9,19 +9,13 @@ use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 use spikewire::rate::{Average, BsaToolbox, Hough, IntegrateAndFire, Taps, Window};
 use spikewire::temporal::{MovingWindow, StepForward};
-use spikewire::{
-    Calibration, Code, ConfigError, NeuronSpike, Output, Recovery, Sample, Scheme, Start, dynamic,
-};
+use spikewire::{Code, ConfigError, NeuronSpike, Output, Recovery, Sample, Scheme, Start, dynamic};
 
 /// Roll rate in flight, with a sample that is not finite where the type has such.
 fn samples<S: Sample>() -> Vec<S> {
     // Counts of an inertial sensor.
     let unit = if S::KIND == i16::KIND { 1000.0 } else { 1.0 };
-    let mut samples: Vec<S> = flight::channel(&flight::hexarotor(), 0)
-        .into_iter()
-        .step_by(3)
-        .map(|value| S::from_f64(f64::from(value) * unit))
-        .collect();
+    let mut samples: Vec<S> = flight::flown(0, unit).into_iter().step_by(3).collect();
     samples[70] = S::from_f64(f64::NAN);
     samples
 }
@@ -176,12 +170,9 @@ impl<S: Sample> Flight for Reboots<S> {
 
 fn every_scheme<S: Sample>() {
     let samples = samples::<S>();
-    let mut calibration = Calibration::new();
-    for &sample in &samples {
-        calibration.observe(sample);
-    }
+    let channel = Channel::new(0, flight::calibrated(&samples));
     let mut visitor = Reboots { samples, schemes: 0 };
-    catalogue::fly(&Channel::new(0, calibration), &mut visitor).unwrap();
+    catalogue::fly(&channel, &mut visitor).unwrap();
     assert!(visitor.schemes >= catalogue::INFO.len());
 }
 

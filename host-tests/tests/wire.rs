@@ -9,7 +9,6 @@ mod formats_peers;
 mod formats_pixels;
 mod heapless;
 mod interleaving;
-mod link_bytes;
 mod link_drift;
 mod link_frames;
 mod link_loss;

@@ -7,22 +7,19 @@
 mod checks;
 mod common;
 mod figures;
-#[cfg(test)]
-mod modules;
 mod mutants;
 mod products;
 mod programs;
 mod release;
+#[cfg(test)]
+mod rooms;
 mod setup;
 mod verify;
 mod write;
 
 use anyhow::Result;
 use checks::{firmware, simulated_drone};
-use common::{
-    progress,
-    usage::{Usage, usage},
-};
+use common::{Usage, progress, usage};
 use figures::{bench, demo};
 use products::{c_library, new_firmware, page};
 use std::{env, process::ExitCode};
@@ -32,8 +29,8 @@ cargo xtask <command>
 
   setup                 compiler targets, QEMU and binutils for Cortex-M; does only what is missing
   firmware [PROGRAM]... runs the example programs on every emulated board and compares with the host
-  write [PART]...       writes again what is generated: tables and pictures of the pages, headers, stubs; all, or the
-                        named parts; a name that there is not lists them
+  write [PART]...       writes again what is generated: tables and pictures of the pages, declarations, stubs; all, or
+                        the named parts; a name that there is not lists them
   c-library [--target]  the library for C: archive, header, CMake package and pkg-config file for each core and the host
   guides FIRMWARE DIR   builds the guide of c/guides for crazyflie or betaflight within a checkout of that firmware
   new-firmware DIR --board NAME

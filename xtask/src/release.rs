@@ -1,13 +1,8 @@
 //! `cargo xtask release`: all that stands before an upload, which it leaves to the owner; and the check of licences.
 
-use crate::{
-    checks::package,
-    common::{
-        paths,
-        shell::{cargo, command, output, run},
-    },
-    programs::{published, python},
-};
+use crate::checks::package;
+use crate::common::{cargo, command, output, paths, run};
+use crate::programs::{published, python};
 use anyhow::{Context, Result, bail, ensure};
 use serde_json::json;
 use std::{fs, path::PathBuf};

@@ -6,6 +6,7 @@ use fixed::{
     FixedI16, FixedI32,
     types::extra::{U8, U16},
 };
+use flight_data::{Record, records};
 use rand_pcg::{Pcg32, rand_core::Rng};
 use spikewire::Sample;
 
@@ -14,11 +15,8 @@ use catalogue::plain::Plain;
 /// Samples of either signal.
 pub const LENGTH: usize = 2000;
 
-/// A time stamp, then six channels, four bytes each.
-const RECORD: usize = 28;
-
 /// The recording's beginning.
-static FLIGHT: [u8; LENGTH * RECORD] = match flight_data::HEXAROTOR.first_chunk() {
+static FLIGHT: [u8; LENGTH * Record::SIZE] = match flight_data::HEXAROTOR.first_chunk() {
     Some(beginning) => *beginning,
     None => panic!("the recording is too short"),
 };
@@ -51,10 +49,8 @@ impl Signal {
                 }
             }
             Self::Flight => {
-                for (sample, record) in buffer.iter_mut().zip(FLIGHT.chunks_exact(RECORD)) {
-                    let gyro_x =
-                        record[4..].first_chunk().map_or(0.0, |word| f32::from_le_bytes(*word));
-                    *sample = S::from_f64(f64::from(gyro_x) * S::UNITS);
+                for (sample, record) in buffer.iter_mut().zip(records(&FLIGHT)) {
+                    *sample = S::from_f64(f64::from(record.channels[0]) * S::UNITS);
                 }
             }
         }

@@ -9,6 +9,7 @@
 pub mod chip_bus;
 #[cfg(feature = "stopwatch")]
 mod count;
+pub mod digest;
 #[cfg(all(target_os = "none", feature = "stopwatch"))]
 pub mod stopwatch;
 #[cfg(all(target_os = "none", feature = "usart"))]

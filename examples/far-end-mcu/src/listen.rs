@@ -9,7 +9,10 @@ use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::exception;
 use far_end::FarEnd;
 
-use board::usart::{Usart1, Usart2};
+use board::{
+    digest::Digest,
+    usart::{Usart1, Usart2},
+};
 
 /// A millisecond at QEMU's 168 MHz.
 const TIMER_RELOAD: u32 = 168_000;
@@ -31,7 +34,7 @@ pub fn run(out: &mut impl Write) -> fmt::Result {
 
     let (mut line, mut actuators) = (Usart1::new(), Usart2::new());
     let mut far = FarEnd::default();
-    let (mut values, mut hash, mut commands) = (0_u32, 0xcbf2_9ce4_8422_2325_u64, 0_u32);
+    let (mut values, mut hash, mut commands) = (0_u32, Digest::new(), 0_u32);
     loop {
         let now = MILLISECONDS.load(Relaxed);
         // Before the first frame there is only noise. A vehicle is neutral then, and goes on listening after the last one.
@@ -45,11 +48,7 @@ pub fn run(out: &mut impl Write) -> fmt::Result {
             &[byte],
             |channel, tick, value| {
                 values += 1;
-                // FNV-1a, as the sender prints its own.
-                let words = [channel.into(), tick.micros(), value.to_bits()];
-                for byte in words.into_iter().flat_map(u32::to_le_bytes) {
-                    hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-                }
+                hash.add([channel.into(), tick.micros(), value.to_bits()]); // as the sender prints its own
             },
             |command| {
                 commands += 1;
@@ -57,6 +56,6 @@ pub fn run(out: &mut impl Write) -> fmt::Result {
             },
         );
     }
-    writeln!(out, "{values} values and keyframes hash={hash:016x}")?;
+    writeln!(out, "{values} values and keyframes {hash}")?;
     writeln!(out, "{commands} commands, {} frames lost", far.lost_frames())
 }

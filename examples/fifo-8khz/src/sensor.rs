@@ -8,8 +8,6 @@ use icm42688p::{PACKET, SAMPLE_RATE, WATERMARK};
 /// From one sample to the next, in µs.
 pub const PERIOD: u16 = (1_000_000 / SAMPLE_RATE as u32) as u16;
 
-/// A time stamp in µs, then rates in rad/s and accelerations in m/s², four bytes each.
-const RECORD: usize = 4 + 4 * 6;
 /// Counts of 1 rad/s at ±2000 °/s, and of 1 m/s² at ±16 g.
 const COUNTS: [f32; 6] = {
     let (rate, acceleration) = (16.384 * 57.295_78, 2048.0 / 9.806_65);
@@ -62,10 +60,8 @@ impl Sensor {
 }
 
 fn record(number: usize) -> (u32, [f32; 6]) {
-    let (records, _) = flight_data::HEXAROTOR.as_chunks::<RECORD>();
-    let (words, _) = records[number].as_chunks::<4>();
-    let value = |channel| f32::from_le_bytes(words[1 + channel]);
-    (u32::from_le_bytes(words[0]), core::array::from_fn(value))
+    let record = flight_data::record(flight_data::HEXAROTOR, number);
+    record.map_or((u32::MAX, [0.0; 6]), |record| (record.micros, record.channels))
 }
 
 /// The bus.

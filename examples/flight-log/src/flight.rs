@@ -9,11 +9,6 @@ use spikewire::Sample;
 /// Gyroscope x, y, z in rad/s, then accelerometer x, y, z in m/s².
 pub const CHANNELS: usize = 6;
 
-/// One record: time in microseconds as u32, then the channels as f32, all little endian.
-const RECORD: usize = 4 + 4 * CHANNELS;
-
-static RECORDS: &[u8] = flight_data::HEXAROTOR;
-
 /// A sample type, and what one of its units is on either sensor.
 pub trait Recorded: Sample {
     /// Units for 1 rad/s.
@@ -35,10 +30,6 @@ impl Recorded for i16 {
 /// One channel's samples, in order.
 pub fn channel<S: Recorded>(index: usize) -> impl Iterator<Item = S> + Clone {
     let unit = if index < 3 { S::GYRO } else { S::ACCEL };
-    let (records, _) = RECORDS.as_chunks::<RECORD>();
-    records.iter().map(move |record| {
-        let (words, _) = record.as_chunks::<4>();
-        let value = f32::from_le_bytes(words[1 + index]); // word 0 is the time
-        S::from_f64(f64::from(value) * unit)
-    })
+    let records = flight_data::records(flight_data::HEXAROTOR);
+    records.map(move |record| S::from_f64(f64::from(record.channels[index]) * unit))
 }

@@ -32,12 +32,10 @@ fn run(out: &mut impl Write) -> fmt::Result {
 
 /// The gyroscope of a hexarotor that takes off and flies: rates in rad/s.
 fn gyro() -> impl Iterator<Item = (Tick, [f32; 3])> {
-    static RECORDING: &[u8] = flight_data::HEXAROTOR;
-    let (records, _) = RECORDING.as_chunks::<28>();
-    records.iter().take(2000).map(|record| {
-        let (words, _) = record.as_chunks::<4>();
-        let tick = Tick::from(u32::from_le_bytes(words[0]));
-        (tick, [1, 2, 3].map(|i| f32::from_le_bytes(words[i])))
+    let records = flight_data::records(flight_data::HEXAROTOR).take(2000);
+    records.map(|record| {
+        let [roll, pitch, yaw, ..] = record.channels;
+        (record.micros.into(), [roll, pitch, yaw])
     })
 }
 

@@ -1,7 +1,6 @@
 //! The board: the timer's interrupt samples and encodes, main sends.
 
-use crate::{digest::Digest, flight};
-use board::usart::Usart1;
+use board::{digest::Digest, usart::Usart1};
 use core::{cell::RefCell, fmt};
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::exception;
@@ -40,6 +39,7 @@ struct Sampler {
     bank: Bank<Schemes, CHANNELS>,
     /// The board's own, beside the link; from the first sample on.
     decoders: Option<[Decoder<'static, StepForward<f32>>; CHANNELS]>,
+    values: u32,
     decoded: Digest,
 }
 
@@ -50,22 +50,25 @@ impl Sampler {
             is_done: false,
             bank: Bank::per_channel(SCHEMES),
             decoders: None,
+            values: 0,
             decoded: Digest::new(),
         }
     }
 
     fn sample(&mut self) {
-        let Some((tick, sample)) = flight::sample(self.next) else {
+        let Some(record) = flight_data::record(flight_data::HEXAROTOR, self.next) else {
             self.is_done = true;
             return;
         };
-        let Self { bank, decoders, decoded, .. } = self;
+        let (tick, sample) = (record.micros.into(), record.channels);
+        let Self { bank, decoders, values, decoded, .. } = self;
         let decoders = decoders.get_or_insert_with(|| decoders_at(sample));
         bank.encode(tick, sample, |event| {
             let _ = EVENTS.push(event); // what does not fit is counted in the queue
             if let Some(decoder) = decoders.get_mut(usize::from(event.address)) {
                 let value = decoder.decode(event.polarity.into());
-                decoded.add(event.address, event.tick, value);
+                *values += 1;
+                decoded.add([event.address.into(), event.tick.micros(), value.to_bits()]);
             }
         });
         if self.next.is_multiple_of(KEYFRAME_EVERY) {
@@ -111,6 +114,9 @@ pub fn run(out: &mut impl fmt::Write) -> fmt::Result {
         }
     }
 
-    critical_section::with(|cs| writeln!(out, "{}", SAMPLER.borrow_ref(cs).decoded))?;
+    critical_section::with(|cs| {
+        let Sampler { values, decoded, .. } = &*SAMPLER.borrow_ref(cs);
+        writeln!(out, "{values} values {decoded}")
+    })?;
     writeln!(out, "{bytes} bytes, {} events lost, peak {}", EVENTS.lost(), EVENTS.peak())
 }

@@ -6,10 +6,6 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-mod digest;
-#[cfg(target_os = "none")]
-mod flight;
-#[cfg(target_os = "none")]
 mod send;
 
 #[cfg(target_os = "none")]

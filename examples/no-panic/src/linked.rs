@@ -9,7 +9,6 @@
 use {cortex_m as _, panic_never as _};
 
 mod codecs;
-mod constants;
 mod exercise;
 mod frames;
 mod links;
@@ -25,7 +24,6 @@ fn link_all() {
     codecs::link::<FixedI16<U8>>();
     codecs::link::<FixedI32<U16>>();
     codecs::link::<i16>();
-    constants::link();
     links::link();
     frames::link();
 }

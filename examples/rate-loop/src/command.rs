@@ -1,12 +1,12 @@
 //! From turn rates to commands against them.
 
 use crate::{
-    digest::Digest,
-    flight,
     network::{NETWORK, RATES, TIME_STEP},
+    rates,
     rig::{Rig, tenths},
     tape::Tape,
 };
+use board::digest::Digest;
 use board::stopwatch::instructions;
 use core::fmt::{self, Write};
 use spikewire::{
@@ -24,7 +24,7 @@ pub fn fly(out: &mut impl Write) -> fmt::Result {
     let mut commands = Digest::new();
     let (mut steps, mut spikes_out, mut largest) = (0_u32, 0_u32, 0.0_f32);
     let (mut encoding, mut decoding) = (0_u64, 0_u64);
-    for (now, rate) in flight::rates() {
+    for (now, rate) in rates() {
         let mut events = Spikes::<64>::new();
         let encode = || bank.encode(now, [rate], |event| events.push(event));
         encoding += u64::from(instructions(encode));

@@ -9,8 +9,6 @@
 extern crate alloc;
 
 mod command;
-mod digest;
-mod flight;
 #[cfg(target_os = "none")]
 mod heap;
 mod network;
@@ -22,6 +20,13 @@ mod trained;
 mod turns;
 
 use core::fmt::{self, Write};
+use spikewire::Tick;
+
+/// The recording's times, and its roll rates in rad/s.
+fn rates() -> impl Iterator<Item = (Tick, f32)> {
+    let records = flight_data::records(flight_data::HEXAROTOR);
+    records.map(|record| (record.micros.into(), record.channels[0]))
+}
 
 fn run(out: &mut impl Write) -> fmt::Result {
     command::fly(out)?;

@@ -2,12 +2,12 @@
 //! one way in the last 0.2 s, the other way, or neither? Through the stretches of the flight that its training never saw.
 
 use crate::{
-    digest::Digest,
-    flight,
+    rates,
     rig::tenths,
     tape::{Tape, Taped},
     turns::{LATE, NETWORK, UNIT},
 };
+use board::digest::Digest;
 use board::stopwatch::instructions;
 use core::fmt::{self, Write};
 use silicon::reckon::{Board, Port, Spi};
@@ -33,7 +33,7 @@ const LOOK: u32 = 2;
 type Chip = ReckOn<Spi, Taped<Port>>;
 
 fn held_out() -> impl Iterator<Item = f32> {
-    let rates = flight::rates().enumerate().filter(|(at, _)| at / STRETCH % 3 == 2);
+    let rates = rates().enumerate().filter(|(at, _)| at / STRETCH % 3 == 2);
     rates.map(|(_, (_, rate))| rate)
 }
 

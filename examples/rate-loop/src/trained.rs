@@ -1,7 +1,8 @@
 //! A trained network, as `spikewire network` brought it onto the chip: does the aircraft roll one way, the other, or
 //! neither?
 
-use crate::{digest::Digest, flight, rig::Rig, roll, tape::Tape};
+use crate::{rates, rig::Rig, roll, tape::Tape};
+use board::digest::Digest;
 use core::fmt::{self, Write};
 use spikewire::{
     Bank, Event,
@@ -18,7 +19,7 @@ pub fn fly(out: &mut impl Write) -> fmt::Result {
     let mut bank = Bank::<_, 1>::new(&RATES);
     let mut digest = Digest::new();
     let mut counts = [0_u32; 3];
-    for (step, (now, rate)) in flight::rates().enumerate() {
+    for (step, (now, rate)) in rates().enumerate() {
         let mut events = Spikes::<4>::new();
         if step > 0 && step as u32 % roll::STEPS_A_LEAK == 0 {
             events.push(of(now, LEAK));

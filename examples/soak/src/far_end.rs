@@ -1,5 +1,6 @@
 //! The far end: a reader, a receiver, and what must hold of every frame.
 
+use board::digest::Digest;
 use spikewire::link::{FrameView, MAX_FRAME, Reader, Received, Receiver};
 
 use crate::{
@@ -15,7 +16,7 @@ const REMEMBERED: usize = 8;
 struct Sent {
     start: u32,
     number: u64,
-    content: u64,
+    content: Digest,
 }
 
 pub struct FarEnd {
@@ -140,25 +141,15 @@ fn check(
     Ok(())
 }
 
-/// FNV-1a over all that a frame says.
-fn content(frame: &FrameView<'_>) -> u64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let mut add = |word: u32| {
-        for byte in word.to_le_bytes() {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-    };
-    add(frame.tick().micros());
-    add(frame.is_after_loss().into());
+/// All that a frame says.
+fn content(frame: &FrameView<'_>) -> Digest {
+    let mut all = Digest::new();
+    all.add([frame.tick().micros(), frame.is_after_loss().into()]);
     for keyframe in frame.keyframes() {
-        add(keyframe.tick.micros());
-        add(keyframe.address.into());
-        add(keyframe.bits);
+        all.add([keyframe.tick.micros(), keyframe.address.into(), keyframe.bits]);
     }
     for event in frame.events() {
-        add(event.tick.micros());
-        add(event.address.into());
-        add(event.polarity as u32);
+        all.add([event.tick.micros(), event.address.into(), event.polarity as u32]);
     }
-    hash
+    all
 }

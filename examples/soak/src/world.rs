@@ -175,10 +175,10 @@ impl World {
 
     /// The next sample of the recording, over and over.
     fn next(&mut self) -> [f32; CHANNELS] {
-        let (records, _) = flight_data::HEXAROTOR.as_chunks::<{ 4 + 4 * CHANNELS }>();
-        let (words, _) = records[self.at].as_chunks::<4>();
-        self.at = (self.at + 1) % records.len();
-        core::array::from_fn(|channel| f32::from_le_bytes(words[channel + 1]))
+        const FLIGHT: &[u8] = flight_data::HEXAROTOR;
+        let record = flight_data::record(FLIGHT, self.at);
+        self.at = (self.at + 1) % (FLIGHT.len() / flight_data::Record::SIZE);
+        record.map_or([0.0; CHANNELS], |record| record.channels)
     }
 
     /// Main's turn on both sides.

@@ -8,16 +8,12 @@ use spikewire::{Output, Sample, Scheme};
 
 include!(concat!(env!("OUT_DIR"), "/tuned.rs"));
 
-/// One record: time in microseconds as u32, then six channels as f32, all little endian; the third is the yaw rate.
-const RECORD: usize = 4 + 4 * 6;
-const YAW: usize = 3;
+/// The channel of the recording.
+const YAW: usize = 2;
 
 fn run(out: &mut impl Write) -> fmt::Result {
-    let (records, _) = flight_data::HEXAROTOR.as_chunks::<RECORD>();
-    let samples = records.iter().map(|record| {
-        let (words, _) = record.as_chunks::<4>();
-        Sample::from_f64(f64::from(f32::from_le_bytes(words[YAW])))
-    });
+    let records = flight_data::records(flight_data::HEXAROTOR);
+    let samples = records.map(|record| Sample::from_f64(record.channels[YAW].into()));
     let mut encoder = GYRO_Z.encoder();
     let mut index = 0;
     for sample in samples {

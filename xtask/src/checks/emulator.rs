@@ -1,19 +1,11 @@
 //! Images flown from their reset vector, with a sensor that breaks in every way that it can: a Pico's in rp2040js, those
 //! for a Cortex-M4F in Unicorn with peripherals of `examples/boards/emulator`.
 
-use crate::{
-    common::{
-        paths,
-        shell::{self, command, output, run},
-    },
-    figures::bench::{
-        cycles::{self, Cycles, Model},
-        listing::Instruction,
-    },
-    products::parts::{BMI088, BMI323, Part},
-    programs::{host, python},
-    setup,
-};
+use crate::common::{command, output, paths, run, shell};
+use crate::figures::bench::{cycles, cycles::Cycles, cycles::Model, listing::Instruction};
+use crate::products::parts::{BMI088, BMI323, Part};
+use crate::programs::{host, python};
+use crate::setup;
 use anyhow::{Context, Result, bail, ensure};
 use serde::Deserialize;
 use spikewire::{

@@ -1,18 +1,10 @@
 //! The steps of `cargo verify`, one function each; `verify` lists them.
 
-use crate::{
-    common::{
-        paths,
-        shell::{cargo, output, run},
-    },
-    figures::{jumps, schemes},
-    programs::{
-        boards::Board,
-        host::{features, spikewire, tests},
-        image,
-    },
-    setup::toolchain::{TARGETS, cargo_for_each},
-};
+use crate::common::{cargo, output, paths, run};
+use crate::figures::{jumps, schemes};
+use crate::programs::host::{features, spikewire, tests};
+use crate::programs::{boards::Board, image};
+use crate::setup::toolchain::{TARGETS, cargo_for_each};
 use anyhow::{Result, ensure};
 use std::{fs, process::Command};
 

@@ -1,12 +1,7 @@
 //! `cargo verify fifo`: a sensor at 8 kHz through its FIFO: its driver's tests, and what it costs an STM32F405's core.
 
-use crate::{
-    common::{
-        paths,
-        shell::{cargo, run},
-    },
-    programs::{boards::Board, host, image, qemu},
-};
+use crate::common::{cargo, paths, run};
+use crate::programs::{boards::Board, host, image, qemu};
 use anyhow::{Context, Result, ensure};
 
 const PROGRAM: &str = "fifo-8khz";

@@ -1,14 +1,10 @@
 //! `cargo xtask firmware`: every example program on every emulated board, compared with the host.
 
-use crate::{
-    common::paths,
-    figures::bits,
-    programs::{
-        boards::{BOARDS, Board},
-        host, image, qemu, size,
-    },
-    setup::needs,
-};
+use crate::common::paths;
+use crate::figures::bits;
+use crate::programs::boards::{BOARDS, Board};
+use crate::programs::{host, image, qemu, size};
+use crate::setup::needs;
 use anyhow::{Result, bail, ensure};
 use std::{fs, path::PathBuf, thread};
 

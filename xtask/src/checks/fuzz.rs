@@ -1,12 +1,7 @@
 //! Hostile bytes for all that reads bytes: `fuzz` replays the corpora, `fuzz-long` looks for new inputs with libFuzzer.
 
-use crate::{
-    common::{
-        paths,
-        shell::{cargo, command, run},
-    },
-    programs::host::{tests, triple},
-};
+use crate::common::{cargo, command, paths, run};
+use crate::programs::host::{tests, triple};
 use anyhow::{Context, Result, bail, ensure};
 use std::{env, fs, path::PathBuf, process::Command};
 

@@ -1,13 +1,8 @@
 //! `cargo verify link`: a flight over a serial line, from a board's interrupt to values on the host, and to commands of a
 //! second board and a companion computer.
 
-use crate::{
-    common::{
-        paths,
-        shell::{self, cargo, run},
-    },
-    programs::{boards::Board, host, image, published, qemu},
-};
+use crate::common::{cargo, paths, run, shell};
+use crate::programs::{boards::Board, host, image, published, qemu};
 use anyhow::{Result, bail, ensure};
 use std::{
     fs::{self, File},

@@ -1,9 +1,7 @@
 //! `cargo verify logging`: what emulated boards log by defmt, decoded on the host.
 
-use crate::{
-    common::{paths, shell},
-    programs::{boards::BOARDS, host, image, qemu},
-};
+use crate::common::{paths, shell};
+use crate::programs::{boards::BOARDS, host, image, qemu};
 use anyhow::{Context, Result, ensure};
 use std::fs::{self, File};
 

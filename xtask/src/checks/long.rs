@@ -1,14 +1,9 @@
 //! The checks of `cargo verify --long`, which take too long for every change.
 
-use crate::{
-    checks::{everyday::check_for, fifo},
-    common::{
-        paths,
-        shell::{cargo, run},
-    },
-    figures::bench,
-    setup::toolchain::{TARGETS, cargo_for},
-};
+use crate::checks::{everyday::check_for, fifo};
+use crate::common::{cargo, paths, run};
+use crate::figures::bench;
+use crate::setup::toolchain::{TARGETS, cargo_for};
 use anyhow::{Context, Result, ensure};
 use std::{
     fs,

@@ -1,9 +1,6 @@
 //! `cargo verify package`: what is published holds all that its pages show, and nothing else.
 
-use crate::common::{
-    paths,
-    shell::{cargo, output},
-};
+use crate::common::{cargo, output, paths};
 use anyhow::{Result, ensure};
 use std::{
     fs,

@@ -1,12 +1,7 @@
 //! Other people's programs, to read what we write and write what we read.
 
-use crate::{
-    common::{
-        paths,
-        shell::{cargo, command, run},
-    },
-    programs::{host::tests, python},
-};
+use crate::common::{cargo, command, paths, run};
+use crate::programs::{host::tests, python};
 use anyhow::Result;
 use std::path::PathBuf;
 

@@ -1,10 +1,8 @@
 //! `cargo verify loop`: a flight around a whole loop, with the models of tinyODIN and ReckOn in the firmware, board against
 //! host.
 
-use crate::{
-    common::paths,
-    programs::{boards::Board, host, image, qemu},
-};
+use crate::common::paths;
+use crate::programs::{boards::Board, host, image, qemu};
 use anyhow::{Context, Result, ensure};
 use std::{fmt::Write, fs, path::PathBuf, process::Command};
 

@@ -1,18 +1,11 @@
 //! The firmware for real boards: each built in a project of its own, as its reader would build it.
 
-use crate::{
-    checks::emulator,
-    common::{
-        paths,
-        shell::{cargo, command, lint, output, run},
-    },
-    products::{
-        new_firmware::{self, Origin},
-        parts::{BOARDS, Part},
-    },
-    programs::published,
-    setup::toolchain::cargo_for,
-};
+use crate::checks::emulator;
+use crate::common::{cargo, command, lint, output, paths, run};
+use crate::products::parts::{BOARDS, Part};
+use crate::products::{new_firmware, new_firmware::Origin};
+use crate::programs::published;
+use crate::setup::toolchain::cargo_for;
 use anyhow::{Context, Result, ensure};
 use std::{
     fs,

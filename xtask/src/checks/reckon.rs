@@ -1,12 +1,7 @@
 //! A chip's model against its register-transfer code, which is not in here: it is fetched, or a checkout is named.
 
-use crate::{
-    common::{
-        paths,
-        shell::{cargo, command, has, run},
-    },
-    setup,
-};
+use crate::common::{cargo, command, paths, run, shell::has};
+use crate::setup;
 use anyhow::{Result, ensure};
 use std::{env, fs, path::PathBuf};
 

@@ -1,15 +1,10 @@
 //! `cargo verify ros`: the nodes in a ROS 1 of the distribution; `cargo verify ros2`: those of ROS 2 against another DDS.
 
-use crate::{
-    common::{
-        paths,
-        shell::{cargo, command, output, run},
-    },
-    figures::{drawing, ros_figure},
-    programs::{host, python},
-    setup,
-};
-use anyhow::Result;
+use crate::common::{cargo, command, output, paths, run};
+use crate::figures::drawing;
+use crate::programs::{host, python};
+use crate::setup;
+use anyhow::{Context, Result, ensure};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -33,6 +28,9 @@ const PACKAGES: [&str; 11] = [
 /// The programs of the distribution, and no others: its Python has its ROS.
 const PATH: &str = "/usr/bin:/bin";
 
+/// The paper's figure of its ROS package, of the inputs that a bag of the node has.
+const FIGURE: &str = "docs/ros.svg";
+
 /// A flight through every scheme, what goes wrong, the toolbox's bags and launch files, and the figure.
 pub fn ros() -> Result<()> {
     let ros = Ros::ready()?;
@@ -44,9 +42,9 @@ pub fn ros() -> Result<()> {
     run(ros.test("faults.py").arg(ros.room("faults")?))?;
     run(ros.test("toolbox.py").arg(spikewire.get_program()).arg(ros.room("toolbox")?))?;
     run(ros.test("old_launch.py").arg(ros.room("old_launch")?))?;
-    ros_figure::ensure_drawn(&ros.figure()?)?;
+    drawing::ensure_kept(&ros.figure()?, FIGURE, "cargo xtask write ros")?;
     let bag = ros.room("figure")?.join("encoding.bag");
-    ros_figure::ensure_decoded(&output(spikewire.arg("decode").arg(bag))?, &ros.table()?)
+    ensure_decoded(&output(spikewire.arg("decode").arg(bag))?, &ros.table()?)
 }
 
 /// Tests the Rust nodes, installs them as colcon does, and runs them against Eclipse Cyclone DDS.
@@ -87,7 +85,7 @@ pub fn ros2() -> Result<()> {
 
 /// Draws the figure into the page.
 pub fn write() -> Result<()> {
-    drawing::keep(&Ros::ready()?.figure()?, ros_figure::PAGE)
+    drawing::keep(&Ros::ready()?.figure()?, FIGURE)
 }
 
 /// The package `spikewire` and the catkin packages, built and installed below `target`.
@@ -137,7 +135,8 @@ impl Ros {
         let room = self.room("figure")?;
         run(self.test("figure.py").arg(&room))?;
         let drawn = room.join("ros.svg");
-        ros_figure::draw(&self.table()?, &drawn)?;
+        let plot = host::spikewire("plot --scheme sf --threshold 0.35 --column input -o");
+        run(plot?.arg(&drawn).arg(self.table()?))?;
         Ok(drawn)
     }
 
@@ -145,6 +144,21 @@ impl Ros {
     fn table(&self) -> Result<PathBuf> {
         Ok(self.room("figure")?.join("figure.csv"))
     }
+}
+
+/// Fails if these lines of `index,value,time_us` have other values than the table of the bag, as numbers of 32 bits.
+fn ensure_decoded(lines: &str, table: &Path) -> Result<()> {
+    let column = |text: &str, column: usize| {
+        let values = text.lines().skip(1).map(|line| line.split(',').nth(column)?.parse().ok());
+        values.collect::<Option<Vec<f32>>>().context("the decoded values are no table")
+    };
+    let wanted = column(&fs::read_to_string(table)?, 2)?;
+    ensure!(
+        column(lines, 1)? == wanted,
+        "`spikewire decode` and the node decode the bag to other values"
+    );
+    println!("`spikewire decode` makes of the bag what the node decoded.");
+    Ok(())
 }
 
 fn tests() -> PathBuf {

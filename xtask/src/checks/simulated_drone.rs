@@ -1,14 +1,8 @@
 //! `cargo xtask loop`: a drone in RotorPy that flies on spikes, in an environment of its own.
 
-use crate::{
-    common::{
-        paths,
-        shell::{cargo, command, output, run},
-        usage::usage,
-    },
-    figures::{drawing, markdown},
-    programs::{boards::Board, image, python},
-};
+use crate::common::{cargo, command, output, paths, run, usage};
+use crate::figures::{drawing, markdown};
+use crate::programs::{boards::Board, image, python};
 use anyhow::{Result, ensure};
 use std::{
     fs,
@@ -50,8 +44,7 @@ pub fn verify() -> Result<()> {
     let python = environment()?;
     run(&mut program(&python, "test_loop.py"))?;
     run(&mut program(&python, "steps.py"))?;
-    let drawn = fs::read(draw(&python)?)?;
-    ensure!(drawn == fs::read(paths::root().join(PICTURE))?, "{PICTURE} shows another flight");
+    drawing::ensure_kept(&draw(&python)?, PICTURE, "cargo xtask write loop")?;
     let table = output(program(&python, "table.py").arg(AGAIN))?;
     let page = fs::read_to_string(paths::root().join(PAGE))?;
     let row = table.lines().last().unwrap_or_default();

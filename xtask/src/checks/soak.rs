@@ -1,12 +1,7 @@
 //! `cargo verify soak`: hours of flight over a bad line, on emulated boards and the host.
 
-use crate::{
-    common::{
-        paths,
-        shell::{cargo, output},
-    },
-    programs::{boards::Board, image, qemu},
-};
+use crate::common::{cargo, output, paths};
+use crate::programs::{boards::Board, image, qemu};
 use anyhow::{Context, Result, bail, ensure};
 use std::thread;
 

@@ -1,10 +1,8 @@
 //! `cargo verify tuned`: from a flight log to a constant in firmware, and the spikes that the tuner scored out of it.
 
-use crate::{
-    common::{paths, shell},
-    figures::signal::Signal,
-    programs::{boards::BOARDS, host, image, qemu},
-};
+use crate::common::{paths, shell};
+use crate::figures::signal::Signal;
+use crate::programs::{boards::BOARDS, host, image, qemu};
 use anyhow::{Context, Result, ensure};
 use serde_json::Value;
 use std::fs;

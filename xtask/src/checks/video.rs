@@ -1,14 +1,9 @@
 //! `cargo verify video`: the paper's figure of a video, from a clip that a Python package ships, and the same events from
 //! every container of the same frames.
 
-use crate::{
-    common::{
-        paths,
-        shell::{command, output, run},
-    },
-    figures::drawing,
-    programs::{host::spikewire, python},
-};
+use crate::common::{command, output, paths, run};
+use crate::figures::drawing;
+use crate::programs::{host::spikewire, python};
 use anyhow::{Context, Result, ensure};
 use std::{
     fs,

@@ -4,4 +4,7 @@ pub mod cpu;
 pub mod paths;
 pub mod progress;
 pub mod shell;
-pub mod usage;
+mod usage;
+
+pub use shell::{cargo, command, lint, output, run};
+pub use usage::{Usage, usage};

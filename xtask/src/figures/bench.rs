@@ -11,14 +11,10 @@ mod measured;
 mod stack;
 mod table;
 
-use crate::{
-    common::usage::usage,
-    programs::{
-        boards::{BOARDS, Board},
-        image,
-    },
-    setup::needs,
-};
+use crate::common::usage;
+use crate::programs::boards::{BOARDS, Board};
+use crate::programs::image;
+use crate::setup::needs;
 use anyhow::{Context, Result, bail, ensure};
 use code::Code;
 use events::Event;

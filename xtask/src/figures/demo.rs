@@ -1,17 +1,9 @@
 //! `cargo demo`: real flight data through encoder, emulated flight controller and decoder.
 
-use crate::{
-    common::{paths, usage::usage},
-    figures::{
-        drawing,
-        flown::{self, Flown},
-        names::full_name,
-        picture,
-        signal::Signal,
-    },
-    programs::{boards::Board, host, image, qemu},
-    setup,
-};
+use crate::common::{paths, usage};
+use crate::figures::{drawing, flown, flown::Flown, names::full_name, picture, signal::Signal};
+use crate::programs::{boards::Board, host, image, qemu};
+use crate::setup;
 use anyhow::{Result, bail};
 use std::path::PathBuf;
 

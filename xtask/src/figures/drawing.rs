@@ -1,9 +1,9 @@
-//! What the pictures share: colours, margins, and the legend of a signal, its spikes and what they decode to.
+//! What the pictures share: colours, margins, and their places in the pages.
 //!
 //! The colours are Okabe and Ito's, which colour-blind people tell apart; polarity is also a direction.
 
 use crate::common::paths;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use plotters::{coord::Shift, prelude::*};
 use std::{fs, path::Path};
 
@@ -19,25 +19,16 @@ pub const FONT: &str = "sans-serif";
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub type Drawn = std::result::Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-/// The last line of a heading of 100 pixels.
-pub fn legend(area: &Area) -> Drawn {
-    let style = (FONT, 16).into_text_style(area);
-    for (x, label, colour, width) in
-        [(LEFT, "signal", SIGNAL, 4), (LEFT + 120, "decoded from the spikes", DECODED, 2)]
-    {
-        area.draw(&PathElement::new([(x, 83), (x + 32, 83)], colour.stroke_width(width)))?;
-        area.draw_text(label, &style, (x + 40, 76))?;
-    }
-    for (x, label, colour) in [(LEFT + 365, "spike up", UP), (LEFT + 480, "spike down", DOWN)] {
-        area.draw(&PathElement::new([(x, 76), (x, 91)], colour.stroke_width(2)))?;
-        area.draw_text(label, &style, (x + 10, 76))?;
-    }
-    Ok(())
-}
-
 /// Puts a picture into the pages.
 pub fn keep(picture: &Path, page: &str) -> Result<()> {
     fs::copy(picture, paths::root().join(page)).with_context(|| page.to_owned())?;
     println!("{page} has it.");
+    Ok(())
+}
+
+/// Fails if the page has another picture.
+pub fn ensure_kept(picture: &Path, page: &str, command: &str) -> Result<()> {
+    let kept = fs::read(paths::root().join(page)).with_context(|| page.to_owned())?;
+    ensure!(kept == fs::read(picture)?, "{page} is another picture; `{command}` draws it");
     Ok(())
 }

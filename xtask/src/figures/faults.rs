@@ -1,9 +1,7 @@
 //! The table of faults in SAFETY.md: hours of flight in which one thing after the other goes wrong.
 
-use crate::{
-    common::shell::{cargo, output},
-    figures::markdown,
-};
+use crate::common::{cargo, output};
+use crate::figures::markdown;
 use anyhow::{Result, ensure};
 
 const PAGE: &str = "SAFETY.md";

@@ -1,13 +1,9 @@
 //! The hardest second of the flight in three step codes of one threshold, and how far behind each
 //! of them is.
 
-use crate::{
-    common::paths,
-    figures::{
-        drawing::{self, Area, Drawn, FONT, LEFT, MARGIN, SIGNAL},
-        signal::Signal,
-    },
-};
+use crate::common::paths;
+use crate::figures::drawing::{Area, Drawn, FONT, LEFT, MARGIN, SIGNAL};
+use crate::figures::{drawing, signal::Signal};
 use anyhow::{Result, ensure};
 use plotters::prelude::*;
 use spikewire::{

@@ -11,6 +11,5 @@ pub mod jumps;
 pub mod markdown;
 mod names;
 mod picture;
-pub mod ros_figure;
 pub mod schemes;
 pub mod signal;

@@ -1,11 +1,7 @@
 //! The picture of `cargo demo`: a signal, its spikes and its reconstruction, for three kinds of code.
 
-use crate::figures::{
-    drawing::{Area, DECODED, DOWN, Drawn, FONT, LEFT, MARGIN, SIGNAL, UP, legend},
-    flown::Flown,
-    names::full_name,
-    signal::Signal,
-};
+use crate::figures::drawing::{Area, DECODED, DOWN, Drawn, FONT, LEFT, MARGIN, SIGNAL, UP};
+use crate::figures::{flown::Flown, names::full_name, signal::Signal};
 use anyhow::{Context, Result};
 use plotters::prelude::*;
 use std::{ops::Range, path::Path};
@@ -43,6 +39,22 @@ fn heading(area: &Area) -> Drawn {
         "Turning, falling, hitting the ground; encoded and decoded on an emulated STM32F405";
     area.draw_text(subtitle, &(FONT, 17).into_text_style(area), (LEFT, 46))?;
     legend(area)
+}
+
+/// The last line of a heading of 100 pixels.
+fn legend(area: &Area) -> Drawn {
+    let style = (FONT, 16).into_text_style(area);
+    for (x, label, colour, width) in
+        [(LEFT, "signal", SIGNAL, 4), (LEFT + 120, "decoded from the spikes", DECODED, 2)]
+    {
+        area.draw(&PathElement::new([(x, 83), (x + 32, 83)], colour.stroke_width(width)))?;
+        area.draw_text(label, &style, (x + 40, 76))?;
+    }
+    for (x, label, colour) in [(LEFT + 365, "spike up", UP), (LEFT + 480, "spike down", DOWN)] {
+        area.draw(&PathElement::new([(x, 76), (x, 91)], colour.stroke_width(2)))?;
+        area.draw_text(label, &style, (x + 10, 76))?;
+    }
+    Ok(())
 }
 
 /// What the panel shows, and how well.

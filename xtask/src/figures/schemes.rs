@@ -1,10 +1,8 @@
 //! What each scheme makes of a flight and of the paper's signal, measured by the laptop program.
 
-use crate::{
-    common::{paths, shell::output},
-    figures::markdown,
-    programs::host::spikewire,
-};
+use crate::common::{output, paths};
+use crate::figures::markdown;
+use crate::programs::host::spikewire;
 use anyhow::{Context, Result};
 use serde::Deserialize;
 

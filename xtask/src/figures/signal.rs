@@ -11,12 +11,10 @@ pub struct Signal {
 impl Signal {
     /// From the same bytes as the firmware.
     pub fn read() -> Self {
-        let (records, _) = flight_data::HEXAROTOR.as_chunks::<28>();
-        let word = |record: &[u8; 28], index: usize| record.as_chunks::<4>().0[index];
-        let time = |record| f64::from(u32::from_le_bytes(word(record, 0))) / 1e6;
+        let records = || flight_data::records(flight_data::HEXAROTOR);
         Self {
-            times: records.iter().map(time).collect(),
-            rates: records.iter().map(|record| f32::from_le_bytes(word(record, 3))).collect(),
+            times: records().map(|record| f64::from(record.micros) / 1e6).collect(),
+            rates: records().map(|record| record.channels[2]).collect(),
         }
     }
 

@@ -2,10 +2,8 @@
 //!
 //! Its files are those of `examples/boards`, with the other boards left out.
 
-use crate::{
-    common::{paths, usage::usage},
-    products::parts::{BOARDS, Part},
-};
+use crate::common::{paths, usage};
+use crate::products::parts::{BOARDS, Part};
 use anyhow::{Context, Result, ensure};
 use std::{
     fs,

@@ -1,14 +1,9 @@
 //! `cargo xtask page`: the laptop library as WebAssembly in one HTML file, to look at and to check in a browser.
 
-use crate::{
-    common::{
-        paths,
-        shell::{self, cargo, command, lint, run},
-        usage::usage,
-    },
-    figures::drawing,
-    setup::{self, distribution, toolchain},
-};
+use crate::common::{cargo, command, lint, paths, run, shell, usage};
+use crate::figures::drawing;
+use crate::setup;
+use crate::setup::{distribution, toolchain};
 use anyhow::{Context, Result};
 use std::{
     env, fs,

@@ -1,15 +1,8 @@
 //! The Python package, installed as its user installs it.
 
-use crate::{
-    common::{
-        paths,
-        shell::{command, output, run},
-    },
-    programs::{
-        host,
-        python::{environment, install, package, pip},
-    },
-};
+use crate::common::{command, output, paths, run};
+use crate::programs::host;
+use crate::programs::python::{environment, install, package, pip};
 use anyhow::{Result, ensure};
 use std::{
     fs,

@@ -1,9 +1,6 @@
 //! What the checks build for the host. All of them build the same, so that each crate is compiled once.
 
-use crate::common::{
-    paths,
-    shell::{cargo, command, lint, output, run},
-};
+use crate::common::{cargo, command, lint, output, paths, run};
 use anyhow::{Context, Result};
 use std::{fs, path::PathBuf, process::Command};
 

@@ -1,10 +1,8 @@
 //! Builds firmware.
 
-use crate::{
-    common::{paths, shell},
-    programs::boards::Board,
-    setup::toolchain,
-};
+use crate::common::{paths, shell};
+use crate::programs::boards::Board;
+use crate::setup::toolchain;
 use anyhow::{Context, Result};
 use std::{ffi::OsStr, fs, path::PathBuf, process::Command};
 

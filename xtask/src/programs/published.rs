@@ -1,9 +1,6 @@
 //! The crate as it would be published, for programs that take it as their reader would.
 
-use crate::common::{
-    paths,
-    shell::{cargo, command, run},
-};
+use crate::common::{cargo, command, paths, run};
 use anyhow::{Context, Result, ensure};
 use std::{
     fs,

@@ -1,9 +1,6 @@
 //! Environments of Python below the target directory, and the package of this repository in them.
 
-use crate::common::{
-    paths,
-    shell::{command, lint, run},
-};
+use crate::common::{command, lint, paths, run};
 use anyhow::Result;
 use std::{
     env,

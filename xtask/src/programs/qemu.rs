@@ -1,9 +1,7 @@
 //! Runs a firmware image on an emulated board.
 
-use crate::{
-    common::{progress, shell},
-    programs::boards::Board,
-};
+use crate::common::{progress, shell};
+use crate::programs::boards::Board;
 use anyhow::{Context, Result, bail, ensure};
 use std::{
     fs::File,

@@ -1,6 +1,7 @@
 //! How much of a board an image takes.
 
-use crate::{common::shell, programs::boards::Board};
+use crate::common::shell;
+use crate::programs::boards::Board;
 use anyhow::{Context, Result};
 use std::path::Path;
 

@@ -1,12 +1,8 @@
 //! Builds the core library for a Cortex-M, and puts it where the distribution's compiler looks for it.
 
-use crate::{
-    common::{paths, shell},
-    setup::{
-        distribution::{CARGO, RUSTC, STAMP, libraries, version},
-        packages,
-    },
-};
+use crate::common::{paths, shell};
+use crate::setup::distribution::{CARGO, RUSTC, STAMP, libraries, version};
+use crate::setup::packages;
 use anyhow::{Context, Result};
 use std::{fs, path::Path};
 

@@ -1,9 +1,7 @@
 //! What the checks need of a machine, and which of it is not there.
 
-use crate::{
-    common::shell,
-    setup::{distribution, toolchain},
-};
+use crate::common::shell;
+use crate::setup::{distribution, toolchain};
 use anyhow::{Result, ensure};
 
 /// A program that a package of the distribution brings.

@@ -1,9 +1,7 @@
 //! Which cargo builds for a Cortex-M.
 
-use crate::{
-    common::{paths, shell},
-    setup::distribution,
-};
+use crate::common::{paths, shell};
+use crate::setup::distribution;
 use anyhow::{Result, ensure};
 use std::{fs, path::PathBuf, process::Command};
 

@@ -2,18 +2,16 @@
 
 mod passed;
 
-use crate::{
-    checks::{
-        everyday, fifo, firmware, fuzz, link, logging, long, package, peers, rate_loop,
-        real_boards, reckon, ros, simulated_drone, soak, storm, tuned, video,
-    },
-    common::{cpu, usage::usage},
-    figures::{bench, demo, faults, flash},
-    mutants,
-    products::{c_library, page, python_package},
-    release,
-    setup::{needs, setup},
+use crate::checks::{
+    everyday, fifo, firmware, fuzz, link, logging, long, package, peers, rate_loop, real_boards,
+    reckon, ros, simulated_drone, soak, storm, tuned, video,
 };
+use crate::common::{cpu, usage};
+use crate::figures::{bench, demo, faults, flash};
+use crate::mutants;
+use crate::products::{c_library, page, python_package};
+use crate::release;
+use crate::setup::{needs, setup};
 use anyhow::{Result, bail};
 use passed::Passed;
 use std::time::Instant;

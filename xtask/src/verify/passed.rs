@@ -1,9 +1,6 @@
 //! Which steps of `cargo verify` have passed at a commit, so that a machine that stops does not lose them.
 
-use crate::common::{
-    paths,
-    shell::{command, output},
-};
+use crate::common::{command, output, paths};
 use anyhow::{Result, ensure};
 use std::{
     fs::{self, OpenOptions},

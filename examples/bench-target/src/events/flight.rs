@@ -9,11 +9,6 @@ pub const CHANNELS: usize = 6;
 /// The recording's time from sample to sample, in µs.
 pub const PERIOD: u16 = 5_038;
 
-/// A time stamp in µs, then the channels, four bytes each.
-const RECORD: usize = 4 + 4 * CHANNELS;
-
-static RECORDS: &[u8] = flight_data::HEXAROTOR;
-
 /// A scheme for each channel.
 pub type Six<'a, S> = [&'a StepForward<S>; CHANNELS];
 
@@ -42,12 +37,8 @@ impl<S: Sample> Schemes<S> {
 
 /// The recording: times in µs, and six channels in rad/s and m/s².
 pub fn samples() -> impl Iterator<Item = (Tick, [f32; CHANNELS])> {
-    let (records, _) = RECORDS.as_chunks::<RECORD>();
-    records.iter().map(|record| {
-        let (words, _) = record.as_chunks::<4>();
-        let value = |at: usize| f32::from_le_bytes(words[at]);
-        (u32::from_le_bytes(words[0]).into(), core::array::from_fn(|channel| value(channel + 1)))
-    })
+    let records = flight_data::records(flight_data::HEXAROTOR);
+    records.map(|record| (record.micros.into(), record.channels))
 }
 
 /// A set of samples in the sample type.

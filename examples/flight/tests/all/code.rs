@@ -13,10 +13,9 @@ const STANDARD_GRAVITY: f32 = 9.80665;
 /// A channel of the flight in °/s or g, along straight lines between its samples.
 fn flown(channel: usize) -> Vec<f32> {
     let unit = if channel < 3 { 180.0 / std::f32::consts::PI } else { 1.0 / STANDARD_GRAVITY };
-    let (rows, _) = flight_data::HEXAROTOR.as_chunks::<28>();
-    let word = |row: usize, field: usize| *rows[row][4 * field..].first_chunk().unwrap();
-    let time = |row| f64::from(u32::from_le_bytes(word(row, 0)));
-    let value = |row| f32::from_le_bytes(word(row, 1 + channel)) * unit;
+    let rows: Vec<_> = flight_data::records(flight_data::HEXAROTOR).collect();
+    let time = |row: usize| f64::from(rows[row].micros);
+    let value = |row: usize| rows[row].channels[channel] * unit;
     let mut row = 0;
     (0..)
         .map(|sample| f64::from(sample) * 1e6 / f64::from(RATE))

@@ -1,5 +1,6 @@
 //! How many bytes of code a codec is, from the image's symbols and its listing.
 
+use super::listing;
 use crate::common::shell;
 use anyhow::{Context, Result};
 use std::{
@@ -23,10 +24,9 @@ impl Code {
         let symbols = shell::output(shell::command("arm-none-eabi-nm").arg("-S").arg(image))?;
         let mut functions: BTreeMap<u32, Function> = symbols.lines().filter_map(function).collect();
 
-        let mut objdump = shell::command("arm-none-eabi-objdump");
-        let listing = shell::output(objdump.args(["-d", "--no-show-raw-insn"]).arg(image))?;
-        for (from, to) in listing.lines().filter_map(branch) {
-            if let Some((_, function)) = functions.range_mut(..=from).next_back() {
+        for one in listing::of(image)? {
+            let function = functions.range_mut(..=one.address).next_back();
+            if let (Some((_, function)), Some(to)) = (function, one.target()) {
                 function.branches.insert(to);
             }
         }
@@ -63,17 +63,6 @@ fn function(line: &str) -> Option<(u32, Function)> {
     counts.then(|| (address, Function { bytes, ..Function::default() }))
 }
 
-/// ` 8000404:`, a tab, `bl`, a tab, `8000458 <_RNv…>`: from where and to where.
-fn branch(line: &str) -> Option<(u32, u32)> {
-    let (from, instruction) = line.trim_start().split_once(":\t")?;
-    let (name, operands) = instruction.split_once('\t')?;
-    let to = operands.split(' ').next()?;
-    if !name.starts_with('b') {
-        return None;
-    }
-    Some((u32::from_str_radix(from, 16).ok()?, u32::from_str_radix(to, 16).ok()?))
-}
-
 /// `rustc version 1.96.0 (…)`, as the compiler wrote it into the image.
 pub fn compiler(image: &Path) -> Result<String> {
     let mut readelf = shell::command("arm-none-eabi-readelf");
@@ -85,13 +74,6 @@ pub fn compiler(image: &Path) -> Result<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn branches_are_found() {
-        assert_eq!(branch(" 8000404:\tbl\t8000458 <_RNv>"), Some((0x800_0404, 0x800_0458)));
-        assert_eq!(branch(" 8000404:\tbx\tlr"), None);
-        assert_eq!(branch(" 8000404:\tadds\tr0, #1"), None);
-    }
 
     #[test]
     fn callees_count_once_and_the_runtime_does_not() {

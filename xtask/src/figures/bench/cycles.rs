@@ -4,11 +4,9 @@
 //! multiplier). A Cortex-M3 and a Cortex-M4F have bounds (ARM DDI 0337I and 0439B, section 3.3): how a load pairs with
 //! its neighbours, how much of the pipeline a branch refills, and how long a division takes.
 
-use super::listing::{Instruction, instructions};
-use crate::{
-    common::{paths, shell},
-    programs::{boards::Board, qemu},
-};
+use super::listing::{self, Instruction};
+use crate::common::{paths, shell};
+use crate::programs::{boards::Board, qemu};
 use anyhow::{Context, Result, bail};
 use std::{
     fmt::Write,
@@ -191,9 +189,7 @@ fn is_simple_dsp(name: &str) -> bool {
 
 /// The image's instructions, and what each takes.
 pub fn of_image(model: Model, image: &Path) -> Result<Vec<(Instruction, Cycles)>> {
-    let mut objdump = shell::command("arm-none-eabi-objdump");
-    let listing = shell::output(objdump.arg("-d").arg(image))?;
-    let all = instructions(&listing);
+    let all = listing::of(image)?;
     let mut found = Vec::new();
     for (at, one) in all.iter().enumerate() {
         let before = at.checked_sub(1).and_then(|at| all.get(at));
@@ -253,7 +249,7 @@ fn plugin() -> Result<PathBuf> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{listing::instructions, *};
 
     /// The lines of a listing, and what each takes.
     fn costs(model: Model, lines: &[&str]) -> Vec<Cycles> {

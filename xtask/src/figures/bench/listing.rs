@@ -1,5 +1,9 @@
 //! The disassembler's listing, instruction by instruction.
 
+use crate::common::shell;
+use anyhow::Result;
+use std::path::Path;
+
 /// One line.
 #[derive(Clone, Debug)]
 pub struct Instruction {
@@ -16,6 +20,12 @@ pub struct Instruction {
 const CONDITIONS: [&str; 16] = [
     "eq", "ne", "cs", "hs", "cc", "lo", "mi", "pl", "vs", "vc", "hi", "ls", "ge", "lt", "gt", "le",
 ];
+
+/// The instructions of an image.
+pub fn of(image: &Path) -> Result<Vec<Instruction>> {
+    let mut objdump = shell::command("arm-none-eabi-objdump");
+    Ok(instructions(&shell::output(objdump.arg("-d").arg(image))?))
+}
 
 /// The instructions of a listing in its order; its data are left out.
 pub fn instructions(listing: &str) -> Vec<Instruction> {
@@ -86,6 +96,16 @@ impl Instruction {
             || self.is_conditional_branch()
             || loads && self.operands.contains("pc}")
             || !loads && self.operands.starts_with("pc,")
+    }
+
+    /// The address at which it goes on, always or perhaps, if it says so itself.
+    pub fn target(&self) -> Option<u32> {
+        let target = match self.name.as_str() {
+            "cbz" | "cbnz" => self.operands.split_once(", ")?.1,
+            _ if self.is_branch() => &self.operands,
+            _ => return None,
+        };
+        u32::from_str_radix(target.split(' ').next()?, 16).ok()
     }
 
     /// How many words a list of registers is.
@@ -194,6 +214,9 @@ mod tests {
     #[test]
     fn branches_are_told_from_what_begins_alike() {
         let one = |text: &str| instructions(&format!(" 0:\tbf00\t{text}\n")).remove(0);
+        assert_eq!(one("bl\t8000458 <_RNv>").target(), Some(0x800_0458));
+        assert_eq!(one("cbz\tr0, 8 <a>").target(), Some(8));
+        assert_eq!(one("bx\tlr").target(), None);
         for branch in
             ["b.n\t8", "beq.w\t8", "bls.n\t8", "pop\t{r4, pc}", "ldr.w\tpc, [r1]", "mov\tpc, lr"]
         {

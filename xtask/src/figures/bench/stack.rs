@@ -4,6 +4,7 @@
 //! though some lie on ways that exclude each other; a jump to another function counts as a call. So nothing is left out
 //! but a call through a pointer, of which the crate has one: the waker of the program that waits on a queue.
 
+use super::listing::{self, Instruction};
 use crate::common::shell;
 use anyhow::{Context, Result, bail, ensure};
 use std::{
@@ -44,31 +45,28 @@ impl Stack {
     pub fn read(image: &Path) -> Result<Self> {
         let symbols = shell::output(shell::command("arm-none-eabi-nm").arg("-C").arg(image))?;
         let mut functions: BTreeMap<u32, Function> = symbols.lines().filter_map(symbol).collect();
-        let mut objdump = shell::command("arm-none-eabi-objdump");
-        let listing = shell::output(objdump.args(["-d", "--no-show-raw-insn"]).arg(image))?;
-        for line in listing.lines() {
-            let Some((at, name, operands)) = instruction(line) else { continue };
-            let target = jump(name, operands);
-            if name == "bmi" && target == Some(at.wrapping_sub(FILLING)) {
+        for one in listing::of(image)? {
+            let (at, target) = (one.address, one.target());
+            if one.name == "bmi" && target == Some(at.wrapping_sub(FILLING)) {
                 continue;
             }
             let owner = |at: u32| functions.range(..=at).next_back().map(|(own, _)| *own);
             let (Some(own), to) = (owner(at), target.and_then(owner)) else { continue };
             let function = functions.get_mut(&own).context("an owner is a function")?;
-            match frame(name, operands) {
+            match frame(&one) {
                 Ok(bytes) => function.frame += bytes,
-                Err(error) => function.unknown = Some(format!("{error}: {}", line.trim())),
+                Err(error) => function.unknown = Some(format!("{error}: {}", one.text())),
             }
             match to {
                 // To its own start a loop is no call, but `bl` is; a Cortex-M0 also jumps far with it within a function.
-                Some(to) if to != own || name == "bl" && target == Some(own) => {
+                Some(to) if to != own || one.name == "bl" && target == Some(own) => {
                     function.calls.extend([to])
                 }
                 _ => {}
             }
-            let is_return = name == "bx" && operands == "lr";
-            function.is_blind |= name.starts_with("blx") && target.is_none()
-                || name == "bx" && !is_return && operands != "pc";
+            let is_call = one.name == "blx" && target.is_none();
+            function.is_blind |=
+                is_call || one.name == "bx" && !["lr", "pc"].contains(&one.operands.as_str());
         }
         Ok(Self { functions, known: RefCell::default() })
     }
@@ -136,35 +134,13 @@ fn symbol(line: &str) -> Option<(u32, Function)> {
         .then(|| (address, Function { name: name.into(), ..Function::default() }))
 }
 
-/// ` 8000404:`, a tab, `bl`, a tab, `8000458 <_RNv…>`: where, what without its width, and with what.
-fn instruction(line: &str) -> Option<(u32, &str, &str)> {
-    let (at, rest) = line.trim_start().split_once(":\t")?;
-    let (name, operands) = rest.split_once('\t').unwrap_or((rest, ""));
-    let name = name.trim_end_matches(".w").trim_end_matches(".n");
-    let operands = operands.split(['@', ';']).next()?.trim();
-    Some((u32::from_str_radix(at, 16).ok()?, name, operands))
-}
-
-/// Where it goes on, if it does not go on with the next instruction alone.
-fn jump(name: &str, operands: &str) -> Option<u32> {
-    let target = match name {
-        "cbz" | "cbnz" => operands.split_once(", ")?.1,
-        "bic" | "bics" | "bfi" | "bfc" | "bkpt" => return None,
-        _ if name.starts_with('b') => operands,
-        _ => return None,
-    };
-    u32::from_str_radix(target.split(' ').next()?, 16).ok()
-}
-
 /// By how much it takes the stack down, in bytes.
-fn frame(name: &str, operands: &str) -> Result<u32> {
+fn frame(one: &Instruction) -> Result<u32> {
+    let operands = one.operands.as_str();
     let number = |text: &str| -> Result<u32> { Ok(text.trim_end_matches(['!', ']']).parse()?) };
-    let on_stack = operands.starts_with("sp!");
-    match name {
-        "push" => Ok(4 * registers(operands)?),
-        "stmdb" | "stmfd" if on_stack => Ok(4 * registers(operands)?),
-        "vpush" => vector(operands),
-        "vstmdb" if on_stack => vector(operands),
+    match one.name.as_str() {
+        "push" | "vpush" => Ok(4 * one.registers()),
+        "stmdb" | "stmfd" | "vstmdb" if operands.starts_with("sp!") => Ok(4 * one.registers()),
         "sub" | "subw" | "subs" if operands.starts_with("sp, ") => {
             match operands.rsplit_once('#') {
                 Some((_, bytes)) => number(bytes),
@@ -182,25 +158,6 @@ fn frame(name: &str, operands: &str) -> Result<u32> {
     }
 }
 
-fn vector(operands: &str) -> Result<u32> {
-    let size = if operands.contains("{d") { 8 } else { 4 };
-    Ok(size * registers(operands)?)
-}
-
-/// How many: `{r4, r5, r6, lr}` or `sp!, {r4-r11, lr}`.
-fn registers(operands: &str) -> Result<u32> {
-    let list = operands.split_once('{').and_then(|(_, rest)| rest.split_once('}'));
-    let number = |name: &str| name.trim_start_matches(char::is_alphabetic).parse::<u32>();
-    let mut count = 0;
-    for one in list.context("no registers")?.0.split(", ") {
-        count += match one.split_once('-') {
-            Some((first, last)) => number(last)? + 1 - number(first)?,
-            None => 1,
-        };
-    }
-    Ok(count)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -208,16 +165,16 @@ mod tests {
     #[test]
     fn frames_are_read() {
         let of = |line: &str| {
-            let (_, name, operands) = instruction(line).unwrap();
-            frame(name, operands).ok()
+            let listing = format!(" 8000404:\tbf00\t{line}");
+            frame(&listing::instructions(&listing)[0]).ok()
         };
-        assert_eq!(of(" 8000404:\tpush\t{r4, r5, r6, lr}"), Some(16));
-        assert_eq!(of(" 8000404:\tstmdb\tsp!, {r4-r11, lr}"), Some(36));
-        assert_eq!(of(" 8000404:\tvpush\t{d8-d10}"), Some(24));
-        assert_eq!(of(" 8000404:\tsub.w\tsp, sp, #1040\t@ 0x410"), Some(1040));
-        assert_eq!(of(" 8000404:\tstr.w\tfp, [sp, #-4]!"), Some(4));
-        assert_eq!(of(" 8000404:\tstr\tr0, [sp, #4]"), Some(0));
-        assert_eq!(of(" 8000404:\tsub.w\tsp, sp, r4"), None, "a frame without a bound");
+        assert_eq!(of("push\t{r4, r5, r6, lr}"), Some(16));
+        assert_eq!(of("stmdb\tsp!, {r4-r11, lr}"), Some(36));
+        assert_eq!(of("vpush\t{d8-d10}"), Some(24));
+        assert_eq!(of("sub.w\tsp, sp, #1040\t@ 0x410"), Some(1040));
+        assert_eq!(of("str.w\tfp, [sp, #-4]!"), Some(4));
+        assert_eq!(of("str\tr0, [sp, #4]"), Some(0));
+        assert_eq!(of("sub.w\tsp, sp, r4"), None, "a frame without a bound");
     }
 
     #[test]

@@ -6,10 +6,8 @@ use super::{
     figures::{CORES, Row, between_whole, cell},
     measured::Measured,
 };
-use crate::{
-    figures::markdown,
-    programs::{boards::Board, image},
-};
+use crate::figures::markdown;
+use crate::programs::{boards::Board, image};
 use anyhow::Result;
 
 /// Where the tables stand: the file, and the comments between which they are.

@@ -1,7 +1,8 @@
 //! C compilers: the host's with its sanitizers, and the distribution's for Cortex-M.
 
-use super::{room, work};
-use crate::{common::shell, programs::boards::Board};
+use super::{declared, include, room, work};
+use crate::common::shell;
+use crate::programs::boards::Board;
 use anyhow::{Context, Result, ensure};
 use std::{
     fs,
@@ -19,7 +20,7 @@ pub fn on_host(name: &str, language: &str, archive: &Path, defined: &[&str]) -> 
     gcc.args(["-x", if language.starts_with("c++") { "c++" } else { "c" }]);
     gcc.arg(format!("-std={language}")).args(STRICT).args(["-O1", "-g"]);
     gcc.args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]);
-    sources(&mut gcc, name, "host.c", defined);
+    sources(&mut gcc, name, "host.c", defined)?;
     gcc.args(["-x", "none"]).arg(archive).args(["-lpthread", "-ldl", "-lm"]);
     shell::run(gcc.arg("-o").arg(&program))?;
     Ok(program)
@@ -47,21 +48,22 @@ pub fn for_board(name: &str, board: &Board, archive: &Path, defined: &[&str]) ->
     ]);
     gcc.args(["-nostdlib", "-Wl,--gc-sections", "-Wl,--fatal-warnings", "-Wl,-z,noexecstack"]);
     gcc.arg("-L").arg(&place).arg("-T").arg(room().join("tests/link.ld"));
-    sources(&mut gcc, name, "cortex_m.c", defined);
+    sources(&mut gcc, name, "cortex_m.c", defined)?;
     shell::run(gcc.args(["-x", "none"]).arg(archive).arg("-o").arg(&program))?;
     Ok(program)
 }
 
 /// The test, what it runs on, the header, and the recorded flight.
-fn sources(gcc: &mut Command, name: &str, board: &str, defined: &[&str]) {
+fn sources(gcc: &mut Command, name: &str, board: &str, defined: &[&str]) -> Result<()> {
     let tests = room().join("tests");
-    gcc.arg("-I").arg(room().join("include")).arg("-I").arg(&tests);
+    gcc.arg("-I").arg(include()?).arg("-I").arg(&tests).arg("-I").arg(work());
     gcc.args(defined.iter().map(|name| format!("-D{name}")));
     gcc.arg(tests.join(name).with_extension("c")).arg(tests.join(board));
     if ["flight", "count"].contains(&name) {
         gcc.arg(format!("-Wa,-I{}", work().display()));
         gcc.args(["-x", "assembler-with-cpp"]).arg(tests.join("recording.S"));
     }
+    Ok(())
 }
 
 /// The guides, each against declarations of what its firmware has; the firmwares themselves are not here.
@@ -77,7 +79,7 @@ pub fn guides() -> Result<()> {
             gcc.args(["-mcpu=cortex-m4", "-mthumb"]);
         }
         gcc.arg(format!("-std={standard}")).args(["-Wall", "-Wextra", "-Wpedantic", "-Werror"]);
-        gcc.arg("-I").arg(room().join("include"));
+        gcc.arg("-I").arg(include()?);
         gcc.arg("-I").arg(guides.join("stubs").join(Path::new(guide).with_extension("")));
         gcc.arg("-c").arg(guides.join(guide)).arg("-o").arg(work().join(guide).with_extension("o"));
         shell::run(&mut gcc)?;
@@ -93,7 +95,7 @@ pub fn guides_run(archive: &Path) -> Result<()> {
         let mut gcc = shell::command("gcc");
         gcc.args(["-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O1", "-g"]);
         gcc.args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]);
-        gcc.arg("-I").arg(room().join("include")).arg("-I").arg(guides.join("stubs").join(guide));
+        gcc.arg("-I").arg(include()?).arg("-I").arg(guides.join("stubs").join(guide));
         gcc.arg("-I").arg(&tests).arg(tests.join(format!("guide_{guide}.c")));
         gcc.arg(guides.join(guide).with_extension("c")).arg(archive);
         gcc.args(["-lpthread", "-ldl", "-lm", "-o"]).arg(&program);
@@ -131,8 +133,9 @@ target_link_libraries(one PRIVATE spikewire::spikewire)
 target_link_options(one PRIVATE -s)
 ";
 
-/// Puts the recorded flight where the assembler finds it.
+/// Puts the recorded flight where the assembler finds it, and where the compiler does the codecs that fly it.
 pub fn record() -> Result<()> {
     fs::create_dir_all(work())?;
+    fs::write(work().join("flown.h"), declared::flown())?;
     fs::write(work().join("flight.bin"), flight_data::HEXAROTOR).context("flight.bin")
 }

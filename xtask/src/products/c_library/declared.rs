@@ -36,11 +36,9 @@ pub fn codecs() -> String {
     text + "}\n"
 }
 
-/// `c/tests/flown.h`: a line for each codec that flies.
+/// `flown.h` of the tests: a line for each codec that flies.
 pub fn flown() -> String {
-    let mut text = String::from(
-        "/* The codecs that fly, as the catalogue flies them. Written by `cargo xtask write c`. */\n",
-    );
+    let mut text = String::from("/* The codecs that fly, as the catalogue flies them. */\n");
     // In two halves, for a flash that has no room for more.
     let samples = SAMPLES.into_iter().map(|(_, suffix)| suffix);
     for (suffix, half) in samples.flat_map(|suffix| [(suffix, 0), (suffix, 1)]) {

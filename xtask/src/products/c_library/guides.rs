@@ -1,11 +1,9 @@
 //! `cargo xtask guides`: the guides against the firmwares that they are for, in a checkout of one.
 
-use super::{archive, package, put, room, work};
-use crate::{
-    common::{paths, shell, usage::usage},
-    programs::boards::Board,
-    setup,
-};
+use super::{archive, include, package, put, room, work};
+use crate::common::{paths, shell, usage};
+use crate::programs::boards::Board;
+use crate::setup;
 use anyhow::{Context, Result, ensure};
 use std::{fs, path::Path};
 
@@ -86,6 +84,6 @@ fn betaflight(checkout: &Path) -> Result<()> {
     ] {
         gcc.arg("-I").arg(checkout.join(directory));
     }
-    gcc.arg("-I").arg(room().join("include")).arg(room().join("guides/betaflight.c"));
+    gcc.arg("-I").arg(include()?).arg(room().join("guides/betaflight.c"));
     shell::run(&mut gcc)
 }

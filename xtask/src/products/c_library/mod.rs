@@ -8,19 +8,16 @@ mod package;
 mod sizes;
 mod tests;
 
-use crate::{
-    common::{paths, shell, usage::usage},
-    programs::{
-        boards::{BOARDS, Board},
-        host::triple,
-    },
-    setup::toolchain,
-};
+use crate::common::{paths, shell, usage};
+use crate::programs::boards::{BOARDS, Board};
+use crate::programs::host::triple;
+use crate::setup::toolchain;
 use anyhow::{Context, Result, ensure};
 use std::{
     fs,
     path::{Path, PathBuf},
     process::Command,
+    sync::OnceLock,
 };
 
 pub use cost::cost;
@@ -84,12 +81,11 @@ fn work() -> PathBuf {
     paths::target().join("c")
 }
 
-/// Writes all that is made from the catalogue.
+/// Writes all that is made from the catalogue and kept.
 pub fn write() -> Result<()> {
     put(&room().join("src/codecs.rs"), &declared::codecs())?;
-    put(&room().join("tests/flown.h"), &declared::flown())?;
-    host_archive()?;
-    header(&room().join("include"), &room().join("src/sizes.rs"))
+    include()?;
+    put(&room().join("src/sizes.rs"), &fs::read_to_string(work().join("sizes.rs"))?)
 }
 
 /// Fails if something that is made from the catalogue is not what the catalogue says now.
@@ -100,36 +96,32 @@ fn ensure_written() -> Result<()> {
         Ok(())
     };
     is("src/codecs.rs", &declared::codecs())?;
-    is("tests/flown.h", &declared::flown())?;
-    let fresh = work().join("fresh");
-    header(&fresh, &fresh.join("sizes.rs"))?;
-    is("src/sizes.rs", &fs::read_to_string(fresh.join("sizes.rs"))?)?;
-    for name in ["spikewire.h".to_owned()].into_iter().chain(files(&fresh.join("spikewire"))?) {
-        let path = if name == "spikewire.h" { name } else { format!("spikewire/{name}") };
-        is(&format!("include/{path}"), &fs::read_to_string(fresh.join(&path))?)?;
+    include()?;
+    is("src/sizes.rs", &fs::read_to_string(work().join("sizes.rs"))?)
+}
+
+/// The directory of the headers, which a program of the library writes from its declarations, once for all that asks.
+fn include() -> Result<&'static Path> {
+    static WRITTEN: OnceLock<PathBuf> = OnceLock::new();
+    if let Some(written) = WRITTEN.get() {
+        return Ok(written);
     }
-    let (kept, new) = (files(&room().join("include/spikewire"))?, files(&fresh.join("spikewire"))?);
-    ensure!(kept == new, "c/include/spikewire has other files: {kept:?}, and not {new:?}");
-    Ok(())
+    let mut cargo = shell::cargo("build --features header --bin header");
+    shell::run(cargo.current_dir(room()).env("CARGO_TARGET_DIR", work()))?;
+    let into = work().join("include");
+    let codecs = into.join("spikewire");
+    fs::create_dir_all(&codecs)?;
+    for stale in fs::read_dir(&codecs)? {
+        fs::remove_file(stale?.path())?;
+    }
+    shell::run(Command::new(work().join("debug/header")).arg(&into).arg(work().join("sizes.rs")))?;
+    Ok(WRITTEN.get_or_init(|| into))
 }
 
-fn files(directory: &Path) -> Result<Vec<String>> {
-    let entries = fs::read_dir(directory).with_context(|| directory.display().to_string())?;
-    let names = entries.map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()));
-    let mut names = names.collect::<Result<Vec<_>>>()?;
-    names.sort();
-    Ok(names)
-}
-
-/// The library for the host, with what writes its header.
+/// The library for the host, as the program that writes the headers has it.
 fn host_archive() -> Result<PathBuf> {
-    for args in [
-        "rustc --lib --crate-type staticlib --features header",
-        "build --features header --bin header",
-    ] {
-        let mut cargo = shell::cargo(args);
-        shell::run(cargo.current_dir(room()).env("CARGO_TARGET_DIR", work()))?;
-    }
+    let mut cargo = shell::cargo("rustc --lib --crate-type staticlib --features header");
+    shell::run(cargo.current_dir(room()).env("CARGO_TARGET_DIR", work()))?;
     apart(&work().join("debug").join(ARCHIVE), "debug-host", "objcopy")
 }
 
@@ -142,12 +134,6 @@ fn watched_archive() -> Result<PathBuf> {
     cargo.env("RUSTC_BOOTSTRAP", "1").env("RUSTFLAGS", "-Zsanitizer=address -Zexternal-clangrt");
     shell::run(&mut cargo)?;
     apart(&work().join(host).join("debug").join(ARCHIVE), "watched-host", "objcopy")
-}
-
-/// Writes the header with the program that [`host_archive`] built.
-fn header(into: &Path, sizes: &Path) -> Result<()> {
-    fs::create_dir_all(into)?;
-    shell::run(Command::new(work().join("debug/header")).arg(into).arg(sizes))
 }
 
 /// The library for a board's core.

@@ -1,6 +1,6 @@
 //! What a build system takes: archive, header, CMake package and pkg-config file.
 
-use super::{put, room, work};
+use super::{include, put, work};
 use crate::common::{paths, shell};
 use anyhow::Result;
 use std::{
@@ -17,7 +17,7 @@ pub fn package(name: &str, archive: &Path, needs: &[&str]) -> Result<PathBuf> {
         fs::create_dir_all(directory)?;
     }
     fs::copy(archive, place.join("lib/libspikewire.a"))?;
-    shell::run(shell::command("cp").arg("-r").arg(room().join("include")).arg(&place))?;
+    shell::run(shell::command("cp").arg("-r").arg(include()?).arg(&place))?;
     put(&cmake.join("spikewireConfig.cmake"), &CMAKE.replace("@NEEDS@", &needs.join(";")))?;
     put(&cmake.join("spikewireConfigVersion.cmake"), CMAKE_VERSION)?;
     let needed: String = needs.iter().map(|name| format!(" -l{name}")).collect();

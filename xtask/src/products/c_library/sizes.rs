@@ -1,7 +1,9 @@
 //! The table of sizes in the library's README: what the header says, and what each codec adds to a program.
 
-use super::{archive, compiler, room};
-use crate::{common::shell, figures::markdown, programs::boards::Board};
+use super::{archive, compiler, declared, include};
+use crate::common::shell;
+use crate::figures::markdown;
+use crate::programs::boards::Board;
 use anyhow::{Context, Result};
 use std::{fmt::Write, fs};
 
@@ -24,7 +26,7 @@ fn table() -> Result<String> {
         Ok(text.context("arm-none-eabi-size prints no text")?.parse()?)
     };
     let nothing = text(&[])?;
-    let flown = fs::read_to_string(room().join("tests/flown.h"))?;
+    let flown = declared::flown();
     let mut table = String::from(
         "| codec | parameters | encoder | decoder | code, a sample | flash, Cortex-M4F |\n|---|---|---|---|---|---|\n",
     );
@@ -36,7 +38,7 @@ fn table() -> Result<String> {
             continue;
         }
         name.clone_into(&mut last);
-        let header = fs::read_to_string(room().join(format!("include/spikewire/{name}.h")))?;
+        let header = fs::read_to_string(include()?.join(format!("spikewire/{name}.h")))?;
         let pair = |part: &str, more: usize| -> Result<String> {
             let of = |sample: &str| {
                 size(&header, &format!("{name}_{sample}{part}"))

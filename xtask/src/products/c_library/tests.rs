@@ -1,13 +1,9 @@
 //! The library's tests: C programs on the host and on emulated boards, against what the crate does there.
 
 use super::{archive, compiler, ensure_written, host_archive, watched_archive};
-use crate::{
-    common::shell,
-    programs::{
-        boards::{BOARDS, Board},
-        host, qemu,
-    },
-};
+use crate::common::shell;
+use crate::programs::boards::{BOARDS, Board};
+use crate::programs::{host, qemu};
 use anyhow::{Result, ensure};
 use std::process::Command;
 

@@ -1,0 +1,269 @@
+//! The rooms of the crate stand in the order of the data's way, and none names one that stands above its own. Those of
+//! this program need no order, but no two name each other, directly or through others; nor do two files of a room.
+
+use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::{Path, PathBuf},
+};
+use syn::{Item, UseTree};
+
+/// The crate's rooms from the lowest to the highest. Those of one line stand side by side, and none names the other.
+const ORDER: [&[&str]; 9] = [
+    &["serial"], // what serde does not derive
+    &["error"],
+    &["num"],
+    &["scheme"],
+    &["event"],
+    &["frame"],
+    &["wire"],
+    &["out", "chip"],
+    &["lib"],
+];
+
+/// A path from the crate's root, and its line.
+type Named = (Vec<String>, usize);
+
+/// All paths of a text that begin at the root: of `crate::a::b`, of each branch of `crate::{a, b::c}`, and of `super::a`
+/// in a module below. `module` is the text's own path from the root.
+fn paths(source: &str, module: &[String]) -> Vec<Named> {
+    let mut found = Vec::new();
+    walk(source.parse().unwrap(), module, &mut found);
+    found
+}
+
+fn walk(tokens: TokenStream, module: &[String], found: &mut Vec<Named>) {
+    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+    let mut at = 0;
+    while let Some(token) = tokens.get(at) {
+        match token {
+            TokenTree::Ident(word) if is_path(&tokens, at + 1) && word == "crate" => {
+                at = branch(&tokens, at + 3, Vec::new(), found);
+                continue;
+            }
+            TokenTree::Ident(word) if is_path(&tokens, at + 1) && word == "super" => {
+                at = branch(&tokens, at, module.to_vec(), found);
+                continue;
+            }
+            TokenTree::Group(group) => {
+                let inline = at.checked_sub(2).filter(|&at| is_word(&tokens, at, "mod"));
+                let inline = inline.map(|at| tokens[at + 1].to_string());
+                let module: Vec<String> = module.iter().cloned().chain(inline).collect();
+                walk(group.stream(), &module, found);
+            }
+            _ => {}
+        }
+        at += 1;
+    }
+}
+
+/// Reads a path, or the branches of a tree of paths, behind what is before it; returns where it ends.
+fn branch(
+    tokens: &[TokenTree],
+    at: usize,
+    mut before: Vec<String>,
+    found: &mut Vec<Named>,
+) -> usize {
+    match tokens.get(at) {
+        Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Brace => {
+            let branches: Vec<TokenTree> = group.stream().into_iter().collect();
+            let comma = |token: &TokenTree| matches!(token, TokenTree::Punct(sign) if sign.as_char() == ',');
+            for one in branches.split(comma).filter(|one| !one.is_empty()) {
+                branch(one, 0, before.clone(), found);
+            }
+            return at + 1;
+        }
+        Some(TokenTree::Ident(word)) if word == "super" => {
+            assert!(before.pop().is_some(), "super above the root");
+        }
+        Some(word) => before.push(word.to_string()),
+        None => {}
+    }
+    if is_path(tokens, at + 1) {
+        return branch(tokens, at + 3, before, found);
+    }
+    let line = tokens.get(at).map_or(0, |token| token.span().start().line);
+    found.push((before, line));
+    at + 1
+}
+
+fn is_path(tokens: &[TokenTree], at: usize) -> bool {
+    let is_colon =
+        |at: usize| matches!(tokens.get(at), Some(TokenTree::Punct(sign)) if sign.as_char() == ':');
+    let is_joint =
+        matches!(tokens.get(at), Some(TokenTree::Punct(sign)) if sign.spacing() == Spacing::Joint);
+    is_joint && is_colon(at) && is_colon(at + 1)
+}
+
+fn is_word(tokens: &[TokenTree], at: usize, wanted: &str) -> bool {
+    matches!(tokens.get(at), Some(TokenTree::Ident(word)) if word == wanted)
+}
+
+/// The rooms that a root declares, and the room of each name that it takes out of one.
+fn roots(lib: &str) -> BTreeMap<String, String> {
+    let items = syn::parse_file(lib).unwrap().items;
+    let rooms = items.iter().filter_map(|item| match item {
+        Item::Mod(room) if room.content.is_none() => Some(room.ident.to_string()),
+        _ => None,
+    });
+    let mut roots: BTreeMap<String, String> = rooms.map(|room| (room.clone(), room)).collect();
+    for item in &items {
+        if let Item::Use(item) = item
+            && let UseTree::Path(path) = &item.tree
+            && let Some(room) = roots.get(&path.ident.to_string()).cloned()
+        {
+            leaves(&path.tree, &room, &mut roots);
+        }
+    }
+    roots
+}
+
+fn leaves(tree: &UseTree, room: &str, roots: &mut BTreeMap<String, String>) {
+    match tree {
+        UseTree::Path(path) => leaves(&path.tree, room, roots),
+        UseTree::Group(group) => group.items.iter().for_each(|one| leaves(one, room, roots)),
+        UseTree::Name(one) => drop(roots.insert(one.ident.to_string(), room.into())),
+        UseTree::Rename(one) => drop(roots.insert(one.rename.to_string(), room.into())),
+        UseTree::Glob(_) => panic!("{room}: a `*` does not say what it brings"),
+    }
+}
+
+/// What a text of this module may not name, or names and nobody knows: one line each.
+fn offences(source: &str, module: &[String], roots: &BTreeMap<String, String>) -> Vec<String> {
+    let height = |room: &str| {
+        let place = ORDER.iter().position(|rooms| rooms.contains(&room));
+        place.unwrap_or_else(|| panic!("the room {room} has no place in the order"))
+    };
+    let room = &module[0];
+    let own = height(room);
+    let offence = |(path, line): Named| match roots.get(&path[0]) {
+        None => Some(format!("line {line}: crate::{} belongs to no room", path[0])),
+        Some(other) if other == room || height(other) < own => None,
+        Some(other) => Some(format!("line {line}: crate::{}, of {other}", path[0])),
+    };
+    paths(source, module).into_iter().filter_map(offence).collect()
+}
+
+/// All files of Rust below a directory, each with its module's path.
+fn files(top: &Path) -> Vec<(PathBuf, Vec<String>)> {
+    let (mut found, mut waiting) = (Vec::new(), vec![top.to_path_buf()]);
+    while let Some(path) = waiting.pop() {
+        if path.is_dir() {
+            waiting.extend(fs::read_dir(&path).unwrap().map(|entry| entry.unwrap().path()));
+        } else if path.extension().is_some_and(|end| end == "rs") {
+            let file = path.strip_prefix(top).unwrap().with_extension("");
+            let parts = file.iter().map(|part| part.to_str().unwrap().to_owned());
+            found.push((path, parts.filter(|part| part != "mod").collect()));
+        }
+    }
+    found
+}
+
+#[test]
+fn no_room_of_the_crate_names_one_above_it() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("../src");
+    let roots = roots(&fs::read_to_string(src.join("lib.rs")).unwrap());
+    let (mut offending, mut read) = (Vec::new(), BTreeMap::new());
+    for (path, module) in files(&src) {
+        // A file that no module declares is not part of the crate.
+        if roots.contains_key(&module[0]) {
+            let offences = offences(&fs::read_to_string(&path).unwrap(), &module, &roots);
+            offending.extend(offences.iter().map(|one| format!("{}: {one}", path.display())));
+            *read.entry(module[0].clone()).or_insert(0) += 1;
+        }
+    }
+    for room in ["error", "num", "scheme"] {
+        assert!(read.get(room).is_some_and(|&count| count > 1), "{room} was not read: {read:?}");
+    }
+    assert!(offending.is_empty(), "\n{}", offending.join("\n"));
+}
+
+#[test]
+fn no_two_rooms_of_this_program_name_each_other() {
+    let (mut rooms, mut files_of) =
+        (BTreeMap::<_, BTreeSet<_>>::new(), BTreeMap::<_, BTreeSet<_>>::new());
+    for (path, module) in files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src")) {
+        for (to, _) in paths(&fs::read_to_string(path).unwrap(), &module) {
+            rooms.entry(module[0].clone()).or_default().insert(to[0].clone());
+            if let ([room, from, ..], [other, to, ..]) = (&module[..], &to[..])
+                && room == other
+            {
+                let [from, to] = [from, to].map(|file| format!("{room}/{file}"));
+                files_of.entry(from).or_default().insert(to);
+            }
+        }
+    }
+    assert!(rooms["figures"].contains("programs"), "imports are not read: {rooms:?}");
+    assert!(files_of["figures/demo"].contains("figures/picture"), "nor here: {files_of:?}");
+    for mut left in [rooms, files_of] {
+        left.iter_mut().for_each(|(from, to)| to.retain(|to| to != from));
+        // Take away those that name none that is left, until none is left.
+        while !left.is_empty() {
+            let all: BTreeSet<String> = left.keys().cloned().collect();
+            left.retain(|_, to| to.iter().any(|to| all.contains(to)));
+            assert!(left.len() < all.len(), "these name each other: {left:?}");
+        }
+    }
+}
+
+fn module(path: &str) -> Vec<String> {
+    path.split("::").map(str::to_owned).collect()
+}
+
+/// The test fails where it should, and says where.
+#[test]
+fn what_is_refused() {
+    let house = roots(
+        "#![no_std] mod error; mod num; #[cfg(feature = \"x\")] pub mod scheme; mod event; pub mod out; pub mod chip;
+         pub use error::ConfigError; pub use num::{Sample, SampleKind};
+         pub use scheme::{Scheme, codec::Encoder, temporal, other as rate};",
+    );
+    assert!(!house.contains_key("codec") && !house.contains_key("other"));
+    let table: [(&str, &str, &str, &[&str]); 16] = [
+        ("below", "num::a", "use crate::error::finite;\nuse crate::{ConfigError, Sample};", &[]),
+        ("its own", "scheme::a", "use crate::scheme::code::Code; use super::codec;", &[]),
+        ("above", "num::a", "\nuse crate::scheme::Spike;", &["2: crate::scheme"]),
+        ("a name of a room above", "num::a", "use crate::Scheme;", &["1: crate::Scheme"]),
+        (
+            "braces",
+            "num::a",
+            "use crate::{\n Sample,\n temporal::{A, B}};",
+            &["3: crate::temporal", "3: crate::temporal"],
+        ),
+        ("an expression", "error", "fn f() {\n crate::num::floor(1.0) }", &["2: crate::num"]),
+        ("a macro", "error", "macro_rules! m { () => { $crate::Sample }; }", &["1: crate::Sample"]),
+        ("super", "num", "use super::scheme::Spike;", &["1: crate::scheme"]),
+        ("super of its own", "num::a", "use super::scheme::Spike;", &[]),
+        ("super twice", "num::a", "use super::super::{Sample, Scheme};", &["1: crate::Scheme"]),
+        ("super in braces", "num::a", "use super::{floor, super::rate};", &["1: crate::rate"]),
+        ("a module in the file", "num", "mod tests {\n use super::{floor, rate}; }", &[]),
+        (
+            "super in it",
+            "num",
+            "mod t { fn f() {}\n use super::super::rate; }",
+            &["2: crate::rate"],
+        ),
+        ("side by side", "chip::a", "use crate::out::Batch;", &["1: crate::out"]),
+        ("what nobody knows", "chip::a", "use crate::Nothing;", &["1: crate::Nothing"]),
+        (
+            "words only",
+            "error::a",
+            "//! [`x`](crate::Scheme)\n/* crate::Scheme */ const A: &str = \"crate::\\\"Scheme\"; const B: char = '\"';",
+            &[],
+        ),
+    ];
+    for (name, own, source, expected) in table {
+        let offending = offences(source, &module(own), &house);
+        assert_eq!(offending.len(), expected.len(), "{name}: {offending:?}");
+        for (offence, expected) in offending.iter().zip(expected) {
+            assert!(offence.starts_with(&format!("line {expected}")), "{name}: {offence}");
+        }
+    }
+}
+
+#[test]
+#[should_panic(expected = "the room attic has no place in the order")]
+fn a_room_without_a_place() {
+    offences("", &module("attic"), &BTreeMap::new());
+}
