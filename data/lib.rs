@@ -38,6 +38,19 @@ pub fn records(recording: &[u8]) -> impl ExactSizeIterator<Item = Record> + Clon
     recording.as_chunks().0.iter().map(Record::from_bytes)
 }
 
+/// One channel of a recording, in order, and nothing of the others: in a small flash each reader counts.
+///
+/// # Panics
+/// `index` is not below 6.
+#[must_use]
+pub fn channel(recording: &[u8], index: usize) -> impl ExactSizeIterator<Item = f32> + Clone + '_ {
+    let (records, _) = recording.as_chunks::<{ Record::SIZE }>();
+    records.iter().map(move |record| {
+        let (words, _) = record.as_chunks::<4>();
+        f32::from_le_bytes(words[1 + index])
+    })
+}
+
 /// The record of this number, from 0 on.
 #[must_use]
 pub fn record(recording: &[u8], number: usize) -> Option<Record> {

@@ -50,7 +50,9 @@ pub fn flown<S: spikewire::Sample>(index: usize, unit: f64) -> Vec<S> {
 /// A calibration that has seen the samples.
 pub fn calibrated<S: spikewire::Sample>(samples: &[S]) -> spikewire::Calibration<S> {
     let mut calibration = spikewire::Calibration::new();
-    samples.iter().for_each(|&sample| calibration.observe(sample));
+    for &sample in samples {
+        calibration.observe(sample);
+    }
     calibration
 }
 

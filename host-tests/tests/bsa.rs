@@ -42,6 +42,7 @@ fn subtractive_by_hand() {
     for (name, x, threshold, expected) in table {
         let scheme = Bsa::try_subtractive(taps, threshold).unwrap();
         assert_eq!(signs_of(&encode(&scheme, x).codes()), expected, "{name}");
+        check(&taps, x, threshold, 0.5, 0.0);
     }
 }
 
@@ -60,6 +61,7 @@ fn multiplicative_by_hand() {
     for (name, x, threshold, expected) in table {
         let scheme = Bsa::try_multiplicative(taps, threshold).unwrap();
         assert_eq!(signs_of(&encode(&scheme, x).codes()), expected, "{name}");
+        check(&taps, x, 0.5, threshold, 0.0);
     }
 }
 

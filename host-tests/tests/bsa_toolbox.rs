@@ -38,6 +38,7 @@ fn cases_by_hand() {
     for (name, x, threshold, expected) in table {
         let scheme = BsaToolbox::try_new(taps, threshold).unwrap();
         assert_eq!(signs_of(&encode(&scheme, x).codes()), expected, "{name}");
+        check(&taps, x, threshold, 0.0);
     }
 }
 

@@ -36,6 +36,7 @@ fn cases_by_hand() {
     let taps = Taps::try_new([0.25_f32, 1.0, 0.5]).unwrap();
     for (name, x, expected) in table {
         assert_eq!(signs_of(&encode(&Hough::new(taps), x).codes()), expected, "{name}");
+        check(&taps, x, 0.0);
     }
 }
 

@@ -63,6 +63,7 @@ fn cases_by_hand() {
     for (name, x, threshold, expected) in table {
         let scheme = MovingWindow::<f32, 2>::try_new(threshold).unwrap();
         assert_eq!(signs_of(&encode(&scheme, x).outputs), expected, "{name}");
+        check::<f32, 2>(x, threshold, &[0.5]);
     }
 }
 

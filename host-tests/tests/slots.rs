@@ -78,6 +78,7 @@ fn the_printed_check_values() {
     ];
     for (x, slots) in table {
         assert_eq!(listed(scheme.encoder().encode(x)), slots);
+        check::<f32, 4, 100>(0.0, 1.0, 1.5, 1, &[x]);
     }
     let scheme = Slots::<I16F16, 4, 100>::try_new(I16F16::ZERO..=I16F16::ONE, 1.5).unwrap();
     for (x, slots) in table {

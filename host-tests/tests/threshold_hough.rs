@@ -40,6 +40,7 @@ fn cases_by_hand() {
     for (name, x, threshold, expected) in table {
         let scheme = ThresholdHough::try_new(taps, threshold).unwrap();
         assert_eq!(signs_of(&encode(&scheme, x).codes()), expected, "{name}");
+        check(&taps, x, threshold, 0.0);
     }
 }
 

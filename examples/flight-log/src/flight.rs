@@ -30,6 +30,6 @@ impl Recorded for i16 {
 /// One channel's samples, in order.
 pub fn channel<S: Recorded>(index: usize) -> impl Iterator<Item = S> + Clone {
     let unit = if index < 3 { S::GYRO } else { S::ACCEL };
-    let records = flight_data::records(flight_data::HEXAROTOR);
-    records.map(move |record| S::from_f64(f64::from(record.channels[index]) * unit))
+    let values = flight_data::channel(flight_data::HEXAROTOR, index);
+    values.map(move |value| S::from_f64(f64::from(value) * unit))
 }

@@ -12,8 +12,8 @@ include!(concat!(env!("OUT_DIR"), "/tuned.rs"));
 const YAW: usize = 2;
 
 fn run(out: &mut impl Write) -> fmt::Result {
-    let records = flight_data::records(flight_data::HEXAROTOR);
-    let samples = records.map(|record| Sample::from_f64(record.channels[YAW].into()));
+    let rates = flight_data::channel(flight_data::HEXAROTOR, YAW);
+    let samples = rates.map(|rate| Sample::from_f64(rate.into()));
     let mut encoder = GYRO_Z.encoder();
     let mut index = 0;
     for sample in samples {

@@ -105,51 +105,7 @@ fn aligned<T: Real>(
 
 #[cfg(test)]
 mod tests {
-    use super::{ben_multiplicative, ben_subtractive, ben_toolbox, by_slot};
-
-    const TAPS: [f64; 3] = [0.25, 1.0, 0.5];
-
-    #[test]
-    fn subtractive_compares_with_the_sum_of_the_signal_less_the_threshold() {
-        // e1 = 0.25 + 0.5 + 0.5, e2 = 1.5 + 1: at most e2 - 1.25.
-        let x = [0.0, 1.5, 1.0];
-        assert_eq!(ben_subtractive(&x, &TAPS, 0.0, 1.25, false), [1]);
-        assert_eq!(ben_subtractive(&x, &TAPS, 0.0, 1.3125, false), [0]);
-        let (x, taps) = (x.map(|v| v as f32), TAPS.map(|v| v as f32));
-        assert_eq!(ben_subtractive(&x, &taps, 0.0, 1.25, false), [1]);
-    }
-
-    #[test]
-    fn multiplicative_compares_with_a_share_of_the_signal() {
-        // As above: 1.25 at most 2.5 * threshold.
-        let x = [0.0, 1.5, 1.0];
-        assert_eq!(ben_multiplicative(&x, &TAPS, 0.0, 0.5, false), [1]);
-        assert_eq!(ben_multiplicative(&x, &TAPS, 0.0, 0.4375, false), [0]);
-        let (x, taps) = (x.map(|v| v as f32), TAPS.map(|v| v as f32));
-        assert_eq!(ben_multiplicative(&x, &taps, 0.0, 0.5, false), [1]);
-    }
-
-    #[test]
-    fn the_shift_is_taken_off_and_each_spike_subtracted() {
-        // r = 1, 2, 1: the spike at 0 leaves 0, 1, 1; the spike at 1 leaves 0, 0, 0.
-        let x = [-4.0, -3.0, -4.0];
-        assert_eq!(ben_subtractive(&x, &[1.0, 1.0], -5.0, 1.5, false), [1, 1]);
-        assert_eq!(ben_multiplicative(&x, &[1.0, 1.0], -5.0, 0.5, false), [1, 1]);
-    }
-
-    #[test]
-    fn the_last_windows_are_cut_to_what_is_left() {
-        // Errors of the windows, less the signal: 0.75 at 0; -0.75 at 1; -0.25 - 1 at 2.
-        let x = [0.0, 0.0, 0.75, 1.0];
-        assert_eq!(ben_subtractive(&x, &TAPS, 0.0, 1.25, true), [0, 0, 1, 0]);
-        assert_eq!(ben_subtractive(&x, &TAPS, 0.0, 1.25, false), [0, 0]);
-        // 0.25 + 1 - 0.5 at 1; 0.25 - 1 at 2; after its spike 0.25 at 3.
-        let last = [0.0, 0.0, 0.0, 1.0];
-        assert_eq!(ben_subtractive(&last, &TAPS, 0.0, 0.25, true), [0, 0, 1, 0]);
-        assert_eq!(ben_multiplicative(&last, &TAPS, 0.0, 0.75, true), [0, 0, 1, 0]);
-        assert!(ben_subtractive(&x[..2], &TAPS, 0.0, 0.25, false).is_empty());
-        assert_eq!(ben_subtractive(&x[..2], &TAPS, 0.0, 0.25, true), [0, 0]);
-    }
+    use super::{ben_subtractive, by_slot};
 
     #[test]
     fn whole_windows_are_summed_by_the_samples_numbers() {
@@ -161,24 +117,5 @@ mod tests {
         assert_eq!(ben_subtractive(&x, &taps, 0.0, large - 2.0, false), [0, 1]);
         assert_eq!(ben_subtractive(&x, &taps, 0.0, large, false), [0, 0]);
         assert_eq!(ben_subtractive(&x[1..], &taps, 0.0, large, false), [1]);
-    }
-
-    #[test]
-    fn toolbox_is_one_sample_late_and_subtracts_one_later_still() {
-        // One tap of 1. At 0: |r[1]-1| = 0 <= |r[0]| -> spike, r[2] = 1. At 1: |1-1| = 0 -> spike,
-        // r[3] = 1. At 2: 0 <= 1 -> spike, r[4] does not exist. (Had the spike at 0 been subtracted
-        // at 1, there would have been |2-1| against nothing.)
-        let x = [1.0, 1.0, 2.0, 2.0];
-        assert_eq!(ben_toolbox(&x, &[1.0], 0.0, 0.5, true), [1, 1, 1, 0]);
-        assert_eq!(ben_toolbox(&x, &[1.0], 0.0, 0.5, false), [1, 1, 1]);
-        let single = x.map(|v| v as f32);
-        assert_eq!(ben_toolbox(&single, &[1.0], 0.0, 0.5, true), [1, 1, 1, 0]);
-    }
-
-    #[test]
-    fn toolbox_decides_nothing_in_the_last_windows() {
-        assert!(ben_toolbox(&TAPS, &TAPS, 0.0, 9.0, false).is_empty());
-        assert_eq!(ben_toolbox(&TAPS, &TAPS, 0.0, 9.0, true), [0, 0, 0]);
-        assert_eq!(ben_toolbox(&[1.0], &TAPS, 0.0, 9.0, true), [0]);
     }
 }

@@ -33,8 +33,6 @@ mod step_decoder;
 mod step_forward;
 mod threshold_hough;
 mod timing;
-#[cfg(test)]
-mod worked;
 
 pub use ben::{ben_multiplicative, ben_subtractive, ben_toolbox};
 pub use calibration::{Calibration, Moments, calibrate};
@@ -60,10 +58,7 @@ pub use probabilistic::{probabilistic, probabilistic_from_levels};
 pub use rank_order::{nearest_first, rank_order_value};
 pub use rate_decoder::rate_decode;
 pub use real::{Real, rounded};
-pub use slots::{
-    distance_radii, levels_by_distance, levels_exp, slots_by_distance, slots_decode, slots_exp,
-    slots_of_levels,
-};
+pub use slots::{distance_radii, levels_by_distance, levels_exp, slots_decode, slots_of_levels};
 pub use step_decoder::{step_decode, step_decode_from_first, step_decode_within};
 pub use step_forward::step_forward;
 pub use threshold_hough::threshold_hough;

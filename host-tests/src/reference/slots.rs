@@ -21,19 +21,6 @@ pub fn levels_exp(x: f64, min: f64, max: f64, m: usize, beta: f64, n: u16) -> Ve
         .collect()
 }
 
-/// The slot in which each neuron fires, by the exponential, in `f64`.
-pub fn slots_exp(
-    x: f64,
-    min: f64,
-    max: f64,
-    m: usize,
-    beta: f64,
-    n: u16,
-    floor: u16,
-) -> Vec<Option<u16>> {
-    slots_of_levels(&levels_exp(x, min, max, m, beta, n), n, floor)
-}
-
 /// The radius of each level `1..=n`: `sigma * sqrt(2 ln(n/(k-0.5)))`.
 pub fn distance_radii(sigma: f64, n: u16) -> Vec<f64> {
     (1..=n).map(|k| sigma * (2.0 * (f64::from(n) / (f64::from(k) - 0.5)).ln()).sqrt()).collect()
@@ -48,23 +35,6 @@ pub fn levels_by_distance<T: Real>(x: T, centres: &[T], radii: &[T]) -> Vec<u16>
             radii.iter().filter(|&&radius| distance <= radius).count() as u16
         })
         .collect()
-}
-
-/// The slot in which each neuron fires, by distances: centres and radii are computed in `f64` and
-/// rounded to the sample type, the distance is one rounded subtraction.
-pub fn slots_by_distance<T: Real>(
-    x: T,
-    min: f64,
-    max: f64,
-    m: usize,
-    beta: f64,
-    n: u16,
-    floor: u16,
-) -> Vec<Option<u16>> {
-    let centres: Vec<T> = super::rounded(&even_centres(min, max, m));
-    let sigma = receptive_field_width(min, max, m, beta);
-    let radii: Vec<T> = super::rounded(&distance_radii(sigma, n));
-    slots_of_levels(&levels_by_distance(x, &centres, &radii), n, floor)
 }
 
 /// Level `k` fires in slot `n-k`; level 0, or below the floor, is silent.
@@ -89,17 +59,8 @@ pub fn slots_decode<T: Real>(slots: &[Option<u16>], centres: &[T], n: u16, previ
 
 #[cfg(test)]
 mod tests {
-    use super::{distance_radii, levels_by_distance, levels_exp, slots_decode, slots_exp};
-    use super::{slots_by_distance, slots_of_levels};
+    use super::{distance_radii, levels_by_distance, levels_exp, slots_decode, slots_of_levels};
     use crate::reference::{even_centres, receptive_field_width};
-
-    #[test]
-    fn a_value_on_a_centre_fires_in_the_first_slot() {
-        // 0.25 is a centre; its neighbours are 1.5 σ away: 100 exp(-1.125) = 32.5.
-        let slots = slots_exp(0.25, 0.0, 1.0, 4, 1.5, 100, 0);
-        assert_eq!(slots, [Some(68), Some(0), Some(68), Some(99)]);
-        assert_eq!(slots, slots_by_distance(0.25_f32, 0.0, 1.0, 4, 1.5, 100, 0));
-    }
 
     #[test]
     fn level_zero_and_levels_below_the_floor_are_silent() {
@@ -132,13 +93,6 @@ mod tests {
     }
 
     #[test]
-    fn far_away_everything_is_silent() {
-        let silent = [None; 4];
-        assert_eq!(slots_exp(1e9, 0.0, 1.0, 4, 1.5, 100, 0), silent);
-        assert_eq!(slots_by_distance(-1e9_f32, 0.0, 1.0, 4, 1.5, 100, 0), silent);
-    }
-
-    #[test]
     fn decodes_to_the_weighted_mean_of_the_centres() {
         let centres = [-1.0_f32, 0.0, 2.0];
         // Levels 0, 4, 6 of 10: 12 / 10.
@@ -147,7 +101,7 @@ mod tests {
         assert_eq!(slots_decode(&[None; 3], &centres, 10, 9.0), 9.0);
         // In the middle of a symmetric population nothing is lost.
         let centres = even_centres(0.0, 1.0, 4);
-        let slots = slots_exp(0.5, 0.0, 1.0, 4, 1.5, 100, 0);
+        let slots = slots_of_levels(&levels_exp(0.5, 0.0, 1.0, 4, 1.5, 100), 100, 0);
         assert_eq!(slots_decode(&slots, &centres, 100, 9.0), 0.5);
     }
 }

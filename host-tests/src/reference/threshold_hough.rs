@@ -42,29 +42,6 @@ pub fn threshold_hough<T: Real>(
 #[cfg(test)]
 mod tests {
     use super::threshold_hough;
-    use crate::reference::{hough, rate_decode};
-
-    const TAPS: [f64; 3] = [0.25, 1.0, 0.5];
-
-    #[test]
-    fn the_comparison_is_not_strict() {
-        // Short by 0.25 and by 0.5.
-        let x = [0.0, 3.0, 0.0];
-        assert_eq!(threshold_hough(&x, &TAPS, 0.0, 0.75, false), [1]);
-        assert_eq!(threshold_hough(&x, &TAPS, 0.0, 0.6875, false), [0]);
-        let (x, taps) = (x.map(|v| v as f32), TAPS.map(|v| v as f32));
-        assert_eq!(threshold_hough(&x, &taps, 0.0, 0.75, false), [1]);
-    }
-
-    #[test]
-    fn without_tolerance_it_is_the_hough_spike_algorithm() {
-        let spikes = [1, 0, 1, 1, 0, 1, 0, 0];
-        let mut x = rate_decode(&spikes, &TAPS, 1.0);
-        x[3] -= 0.125;
-        let expected = hough(&x, &TAPS, 1.0, false);
-        assert_eq!(threshold_hough(&x, &TAPS, 1.0, 0.0, false), expected);
-        assert_eq!(threshold_hough(&x, &TAPS, 1.0, 0.125, false), spikes[..6]);
-    }
 
     #[test]
     fn what_was_taken_too_much_is_missing_later() {
@@ -72,18 +49,6 @@ mod tests {
         let x = [1.0, 0.0, 1.0];
         assert_eq!(threshold_hough(&x, &[1.0, 1.0], 0.0, 1.0, false), [1, 0]);
         assert_eq!(threshold_hough(&x, &[1.0, 1.0], 0.0, 2.0, false), [1, 1]);
-    }
-
-    #[test]
-    fn a_tail_of_zeros_can_spike_at_the_end_only() {
-        let x = [0.0; 5];
-        assert_eq!(threshold_hough(&x, &TAPS, 0.0, 0.25, true), [0, 0, 0, 0, 1]);
-        // The spike at 3 costs 0.25 + 1 and leaves -1 at 4, which then costs as much.
-        assert_eq!(threshold_hough(&x, &TAPS, 0.0, 1.25, true), [0, 0, 0, 1, 1]);
-        assert_eq!(threshold_hough(&x, &TAPS, 0.0, 1.0, true), [0, 0, 0, 0, 1]);
-        assert_eq!(threshold_hough(&x, &TAPS, 0.0, 0.25, false), [0, 0, 0]);
-        assert_eq!(threshold_hough(&x[..1], &TAPS, 0.0, 0.25, true), [1]);
-        assert!(threshold_hough(&x[..1], &TAPS, 0.0, 0.25, false).is_empty());
     }
 
     #[test]
