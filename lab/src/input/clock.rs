@@ -290,32 +290,7 @@ fn usual_step(times: &[i64]) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Clock, Kind, Step};
-
-    #[test]
-    fn long_backward_and_repeated_steps_are_told_apart() {
-        let times = [0, 10, 20, 30, 60, 70, 65, 75, 75];
-        let mut clock = Clock::new(&times, None, 1.5);
-        let steps = clock.observe(&times);
-        let step = |kind, after, microseconds| Step { kind, after, microseconds };
-        assert_eq!(steps, [step(Kind::Gap, 3, 30), step(Kind::Backward, 5, -5)]);
-        assert_eq!(clock.rate(), Some(1e5));
-        let told = clock.to_string();
-        assert!(told.starts_with("1 gaps above 0.015 ms"), "{told}");
-        assert!(told.contains("; 1 steps back in time: -0.005 ms after sample 5"), "{told}");
-        assert!(told.ends_with("; 1 times equal the one before, in whole µs"), "{told}");
-    }
-
-    #[test]
-    fn a_clock_that_starts_anew_begins_a_segment() {
-        let times: Vec<i64> = (0..100).chain(0..50).map(|sample| sample * 5000).collect();
-        let mut clock = Clock::new(&times, None, 1.5);
-        let restart = Step { kind: Kind::Restart, after: 99, microseconds: -495_000 };
-        assert_eq!(clock.observe(&times), [restart]);
-        assert_eq!((clock.rate(), clock.seconds()), (Some(200.0), 0.74));
-        let told = clock.to_string();
-        assert!(told.contains("; the clock starts anew 1 times, each a segment of its own: -495.000 ms after sample 99"), "{told}");
-    }
+    use super::{Clock, Kind};
 
     #[test]
     fn messages_out_of_order_have_a_rate_and_a_length() {

@@ -17,26 +17,3 @@ pub fn near<'a>(asked: &str, names: impl IntoIterator<Item = &'a str>) -> String
     let names: Vec<&str> = ranked.iter().take(MOST).map(|(_, name)| *name).collect();
     format!("near it are {}; there are {}", names.join(", "), ranked.len())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::near;
-
-    #[test]
-    fn few_names_are_all_told_and_many_by_likeness() {
-        assert_eq!(near("gyro", ["gyro_x", "time"]), "there are gyro_x, time");
-        let many = [
-            "actuator_outputs",
-            "battery",
-            "cpuload",
-            "ekf2",
-            "gps",
-            "home",
-            "sensor_combined",
-            "sensor_gyro",
-            "vehicle",
-        ];
-        let told = near("sensor_combine", many);
-        assert!(told.starts_with("near it are sensor_combined, sensor_gyro"), "{told}");
-    }
-}
