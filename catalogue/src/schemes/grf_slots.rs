@@ -106,8 +106,8 @@ impl BuildPopulation for Scheme {
     }
 }
 
-/// The code that the transcription writes: the slot of each neuron, or -1.
-fn spikes_of(slots: &[i8]) -> SlotSpikes<15, 10> {
+/// The code that the transcription writes: the slot or rank of each neuron, or -1.
+pub(super) fn spikes_of<const N: usize>(slots: &[i8]) -> SlotSpikes<15, N> {
     let mut fired = [0; 15];
     let mut length = 0;
     for (fired, &slot) in fired.iter_mut().zip(slots.iter().filter(|&&slot| slot >= 0)) {

@@ -1,7 +1,8 @@
 //! Rank order coding.
 
-use spikewire::population::{RankOrder, SlotSpikes};
+use spikewire::population::RankOrder;
 
+use super::grf_slots::spikes_of;
 use crate::prelude::*;
 
 /// Rank order coding.
@@ -135,19 +136,6 @@ impl BuildPopulation for Scheme {
         let start = scheme.state();
         visitor.visit(scheme, start)
     }
-}
-
-/// The code that the transcription writes: the rank of each neuron, or -1.
-fn spikes_of(ranks: &[i8]) -> SlotSpikes<15, 3> {
-    let mut fired = [0; 15];
-    let mut length = 0;
-    for (fired, &rank) in fired.iter_mut().zip(ranks.iter().filter(|&&rank| rank >= 0)) {
-        *fired = rank as u8;
-        length += 1;
-    }
-    let first = ranks.iter().take_while(|&&rank| rank < 0).count();
-    let fired = fired.get(..length).unwrap_or_default();
-    SlotSpikes::new(first as u16, fired).unwrap_or(SlotSpikes::EMPTY)
 }
 
 /// The nearest centre that has not fired, again and again, of two alike the lower: the rank of each neuron, or -1, one

@@ -101,6 +101,16 @@ pub struct Told {
     pub step_us: Option<f64>,
 }
 
+/// The bytes that `write` puts in front of room for the largest network.
+pub(super) fn written<E>(write: impl FnOnce(&mut [u8]) -> Result<usize, E>) -> Result<Vec<u8>, E> {
+    /// More bytes than any network takes on any chip.
+    const LARGEST: usize = 256 * 1024;
+    let mut bytes = vec![0; LARGEST];
+    let length = write(&mut bytes)?;
+    bytes.truncate(length);
+    Ok(bytes)
+}
+
 /// Numbers with commas between.
 pub(super) fn list(numbers: impl Iterator<Item = impl Display>) -> String {
     numbers.map(|number| number.to_string()).collect::<Vec<_>>().join(", ")

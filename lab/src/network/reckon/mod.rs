@@ -5,11 +5,11 @@ mod place;
 mod quantise;
 mod run;
 
-use super::chip::{Chip, OnChip, Ran, Told};
+use super::chip::{Chip, OnChip, Ran, Told, written};
 use super::{Trained, Trains};
 use anyhow::Result;
 use quantise::{Quantised, quantise};
-use spikewire::chip::DescribeReckOn;
+use spikewire::chip::{DescribeReckOn, ReckOnBytes};
 
 /// The chip `ReckOn`.
 pub struct ReckOn;
@@ -47,7 +47,7 @@ impl OnChip for Quantised {
     }
 
     fn bytes(&self) -> Result<Vec<u8>> {
-        run::bytes(self)
+        Ok(written(|bytes| ReckOnBytes::write(self, bytes))?)
     }
 
     fn notes(&self) -> Vec<String> {

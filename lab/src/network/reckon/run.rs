@@ -6,12 +6,9 @@ use super::Quantised;
 use super::quantise::FIRED;
 use anyhow::{Result, bail};
 use silicon::reckon::{Board, Port, Spi};
-use spikewire::chip::{ReckOn, ReckOnAnswer, ReckOnBytes, ReckOnSettings, ReckOnStep};
+use spikewire::chip::{ReckOn, ReckOnAnswer, ReckOnSettings, ReckOnStep};
 
 type Chip = ReckOn<Spi, Port>;
-
-/// More bytes than any network takes.
-const LARGEST: usize = 256 * 1024;
 
 /// The chip's clocks to one of its SPI.
 const RATIO: u32 = 10;
@@ -81,15 +78,4 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
     // In order of their number, as in double precision.
     ran.fired.iter_mut().flatten().for_each(|step| step.sort_unstable());
     Ok(ran)
-}
-
-/// The network as bytes.
-///
-/// # Errors
-/// Returns an error if the chip does not take the network.
-pub(super) fn bytes(network: &Quantised) -> Result<Vec<u8>> {
-    let mut bytes = vec![0; LARGEST];
-    let length = ReckOnBytes::write(network, &mut bytes)?;
-    bytes.truncate(length);
-    Ok(bytes)
 }

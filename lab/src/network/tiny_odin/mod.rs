@@ -4,10 +4,11 @@ mod emit;
 mod quantise;
 mod run;
 
-use super::chip::{Chip, OnChip, Ran, Stepped, Told};
+use super::chip::{Chip, OnChip, Ran, Stepped, Told, written};
 use super::{Trained, Trains};
 use anyhow::{Result, bail};
 use quantise::{Quantised, quantise};
+use spikewire::chip::NetworkBytes;
 
 /// The chip tinyODIN.
 pub struct TinyOdin;
@@ -54,7 +55,7 @@ impl OnChip for Quantised {
     }
 
     fn bytes(&self) -> Result<Vec<u8>> {
-        run::bytes(self)
+        Ok(written(|bytes| NetworkBytes::write(self, bytes))?)
     }
 
     fn notes(&self) -> Vec<String> {

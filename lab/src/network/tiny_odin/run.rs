@@ -5,10 +5,7 @@ use super::super::chip::{Ran, Stepped, refused};
 use super::Quantised;
 use anyhow::Result;
 use silicon::Board;
-use spikewire::chip::{Describe, Input, NetworkBytes, TinyOdin, TinyOdinInput};
-
-/// More bytes than any network takes.
-const LARGEST: usize = 64 * 1024;
+use spikewire::chip::{Describe, Input, TinyOdin, TinyOdinInput};
 
 /// The chip's clocks to one of its SPI.
 const RATIO: u32 = 4;
@@ -70,15 +67,4 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
         Ok(())
     })?;
     Ok(Ran { fired, potentials: vec![], clocks, lost })
-}
-
-/// The network as bytes.
-///
-/// # Errors
-/// Returns an error if the chip does not take the network.
-pub(super) fn bytes(network: &Quantised) -> Result<Vec<u8>> {
-    let mut bytes = vec![0; LARGEST];
-    let length = NetworkBytes::write(network, &mut bytes)?;
-    bytes.truncate(length);
-    Ok(bytes)
 }
