@@ -111,14 +111,14 @@ mod tests {
     use super::{Plain, transcribed};
     use crate::schemes::sigma_delta::tests::{Check, drawn, in_every_type, values_of};
 
-    /// `u = 1664525 u + 1013904223`, of 32 bits.
-    struct Lcg(u32);
+    /// A draw, and what the next is made of it by.
+    struct Draws(u32, fn(u32) -> u32);
 
-    impl TryRng for Lcg {
+    impl TryRng for Draws {
         type Error = core::convert::Infallible;
 
         fn try_next_u32(&mut self) -> Result<u32, Self::Error> {
-            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            self.0 = (self.1)(self.0);
             Ok(self.0)
         }
 
@@ -131,29 +131,15 @@ mod tests {
         }
     }
 
-    /// Always the same draw.
-    struct Same(u32);
-
-    impl TryRng for Same {
-        type Error = core::convert::Infallible;
-
-        fn try_next_u32(&mut self) -> Result<u32, Self::Error> {
-            Ok(self.0)
-        }
-
-        fn try_next_u64(&mut self) -> Result<u64, Self::Error> {
-            panic!("32 bits a sample")
-        }
-
-        fn try_fill_bytes(&mut self, _: &mut [u8]) -> Result<(), Self::Error> {
-            panic!("32 bits a sample")
-        }
+    /// `u = 1664525 u + 1013904223`, of 32 bits, from 1 on.
+    fn congruential() -> Draws {
+        Draws(1, |last| last.wrapping_mul(1_664_525).wrapping_add(1_013_904_223))
     }
 
     #[test]
     fn check_values() {
-        let scheme = Bernoulli::<i16, Lcg, _>::new(0..=255, Average::new(4));
-        let mut encoder = scheme.encoder(Lcg(1));
+        let scheme = Bernoulli::<i16, Draws, _>::new(0..=255, Average::new(4));
+        let mut encoder = scheme.encoder(congruential());
         let spikes = [100; 16].map(|x| encoder.encode(x).sign());
         assert_eq!(spikes, [1, 1, 0, 0, 1, 1, 0, 0, 1, 0, 1, 0, 0, 0, 1, 0]);
     }
@@ -162,13 +148,13 @@ mod tests {
     #[test]
     fn all_draws() {
         fn fired<S: Sample>(min: S, max: S, x: S) -> u32 {
-            let scheme = Bernoulli::<S, Same, _>::new(min..=max, Average::new(1));
+            let scheme = Bernoulli::<S, Draws, _>::new(min..=max, Average::new(1));
             // The draws that fire are the lowest: a search finds how many.
             let (mut low, mut high) = (0_u32, 1 << 16);
             while low < high {
                 let middle = low.midpoint(high);
                 let draw = middle << 16 | 0xffff;
-                if scheme.encoder(Same(draw)).encode(x).is_fired() {
+                if scheme.encoder(Draws(draw, |same| same)).encode(x).is_fired() {
                     low = middle + 1;
                 } else {
                     high = middle;
@@ -202,9 +188,9 @@ mod tests {
     /// What is not finite is counted, and draws nothing.
     #[test]
     fn what_is_not_finite_draws_nothing() {
-        let scheme = Bernoulli::<f32, Lcg, _>::new(0.0..=255.0, Average::new(4));
-        let mut encoder = scheme.encoder(Lcg(1));
-        let mut beside = scheme.encoder(Lcg(1));
+        let scheme = Bernoulli::<f32, Draws, _>::new(0.0..=255.0, Average::new(4));
+        let mut encoder = scheme.encoder(congruential());
+        let mut beside = scheme.encoder(congruential());
         for i in 0..100 {
             assert_eq!(encoder.encode([f32::NAN, f32::INFINITY][i % 2]).sign(), 0);
             assert_eq!(encoder.encode(100.0), beside.encode(100.0));
