@@ -464,8 +464,6 @@ fn a_pixel_is_quiet_where_no_event_is_due() {
     for sample in 0..=255 {
         assert_eq!(own.is_quiet(100, sample), (90..=110).contains(&sample), "{sample}");
     }
-    let row = [100, 95, 111, 105];
-    assert_eq!(own.quiet(&[100; 4], &row), 2);
 }
 
 #[test]

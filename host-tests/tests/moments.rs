@@ -74,6 +74,18 @@ fn whole_numbers_are_exact() {
     assert_eq!(observed(&widest).deviation(), Ok(65_535.0 / 2.0_f64.sqrt()));
 }
 
+/// Those after the first 2³²-1 are counted, and change nothing.
+#[test]
+#[ignore = "minutes"]
+fn more_samples_than_it_takes() {
+    let mut moments = Moments::<i16>::new();
+    (0..u32::MAX).for_each(|_| moments.observe(std::hint::black_box(3)));
+    assert_eq!((moments.seen(), moments.ignored()), (u32::MAX, 0));
+    (0..2).for_each(|_| moments.observe(9));
+    assert_eq!((moments.seen(), moments.ignored()), (u32::MAX, 2));
+    assert_eq!(moments.mean(), Ok(3.0));
+}
+
 #[test]
 fn flights() {
     for channel in flight_channels() {
