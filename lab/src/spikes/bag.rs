@@ -1,7 +1,6 @@
 //! Writes ROS 1 bags, version 2.0, with an index and without compression.
 
 use super::recorder::{Container, Topic};
-use super::spyke::{Kind, Spyke, text_ros1};
 use crate::output::Output;
 use anyhow::Result;
 use std::io::Write;
@@ -108,14 +107,6 @@ impl Bag {
 }
 
 impl Container for Bag {
-    fn spyke(&self, message: &Spyke, kind: Kind) -> Vec<u8> {
-        message.ros1(kind)
-    }
-
-    fn text(&self, text: &str) -> Vec<u8> {
-        text_ros1(text)
-    }
-
     fn add(&mut self, topic: usize, nanoseconds: u64, message: &[u8]) -> Result<()> {
         self.index.push((topic, nanoseconds, self.chunk.len() as u32));
         let header = [

@@ -1,7 +1,6 @@
 //! Writes MCAP files of ROS 2's messages, with an index and without compression.
 
 use super::recorder::{Container, Topic};
-use super::spyke::{Kind, Spyke, text_cdr};
 use crate::output::Output;
 use anyhow::Result;
 use std::io::Write;
@@ -125,14 +124,6 @@ impl Mcap {
 }
 
 impl Container for Mcap {
-    fn spyke(&self, message: &Spyke, kind: Kind) -> Vec<u8> {
-        message.cdr(kind)
-    }
-
-    fn text(&self, text: &str) -> Vec<u8> {
-        text_cdr(text)
-    }
-
     fn add(&mut self, topic: usize, nanoseconds: u64, message: &[u8]) -> Result<()> {
         self.index.push((topic, nanoseconds, self.chunk.len() as u64));
         self.counts[topic] += 1;

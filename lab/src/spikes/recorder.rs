@@ -24,12 +24,6 @@ pub(super) struct Topic {
 
 /// A log in the making.
 pub(super) trait Container {
-    /// The bytes of a message of spikes.
-    fn spyke(&self, message: &Spyke, kind: Kind) -> Vec<u8>;
-
-    /// The bytes of a message of text.
-    fn text(&self, text: &str) -> Vec<u8>;
-
     /// Adds a message of a topic.
     ///
     /// # Errors
@@ -70,6 +64,7 @@ const UNTIMED: &str =
 /// A log of spikes in the making.
 pub struct Recorder {
     container: Box<dyn Container>,
+    format: Format,
     kind: Kind,
     /// The part that all messages of a channel share.
     empty: Vec<Spyke>,
@@ -137,6 +132,7 @@ impl Recorder {
                 Format::Bag => Box::new(Bag::new(output, topics)?),
                 Format::Mcap => Box::new(Mcap::new(output, topics)?),
             },
+            format,
             kind,
             empty,
             header: Some(lines.collect()),
@@ -153,7 +149,7 @@ impl Recorder {
     fn sample(&mut self, pending: &Pending) -> Result<()> {
         let nanoseconds = pending.time.as_nanos() as u64;
         if let Some(header) = self.header.take() {
-            let message = self.container.text(&header);
+            let message = spyke::text(&header, self.format);
             self.container.add(self.empty.len(), nanoseconds, &message)?;
         }
         let mut messages = self.empty.clone();
@@ -178,7 +174,7 @@ impl Recorder {
         }
         self.finite += u64::from(pending.is_finite);
         for (channel, message) in messages.iter().enumerate() {
-            let bytes = self.container.spyke(message, self.kind);
+            let bytes = message.bytes(self.kind, self.format);
             self.container.add(channel, nanoseconds, &bytes)?;
         }
         Ok(())

@@ -1,5 +1,6 @@
 //! The messages of the paper's toolbox: what the neurons did for one sample, with what decoding needs.
 
+use super::recorder::Format;
 use std::time::Duration;
 
 /// The message of one sample.
@@ -92,37 +93,21 @@ impl Kind {
 }
 
 impl Spyke {
-    /// Encodes the message as ROS 1 sends it.
-    pub(crate) fn ros1(&self, kind: Kind) -> Vec<u8> {
-        let mut bytes = Vec::new();
+    /// Encodes the message as ROS 1 sends it, or as CDR, the wire format of ROS 2: behind four bytes of its own, numbers
+    /// at multiples of four bytes, NUL-terminated strings.
+    pub(crate) fn bytes(&self, kind: Kind, format: Format) -> Vec<u8> {
+        let mut bytes = start(format);
         if kind == Kind::SpykeArray {
             bytes.extend((self.spikes.len() as u32).to_le_bytes());
         }
         bytes.extend(self.spikes.iter().map(|spike| spike.to_le_bytes()[0]));
+        align(&mut bytes, format);
         for number in self.numbers() {
             bytes.extend(number.to_le_bytes());
         }
-        bytes.extend((self.scheme.len() as u32).to_le_bytes());
-        bytes.extend(self.scheme.as_bytes());
+        add_text(&mut bytes, self.scheme, format);
+        align(&mut bytes, format);
         bytes.extend((self.time.as_secs() as u32).to_le_bytes());
-        bytes.extend(self.time.subsec_nanos().to_le_bytes());
-        bytes
-    }
-
-    /// Encodes as CDR, the wire format of ROS 2: four-byte alignment, NUL-terminated strings.
-    pub(crate) fn cdr(&self, kind: Kind) -> Vec<u8> {
-        let mut bytes = CDR.to_vec();
-        if kind == Kind::SpykeArray {
-            bytes.extend((self.spikes.len() as u32).to_le_bytes());
-        }
-        bytes.extend(self.spikes.iter().map(|spike| spike.to_le_bytes()[0]));
-        align(&mut bytes);
-        for number in self.numbers() {
-            bytes.extend(number.to_le_bytes());
-        }
-        add_text(&mut bytes, self.scheme);
-        align(&mut bytes);
-        bytes.extend((self.time.as_secs() as i32).to_le_bytes());
         bytes.extend(self.time.subsec_nanos().to_le_bytes());
         bytes
     }
@@ -132,30 +117,33 @@ impl Spyke {
     }
 }
 
-/// A text as ROS 1 sends it.
-pub(crate) fn text_ros1(text: &str) -> Vec<u8> {
-    [&(text.len() as u32).to_le_bytes()[..], text.as_bytes()].concat()
-}
-
-/// A text as ROS 2 sends it.
-pub(crate) fn text_cdr(text: &str) -> Vec<u8> {
-    let mut bytes = CDR.to_vec();
-    add_text(&mut bytes, text);
+/// The message of a text.
+pub(crate) fn text(text: &str, format: Format) -> Vec<u8> {
+    let mut bytes = start(format);
+    add_text(&mut bytes, text, format);
     bytes
 }
 
-/// Plain CDR whose bytes of low value come first.
-const CDR: [u8; 4] = [0, 1, 0, 0];
+/// What a message starts with: in ROS 2 that it is plain CDR whose bytes of low value come first.
+fn start(format: Format) -> Vec<u8> {
+    match format {
+        Format::Bag => Vec::new(),
+        Format::Mcap => vec![0, 1, 0, 0],
+    }
+}
 
-fn add_text(bytes: &mut Vec<u8>, text: &str) {
-    bytes.extend((text.len() as u32 + 1).to_le_bytes());
+fn add_text(bytes: &mut Vec<u8>, text: &str, format: Format) {
+    let end: &[u8] = if format == Format::Mcap { &[0] } else { &[] };
+    bytes.extend(((text.len() + end.len()) as u32).to_le_bytes());
     bytes.extend(text.as_bytes());
-    bytes.push(0);
+    bytes.extend(end);
 }
 
 /// To four bytes, behind the first four as from the start.
-fn align(bytes: &mut Vec<u8>) {
-    bytes.resize(bytes.len().next_multiple_of(4), 0);
+fn align(bytes: &mut Vec<u8>, format: Format) {
+    if format == Format::Mcap {
+        bytes.resize(bytes.len().next_multiple_of(4), 0);
+    }
 }
 
 /// The schemes of the toolbox: its names, and ours.
