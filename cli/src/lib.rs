@@ -1,6 +1,7 @@
 //! The laptop program: arguments in, text out. What it does is in `lab`.
 
 mod commands;
+mod inputs;
 mod live;
 mod options;
 mod stop;

@@ -1,5 +1,6 @@
 //! `spikewire advise`: what a log is like, and which scheme suits each of its channels.
 
+use crate::inputs::InputOptions;
 use crate::options::tell;
 use crate::stop::Stop;
 use anyhow::{Result, bail};
@@ -7,7 +8,6 @@ use catalogue::run::SampleType;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::advise::{Advice, AdviseRequest, advise};
-use lab::input::InputOptions;
 use lab::look::known_unit;
 use lab::plot::{Picture, draw};
 use lab::trial::{Recording, Trial};
@@ -67,7 +67,7 @@ pub(crate) struct Advise {
 /// # Errors
 /// The log or the options are not good, or there is nothing to say of any channel.
 pub(crate) fn run(options: &Advise) -> Result<()> {
-    let recordings = Recording::read_all(&options.input.or_all()?)?;
+    let recordings = Recording::read_all(&options.input.to_lab().or_all()?)?;
     if options.picture.is_some() && recordings.len() > 1 {
         bail!("--picture draws one channel; --channel says which");
     }

@@ -1,5 +1,6 @@
 //! `spikewire convert`: events from any format to any other, in constant memory.
 
+use crate::inputs::StreamOptions;
 use crate::options::tell;
 use anyhow::Result;
 use clap::Args;
@@ -36,17 +37,6 @@ pub(crate) struct Convert {
     output: Option<PathBuf>,
     #[command(flatten)]
     stream: StreamOptions,
-}
-
-/// How events go through.
-#[derive(Args, Clone, Copy, Debug)]
-pub(crate) struct StreamOptions {
-    /// Take the first tick off all: some formats count from 0
-    #[arg(long)]
-    pub from_zero: bool,
-    /// Go on without the events that the format has no word for, and count them
-    #[arg(long)]
-    pub drop: bool,
 }
 
 /// Runs the command.

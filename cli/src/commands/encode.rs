@@ -1,10 +1,10 @@
 //! `spikewire encode`: a recording to spikes, in constant memory.
 
+use crate::inputs::InputOptions;
 use crate::options::{Coding, tell_each};
 use anyhow::Result;
 use clap::Args;
 use lab::encode::encode;
-use lab::input::InputOptions;
 use lab::output::Output;
 use lab::spikes::Format;
 use std::path::PathBuf;
@@ -39,7 +39,7 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
     let (scheme, sample, parameters) = coding.one()?;
     let format = output.as_deref().and_then(Format::of);
     let open = || Output::open(output.as_deref(), &input.input);
-    let (output, notes) = encode(input, scheme, sample, &parameters, format, open)?;
+    let (output, notes) = encode(&input.to_lab(), scheme, sample, &parameters, format, open)?;
     output.finish()?;
     tell_each(&notes);
     Ok(())

@@ -1,6 +1,6 @@
 //! `spikewire listen`: what a board sends, as events or values, while it comes.
 
-use super::convert::StreamOptions;
+use crate::inputs::StreamOptions;
 use crate::live::Live;
 use crate::options::{agreed, augment, given, option_group, schemes, tell};
 use crate::stop::Stop;

@@ -1,5 +1,6 @@
 //! `spikewire network`: a trained network onto a chip, and what that costs.
 
+use crate::inputs::InputOptions;
 use crate::options::{SchemeOptions, schemes, tell_each};
 use anyhow::{Context, Result, ensure};
 use catalogue::run::{Calibrated, Known, SampleType, Settings};
@@ -8,7 +9,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::bank::Bank;
 use lab::fit::rounding;
-use lab::input::{InputOptions, above_zero};
+use lab::input::{InputOptions as Input, above_zero};
 use lab::network::{
     Brought, CHIPS, Chip, Figures, File, OnChip, Request, Stepped, Told, Trained, Trains, WINDOW,
     bring,
@@ -87,7 +88,7 @@ fn chips() -> impl TypedValueParser<Value = &'static str> {
 /// The network, the recording, the parameters or the output are not good, or the network does not fit the chip.
 pub(crate) fn run(options: &Network) -> Result<()> {
     let Network { trained: path, dt, output, .. } = options;
-    let input = &options.input;
+    let input = &options.input.to_lab();
     let file = File::read(path)?;
     ensure!(
         !input.is_stdin(),
@@ -102,7 +103,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     let trained = file.in_steps(dt.or(seconds)).map_err(|error| error.context(name.clone()))?;
     driven.check(&trained, options.scheme).with_context(|| name.clone())?;
     let held_out = options.held_out.as_ref().map(|path| {
-        let input = InputOptions { input: path.clone(), ..input.clone() };
+        let input = Input { input: path.clone(), ..input.clone() };
         match options.scheme {
             Some(scheme) => self::driven(options, scheme, &input, Some(&driven.settings)),
             None => spiking(path),
@@ -212,7 +213,7 @@ impl Driven {
 fn driven(
     options: &Network,
     scheme: Scheme,
-    input: &InputOptions,
+    input: &Input,
     known: Option<&[Settings]>,
 ) -> Result<Driven> {
     let Network { sample, parameters: SchemeOptions(parameters), .. } = options;

@@ -1,10 +1,10 @@
 //! `spikewire plot`: signal and reconstruction over spikes.
 
 use super::score::chosen;
+use crate::inputs::InputOptions;
 use crate::options::{Coding, tell};
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use lab::input::InputOptions;
 use lab::look::known_unit;
 use lab::plot::{Picture, draw};
 use lab::scheme::Scheme;
@@ -50,7 +50,7 @@ pub(crate) fn run(options: &Plot) -> Result<()> {
         bail!("--scheme must say which, or --params, or --all");
     }
     let (schemes, sample, parameters) = chosen(coding)?;
-    let recording = Recording::read(input)?;
+    let recording = Recording::read(&input.to_lab())?;
     let shown = shown(range.as_deref(), recording.values.len())?;
     // Of the population codes the paper draws GRF.
     let is_drawn = |scheme: &Scheme| !options.all || scheme.info().is_drawn;

@@ -1,10 +1,10 @@
 //! `spikewire score`: how few spikes, and how near to the signal.
 
+use crate::inputs::InputOptions;
 use crate::options::{Coding, tell};
 use anyhow::{Result, bail};
 use catalogue::run::{Asked, SampleType};
 use clap::Args;
-use lab::input::InputOptions;
 use lab::scheme::Scheme;
 use lab::score::Figures;
 use lab::trial::{Recording, Trial};
@@ -52,7 +52,7 @@ enum Scored {
 pub(crate) fn run(options: &Score) -> Result<()> {
     let Score { coding, input, json } = options;
     let (schemes, sample, parameters) = chosen(coding)?;
-    let recording = Recording::read(input)?;
+    let recording = Recording::read(&input.to_lab())?;
     let is_single = schemes.len() == 1;
     let mut scored = Vec::new();
     for scheme in schemes {

@@ -1,5 +1,6 @@
 //! `spikewire tune`: the parameters of a scheme, from flight logs.
 
+use crate::inputs::ChannelOptions;
 use crate::options::{FREE, augment, given, option_group, spelled, tell};
 use crate::stop::Stop;
 use anyhow::{Context, Result, bail};
@@ -7,7 +8,6 @@ use catalogue::Parameter;
 use catalogue::run::{Asked, SampleType};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use lab::input::{ChannelOptions, InputOptions};
 use lab::look::known_unit;
 use lab::output::Output;
 use lab::plot::draw_fronts;
@@ -248,8 +248,7 @@ impl Tune {
     fn logs(&self) -> Result<Vec<Vec<Recording>>> {
         let mut logs = Vec::new();
         for input in &self.inputs {
-            let input = InputOptions { input: input.clone(), channel: self.channel.clone() };
-            let recordings = Recording::read_all(&input)?;
+            let recordings = Recording::read_all(&self.channel.of(input))?;
             if let Some(first) = recordings.first() {
                 tell(first.notes());
             }

@@ -29,14 +29,12 @@ pub const CHUNK: usize = 8192;
 
 /// A recording, and how to read it.
 #[derive(Clone, Debug)]
-#[cfg_attr(feature = "options", derive(clap::Args))]
 pub struct InputOptions {
     /// CSV table with a header, also compressed by gzip, or log: PX4's `ULog`, bag of ROS 1 or
     /// 2, MCAP, Betaflight's blackbox; `-` is a CSV table on
     /// standard input
     pub input: PathBuf,
     /// The channel to read.
-    #[cfg_attr(feature = "options", command(flatten))]
     pub channel: ChannelOptions,
 }
 
@@ -50,58 +48,33 @@ impl Deref for InputOptions {
 
 /// The channel of a recording, and how to read it.
 #[derive(Clone, Debug)]
-#[cfg_attr(feature = "options", derive(clap::Args))]
 pub struct ChannelOptions {
     /// Column of a CSV table, by name or by number from 1; `encode` takes several
-    #[cfg_attr(feature = "options", arg(long, help_heading = "Input"))]
     pub column: Vec<String>,
     /// Several columns at once: `gyro_x,gyro_y,gyro_z`, or `all`; of a log `TOPIC.FIELD`
-    #[cfg_attr(
-        feature = "options",
-        arg(
-            long,
-            visible_alias = "channel",
-            value_delimiter = ',',
-            value_name = "NAMES",
-            help_heading = "Input"
-        )
-    )]
     pub columns: Vec<String>,
     /// Column that holds the time; found by its name, as Betaflight, `ArduPilot`, PX4, ROS and pandas
     /// write it, unless given. In a ROS log a field such as `header.stamp`; when a message was recorded unless given
-    #[cfg_attr(feature = "options", arg(long, value_name = "COLUMN", help_heading = "Input"))]
     pub time: Option<String>,
     /// Unit of that column; told by its name, such as `time (us)` or `stamp_ns`, or by its values,
     /// unless given
-    #[cfg_attr(feature = "options", arg(long, value_name = "UNIT", help_heading = "Input"))]
     pub time_unit: Option<TimeUnit>,
-    /// What stands between columns: `,` `;` `|` `tab` `space`; found in the header unless given
-    #[cfg_attr(feature = "options", arg(long, help_heading = "Input"))]
+    /// Delimiter of columns: `,` `;` `|` `tab` `space`; found in the header unless given
     pub delimiter: Option<Delimiter>,
     /// Topic of a log; in a PX4 log with `:1` after it for its second instance
-    #[cfg_attr(feature = "options", arg(long, help_heading = "Input"))]
     pub topic: Option<String>,
     /// Field of that topic, such as `gyro_rad[0]` or `angular_velocity.x`; `encode` takes several
-    #[cfg_attr(feature = "options", arg(long, help_heading = "Input"))]
     pub field: Vec<String>,
     /// Several fields at once: `gyro_rad[0],gyro_rad[1]`
-    #[cfg_attr(
-        feature = "options",
-        arg(long, value_delimiter = ',', value_name = "NAMES", help_heading = "Input")
-    )]
     pub fields: Vec<String>,
     /// Samples a second, where no time is recorded
-    #[cfg_attr(feature = "options", arg(long, value_parser = above_zero, help_heading = "Input"))]
     pub rate: Option<f64>,
     /// Report steps in time above this many usual steps
-    #[cfg_attr(feature = "options", arg(long, default_value_t = 1.5, value_parser = above_zero, help_heading = "Input"))]
     pub gap: f64,
     /// Go on over rows with a value that is missing (empty, `NA`) or not finite: they emit nothing and
     /// are counted
-    #[cfg_attr(feature = "options", arg(long, help_heading = "Input"))]
     pub skip_non_finite: bool,
     /// Take the whole messages of a log that is cut short or damaged
-    #[cfg_attr(feature = "options", arg(long, help_heading = "Input"))]
     pub accept_cut: bool,
 }
 

@@ -6,7 +6,6 @@ use std::str::FromStr;
 
 /// A unit of time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "options", derive(clap::ValueEnum))]
 pub enum TimeUnit {
     /// Seconds.
     S,
