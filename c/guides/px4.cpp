@@ -1,20 +1,23 @@
 // A PX4 module: spikes of the vehicle's three turn rates out of a serial device.
 //
-// In src/modules/spikes: this file as Spikes.cpp, and in its CMakeLists.txt
+// It stays outside PX4's tree, in a directory DIR: this file as DIR/src/modules/spikes/Spikes.cpp, beside it CMakeLists.txt
 //
 //     find_package(spikewire CONFIG REQUIRED PATHS ${SPIKEWIRE})
-//     px4_add_module(MODULE modules__spikes MAIN spikes SRCS Spikes.cpp DEPENDS px4_work_queue)
+//     px4_add_module(MODULE modules__spikes MAIN spikes SRCS Spikes.cpp)
 //     target_link_libraries(modules__spikes PRIVATE spikewire::spikewire)
 //
-// where SPIKEWIRE is target/c-library/cortex-m7. Then `spikes start` in the shell or in rc.txt. ModuleBase is that of 2026,
-// without a template, whose descriptor holds the instance.
+// and in DIR/src/CMakeLists.txt the line `set(config_module_list_external modules/spikes PARENT_SCOPE)`. Then, in PX4's tree,
+// `make px4_fmu-v6c EXTERNAL_MODULES_LOCATION=DIR CMAKE_ARGS=-DSPIKEWIRE=LIBRARY`, where LIBRARY is target/c-library/cortex-m7
+// of spikewire, and `spikes start` in the shell or in rc.txt. ModuleBase is that since 19 February 2026, without a template,
+// whose descriptor holds the instance.
 
 #include <fcntl.h>
 #include <string.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <px4_platform_common/log.h>
-#include <px4_platform_common/module_base.h>
+#include <px4_platform_common/module.h>
 #include <px4_platform_common/px4_work_queue/ScheduledWorkItem.hpp>
 #include <uORB/SubscriptionCallback.hpp>
 #include <uORB/topics/vehicle_angular_velocity.h>
@@ -89,13 +92,23 @@ public:
 			return false;
 		}
 
-		_fd = ::open("/dev/ttyS3", O_WRONLY | O_NONBLOCK);
-		return (_fd >= 0) && _rates.registerCallback();
+		_fd = ::open("/dev/ttyS3", O_WRONLY | O_NOCTTY | O_NONBLOCK); // TELEM2 of px4_fmu-v6c
+		struct termios settings;
+
+		if ((_fd < 0) || (::tcgetattr(_fd, &settings) != 0)) {
+			PX4_ERR("no serial device");
+			return false;
+		}
+
+		::cfmakeraw(&settings); // each byte as it is, lines or not
+		::cfsetspeed(&settings, B921600);
+		return (::tcsetattr(_fd, TCSANOW, &settings) == 0) && _rates.registerCallback();
 	}
 
 private:
 	static constexpr size_t CHANNELS = 3;
 	static constexpr float THRESHOLD = 0.1f; // rad/s
+	static constexpr uint32_t RATE = 400;    // samples a second: IMU_GYRO_RATEMAX
 
 	void Run() override
 	{
@@ -118,7 +131,7 @@ private:
 			_session = (_session ^ bits) * 0x9E3779B97F4A7C15u;
 
 			if (++_sample == 64) {
-				(void)sw_writer_init(&_writer, CHANNELS, 1000, _session);
+				(void)sw_writer_init(&_writer, CHANNELS, 1000000 / RATE, _session);
 			}
 
 			return;
@@ -128,7 +141,7 @@ private:
 		int8_t codes[CHANNELS];
 		(void)sw_step_forward_f32_bank(_encoders, rates.xyz, codes, CHANNELS, &stamp, &_queue);
 
-		if (_sample++ % 1000 == 0) {
+		if (_sample++ % RATE == 0) {
 			(void)sw_step_forward_f32_keyframes(_encoders, CHANNELS, &stamp, &_queue);
 		}
 

@@ -1,5 +1,7 @@
 //! `cargo xtask guides`: the guides against the firmwares that they are for, in a checkout of one.
 
+mod px4;
+
 use super::{archive, include, package, put, room, work};
 use crate::common::{paths, shell, usage};
 use crate::programs::boards::Board;
@@ -13,7 +15,10 @@ pub fn guides(args: &[String]) -> Result<()> {
     let (guide, checkout): (fn(&Path) -> Result<()>, _) = match args[..] {
         ["crazyflie", checkout] => (crazyflie, checkout),
         ["betaflight", checkout] => (betaflight, checkout),
-        _ => return Err(usage("cargo xtask guides (crazyflie or betaflight) CHECKOUT".into())),
+        ["px4", checkout] => (px4::px4, checkout),
+        _ => {
+            return Err(usage("cargo xtask guides (crazyflie, betaflight, px4) CHECKOUT".into()));
+        }
     };
     let checkout = fs::canonicalize(checkout).with_context(|| checkout.to_owned())?;
     let mut git = shell::command("git");
@@ -43,13 +48,18 @@ fn crazyflie(checkout: &Path) -> Result<()> {
         make.arg("-C").arg(&app).arg("-j2").arg(format!("SPIKEWIRE={}", library.display()));
         shell::run(make.arg(format!("PWD={}", app.display())).arg(target))?;
     }
-    let mut nm = shell::command("arm-none-eabi-nm");
-    let symbols = shell::output(nm.arg(app.join("build/cf2.elf")))?;
-    for symbol in ["appMain", "sw_step_forward_f32_bank", "sw_writer_next_frame"] {
-        let ends = format!(" {symbol}");
-        ensure!(symbols.lines().any(|line| line.ends_with(&ends)), "the image lacks {symbol}");
-    }
+    ensure_linked("arm-none-eabi-nm", &app.join("build/cf2.elf"), "appMain")?;
     println!("crazyflie: {}", app.join("build/cf2.bin").display());
+    Ok(())
+}
+
+/// Fails unless the program has the guide's start and what it calls of the library.
+fn ensure_linked(nm: &str, program: &Path, start: &str) -> Result<()> {
+    let symbols = shell::output(shell::command(nm).arg(program))?;
+    for symbol in [start, "sw_step_forward_f32_bank", "sw_writer_next_frame"] {
+        let ends = format!(" {symbol}");
+        ensure!(symbols.lines().any(|line| line.ends_with(&ends)), "the program lacks {symbol}");
+    }
     Ok(())
 }
 
