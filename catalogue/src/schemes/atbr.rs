@@ -1,7 +1,7 @@
 //! Adaptive temporal contrast.
 
-use spikewire::temporal::AdaptiveContrast;
 use spikewire::Spike;
+use spikewire::temporal::AdaptiveContrast;
 
 use crate::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Bursts whose spikes double in weight.
 
-use spikewire::rate::{Average, WeightedBurst};
 use spikewire::Spike;
+use spikewire::rate::{Average, WeightedBurst};
 
 use crate::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Sigma-delta, the regular rate code.
 
-use spikewire::rate::{Average, SigmaDelta, Window};
 use spikewire::Spike;
+use spikewire::rate::{Average, SigmaDelta, Window};
 
 use crate::prelude::*;
 

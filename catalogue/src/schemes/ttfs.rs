@@ -1,7 +1,7 @@
 //! Time to first spike.
 
-use spikewire::timing::{FirstSpike, Slot};
 use spikewire::Scheme as _;
+use spikewire::timing::{FirstSpike, Slot};
 
 use crate::prelude::*;
 
