@@ -81,14 +81,14 @@ where
     let theirs = coding::TemporalContrast::new(threshold, mode).unwrap();
     let encode = |signal: &[f64]| theirs.encode(signal, 0).unwrap();
     let spikes = encode(signal);
-    let decode = |samples| theirs.decode(&spikes, 0, samples, signal[0]);
+    let decode = || theirs.decode(&spikes, 0, signal.len(), signal[0]);
     row(
         name,
         scheme,
         signal,
         spikes.len(),
         |x| drop(black_box(encode(x))),
-        |n| drop(black_box(decode(n))),
+        || drop(black_box(decode())),
     );
 }
 
@@ -109,7 +109,7 @@ fn rate<P>(
         signal,
         fired,
         |x| drop(black_box(encode(x))),
-        |_| drop(black_box(decode(&spikes))),
+        || drop(black_box(decode(&spikes))),
     );
 }
 
@@ -120,24 +120,22 @@ fn row<P: Scheme<Sample = f32, Code = Spike, Output: Output<Code = Spike> + Defa
     signal: &[f64],
     their_spikes: usize,
     their_encode: impl Fn(&[f64]),
-    their_decode: impl Fn(usize),
+    their_decode: impl Fn(),
 ) {
     let samples: Vec<f32> = signal.iter().map(|&sample| sample as f32).collect();
     let mut outputs = vec![P::Output::default(); samples.len()];
     scheme.encoder().encode_slice(&samples, &mut outputs);
     let codes: Vec<Spike> = outputs.iter().filter_map(|output| output.code()).collect();
     let spikes = codes.iter().filter(|code| **code != Spike::None).count();
-    let mut encode = || {
+    let encode = || {
         scheme.encoder().encode_slice(black_box(&samples), black_box(&mut outputs));
     };
     let mut values = vec![0.0; codes.len()];
-    let mut decode = || {
+    let decode = || {
         scheme.decoder().decode_slice(black_box(&codes), black_box(&mut values));
     };
-    in_turns(name, [spikes, their_spikes], &mut encode, || their_encode(black_box(signal)));
-    in_turns(&format!("{name}, decoding"), [spikes, their_spikes], &mut decode, || {
-        their_decode(signal.len())
-    });
+    in_turns(name, [spikes, their_spikes], encode, || their_encode(black_box(signal)));
+    in_turns(&format!("{name}, decoding"), [spikes, their_spikes], decode, their_decode);
 }
 
 fn in_turns(name: &str, spikes: [usize; 2], mut ours: impl FnMut(), theirs: impl Fn()) {
