@@ -53,12 +53,9 @@ pub fn loom() -> Result<()> {
 
 /// Prints how fast slices are beside another crate's, which compiles with less than the Rust that it asks for.
 pub fn beside() -> Result<()> {
-    let program = "run --release --quiet --ignore-rust-version --manifest-path";
-    let mut beside = cargo(program);
-    run(beside
-        .arg("host-tests/beside/Cargo.toml")
-        .arg("--target-dir")
-        .arg(paths::target().join("beside")))
+    let program =
+        "run --release --quiet --ignore-rust-version --manifest-path host-tests/beside/Cargo.toml";
+    run(cargo(program).arg("--target-dir").arg(paths::target().join("beside")))
 }
 
 /// What `clippy` and the builds of firmware lint, and what they leave out.

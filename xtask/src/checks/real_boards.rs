@@ -56,10 +56,7 @@ fn build(part: &Part, quickly: bool) -> Result<PathBuf> {
     let elsewhere = tempfile::tempdir()?;
     let project = elsewhere.path().join(part.name);
     new_firmware::write(&project, part, &Origin::Path(paths::root()))?;
-    let patch = format!(
-        "patch.crates-io.spikewire.path={:?}",
-        published::unpacked()?.display().to_string()
-    );
+    let patch = published::patch()?;
     let target = paths::thumb_target().join(if quickly { "parts" } else { "boards" });
     let mut cargo = cargo_for(part.target, "build --release")?;
     cargo.current_dir(&project).args(["--config", &patch]).env("CARGO_TARGET_DIR", &target);

@@ -8,8 +8,13 @@ use std::{
 };
 use tempfile::TempDir;
 
+/// What tells cargo to take the crate as it would be published.
+pub fn patch() -> Result<String> {
+    Ok(format!("patch.crates-io.spikewire.path={:?}", unpacked()?.display().to_string()))
+}
+
 /// Packs the crate as it would be published, and returns the directory that it is unpacked into.
-pub fn unpacked() -> Result<PathBuf> {
+fn unpacked() -> Result<PathBuf> {
     run(&mut cargo("package --package spikewire --no-verify --allow-dirty --quiet"))?;
     let packed = paths::target().join("package");
     let version = version()?;
@@ -37,10 +42,7 @@ pub fn copied(name: &str, shared: &[&str]) -> Result<(TempDir, String)> {
     let text = fs::read_to_string(&manifest)?;
     ensure!(text.contains(PATCH), "{} does not patch the crate", manifest.display());
     fs::write(manifest, text.replace(PATCH, ""))?;
-    Ok((
-        elsewhere,
-        format!("patch.crates-io.spikewire.path={:?}", unpacked()?.display().to_string()),
-    ))
+    Ok((elsewhere, patch()?))
 }
 
 /// Copies a directory's files, without what cargo has built there.

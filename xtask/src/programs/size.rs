@@ -7,8 +7,7 @@ use std::path::Path;
 
 /// "flash 12.3 of 256 KiB, RAM 1.0 of 16 KiB": what is static; the stack comes on top.
 pub fn of(image: &Path, board: &Board) -> Result<String> {
-    let table = shell::output(shell::command("arm-none-eabi-size").arg(image))?;
-    let [text, data, bss] = sections(&table).context("arm-none-eabi-size prints something else")?;
+    let [text, data, bss] = sections(image)?;
     let (flash, ram) = board.memory()?;
     let kib = |bytes: u32| f64::from(bytes) / 1024.0;
     Ok(format!(
@@ -22,13 +21,18 @@ pub fn of(image: &Path, board: &Board) -> Result<String> {
 
 /// The bytes of code and of constants.
 pub fn flash(image: &Path) -> Result<u32> {
-    let table = shell::output(shell::command("arm-none-eabi-size").arg(image))?;
-    let [text, data, _] = sections(&table).context("arm-none-eabi-size prints something else")?;
+    let [text, data, _] = sections(image)?;
     Ok(text + data)
 }
 
+/// The bytes of code, of initial values and of what starts as zeros.
+fn sections(image: &Path) -> Result<[u32; 3]> {
+    let table = shell::output(shell::command("arm-none-eabi-size").arg(image))?;
+    first_three(&table).context("arm-none-eabi-size prints something else")
+}
+
 /// The first three numbers of the second line.
-fn sections(table: &str) -> Option<[u32; 3]> {
+fn first_three(table: &str) -> Option<[u32; 3]> {
     let mut numbers = table.lines().nth(1)?.split_whitespace();
     let mut next = || numbers.next()?.parse().ok();
     Some([next()?, next()?, next()?])
