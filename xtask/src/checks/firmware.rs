@@ -3,7 +3,8 @@
 use crate::common::paths;
 use crate::figures::bits;
 use crate::programs::boards::{BOARDS, Board};
-use crate::programs::{host, image, qemu, size};
+use crate::programs::host::{self, FLIGHT_LOG};
+use crate::programs::{image, qemu, size};
 use crate::setup::needs;
 use anyhow::{Result, bail, ensure};
 use std::{fs, path::PathBuf, thread};
@@ -13,12 +14,19 @@ pub fn firmware(names: &[String]) -> Result<()> {
     needs::ensure_met()?;
     let all = programs()?;
     let chosen = if names.is_empty() { &all } else { names };
-    let mut differing = Vec::new();
+    let (mut differing, mut flown) = (Vec::new(), Vec::new());
     for program in chosen {
         ensure!(all.contains(program), "no program `{program}`; there are {all:?}");
-        if !compare(program)? {
+        let (host, outcomes) = run(program)?;
+        if !compare(program, &host, &outcomes)? {
             differing.push(program.as_str());
         }
+        if FLIGHT_LOG.contains(&program.as_str()) {
+            flown.extend(marked(&host, &outcomes));
+        }
+    }
+    if FLIGHT_LOG.iter().all(|program| chosen.iter().any(|chosen| chosen == program)) {
+        bits::ensure_written(&bits::table(&flown))?;
     }
     if !differing.is_empty() {
         bail!("boards and host differ in {}", differing.join(", "));
@@ -29,8 +37,12 @@ pub fn firmware(names: &[String]) -> Result<()> {
 /// Puts spike counts, and which bits agree, into the page of bits.
 pub fn write() -> Result<()> {
     needs::ensure_met()?;
-    let (host, outcomes) = run(bits::PROGRAM)?;
-    bits::write(&table(&host, &outcomes))
+    let mut flown = Vec::new();
+    for program in FLIGHT_LOG {
+        let (host, outcomes) = run(program)?;
+        flown.extend(marked(&host, &outcomes));
+    }
+    bits::write(&bits::table(&flown))
 }
 
 /// A program is a directory of the firmware workspace with a `src/main.rs`. What is only linked, or prints
@@ -96,20 +108,16 @@ fn run(program: &str) -> Result<(String, Vec<Outcome>)> {
     Ok((host, outcomes))
 }
 
-/// Runs one program everywhere and prints the table. True if every board agrees with the host.
-fn compare(program: &str) -> Result<bool> {
-    let (host, outcomes) = run(program)?;
-    print_table(program, &host, &outcomes);
-    for outcome in &outcomes {
-        print_difference(&host, outcome);
+/// Prints what became of one program. True if every board agrees with the host.
+fn compare(program: &str, host: &str, outcomes: &[Outcome]) -> Result<bool> {
+    print_table(program, host, outcomes);
+    for outcome in outcomes {
+        print_difference(host, outcome);
     }
-    for Outcome { board, image, .. } in &outcomes {
+    for Outcome { board, image, .. } in outcomes {
         println!("{:4} {}", board.core, size::of(image, board)?);
     }
-    let agree = outcomes.iter().all(|outcome| outcome.agrees(&host));
-    if program == bits::PROGRAM {
-        bits::ensure_written(&table(&host, &outcomes))?;
-    }
+    let agree = outcomes.iter().all(|outcome| outcome.agrees(host));
     if agree {
         let (lines, boards) = (host.lines().count(), outcomes.len());
         println!("Every bit agrees: {lines} lines, host and {boards} boards.");
@@ -117,12 +125,10 @@ fn compare(program: &str) -> Result<bool> {
     Ok(agree)
 }
 
-/// Spike counts and what agrees, for the page of bits.
-fn table(host: &str, outcomes: &[Outcome]) -> String {
-    bits::table(host, |line| {
-        let marks: Vec<_> = outcomes.iter().map(|outcome| outcome.mark(line)).collect();
-        marks.join(" ")
-    })
+/// The host's lines, each with its mark for every board.
+fn marked(host: &str, outcomes: &[Outcome]) -> Vec<(String, String)> {
+    let marks = |line| outcomes.iter().map(|outcome| outcome.mark(line)).collect::<Vec<_>>();
+    host.lines().map(|line| (line.to_owned(), marks(line).join(" "))).collect()
 }
 
 /// One row for each of the host's lines, one column for each board.

@@ -3,17 +3,14 @@
 use crate::figures::{markdown, names::full_name};
 use anyhow::Result;
 
-/// The program whose lines it shows.
-pub const PROGRAM: &str = "flight-log";
-
 const PAGE: &str = "docs/bits.md";
 const MARKER: &str = "bits";
 
-/// One row for each scheme, one column for each sample type. A cell is the host's spike count, then a mark for
-/// each board. The lines are those of `flight-log`: `sf f32 spikes=2074 …`.
-pub fn table(host: &str, marks: impl Fn(&str) -> String) -> String {
-    let schemes = distinct(host, 0);
-    let samples = distinct(host, 1);
+/// One row for each scheme, one column for each sample type, from lines as `sf f32 spikes=2074 …` and their marks. A cell
+/// is the host's spike count, then a mark for each board.
+pub fn table(flown: &[(String, String)]) -> String {
+    let schemes = distinct(flown, 0);
+    let samples = distinct(flown, 1);
     let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
 
     let heads = ["scheme"].iter().chain(&samples).map(ToString::to_string);
@@ -21,9 +18,9 @@ pub fn table(host: &str, marks: impl Fn(&str) -> String) -> String {
     let body = schemes.iter().map(|scheme| {
         let cells = samples.iter().map(|sample| {
             let start = format!("{scheme} {sample} spikes=");
-            let cell = host.lines().find_map(|line| {
+            let cell = flown.iter().find_map(|(line, marks)| {
                 let spikes = line.strip_prefix(&start)?.split(' ').next()?;
-                Some(format!("{spikes} {}", marks(line)))
+                Some(format!("{spikes} {marks}"))
             });
             cell.unwrap_or_default()
         });
@@ -44,9 +41,9 @@ pub fn ensure_written(table: &str) -> Result<()> {
 }
 
 /// The words at one place of the lines, each once.
-fn distinct(lines: &str, place: usize) -> Vec<&str> {
+fn distinct(flown: &[(String, String)], place: usize) -> Vec<&str> {
     let mut words = Vec::new();
-    for word in lines.lines().filter_map(|line| line.split(' ').nth(place)) {
+    for word in flown.iter().filter_map(|(line, _)| line.split(' ').nth(place)) {
         if !words.contains(&word) {
             words.push(word);
         }
@@ -60,14 +57,18 @@ mod tests {
 
     #[test]
     fn schemes_in_rows_and_samples_in_columns() {
-        let host =
-            "sf f32 spikes=7 x\nhsa f32 spikes=8 x\nsf i16 spikes=9 x\nhsa i16 spikes=10 x\n";
-        let marks = |line: &str| if line.contains("=8") { "= DIFF" } else { "= =" }.to_owned();
+        let lines = [
+            ("sf f32 spikes=7 x", "= ="),
+            ("hsa f32 spikes=8 x", "= DIFF"),
+            ("sf i16 spikes=9 x", "= ="),
+            ("hsa i16 spikes=10 x", "= ="),
+        ];
+        let flown = lines.map(|(line, marks)| (line.to_owned(), marks.to_owned()));
         let expected = "\
             | scheme | f32 | i16 |\n\
             | --- | --- | --- |\n\
             | step forward (SF) | 7 = = | 9 = = |\n\
             | Hough spiker (HSA) | 8 = DIFF | 10 = = |\n";
-        assert_eq!(table(host, marks), expected);
+        assert_eq!(table(&flown), expected);
     }
 }

@@ -42,6 +42,14 @@ pub fn on_host(program: &str) -> Result<String> {
     output(&mut command(example(program)?))
 }
 
+/// The programs that fly the recorded flight through every scheme, each in two sample types.
+pub const FLIGHT_LOG: [&str; 2] = ["flight-log", "flight-log-fixed"];
+
+/// What these print here.
+pub fn flight_log() -> Result<String> {
+    FLIGHT_LOG.into_iter().map(on_host).collect()
+}
+
 /// The names in Cargo.toml's `[features]`, so that a new feature is checked without a word here.
 pub fn features() -> Result<Vec<String>> {
     let manifest = fs::read_to_string(paths::root().join("Cargo.toml"))?;

@@ -64,7 +64,7 @@ fn fly(core: &str, rust: &[String]) -> Result<()> {
 
 /// `sf f32 spikes=2074 hash=…`: what the crate makes of the flight on the host, as C prints it.
 fn in_rust() -> Result<Vec<String>> {
-    let printed = host::on_host("flight-log")?;
+    let printed = host::flight_log()?;
     let lines = printed.lines().map(|line| {
         let is_kept = |word: &&str| !word.starts_with("efficiency=") && !word.starts_with("rmse=");
         line.split(' ').filter(is_kept).collect::<Vec<_>>().join(" ")

@@ -1,0 +1,8 @@
+//! The same program on every board and on the host; `board` makes the difference.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg_attr(target_os = "none", board::entry)]
+fn main() -> ! {
+    board::finish(flight_log::run_fixed(&mut board::console()))
+}
