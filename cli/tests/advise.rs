@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{file, flight, good, refused, spikewire, table};
+use common::{file, flight, good, ran, refused, spikewire, table};
 use serde_json::Value;
 
 /// A budget that a test build gets through in a few seconds.
@@ -12,8 +12,7 @@ const SHORT: &str = "--evaluations 60";
 fn a_scheme_within_the_error_is_advised_with_its_figures() {
     let (_directory, log) = file("signal.csv", good("signal --seconds 6", "").output);
     let arguments = format!("advise {log} --channel signal --max-rmse 0.4 {SHORT}");
-    let told: Value =
-        serde_json::from_str(&good(&format!("{arguments} --json"), "").output).unwrap();
+    let told: Value = ran!("{arguments} --json").json();
     let advice = &told[0];
     assert_eq!(advice["look"]["verdict"], "good");
     assert!((advice["look"]["rate"].as_f64().unwrap() - 100.0).abs() < 0.1);
@@ -27,7 +26,7 @@ fn a_scheme_within_the_error_is_advised_with_its_figures() {
     }
     let directory = tempfile::tempdir().unwrap();
     let picture = directory.path().join("signal.svg");
-    let page = good(&format!("{arguments} --picture {}", picture.display()), "").output;
+    let page = ran!("{arguments} --picture {}", picture.display()).output;
     for words in
         ["signal\n", "noise floor", "at rest", "take ", "bytes a second on the link", "latency"]
     {
@@ -47,8 +46,8 @@ fn a_loop_is_advised_no_code_that_is_late_or_falls_behind() {
     let (_directory, log) = file("log.csv", table(&(0..1200).map(sample).collect::<Vec<_>>()));
     let ask = |more: &str| {
         let asked = format!("advise {log} --column x --rate 100 --max-rmse 0.4 --evaluations 16");
-        let ran = good(&format!("{asked} --json {more}"), "");
-        let told: Value = serde_json::from_str(&ran.output).unwrap();
+        let ran = ran!("{asked} --json {more}");
+        let told: Value = ran.json();
         let reaching = told[0]["reaching"].as_array().unwrap().iter();
         let latencies = reaching.map(|one| {
             let latency = one["costs"]["latency"].as_f64().unwrap();
@@ -91,7 +90,7 @@ fn a_shaken_flight_is_advised_on() {
         &format!("advise {log} --column x --rate 197 --max-rmse 0.12 --json {SHORT}"),
         "",
     );
-    let told: Value = serde_json::from_str(&ran.output).unwrap();
+    let told: Value = ran.json();
     let look = &told[0]["look"];
     let (deviation, noise) = (look["deviation"].as_f64().unwrap(), look["noise"].as_f64().unwrap());
     assert!(

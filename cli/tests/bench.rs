@@ -8,7 +8,7 @@ use common::{good, spikewire};
 use serde_json::Value;
 
 fn bench() -> Value {
-    serde_json::from_str(&good("bench --tests 40 --cases 3 --seed 7 --json", "").output).unwrap()
+    good("bench --tests 40 --cases 3 --seed 7 --json", "").json()
 }
 
 #[test]

@@ -4,13 +4,6 @@ mod common;
 
 use common::refused;
 
-#[test]
-fn options_are_checked() {
-    refused("capture", "", &["--chip"]);
-    refused("capture --chip RP2040 --channel first", "", &["--channel", "first"]);
-    refused("capture --chip RP2040 --address 0xZ", "", &["--address", "0xZ"]);
-}
-
 #[cfg(not(feature = "capture"))]
 #[test]
 fn a_build_without_it_says_how_to_get_it() {

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{events, file, flight, flight_logs, good, refused};
+use common::{events, flight, flight_logs, good, ran, refused};
 
 const COLUMNS: [&str; 6] = ["gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"];
 
@@ -20,18 +20,14 @@ const SCHEMES: [(&str, usize); 6] = [
 fn each_channel_is_as_if_alone_at_addresses_by_column() {
     let hexarotor = flight("hexarotor.csv");
     for (scheme, neurons) in SCHEMES {
-        let all = good(
-            &format!("encode --scheme {scheme} --columns {} {hexarotor}", COLUMNS.join(",")),
-            "",
-        );
+        let all = ran!("encode --scheme {scheme} --columns {} {hexarotor}", COLUMNS.join(","));
         assert!(all.told.contains("3627 samples of 6 channels"), "{}", all.told);
         let together = events(&all.output);
         let decoded = good("decode", &all.output).output;
         assert!(decoded.starts_with(&format!("index,{},time_us\n", COLUMNS.join(","))));
         let mut count = 0;
         for (channel, column) in COLUMNS.iter().enumerate() {
-            let alone =
-                good(&format!("encode --scheme {scheme} --column {column} {hexarotor}"), "").output;
+            let alone = ran!("encode --scheme {scheme} --column {column} {hexarotor}").output;
             let own: Vec<_> = together
                 .iter()
                 .filter(|event| event.1 / neurons == channel)
@@ -53,53 +49,15 @@ fn each_channel_is_as_if_alone_at_addresses_by_column() {
 fn columns_may_be_named_one_by_one_and_logs_take_several_fields() {
     let hexarotor = flight("hexarotor.csv");
     let sf = "encode --scheme sf --threshold 0.002";
-    let three = good(&format!("{sf} --columns gyro_x,gyro_y,gyro_z {hexarotor}"), "").output;
-    let named =
-        good(&format!("{sf} --column gyro_x --column 3 --column gyro_z {hexarotor}"), "").output;
+    let three = ran!("{sf} --columns gyro_x,gyro_y,gyro_z {hexarotor}").output;
+    let named = ran!("{sf} --column gyro_x --column 3 --column gyro_z {hexarotor}").output;
     assert_eq!(three, named);
     let fields = "gyro_rad[0],gyro_rad[1],gyro_rad[2]";
     let log = flight_logs()[0].display().to_string();
-    let logged = good(&format!("{sf} --topic sensor_combined --fields {fields} {log}"), "").output;
+    let logged = ran!("{sf} --topic sensor_combined --fields {fields} {log}").output;
     assert_eq!(events(&logged), events(&three));
     let stream = good("convert --from csv --to csv", &three).output;
     assert_eq!(stream.lines().count(), 1 + events(&three).len());
-}
-
-#[test]
-fn a_row_is_taken_whole_or_not_at_all() {
-    let signal = "a,b\n0,0\n1,NaN\n1,2\n";
-    let ran = good("encode --scheme sf --threshold 0.5 --columns a,b --skip-non-finite -", signal);
-    assert_eq!(events(&ran.output), [(2, 0, 1), (2, 1, 1)]);
-    assert!(ran.output.contains("# rejected=1,1\n"), "{}", ran.output);
-    assert_eq!(good("decode", &ran.output).output, "index,a,b\n0,0.0,0.0\n1,NaN,NaN\n2,0.5,0.5\n");
-}
-
-#[test]
-fn what_the_header_says_of_channels_must_be_whole() {
-    let signal = "a,b\n0,5\n1,6\n";
-    let spikes = good("encode --scheme sf --threshold 0.5 --columns a,b -", signal).output;
-    assert!(
-        spikes.contains("# channels=2\n# threshold=0.5\n# first@0=0\n# first@1=5\n"),
-        "{spikes}"
-    );
-    for (from, to, words) in [
-        ("# first@1=5\n", "", "lacks `# first=`"),
-        ("# first@1=5", "# first@2=5", "first@2=5, where there are 2 channels"),
-        ("# first@1=5", "# first@1=5\n# first=5", "contradicts itself: first=5, then first=0"),
-        ("channels=2", "channels=0", "channels=0"),
-        ("channels=2", "channels=99999999", "channels=99999999"),
-        ("# first@1=5", "# first@1=5\n# window@1=5", "window=5, which sf does not take"),
-        ("1,1,1", "1,2,1", "address 2"),
-    ] {
-        assert!(spikes.contains(from));
-        refused("decode -", &spikes.replace(from, to), &[words]);
-    }
-}
-
-#[test]
-fn scores_and_pictures_take_one() {
-    let (_directory, path) = file("x.csv", "a,b\n0,1\n1,2\n");
-    refused(&format!("score --columns a,b {path}"), "", &["one column or field, not 2"]);
 }
 
 #[test]

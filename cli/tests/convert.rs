@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{good, good_bytes, refused, spikewire_bytes};
+use common::{file, good_bytes, ran, refused, spikewire_bytes};
 use std::fmt::Write;
 
 /// Formats that hold any event of 14 bits of address whose time rises by little.
@@ -97,9 +97,6 @@ fn datagrams_hold_a_time_step_of_up_to_255_keys() {
     let there = convert("csv", "eieio", events.as_bytes());
     assert_eq!(there.output.len(), 4 * 6 + 600 * 4);
     assert_eq!(rows(&convert("eieio", "csv", &there.output).output), events);
-    let between = table([(1999, 0, 1)]);
-    let told = convert("csv", "eieio", between.as_bytes()).told;
-    assert!(told.contains("1 events will be read at another time, up to 999 µs away"), "{told}");
     let both = table([(0, 3, -1), (0, 3, 1)]);
     let there = convert("csv", "eieio,signed=1", both.as_bytes());
     assert_eq!(there.output, [2, 0x38, 0, 0, 0, 0, 6, 0, 0, 0, 7, 0, 0, 0]);
@@ -108,32 +105,23 @@ fn datagrams_hold_a_time_step_of_up_to_255_keys() {
     let read = convert("eieio,base=1,step=1", "csv", &bytes);
     assert_eq!(rows(&read.output), table([(9, 0, 1), (9, 2, 1)]));
     assert!(read.told.contains("\n4 bytes skipped\n"), "{}", read.told);
-    let file = tempfile::NamedTempFile::new().unwrap();
-    std::fs::write(file.path(), [&bytes[..10], &[1, 8, 1, 0, 0, 0].repeat(20_000)].concat())
-        .unwrap();
-    let path = file.path().display();
-    let late = good(&format!("convert --from eieio,base=1,step=1 --to csv {path}"), "").output;
+    let (_directory, path) = file("x", [&bytes[..10], &[1, 8, 1, 0, 0, 0].repeat(20_000)].concat());
+    let late = ran!("convert --from eieio,base=1,step=1 --to csv {path}").output;
     assert_eq!(late.matches("\n9,0,1").count(), 20_001);
 }
 
 #[test]
-fn addresses_and_directions_that_a_format_lacks_are_refused_or_counted() {
-    let wide = table([(1, 16_383, 1), (2, 16_384, 1), (3, 5, 1)]);
-    refused(
-        "convert --from csv --to edvs:e4",
-        &wide,
-        &["event 1", "address 16384", "16383", "--drop"],
-    );
-    let dropped = good_bytes("convert --drop --from csv --to edvs:e4", wide.as_bytes());
-    assert!(dropped.told.contains("1 events dropped"), "{}", dropped.told);
-    let kept = rows(&convert("edvs:e4", "csv", &dropped.output).output);
-    assert_eq!(kept, table([(1, 16_383, 1), (3, 5, 1)]));
+fn a_long_silence_takes_its_bytes_and_no_memory() {
+    let events = table([(5, 0, 1), (100_000_000, 1, -1)]);
+    let there = convert("csv", "es", events.as_bytes());
+    assert_eq!(there.output.len(), 16 + 5 + 99_999_995 / 254 + 5);
+    let (_directory, path) = file("x.es", &there.output);
+    let back = ran!("convert --from es --to csv {path}");
+    assert_eq!(back.output, events);
+}
 
-    let down = table([(0, 1, 1), (0, 2, -1)]);
-    refused("convert --from csv --to eieio", &down, &["event 1 at address 2", "no direction"]);
-    let dropped = good_bytes("convert --drop --from csv --to eieio", down.as_bytes());
-    assert!(dropped.told.contains("1 events dropped"), "{}", dropped.told);
-
+#[test]
+fn rows_that_no_address_has_are_skipped() {
     // Two words of EVT2, the second in row 32.
     let words = [8_u32 << 28, 1 << 28 | 3 << 11 | 31, 1 << 28 | 3 << 11 | 32];
     let read = convert("evt2", "csv", &words.map(u32::to_le_bytes).concat());
@@ -142,131 +130,13 @@ fn addresses_and_directions_that_a_format_lacks_are_refused_or_counted() {
 }
 
 #[test]
-fn times_that_a_format_lacks_are_counted_as_they_will_be_read() {
-    let told = |format: &str, events: &[(u32, u16, i8)]| {
-        let there = convert("csv", format, table(events.iter().copied()).as_bytes());
-        let back = rows(&convert(format, "csv", &there.output).output);
-        let ticks = back.lines().skip(1).map(|line| line.split(',').next().unwrap().parse::<u32>());
-        (there.told, ticks.collect::<Result<Vec<_>, _>>().unwrap())
-    };
-    let late = [(10, 0, 1), (70_010, 1, 1)];
-    let (said, read) = told("edvs:e0", &late);
-    assert_eq!(read, [0, 0]);
-    assert!(said.contains("2 events will be read at another time, up to 70010 µs away"), "{said}");
-    let (said, read) = told("edvs:e2", &late);
-    assert_eq!(read, [10, 70_010 - 65_536]);
-    assert!(said.contains("1 events will be read at another time, up to 65536 µs away"), "{said}");
-    let unordered = [(500, 0, 1), (400, 1, 1), (600, 2, 1)];
-    for format in ["es", "evt2", "edvs:e1"] {
-        let (said, read) = told(format, &unordered);
-        assert_eq!(read, [500, 500, 600], "{format}");
-        assert!(said.contains("1 events will be read at another time, up to 100 µs"), "{said}");
-    }
-    for format in ["link", "edvs:e4", "csv"] {
-        let (said, read) = told(format, &unordered);
-        assert_eq!(read, [500, 400, 600], "{format}");
-        assert!(!said.contains("another time"), "{said}");
-    }
-}
-
-#[test]
-fn formats_that_count_from_0_take_late_recordings_from_0() {
-    // So late that they seem to lie just before 0.
-    let late = table([(4_290_000_000, 0, 1), (4_290_000_777, 1, -1)]);
-    let told = convert("csv", "es", late.as_bytes()).told;
-    assert!(told.contains("2 events will be read at another time"), "{told}");
-    let moved = good_bytes("convert --from-zero --from csv --to es", late.as_bytes());
-    assert!(moved.told.contains("4290000000 µs taken off every tick"), "{}", moved.told);
-    assert!(!moved.told.contains("another time"), "{}", moved.told);
-    assert_eq!(rows(&convert("es", "csv", &moved.output).output), table([(0, 0, 1), (777, 1, -1)]));
-}
-
-#[test]
-fn a_long_silence_takes_its_bytes_and_no_memory() {
-    let events = table([(5, 0, 1), (100_000_000, 1, -1)]);
-    let there = convert("csv", "es", events.as_bytes());
-    assert_eq!(there.output.len(), 16 + 5 + 99_999_995 / 254 + 5);
-    let file = tempfile::NamedTempFile::new().unwrap();
-    std::fs::write(file.path(), &there.output).unwrap();
-    let back = good(&format!("convert --from es --to csv {}", file.path().display()), "");
-    assert_eq!(back.output, events);
-}
-
-#[test]
-fn wraps_of_ticks_are_told() {
-    let events = table([(4_294_967_290, 0, 1), (4, 1, 1), (9, 0, 1)]);
-    for format in ["link", "edvs:e4", "evt2"] {
-        let there = convert("csv", format, events.as_bytes());
-        assert!(there.told.contains("ticks wrapped 1 times"), "{format}: {}", there.told);
-        let back = convert(format, "csv", &there.output);
-        assert_eq!(rows(&back.output), events, "{format}");
-        assert!(back.told.contains("ticks wrapped 1 times"), "{format}: {}", back.told);
-    }
-    let from_0 = good_bytes("convert --from-zero --from csv --to es", events.as_bytes());
-    assert!(!from_0.told.contains("wrapped"), "{}", from_0.told);
-    let moved = table([(0, 0, 1), (10, 1, 1), (15, 0, 1)]);
-    assert_eq!(rows(&convert("es", "csv", &from_0.output).output), moved);
-}
-
-#[test]
-fn a_table_holds_all_that_a_link_does() {
-    let told = "tick,address,polarity\n# restart\n# keyframe=5000,0,3dcccccd,f32\n# keyframe=5000,1,00000000,f32\n\
-                5001,0,1\n# lost_events\n6001,1,-1\n# keyframe=7000,2,ff38,q8.8\n7000,2,1\n";
-    let link = convert("csv", "link", told.as_bytes());
-    let back = convert("link", "csv", &link.output);
-    assert_eq!(str::from_utf8(&back.output).unwrap(), told);
-    assert!(back.told.contains("1 restarts, 3 keyframes"), "{}", back.told);
-    assert!(back.told.contains("1 frames before which the sender lost events"), "{}", back.told);
-    // A receiver takes frames that are missing as a loss; other formats have no word for it.
-    let gap = "tick,address,polarity\n1,0,1\n# lost_frames=3\n2,0,1\n";
-    let back = convert("link", "csv", &convert("csv", "link", gap.as_bytes()).output);
-    assert!(str::from_utf8(&back.output).unwrap().ends_with("1,0,1\n# lost_events\n2,0,1\n"));
-    for format in ["es", "evt2", "edvs:e4", "eieio"] {
-        let without = convert("csv", format, gap.as_bytes()).told;
-        assert!(without.contains("1 keyframes and losses left out"), "{format}: {without}");
-    }
-}
-
-#[test]
-fn a_link_says_what_comes_after_its_last_event() {
-    for (end, read) in [
-        ("# lost_events\n", "# lost_events\n"),
-        ("# lost_frames=2\n", "# lost_events\n"),
-        ("# lost_events\n# restart\n# restart\n", "# lost_events\n# restart\n# restart\n"),
-    ] {
-        let start = "tick,address,polarity\n# restart\n1,0,1\n";
-        let link = convert("csv", "link", format!("{start}{end}").as_bytes()).output;
-        let back = convert("link", "csv", &link);
-        assert_eq!(str::from_utf8(&back.output).unwrap(), format!("{start}{read}"));
-    }
-}
-
-#[test]
-fn ticks_of_more_than_32_bits_wrap() {
-    let start = 1_700_000_000_000_000_u64;
-    let late = format!("tick,address,polarity\n{start},0,1\n{},1,-1\n", start + 777);
-    let link = convert("csv", "link", late.as_bytes());
-    assert!(link.told.contains("\n2 ticks kept their low 32 bits\n"), "{}", link.told);
-    let tick = start as u32;
-    let back = convert("link", "csv", &link.output).output;
-    assert_eq!(rows(&back), table([(tick, 0, 1), (tick + 777, 1, -1)]));
-    let moved = good_bytes("convert --from-zero --from csv --to es", late.as_bytes()).output;
-    assert_eq!(rows(&convert("es", "csv", &moved).output), table([(0, 0, 1), (777, 1, -1)]));
-}
-
-#[test]
-fn spikes_of_a_recording_are_events_too() {
+fn a_file_of_spikes_that_is_cut_is_refused() {
     let scheme = "encode --scheme sf --threshold 0.1 --column gyro_x";
-    let spikes = good(&format!("{scheme} {}", common::flight("hexarotor.csv")), "").output;
-    let table = convert("csv", "csv", spikes.as_bytes());
-    assert!(table.told.contains("1406 events at 1 addresses"), "{}", table.told);
-    assert!(str::from_utf8(&table.output).unwrap().contains("\n4297129,0,-1\n"));
+    let spikes = ran!("{scheme} {}", common::flight("hexarotor.csv")).output;
     let cut = spikes.match_indices('\n').nth(500).unwrap().0;
     for (length, word) in [(cut, "cut short"), (spikes.len() - 2, "its end says 140")] {
         refused("convert --from csv --to link", &spikes[..length], &["standard input: ", word]);
     }
-    let untimed = good("encode --scheme sf --threshold 0.5 -", &common::table(&[0.0, 1.0])).output;
-    refused("convert --from csv --to es", &untimed, &["line ", "tick,address,polarity"]);
 }
 
 #[test]
@@ -330,37 +200,6 @@ fn a_camera_is_read_from_the_middle_of_its_stream() {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused() {
-    let to_es = "convert --from csv --to es";
-    refused(to_es, "", &["standard input: empty", "tick,address,polarity"]);
-    refused(to_es, "1,2,3\n", &["line 1", "`1,2,3`", "tick,address,polarity"]);
-    let with = |row: &str| format!("tick,address,polarity\n1,2,1\n{row}\n");
-    refused(to_es, &with("-1,2,1"), &["line 3", "tick `-1`"]);
-    refused(to_es, &with("18446744073709551616,2,1"), &["line 3", "tick `18446744073709551616`"]);
-    refused(to_es, &with("1,65536,1"), &["line 3", "address `65536`", "65535"]);
-    refused(to_es, &with("1,2,0"), &["line 3", "polarity `0`"]);
-    refused(to_es, &with("1,2"), &["line 3", "polarity ``"]);
-    refused(to_es, &with("# keyframe=1,2,3"), &["line 3", "4 or 8 hexadecimal digits"]);
-    refused(to_es, &"x".repeat(5000), &["line 1", "longer than 4096"]);
-    refused("convert --from es --to csv", &events(), &["not an Event Stream"]);
-    refused("convert --from csv --to es nowhere.csv", "", &["nowhere.csv: cannot be opened"]);
-    for (format, words) in [
-        ("aedat", ["no format `aedat`", "evt2"]),
-        ("edvs", ["edvs:e0", "edvs:e4"]),
-        ("edvs:e1,up=2", ["up=2", "0 or 1"]),
-        ("es,up=0", ["es takes no up=", ""]),
-        ("link,period=0", ["period", "above 0"]),
-        ("link,period=70000", ["period=70000", "range"]),
-        ("eieio,step=0", ["step", "above 0"]),
-        ("eieio,base", ["`base`", "KEY=NUMBER"]),
-    ] {
-        refused(&format!("convert --from csv --to {format}"), "", &words);
-    }
-    let none = spikewire_bytes("convert --to csv", b"");
-    assert_eq!(none.status, 2);
-}
-
-#[test]
 fn bytes_of_another_format_are_refused() {
     let words = "nothing that any of these would say\n".repeat(9);
     for (format, what) in [
@@ -375,7 +214,7 @@ fn bytes_of_another_format_are_refused() {
     let zeros = "\x7f".repeat(400);
     refused("convert --from evt2 --to csv", &zeros, &["no evt2 event in the 400 bytes"]);
     for format in FORMATS.iter().filter(|format| !format.contains("csv")) {
-        good(&format!("convert --from {format} --to csv"), "");
+        ran!("convert --from {format} --to csv");
         let none = convert("csv", format, table([]).as_bytes()).output;
         good_bytes(&format!("listen --from {format}"), &none);
     }

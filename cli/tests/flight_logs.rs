@@ -4,7 +4,7 @@ mod common;
 
 use std::collections::BTreeMap;
 
-use common::{file, flight_logs, good, refused};
+use common::{file, flight_logs, good, ran, refused};
 use lab::input::{ChannelOptions, InputOptions};
 use yule_log::builder::ULogParserBuilder;
 use yule_log::model::inst::{FieldValue, Format};
@@ -55,13 +55,13 @@ fn messages_that_are_not_as_their_format_says_are_skipped_and_told() {
     log.add(b'D', &[1, 0, 1]);
     log.armed_ten(20);
     let (_directory, path) = file("long.ulg", &log.0);
-    let told = good(&format!("info {path}"), "").output;
+    let told = ran!("info {path}").output;
     assert!(told.contains("armed: 30 samples"), "{told}");
     let words = format!(
         "2 messages longer or shorter than their format were skipped, the first at byte {place}\n"
     );
     assert!(told.contains(&words), "{told}");
-    let ran = good(&format!("{SCHEME} --field on {path}"), "");
+    let ran = ran!("{SCHEME} --field on {path}");
     assert!(ran.told.contains(&words) && ran.output.contains("# samples=30\n"), "{}", ran.told);
 }
 
@@ -71,7 +71,7 @@ fn padding_at_the_end_may_be_logged_or_not() {
     log.armed_ten(0);
     log.add(b'D', &[&[1, 0], &50_000_u64.to_le_bytes()[..], &[1; 8]].concat());
     let (_directory, path) = file("padded.ulg", &log.0);
-    let told = good(&format!("info {path}"), "").output;
+    let told = ran!("info {path}").output;
     assert!(told.contains("armed: 11 samples") && !told.contains("skipped"), "{told}");
 }
 
@@ -85,7 +85,7 @@ fn unregistered_ids_and_formats_that_are_no_text_are_skipped_and_told() {
     log.add(b'D', &[&[9, 0], &[0; 12][..]].concat());
     log.armed_ten(10);
     let (_directory, path) = file("odd.ulg", &log.0);
-    let told = good(&format!("info {path}"), "").output;
+    let told = ran!("info {path}").output;
     assert!(told.contains("armed: 20 samples"), "{told}");
     let ids = format!(
         "2 messages with an id that is not registered were skipped, the first at byte {data}\n"
@@ -111,7 +111,7 @@ fn damage_is_told_apart_from_a_cut_and_got_past() {
         bytes.len()
     );
     refused(&format!("info {path}"), "", &[&words]);
-    let ran = good(&format!("{SCHEME} --field on --accept-cut {path}"), "");
+    let ran = ran!("{SCHEME} --field on --accept-cut {path}");
     assert!(ran.output.contains("# samples=20\n"), "{}", ran.output);
     let words = format!("1 damaged stretches were skipped, the first at byte {damaged}\n");
     assert!(ran.told.contains(&words), "{}", ran.told);
@@ -121,7 +121,7 @@ fn damage_is_told_apart_from_a_cut_and_got_past() {
         "",
         &["cut short within the message at byte", "takes what is before"],
     );
-    let told = good(&format!("info --accept-cut {path}"), "").output;
+    let told = ran!("info --accept-cut {path}").output;
     assert!(told.contains("armed: 9 samples"), "{told}");
 }
 
@@ -146,7 +146,7 @@ fn text_is_named_as_such_and_dropouts_are_told() {
     log.add(b'O', &20_u16.to_le_bytes());
     log.add(b'O', &300_u16.to_le_bytes());
     let (_directory, path) = file("text.ulg", &log.0);
-    let told = good(&format!("info {path}"), "").output;
+    let told = ran!("info {path}").output;
     assert!(
         told.contains("2 dropouts of the logger, 320 ms in all, 300 ms the longest\n"),
         "{told}"
@@ -156,7 +156,7 @@ fn text_is_named_as_such_and_dropouts_are_told() {
     for field in ["device", "device[0]"] {
         refused(&format!("{scheme} --field {field} {path}"), "", &["is text, not a signal"]);
     }
-    good(&format!("{scheme} --field lat {path}"), "");
+    ran!("{scheme} --field lat {path}");
 }
 
 #[test]
@@ -176,7 +176,7 @@ fn data_appended_after_a_crash_is_read() {
     log.0[flags + 3 + 16..flags + 3 + 24].copy_from_slice(&(appended as u64).to_le_bytes());
     assert_eq!(appended, place + 2);
     let (_directory, path) = file("crash.ulg", &log.0);
-    let told = good(&format!("info {path}"), "").output;
+    let told = ran!("info {path}").output;
     assert!(told.contains("armed: 20 samples"), "{told}");
 }
 
@@ -188,8 +188,8 @@ fn a_compressed_log_is_read() {
     let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
     encoder.write_all(&log.0).unwrap();
     let (_directory, path) = file("log.ulg.gz", encoder.finish().unwrap());
-    assert!(good(&format!("info {path}"), "").output.contains("armed: 10 samples"));
-    good(&format!("{SCHEME} --field on {path}"), "");
+    assert!(ran!("info {path}").output.contains("armed: 10 samples"));
+    ran!("{SCHEME} --field on {path}");
 }
 
 /// What another reader makes of a log: by topic and field, a number for each sample.

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{file, good};
+use common::{file, ran};
 
 /// Grey levels that limited range holds too, so that both ranges show the same pictures.
 fn frames(level: impl Fn(u32) -> u8) -> Vec<Vec<u8>> {
@@ -21,7 +21,7 @@ fn events(header: &str, chroma: usize, frames: &[Vec<u8>]) -> String {
     }
     let (directory, path) = file("x.y4m", video);
     let output = directory.path().join("x.csv");
-    good(&format!("frames {path} --threshold 10 -o {}", output.display()), "");
+    ran!("frames {path} --threshold 10 -o {}", output.display());
     std::fs::read_to_string(output).unwrap()
 }
 

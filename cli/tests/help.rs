@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::good;
+use common::{good, ran};
 
 const COMMANDS: [&str; 13] = [
     "encode", "decode", "listen", "convert", "score", "bench", "plot", "network", "info", "signal",
@@ -12,14 +12,14 @@ const COMMANDS: [&str; 13] = [
 #[test]
 fn every_command_has_an_example_that_its_options_allow() {
     for command in COMMANDS {
-        let help = good(&format!("{command} --help"), "").output;
+        let help = ran!("{command} --help").output;
         let examples: Vec<&str> =
             help.lines().filter_map(|line| line.trim().strip_prefix("spikewire ")).collect();
         assert!(!examples.is_empty(), "{command}: {help}");
         for example in examples {
             let mut words = example.split([' ', '|']).filter(|word| word.starts_with("--"));
             let command = example.split(' ').next().unwrap();
-            let help = good(&format!("{command} --help"), "").output;
+            let help = ran!("{command} --help").output;
             if example.contains('|') {
                 continue;
             }
@@ -31,7 +31,7 @@ fn every_command_has_an_example_that_its_options_allow() {
 #[test]
 fn every_option_says_what_it_means() {
     for command in COMMANDS {
-        let help = good(&format!("{command} -h"), "").output;
+        let help = ran!("{command} -h").output;
         let options = help.lines().map(str::trim_start).filter(|line| line.starts_with("--"));
         for option in options {
             let words = option.split_once("  ").map_or("", |(_, words)| words.trim());

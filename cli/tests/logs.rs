@@ -3,8 +3,29 @@
 mod common;
 
 use common::logs::{CHUNKED, KINDS, Kind, PAGE, blackbox, fields, frame, gyro, long, record, wave};
-use common::{file, flight, good, refused, values};
+use common::{file, flight, good, ran, refused, values};
 use serde_json::Value;
+
+/// What `info` says of a log, with these options.
+fn info(name: &str, log: impl AsRef<[u8]>, options: &str) -> String {
+    let (_directory, path) = file(name, log);
+    ran!("info {options} {path}").output
+}
+
+/// A log that `info` refuses with these words; what it says of it where damage is accepted.
+fn damaged(name: &str, log: &[u8], words: &[&str]) -> String {
+    let (_directory, path) = file(name, log);
+    refused(&format!("info {path}"), "", words);
+    ran!("info --accept-cut {path}").output
+}
+
+impl Kind {
+    /// A log of these samples in one chunk.
+    fn of(self, samples: impl Iterator<Item = u32>) -> Vec<u8> {
+        let records: Vec<u8> = samples.flat_map(|sample| self.record(sample)).collect();
+        [self.start(), self.chunk("none", &records), self.end()].concat()
+    }
+}
 
 const SCHEME: &str = "encode --scheme sf --threshold 0.1 --topic imu --field rate";
 
@@ -13,11 +34,11 @@ fn every_packing_reads_the_same() {
     for kind in KINDS {
         let mut all = kind.packings().iter().map(|how| {
             let (_directory, path) = file(kind.name(), kind.log(how));
-            let told = good(&format!("info {path}"), "").output;
+            let told = ran!("info {path}").output;
             assert!(told.contains("/imu: 100 samples of t/"), "{told}");
             assert!(told.contains("0.495 s, 200.00 Hz\n  0 gaps above 7.500 ms"), "{told}");
             assert!(told.contains("rate, few[]\n  text: header.frame_id\n"), "{told}");
-            let spikes = good(&format!("{SCHEME} {path}"), "").output;
+            let spikes = ran!("{SCHEME} {path}").output;
             assert!(spikes.contains("# time=99,1700000000495000\n# samples=100\n"), "{spikes}");
             spikes
         });
@@ -32,59 +53,19 @@ fn every_packing_reads_the_same() {
 }
 
 #[test]
-fn times_within_messages_are_taken_where_asked_for() {
-    for kind in KINDS {
-        let (_directory, path) = file(kind.name(), kind.log("none"));
-        let spikes = good(&format!("{SCHEME} --time header.stamp {path}"), "").output;
-        assert!(spikes.contains("# time=0,1699999999000000\n"), "{kind:?}: {spikes}");
-        refused(&format!("{SCHEME} --time header.frame_id {path}"), "", &["is text"]);
-    }
-}
-
-#[test]
-fn what_is_not_there_is_said_with_its_place() {
-    for kind in KINDS {
-        let (_directory, path) = file(kind.name(), kind.log("none"));
-        let scheme = "encode --scheme sf --threshold 0.05";
-        for (options, said) in [
-            ("--topic gps --field rate", "no topic `gps`; there are /imu"),
-            ("--topic imu --field rates", "topic /imu has no field `rates`; there are header."),
-            ("--topic imu --field header.frame_id", "is text, not a signal"),
-            (
-                "--topic imu --field header.stamp",
-                "not one number but several; there are header.stamp.sec",
-            ),
-            (
-                "--topic imu --field few[0]",
-                "field few[0]: NaN at 1700000000000000 µs (sample 0) is missing",
-            ),
-            ("--topic imu", "a log needs --topic and --field"),
-            ("--topic imu --field rate --delimiter ;", "a log takes no --delimiter"),
-        ] {
-            refused(&format!("{scheme} {options} {path}"), "", &[said]);
-        }
-        let ran =
-            good(&format!("{scheme} --topic imu --field few[0] --skip-non-finite {path}"), "");
-        assert!(ran.told.contains("50 samples were not finite or missing"), "{}", ran.told);
-    }
-}
-
-#[test]
 fn a_log_that_is_cut_gives_what_is_before_where_that_is_accepted() {
     for kind in CHUNKED {
         for how in kind.packings() {
             let log = kind.log(how);
             // Within the third chunk from the end, and not at its start.
             let chunk = (log.len() - kind.start().len()) / 10;
-            let (_directory, path) = file(kind.name(), &log[..log.len() - 2 * chunk - chunk / 2]);
-            refused(&format!("info {path}"), "", &["byte", "ends within the record; --accept-cut"]);
-            let told = good(&format!("info --accept-cut {path}"), "").output;
+            let log = &log[..log.len() - 2 * chunk - chunk / 2];
+            let words = ["byte", "ends within the record; --accept-cut"];
+            let told = damaged(kind.name(), log, &words);
             let count = told.split("/imu: ").nth(1).unwrap().split(' ').next().unwrap();
             let count: u32 = count.parse().unwrap();
             assert!((69..80).contains(&count), "{kind:?} {how}: {told}");
             assert!(told.starts_with("nothing is read from byte"), "{told}");
-            let ran = good(&format!("{SCHEME} --accept-cut {path}"), "");
-            assert!(ran.told.contains("nothing is read from byte"), "{}", ran.told);
         }
     }
 }
@@ -93,23 +74,16 @@ fn a_log_that_is_cut_gives_what_is_before_where_that_is_accepted() {
 fn a_damaged_chunk_is_refused_or_passed_over() {
     for kind in CHUNKED {
         for how in kind.packings().iter().filter(|how| !(kind == Kind::Bag && **how == "none")) {
-            let mut log = kind.start();
             let records: Vec<u8> = (0..10).flat_map(|sample| kind.record(sample)).collect();
-            log.extend(kind.chunk(how, &records));
-            let place = log.len();
-            let mut damaged = kind.chunk(how, &records);
-            let middle = damaged.len() - 40;
-            damaged[middle..middle + 20].fill(0x55);
-            log.extend(damaged);
-            log.extend(kind.chunk(how, &records));
-            log.extend(kind.end());
-            let (_directory, path) = file(kind.name(), &log);
-            refused(&format!("info {path}"), "", &[&format!("byte {place}: ")]);
-            let told = good(&format!("info --accept-cut {path}"), "").output;
-            assert!(
-                told.starts_with(&format!("skipped at byte {place}: ")),
-                "{kind:?} {how}: {told}"
-            );
+            let (start, chunk) = (kind.start(), kind.chunk(how, &records));
+            let mut odd = chunk.clone();
+            let middle = odd.len() - 40;
+            odd[middle..middle + 20].fill(0x55);
+            let place = start.len() + chunk.len();
+            let log = [&start, &chunk, &odd, &chunk, &kind.end()].map(Vec::as_slice).concat();
+            let told = damaged(kind.name(), &log, &[&format!("byte {place}: ")]);
+            let skipped = format!("skipped at byte {place}: ");
+            assert!(told.starts_with(&skipped), "{kind:?} {how}: {told}");
         }
     }
 }
@@ -117,29 +91,19 @@ fn a_damaged_chunk_is_refused_or_passed_over() {
 #[test]
 fn a_database_that_is_cut_or_damaged_gives_the_pages_that_are_whole() {
     let log = Kind::Db3.log("none");
-    let (_directory, path) = file("log.db3", &log[..log.len() - PAGE / 2]);
     let place = log.len() - PAGE;
     let words = format!("byte {place}: the file ends within its page {}", log.len() / PAGE);
-    refused(&format!("info {path}"), "", &[&words, "--accept-cut"]);
-    let told = good(&format!("info --accept-cut {path}"), "").output;
+    let told = damaged("log.db3", &log[..log.len() - PAGE / 2], &[&words, "--accept-cut"]);
     assert!(told.contains("/imu: 90 samples of t/msg/Imu"), "{told}");
-    let mut damaged = log.clone();
-    damaged[log.len() - 3 * PAGE] = 10;
-    let (_directory, path) = file("log.db3", &damaged);
-    refused(
-        &format!("info {path}"),
-        "",
-        &["it is no page of a table; --accept-cut goes on behind it"],
-    );
-    let told = good(&format!("info --accept-cut {path}"), "").output;
+    let mut other = log.clone();
+    other[log.len() - 3 * PAGE] = 10;
+    let words = "it is no page of a table; --accept-cut goes on behind it";
+    let told = damaged("log.db3", &other, &[words]);
     assert!(told.contains("/imu: 90 samples of t/msg/Imu") && told.contains("1 gaps"), "{told}");
     let (directory, path) = file("log.db3", &log);
     std::fs::write(directory.path().join("log.db3-wal"), b"more").unwrap();
-    refused(
-        &format!("info {path}"),
-        "",
-        &["log.db3-wal holds messages that are not in the file yet"],
-    );
+    let words = "log.db3-wal holds messages that are not in the file yet";
+    refused(&format!("info {path}"), "", &[words]);
 }
 
 #[test]
@@ -155,7 +119,7 @@ fn the_files_of_a_directory_are_read_one_after_the_other() {
     write("a.mcap", &Kind::Mcap.log("none"));
     let path = directory.path().display();
     for path in [path.to_string(), format!("{path}/metadata.yaml")] {
-        let told = good(&format!("info {path}"), "").output;
+        let told = ran!("info {path}").output;
         assert!(told.contains("/imu: 200 samples of t/msg/Imu"), "{told}");
         let anew = "starts anew 1 times, each a segment of its own: -495.000 ms after sample 99";
         assert!(told.contains(anew), "{told}");
@@ -166,16 +130,11 @@ fn the_files_of_a_directory_are_read_one_after_the_other() {
     refused(&format!("info {}", empty.path().display()), "", &["metadata.yaml: cannot be read"]);
 }
 
+/// Steps of 100 follow the rate, which changes by less from frame to frame.
 #[test]
 fn a_blackbox_log_is_read_frame_by_frame() {
     let (_directory, path) = file("log.bbl", blackbox());
-    let told = good(&format!("info {path}"), "").output;
-    assert!(told.contains("main: 200 samples, 0.050 s, 4000.00 Hz\n  0 gaps"), "{told}");
-    assert!(told.contains("  loopIteration, time, gyroADC[0..3]\n"), "{told}");
-    // Steps of 100 follow the rate, which changes by less from frame to frame.
-    let encode = format!("encode --scheme sf --threshold 101 --field gyroADC[0] {path}");
-    let spikes = good(&encode, "").output;
-    assert!(spikes.contains("# topic=main\n# field=gyroADC[0]\n"), "{spikes}");
+    let spikes = ran!("encode --scheme sf --threshold 101 --field gyroADC[0] {path}").output;
     for (sample, value) in (0..).zip(values(&good("decode", &spikes).output)) {
         assert!((value - gyro(sample) as f64).abs() <= 101.0, "sample {sample}: {value}");
     }
@@ -185,30 +144,26 @@ fn a_blackbox_log_is_read_frame_by_frame() {
 fn a_blackbox_log_that_is_cut_or_damaged_goes_on_where_it_can() {
     let log = blackbox();
     let end = log.len() - b"E\xffEnd of log\0".len();
-    let (_directory, path) = file("cut.bbl", &log[..end - 3]);
-    refused(&format!("info {path}"), "", &["the log ends within a frame; --accept-cut"]);
-    let told = good(&format!("info --accept-cut {path}"), "").output;
+    let words = "the log ends within a frame; --accept-cut";
+    let told = damaged("cut.bbl", &log[..end - 3], &[words]);
     assert!(told.contains("main: 199 samples"), "{told}");
     // Without its end it is whole.
-    let (_directory, path) = file("unended.bbl", &log[..end]);
-    let told = good(&format!("info {path}"), "").output;
+    let told = info("unended.bbl", &log[..end], "");
     assert!(told.starts_with("the log has no end") && told.contains("200 samples"), "{told}");
     // A damaged frame: the one before it is doubted, and those up to the next of all numbers mean nothing.
     let before: usize = (0..69).map(|sample| frame(sample).len()).sum();
     let head = end - (0..200).map(|sample| frame(sample).len()).sum::<usize>();
-    let mut damaged = log.clone();
-    damaged[head + before + frame(69).len()] = 0;
-    let (_directory, path) = file("damaged.bbl", &damaged);
+    let mut other = log.clone();
+    other[head + before + frame(69).len()] = 0;
     let words = format!("byte {}: ", head + before);
-    refused(&format!("info {path}"), "", &[&words, "bytes are no frames; --accept-cut goes on"]);
-    let told = good(&format!("info --accept-cut {path}"), "").output;
+    let words = [&words, "bytes are no frames; --accept-cut goes on"];
+    let told = damaged("damaged.bbl", &other, &words);
     assert!(told.contains("main: 173 samples") && told.contains("1 gaps"), "{told}");
     // Two logs in one file.
     let (_directory, path) = file("two.bbl", [blackbox(), blackbox()].concat());
-    let told = good(&format!("info {path}"), "").output;
+    let told = ran!("info {path}").output;
     assert!(told.contains("main: 200 samples") && told.contains("main:1: 200 samples"), "{told}");
-    let ran =
-        good(&format!("encode --scheme sf --threshold 101 --topic main:1 --field time {path}"), "");
+    let ran = ran!("encode --scheme sf --threshold 101 --topic main:1 --field time {path}");
     assert!(ran.output.contains("# samples=200\n"), "{}", ran.output);
 }
 
@@ -220,8 +175,7 @@ fn logs_without_an_end_or_an_index_are_read() {
     let mut mcap = Kind::Mcap.log("none");
     mcap.truncate(mcap.len() - Kind::Mcap.end().len());
     for (kind, log, said) in [(Kind::Bag, bag, "has no index"), (Kind::Mcap, mcap, "has no end")] {
-        let (_directory, path) = file(kind.name(), &log);
-        let told = good(&format!("info {path}"), "").output;
+        let told = info(kind.name(), log, "");
         assert!(told.contains(said) && told.contains("/imu: 100 samples"), "{told}");
     }
 }
@@ -232,7 +186,7 @@ fn encodings_that_are_not_known_are_named() {
     let place = log.windows(3).position(|window| window == b"cdr").unwrap();
     log[place..place + 3].copy_from_slice(b"foo");
     let (_directory, path) = file("log.mcap", &log);
-    let told = good(&format!("info {path}"), "").output;
+    let told = ran!("info {path}").output;
     assert!(told.contains("not read: encoding `foo` with a schema of `ros2msg`"), "{told}");
     refused(&format!("{SCHEME} {path}"), "", &["encoding `foo` with a schema of `ros2msg`"]);
     let chunk = record(&[("op", &[5]), ("compression", b"zip"), ("size", &[0; 4])], &[]);
@@ -243,78 +197,29 @@ fn encodings_that_are_not_known_are_named() {
 }
 
 #[test]
-fn gaps_and_missing_messages_are_told() {
-    let mut log = Kind::Bag.start();
-    let samples = (0..50).chain(60..100);
-    log.extend(
-        Kind::Bag.chunk("none", &samples.flat_map(|own| Kind::Bag.record(own)).collect::<Vec<_>>()),
-    );
-    let (_directory, path) = file("log.bag", &log);
-    let told = good(&format!("info {path}"), "").output;
-    assert!(
-        told.contains("1 gaps above 7.500 ms where 5.000 ms are usual: 55.000 ms after sample 49"),
-        "{told}"
-    );
-    assert!(told.contains("  10 messages are missing, by the numbers of those there\n"), "{told}");
-}
-
-#[test]
-fn logs_are_read_from_files_only() {
-    for (start, words) in [
-        ("H Product:Blackbox flight data recorder\n", "a Betaflight log"),
-        ("#ROSBAG V2.0\nE", "a ROS bag"),
-        ("SQLite format 3\0\x10\0", "a database, perhaps a ROS 2 bag"),
+fn gaps_missing_messages_and_rates_that_jump_are_told() {
+    let told = info("log.bag", Kind::Bag.of((0..50).chain(60..100)), "");
+    for words in [
+        "1 gaps above 7.500 ms where 5.000 ms are usual: 55.000 ms after sample 49",
+        "  10 messages are missing, by the numbers of those there\n",
     ] {
-        let scheme = "encode --scheme sf --threshold 1";
-        refused(&format!("{scheme} -"), start, &[words, "read from a file only", "standard input"]);
-        let (_directory, path) = file("log.bin", start);
-        refused(&format!("{scheme} {path}"), "", &["a log needs --topic and --field", "log.bin"]);
+        assert!(told.contains(words), "{told}");
     }
-}
-
-#[test]
-fn rates_that_jump_are_told() {
-    let mut log = Kind::Mcap.start();
-    let samples = (0..400).step_by(2).chain(400..500);
-    let records: Vec<u8> = samples.flat_map(|own| Kind::Mcap.record(own)).collect();
-    log.extend(Kind::Mcap.chunk("none", &records));
-    log.extend(Kind::Mcap.end());
-    let (_directory, path) = file("log.mcap", &log);
+    let (_directory, path) = file("log.mcap", Kind::Mcap.of((0..400).step_by(2).chain(400..500)));
     let said = "the rate jumps 1 times: 200.00 Hz from about sample 192\n";
-    let told = good(&format!("info {path}"), "").output;
-    assert!(told.contains(said), "{told}");
-    let ran = good(&format!("{SCHEME} {path}"), "");
-    assert!(ran.told.contains(said), "{}", ran.told);
-}
-
-#[test]
-fn all_commands_take_logs() {
-    let (directory, path) = file("log.mcap", Kind::Mcap.log("zstd"));
-    let channel = format!("--topic /imu --field rate {path}");
-    let plot = directory.path().join("plot.svg").display().to_string();
-    for command in [
-        format!("score --scheme sf --threshold 0.05 {channel}"),
-        format!("plot --scheme sf --threshold 0.05 {channel} -o {plot}"),
-    ] {
-        good(&command, "");
+    for ran in [ran!("info {path}"), ran!("{SCHEME} {path}")] {
+        assert!((ran.output + &ran.told).contains(said));
     }
-    good(&format!("score --scheme sf --threshold 0.05 --channel /imu.rate {path}"), "");
 }
 
 #[test]
 fn bags_are_tuned_and_advised_on() {
     for kind in CHUNKED {
-        let mut log = kind.start();
-        let records: Vec<u8> = (0..400).flat_map(|sample| kind.record(sample)).collect();
-        log.extend(kind.chunk("none", &records));
-        log.extend(kind.end());
-        let (_directory, path) = file(kind.name(), &log);
+        let (_directory, path) = file(kind.name(), kind.of(0..400));
         let channel = format!("--topic /imu --field rate --evaluations 10 {path}");
-        let tuned =
-            good(&format!("tune --scheme sf --min-efficiency 10 --emit toml {channel}"), "");
+        let tuned = ran!("tune --scheme sf --min-efficiency 10 --emit toml {channel}");
         assert!(tuned.output.contains("threshold = "), "{kind:?}: {}", tuned.output);
-        let advised = good(&format!("advise --json --max-rmse 0.4 {channel}"), "").output;
-        let advised: Value = serde_json::from_str(&advised).unwrap();
+        let advised = ran!("advise --json --max-rmse 0.4 {channel}").json();
         assert_eq!(advised[0]["look"]["samples"], 400, "{kind:?}: {advised:#}");
         assert_ne!(advised[0]["reaching"], Value::Array(Vec::new()), "{kind:?}: {advised:#}");
     }
@@ -343,13 +248,13 @@ fn spikes_as_messages_decode_as_those_of_a_table() {
             };
             let expected = without_times(good("decode", &table).output);
             for name in ["spikes.bag", "spikes.mcap"] {
-                good(&format!("{encode} -o {}", path(name)), "");
-                let decoded = good(&format!("decode {}", path(name)), "").output;
+                ran!("{encode} -o {}", path(name));
+                let decoded = ran!("decode {}", path(name)).output;
                 assert!(without_times(decoded) == expected, "{scheme} of {columns} by {name}");
             }
         }
     }
-    let told = good(&format!("info {}", path("spikes.mcap")), "").output;
+    let told = ran!("info {}", path("spikes.mcap")).output;
     assert!(told.contains("event_1: 3627 samples of spyke_msgs/msg/SpykeArray"), "{told}");
 }
 
@@ -380,7 +285,7 @@ fn the_toolboxs_own_bag_decodes_as_its_script_does() {
             bag.extend(record(&[("op", &[2]), ("conn", &[0; 4]), ("time", &[0; 8])], &message));
         }
         let (_directory, path) = file("encoding.bag", &bag);
-        assert_eq!(values(&good(&format!("decode {path}"), "").output), expected, "{scheme}");
+        assert_eq!(values(&ran!("decode {path}").output), expected, "{scheme}");
     }
 }
 
@@ -394,7 +299,7 @@ fn messages_longer_than_their_definition_are_told() {
     let chunk = Kind::Bag.chunk("none", &(0..30).flat_map(long).collect::<Vec<u8>>());
     let (_directory, path) = file("x.bag", [Kind::Bag.start(), chunk, Kind::Bag.end()].concat());
     let words = "20 messages are longer than their definition, the first at byte ";
-    let info = good(&format!("info {path}"), "").output;
+    let info = ran!("info {path}").output;
     assert!(info.contains(words), "{info}");
     let score = format!("score --scheme sf --threshold 0.1 --topic imu --field rate {path}");
     let told = good(&score, "").told;

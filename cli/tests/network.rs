@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{file, flight, good, refused, spikewire};
+use common::{file, flight, good, ran, refused, spikewire};
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -42,28 +42,121 @@ fn a_nir_graph_becomes_the_constant_of_the_firmware() {
     assert!(winners[0] > 80.0, "{}", ran.told);
 }
 
-/// A network of the chip's own numbers: with a threshold between whole numbers nothing is rounded. One spike a sample
-/// reaches one neuron after the other, so that neither order nor sums within a step play a part.
+/// A network in JSON that step forward drives, and the command that brings it onto the chip.
+fn driven(layers: &str, threshold: f64, options: &str) -> (tempfile::TempDir, String) {
+    let (directory, path) = file("net.json", format!("{{\"layers\": [{layers}}}"));
+    let sf = format!("--scheme sf --threshold {threshold} --column gyro_x");
+    (directory, format!("network {path} {options} {sf} {}", flight("hexarotor.csv")))
+}
+
+/// Networks of the chips' own numbers: with thresholds between what weights add up to nothing is rounded. One spike a
+/// sample reaches one neuron after the other, so that neither order nor sums within a step play a part.
 #[test]
-fn a_network_that_the_chip_can_hold_costs_nothing() {
-    let json = r#"{"layers": [
-        {"name": "one", "weights": [[3, 0], [0, 5]], "threshold": 11.5},
-        {"name": "two", "weights": [[7, -4]], "threshold": [12.5]},
-        {"weights": [[2]], "threshold": 3.5}
-    ]}"#;
-    let (_directory, path) = file("whole.json", json);
-    let sf = format!("--scheme sf --threshold 0.05 --column gyro_x {}", flight("hexarotor.csv"));
-    let ran = good(&format!("network {path} {sf}"), "");
-    assert!(ran.told.contains("\noutputs agree in 100.0 % of 3627 steps"), "{}", ran.told);
-    for layer in ["one", "two", "layer 3"] {
-        let figures = figures(&ran.told, &format!("{layer}: "));
-        let [_, clipped, spikes, on_chip, distance] = figures[..] else { panic!("{}", ran.told) };
-        assert!(spikes > 10.0, "{}", ran.told);
-        assert_eq!((clipped, distance, on_chip), (0.0, 0.0, spikes), "{}", ran.told);
+fn networks_that_a_chip_can_hold_cost_nothing() {
+    let three = r#"{"name": "one", "weights": [[3, 0], [0, 5]], "threshold": 11.5},
+        {"name": "two", "weights": [[7, -4]], "threshold": [12.5]}, {"weights": [[2]], "threshold": 3.5}]"#;
+    // The second neuron follows the first; its own spikes hold it back.
+    let recurrent = r#"{"name": "one", "weights": [[3, 3], [2, 1]], "recurrent": [[0, 0], [-2, 0]],
+        "threshold": [8.5, 30.5]}]"#;
+    // Of ReckOn the first layer's third neuron has a pair of its own.
+    let reckon = r#"{"name": "one", "weights": [[3, 0], [0, 5], [2, 2]], "threshold": 11.5, "bias": [0, 1, 0],
+        "recurrent": [[0, 2, 0], [0, 0, -4], [0, 0, 0]]},
+        {"name": "two", "weights": [[7, 4, -4], [1, 6, 5]], "threshold": [12.5, 6.5]}]"#;
+    let bias = r#"{"weights": [[0, 0]], "bias": [0.25], "threshold": 1.1}]"#;
+    for (options, layers, names, written) in [
+        ("", three, &["one", "two", "layer 3"][..], &["    outputs: [3],\n", "<2, 4, 1>"][..]),
+        ("", recurrent, &["one"], &["recurrent: &[\n        [0, -"]),
+        ("", bias, &[], &["pub const BIAS: u16 = 2;"]),
+        ("--chip reckon", reckon, &["one", "two"], &["pub const BIAS: u8 = 2;", "<3, 6, 2>"]),
+    ] {
+        let (_directory, command) = driven(layers, 0.05, options);
+        let ran = good(&command, "");
+        assert!(ran.told.contains("\noutputs agree in 100.0 % of 3627 steps"), "{}", ran.told);
+        let spikes = ran.told.rsplit("layer: neurons").next().unwrap();
+        for layer in names {
+            let figures = figures(spikes, &format!("{layer}: "));
+            let [_, clipped, spikes, on_chip, distance] = figures[..] else {
+                panic!("{}", ran.told)
+            };
+            assert!(spikes > 10.0, "{}", ran.told);
+            assert_eq!((clipped, distance, on_chip), (0.0, 0.0, spikes), "{}", ran.told);
+        }
+        assert!(written.iter().all(|words| ran.output.contains(words)), "{}", ran.output);
+        assert_eq!(ran.output.contains("BIAS"), layers.contains("bias"), "{}", ran.output);
     }
-    assert!(ran.output.contains("    outputs: [3],\n"), "{}", ran.output);
-    assert!(ran.output.contains("TinyOdinNetwork<2, 4, 1>"), "{}", ran.output);
-    assert!(!ran.output.contains("BIAS"));
+}
+
+#[test]
+fn what_is_no_network_or_does_not_fit_is_refused_by_name() {
+    let ones = |rows: usize, columns: usize| {
+        let row = format!("[{}]", vec!["1"; columns].join(","));
+        format!("{{\"weights\": [{}], \"threshold\": 1}}", vec![row; rows].join(","))
+    };
+    let of = |sizes: &[(usize, usize)]| {
+        sizes.iter().map(|&(rows, columns)| ones(rows, columns)).collect::<Vec<_>>().join(",") + "]"
+    };
+    let one = |weights: &str, rest: &str| format!("{{\"weights\": {weights}, {rest}}}]");
+    let leaky = r#"[[1, 1]], "threshold": 1}], "readout": {"weights": [[1],[1]], "keep": 0.001"#;
+    for (options, layers, words) in [
+        ("", "]".to_owned(), &["net.json", "no layer"][..]),
+        ("", of(&[(2, 2); 4]), &["4 layers", "3 at most"]),
+        ("", of(&[(257, 2)]), &["layer 1: the chip has 256 neurons"]),
+        ("", of(&[(255, 2), (1, 255)]), &["2 inputs with 256 neurons", "need 258"]),
+        ("", of(&[(3, 2), (2, 4)]), &["layer 2: weights for 4 inputs", "3 neurons"]),
+        (
+            "",
+            of(&[(2, 3)]),
+            &["layer 1 has 3 inputs, but sf gives 2, of 1 column, each up and down"],
+        ),
+        ("", one("[[1, 2], [1]]", r#""threshold": 1"#), &["neuron 1 has 1 weights"]),
+        ("", one("[[1, 1e999]]", r#""threshold": 1"#), &["number out of range"]),
+        ("", one("[[1, 1]]", r#""threshold": 0"#), &["layer 1: neuron 0 fires at 0 above rest"]),
+        ("", one("[[1, 1]]", r#""threshold": [1, 2]"#), &["2 values of `threshold` for 1"]),
+        ("", one("[[1, 1]]", r#""threshold": 1, "keep": 1.5"#), &["keeps 1.5"]),
+        ("", one("[[1, 1]]", r#""threshold": 1, "leek": 1"#), &["unknown field `leek`"]),
+        ("", one("[]", r#""threshold": 1"#), &["layer 1: no weights"]),
+        // tinyODIN has no outputs that never fire, and those of ReckOn are read after a leak.
+        ("", format!("{{\"weights\": {leaky}}}"), &["readout: tinyODIN has no outputs"]),
+        ("--chip reckon", format!("{{\"weights\": {leaky}}}"), &["read after they have leaked"]),
+        ("--chip reckon", of(&[(257, 2)]), &["256 neurons"]),
+        ("--chip reckon", of(&[(17, 2)]), &["16 outputs"]),
+    ] {
+        let (_directory, command) = driven(&layers, 1.0, options);
+        refused(&command, "", words);
+    }
+    let (hexarotor, roll) = (flight("hexarotor.csv"), peers("roll.nir").display().to_string());
+    refused(&network(&hexarotor), "", &["hexarotor.csv: neither a NIR graph", "JSON"]);
+    refused(&network("nowhere.nir"), "", &["nowhere.nir: cannot be opened"]);
+    let dt = format!("{} --dt 0.1", network(&roll));
+    refused(&dt, "", &["roll.nir: node `lif1`", "0.03 s is shorter than a step of 0.1 s", "--dt"]);
+    let other =
+        format!("network {roll} --scheme position --neurons 10 --column gyro_x {hexarotor}");
+    refused(&other, "", &["node `lif1` has 20 inputs, but position gives 10"]);
+}
+
+#[test]
+fn what_a_chip_changes_is_told_and_a_recording_is_held_out() {
+    // Neurons of ReckOn keep 0.875 at least.
+    let half = r#"{"weights": [[0.4, -0.3]], "keep": 0.6, "threshold": 0.5}]"#;
+    let (_directory, command) = driven(half, 0.05, "--chip reckon");
+    let told = good(&command, "").told;
+    let leaks = "warning: 1 neurons or outputs leak otherwise than trained, by up to 0.2750";
+    assert!(told.contains(leaks), "{told}");
+
+    let (_directory, command) = driven(r#"{"weights": [[1, 1]], "threshold": 1e9}]"#, 0.1, "");
+    let silent = good(&command, "").told;
+    assert!(silent.contains("warning: no output fires") && !silent.contains("100.0 %"), "{silent}");
+    assert!(silent.contains("--held-out shows another"), "{silent}");
+
+    // Fires above 0.5 after a leak by halves: what the chip has not.
+    let low = r#"{"weights": [[0.31, -0.29], [0.27, 0.33]], "keep": 0.5, "threshold": 0.5},
+        {"weights": [[0.61, -0.59]], "keep": 0.3, "threshold": 0.55}]"#;
+    let (_directory, command) = driven(low, 0.1, "");
+    let low = ran!("{command} --held-out {}", flight("vtol_at_rest.csv")).told;
+    let shares = figures(&low, "outputs agree in ");
+    assert_eq!(low.contains("warning: step by step"), shares[2] < 50.0, "{low}");
+    let held_out = low.split("the recording that was held out:\n").nth(1).unwrap();
+    assert!(held_out.starts_with("layer 1: 2, ") && !low.contains("--held-out"), "{low}");
 }
 
 /// A line of spikes is a step: each weight is added, and the neuron fires at 12. The line that comes later is answered
@@ -81,7 +174,7 @@ fn spikes_as_they_are_drive_a_network_that_answers_step_by_step() {
     assert_eq!(idle, [false, false, true, false, false], "{}", ran.output);
     assert!(ran.told.contains("outputs agree in 100.0 % of 7 steps"), "{}", ran.told);
     // Without --live there is the constant, as from a recording.
-    let ran = good(&format!("network {network} {steps}"), "");
+    let ran = ran!("network {network} {steps}");
     assert!(ran.output.contains("TinyOdinNetwork<2, 2, 2>"), "{}", ran.output);
 
     refused(&format!("network {network} {steps} --live"), "2\n", &["2 inputs", "[2]"]);
@@ -114,12 +207,9 @@ fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
     let (_held_out, held_out) = file("held_out.csv", stretches(true));
     let (_bytes, bytes) = file("turns.bin", "");
     let turns = peers("turns.nir").display().to_string();
-    let ran = good(
-        &format!(
-            "network {turns} --chip reckon --scheme position --neurons 25 --min=-1.2 --max 1.2 --dt 0.005 --column \
+    let ran = ran!(
+        "network {turns} --chip reckon --scheme position --neurons 25 --min=-1.2 --max 1.2 --dt 0.005 --column \
              gyro_x {trained} --held-out {held_out} --bytes {bytes}"
-        ),
-        "",
     );
     // A header, pairs, and 25 inputs, 32 neurons and 3 outputs for each neuron.
     assert_eq!(fs::read(bytes).unwrap().len(), 16 + 16 * 4 + 32 * (25 + 32 + 3));
@@ -151,81 +241,6 @@ fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
     assert_eq!(ran.output, fs::read_to_string(firmware).unwrap());
 }
 
-/// Two layers, a way back, a bias, and thresholds that lie between what weights can add up to.
-#[test]
-fn a_network_that_reckon_can_hold_costs_nothing() {
-    let json = r#"{"layers": [
-        {"name": "one", "weights": [[3, 0], [0, 5], [2, 2]], "threshold": 11.5, "bias": [0, 1, 0],
-         "recurrent": [[0, 2, 0], [0, 0, -4], [0, 0, 0]]},
-        {"name": "two", "weights": [[7, 4, -4], [1, 6, 5]], "threshold": [12.5, 6.5]}
-    ]}"#;
-    let (_directory, path) = file("whole.json", json);
-    let sf = format!("--scheme sf --threshold 0.05 --column gyro_x {}", flight("hexarotor.csv"));
-    let ran = good(&format!("network {path} --chip reckon {sf}"), "");
-    assert!(ran.told.contains("\noutputs agree in 100.0 % of 3627 steps"), "{}", ran.told);
-    let (_, spikes) = ran.told.split_once("layer: neurons").unwrap();
-    for layer in ["one", "two"] {
-        let figures = figures(spikes, &format!("{layer}: "));
-        let [_, clipped, spikes, on_chip, distance] = figures[..] else { panic!("{}", ran.told) };
-        assert!(spikes > 100.0, "{}", ran.told);
-        assert_eq!((clipped, distance, on_chip), (0.0, 0.0, spikes), "{}", ran.told);
-    }
-    assert!(ran.output.contains("pub const BIAS: u8 = 2;"), "{}", ran.output);
-    // The first layer's third neuron has a pair of its own.
-    assert!(ran.output.contains("ReckOnNetwork<3, 6, 2>"), "{}", ran.output);
-}
-
-#[test]
-fn what_reckon_cannot_hold_is_refused_or_told() {
-    let network = |json: &str| {
-        let (directory, path) = file("net.json", json);
-        let sf =
-            format!("--scheme sf --threshold 0.05 --column gyro_x {}", flight("hexarotor.csv"));
-        (directory, format!("network {path} --chip reckon {sf}"))
-    };
-    let ones = |rows: usize, columns: usize| {
-        format!("[{}]", vec![format!("[{}]", vec!["1"; columns].join(",")); rows].join(","))
-    };
-    for (json, words) in [
-        (
-            format!(r#"{{"layers": [{{"weights": {}, "threshold": 1}}]}}"#, ones(257, 2)),
-            "256 neurons",
-        ),
-        (
-            format!(r#"{{"layers": [{{"weights": {}, "threshold": 1}}]}}"#, ones(17, 2)),
-            "16 outputs",
-        ),
-        (
-            format!(
-                r#"{{"layers": [{{"weights": [[1, 1]], "threshold": 1}}],
-                    "readout": {{"weights": {}, "keep": 0.001}}}}"#,
-                ones(2, 1)
-            ),
-            "read after they have leaked",
-        ),
-    ] {
-        let (_directory, command) = network(&json);
-        refused(&command, "", &[words]);
-    }
-    // tinyODIN has no outputs that never fire.
-    let json =
-        r#"{"layers": [{"weights": [[1, 1]], "threshold": 1}], "readout": {"weights": [[1]]}}"#;
-    let (_directory, command) = network(json);
-    refused(
-        &command.replace("--chip reckon", "--chip tinyodin"),
-        "",
-        &["readout: tinyODIN has no outputs"],
-    );
-    // Neurons keep 0.875 at least.
-    let json = r#"{"layers": [{"weights": [[0.4, -0.3]], "keep": 0.6, "threshold": 0.5}]}"#;
-    let (_directory, command) = network(json);
-    let told = good(&command, "").told;
-    assert!(
-        told.contains("warning: 1 neurons or outputs leak otherwise than trained, by up to 0.2750"),
-        "{told}"
-    );
-}
-
 /// As snnTorch and Norse write layers: graphs in the graph, one that leads back to itself.
 #[test]
 fn nested_and_recurrent_graphs_are_taken() {
@@ -255,92 +270,6 @@ fn nested_and_recurrent_graphs_are_taken() {
         panic!("{}", recurrent.told)
     };
     assert!(spikes > 1_000.0 && (spikes - on_chip).abs() < 0.1 * spikes, "{}", recurrent.told);
-}
-
-/// JSON has its own weights back.
-#[test]
-fn a_recurrent_layer_that_the_chip_can_hold_costs_nothing() {
-    // The second neuron follows the first; its own spikes hold it back. One spike a sample.
-    let json = r#"{"layers": [{"name": "one", "weights": [[3, 3], [2, 1]],
-        "recurrent": [[0, 0], [-2, 0]], "threshold": [8.5, 30.5]}]}"#;
-    let (_directory, path) = file("recurrent.json", json);
-    let sf = format!("--scheme sf --threshold 0.05 --column gyro_x {}", flight("hexarotor.csv"));
-    let ran = good(&format!("network {path} {sf}"), "");
-    assert!(ran.output.contains("recurrent: &[\n        [0, -"), "{}", ran.output);
-    let [_, clipped, spikes, on_chip, distance] = figures(&ran.told, "one: ")[..] else {
-        panic!("{}", ran.told)
-    };
-    assert!(spikes > 100.0, "{}", ran.told);
-    assert_eq!((clipped, distance, on_chip), (0.0, 0.0, spikes), "{}", ran.told);
-}
-
-#[test]
-fn silent_and_low_agreement_are_told_and_a_recording_is_held_out() {
-    let json = r#"{"layers": [{"weights": [[1, 1]], "threshold": 1e9}]}"#;
-    let (_directory, path) = file("silent.json", json);
-    let sf = format!("--scheme sf --threshold 0.1 --column gyro_x {}", flight("hexarotor.csv"));
-    let silent = good(&format!("network {path} {sf}"), "");
-    assert!(silent.told.contains("warning: no output fires"), "{}", silent.told);
-    assert!(!silent.told.contains("100.0 %"), "{}", silent.told);
-
-    // Fires above 0.5 after a leak by halves: what the chip has not.
-    let json = r#"{"layers": [
-        {"weights": [[0.31, -0.29], [0.27, 0.33]], "keep": 0.5, "threshold": 0.5},
-        {"weights": [[0.61, -0.59]], "keep": 0.3, "threshold": 0.55}]}"#;
-    let (_directory, path) = file("low.json", json);
-    let low = good(&format!("network {path} {sf} --held-out {}", flight("vtol_at_rest.csv")), "");
-    let shares = figures(&low.told, "outputs agree in ");
-    assert_eq!(low.told.contains("warning: step by step"), shares[2] < 50.0, "{}", low.told);
-    let held_out = low.told.split("the recording that was held out:\n").nth(1).unwrap();
-    assert!(held_out.starts_with("layer 1: 2, "), "{}", low.told);
-    assert!(!low.told.contains("--held-out"), "{}", low.told);
-    assert!(silent.told.contains("--held-out shows another"), "{}", silent.told);
-}
-
-#[test]
-fn a_bias_becomes_an_input() {
-    let json = r#"{"layers": [{"weights": [[0, 0]], "bias": [0.25], "threshold": 1.1}]}"#;
-    let (_directory, path) = file("bias.json", json);
-    let sf = format!("--scheme sf --threshold 0.1 --column gyro_x {}", flight("hexarotor.csv"));
-    let ran = good(&format!("network {path} {sf}"), "");
-    assert!(ran.output.contains("pub const BIAS: u16 = 2;"), "{}", ran.output);
-    assert!(ran.told.contains("outputs agree in 100.0 % of 3627 steps"), "{}", ran.told);
-}
-
-#[test]
-fn what_is_no_network_or_does_not_fit_is_refused_by_name() {
-    let json = |layers: &str, words: &[&str]| {
-        let (_directory, path) = file("net.json", format!("{{\"layers\": [{layers}]}}"));
-        let sf = format!("--scheme sf --threshold 1 --column gyro_x {}", flight("hexarotor.csv"));
-        refused(&format!("network {path} {sf}"), "", words);
-    };
-    let ones = |rows: usize, columns: usize| {
-        let row = format!("[{}]", vec!["1"; columns].join(","));
-        format!("{{\"weights\": [{}], \"threshold\": 1}}", vec![row; rows].join(","))
-    };
-    json("", &["net.json", "no layer"]);
-    json(&[ones(2, 2), ones(2, 2), ones(2, 2), ones(2, 2)].join(","), &["4 layers", "3 at most"]);
-    json(&ones(257, 2), &["layer 1: the chip has 256 neurons"]);
-    json(&[ones(255, 2), ones(1, 255)].join(","), &["2 inputs with 256 neurons", "need 258"]);
-    json(&[ones(3, 2), ones(2, 4)].join(","), &["layer 2: weights for 4 inputs", "3 neurons"]);
-    json(&ones(2, 3), &["layer 1 has 3 inputs, but sf gives 2, of 1 column, each up and down"]);
-    json(r#"{"weights": [[1, 2], [1]], "threshold": 1}"#, &["neuron 1 has 1 weights"]);
-    json(r#"{"weights": [[1, 1e999]], "threshold": 1}"#, &["number out of range"]);
-    json(r#"{"weights": [[1, 1]], "threshold": 0}"#, &["layer 1: neuron 0 fires at 0 above rest"]);
-    json(r#"{"weights": [[1, 1]], "threshold": [1, 2]}"#, &["2 values of `threshold` for 1"]);
-    json(r#"{"weights": [[1, 1]], "threshold": 1, "keep": 1.5}"#, &["keeps 1.5"]);
-    json(r#"{"weights": [[1, 1]], "threshold": 1, "leek": 1}"#, &["unknown field `leek`"]);
-    json(r#"{"weights": [], "threshold": 1}"#, &["layer 1: no weights"]);
-
-    let hexarotor = flight("hexarotor.csv");
-    refused(&network(&hexarotor), "", &["hexarotor.csv: neither a NIR graph", "JSON"]);
-    refused(&network("nowhere.nir"), "", &["nowhere.nir: cannot be opened"]);
-    let roll = peers("roll.nir").display().to_string();
-    let dt = format!("{} --dt 0.1", network(&roll));
-    refused(&dt, "", &["roll.nir: node `lif1`", "0.03 s is shorter than a step of 0.1 s", "--dt"]);
-    let other =
-        format!("network {roll} --scheme position --neurons 10 --column gyro_x {hexarotor}");
-    refused(&other, "", &["node `lif1` has 20 inputs, but position gives 10"]);
 }
 
 /// A damaged file is refused, or is another network; the program never breaks down.

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{file, flight, good};
+use common::{file, flight, ran};
 use std::fmt::Write;
 use std::fs;
 use tiny_skia::Pixmap;
@@ -11,7 +11,7 @@ use tiny_skia::Pixmap;
 fn plot(options: &str, ending: &str) -> (Vec<u8>, String) {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("picture").with_extension(ending);
-    let told = good(&format!("plot {options} -o {}", path.display()), "").told;
+    let told = ran!("plot {options} -o {}", path.display()).told;
     (fs::read(path).unwrap(), told)
 }
 

@@ -3,7 +3,7 @@
 mod common;
 
 use common::logs::Kind;
-use common::{file, good};
+use common::{file, good, ran};
 use std::fmt::Write;
 
 /// A table of times in µs and a wave.
@@ -18,8 +18,8 @@ fn table(times: impl Iterator<Item = i64>) -> String {
 
 /// The row of step forward, and its spikes a second.
 fn spikes_a_second(path: &str) -> (String, f64) {
-    let ran = good(&format!("score --scheme sf --threshold 0.1 --json {path}"), "");
-    let rows: serde_json::Value = serde_json::from_str(&ran.output).unwrap();
+    let ran = ran!("score --scheme sf --threshold 0.1 --json {path}");
+    let rows: serde_json::Value = ran.json();
     (ran.told, rows[0]["spikes_per_second"].as_f64().unwrap())
 }
 
@@ -33,9 +33,7 @@ fn a_clock_of_32_bits_goes_on_behind_its_end() {
     assert!(told.contains("runs over 1 times, first after sample 399"), "{told}");
     assert!(!told.contains("back in time") && !told.contains("anew"), "{told}");
     assert_eq!(rate, spikes_a_second(&plain).1);
-    let encode = |path: &str| {
-        good(&format!("encode --scheme sf --threshold 0.1 --column x {path}"), "").output
-    };
+    let encode = |path: &str| ran!("encode --scheme sf --threshold 0.1 --column x {path}").output;
     assert_eq!(encode(&wrapped), encode(&plain));
 }
 
@@ -61,13 +59,13 @@ fn no_code_joins_two_segments() {
         writeln!(text, "{},{value}", sample * 5000).unwrap();
     }
     let (directory, path) = file("x.csv", text);
-    let ran = good(&format!("score --scheme sf --threshold 0.1 --json {path}"), "");
-    let rows: serde_json::Value = serde_json::from_str(&ran.output).unwrap();
+    let ran = ran!("score --scheme sf --threshold 0.1 --json {path}");
+    let rows: serde_json::Value = ran.json();
     assert!(rows[0]["rmse"].as_f64().unwrap() < 0.2, "{}", ran.output);
     assert_eq!(rows[0]["slope"]["steps_above_threshold"], 0, "{}", ran.output);
 
     let picture = directory.path().join("x.svg");
-    good(&format!("plot --scheme sf --threshold 0.1 {path} -o {}", picture.display()), "");
+    ran!("plot --scheme sf --threshold 0.1 {path} -o {}", picture.display());
     let svg = std::fs::read_to_string(picture).unwrap();
     let curves = |colour: &str| {
         svg.lines().filter(|line| line.contains("<polyline") && line.contains(colour)).count()
@@ -85,7 +83,7 @@ fn an_unsorted_bag_has_a_length_and_a_rate() {
     let chunk = Kind::Bag.chunk("none", &messages.collect::<Vec<_>>().concat());
     let bag = [Kind::Bag.start(), chunk, Kind::Bag.end()].concat();
     let (_directory, path) = file("x.bag", bag);
-    let ran = good(&format!("info {path}"), "").output;
+    let ran = ran!("info {path}").output;
     assert!(ran.contains("160 samples") && ran.contains("0.795 s, 200.00 Hz"), "{ran}");
     let score = format!("score --scheme sf --threshold 0.1 --topic /imu --field rate {path}");
     let told = good(&score, "").told;

@@ -1,5 +1,5 @@
 //! Running the program.
-#![allow(dead_code, unreachable_pub)]
+#![allow(dead_code, unreachable_pub, unused_imports, unused_macros)]
 
 pub mod logs;
 
@@ -12,6 +12,19 @@ pub struct Ran {
     pub output: String,
     pub told: String,
 }
+
+impl Ran {
+    /// Its output, which is JSON.
+    pub fn json(&self) -> serde_json::Value {
+        serde_json::from_str(&self.output).unwrap()
+    }
+}
+
+/// Runs `spikewire` with these words, which are formatted; nothing goes wrong.
+macro_rules! ran {
+    ($($words:tt)*) => { $crate::common::good(&format!($($words)*), "") };
+}
+pub(crate) use ran;
 
 /// Runs `spikewire` with arguments separated by blanks, and with this on standard input.
 pub fn spikewire(arguments: &str, input: &str) -> Ran {
