@@ -113,73 +113,48 @@ impl Plain for i16 {
     }
 }
 
-impl Plain for FixedI16<U8> {
-    type Wide = FixedI32<U8>;
+/// Fixed point, whose sums and products have twice the bits.
+macro_rules! fixed_point {
+    ($own:ty, $bits:ty, $wide:ident<$fraction:ty>, $mean:expr) => {
+        impl Plain for $own {
+            type Wide = $wide<$fraction>;
 
-    const MEAN: f64 = 1.0 / 256.0;
+            const MEAN: f64 = $mean;
 
-    fn wide(value: f64) -> FixedI32<U8> {
-        FixedI32::from_num(value)
-    }
+            fn wide(value: f64) -> Self::Wide {
+                $wide::from_num(value)
+            }
 
-    fn count(count: i16) -> FixedI32<U8> {
-        FixedI32::from_num(count)
-    }
+            fn count(count: i16) -> Self::Wide {
+                $wide::from_num(count)
+            }
 
-    fn narrow(wide: FixedI32<U8>) -> Self {
-        Self::from_bits(wide.to_bits() as i16)
-    }
+            fn narrow(wide: Self::Wide) -> Self {
+                Self::from_bits(wide.to_bits() as $bits)
+            }
 
-    fn doubled(wide: FixedI32<U8>, times: u8) -> FixedI32<U8> {
-        wide << times
-    }
+            fn doubled(wide: Self::Wide, times: u8) -> Self::Wide {
+                wide << times
+            }
 
-    fn halved(wide: FixedI32<U8>, times: u8) -> FixedI32<U8> {
-        wide >> times
-    }
+            fn halved(wide: Self::Wide, times: u8) -> Self::Wide {
+                wide >> times
+            }
 
-    fn halved_to_nearest(wide: FixedI32<U8>, times: u8) -> FixedI32<U8> {
-        (wide + FixedI32::from_bits((1 << times) / 2)) >> times
-    }
+            fn halved_to_nearest(wide: Self::Wide, times: u8) -> Self::Wide {
+                (wide + $wide::from_bits((1 << times) / 2)) >> times
+            }
 
-    fn is_drawn(part: FixedI32<U8>, range: FixedI32<U8>, draw: u32) -> bool {
-        i64::from(part.to_bits()) << 17 >= i64::from(2 * draw + 1) * i64::from(range.to_bits())
-    }
+            fn is_drawn(part: Self::Wide, range: Self::Wide, draw: u32) -> bool {
+                let [part, range] = [part, range].map(|own| i64::from(own.to_bits()));
+                part << 17 >= i64::from(2 * draw + 1) * range
+            }
+        }
+    };
 }
 
-impl Plain for FixedI32<U16> {
-    type Wide = FixedI64<U16>;
-
-    const MEAN: f64 = 1.0 / 65_536.0;
-
-    fn wide(value: f64) -> FixedI64<U16> {
-        FixedI64::from_num(value)
-    }
-
-    fn count(count: i16) -> FixedI64<U16> {
-        FixedI64::from_num(count)
-    }
-
-    fn narrow(wide: FixedI64<U16>) -> Self {
-        Self::from_bits(wide.to_bits() as i32)
-    }
-
-    fn doubled(wide: FixedI64<U16>, times: u8) -> FixedI64<U16> {
-        wide << times
-    }
-
-    fn halved(wide: FixedI64<U16>, times: u8) -> FixedI64<U16> {
-        wide >> times
-    }
-
-    fn halved_to_nearest(wide: FixedI64<U16>, times: u8) -> FixedI64<U16> {
-        (wide + FixedI64::from_bits((1 << times) / 2)) >> times
-    }
-
-    fn is_drawn(part: FixedI64<U16>, range: FixedI64<U16>, draw: u32) -> bool {
-        part.to_bits() << 17 >= i64::from(2 * draw + 1) * range.to_bits()
-    }
-}
+fixed_point!(FixedI16<U8>, i16, FixedI32<U8>, 1.0 / 256.0);
+fixed_point!(FixedI32<U16>, i32, FixedI64<U16>, 1.0 / 65_536.0);
 
 /// Without its sign.
 pub fn magnitude<W: Copy + Default + PartialOrd + Sub<Output = W>>(value: W) -> W {

@@ -35,7 +35,7 @@ use spikewire::{Sample, Scheme, Spike};
 use crate::{Entry, Info, Parameter, Search, State, Unit, for_sample_type};
 
 /// Populations up to this size have codes of this capacity, larger ones of the largest.
-const FEW: usize = 64;
+pub(crate) const FEW: usize = 64;
 
 /// How many neurons a code has, and how many sub-timesteps a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -188,32 +188,44 @@ pub trait Build: Entry {
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output>;
 }
 
-/// A population code, built with codes of a capacity that holds its neurons.
-pub trait BuildPopulation: Build {
-    /// Builds it with codes of the capacity `M` and hands it to a visitor.
-    ///
-    /// # Errors
-    /// A parameter makes no sense, or the visitor's own.
-    fn build_within<S: Sample, V: Visit<S>, const M: usize>(
-        settings: &Settings,
-        visitor: V,
-    ) -> Result<V::Output>;
-
-    /// Builds it with codes as small as its neurons allow.
-    ///
-    /// # Errors
-    /// A parameter makes no sense, or the visitor's own.
-    fn build_population<S: Sample, V: Visit<S>>(
-        settings: &Settings,
-        visitor: V,
-    ) -> Result<V::Output> {
-        if Self::shape(settings)?.neurons <= FEW {
-            Self::build_within::<S, V, FEW>(settings, visitor)
-        } else {
-            Self::build_within::<S, V, { spikewire::dynamic::NEURONS }>(settings, visitor)
+/// Writes how a population code is built: its encoder's start and the scheme, from settings, in the sample type `S` with
+/// codes that hold `M` neurons. These are as small as its neurons allow.
+macro_rules! population {
+    (|$settings:ident| $built:expr) => {
+        fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
+            fn within<S: Sample, V: Visit<S>, const M: usize>(
+                $settings: &Settings,
+                visitor: V,
+            ) -> Result<V::Output> {
+                let (start, scheme) = $built;
+                visitor.visit(scheme, start)
+            }
+            if Self::shape(settings)?.neurons <= FEW {
+                within::<S, V, FEW>(settings, visitor)
+            } else {
+                within::<S, V, { dynamic::NEURONS }>(settings, visitor)
+            }
         }
-    }
+    };
 }
+pub(crate) use population;
+
+/// Writes what a scheme costs: the state of this type, and this codec of the measured table, so many times as long.
+macro_rules! costs {
+    ($scheme:ty, $codec:literal) => {
+        costs!($scheme, $codec, |_settings| 1.0);
+    };
+    ($scheme:ty, $codec:literal, |$settings:ident| $longer:expr) => {
+        fn ram<S: Sample>(_: &Settings) -> Result<usize> {
+            Ok(state::<$scheme>())
+        }
+
+        fn counted($settings: &Settings) -> Result<Counted> {
+            Ok(Counted::at_most($codec, $longer))
+        }
+    };
+}
+pub(crate) use costs;
 
 /// A scheme of the catalogue, whichever it is.
 pub trait RunTime: Sync {

@@ -24,11 +24,6 @@ pub struct Counted {
 }
 
 impl Counted {
-    /// A codec that takes as many instructions.
-    pub const fn exact(codec: &'static str) -> Self {
-        Self { codec, times: 1.0 }
-    }
-
     /// A codec of another length. A part of its work does not grow with the length, so that this bounds a longer one
     /// from above; for a shorter one the codec itself does.
     pub fn at_most(codec: &'static str, longer: f64) -> Self {

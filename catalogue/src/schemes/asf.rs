@@ -72,13 +72,7 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<AdaptiveStepForward<S>>())
-    }
-
-    fn counted(_: &Settings) -> Result<Counted> {
-        Ok(Counted::exact("asf"))
-    }
+    costs!(AdaptiveStepForward<S>, "asf");
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let threshold = rust.signal(settings, "threshold")?;

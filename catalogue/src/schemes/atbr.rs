@@ -70,13 +70,7 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<AdaptiveContrast<S>>())
-    }
-
-    fn counted(_: &Settings) -> Result<Counted> {
-        Ok(Counted::exact("atbr"))
-    }
+    costs!(AdaptiveContrast<S>, "atbr");
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let threshold = rust.signal(settings, "threshold")?;

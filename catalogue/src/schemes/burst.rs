@@ -82,13 +82,7 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<Burst<S, 19>>())
-    }
-
-    fn counted(_: &Settings) -> Result<Counted> {
-        Ok(Counted::exact("burst-5"))
-    }
+    costs!(Burst<S, 19>, "burst-5");
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let range = rust.range(settings)?;

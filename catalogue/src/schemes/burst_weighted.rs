@@ -85,13 +85,7 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<WeightedBurst<S, Average>>())
-    }
-
-    fn counted(_: &Settings) -> Result<Counted> {
-        Ok(Counted::exact("burst-weighted"))
-    }
+    costs!(WeightedBurst<S, Average>, "burst-weighted");
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let (range, weight) = (rust.range(settings)?, rust.signal(settings, "weight")?);

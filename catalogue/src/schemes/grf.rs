@@ -51,14 +51,8 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<Gaussian<S, 20>>())
-    }
-
-    /// Neurons are found by bisection.
-    fn counted(settings: &Settings) -> Result<Counted> {
-        Ok(Counted::at_most("grf-20", settings.neurons()? as f64 / 20.0))
-    }
+    // Neurons are found by bisection.
+    costs!(Gaussian<S, 20>, "grf-20", |settings| settings.neurons()? as f64 / 20.0);
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let neurons = settings.neurons()?.to_string();
@@ -69,22 +63,11 @@ impl Build for Scheme {
         )
     }
 
-    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
-        Self::build_population(settings, visitor)
-    }
-}
-
-#[cfg(feature = "run")]
-impl BuildPopulation for Scheme {
-    fn build_within<S: Sample, V: Visit<S>, const M: usize>(
-        settings: &Settings,
-        visitor: V,
-    ) -> Result<V::Output> {
+    population!(|settings| {
         let scheme =
             dynamic::Position::<S, M>::try_linear(settings.neurons()?, &settings.range()?)?;
-        let start = scheme.state();
-        visitor.visit(scheme, start)
-    }
+        (scheme.state(), scheme)
+    });
 }
 
 /// The paper's algorithm 2 with its exponentials, in `f32` for every sample type: the winner.

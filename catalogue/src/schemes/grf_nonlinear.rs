@@ -233,13 +233,7 @@ impl Build for Scheme {
         Ok(Shape { neurons: neurons(settings)?, slots: 1 })
     }
 
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<Gaussian<S, 20>>())
-    }
-
-    fn counted(settings: &Settings) -> Result<Counted> {
-        Ok(Counted::at_most("grf-nonlinear-20", neurons(settings)? as f64 / 20.0))
-    }
+    costs!(Gaussian<S, 20>, "grf-nonlinear-20", |settings| neurons(settings)? as f64 / 20.0);
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let value = match (settings.preset("centres")?, settings.preset("widths")?) {
@@ -250,25 +244,14 @@ impl Build for Scheme {
         rust.constant("population::Gaussian", &neurons(settings)?.to_string(), &value)
     }
 
-    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
-        Self::build_population(settings, visitor)
-    }
-}
-
-#[cfg(feature = "run")]
-impl BuildPopulation for Scheme {
-    fn build_within<S: Sample, V: Visit<S>, const M: usize>(
-        settings: &Settings,
-        visitor: V,
-    ) -> Result<V::Output> {
+    population!(|settings| {
         let centres = centres::<S, M>(settings)?;
         let scheme = match widths(settings, centres.len())? {
             None => dynamic::Position::<S, M>::try_spaced(&centres)?,
             Some(widths) => dynamic::Position::try_with_widths(&centres, &widths)?,
         };
-        let start = scheme.state();
-        visitor.visit(scheme, start)
-    }
+        (scheme.state(), scheme)
+    });
 }
 
 /// The strongest of the responses, with their exponentials, in `f32` for every sample type.

@@ -113,14 +113,9 @@ impl Build for Scheme {
         Ok(Shape { neurons: grf_nonlinear::neurons(settings)?, slots })
     }
 
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<NonLinearSlots<S, 15, 10>>())
-    }
-
-    fn counted(settings: &Settings) -> Result<Counted> {
-        let neurons = grf_nonlinear::neurons(settings)?;
-        Ok(Counted::at_most("grf-nonlinear-slots-15x10", neurons as f64 / 15.0))
-    }
+    costs!(NonLinearSlots<S, 15, 10>, "grf-nonlinear-slots-15x10", |settings| {
+        grf_nonlinear::neurons(settings)? as f64 / 15.0
+    });
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let Shape { neurons, slots } = Self::shape(settings)?;
@@ -137,17 +132,7 @@ impl Build for Scheme {
         rust.constant("population::NonLinearSlots", &format!("{neurons}, {slots}"), &value)
     }
 
-    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
-        Self::build_population(settings, visitor)
-    }
-}
-
-#[cfg(feature = "run")]
-impl BuildPopulation for Scheme {
-    fn build_within<S: Sample, V: Visit<S>, const M: usize>(
-        settings: &Settings,
-        visitor: V,
-    ) -> Result<V::Output> {
+    population!(|settings| {
         let slots = settings.count("slots", 2..=dynamic::LEVELS)?;
         let centres = grf_nonlinear::centres::<S, M>(settings)?;
         let scheme = if let Some(widths) = grf_nonlinear::widths(settings, centres.len())? {
@@ -157,9 +142,8 @@ impl BuildPopulation for Scheme {
             dynamic::NonLinearSlots::try_spaced(slots, &centres, beta)?
         };
         let scheme = scheme.try_with_floor(settings.count("floor", 1..=slots)? as u16)?;
-        let start = scheme.state();
-        visitor.visit(scheme, start)
-    }
+        (scheme.state(), scheme)
+    });
 }
 
 /// The code that the transcription writes: the slot of each neuron, or -1.

@@ -57,22 +57,12 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
-        Self::build_population(settings, visitor)
-    }
-}
-
-#[cfg(feature = "run")]
-impl BuildPopulation for Scheme {
-    fn build_within<S: Sample, V: Visit<S>, const M: usize>(
-        settings: &Settings,
-        visitor: V,
-    ) -> Result<V::Output> {
+    population!(|settings| {
         let (neurons, beta) = (settings.neurons()?, settings.number("beta")? as f32);
         let generator = settings.generator()?;
         let scheme = dynamic::Probabilistic::<S, _, M>::try_new(neurons, &settings.range()?, beta)?;
-        visitor.visit(scheme, dynamic::Probabilistic::<S, _, M>::state(generator))
-    }
+        (dynamic::Probabilistic::<S, _, M>::state(generator), scheme)
+    });
 }
 
 /// The generator of what is counted, whose work is counted with it.

@@ -69,13 +69,7 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<Slots<S, 15, 10>>())
-    }
-
-    fn counted(settings: &Settings) -> Result<Counted> {
-        Ok(Counted::at_most("grf-slots-15x10", settings.neurons()? as f64 / 15.0))
-    }
+    costs!(Slots<S, 15, 10>, "grf-slots-15x10", |settings| settings.neurons()? as f64 / 15.0);
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let (slots, beta) =
@@ -86,24 +80,13 @@ impl Build for Scheme {
         rust.constant("population::Slots", &shape, &value)
     }
 
-    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
-        Self::build_population(settings, visitor)
-    }
-}
-
-#[cfg(feature = "run")]
-impl BuildPopulation for Scheme {
-    fn build_within<S: Sample, V: Visit<S>, const M: usize>(
-        settings: &Settings,
-        visitor: V,
-    ) -> Result<V::Output> {
+    population!(|settings| {
         let (neurons, beta) = (settings.neurons()?, settings.number("beta")? as f32);
         let slots = settings.count("slots", 2..=dynamic::LEVELS)?;
         let scheme = dynamic::Slots::<S, M>::try_new(neurons, slots, &settings.range()?, beta)?;
         let scheme = scheme.try_with_floor(settings.count("floor", 1..=slots)? as u16)?;
-        let start = scheme.state();
-        visitor.visit(scheme, start)
-    }
+        (scheme.state(), scheme)
+    });
 }
 
 /// The code that the transcription writes: the slot or rank of each neuron, or -1.

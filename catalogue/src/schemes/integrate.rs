@@ -87,37 +87,40 @@ impl Entry for Scheme {
 pub(super) fn constant(settings: &Settings, rust: Rust, leak: &str) -> Result<Constant> {
     let (threshold, reference) =
         (rust.signal(settings, "threshold")?, rust.signal(settings, "reference")?);
-    let (power, most) =
-        (settings.count("power", 1..=15)?, settings.count("spikes", 1..=127)?.to_string());
+    let (power, most) = (settings.count("power", 1..=15)?, shape(settings)?.slots.to_string());
     let value = format!("new({threshold}, {power}){leak}.with_reference({reference})");
     rust.constant("rate::IntegrateAndFire", &most, &value)
 }
 
+/// One neuron, whose spikes come one after the other.
+#[cfg(feature = "run")]
+pub(super) fn shape(settings: &Settings) -> Result<Shape> {
+    Ok(Shape { neurons: 1, slots: settings.count("spikes", 1..=127)? })
+}
+
+/// The neuron, with room for the most spikes.
+#[cfg(feature = "run")]
+pub(super) fn built<S: Sample>(settings: &Settings) -> Result<IntegrateAndFire<S, 127>> {
+    let power = settings.count("power", 1..=15)? as u8;
+    let scheme = IntegrateAndFire::try_new(settings.signal("threshold")?, power)?;
+    let scheme = scheme.try_with_reference(settings.signal("reference")?)?;
+    Ok(scheme.try_with_most(shape(settings)?.slots as u8)?)
+}
+
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<IntegrateAndFire<S, 127>>())
-    }
-
-    fn counted(_: &Settings) -> Result<Counted> {
-        Ok(Counted::exact("if"))
-    }
+    costs!(IntegrateAndFire<S, 127>, "if");
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         constant(settings, *rust, "")
     }
 
     fn shape(settings: &Settings) -> Result<Shape> {
-        Ok(Shape { neurons: 1, slots: settings.count("spikes", 1..=127)? })
+        shape(settings)
     }
 
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
-        let power = settings.count("power", 1..=15)? as u8;
-        let most = settings.count("spikes", 1..=127)? as u8;
-        let scheme = IntegrateAndFire::<S, 127>::try_new(settings.signal("threshold")?, power)?;
-        let scheme =
-            scheme.try_with_reference(settings.signal("reference")?)?.try_with_most(most)?;
-        visitor.visit(scheme, IntegrateAndFire::<S, 127>::START)
+        visitor.visit(built(settings)?, IntegrateAndFire::<S, 127>::START)
     }
 }
 

@@ -73,13 +73,7 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<LatencyPhase<S, 4, 32, 4>>())
-    }
-
-    fn counted(settings: &Settings) -> Result<Counted> {
-        Ok(Counted::at_most("latency-phase-4x32", settings.count("neurons", 1..=255)? as f64 / 4.0))
-    }
+    costs!(LatencyPhase<S, 4, 32, 4>, "latency-phase-4x32", |settings| settings.count("neurons", 1..=255)? as f64 / 4.0);
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let count = |name| settings.count(name, 1..=255);

@@ -65,30 +65,18 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<IntegrateAndFire<S, 127>>())
-    }
-
-    fn counted(_: &Settings) -> Result<Counted> {
-        Ok(Counted::exact("lif"))
-    }
+    costs!(IntegrateAndFire<S, 127>, "lif");
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         integrate::constant(settings, *rust, ".leaky()")
     }
 
     fn shape(settings: &Settings) -> Result<Shape> {
-        Ok(Shape { neurons: 1, slots: settings.count("spikes", 1..=127)? })
+        integrate::shape(settings)
     }
 
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
-        let power = settings.count("power", 1..=15)? as u8;
-        let most = settings.count("spikes", 1..=127)? as u8;
-        let scheme =
-            IntegrateAndFire::<S, 127>::try_new(settings.signal("threshold")?, power)?.leaky();
-        let scheme =
-            scheme.try_with_reference(settings.signal("reference")?)?.try_with_most(most)?;
-        visitor.visit(scheme, IntegrateAndFire::<S, 127>::START)
+        visitor.visit(integrate::built(settings)?.leaky(), IntegrateAndFire::<S, 127>::START)
     }
 }
 

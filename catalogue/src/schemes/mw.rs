@@ -74,7 +74,7 @@ impl Build for Scheme {
 
     /// Long windows take no more: the sum is carried along.
     fn counted(_: &Settings) -> Result<Counted> {
-        Ok(Counted::exact("mw-5"))
+        Ok(Counted::at_most("mw-5", 1.0))
     }
 
     fn outcomes(

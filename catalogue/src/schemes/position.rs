@@ -102,14 +102,8 @@ impl Build for Scheme {
         Ok(Shape { neurons, slots: 1 })
     }
 
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<Position<S, 20>>())
-    }
-
-    /// Neurons are found by bisection.
-    fn counted(settings: &Settings) -> Result<Counted> {
-        Ok(Counted::at_most("position-20", Self::shape(settings)?.neurons as f64 / 20.0))
-    }
+    // Neurons are found by bisection.
+    costs!(Position<S, 20>, "position-20", |settings| Self::shape(settings)?.neurons as f64 / 20.0);
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let (name, neurons) = ("population::Position", Self::shape(settings)?.neurons.to_string());
@@ -124,17 +118,7 @@ impl Build for Scheme {
         rust.constant(name, &neurons, &format!("{spaced}({})", rust.range(settings)?))
     }
 
-    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
-        Self::build_population(settings, visitor)
-    }
-}
-
-#[cfg(feature = "run")]
-impl BuildPopulation for Scheme {
-    fn build_within<S: Sample, V: Visit<S>, const M: usize>(
-        settings: &Settings,
-        visitor: V,
-    ) -> Result<V::Output> {
+    population!(|settings| {
         let scheme = match settings.preset("centres")? {
             Some("linear") => {
                 dynamic::Position::<S, M>::try_linear(settings.neurons()?, &settings.range()?)?
@@ -145,9 +129,8 @@ impl BuildPopulation for Scheme {
             )?,
             _ => dynamic::Position::<S, M>::try_new(&settings.signals("centres")?)?,
         };
-        let start = scheme.state();
-        visitor.visit(scheme, start)
-    }
+        (scheme.state(), scheme)
+    });
 }
 
 #[inline(never)]

@@ -95,15 +95,10 @@ impl Build for Scheme {
         Ok(Shape { neurons, slots: settings.count("spikes", 1..=dynamic::LEVELS)? })
     }
 
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<RankOrder<S, 15, 3>>())
-    }
-
-    fn counted(settings: &Settings) -> Result<Counted> {
+    costs!(RankOrder<S, 15, 3>, "rank-order-15x3", |settings| {
         let Shape { neurons, slots } = Self::shape(settings)?;
-        let longer = (neurons as f64 / 15.0).max(slots as f64 / 3.0);
-        Ok(Counted::at_most("rank-order-15x3", longer))
-    }
+        (neurons as f64 / 15.0).max(slots as f64 / 3.0)
+    });
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let Shape { neurons, slots } = Self::shape(settings)?;
@@ -114,17 +109,7 @@ impl Build for Scheme {
         rust.constant("population::RankOrder", &format!("{neurons}, {slots}"), &value)
     }
 
-    fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
-        Self::build_population(settings, visitor)
-    }
-}
-
-#[cfg(feature = "run")]
-impl BuildPopulation for Scheme {
-    fn build_within<S: Sample, V: Visit<S>, const M: usize>(
-        settings: &Settings,
-        visitor: V,
-    ) -> Result<V::Output> {
+    population!(|settings| {
         let spikes = settings.count("spikes", 1..=dynamic::LEVELS)?;
         let scheme = match settings.preset("centres")? {
             Some("linear") => {
@@ -133,9 +118,8 @@ impl BuildPopulation for Scheme {
             }
             _ => dynamic::RankOrder::try_new(spikes, &settings.signals("centres")?)?,
         };
-        let start = scheme.state();
-        visitor.visit(scheme, start)
-    }
+        (scheme.state(), scheme)
+    });
 }
 
 /// The nearest centre that has not fired, again and again, of two alike the lower: the rank of each neuron, or -1, one

@@ -58,13 +58,7 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<StepForward<S>>())
-    }
-
-    fn counted(_: &Settings) -> Result<Counted> {
-        Ok(Counted::exact("sf"))
-    }
+    costs!(StepForward<S>, "sf");
 
     /// Lists the outcomes one by one: the spikes depend on those before, and a run at a threshold tells the next higher
     /// one at which they differ. Passes over thresholds that lie closer than `most` of them fill the range.

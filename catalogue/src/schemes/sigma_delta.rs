@@ -84,13 +84,7 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<SigmaDelta<S, Average>>())
-    }
-
-    fn counted(_: &Settings) -> Result<Counted> {
-        Ok(Counted::exact("sigma-delta"))
-    }
+    costs!(SigmaDelta<S, Average>, "sigma-delta");
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let (range, mean) = (rust.range(settings)?, Mean::of(settings)?);

@@ -67,14 +67,7 @@ impl Build for Scheme {
         Ok(Shape { neurons: 1, slots: settings.count("spikes", 1..=127)? })
     }
 
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<SendOnDelta<S, 4>>())
-    }
-
-    fn counted(settings: &Settings) -> Result<Counted> {
-        let most = settings.count("spikes", 1..=127)?;
-        Ok(Counted::at_most("sod-4", most as f64 / 4.0))
-    }
+    costs!(SendOnDelta<S, 4>, "sod-4", |settings| Self::shape(settings)?.slots as f64 / 4.0);
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let (threshold, most) =

@@ -147,13 +147,7 @@ impl Build for Scheme {
         asked.get("threshold").is_none().then(|| "`threshold`".to_owned())
     }
 
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<TemporalContrast<S>>())
-    }
-
-    fn counted(_: &Settings) -> Result<Counted> {
-        Ok(Counted::exact("tbr"))
-    }
+    costs!(TemporalContrast<S>, "tbr");
 
     fn outcomes(_: &Settings, stretches: &[&[f64]], _: (f64, f64), _: usize) -> Option<Outcomes> {
         let distances = |values: &&[f64]| {

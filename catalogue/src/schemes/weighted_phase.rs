@@ -65,13 +65,7 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        Ok(state::<WeightedPhase<S, 8>>())
-    }
-
-    fn counted(settings: &Settings) -> Result<Counted> {
-        Ok(Counted::at_most("weighted-phase-8", settings.count("slots", 2..=16)? as f64 / 8.0))
-    }
+    costs!(WeightedPhase<S, 8>, "weighted-phase-8", |settings| settings.count("slots", 2..=16)? as f64 / 8.0);
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let slots = settings.count("slots", 2..=16)?.to_string();
