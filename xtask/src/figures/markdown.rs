@@ -22,17 +22,28 @@ pub fn ensure_written(page: &str, marker: &str, table: &str, command: &str) -> R
     Ok(())
 }
 
+/// What stands between the markers now.
+pub fn section(page: &str, marker: &str) -> Result<String> {
+    Ok(parts(&read(page)?, marker)?[1].to_owned())
+}
+
 fn read(page: &str) -> Result<String> {
     fs::read_to_string(paths::root().join(page)).with_context(|| page.to_owned())
 }
 
 /// The page with the table in the place of what stood between its markers.
 fn between(page: &str, marker: &str, table: &str) -> Result<String> {
+    let [before, _, after] = parts(page, marker)?;
+    Ok(format!("{before}<!-- {marker} -->\n{table}<!-- /{marker} -->{after}"))
+}
+
+/// What stands before, between and behind the markers.
+fn parts<'a>(page: &'a str, marker: &str) -> Result<[&'a str; 3]> {
     let (start, end) = (format!("<!-- {marker} -->\n"), format!("<!-- /{marker} -->"));
     let missing = || format!("no `{}` … `{end}`", start.trim_end());
     let (before, rest) = page.split_once(&start).with_context(missing)?;
-    let (_, after) = rest.split_once(&end).with_context(missing)?;
-    Ok(format!("{before}{start}{table}{end}{after}"))
+    let (table, after) = rest.split_once(&end).with_context(missing)?;
+    Ok([before, table, after])
 }
 
 #[cfg(test)]

@@ -14,9 +14,16 @@ use anyhow::Result;
 const CODECS: (&str, &str) = ("docs/costs.md", "bench-target");
 const EVENTS: (&str, &str) = ("docs/costs.md", "bench-target events");
 const BRIEF: (&str, &str) = ("README.md", "bench-target brief");
+const SIX: (&str, &str) = ("README.md", "bench-target six channels");
 
-/// The codecs of the short table.
-const FEW: [&str; 6] = ["tbr", "sf", "sod-4", "t-hsa-15", "position-20", "weighted-phase-8"];
+/// The codecs of the short table, by the types that its rows name.
+const FEW: [(&str, &str); 5] = [
+    ("`StepForward`", "sf"),
+    ("`SendOnDelta`", "sod-4"),
+    ("`TemporalContrast`", "tbr"),
+    ("`Position`", "position-20"),
+    ("`WeightedPhase`", "weighted-phase-8"),
+];
 
 /// What a line of a table tells: one codec, in one sample type, on one core and signal.
 struct Line<'a> {
@@ -116,7 +123,7 @@ pub fn text(rows: &[Row]) -> String {
 
 /// The tables of the costs' page.
 pub fn markdown(measured: &Measured) -> Result<String> {
-    let tables = tables(measured)?.into_iter().filter(|(place, _)| *place != BRIEF);
+    let tables = tables(measured)?.into_iter().filter(|((page, _), _)| *page == CODECS.0);
     Ok(tables.map(|(_, table)| table).collect())
 }
 
@@ -125,38 +132,27 @@ fn tables(Measured { rows, events, .. }: &Measured) -> Result<Vec<((&str, &str),
     let mut tables = vec![(EVENTS, events::markdown(events)?)];
     if !rows.is_empty() {
         tables.insert(0, (CODECS, codecs(rows)));
-        tables.push((BRIEF, brief(rows) + &events::in_a_sentence(events)? + "\n"));
+        tables.push((BRIEF, brief(rows, &markdown::section(BRIEF.0, BRIEF.1)?)));
+        tables.push((SIX, format!("\n{}\n", events::in_a_sentence(events)?)));
     }
     Ok(tables)
 }
 
-/// A few codecs on the usual core.
-fn brief(rows: &[Row]) -> String {
-    let mut text = String::from(
-        "\n| Cortex-M4F, `f32` | cycles to encode a sample | µs at 168 MHz | worst, cycles | cycles to decode | RAM, bytes |\n\
-         |---|---:|---:|---:|---:|---:|\n",
-    );
-    for Line { encode, encode_sample, decode, .. } in lines(rows) {
-        let of = (encode.core, encode.sample.as_str(), encode.signal.as_str());
-        if of == (CORES[0], "f32", "paper") && FEW.contains(&encode.codec.as_str()) {
-            text += &format!(
-                "| {} | {} | {} | {} | {} | {} |\n",
-                name(&encode.codec),
-                cell(encode_sample.cycles_mean),
-                encode_sample.cycles_mean.map_or("–".into(), microseconds),
-                encode_sample.cycles_max.map_or("–".into(), between_whole),
-                cell(decode.cycles_mean),
-                encode.state_bytes,
-            );
-        }
-    }
-    text + "\n"
-}
-
-/// Of an STM32F405's core.
-fn microseconds(cycles: [f64; 2]) -> String {
-    let [least, most] = cycles.map(|cycles| format!("{:.2}", cycles / 168.0));
-    if least == most { least } else { format!("{least}–{most}") }
+/// The table of a few codecs with its last two columns anew: the cycles of a sample on the usual core, and the RAM.
+fn brief(rows: &[Row], table: &str) -> String {
+    let usual = |line: &Line<'_>| {
+        (line.encode.core, line.encode.sample.as_str(), line.encode.signal.as_str())
+            == (CORES[0], "f32", "paper")
+    };
+    let anew = |row: &str| {
+        let (_, codec) = FEW.into_iter().find(|(name, _)| row.contains(name))?;
+        let costs = lines(rows).find(|line| usual(line) && line.encode.codec == codec)?;
+        let (cycles, ram) = (cell(costs.encode_sample.cycles_mean), costs.encode.state_bytes);
+        let cells: Vec<&str> = row.split(" | ").collect();
+        let words = cells.get(..cells.len().checked_sub(2)?)?.join(" | ");
+        Some(format!("{words} | {cycles} | {ram} |"))
+    };
+    table.lines().map(|row| anew(row).unwrap_or_else(|| row.to_owned()) + "\n").collect()
 }
 
 /// `f32` where there is a floating-point unit, fixed point where there is none.
