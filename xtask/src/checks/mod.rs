@@ -8,6 +8,7 @@ pub mod fuzz;
 pub mod link;
 pub mod logging;
 pub mod long;
+pub mod own_firmware;
 pub mod package;
 pub mod peers;
 pub mod rate_loop;

@@ -3,8 +3,8 @@
 mod passed;
 
 use crate::checks::{
-    everyday, fifo, firmware, fuzz, link, logging, long, package, peers, rate_loop, real_boards,
-    reckon, ros, simulated_drone, soak, storm, tuned, video,
+    everyday, fifo, firmware, fuzz, link, logging, long, own_firmware, package, peers, rate_loop,
+    real_boards, reckon, ros, simulated_drone, soak, storm, tuned, video,
 };
 use crate::common::{cpu, usage};
 use crate::figures::{bench, demo, faults, flash};
@@ -95,6 +95,11 @@ const LONG: &[Step] = &[
         bench::verify_stack,
     ),
     step("flash", "the flash of one codec as linked, with two bounds", flash::verify),
+    step(
+        "own-firmware",
+        "the whole program on the page of boards, compiled and linked with its HAL",
+        own_firmware::own_firmware,
+    ),
     step("beside", "slices on this machine beside another crate's", long::beside),
     step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", || {
         bench::verify("M0")
