@@ -552,7 +552,7 @@ mod tests {
         says(&page, &format!("{} later (an nRF52840", seconds(BACK)));
         says(&page, &format!("starts anew: {})", seconds(BACK + SLOW_CRYSTAL)));
         says(&page, &format!("within {} the far end is neutral", seconds(SILENCE / 1_000)));
-        says(&page, &format!("as dead: {} ms", SILENCE / 1_000));
+        says(&page, &format!("as dead after {} ms", SILENCE / 1_000));
     }
 
     #[test]

@@ -8,7 +8,7 @@ pub mod fuzz;
 pub mod link;
 pub mod logging;
 pub mod long;
-pub mod own_firmware;
+pub mod nucleo;
 pub mod package;
 pub mod peers;
 pub mod rate_loop;

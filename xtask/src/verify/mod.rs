@@ -3,7 +3,7 @@
 mod passed;
 
 use crate::checks::{
-    everyday, fifo, firmware, fuzz, link, logging, long, own_firmware, package, peers, rate_loop,
+    everyday, fifo, firmware, fuzz, link, logging, long, nucleo, package, peers, rate_loop,
     real_boards, reckon, ros, simulated_drone, soak, storm, tuned, video,
 };
 use crate::common::{cpu, usage};
@@ -96,9 +96,9 @@ const LONG: &[Step] = &[
     ),
     step("flash", "the flash of one codec as linked, with two bounds", flash::verify),
     step(
-        "own-firmware",
+        "nucleo",
         "the whole program on the page of boards, compiled and linked with its HAL",
-        own_firmware::own_firmware,
+        nucleo::nucleo,
     ),
     step("beside", "slices on this machine beside another crate's", long::beside),
     step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", || {

@@ -1,4 +1,4 @@
-//! `cargo verify own-firmware`: the whole program on the page of boards compiles and links, with the HAL that it names.
+//! `cargo verify nucleo`: the whole program on the page of boards compiles and links, with the HAL that it names.
 
 use crate::common::{paths, run};
 use crate::programs::published;
@@ -16,7 +16,7 @@ const FILES: [(&str, &str); 4] = [
     ("ini", ".cargo/config.toml"),
 ];
 
-pub fn own_firmware() -> Result<()> {
+pub fn nucleo() -> Result<()> {
     let page = fs::read_to_string(paths::root().join(PAGE))?;
     let (_, section) = page.split_once(HEADING).context(HEADING)?;
     let project = tempfile::tempdir()?;
