@@ -26,6 +26,7 @@ mod population_sizes;
 mod position;
 mod probabilistic;
 mod rank_order;
+mod rate_decoder;
 mod samples;
 mod serde;
 mod slots;

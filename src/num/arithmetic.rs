@@ -2,6 +2,8 @@
 
 use core::cmp::Ordering;
 
+use super::HAS_VECTORS;
+
 /// Steps and comparisons: one rounding in `f32`; exact and saturating in fixed point.
 pub(crate) trait Arithmetic: Sized {
     const ZERO: Self;
@@ -12,8 +14,8 @@ pub(crate) trait Arithmetic: Sized {
 
     fn is_finite(&self) -> bool;
 
-    /// The sum of a slice's samples, including this one. If the last sum is finite, so was every sample: one check at
-    /// the end replaces one a sample. Fixed point, which is always finite, returns `self`.
+    /// A check over a slice's samples, including this one. If the last check is finite, so was every sample: one test
+    /// at the end replaces one a sample. Fixed point, which is always finite, returns `self`.
     fn including(self, sample: Self) -> Self;
 
     /// `self + step`.
@@ -44,7 +46,7 @@ impl Arithmetic for f32 {
 
     #[inline]
     fn including(self, sample: Self) -> Self {
-        self + sample
+        check(self, sample)
     }
 
     #[inline]
@@ -70,6 +72,19 @@ impl Arithmetic for f32 {
     #[inline]
     fn step(self, previous: Self, threshold: Self) -> Ordering {
         beyond(self - previous, magnitude(threshold))
+    }
+}
+
+/// A float that is finite only if both the check so far and the value are. Their sum takes one instruction; but every
+/// sum waits for the one before it, so that a core with vectors collects bits instead, which it may do in any order.
+#[inline]
+pub(super) fn check(check: f32, value: f32) -> f32 {
+    if HAS_VECTORS {
+        // NaN unless the value is finite.
+        let zero = value * 0.0;
+        f32::from_bits(check.to_bits() | zero.to_bits())
+    } else {
+        check + value
     }
 }
 

@@ -20,6 +20,7 @@ mod stored;
 mod sums;
 mod tally;
 mod total;
+mod vectors;
 mod window_sum;
 
 pub(crate) use arithmetic::Arithmetic;
@@ -40,4 +41,5 @@ pub(crate) use stored::Stored;
 pub(crate) use sums::{Summed, Sums};
 pub(crate) use tally::Tally;
 pub(crate) use total::{Total, Totalled};
+pub(crate) use vectors::{HAS_VECTORS, groups, groups_mut};
 pub(crate) use window_sum::{Difference, Windowed, fast_margin, margin};

@@ -31,6 +31,9 @@ pub(crate) trait Residual:
 
     fn plus(self, other: Self) -> Self;
     fn minus(self, other: Self) -> Self;
+
+    /// The residual where the bits of `mask` are all 1, 0 where they are all 0.
+    fn masked(self, mask: u32) -> Self;
 }
 
 /// The factor of BSA's multiplicative rule: as given for `f32`, with 14 fraction bits for integers.
@@ -85,6 +88,11 @@ impl Residual for f32 {
     fn minus(self, other: f32) -> f32 {
         self - other
     }
+
+    #[inline]
+    fn masked(self, mask: u32) -> f32 {
+        f32::from_bits(self.to_bits() & mask)
+    }
 }
 
 /// Sums and differences of two residuals never overflow, since `Rated::residual` leaves room for all taps: hence
@@ -101,6 +109,11 @@ impl Residual for i32 {
     #[inline]
     fn minus(self, other: i32) -> i32 {
         self.wrapping_sub(other)
+    }
+
+    #[inline]
+    fn masked(self, mask: u32) -> i32 {
+        self & mask.cast_signed()
     }
 }
 

@@ -6,7 +6,7 @@ use core::hint::black_box;
 
 use bytemuck::Pod;
 
-use super::arithmetic::{beyond, for_each_integer, magnitude};
+use super::arithmetic::{beyond, check, for_each_integer, magnitude};
 use super::convert::units;
 use super::{Sample, SampleKind, Stored, word};
 
@@ -54,8 +54,8 @@ pub(crate) trait Difference: Copy + Default + Debug + Send + Sync + Stored {
 
     fn is_finite(self) -> bool;
 
-    /// The sum of a group's differences, including this one. If the last sum is finite, so was every difference: one
-    /// check at the end replaces one a sample. Integers, which are always finite, return `self`.
+    /// A check over a group's differences, including this one. If the last check is finite, so was every difference:
+    /// one test at the end replaces one a sample. Integers, which are always finite, return `self`.
     fn including(self, difference: Self) -> Self;
 
     /// Compares a difference, which is not NaN, with the margin: `Greater` above it, `Less` below its negative, else
@@ -110,7 +110,7 @@ impl Difference for f32 {
 
     #[inline]
     fn including(self, difference: f32) -> f32 {
-        self + difference
+        check(self, difference)
     }
 
     #[inline]

@@ -1,7 +1,7 @@
 //! The decoder that the rate codes with a filter share: it adds up the filters of the spikes.
 
 use super::filtered::Filtered;
-use crate::num::Residual;
+use crate::num::{HAS_VECTORS, Residual};
 use crate::{Sample, Spike};
 
 /// The state of the decoder of a rate code with a filter: what past spikes add to the next `F` values.
@@ -38,6 +38,95 @@ impl<S: Sample, const F: usize> RateDecoderState<S, F> {
         let taps = |slot| filtered.taps.starting_at(slot).as_slice();
         filtered.shift.restore(decode(&mut self.pending, &mut self.next, taps, spike))
     }
+
+    #[inline(always)]
+    pub(super) fn decode_slice(
+        &mut self,
+        filtered: &Filtered<S, F>,
+        spikes: &[impl Copy + Into<Spike>],
+        values: &mut [S],
+    ) -> usize {
+        let length = spikes.len().min(values.len());
+        let (mut spikes, mut values) = (spikes, values);
+        if HAS_VECTORS && length > PANEL + 4 * F {
+            let done = self.decode_panels(filtered, spikes, values);
+            spikes = spikes.get(done..).unwrap_or_default();
+            values = values.get_mut(done..).unwrap_or_default();
+        }
+        for (value, &spike) in values.iter_mut().zip(spikes) {
+            *value = self.decode(filtered, spike.into());
+        }
+        length
+    }
+
+    /// Decodes panel after panel, and returns how many values that made.
+    ///
+    /// Each value is the sum that [`decode`](Self::decode) makes, in its order: all values of a panel take the
+    /// filter's last tap, then the tap before it, and so on. Without a spike they add 0, which changes no sum, as none
+    /// is -0.
+    fn decode_panels(
+        &mut self,
+        filtered: &Filtered<S, F>,
+        spikes: &[impl Copy + Into<Spike>],
+        values: &mut [S],
+    ) -> usize {
+        let past = F - 1;
+        for (value, &spike) in values.iter_mut().zip(spikes).take(past) {
+            *value = self.decode(filtered, spike.into());
+        }
+        let mut done = past;
+        while let Some(values) = values.get_mut(done..).and_then(<[S]>::first_chunk_mut::<PANEL>)
+            && let Some(spikes) = spikes.get(done - past..done + PANEL)
+        {
+            for (value, sum) in values.iter_mut().zip(sums::<S>(filtered.taps.as_array(), spikes)) {
+                *value = filtered.shift.restore(sum);
+            }
+            done += PANEL;
+        }
+        // What the last spikes add to the values to come.
+        self.pending = [S::Residual::ZERO; F];
+        for &spike in spikes.get(done - past..done).unwrap_or_default() {
+            self.decode(filtered, spike.into());
+        }
+        done
+    }
+}
+
+/// How many values are decoded at once: blocks of values, whose sums fit the registers.
+const PANEL: usize = 3 * BLOCK;
+const BLOCK: usize = 48;
+
+/// Of how many taps the spikes are looked up at once.
+const GROUP: usize = 16;
+
+/// The sums of a panel. `spikes` are the panel's, and before them one less than there are taps.
+#[inline]
+fn sums<S: Sample>(taps: &[S], mut spikes: &[impl Copy + Into<Spike>]) -> [S::Residual; PANEL] {
+    let mut sums = [S::Residual::ZERO; PANEL];
+    for group in taps.rchunks(GROUP) {
+        let mut fired = [0; PANEL + GROUP];
+        for (fired, &spike) in fired.iter_mut().zip(spikes) {
+            *fired = if spike.into() == Spike::Up { u32::MAX } else { 0 };
+        }
+        let blocks = fired.windows(BLOCK + GROUP).step_by(BLOCK);
+        for (sums, fired) in sums.as_chunks_mut::<BLOCK>().0.iter_mut().zip(blocks) {
+            add_block::<S>(sums, group, fired);
+        }
+        spikes = spikes.get(group.len()..).unwrap_or_default();
+    }
+    sums
+}
+
+/// Adds a group of taps to the sums of a block, out of line so that the sums have all registers.
+#[inline(never)]
+fn add_block<S: Sample>(sums: &mut [S::Residual; BLOCK], group: &[S], fired: &[u32]) {
+    let mut own = *sums;
+    for (tap, fired) in group.iter().rev().zip(fired.windows(BLOCK)) {
+        for (sum, &fired) in own.iter_mut().zip(fired) {
+            *sum = sum.plus(tap.widen().masked(fired));
+        }
+    }
+    *sums = own;
 }
 
 /// Takes the sum of the next value out of the slot `next` of a ring, which is in an array or on the heap. `taps`
@@ -83,10 +172,7 @@ macro_rules! decode_rate {
             spikes: &[impl Copy + Into<Spike>],
             values: &mut [S],
         ) -> usize {
-            for (value, &spike) in values.iter_mut().zip(spikes) {
-                *value = state.decode(&self.filtered, spike.into());
-            }
-            spikes.len().min(values.len())
+            state.decode_slice(&self.filtered, spikes, values)
         }
 
         fn fits_decoder(&self, state: &RateDecoderState<S, F>) -> bool {

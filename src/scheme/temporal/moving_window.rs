@@ -6,7 +6,7 @@ use core::slice::{from_mut, from_ref};
 use super::StepState;
 use super::steps::decode_steps;
 use crate::error::{positive, unwrap};
-use crate::num::{Difference, Tally, Windowed, fast_margin, margin, to_f64};
+use crate::num::{Difference, HAS_VECTORS, Tally, Windowed, fast_margin, margin, to_f64};
 use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 
 /// Moving window: the baseline is the mean of the `N` samples before.
@@ -178,6 +178,29 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
         taken
     }
 
+    /// Encodes whole blocks of a short window with a copy of the state, which stays in registers, and returns how many
+    /// samples. Stops before a block that [`encode_groups`](Self::encode_groups) does not take.
+    #[inline]
+    fn encode_blocks(
+        &mut self,
+        margin: <S::Fast as Difference>::Margin,
+        blocks: &[[S; N]],
+        spikes: &mut [[impl Destination<Spike>; N]],
+    ) -> usize {
+        let mut own = *self;
+        let mut taken = 0;
+        for (block, spikes) in blocks.iter().zip(spikes) {
+            if own.next != 0
+                || own.encode_groups::<N>(margin, from_ref(block), from_mut(spikes)) == 0
+            {
+                break;
+            }
+            taken += N;
+        }
+        *self = own;
+        taken
+    }
+
     /// [`encode_groups`](Self::encode_groups) of a long block, out of line so that it has all registers.
     #[inline(never)]
     fn encode_long(
@@ -323,6 +346,9 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
             let taken = if N > SHORT {
                 let (groups, spikes) = (samples.as_chunks().0, spikes.as_chunks_mut().0);
                 state.encode_long(self.fast_margin, groups, spikes)
+            } else if HAS_VECTORS {
+                let (blocks, spikes) = (samples.as_chunks().0, spikes.as_chunks_mut().0);
+                state.encode_blocks(self.fast_margin, blocks, spikes)
             } else if state.next == 0
                 && let Some(block) = samples.first_chunk()
                 && let Some(spikes) = spikes.first_chunk_mut()

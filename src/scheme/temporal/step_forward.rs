@@ -4,7 +4,7 @@ use super::StepState;
 use super::band::Band;
 use super::steps::decode_steps;
 use crate::error::{step, unwrap};
-use crate::num::{Tally, to_f64};
+use crate::num::{Tally, groups, groups_mut, to_f64};
 use crate::scheme::codec::{Until, encode_each};
 use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 
@@ -84,6 +84,9 @@ pub struct StepForwardState<S> {
     tally: Tally,
 }
 
+/// How many samples are compared with the band at once, if the core has vectors.
+const GROUP: usize = 4;
+
 impl<S: Sample> Start for StepForward<S> {
     const START: StepForwardState<S> =
         StepForwardState { base: S::NO_BASELINE, tally: Tally::NONE };
@@ -138,30 +141,47 @@ impl<S: Sample> Scheme for StepForward<S> {
         } else {
             encode_each(self, state, samples, spikes, Until::Primed)
         };
-        let samples = samples.get(first..).unwrap_or_default();
-        let spikes = spikes.get_mut(first..).unwrap_or_default();
+        let length = samples.len().min(spikes.len());
+        let samples = samples.get(first..length).unwrap_or_default();
+        let spikes = spikes.get_mut(first..length).unwrap_or_default();
 
         let threshold = self.threshold;
         let mut band = Band::around(state.base, threshold);
         let mut check = S::ZERO;
-        for (spike, &sample) in spikes.iter_mut().zip(samples) {
-            spike.write(Spike::None);
+        let mut follow = |band: &mut Band<S>, spike: &mut _, sample: S| {
+            Destination::write(spike, Spike::None);
             if sample > band.upper {
-                band = Band::around(band.upper, threshold);
+                *band = Band::around(band.upper, threshold);
                 check = check.including(sample);
-                spike.write(Spike::Up);
+                Destination::write(spike, Spike::Up);
             } else if band.is_above(sample) {
-                band = Band::around(band.lower, threshold);
+                *band = Band::around(band.lower, threshold);
                 check = check.including(sample);
-                spike.write(Spike::Down);
+                Destination::write(spike, Spike::Down);
             }
+        };
+        let (groups, last) = groups::<_, GROUP>(samples);
+        let (spike_groups, last_spikes) = groups_mut::<_, GROUP>(spikes);
+        for (spikes, samples) in spike_groups.iter_mut().zip(groups) {
+            if samples.iter().fold(true, |is_quiet, &sample| is_quiet & band.holds(sample)) {
+                for spike in spikes {
+                    spike.write(Spike::None);
+                }
+            } else {
+                for (spike, &sample) in spikes.iter_mut().zip(samples) {
+                    follow(&mut band, spike, sample);
+                }
+            }
+        }
+        for (spike, &sample) in last_spikes.iter_mut().zip(last) {
+            follow(&mut band, spike, sample);
         }
         if check.is_finite() {
             state.base = band.base;
         } else {
             encode_each(self, state, samples, spikes, Until::End);
         }
-        first + samples.len().min(spikes.len())
+        length
     }
 
     /// The last sample of the past becomes the baseline. Give the decoder that value by `resync`.
