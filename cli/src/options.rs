@@ -1,13 +1,16 @@
 //! The parameters of the catalogue's schemes as options.
 
+use crate::Program;
 use anyhow::{Result as Checked, bail};
 use catalogue::run::{Asked, SET, SampleType, Value};
 use catalogue::{Found, Info, Kind, Parameter, Unit};
 use clap::builder::{MapValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Arg, ArgAction, ArgMatches, Args, Command};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, CommandFactory};
 use lab::coding::Coding as File;
 use lab::scheme::Scheme;
+use std::collections::BTreeSet;
 use std::fmt::{Display, Write};
+use std::sync::LazyLock;
 
 /// The scheme to run and its settings: from the command line, and from a file if that leaves some open.
 #[derive(Args, Clone, Debug)]
@@ -224,7 +227,7 @@ fn help(owners: &[(&'static Info, &'static Parameter)]) -> String {
 }
 
 fn meaning(parameter: &Parameter) -> String {
-    let mut text = spelled(parameter.help);
+    let mut text = spelled_of(parameter.help, is_parameter);
     // Writing to a string cannot fail.
     let _ = match parameter.unit {
         Unit::Signal if parameter.kind == Kind::Number => write!(text, ", in the signal's unit"),
@@ -245,6 +248,10 @@ fn meaning(parameter: &Parameter) -> String {
 
 /// A text of the library as the command line has it: the name of a setting in backticks becomes its option.
 pub(crate) fn spelled(text: &str) -> String {
+    spelled_of(text, is_setting)
+}
+
+fn spelled_of(text: &str, is_setting: fn(&str) -> bool) -> String {
     /// Words behind which text in backticks came from the user or a file.
     const DATA: [&str; 9] = [
         "channel ",
@@ -281,44 +288,20 @@ pub(crate) fn tell_each<'a>(notes: impl IntoIterator<Item = &'a String>) {
     notes.into_iter().for_each(|note| tell(format_args!("{note}\n")));
 }
 
+/// Whether an option is of this name, of any command.
 fn is_setting(name: &str) -> bool {
-    const OWN: [&str; 34] = [
-        "accept_cut",
-        "anyway",
-        "baud",
-        "below",
-        "blocks",
-        "channel",
-        "chip",
-        "column",
-        "columns",
-        "delimiter",
-        "drop",
-        "dt",
-        "evaluations",
-        "field",
-        "fields",
-        "front",
-        "hold_out",
-        "loop_bandwidth",
-        "max_instructions",
-        "max_latency",
-        "max_ram",
-        "max_rate",
-        "max_rmse",
-        "min_efficiency",
-        "paper",
-        "probe",
-        "rate",
-        "sample",
-        "scheme",
-        "seconds",
-        "skip_non_finite",
-        "time",
-        "time_unit",
-        "topic",
-    ];
-    OWN.contains(&name) || catalogue::INFO.iter().any(|info| info.parameter(name).is_some())
+    static OPTIONS: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
+        let program = Program::command();
+        let arguments = program.get_subcommands().flat_map(Command::get_arguments);
+        let options = arguments.filter(|argument| argument.get_long().is_some());
+        options.map(|option| option.get_id().to_string()).collect()
+    });
+    OPTIONS.contains(name)
+}
+
+/// Whether a parameter of a scheme is of this name.
+fn is_parameter(name: &str) -> bool {
+    catalogue::INFO.iter().any(|info| info.parameter(name).is_some())
 }
 
 #[cfg(test)]

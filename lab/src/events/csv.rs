@@ -1,6 +1,5 @@
 //! Tables of events: `tick,address,polarity`, and in comments what is no event.
 
-use super::told::Told;
 use super::{EventReader, EventWriter, Item, Known, Tally};
 use anyhow::{Context, Result, bail};
 use catalogue::run::SampleType;
@@ -20,7 +19,9 @@ pub(super) struct Reader {
     events: u64,
     /// Ticks of more than 32 bits.
     long_ticks: u64,
-    told: Told,
+    is_file_of_spikes: bool,
+    /// The number of events that the end of a file of spikes tells.
+    told_events: Option<u64>,
 }
 
 /// The places of the columns in a line.
@@ -40,8 +41,22 @@ impl Reader {
             columns: None,
             events: 0,
             long_ticks: 0,
-            told: Told::default(),
+            is_file_of_spikes: false,
+            told_events: None,
         }
+    }
+
+    /// Takes a comment; gives the item that it stands for, if it is one of ours.
+    fn note(&mut self, note: &str) -> Result<Option<Item>> {
+        match note.split_once('=') {
+            Some(("spikewire", _)) => self.is_file_of_spikes = true,
+            Some(("events", count)) if self.is_file_of_spikes => {
+                let count = count.parse().with_context(|| format!("`{count}` is not a count"))?;
+                self.told_events = Some(count);
+            }
+            _ => {}
+        }
+        note_item(note)
     }
 
     fn end_line(&mut self, items: &mut Vec<Item>) -> Result<()> {
@@ -50,7 +65,7 @@ impl Reader {
         let text = String::from_utf8_lossy(&line);
         let text = text.trim();
         let item = if let Some(note) = text.strip_prefix('#') {
-            self.told.observe(note.trim()).and_then(|()| note_item(note.trim()))
+            self.note(note.trim())
         } else if let Some(columns) = self.columns {
             if text.is_empty() {
                 Ok(None)
@@ -96,7 +111,15 @@ impl EventReader for Reader {
         if self.columns.is_none() {
             bail!("{}: empty; a table of events starts with `{HEADER}`", self.file);
         }
-        self.told.check(self.events).with_context(|| self.file.clone())
+        match self.told_events {
+            None if self.is_file_of_spikes => {
+                bail!("{}: ends without `# samples=` and `# events=`; is it cut short?", self.file)
+            }
+            Some(told) if told != self.events => {
+                bail!("{}: holds {} events where its end says {told}", self.file, self.events)
+            }
+            _ => Ok(()),
+        }
     }
 
     fn tally(&self) -> Tally {

@@ -10,7 +10,6 @@ mod link;
 mod omitted;
 mod stream;
 mod tally;
-mod told;
 mod whole;
 
 pub use format::{Format, values_writer};

@@ -101,6 +101,20 @@ pub struct Told {
     pub step_us: Option<f64>,
 }
 
+impl Told {
+    /// How long so many steps are in the recording, if that is known, behind a comma.
+    pub(super) fn micros(&self, steps: usize) -> String {
+        self.step_us.map_or(String::new(), |step| {
+            format!(", {:.0} µs in the recording", step * steps as f64)
+        })
+    }
+}
+
+/// The items of an array, a line each.
+pub(super) fn lines(items: impl Iterator<Item = String>) -> String {
+    items.fold(String::new(), |all, item| all + "        " + &item + ",\n")
+}
+
 /// The bytes that `write` puts in front of room for the largest network.
 pub(super) fn written<E>(write: impl FnOnce(&mut [u8]) -> Result<usize, E>) -> Result<Vec<u8>, E> {
     /// More bytes than any network takes on any chip.

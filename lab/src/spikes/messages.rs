@@ -1,7 +1,7 @@
 //! Reads spikes out of logs: ours, and those that the paper's toolbox wrote.
 
 use super::recorder::{EVENT, HEADER};
-use super::spyke::{GAUSSIAN_FIELDS, meant};
+use super::toolbox::{GAUSSIAN_FIELDS, meant};
 use super::{Header, Item, Spikes};
 use crate::input::messages::{Kind, Reading};
 use anyhow::{Context, Result, bail};

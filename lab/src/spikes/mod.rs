@@ -12,6 +12,7 @@ mod messages;
 mod reader;
 mod recorder;
 mod spyke;
+mod toolbox;
 mod writer;
 
 pub use header::{Header, unrecorded};

@@ -6,6 +6,7 @@
 use super::bag::Bag;
 use super::mcap::Mcap;
 use super::spyke::{self, Kind, Spyke};
+use super::toolbox::published;
 use super::{Header, Record, Summary};
 use crate::input::{Chunk, Step};
 use crate::output::Output;
@@ -122,7 +123,7 @@ impl Recorder {
             start: settings.first_value().unwrap_or_default() as f32,
             range: (min as f32, max as f32),
             threshold: settings.number("threshold").unwrap_or_default() as f32,
-            scheme: spyke::published(header.scheme.name()),
+            scheme: published(header.scheme.name()),
             ..Spyke::default()
         });
         let empty: Vec<Spyke> = empty.collect();

@@ -116,6 +116,8 @@ const TIME: &str = "timestamp";
 /// The start of the names of PX4's padding.
 const PADDING: &str = "_padding";
 
+// The nodes of ROS 2 read this file too, and find in it what only logs need.
+#[allow(dead_code)]
 impl Definition {
     /// Reads the text in a log, for a message of this type, such as `sensor_msgs/Imu`.
     ///
@@ -142,7 +144,15 @@ impl Definition {
         }
         let name = short(name);
         texts.entry(name.clone()).or_insert(own);
-        Parser::parse(&name, &texts, dialect)
+        Parser::parse(&name, &|name| texts.get(name).cloned(), dialect)
+    }
+
+    /// Finds a message of ROS 2, whose definition and those of the messages in it are looked up by `package/Type`.
+    ///
+    /// # Errors
+    /// Returns an error that names what cannot be understood.
+    pub(super) fn of_ros2(name: &str, look_up: &LookUp) -> Result<Self, String> {
+        Parser::parse(&short(name), look_up, Dialect::Ros2)
     }
 
     /// Finds a message among the definitions of a PX4 log.
@@ -150,7 +160,7 @@ impl Definition {
     /// # Errors
     /// Returns an error that names what cannot be understood.
     pub(super) fn of_px4(name: &str, texts: &HashMap<String, String>) -> Result<Self, String> {
-        Parser::parse(name, texts, Dialect::Px4)
+        Parser::parse(name, &|name| texts.get(name).cloned(), Dialect::Px4)
     }
 
     /// The place of the time at which PX4 logged a message.
@@ -279,20 +289,19 @@ pub(super) fn short(name: &str) -> String {
     name.replacen("/msg/", "/", 1)
 }
 
+/// The definition of a message by its name, if there is one.
+type LookUp<'a> = dyn Fn(&str) -> Option<String> + 'a;
+
 struct Parser<'a> {
-    texts: &'a HashMap<String, String>,
+    look_up: &'a LookUp<'a>,
     dialect: Dialect,
     structs: Vec<Struct>,
     places: HashMap<String, usize>,
 }
 
 impl<'a> Parser<'a> {
-    fn parse(
-        name: &str,
-        texts: &'a HashMap<String, String>,
-        dialect: Dialect,
-    ) -> Result<Definition, String> {
-        let mut parser = Self { texts, dialect, structs: Vec::new(), places: HashMap::new() };
+    fn parse(name: &str, look_up: &'a LookUp<'a>, dialect: Dialect) -> Result<Definition, String> {
+        let mut parser = Self { look_up, dialect, structs: Vec::new(), places: HashMap::new() };
         parser.add(name, 0)?;
         Ok(Definition { structs: parser.structs })
     }
@@ -310,13 +319,10 @@ impl<'a> Parser<'a> {
                 Ok(place)
             };
         }
-        let text = match self.texts.get(name) {
-            Some(text) => text.clone(),
-            None => built_in(name, self.dialect)
-                .map(str::to_owned)
-                .or_else(|| known(name).filter(|_| self.dialect == Dialect::Ros2))
-                .ok_or_else(|| format!("there is no definition of {name}"))?,
-        };
+        let text = (self.look_up)(name)
+            .or_else(|| built_in(name, self.dialect).map(str::to_owned))
+            .or_else(|| known(name).filter(|_| self.dialect == Dialect::Ros2))
+            .ok_or_else(|| format!("there is no definition of {name}"))?;
         self.places.insert(name.to_owned(), usize::MAX);
         let place = self.structs.len();
         self.structs.push(Struct::default());
