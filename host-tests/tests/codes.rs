@@ -12,6 +12,7 @@ mod closure;
 mod config_errors;
 mod defmt;
 mod dynamic;
+mod every_scheme;
 mod first_spike;
 mod frames;
 mod gaussian;

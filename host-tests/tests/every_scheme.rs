@@ -1,0 +1,62 @@
+//! What a scheme needs that nothing can generate: a test with a reference of its own, and its rows in the docs.
+
+use catalogue::{Channel, Flight, State};
+use host_tests::flight;
+use spikewire::{ConfigError, Scheme};
+use std::{any::type_name, collections::BTreeSet, fs, path::Path};
+
+/// The schemes' types, such as `StepForward`.
+#[derive(Default)]
+struct Types(BTreeSet<String>);
+
+impl Flight for Types {
+    type Sample = f32;
+    type Error = ConfigError;
+
+    fn visit<P>(
+        &mut self,
+        _: &'static str,
+        _: &'static str,
+        _: &P,
+        _: P::EncoderState,
+    ) -> Result<(), ConfigError>
+    where
+        P: Scheme<Sample = f32, EncoderState: State, DecoderState: State>,
+    {
+        let path = type_name::<P>().split('<').next().unwrap();
+        self.0.insert(path.rsplit("::").next().unwrap().to_owned());
+        Ok(())
+    }
+}
+
+#[test]
+fn has_a_test_and_rows_in_the_docs() {
+    let samples = flight::flown::<f32>(0, 1.0);
+    let mut types = Types::default();
+    catalogue::fly(&Channel::new(0, flight::calibrated(&samples)), &mut types).unwrap();
+    assert!(types.0.contains("StepForward"), "{:?}", types.0);
+
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let read = |path: &Path| fs::read_to_string(path).unwrap();
+    let texts = |room: &str| {
+        let files = fs::read_dir(root.join(room)).unwrap().map(|entry| entry.unwrap().path());
+        let sources = files.filter(|path| path.extension().is_some_and(|it| it == "rs"));
+        sources.map(|path| read(&path)).collect::<Vec<_>>()
+    };
+    let beside = texts("catalogue/src/schemes");
+    let beside =
+        beside.iter().filter_map(|text| Some(text.split_once("mod tests {")?.1.to_owned()));
+    let tests: Vec<String> = texts("host-tests/tests").into_iter().chain(beside).collect();
+    for name in types.0 {
+        assert!(
+            tests.iter().any(|test| test.contains(&name)),
+            "no test compares `{name}` with a reference: CONTRIBUTING.md, “A scheme”, step 4"
+        );
+        for page in ["src/lib.rs", "docs/schemes.md", "docs/codes.md"] {
+            assert!(
+                read(&root.join(page)).contains(&name),
+                "{page} has no `{name}`: CONTRIBUTING.md, “A scheme”, step 5"
+            );
+        }
+    }
+}
