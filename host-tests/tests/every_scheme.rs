@@ -38,15 +38,15 @@ fn has_a_test_and_rows_in_the_docs() {
 
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
     let read = |path: &Path| fs::read_to_string(path).unwrap();
-    let texts = |room: &str| {
+    let sources_of = |room: &str| {
         let files = fs::read_dir(root.join(room)).unwrap().map(|entry| entry.unwrap().path());
         let sources = files.filter(|path| path.extension().is_some_and(|it| it == "rs"));
         sources.map(|path| read(&path)).collect::<Vec<_>>()
     };
-    let beside = texts("catalogue/src/schemes");
+    let beside = sources_of("catalogue/src/schemes");
     let beside =
         beside.iter().filter_map(|text| Some(text.split_once("mod tests {")?.1.to_owned()));
-    let tests: Vec<String> = texts("host-tests/tests").into_iter().chain(beside).collect();
+    let tests: Vec<String> = sources_of("host-tests/tests").into_iter().chain(beside).collect();
     for name in types.0 {
         assert!(
             tests.iter().any(|test| test.contains(&name)),
