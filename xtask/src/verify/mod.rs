@@ -20,7 +20,8 @@ const USAGE: &str = "\
 cargo verify [STEP]...     every check, or the named ones
 cargo verify --list        the checks' names
 cargo verify --long        the checks that need more time, by hand before a release
-cargo verify --rest        of all, those that have not passed at this commit; `--long --rest` likewise
+cargo verify --changed     of all, those that read something else than when they last passed; behind `--long` or names
+                           likewise
 cargo verify --help        this
 
 A check that fails does not hide the next one. Exit status 0: all passed; 1: one failed; 2: no such check.
@@ -32,9 +33,34 @@ struct Step {
     name: &'static str,
     what: &'static str,
     run: fn() -> Result<()>,
+    /// What it does not read: `--changed` passes over changes of these.
+    apart: Apart,
 }
 
-/// To add a check: write a function in a room of `checks`, and a line here.
+/// Rooms and files at the repository's top, in groups.
+type Apart = &'static [&'static [&'static str]];
+
+const PROSE: &[&str] = &[
+    ".ci",
+    ".github",
+    "ARCHITECTURE.md",
+    "CHANGELOG.md",
+    "CONTRIBUTING.md",
+    "README.md",
+    "SAFETY.md",
+    "docs",
+];
+/// What firmware does not use.
+const HOST: &[&str] = &["cli", "host-tests", "lab"];
+/// What no other room uses.
+const LAST: &[&str] = &["c", "fuzz", "loop", "page", "python", "ros"];
+/// What the crate does not use.
+const REST: &[&str] = &["catalogue", "data", "examples", "memory.x", "silicon"];
+/// For checks of emulated boards.
+const BOARDS: Apart = &[PROSE, HOST, LAST];
+
+/// To add a check: write a function in a room of `checks`, and a line here. One that says nothing of what it does not read
+/// reads everything; one that does is looked at with `strace -f -e trace=%file`.
 const STEPS: &[Step] = &[
     step(SETUP, "compiler targets, QEMU, binutils", setup),
     step("fmt", "rustfmt", everyday::fmt),
@@ -48,34 +74,56 @@ const STEPS: &[Step] = &[
         "fuzz",
         "hostile bytes for every reader, link, chip and codec: corpora and mutants",
         fuzz::replay,
-    ),
-    step("peers", "event formats against other programs", peers::peers),
+    )
+    .apart(&[PROSE, &["c", "examples", "loop", "page", "python", "ros"]]),
+    step("peers", "event formats against other programs", peers::peers)
+        .apart(&[PROSE, &["c", "examples", "fuzz", "loop", "page", "python", "ros"]]),
     step("readme", "the code of README and docs runs", everyday::readme),
-    step("doc", "documentation without warnings", everyday::doc),
+    step("doc", "documentation without warnings", everyday::doc).apart(&[HOST, LAST, REST]),
     step("package", "what is published has all that its pages show", package::package),
-    step("features", "every feature alone, on the host", everyday::each_feature),
-    step("targets", "the crate for every Cortex-M, all of it for the least", everyday::targets),
-    step("no-panic", "every codec links without a panic handler", everyday::no_panic),
-    step("c", "the library for C, on the host and on a Cortex-M4F", c_library::verify),
+    step("features", "every feature alone, on the host", everyday::each_feature)
+        .apart(&[PROSE, HOST, LAST, REST]),
+    step(
+        "targets",
+        "the crate alone and with all its features, for the least Cortex-M",
+        everyday::targets,
+    )
+    .apart(&[PROSE, HOST, LAST, REST]),
+    step("no-panic", "every codec links without a panic handler", everyday::no_panic).apart(BOARDS),
+    step("c", "the library for C, on the host and on a Cortex-M4F", c_library::verify).apart(&[
+        PROSE,
+        HOST,
+        &["fuzz", "loop", "page", "python", "ros"],
+    ]),
     step(
         "boards",
         "a Pico's firmware as it is flashed, in an emulator, and all that breaks",
         real_boards::boards,
-    ),
-    step("fifo", "a sensor at 8 kHz: driver, and instructions", fifo::fifo),
-    step("demo", "the demo's table and picture", || demo::fly().map(drop)),
-    step("firmware", "emulated boards against the host", || firmware::firmware(&[])),
-    step("storm", "more events than main takes, on emulated boards and host", storm::storm),
-    step("logging", "defmt out of emulated boards, decoded on the host", logging::logging),
-    step("link", "a flight over a serial line, board against host", link::link),
-    step("loop", "a flight through a chip's model, board against host", rate_loop::rate_loop),
-    step("tuned", "a constant from `spikewire tune`, in QEMU, spike by spike", tuned::tuned),
-    step("laptop", "the laptop program on a flight, and the paper's tables", everyday::laptop),
-    step("python", "the Python package: tests, hashes, README, example", python_package::python),
-    step("video", "the paper's figure of a video, from a packaged clip", video::video),
+    )
+    .apart(&[LAST]),
+    step("fifo", "a sensor at 8 kHz: driver, and instructions", fifo::fifo).apart(BOARDS),
+    step("demo", "the demo's table and picture", || demo::fly().map(drop)).apart(BOARDS),
+    step("firmware", "emulated boards against the host", || firmware::firmware(&[]))
+        .apart(&[HOST, LAST]),
+    step("storm", "more events than main takes, on emulated boards and host", storm::storm)
+        .apart(BOARDS),
+    step("logging", "defmt out of emulated boards, decoded on the host", logging::logging)
+        .apart(BOARDS),
+    step("link", "a flight over a serial line, board against host", link::link).apart(&[LAST]),
+    step("loop", "a flight through a chip's model, board against host", rate_loop::rate_loop)
+        .apart(&[PROSE, LAST]),
+    step("tuned", "a constant from `spikewire tune`, in QEMU, spike by spike", tuned::tuned)
+        .apart(&[PROSE, LAST]),
+    step("laptop", "the laptop program on a flight, and the paper's tables", everyday::laptop)
+        .apart(&[LAST]),
+    step("python", "the Python package: tests, hashes, README, example", python_package::python)
+        .apart(&[PROSE, &["c", "fuzz", "loop", "page", "ros"]]),
+    step("video", "the paper's figure of a video, from a packaged clip", video::video)
+        .apart(&[PROSE, LAST]),
     step("bench", "instruction counts of a Cortex-M4F against the baseline", || {
         bench::verify("M4F")
-    }),
+    })
+    .apart(BOARDS),
 ];
 
 /// Those that take too long for every change: the longest last.
@@ -93,7 +141,8 @@ const LONG: &[Step] = &[
         "stack",
         "no codec's stack is deeper than the bound of its code, nor that above 1 KiB, on two cores",
         bench::verify_stack,
-    ),
+    )
+    .apart(BOARDS),
     step("flash", "the flash of one codec as linked, with two bounds", flash::verify),
     step(
         "nucleo",
@@ -103,9 +152,15 @@ const LONG: &[Step] = &[
     step("beside", "slices on this machine beside another crate's", long::beside),
     step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", || {
         bench::verify("M0")
-    }),
-    step("panic-free", "every codec without a panic handler, on two cores", everyday::no_panic_all),
-    step("lints", "clippy on all at once, and every feature on every core", long::lints),
+    })
+    .apart(BOARDS),
+    step("panic-free", "every codec without a panic handler, on two cores", everyday::no_panic_all)
+        .apart(BOARDS),
+    step(
+        "lints",
+        "clippy on all at once, and the crate alone and with all its features on every core",
+        long::lints,
+    ),
     step("capture", "the laptop program with a debug probe's driver", long::capture),
     step("logs", "logs of every kind, read as independent readers do", peers::logs),
     step(
@@ -119,9 +174,11 @@ const LONG: &[Step] = &[
         c_library::watched,
     ),
     step("c-cost", "what the calls of C take beside the crate's", c_library::cost),
-    step("page", "the page in a browser, against the laptop program", page::verify),
+    step("page", "the page in a browser, against the laptop program", page::verify)
+        .apart(&[PROSE, &["c", "fuzz", "loop", "python", "ros"]]),
     step("ros2", "ROS 2 nodes against Cyclone DDS, on loopback alone", ros::ros2),
-    step("ros", "ROS nodes in the distribution's ROS, a flight through every scheme", ros::ros),
+    step("ros", "ROS nodes in the distribution's ROS, a flight through every scheme", ros::ros)
+        .apart(&[PROSE, &["c", "fuzz", "loop", "page", "python"]]),
     step(
         "py-speed",
         "the Python package from its source package, and its speed",
@@ -166,7 +223,13 @@ const LONG: &[Step] = &[
 const SETUP: &str = "setup";
 
 const fn step(name: &'static str, what: &'static str, run: fn() -> Result<()>) -> Step {
-    Step { name, what, run }
+    Step { name, what, run, apart: &[] }
+}
+
+impl Step {
+    const fn apart(self, apart: Apart) -> Self {
+        Self { apart, ..self }
+    }
 }
 
 /// What became of a step.
@@ -182,7 +245,7 @@ struct Outcome {
 /// Runs the named steps, or all but the long ones, in the list's order.
 pub fn verify(args: &[String]) -> Result<()> {
     let mut args: Vec<&str> = args.iter().map(String::as_str).collect();
-    let is_rest = args.pop_if(|last| *last == "--rest").is_some();
+    let is_changed = args.pop_if(|last| *last == "--changed").is_some();
     let mut chosen: Vec<&Step> = match args[..] {
         ["--help" | "-h"] => {
             println!("{USAGE}\n");
@@ -197,9 +260,11 @@ pub fn verify(args: &[String]) -> Result<()> {
         ["--long"] => LONG.iter().collect(),
         _ => named(&args)?,
     };
-    let passed = Passed::at_head(is_rest)?;
-    if is_rest {
-        chosen.retain(|step| !passed.holds(step.name));
+    let passed = Passed::now(is_changed)?;
+    if is_changed {
+        let is_done = |step: &mut &Step| passed.holds(step.name, step.apart);
+        let done: Vec<_> = chosen.extract_if(.., is_done).map(|step| step.name).collect();
+        println!("Passed with what they read now, and left out: {}", done.join(" "));
     }
     if !chosen.iter().any(|step| step.name == SETUP) {
         needs::ensure_met()?;
@@ -232,9 +297,10 @@ fn run(steps: &[&'static Step], passed: &Passed) -> Vec<Outcome> {
     for &step in steps {
         println!("\n=== {}: {}", step.name, step.what);
         let (start, before) = (Instant::now(), cpu::seconds());
+        Passed::remove(step.name);
         let result = (step.run)();
         match &result {
-            Ok(()) => passed.add(step.name),
+            Ok(()) => passed.add(step.name, step.apart),
             Err(error) => println!("FAILED: {error:#}"),
         }
         let (seconds, processor) = (start.elapsed().as_secs_f64(), cpu::seconds() - before);
@@ -253,7 +319,7 @@ fn summary(outcomes: &[Outcome]) -> Result<()> {
         let verdict = if *good { "ok" } else { "FAILED" };
         println!("{verdict:6} {seconds:6.1} s {processor:6.1} s  {:10} {}", step.name, step.what);
     }
-    let total = |of: fn(&Outcome) -> f64| outcomes.iter().map(of).sum::<f64>();
+    let total = |of: fn(&Outcome) -> f64| outcomes.iter().map(of).fold(0.0, |sum, one| sum + one);
     let (seconds, processor) = (total(|one| one.seconds), total(|one| one.processor));
     println!("{:6} {seconds:6.1} s {processor:6.1} s", "all");
     let failed: Vec<&str> =
@@ -264,6 +330,7 @@ fn summary(outcomes: &[Outcome]) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::common::paths;
 
     #[test]
     fn every_check_has_a_name_of_its_own() {
@@ -272,6 +339,8 @@ mod tests {
             assert!(!names[..index].contains(name), "two checks are called {name}");
             assert!(name.len() <= 10, "{name} does not fit its column");
         }
+        let rooms = STEPS.iter().chain(LONG).flat_map(|step| step.apart.concat());
+        rooms.for_each(|room| assert!(paths::root().join(room).exists(), "no {room}"));
         assert!(named(&["fmt", "sweeps"]).is_ok_and(|steps| steps.len() == 2));
         assert!(named(&["fmt", "none"]).is_err());
     }

@@ -1,39 +1,121 @@
-//! Which steps of `cargo verify` have passed at a commit, so that a machine that stops does not lose them.
+//! With what each step of `cargo verify` has last passed, so that `--changed` leaves it out.
 
 use crate::common::{command, output, paths};
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use std::{
-    fs::{self, OpenOptions},
-    io::Write,
-    path::PathBuf,
+    env, fs,
+    path::{Path, PathBuf},
 };
 
-/// A file of names below `target`, if the commit says all that is in the tree.
-pub struct Passed(Option<PathBuf>);
+/// Variables with which a step does less, or something else. Nothing is kept of a run with one of them.
+const NARROW: [&str; 10] = [
+    "BOARD",
+    "CASES_TIMES",
+    "FUZZ_SECONDS",
+    "FUZZ_TARGET",
+    "MUTANTS_AGAIN",
+    "MUTANTS_IN",
+    "MUTANTS_SINCE",
+    "MUTANTS_TESTS",
+    "RUSTFLAGS",
+    "SWEEPS_SEED",
+];
+
+/// A line for each room and file at the repository's top, with git's name of all that it holds, committed or not; then
+/// each manifest and lock file, whose rooms cargo reads for one another; then the compiler. None where git does not tell.
+pub struct Passed(Option<String>);
 
 impl Passed {
-    /// Of the commit that is checked out. Changes that no commit holds are an error if the file `is_needed`.
-    pub fn at_head(is_needed: bool) -> Result<Self> {
-        let git = |args: &str| output(command("git").args(args.split(' ')));
-        let clean = git("status --porcelain").is_ok_and(|changes| changes.is_empty());
-        ensure!(
-            clean || !is_needed,
-            "--rest is for a commit: this tree has changes, or is no repository"
-        );
-        let commit = clean.then(|| git("rev-parse HEAD")).transpose()?;
-        Ok(Self(commit.map(|commit| paths::target().join("passed").join(commit.trim()))))
+    /// As the tree is now; that it is not known is an error if that `is_needed`.
+    pub fn now(is_needed: bool) -> Result<Self> {
+        let is_whole = NARROW.iter().all(|name| env::var_os(name).is_none());
+        ensure!(is_whole || !is_needed, "--changed knows nothing of {}", NARROW.join(", "));
+        let told = told(&paths::root(), &place()).context("--changed asks git what has changed");
+        Ok(Self(if is_needed { Some(told?) } else { told.ok().filter(|_| is_whole) }))
     }
 
-    pub fn holds(&self, name: &str) -> bool {
-        let names = self.0.as_ref().and_then(|file| fs::read_to_string(file).ok());
-        names.is_some_and(|names| names.lines().any(|passed| passed == name))
+    /// Whether the step has passed with all that it reads now: all rooms but those `apart`.
+    pub fn holds(&self, name: &str, apart: &[&[&str]]) -> bool {
+        let kept = fs::read_to_string(place().join(name)).ok();
+        kept.is_some() && kept == self.0.as_deref().map(|told| read(told, apart))
     }
 
-    /// A file that cannot be written costs a repetition, and no more.
-    pub fn add(&self, name: &str) {
-        let Some(file) = &self.0 else { return };
-        let _ = fs::create_dir_all(paths::target().join("passed"));
-        let file = OpenOptions::new().create(true).append(true).open(file);
-        let _ = file.and_then(|mut file| writeln!(file, "{name}"));
+    /// Forgets it, as the step begins: one that fails now has not passed.
+    pub fn remove(name: &str) {
+        let _ = fs::remove_file(place().join(name));
+    }
+
+    /// Keeps that the step has passed, unless the tree changed meanwhile. What cannot be written costs a repetition, and no more.
+    pub fn add(&self, name: &str, apart: &[&[&str]]) {
+        if let Some(told) = &self.0
+            && Self::now(false).is_ok_and(|now| now.0.as_ref() == Some(told))
+        {
+            let _ = fs::write(place().join(name), read(told, apart));
+        }
+    }
+}
+
+fn place() -> PathBuf {
+    paths::target().join("passed")
+}
+
+/// Asks git in an index of our own, which leaves the user's alone.
+fn told(root: &Path, place: &Path) -> Result<String> {
+    fs::create_dir_all(place)?;
+    let git = |args: &str| {
+        let mut git = command("git");
+        let git = git.current_dir(root).args(args.split(' '));
+        output(git.env("GIT_INDEX_FILE", place.join("index")))
+    };
+    git("add --all")?;
+    let rooms = git(&format!("ls-tree {}", git("write-tree")?.trim()))?;
+    let manifests = git("ls-files --stage -- *Cargo.toml *Cargo.lock")?;
+    Ok([rooms, manifests, output(command("rustc").arg("-vV"))?].concat())
+}
+
+/// The lines without those of rooms that a step does not read. A room that nobody thought of stays.
+fn read(told: &str, apart: &[&[&str]]) -> String {
+    let is_read = |line: &&str| {
+        let name = line.split_once('\t').map(|(_, name)| name);
+        name.is_none_or(|name| !apart.iter().any(|group| group.contains(&name)))
+    };
+    told.lines().filter(is_read).flat_map(|line| [line, "\n"]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_counts_where_it_is_read() {
+        let told = |room: &str, manifest: &str| {
+            format!(
+                "040000 tree {room}\tros\n040000 tree 2\tnew\n100644 {manifest} 0\tros/Cargo.toml\n"
+            )
+        };
+        let before = told("1", "3");
+        let holds = |now: &str, apart: &[&[&str]]| read(now, apart) == read(&before, apart);
+        assert!(holds(&before, &[]) && holds(&told("4", "3"), &[&["ros"]]));
+        assert!(!holds(&told("4", "3"), &[]) && !holds(&told("4", "3"), &[&["docs"]]));
+        assert!(!holds(&told("1", "5"), &[&["ros"]]));
+        assert!(!holds(&before.replace('2', "6"), &[&["ros"]]));
+    }
+
+    /// A change counts before a commit holds it, and a file before git knows it.
+    #[test]
+    fn git_tells_what_is_there() {
+        let (root, place) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        output(command("git").current_dir(root.path()).args(["init", "--quiet"])).unwrap();
+        let write = |path: &str, text: &str| {
+            let path = root.path().join(path);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, text).unwrap();
+            told(root.path(), place.path()).unwrap()
+        };
+        let one = write("a/Cargo.toml", "one");
+        let [two, three] = [write("a/Cargo.toml", "two"), write("b", "new")];
+        assert_eq!(one.lines().filter(|line| !two.contains(line)).count(), 2, "{one}{two}");
+        assert!(three.contains("\tb\n") && three.lines().count() == two.lines().count() + 1);
+        assert_eq!(three, told(root.path(), place.path()).unwrap());
     }
 }
