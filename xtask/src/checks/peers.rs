@@ -3,11 +3,12 @@
 use crate::common::{cargo, command, paths, run};
 use crate::programs::{host::tests, python};
 use anyhow::Result;
-use std::path::PathBuf;
+use std::{fs, path::PathBuf};
 
 /// Installs the Python packages in an environment of their own and runs the tests against them.
 pub fn peers() -> Result<()> {
     let python = environment("peers", "host-tests/peers/requirements.txt")?;
+    fs::create_dir_all(paths::target().join("tmp"))?; // cargo makes it where it compiles the tests
     run(tests("--test wire formats_peers -- --ignored")?.env("PEERS_PYTHON", &python))?;
     run(tests("--test network -- --ignored")?.env("PEERS_PYTHON", &python))
 }
