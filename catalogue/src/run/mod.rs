@@ -23,7 +23,7 @@ pub use codec::{Codec, Event, Samples, Values};
 pub use exact::{Outcome, Outcomes, Parabola, above, below, outcomes};
 pub use filter::taps;
 pub use resolve::{Known, Resolve, missing};
-pub use rust::{Constant, Counted, Mean, Rust, lengthened, state};
+pub use rust::{Constant, Counted, Rust, lengthened, state};
 pub use sample_type::{Fixed32, SampleType};
 pub use settings::Settings;
 pub use sweep::{LANES, Rule, sweep};
@@ -163,12 +163,20 @@ pub trait Build: Entry {
         None
     }
 
-    /// The scheme as a constant in Rust.
+    /// The scheme as a constant in Rust: its type in the crate, what that takes behind the sample type, and its
+    /// constructor, as [`Rust::filled`] takes them.
+    const CONSTANT: Option<[&str; 3]> = None;
+
+    /// The scheme as a constant in Rust. The settings are those of a scheme that can be built.
     ///
     /// # Errors
     /// The settings lack something, or it has no constant.
-    fn constant(_: &Settings, _: &Rust) -> Result<Constant> {
-        bail!("{} has no constant", Self::INFO.name)
+    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
+        let Some([scheme, shape, value]) = Self::CONSTANT else {
+            bail!("{} has no constant", Self::INFO.name)
+        };
+        let filled = |template| rust.filled(template, &Self::INFO, settings);
+        rust.constant(scheme, &filled(shape)?, &filled(value)?)
     }
 
     /// Whether the numbers of a parameter become samples, which rounds them to the sample type.
@@ -366,6 +374,7 @@ impl<T: Build + Sync> RunTime for T {
     }
 
     fn constant(&self, settings: &Settings) -> Result<Constant> {
+        for_sample_type!(settings.sample, S => T::build::<S, _>(settings, Nothing))?;
         T::constant(settings, &Rust::new(settings.sample))
     }
 

@@ -3,7 +3,8 @@
 use anyhow::{Result, bail};
 use spikewire::Scheme;
 
-use super::{SampleType, Settings};
+use super::{SampleType, Settings, Value};
+use crate::{Info, Unit};
 
 /// A scheme as a constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,35 +42,16 @@ pub const fn lengthened([at_8, at_16]: [usize; 2], length: usize) -> usize {
     (at_8 + (at_16 - at_8) * length / 8).saturating_sub(at_16 - at_8)
 }
 
-/// How the mean of spikes is taken, in Rust.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Mean {
-    /// Its type, with its path.
-    pub scheme: String,
-    /// Its value.
-    pub value: String,
-}
-
-impl Mean {
-    /// The mean that settings ask for.
-    ///
-    /// # Errors
-    /// They lack it, or it makes no sense.
-    pub fn of(settings: &Settings) -> Result<Self> {
-        let power = settings.count("power", 0..=15)?;
-        Ok(if settings.takes_window()? {
-            let words = settings.window()?.samples().div_ceil(32);
-            Self {
-                scheme: format!("spikewire::rate::Window<{words}>"),
-                value: format!("spikewire::rate::Window::new({power})"),
-            }
-        } else {
-            Self {
-                scheme: "spikewire::rate::Average".to_owned(),
-                value: format!("spikewire::rate::Average::new({power})"),
-            }
-        })
-    }
+/// How the mean of spikes is taken, in Rust: its type, and its value.
+fn mean(settings: &Settings) -> Result<[String; 2]> {
+    let power = settings.count("power", 0..=15)?;
+    let (scheme, words) = if settings.takes_window()? {
+        let words = settings.window()?.samples().div_ceil(32);
+        ("spikewire::rate::Window", format!("<{words}>"))
+    } else {
+        ("spikewire::rate::Average", String::new())
+    };
+    Ok([format!("{scheme}{words}"), format!("{scheme}::new({power})")])
 }
 
 /// Writes settings in a sample type.
@@ -140,6 +122,33 @@ impl Rust {
     /// See [`signals`](Self::signals).
     pub fn taps(self, settings: &Settings) -> Result<String> {
         Ok(format!("spikewire::rate::Taps::new({})", self.signals(settings, "taps")?))
+    }
+
+    /// Fills in a template, in which `{name}` stands for a parameter as it runs, and besides `{range}` for that from `min`
+    /// to `max`, `{taps}` for the filter, `{length}` for the number of its taps, `{averaging}` for the type of the mean
+    /// of spikes and `{mean}` for its value.
+    ///
+    /// # Errors
+    /// Returns an error if a setting is missing.
+    pub fn filled(self, template: &str, info: &Info, settings: &Settings) -> Result<String> {
+        let mut parts = template.split(['{', '}']);
+        let mut all: Vec<String> = parts.next().map(str::to_owned).into_iter().collect();
+        while let (Some(name), Some(rest)) = (parts.next(), parts.next()) {
+            all.push(match name {
+                "range" => self.range(settings)?,
+                "taps" => self.taps(settings)?,
+                "length" => settings.length()?.to_string(),
+                "averaging" => mean(settings)?[0].clone(),
+                "mean" => mean(settings)?[1].clone(),
+                name => match (settings.value(name)?, info.parameter(name).map(|own| own.unit)) {
+                    (Value::Number(number), Some(Unit::Signal)) => self.number(*number),
+                    (Value::Number(number), _) => format!("{:?}", *number as f32),
+                    (value, _) => value.to_string(),
+                },
+            });
+            all.push(rest.to_owned());
+        }
+        Ok(all.concat())
     }
 
     /// The constant of a scheme in the crate, with what its type takes besides the sample type, and its constructor.

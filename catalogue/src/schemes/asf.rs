@@ -72,15 +72,9 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    costs!(AdaptiveStepForward<S>, "asf");
+    const CONSTANT: Option<[&str; 3]> = Some(["temporal::AdaptiveStepForward", "", "new({threshold}, {doublings}).with_run({run})"]);
 
-    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
-        let threshold = rust.signal(settings, "threshold")?;
-        let (doublings, run) =
-            (settings.count("doublings", 0..=30)?, settings.count("run", 1..=8)?);
-        let value = format!("new({threshold}, {doublings}).with_run({run})");
-        rust.constant("temporal::AdaptiveStepForward", "", &value)
-    }
+    costs!(AdaptiveStepForward<S>, "asf");
 
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
         let doublings = settings.count("doublings", 0..=30)? as u8;

@@ -70,13 +70,9 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    costs!(AdaptiveContrast<S>, "atbr");
+    const CONSTANT: Option<[&str; 3]> = Some(["temporal::AdaptiveContrast", "", "new({threshold}, {doublings})"]);
 
-    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
-        let threshold = rust.signal(settings, "threshold")?;
-        let value = format!("new({threshold}, {})", settings.count("doublings", 0..=15)?);
-        rust.constant("temporal::AdaptiveContrast", "", &value)
-    }
+    costs!(AdaptiveContrast<S>, "atbr");
 
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
         let doublings = settings.count("doublings", 0..=15)? as u8;

@@ -82,16 +82,9 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    costs!(Burst<S, 19>, "burst-5");
+    const CONSTANT: Option<[&str; 3]> = Some(["timing::Burst", "{slots}", "new({range}, {spikes}, {shortest}..={longest})"]);
 
-    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
-        let range = rust.range(settings)?;
-        let slots = settings.count("slots", 2..=dynamic::LEVELS)?.to_string();
-        let [spikes, shortest, longest] =
-            ["spikes", "shortest", "longest"].map(|name| settings.count(name, 1..=255));
-        let value = format!("new({range}, {}, {}..={})", spikes?, shortest?, longest?);
-        rust.constant("timing::Burst", &slots, &value)
-    }
+    costs!(Burst<S, 19>, "burst-5");
 
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
         let slots = settings.count("slots", 2..=dynamic::LEVELS)?;

@@ -85,14 +85,9 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    costs!(WeightedBurst<S, Average>, "burst-weighted");
+    const CONSTANT: Option<[&str; 3]> = Some(["rate::WeightedBurst", "{averaging}", "new({range}, {weight}, {doublings}, {mean})"]);
 
-    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
-        let (range, weight) = (rust.range(settings)?, rust.signal(settings, "weight")?);
-        let (doublings, mean) = (settings.count("doublings", 0..=14)?, Mean::of(settings)?);
-        let value = format!("new({range}, {weight}, {doublings}, {})", mean.value);
-        rust.constant("rate::WeightedBurst", &mean.scheme, &value)
-    }
+    costs!(WeightedBurst<S, Average>, "burst-weighted");
 
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
         let (range, weight) = (settings.range()?, settings.signal("weight")?);

@@ -51,17 +51,10 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    const CONSTANT: Option<[&str; 3]> = Some(["population::Gaussian", "{neurons}", "linear({range})"]);
+
     // Neurons are found by bisection.
     costs!(Gaussian<S, 20>, "grf-20", |settings| settings.neurons()? as f64 / 20.0);
-
-    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
-        let neurons = settings.neurons()?.to_string();
-        rust.constant(
-            "population::Gaussian",
-            &neurons,
-            &format!("linear({})", rust.range(settings)?),
-        )
-    }
 
     population!(|settings| {
         let scheme =

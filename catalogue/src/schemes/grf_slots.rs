@@ -69,16 +69,9 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    costs!(Slots<S, 15, 10>, "grf-slots-15x10", |settings| settings.neurons()? as f64 / 15.0);
+    const CONSTANT: Option<[&str; 3]> = Some(["population::Slots", "{neurons}, {slots}", "new({range}, {beta}).with_floor({floor})"]);
 
-    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
-        let (slots, beta) =
-            (settings.count("slots", 2..=dynamic::LEVELS)?, settings.number("beta")? as f32);
-        let shape = format!("{}, {slots}", settings.neurons()?);
-        let floor = settings.count("floor", 1..=slots)?;
-        let value = format!("new({}, {beta:?}).with_floor({floor})", rust.range(settings)?);
-        rust.constant("population::Slots", &shape, &value)
-    }
+    costs!(Slots<S, 15, 10>, "grf-slots-15x10", |settings| settings.neurons()? as f64 / 15.0);
 
     population!(|settings| {
         let (neurons, beta) = (settings.neurons()?, settings.number("beta")? as f32);

@@ -66,6 +66,8 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    const CONSTANT: Option<[&str; 3]> = Some(["rate::Hough", "{length}", "new({taps}).with_shift({shift})"]);
+
     fn ram<S: Sample>(settings: &Settings) -> Result<usize> {
         let sizes = [state::<Hough<S, 8>>(), state::<Hough<S, 16>>()];
         Ok(lengthened(sizes, settings.length()?))
@@ -82,12 +84,6 @@ impl Build for Scheme {
     ) -> Option<[(usize, f64); LANES]> {
         let filter = (settings.numbers("taps").ok()?, settings.number("shift").ok()?);
         Some(sweep(Rule::Hough, stretches, filter, values, &[0.0; LANES]))
-    }
-
-    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
-        let (taps, shift) = (rust.taps(settings)?, rust.signal(settings, "shift")?);
-        let value = format!("new({taps}).with_shift({shift})");
-        rust.constant("rate::Hough", &format!("{}", settings.length()?), &value)
     }
 
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {

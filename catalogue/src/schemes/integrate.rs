@@ -82,16 +82,6 @@ impl Entry for Scheme {
     }
 }
 
-/// The neuron, by its leak, as a constant.
-#[cfg(feature = "run")]
-pub(super) fn constant(settings: &Settings, rust: Rust, leak: &str) -> Result<Constant> {
-    let (threshold, reference) =
-        (rust.signal(settings, "threshold")?, rust.signal(settings, "reference")?);
-    let (power, most) = (settings.count("power", 1..=15)?, shape(settings)?.slots.to_string());
-    let value = format!("new({threshold}, {power}){leak}.with_reference({reference})");
-    rust.constant("rate::IntegrateAndFire", &most, &value)
-}
-
 /// One neuron, whose spikes come one after the other.
 #[cfg(feature = "run")]
 pub(super) fn shape(settings: &Settings) -> Result<Shape> {
@@ -109,11 +99,9 @@ pub(super) fn built<S: Sample>(settings: &Settings) -> Result<IntegrateAndFire<S
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    costs!(IntegrateAndFire<S, 127>, "if");
+    const CONSTANT: Option<[&str; 3]> = Some(["rate::IntegrateAndFire", "{spikes}", "new({threshold}, {power}).with_reference({reference})"]);
 
-    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
-        constant(settings, *rust, "")
-    }
+    costs!(IntegrateAndFire<S, 127>, "if");
 
     fn shape(settings: &Settings) -> Result<Shape> {
         shape(settings)

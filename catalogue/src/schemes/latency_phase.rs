@@ -73,14 +73,9 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    costs!(LatencyPhase<S, 4, 32, 4>, "latency-phase-4x32", |settings| settings.count("neurons", 1..=255)? as f64 / 4.0);
+    const CONSTANT: Option<[&str; 3]> = Some(["timing::LatencyPhase", "{neurons}, {latencies}, {period}", "new({range}, {spacing})"]);
 
-    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
-        let count = |name| settings.count(name, 1..=255);
-        let shape = format!("{}, {}, {}", count("neurons")?, count("latencies")?, count("period")?);
-        let value = format!("new({}, {})", rust.range(settings)?, count("spacing")?);
-        rust.constant("timing::LatencyPhase", &shape, &value)
-    }
+    costs!(LatencyPhase<S, 4, 32, 4>, "latency-phase-4x32", |settings| settings.count("neurons", 1..=255)? as f64 / 4.0);
 
     fn shape(settings: &Settings) -> Result<Shape> {
         let slots = settings.count("latencies", 2..=255)? + settings.count("period", 1..=255)? - 1;

@@ -65,11 +65,9 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    costs!(IntegrateAndFire<S, 127>, "lif");
+    const CONSTANT: Option<[&str; 3]> = Some(["rate::IntegrateAndFire", "{spikes}", "new({threshold}, {power}).leaky().with_reference({reference})"]);
 
-    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
-        integrate::constant(settings, *rust, ".leaky()")
-    }
+    costs!(IntegrateAndFire<S, 127>, "lif");
 
     fn shape(settings: &Settings) -> Result<Shape> {
         integrate::shape(settings)

@@ -58,6 +58,8 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    const CONSTANT: Option<[&str; 3]> = Some(["temporal::StepForward", "", "new({threshold})"]);
+
     costs!(StepForward<S>, "sf");
 
     /// Lists the outcomes one by one: the spikes depend on those before, and a run at a threshold tells the next higher
@@ -78,11 +80,6 @@ impl Build for Scheme {
             threshold = next.max(threshold * ratio);
         }
         Some(found)
-    }
-
-    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
-        let threshold = rust.signal(settings, "threshold")?;
-        rust.constant("temporal::StepForward", "", &format!("new({threshold})"))
     }
 
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {

@@ -84,12 +84,9 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    costs!(SigmaDelta<S, Average>, "sigma-delta");
+    const CONSTANT: Option<[&str; 3]> = Some(["rate::SigmaDelta", "{averaging}", "new({range}, {mean})"]);
 
-    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
-        let (range, mean) = (rust.range(settings)?, Mean::of(settings)?);
-        rust.constant("rate::SigmaDelta", &mean.scheme, &format!("new({range}, {})", mean.value))
-    }
+    costs!(SigmaDelta<S, Average>, "sigma-delta");
 
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
         let range = settings.range()?;

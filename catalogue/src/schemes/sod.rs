@@ -63,17 +63,13 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    const CONSTANT: Option<[&str; 3]> = Some(["temporal::SendOnDelta", "{spikes}", "new({threshold})"]);
+
     fn shape(settings: &Settings) -> Result<Shape> {
         Ok(Shape { neurons: 1, slots: settings.count("spikes", 1..=127)? })
     }
 
     costs!(SendOnDelta<S, 4>, "sod-4", |settings| Self::shape(settings)?.slots as f64 / 4.0);
-
-    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
-        let (threshold, most) =
-            (rust.signal(settings, "threshold")?, settings.count("spikes", 1..=127)?);
-        rust.constant("temporal::SendOnDelta", &format!("{most}"), &format!("new({threshold})"))
-    }
 
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
         let most = settings.count("spikes", 1..=127)? as u8;

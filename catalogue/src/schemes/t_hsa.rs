@@ -78,6 +78,8 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    const CONSTANT: Option<[&str; 3]> = Some(["rate::ThresholdHough", "{length}", "new({taps}, {threshold}).with_shift({shift})"]);
+
     fn ram<S: Sample>(settings: &Settings) -> Result<usize> {
         let sizes = [state::<ThresholdHough<S, 8>>(), state::<ThresholdHough<S, 16>>()];
         Ok(lengthened(sizes, settings.length()?))
@@ -94,13 +96,6 @@ impl Build for Scheme {
     ) -> Option<[(usize, f64); LANES]> {
         let filter = (settings.numbers("taps").ok()?, settings.number("shift").ok()?);
         Some(sweep(Rule::ThresholdHough, stretches, filter, &[1.0; LANES], values))
-    }
-
-    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
-        let (taps, shift) = (rust.taps(settings)?, rust.signal(settings, "shift")?);
-        let threshold = rust.signal(settings, "threshold")?;
-        let value = format!("new({taps}, {threshold}).with_shift({shift})");
-        rust.constant("rate::ThresholdHough", &format!("{}", settings.length()?), &value)
     }
 
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {

@@ -103,6 +103,8 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
+    const CONSTANT: Option<[&str; 3]> = Some(["temporal::TemporalContrast", "", "new({threshold}).with_step({step})"]);
+
     /// The threshold is settings, or a number of deviations of the signal's differences.
     fn resolve(asked: &Resolve) -> Result<Settings> {
         let threshold = match (asked.user("threshold"), asked.value("factor")?) {
@@ -156,16 +158,6 @@ impl Build for Scheme {
         };
         let distances: Vec<Vec<f64>> = stretches.iter().map(distances).collect();
         Some(outcomes(stretches, &distances, true))
-    }
-
-    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
-        let (threshold, step) =
-            (rust.signal(settings, "threshold")?, rust.signal(settings, "step")?);
-        rust.constant(
-            "temporal::TemporalContrast",
-            "",
-            &format!("new({threshold}).with_step({step})"),
-        )
     }
 
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {

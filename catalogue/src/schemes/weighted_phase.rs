@@ -65,12 +65,9 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    costs!(WeightedPhase<S, 8>, "weighted-phase-8", |settings| settings.count("slots", 2..=16)? as f64 / 8.0);
+    const CONSTANT: Option<[&str; 3]> = Some(["timing::WeightedPhase", "{slots}", "new({range})"]);
 
-    fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
-        let slots = settings.count("slots", 2..=16)?.to_string();
-        rust.constant("timing::WeightedPhase", &slots, &format!("new({})", rust.range(settings)?))
-    }
+    costs!(WeightedPhase<S, 8>, "weighted-phase-8", |settings| settings.count("slots", 2..=16)? as f64 / 8.0);
 
     fn shape(settings: &Settings) -> Result<Shape> {
         Ok(Shape { neurons: 1, slots: settings.count("slots", 2..=16)? })
