@@ -46,6 +46,14 @@ pub fn sweeps() -> Result<()> {
     run(catalogue.env("PROPTEST_CASES", "5120").env("PROPTEST_RNG_SEED", &seed))
 }
 
+/// Tests the codes with the loops of a core without vectors, which a Cortex-M runs and this machine does not.
+pub fn scalar() -> Result<()> {
+    let mut cargo = cargo("test --package host-tests --test codes");
+    run(cargo
+        .env("RUSTFLAGS", "--cfg without_vectors")
+        .env("CARGO_TARGET_DIR", paths::target().join("scalar")))
+}
+
 /// Explores the orders of memory of the queue without locks.
 pub fn loom() -> Result<()> {
     run(&mut cargo("test --package host-tests --features loom --test loom -- --test-threads 1"))

@@ -156,6 +156,7 @@ const LONG: &[Step] = &[
     .apart(BOARDS),
     step("panic-free", "every codec without a panic handler, on two cores", everyday::no_panic_all)
         .apart(BOARDS),
+    step("scalar", "the codes' tests with the loops of a core without vectors", long::scalar),
     step(
         "lints",
         "clippy on all at once, and the crate alone and with all its features on every core",
