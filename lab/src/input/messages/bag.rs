@@ -2,13 +2,13 @@
 //!
 //! The index is not needed, so bags that were never closed or indexed are read as any other.
 
+use super::Entry;
 use super::bytes::{Bytes, take, u32_from, u64_from, unpack};
-use super::chunk::{Chunk, Chunked};
+use super::chunk::{Chunked, Walk};
 use super::definition::Dialect;
 use super::faults::Faults;
 use super::topic::Topic;
-use super::{Entry, Log};
-use anyhow::{Context, Result, bail};
+use anyhow::Result;
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -29,23 +29,11 @@ mod op {
 
 /// A bag that is read from its start to its end.
 pub(super) struct Bag {
-    bytes: Bytes,
-    faults: Faults,
-    topics: Vec<Topic>,
+    walk: Walk,
     /// The topic of each connection.
     connections: HashMap<u32, usize>,
-    chunk: Chunk,
     header: Vec<u8>,
     data: Vec<u8>,
-    /// The message that came last is here, in the chunk or else in the data.
-    message: Message,
-    is_over: bool,
-}
-
-/// The place of a message's bytes.
-enum Message {
-    InChunk(std::ops::Range<usize>),
-    Alone,
 }
 
 /// The fields of a record's header.
@@ -90,25 +78,13 @@ impl<'a> Fields<'a> {
 
 impl Bag {
     pub(super) fn open(path: &Path, faults: Faults) -> Result<Self> {
-        let mut bytes = Bytes::open(path)?;
-        let mut start = Vec::new();
-        bytes.take(VERSION.len() as u64, &mut start).with_context(|| faults.file().to_owned())?;
-        if start != VERSION {
-            bail!(
-                "{}: a ROS bag of another version than 2.0; `rosbag fix` or `rosbag migrate` converts it",
-                faults.file()
-            );
-        }
+        const OTHER: &str =
+            "a ROS bag of another version than 2.0; `rosbag fix` or `rosbag migrate` converts it";
         Ok(Self {
-            bytes,
-            topics: Vec::new(),
+            walk: Walk::open(path, faults, VERSION, OTHER)?,
             connections: HashMap::new(),
-            chunk: Chunk::default(),
             header: Vec::new(),
             data: Vec::new(),
-            message: Message::Alone,
-            is_over: false,
-            faults,
         })
     }
 
@@ -122,16 +98,16 @@ impl Bag {
         if let (Some(&topic), Some(time)) = (topic, time) {
             return Ok(Some(Entry { topic, time, at, sequence: None }));
         }
-        self.faults.skip(at, "a message without a time or a connection that is known")?;
+        self.walk.faults.skip(at, "a message without a time or a connection that is known")?;
         Ok(None)
     }
 
     fn add(&mut self, connection: Option<(u32, Topic)>, at: u64) -> Result<()> {
         let Some((id, topic)) = connection else {
-            return self.faults.skip(at, "a connection without a number or a type");
+            return self.walk.faults.skip(at, "a connection without a number or a type");
         };
         if !self.connections.contains_key(&id) {
-            let place = topic.place_in(&mut self.topics);
+            let place = topic.place_in(&mut self.walk.topics);
             self.connections.insert(id, place);
         }
         Ok(())
@@ -162,13 +138,17 @@ impl Chunked for Bag {
     /// The place of a record, which is in `header` and `data`.
     type Record = u64;
 
-    fn chunk(&self) -> &Chunk {
-        &self.chunk
+    fn walk(&self) -> &Walk {
+        &self.walk
+    }
+
+    fn walk_mut(&mut self) -> &mut Walk {
+        &mut self.walk
     }
 
     fn of_chunk(&mut self) -> Result<Option<Entry>> {
-        let mut left = self.chunk.left();
-        let at = self.chunk.at();
+        let mut left = self.walk.chunk.left();
+        let at = self.walk.chunk.at();
         let record = (|| {
             let length = u32_from(&mut left)?;
             let header = take(&mut left, length.into())?;
@@ -176,46 +156,43 @@ impl Chunked for Bag {
             Some((Fields(header), take(&mut left, length.into())?))
         })();
         let Some((fields, data)) = record else {
-            return self.chunk.leave(&mut self.faults).map(|()| None);
+            return self.walk.chunk.leave(&mut self.walk.faults).map(|()| None);
         };
-        let end = self.chunk.bytes().len() - left.len();
+        let end = self.walk.chunk.bytes().len() - left.len();
         match fields.op() {
             Some(op::MESSAGE) => {
                 let (connection, time) = (fields.u32("conn"), fields.time("time"));
-                self.message = Message::InChunk(end - data.len()..end);
-                self.chunk.take_to(end);
+                data.clone_into(&mut self.walk.message);
+                self.walk.chunk.take_to(end);
                 self.entry(connection, time, at)
             }
             Some(op::CONNECTION) => {
                 let connection = connection(&fields, data);
-                self.chunk.take_to(end);
+                self.walk.chunk.take_to(end);
                 self.add(connection, at)?;
                 Ok(None)
             }
             _ => {
-                let what = format!("the chunk has no message at its byte {}", self.chunk.taken());
-                self.chunk.take_to(end);
-                self.faults.skip(at, what)?;
+                let what =
+                    format!("the chunk has no message at its byte {}", self.walk.chunk.taken());
+                self.walk.chunk.take_to(end);
+                self.walk.faults.skip(at, what)?;
                 Ok(None)
             }
         }
     }
 
-    fn is_over(&mut self) -> &mut bool {
-        &mut self.is_over
-    }
-
     fn record(&mut self) -> Result<Option<u64>> {
-        let at = self.bytes.at();
+        let at = self.walk.bytes.at();
         self.data.clear();
-        let read = part(&mut self.bytes, &mut self.header)
-            .and_then(|()| part(&mut self.bytes, &mut self.data));
+        let read = part(&mut self.walk.bytes, &mut self.header)
+            .and_then(|()| part(&mut self.walk.bytes, &mut self.data));
         let Err(what) = read else { return Ok(Some(at)) };
-        if self.bytes.at() == at {
+        if self.walk.bytes.at() == at {
             return Ok(None);
         }
-        self.faults.end(at, what)?;
-        self.is_over = true;
+        self.walk.faults.end(at, what)?;
+        self.walk.is_over = true;
         // Of a chunk, what is there may hold messages.
         let is_chunk = Fields(&self.header).op() == Some(op::CHUNK);
         Ok(is_chunk.then_some(at))
@@ -228,11 +205,11 @@ impl Chunked for Bag {
                 let compression = fields.text("compression").unwrap_or_default();
                 let size = fields.u32("size").unwrap_or_default();
                 let unpacked = unpack(&compression, &self.data, size.into());
-                self.chunk.begin(at, unpacked, self.is_over, &mut self.faults)?;
+                self.walk.chunk.begin(at, unpacked, self.walk.is_over, &mut self.walk.faults)?;
             }
             Some(op::MESSAGE) => {
                 let (connection, time) = (fields.u32("conn"), fields.time("time"));
-                self.message = Message::Alone;
+                self.data.clone_into(&mut self.walk.message);
                 return self.entry(connection, time, at);
             }
             Some(op::CONNECTION) => {
@@ -241,35 +218,17 @@ impl Chunked for Bag {
             }
             Some(op::BAG) => {
                 if fields.u64("index_pos") == Some(0) {
-                    self.faults
+                    self.walk
+                        .faults
                         .note("the bag has no index: its recorder did not close it".to_owned());
                 }
             }
             Some(op::INDEX | op::CHUNK_INFO) => {}
-            Some(other) => self.faults.skip(at, format!("a record of unknown kind {other}"))?,
-            None => self.faults.skip(at, "a record without a kind")?,
+            Some(other) => {
+                self.walk.faults.skip(at, format!("a record of unknown kind {other}"))?;
+            }
+            None => self.walk.faults.skip(at, "a record without a kind")?,
         }
         Ok(None)
-    }
-}
-
-impl Log for Bag {
-    fn next(&mut self) -> Result<Option<Entry>> {
-        self.next_message()
-    }
-
-    fn topics(&self) -> &[Topic] {
-        &self.topics
-    }
-
-    fn message(&self) -> &[u8] {
-        match &self.message {
-            Message::InChunk(range) => &self.chunk.bytes()[range.clone()],
-            Message::Alone => &self.data,
-        }
-    }
-
-    fn faults(&mut self) -> &mut Faults {
-        &mut self.faults
     }
 }

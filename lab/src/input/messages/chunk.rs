@@ -1,8 +1,11 @@
 //! Files whose messages lie in chunks, or outside of them.
 
-use super::Entry;
+use super::bytes::Bytes;
 use super::faults::Faults;
-use anyhow::Result;
+use super::topic::Topic;
+use super::{Entry, Log};
+use anyhow::{Context, Result, ensure};
+use std::path::Path;
 
 /// The chunk that is being read, unpacked.
 #[derive(Default)]
@@ -67,22 +70,55 @@ impl Chunk {
     }
 }
 
+/// How far a log of chunks was read.
+pub(super) struct Walk {
+    pub bytes: Bytes,
+    pub faults: Faults,
+    pub topics: Vec<Topic>,
+    /// The chunk that is being read.
+    pub chunk: Chunk,
+    /// The content of the message that came last.
+    pub message: Vec<u8>,
+    /// Whether the last record outside of chunks was read.
+    pub is_over: bool,
+}
+
+impl Walk {
+    /// Opens a log that starts with the bytes of its version.
+    ///
+    /// # Errors
+    /// Returns an error if the log cannot be read, or says so if it is of another version.
+    pub(super) fn open(path: &Path, faults: Faults, version: &[u8], other: &str) -> Result<Self> {
+        let (mut bytes, mut start) = (Bytes::open(path)?, Vec::new());
+        bytes.take(version.len() as u64, &mut start).with_context(|| faults.file().to_owned())?;
+        ensure!(start == version, "{}: {other}", faults.file());
+        Ok(Self {
+            bytes,
+            faults,
+            topics: Vec::new(),
+            chunk: Chunk::default(),
+            message: Vec::new(),
+            is_over: false,
+        })
+    }
+}
+
 /// A log of records, some of which are chunks of records.
 pub(super) trait Chunked {
     /// A record outside of chunks, once it is read.
     type Record;
 
-    /// The chunk that is being read.
-    fn chunk(&self) -> &Chunk;
+    /// How far it was read.
+    fn walk(&self) -> &Walk;
+
+    /// How far it was read, to be changed.
+    fn walk_mut(&mut self) -> &mut Walk;
 
     /// Takes the next record of the chunk; gives the entry of a message.
     ///
     /// # Errors
     /// Returns an error if the log is damaged and that is not accepted.
     fn of_chunk(&mut self) -> Result<Option<Entry>>;
-
-    /// Whether the last record outside of chunks was read.
-    fn is_over(&mut self) -> &mut bool;
 
     /// Reads the next record outside of chunks; `None` at the end.
     ///
@@ -95,26 +131,36 @@ pub(super) trait Chunked {
     /// # Errors
     /// See [`of_chunk`](Self::of_chunk).
     fn outside(&mut self, record: Self::Record) -> Result<Option<Entry>>;
+}
 
-    /// Goes to the next message, in a chunk or outside.
-    ///
-    /// # Errors
-    /// See [`of_chunk`](Self::of_chunk).
-    fn next_message(&mut self) -> Result<Option<Entry>> {
+impl<C: Chunked> Log for C {
+    fn next(&mut self) -> Result<Option<Entry>> {
         loop {
-            let entry = if !self.chunk().left().is_empty() {
+            let entry = if !self.walk().chunk.left().is_empty() {
                 self.of_chunk()?
-            } else if *self.is_over() {
+            } else if self.walk().is_over {
                 return Ok(None);
             } else if let Some(record) = self.record()? {
                 self.outside(record)?
             } else {
-                *self.is_over() = true;
+                self.walk_mut().is_over = true;
                 None
             };
             if entry.is_some() {
                 return Ok(entry);
             }
         }
+    }
+
+    fn topics(&self) -> &[Topic] {
+        &self.walk().topics
+    }
+
+    fn message(&self) -> &[u8] {
+        &self.walk().message
+    }
+
+    fn faults(&mut self) -> &mut Faults {
+        &mut self.walk_mut().faults
     }
 }

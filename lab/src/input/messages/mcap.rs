@@ -2,15 +2,14 @@
 //!
 //! The index is not needed, so files that were never closed are read as any other.
 
-use super::bytes::{Bytes, ZSTD, take, u16_from, u32_from, u64_from, unpack};
-use super::chunk::{Chunk, Chunked};
+use super::Entry;
+use super::bytes::{ZSTD, take, u16_from, u32_from, u64_from, unpack};
+use super::chunk::{Chunked, Walk};
 use super::definition::Dialect;
 use super::faults::Faults;
 use super::topic::Topic;
-use super::{Entry, Log};
-use anyhow::{Context, Result, bail};
+use anyhow::Result;
 use std::collections::HashMap;
-use std::ops::Range;
 use std::path::Path;
 
 /// The first bytes of a file of any version.
@@ -34,45 +33,21 @@ pub(super) const LARGEST_MESSAGE: u64 = 1 << 30;
 
 /// A file that is read from its start to its end.
 pub(super) struct Mcap {
-    bytes: Bytes,
-    faults: Faults,
-    topics: Vec<Topic>,
+    walk: Walk,
     /// The schemas by number: name, encoding and text.
     schemas: HashMap<u16, (String, String, String)>,
     /// The topic of each channel.
     channels: HashMap<u16, usize>,
-    chunk: Chunk,
     data: Vec<u8>,
-    /// The message that came last.
-    message: Message,
-    is_over: bool,
-}
-
-/// The place of a message's bytes.
-enum Message {
-    InChunk(Range<usize>),
-    InData(Range<usize>),
-    Unpacked(Vec<u8>),
 }
 
 impl Mcap {
     pub(super) fn open(path: &Path, faults: Faults) -> Result<Self> {
-        let mut bytes = Bytes::open(path)?;
-        let mut start = Vec::new();
-        bytes.take(VERSION.len() as u64, &mut start).with_context(|| faults.file().to_owned())?;
-        if start != VERSION {
-            bail!("{}: an MCAP file of another version than 0", faults.file());
-        }
         Ok(Self {
-            bytes,
-            faults,
-            topics: Vec::new(),
+            walk: Walk::open(path, faults, VERSION, "an MCAP file of another version than 0")?,
             schemas: HashMap::new(),
             channels: HashMap::new(),
-            chunk: Chunk::default(),
             data: Vec::new(),
-            message: Message::InData(0..0),
-            is_over: false,
         })
     }
 
@@ -86,7 +61,7 @@ impl Mcap {
             Some((size, checksum, compression, stated))
         })();
         let Some((size, checksum, compression, stated)) = head else {
-            return self.faults.skip(at, "the chunk ends within its head");
+            return self.walk.faults.skip(at, "the chunk ends within its head");
         };
         let packed = &left[..left.len().min(usize::try_from(stated).unwrap_or(usize::MAX))];
         let (chunk, fault) = unpack(&compression, packed, size);
@@ -94,7 +69,7 @@ impl Mcap {
             (checksum != 0 && crc32fast::hash(&chunk) != checksum)
                 .then(|| "the checksum of the chunk does not match".to_owned())
         });
-        self.chunk.begin(at, (chunk, fault), self.is_over, &mut self.faults)
+        self.walk.chunk.begin(at, (chunk, fault), self.walk.is_over, &mut self.walk.faults)
     }
 
     /// The entry of a message, and how long its content is; `None` if it has no known channel.
@@ -110,7 +85,7 @@ impl Mcap {
     }
 
     fn odd(&mut self, at: u64) -> Result<Option<Entry>> {
-        self.faults.skip(at, "a message without a channel that is known").map(|()| None)
+        self.walk.faults.skip(at, "a message without a channel that is known").map(|()| None)
     }
 
     /// Takes a schema or a channel, and leaves others.
@@ -128,7 +103,7 @@ impl Mcap {
                 let (name, encoding) = (text(left)?, text(left)?);
                 if !self.channels.contains_key(&id) {
                     let topic = self.topic(name, schema, &encoding);
-                    let place = topic.place_in(&mut self.topics);
+                    let place = topic.place_in(&mut self.walk.topics);
                     self.channels.insert(id, place);
                 }
                 Some(())
@@ -137,7 +112,7 @@ impl Mcap {
         };
         match is_good {
             Some(()) => Ok(()),
-            None => self.faults.skip(at, "a schema or channel that ends too early"),
+            None => self.walk.faults.skip(at, "a schema or channel that ends too early"),
         }
     }
 
@@ -162,60 +137,60 @@ impl Chunked for Mcap {
     /// The kind and place of a record, which is in `data`.
     type Record = (u8, u64);
 
-    fn chunk(&self) -> &Chunk {
-        &self.chunk
+    fn walk(&self) -> &Walk {
+        &self.walk
+    }
+
+    fn walk_mut(&mut self) -> &mut Walk {
+        &mut self.walk
     }
 
     fn of_chunk(&mut self) -> Result<Option<Entry>> {
-        let mut left = self.chunk.left();
-        let at = self.chunk.at();
+        let mut left = self.walk.chunk.left();
+        let at = self.walk.chunk.at();
         let record = (|| {
             let kind = take(&mut left, 1)?[0];
             let length = u64_from(&mut left)?;
             Some((kind, take(&mut left, length)?))
         })();
         let Some((kind, data)) = record else {
-            return self.chunk.leave(&mut self.faults).map(|()| None);
+            return self.walk.chunk.leave(&mut self.walk.faults).map(|()| None);
         };
-        let end = self.chunk.bytes().len() - left.len();
+        let end = self.walk.chunk.bytes().len() - left.len();
         if kind == op::MESSAGE {
             let entry = self.entry(data, at);
-            self.chunk.take_to(end);
+            self.walk.chunk.take_to(end);
             let Some((entry, content)) = entry else {
                 return self.odd(at);
             };
-            let content = end - content..end;
-            self.message = unpacked(&self.chunk.bytes()[content.clone()])
-                .map_or(Message::InChunk(content), Message::Unpacked);
+            take_content(&self.walk.chunk.bytes()[end - content..end], &mut self.walk.message);
             return Ok(Some(entry));
         }
         let data = data.to_vec();
-        self.chunk.take_to(end);
+        self.walk.chunk.take_to(end);
         self.define(kind, &data, at).map(|()| None)
-    }
-
-    fn is_over(&mut self) -> &mut bool {
-        &mut self.is_over
     }
 
     fn record(&mut self) -> Result<Option<(u8, u64)>> {
         const CUT: &str = "the file ends within the record";
-        let at = self.bytes.at();
-        let head = self.bytes.take(9, &mut self.data);
+        let at = self.walk.bytes.at();
+        let head = self.walk.bytes.take(9, &mut self.data);
         let kind = self.data.first().copied();
         let length = u64_from(&mut self.data.get(1..).unwrap_or_default());
         let what = match (head, kind, length) {
             (Err(error), ..) => error.to_string(),
             (Ok(_), None, _) => {
-                self.faults.note("the file has no end: its recorder did not close it".to_owned());
+                self.walk
+                    .faults
+                    .note("the file has no end: its recorder did not close it".to_owned());
                 return Ok(None);
             }
             (Ok(_), Some(kind), Some(length)) => {
                 let is_wanted = (op::HEADER..=op::CHUNK).contains(&kind) || kind == op::DATA_END;
                 let taken = if is_wanted {
-                    self.bytes.take(length, &mut self.data)
+                    self.walk.bytes.take(length, &mut self.data)
                 } else {
-                    self.bytes.pass(length)
+                    self.walk.bytes.pass(length)
                 };
                 match taken {
                     Ok(true) => return Ok(Some((kind, at))),
@@ -225,8 +200,8 @@ impl Chunked for Mcap {
             }
             _ => CUT.to_owned(),
         };
-        self.faults.end(at, what)?;
-        self.is_over = true;
+        self.walk.faults.end(at, what)?;
+        self.walk.is_over = true;
         // Of a chunk, what is there may hold messages.
         Ok(kind.filter(|kind| *kind == op::CHUNK && length.is_some()).map(|kind| (kind, at)))
     }
@@ -242,12 +217,11 @@ impl Chunked for Mcap {
                     return self.odd(at);
                 };
                 let start = self.data.len() - content;
-                self.message = unpacked(&self.data[start..])
-                    .map_or(Message::InData(start..self.data.len()), Message::Unpacked);
+                take_content(&self.data[start..], &mut self.walk.message);
                 Ok(Some(entry))
             }
             op::FOOTER | op::DATA_END => {
-                self.is_over = true;
+                self.walk.is_over = true;
                 Ok(None)
             }
             _ => {
@@ -260,32 +234,13 @@ impl Chunked for Mcap {
     }
 }
 
-impl Log for Mcap {
-    fn next(&mut self) -> Result<Option<Entry>> {
-        self.next_message()
+/// Takes a message, which may be packed by itself: no message of ROS 2 starts like this.
+fn take_content(content: &[u8], message: &mut Vec<u8>) {
+    if content.starts_with(&ZSTD) {
+        *message = unpack("zstd", content, LARGEST_MESSAGE).0;
+    } else {
+        content.clone_into(message);
     }
-
-    fn topics(&self) -> &[Topic] {
-        &self.topics
-    }
-
-    fn message(&self) -> &[u8] {
-        match &self.message {
-            Message::InChunk(range) => &self.chunk.bytes()[range.clone()],
-            Message::InData(range) => &self.data[range.clone()],
-            Message::Unpacked(bytes) => bytes,
-        }
-    }
-
-    fn faults(&mut self) -> &mut Faults {
-        &mut self.faults
-    }
-}
-
-/// Unpacks a message that was packed by itself.
-fn unpacked(message: &[u8]) -> Option<Vec<u8>> {
-    // No message of ROS 2 starts like this.
-    message.starts_with(&ZSTD).then(|| unpack("zstd", message, LARGEST_MESSAGE).0)
 }
 
 /// A text, or bytes, behind their length.
