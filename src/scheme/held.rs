@@ -26,3 +26,17 @@ impl<S: Copy> Held<S> {
         self.value
     }
 }
+
+/// The methods of a [`Scheme`](crate::Scheme) whose decoder's state is [`Held`].
+macro_rules! hold_value {
+    () => {
+        fn held(&self, state: &Held<S>) -> Option<S> {
+            Some(state.value())
+        }
+
+        fn resync(&self, state: &mut Held<S>, value: S) {
+            *state = Held::at(value);
+        }
+    };
+}
+pub(super) use hold_value;

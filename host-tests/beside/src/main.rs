@@ -12,9 +12,12 @@ use spikewire::{
 const ROUNDS: usize = 61;
 const LENGTH: usize = 10_000;
 
+/// What a sample and its spike take, of which one is read and the other written.
+const BYTES: usize = size_of::<f32>() + size_of::<Spike>();
+
 fn main() {
-    println!("| code | M samples/s | ferromorphic | times | spikes | ferromorphic |");
-    println!("|---|---:|---:|---:|---:|---:|");
+    println!("| code | M samples/s | GB/s | ferromorphic | times | spikes | ferromorphic |");
+    println!("|---|---:|---:|---:|---:|---:|---:|");
     // The paper's, without its noise.
     let signal: [f64; LENGTH] = array::from_fn(|k| {
         let t = k as f64 / 100.0;
@@ -62,7 +65,11 @@ fn main() {
     let second = median(
         (0..9).map(|_| seconds(|| black_box(&mut to).copy_from_slice(black_box(&from)))).collect(),
     );
-    println!("\nThe memory copies {:.1} GB a second.", (1 << 27) as f64 / second * 1e-9);
+    let copied = (1 << 27) as f64 / second * 1e-9;
+    println!(
+        "\nThe memory copies {copied:.1} GB a second: it reads and writes {:.1}.",
+        2.0 * copied
+    );
 }
 
 /// A filter whose highest tap is nearly 1.
@@ -145,12 +152,10 @@ fn in_turns(name: &str, spikes: [usize; 2], mut ours: impl FnMut(), theirs: impl
         1e-6 * LENGTH as f64 / median(pairs.iter().map(|pair| pair[which]).collect())
     };
     let times = median(pairs.iter().map(|pair| pair[1] / pair[0]).collect());
+    let ([ours, theirs], [own_spikes, their_spikes]) = ([of(0), of(1)], spikes);
+    let gigabytes = ours * BYTES as f64 * 1e-3;
     println!(
-        "| {name} | {:.0} | {:.0} | {times:.1} | {} | {} |",
-        of(0),
-        of(1),
-        spikes[0],
-        spikes[1]
+        "| {name} | {ours:.0} | {gigabytes:.1} | {theirs:.0} | {times:.1} | {own_spikes} | {their_spikes} |",
     );
 }
 

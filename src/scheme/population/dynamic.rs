@@ -12,7 +12,7 @@ use super::{Neuron, PositionState, SlotSpikes, SlotsState};
 use crate::error::{positive, within};
 use crate::num::{DoubleDouble, EvenBins, reach};
 use crate::scheme::cells::number_by_search;
-use crate::scheme::held::Held;
+use crate::scheme::held::{Held, hold_value};
 use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
 
 /// The most neurons of a population.
@@ -179,16 +179,10 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
         state.or_hold(centre.copied())
     }
 
-    fn held(&self, state: &Held<S>) -> Option<S> {
-        Some(state.value())
-    }
+    hold_value!();
 
     fn neurons(&self) -> usize {
         self.centres.len()
-    }
-
-    fn resync(&self, state: &mut Held<S>, value: S) {
-        *state = Held::at(value);
     }
 }
 
@@ -310,9 +304,7 @@ impl<S: Sample, const M: usize> Scheme for Slots<S, M> {
         state.or_hold(self.fields.fields().weighted_mean(spikes.first(), levels))
     }
 
-    fn held(&self, state: &Held<S>) -> Option<S> {
-        Some(state.value())
-    }
+    hold_value!();
 
     fn slots(&self) -> usize {
         self.fields.reaches.len()
@@ -320,10 +312,6 @@ impl<S: Sample, const M: usize> Scheme for Slots<S, M> {
 
     fn neurons(&self) -> usize {
         self.fields.centres.len()
-    }
-
-    fn resync(&self, state: &mut Held<S>, value: S) {
-        *state = Held::at(value);
     }
 }
 
@@ -337,7 +325,7 @@ mod random {
 
     use rand_core::Rng;
 
-    use super::{LEVELS, NEURONS, Tables, middle};
+    use super::{LEVELS, NEURONS, Tables, hold_value, middle};
     use crate::population::{FiredNeurons, Held, ProbabilisticState};
     use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
 
@@ -416,16 +404,10 @@ mod random {
             state.or_hold(self.fields.fields().weighted_mean(0, levels))
         }
 
-        fn held(&self, state: &Held<S>) -> Option<S> {
-            Some(state.value())
-        }
+        hold_value!();
 
         fn neurons(&self) -> usize {
             self.fields.centres.len()
-        }
-
-        fn resync(&self, state: &mut Held<S>, value: S) {
-            *state = Held::at(value);
         }
     }
 }

@@ -11,6 +11,7 @@ use super::nonlinear_slots::{Fields, reach, spaced_widths, tables};
 use super::{Held, NeuronSlots, SlotsState};
 use crate::error::{positive, within};
 use crate::num::{scale, widths};
+use crate::scheme::held::hold_value;
 use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
 
 /// [`population::NonLinearSlots`](crate::population::NonLinearSlots) with any number of neurons, up to `M`, and of
@@ -144,9 +145,7 @@ impl<S: Sample, const M: usize> Scheme for NonLinearSlots<S, M> {
         state.or_hold(self.fields().mean(&spikes.slots))
     }
 
-    fn held(&self, state: &Held<S>) -> Option<S> {
-        Some(state.value())
-    }
+    hold_value!();
 
     fn neurons(&self) -> usize {
         self.centres.len()
@@ -154,9 +153,5 @@ impl<S: Sample, const M: usize> Scheme for NonLinearSlots<S, M> {
 
     fn slots(&self) -> usize {
         self.radii.len()
-    }
-
-    fn resync(&self, state: &mut Held<S>, value: S) {
-        *state = Held::at(value);
     }
 }

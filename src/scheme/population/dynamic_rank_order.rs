@@ -10,6 +10,7 @@ use super::rank_order::{Ranks, middles};
 use super::{Held, SlotSpikes, SlotsState};
 use crate::error::within;
 use crate::scheme::cells::number_by_search;
+use crate::scheme::held::hold_value;
 use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
 
 use super::centres::even;
@@ -125,9 +126,7 @@ impl<S: Sample, const M: usize> Scheme for RankOrder<S, M> {
         state.or_hold(self.ranks().value(spikes.first(), spikes.slots()))
     }
 
-    fn held(&self, state: &Held<S>) -> Option<S> {
-        Some(state.value())
-    }
+    hold_value!();
 
     fn neurons(&self) -> usize {
         self.centres.len()
@@ -135,9 +134,5 @@ impl<S: Sample, const M: usize> Scheme for RankOrder<S, M> {
 
     fn slots(&self) -> usize {
         self.spikes
-    }
-
-    fn resync(&self, state: &mut Held<S>, value: S) {
-        *state = Held::at(value);
     }
 }

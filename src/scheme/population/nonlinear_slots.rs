@@ -8,6 +8,7 @@ use super::{Held, NeuronSlots, SlotsState};
 use crate::error::{offset, positive, unwrap, within};
 use crate::num::{scale, to_f64, widths, within_widths};
 use crate::scheme::cells::count_preceding;
+use crate::scheme::held::hold_value;
 use crate::{ConfigError, Destination, Recovery, Sample, SampleKind, Scheme, Start};
 
 /// Non-linear Gaussian receptive fields whose neurons fire in one of `N` sub-timesteps of a sample, its slots.
@@ -371,11 +372,5 @@ impl<S: Sample, const M: usize, const N: usize> Scheme for NonLinearSlots<S, M, 
         state.or_hold(self.fields().mean(&spikes.slots))
     }
 
-    fn held(&self, state: &Held<S>) -> Option<S> {
-        Some(state.value())
-    }
-
-    fn resync(&self, state: &mut Held<S>, value: S) {
-        *state = Held::at(value);
-    }
+    hold_value!();
 }

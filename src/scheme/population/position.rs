@@ -7,7 +7,7 @@ use super::centres::Centres;
 use crate::error::unwrap;
 use crate::num::Tally;
 use crate::scheme::codec::decode_copied;
-use crate::scheme::held::Held;
+use crate::scheme::held::{Held, hold_value};
 use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Start};
 
 /// Position coding: every sample fires the one neuron whose centre is nearest.
@@ -227,11 +227,5 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
         decode_copied(self, state, neurons, values)
     }
 
-    fn held(&self, state: &Held<S>) -> Option<S> {
-        Some(state.value())
-    }
-
-    fn resync(&self, state: &mut Held<S>, value: S) {
-        *state = Held::at(value);
-    }
+    hold_value!();
 }

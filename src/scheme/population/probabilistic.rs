@@ -10,7 +10,7 @@ use super::FiredNeurons;
 use super::fields::{Fields, ReceptiveFields};
 use crate::error::unwrap;
 use crate::num::{Distance, Tally};
-use crate::scheme::held::Held;
+use crate::scheme::held::{Held, hold_value};
 use crate::{ConfigError, Destination, Encoder, Recovery, Sample, Scheme};
 
 /// Gaussian receptive fields in which a neuron fires with a probability equal to its response, drawn from the
@@ -249,11 +249,5 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Scheme for Probabilistic
         state.or_hold(self.fields.mean_of(&neurons))
     }
 
-    fn held(&self, state: &Held<S>) -> Option<S> {
-        Some(state.value())
-    }
-
-    fn resync(&self, state: &mut Held<S>, value: S) {
-        *state = Held::at(value);
-    }
+    hold_value!();
 }

@@ -6,6 +6,7 @@ use super::centres::{Centres, even, halfway_edges};
 use super::{Held, SlotSpikes, SlotsState};
 use crate::error::{offset, unwrap};
 use crate::num::{from_f64, to_f64};
+use crate::scheme::held::hold_value;
 use crate::{ConfigError, Destination, Recovery, Sample, SampleKind, Scheme, Start};
 
 /// Rank order coding: the `K` neurons of `M` whose centres are nearest fire one after the other, the nearest first.
@@ -367,11 +368,5 @@ impl<S: Sample, const M: usize, const K: usize> Scheme for RankOrder<S, M, K> {
         state.or_hold(self.ranks().value(spikes.first(), spikes.slots()))
     }
 
-    fn held(&self, state: &Held<S>) -> Option<S> {
-        Some(state.value())
-    }
-
-    fn resync(&self, state: &mut Held<S>, value: S) {
-        *state = Held::at(value);
-    }
+    hold_value!();
 }

@@ -6,7 +6,7 @@ use super::SlotSpikes;
 use super::fields::{Fields, ReceptiveFields};
 use crate::error::{unwrap, within};
 use crate::num::{Distance, Tally};
-use crate::scheme::held::Held;
+use crate::scheme::held::{Held, hold_value};
 use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Start};
 
 /// Gaussian receptive fields whose neurons fire in one of `N` sub-timesteps of a sample, its slots.
@@ -243,11 +243,5 @@ impl<S: Sample, const M: usize, const N: usize> Scheme for Slots<S, M, N> {
         state.or_hold(self.fields.fields().weighted_mean(spikes.first(), levels))
     }
 
-    fn held(&self, state: &Held<S>) -> Option<S> {
-        Some(state.value())
-    }
-
-    fn resync(&self, state: &mut Held<S>, value: S) {
-        *state = Held::at(value);
-    }
+    hold_value!();
 }

@@ -10,7 +10,8 @@ use crate::{Sample, Spike};
 ///
 /// - **Range:** the sum takes the oldest spike first, one rounding each in `f32`; fixed point is
 ///   exact and saturates at the type's ends.
-/// - **Work:** one addition a tap for a sample with a spike, two operations for a sample without.
+/// - **Work:** one addition a tap for a sample with a spike, two operations for a sample without. Long slices on a core
+///   with vectors take every tap for every sample, many samples at once.
 /// - **Memory:** `4 F + 4` bytes in `f32`.
 /// - **Loss:** a lost spike is forgotten after `F` samples, so a rate decoder needs no keyframes.
 ///
@@ -39,6 +40,7 @@ impl<S: Sample, const F: usize> RateDecoderState<S, F> {
         filtered.shift.restore(decode(&mut self.pending, &mut self.next, taps, spike))
     }
 
+    /// Decodes a long slice panel by panel if the core has vectors, and what is left one by one.
     #[inline(always)]
     pub(super) fn decode_slice(
         &mut self,

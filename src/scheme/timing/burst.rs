@@ -6,7 +6,7 @@ use super::{BurstSpikes, TimingState};
 use crate::error::{unwrap, within};
 use crate::num::to_f64;
 use crate::scheme::cells::{Cuts, Partition, Side, count_preceding};
-use crate::scheme::held::Held;
+use crate::scheme::held::{Held, hold_value};
 use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 
 /// Burst coding: every sample is a burst, whose spike count and interval give the value.
@@ -252,9 +252,7 @@ impl<S: Sample, const N: usize> Scheme for Burst<S, N> {
         state.or_hold(self.value(burst))
     }
 
-    fn held(&self, state: &Held<S>) -> Option<S> {
-        Some(state.value())
-    }
+    hold_value!();
 
     /// The slots of the longest burst.
     fn slots(&self) -> usize {
@@ -262,9 +260,5 @@ impl<S: Sample, const N: usize> Scheme for Burst<S, N> {
             u16::from(burst.count()).saturating_sub(1).wrapping_mul(burst.interval().into())
         };
         self.bursts().map(|(burst, _)| usize::from(last(burst)).wrapping_add(1)).max().unwrap_or(1)
-    }
-
-    fn resync(&self, state: &mut Held<S>, value: S) {
-        *state = Held::at(value);
     }
 }

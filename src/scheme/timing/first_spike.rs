@@ -8,7 +8,7 @@ use crate::num::curve::power;
 use crate::num::{DoubleDouble, to_f64};
 use crate::scheme::cells::{Cuts, Partition, Side};
 use crate::scheme::code::Destination;
-use crate::scheme::held::Held;
+use crate::scheme::held::{Held, hold_value};
 use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 
 /// Time to first spike: one spike a sample, in the slot of the value's cell; the highest cell has the first slot.
@@ -319,9 +319,7 @@ impl<S: Sample, const N: usize> Scheme for FirstSpike<S, N> {
         state.or_hold(self.value(slot))
     }
 
-    fn held(&self, state: &Held<S>) -> Option<S> {
-        Some(state.value())
-    }
+    hold_value!();
 
     fn recovery(&self) -> Recovery {
         if self.silence.is_some() { Recovery::Samples(1) } else { Recovery::Spike }
@@ -329,9 +327,5 @@ impl<S: Sample, const N: usize> Scheme for FirstSpike<S, N> {
 
     fn slots(&self) -> usize {
         self.slots.into()
-    }
-
-    fn resync(&self, state: &mut Held<S>, value: S) {
-        *state = Held::at(value);
     }
 }

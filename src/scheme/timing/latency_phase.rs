@@ -5,7 +5,7 @@ use core::ops::RangeInclusive;
 use super::{PhaseSpikes, TimingState};
 use crate::error::{unwrap, within};
 use crate::scheme::cells::{Cuts, Partition};
-use crate::scheme::held::Held;
+use crate::scheme::held::{Held, hold_value};
 use crate::{ConfigError, Recovery, Sample, Scheme, Start};
 
 /// Latency-phase: neurons that fire only at the peaks of an oscillation, so that one line may carry them all.
@@ -216,9 +216,7 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> Scheme
         state.or_hold(self.value(&spikes))
     }
 
-    fn held(&self, state: &Held<S>) -> Option<S> {
-        Some(state.value())
-    }
+    hold_value!();
 
     fn neurons(&self) -> usize {
         self.neurons.into()
@@ -226,9 +224,5 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> Scheme
 
     fn slots(&self) -> usize {
         usize::from(self.width).wrapping_add(self.period.into()).saturating_sub(1)
-    }
-
-    fn resync(&self, state: &mut Held<S>, value: S) {
-        *state = Held::at(value);
     }
 }

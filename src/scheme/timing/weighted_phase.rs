@@ -5,7 +5,7 @@ use core::ops::RangeInclusive;
 use super::{PhaseBits, TimingState};
 use crate::error::{range as check_range, unwrap, within};
 use crate::num::to_f64;
-use crate::scheme::held::Held;
+use crate::scheme::held::{Held, hold_value};
 use crate::{ConfigError, Recovery, Sample, SampleKind, Scheme, Start};
 
 /// Weighted phase: the `K` slots of a sample are the binary digits of its place in the range, the highest first.
@@ -152,15 +152,9 @@ impl<S: Sample, const K: usize> Scheme for WeightedPhase<S, K> {
         state.or_hold(Some(S::of_digits(digits, self.slots.into(), self.min, self.max)))
     }
 
-    fn held(&self, state: &Held<S>) -> Option<S> {
-        Some(state.value())
-    }
+    hold_value!();
 
     fn slots(&self) -> usize {
         self.slots.into()
-    }
-
-    fn resync(&self, state: &mut Held<S>, value: S) {
-        *state = Held::at(value);
     }
 }
