@@ -11,6 +11,13 @@ type AnyPosition<S> = dynamic::Position<S>;
 type AnySlots<S> = dynamic::Slots<S>;
 type AnyProbabilistic<S> = dynamic::Probabilistic<S, Pcg32>;
 
+/// A signal for a scheme of so many neurons: fewer samples where each asks many of them.
+fn signal_for<S: Sample>(neurons: usize, seed: u64, reach: f64) -> Vec<S> {
+    let mut signal = signal(seed, reach);
+    signal.truncate(if neurons > 64 { 750 } else { signal.len() });
+    signal
+}
+
 /// A signal that wanders over ±`reach`, holds still, jumps, and has ties with whole eighths of it.
 fn signal<S: Sample>(seed: u64, reach: f64) -> Vec<S> {
     let mut generator = Pcg32::seed_from_u64(seed);
@@ -85,10 +92,11 @@ fn compare<A: Start, B: Scheme<Sample = A::Sample>>(
 ) -> usize {
     let mut fires = 0;
     for seed in 0..2 {
-        let mut signal = signal::<A::Sample>(seed, reach);
-        let (past, now) = signal.split_at_mut(if seed == 1 { 600 } else { 0 });
+        let mut signal = signal_for::<A::Sample>(any.neurons(), seed, reach);
+        let past = if seed == 1 { signal.len() / 5 } else { 0 };
+        let (past, now) = signal.split_at_mut(past);
         // Not finite in `f32`, and a number in fixed point.
-        now[1000] = A::Sample::from_f64(f64::NAN);
+        now[now.len() / 3] = A::Sample::from_f64(f64::NAN);
         let (one, other) = (said(fixed, A::START, past, now), said(any, start(), past, now));
         assert!(one == other, "{what}, seed {seed}");
         fires += one.codes.iter().flatten().filter(|code| !code.is_empty()).count();
@@ -195,8 +203,9 @@ fn populations<S: Sample, const M: usize>(one: f64) {
     let scheme = population::Probabilistic::<S, Pcg32, M, 256>::try_new(range(), 1.5).unwrap();
     let other = AnyProbabilistic::<S>::try_new(M, &range(), 1.5).unwrap();
     let state = || Pcg32::seed_from_u64(7);
-    let mut signal = signal::<S>(7, 2.0 * one);
-    signal[1000] = S::from_f64(f64::NAN);
+    let mut signal = signal_for::<S>(M, 7, 2.0 * one);
+    let middle = signal.len() / 3;
+    signal[middle] = S::from_f64(f64::NAN);
     let one =
         said(&scheme, population::Probabilistic::<S, _, M, 256>::state(state()), &[], &signal);
     let two = said(&other, AnyProbabilistic::<S>::state(state()), &[], &signal);
@@ -213,7 +222,8 @@ fn slots<S: Sample, const M: usize, const N: usize>(one: f64) {
         let other = other.try_with_floor(floor).unwrap();
         assert_eq!(scheme.centres(), other.centres());
         let what = format!("{M} neurons, {N} slots, beta {beta}, floor {floor}, {:?}", S::KIND);
-        let signal = &signal::<S>(5, 2.0 * one)[..1000];
+        let signal = signal_for::<S>(M, 5, 2.0 * one);
+        let signal = &signal[..signal.len() / 3];
         let fixed = said(&scheme, population::Slots::<S, M, N>::START, &[], signal);
         let any = said(&other, other.state(), &[], signal);
         assert!(fixed == any, "{what}");
@@ -233,7 +243,7 @@ fn nonlinear<S: Sample, const M: usize, const N: usize>(one: f64) {
     let other = AnyPosition::try_with_widths(&centres, &widths).unwrap();
     compare(&what, &scheme, &other, || other.state(), 2.0 * one);
 
-    let signal = signal::<S>(9, 2.0 * one);
+    let signal = signal_for::<S>(M, 9, 2.0 * one);
     let check = |scheme: population::NonLinearSlots<S, M, N>, other: dynamic::NonLinearSlots<S>| {
         for floor in [1, N as u16 / 2] {
             let scheme = scheme.try_with_floor(floor).unwrap();

