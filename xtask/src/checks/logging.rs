@@ -1,29 +1,31 @@
 //! `cargo verify logging`: what emulated boards log by defmt, decoded on the host.
 
 use crate::common::{paths, shell};
-use crate::programs::{boards::BOARDS, host, image, qemu};
+use crate::programs::{boards::Board, host, image, qemu};
 use anyhow::{Context, Result, ensure};
 use std::fs::{self, File};
 
 const PROGRAM: &str = "logging";
-/// The smallest core and the usual one.
-const CORES: [&str; 2] = ["M0", "M4F"];
+
+/// The usual core stands for all; `cargo verify cores` has the smallest.
+pub fn logging() -> Result<()> {
+    on("M4F")
+}
 
 /// The log must be the text beside the program, which is what a reader of it would see.
-pub fn logging() -> Result<()> {
+pub fn on(core: &str) -> Result<()> {
     let expected = paths::examples().join("logging/expected.txt");
     let expected = fs::read_to_string(&expected).with_context(|| expected.display().to_string())?;
-    for board in BOARDS.iter().filter(|board| CORES.contains(&board.core)) {
-        let image = image::build(PROGRAM, board)?;
-        let said = paths::target().join(format!("logging-{}.defmt", board.machine));
-        fs::write(&said, qemu::run_bytes(board, &image)?)?;
+    let board = Board::with(core)?;
+    let image = image::build(PROGRAM, board)?;
+    let said = paths::target().join(format!("logging-{}.defmt", board.machine));
+    fs::write(&said, qemu::run_bytes(board, &image)?)?;
 
-        let mut decoder = shell::command(host::example(PROGRAM)?);
-        decoder.arg(&image).stdin(File::open(&said)?);
-        let log = shell::output(&mut decoder)?;
-        ensure!(log == expected, "{} logs\n{log}and should log\n{expected}", board.core);
-        println!("{}: {} lines, as they should be", board.core, log.lines().count());
-    }
+    let mut decoder = shell::command(host::example(PROGRAM)?);
+    decoder.arg(&image).stdin(File::open(&said)?);
+    let log = shell::output(&mut decoder)?;
+    ensure!(log == expected, "{} logs\n{log}and should log\n{expected}", board.core);
+    println!("{}: {} lines, as they should be", board.core, log.lines().count());
     print!("{expected}");
     Ok(())
 }

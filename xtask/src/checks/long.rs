@@ -1,6 +1,6 @@
 //! The checks of `cargo verify --long`, which take too long for every change.
 
-use crate::checks::{everyday::check_for, fifo};
+use crate::checks::{everyday::check_for, fifo, logging};
 use crate::common::{cargo, paths, run};
 use crate::figures::bench;
 use crate::setup::toolchain::{TARGETS, cargo_for};
@@ -87,5 +87,6 @@ pub fn capture() -> Result<()> {
 /// The counts of the cores that `cargo verify` leaves out are shown; there is no baseline of them.
 pub fn cores() -> Result<()> {
     bench::bench(&[])?;
+    logging::on("M0")?;
     fifo::count("M7")
 }

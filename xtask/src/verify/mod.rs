@@ -107,7 +107,7 @@ const STEPS: &[Step] = &[
         .apart(&[HOST, LAST]),
     step("storm", "more events than main takes, on emulated boards and host", storm::storm)
         .apart(BOARDS),
-    step("logging", "defmt out of emulated boards, decoded on the host", logging::logging)
+    step("logging", "defmt out of an emulated Cortex-M4F, decoded on the host", logging::logging)
         .apart(BOARDS),
     step("link", "a flight over a serial line, board against host", link::link).apart(&[LAST]),
     step("loop", "a flight through a chip's model, board against host", rate_loop::rate_loop)
@@ -198,7 +198,7 @@ const LONG: &[Step] = &[
     step("flown", "the same, on an emulated board: bit for bit", simulated_drone::board),
     step("chip-flies", "the same, on a network on tinyODIN's model", simulated_drone::chip),
     step("reckon", "the model of ReckOn against the chip's own code", reckon::reckon),
-    step("cores", "instruction counts on all five cores", long::cores),
+    step("cores", "instruction counts on all five cores, and the log of the smallest", long::cores),
     step(
         "tuner",
         "`spikewire tune` beside other optimisers, at equal numbers of settings",
