@@ -72,7 +72,11 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    const CONSTANT: Option<[&str; 3]> = Some(["temporal::AdaptiveStepForward", "", "new({threshold}, {doublings}).with_run({run})"]);
+    const CONSTANT: Option<[&str; 3]> = Some([
+        "temporal::AdaptiveStepForward",
+        "",
+        "new({threshold}, {doublings}).with_run({run})",
+    ]);
 
     costs!(AdaptiveStepForward<S>, "asf");
 

@@ -70,7 +70,8 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    const CONSTANT: Option<[&str; 3]> = Some(["temporal::AdaptiveContrast", "", "new({threshold}, {doublings})"]);
+    const CONSTANT: Option<[&str; 3]> =
+        Some(["temporal::AdaptiveContrast", "", "new({threshold}, {doublings})"]);
 
     costs!(AdaptiveContrast<S>, "atbr");
 

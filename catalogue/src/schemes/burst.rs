@@ -82,7 +82,8 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    const CONSTANT: Option<[&str; 3]> = Some(["timing::Burst", "{slots}", "new({range}, {spikes}, {shortest}..={longest})"]);
+    const CONSTANT: Option<[&str; 3]> =
+        Some(["timing::Burst", "{slots}", "new({range}, {spikes}, {shortest}..={longest})"]);
 
     costs!(Burst<S, 19>, "burst-5");
 

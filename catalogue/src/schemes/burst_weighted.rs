@@ -85,7 +85,8 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    const CONSTANT: Option<[&str; 3]> = Some(["rate::WeightedBurst", "{averaging}", "new({range}, {weight}, {doublings}, {mean})"]);
+    const CONSTANT: Option<[&str; 3]> =
+        Some(["rate::WeightedBurst", "{averaging}", "new({range}, {weight}, {doublings}, {mean})"]);
 
     costs!(WeightedBurst<S, Average>, "burst-weighted");
 

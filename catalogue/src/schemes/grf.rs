@@ -51,7 +51,8 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    const CONSTANT: Option<[&str; 3]> = Some(["population::Gaussian", "{neurons}", "linear({range})"]);
+    const CONSTANT: Option<[&str; 3]> =
+        Some(["population::Gaussian", "{neurons}", "linear({range})"]);
 
     // Neurons are found by bisection.
     costs!(Gaussian<S, 20>, "grf-20", |settings| settings.neurons()? as f64 / 20.0);

@@ -69,7 +69,11 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    const CONSTANT: Option<[&str; 3]> = Some(["population::Slots", "{neurons}, {slots}", "new({range}, {beta}).with_floor({floor})"]);
+    const CONSTANT: Option<[&str; 3]> = Some([
+        "population::Slots",
+        "{neurons}, {slots}",
+        "new({range}, {beta}).with_floor({floor})",
+    ]);
 
     costs!(Slots<S, 15, 10>, "grf-slots-15x10", |settings| settings.neurons()? as f64 / 15.0);
 

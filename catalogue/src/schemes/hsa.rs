@@ -66,7 +66,8 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    const CONSTANT: Option<[&str; 3]> = Some(["rate::Hough", "{length}", "new({taps}).with_shift({shift})"]);
+    const CONSTANT: Option<[&str; 3]> =
+        Some(["rate::Hough", "{length}", "new({taps}).with_shift({shift})"]);
 
     fn ram<S: Sample>(settings: &Settings) -> Result<usize> {
         let sizes = [state::<Hough<S, 8>>(), state::<Hough<S, 16>>()];

@@ -99,7 +99,11 @@ pub(super) fn built<S: Sample>(settings: &Settings) -> Result<IntegrateAndFire<S
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    const CONSTANT: Option<[&str; 3]> = Some(["rate::IntegrateAndFire", "{spikes}", "new({threshold}, {power}).with_reference({reference})"]);
+    const CONSTANT: Option<[&str; 3]> = Some([
+        "rate::IntegrateAndFire",
+        "{spikes}",
+        "new({threshold}, {power}).with_reference({reference})",
+    ]);
 
     costs!(IntegrateAndFire<S, 127>, "if");
 

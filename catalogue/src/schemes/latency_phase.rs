@@ -73,7 +73,11 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    const CONSTANT: Option<[&str; 3]> = Some(["timing::LatencyPhase", "{neurons}, {latencies}, {period}", "new({range}, {spacing})"]);
+    const CONSTANT: Option<[&str; 3]> = Some([
+        "timing::LatencyPhase",
+        "{neurons}, {latencies}, {period}",
+        "new({range}, {spacing})",
+    ]);
 
     costs!(LatencyPhase<S, 4, 32, 4>, "latency-phase-4x32", |settings| settings.count("neurons", 1..=255)? as f64 / 4.0);
 

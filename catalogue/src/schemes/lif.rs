@@ -65,7 +65,11 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    const CONSTANT: Option<[&str; 3]> = Some(["rate::IntegrateAndFire", "{spikes}", "new({threshold}, {power}).leaky().with_reference({reference})"]);
+    const CONSTANT: Option<[&str; 3]> = Some([
+        "rate::IntegrateAndFire",
+        "{spikes}",
+        "new({threshold}, {power}).leaky().with_reference({reference})",
+    ]);
 
     costs!(IntegrateAndFire<S, 127>, "lif");
 

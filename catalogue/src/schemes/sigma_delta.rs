@@ -84,7 +84,8 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    const CONSTANT: Option<[&str; 3]> = Some(["rate::SigmaDelta", "{averaging}", "new({range}, {mean})"]);
+    const CONSTANT: Option<[&str; 3]> =
+        Some(["rate::SigmaDelta", "{averaging}", "new({range}, {mean})"]);
 
     costs!(SigmaDelta<S, Average>, "sigma-delta");
 

@@ -63,7 +63,8 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    const CONSTANT: Option<[&str; 3]> = Some(["temporal::SendOnDelta", "{spikes}", "new({threshold})"]);
+    const CONSTANT: Option<[&str; 3]> =
+        Some(["temporal::SendOnDelta", "{spikes}", "new({threshold})"]);
 
     fn shape(settings: &Settings) -> Result<Shape> {
         Ok(Shape { neurons: 1, slots: settings.count("spikes", 1..=127)? })

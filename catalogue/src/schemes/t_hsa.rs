@@ -78,7 +78,8 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    const CONSTANT: Option<[&str; 3]> = Some(["rate::ThresholdHough", "{length}", "new({taps}, {threshold}).with_shift({shift})"]);
+    const CONSTANT: Option<[&str; 3]> =
+        Some(["rate::ThresholdHough", "{length}", "new({taps}, {threshold}).with_shift({shift})"]);
 
     fn ram<S: Sample>(settings: &Settings) -> Result<usize> {
         let sizes = [state::<ThresholdHough<S, 8>>(), state::<ThresholdHough<S, 16>>()];

@@ -103,7 +103,8 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    const CONSTANT: Option<[&str; 3]> = Some(["temporal::TemporalContrast", "", "new({threshold}).with_step({step})"]);
+    const CONSTANT: Option<[&str; 3]> =
+        Some(["temporal::TemporalContrast", "", "new({threshold}).with_step({step})"]);
 
     /// The threshold is settings, or a number of deviations of the signal's differences.
     fn resolve(asked: &Resolve) -> Result<Settings> {
