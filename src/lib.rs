@@ -54,6 +54,8 @@
 //! *The paper*, in the documentation of the schemes, is Dupeyroux, Stroobants and de Croon,
 //! *A toolbox for neuromorphic perception in robotics*, 2022.
 //!
+//! A low-pass or a notch goes [before](filter) any of them.
+//!
 //! # Features
 //!
 //! All features are off by default, and additive.
@@ -85,6 +87,7 @@ extern crate std;
 pub mod chip;
 mod error;
 mod event;
+pub mod filter;
 pub mod frame;
 mod num;
 pub mod out;

@@ -5,10 +5,11 @@ use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
+use flight_logs::{Damage, Kind, Reading};
 use lab::coding::Coding;
 use lab::events::{Format, read_events};
 use lab::frames;
-use lab::input::messages::{Kind, Reading, kind_of, overview};
+use lab::input::messages::overview;
 use lab::input::{ChannelOptions, Chunk, InputOptions};
 use lab::network;
 use lab::spikes::{self, Item, Spikes};
@@ -36,9 +37,9 @@ fn file(name: &str, bytes: &[u8]) -> PathBuf {
 /// Bags of ROS 1 and 2, MCAP files and Betaflight's blackbox, told apart by how they start.
 pub fn logs(bytes: &[u8]) {
     let path = file("log", bytes);
-    let Ok(Some(kind)) = kind_of(&path) else { return };
+    let Ok(Some(kind)) = Kind::of(&path) else { return };
     let _ = overview(&path, kind, true, 1.5).is_ok();
-    let Ok(mut log) = Reading::open(&path, kind, true) else { return };
+    let Ok(mut log) = Reading::open(&path, kind, Damage::Skip) else { return };
     let mut count = 0;
     while count < MOST
         && let Ok(true) = log.advance()

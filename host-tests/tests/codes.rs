@@ -13,6 +13,7 @@ mod config_errors;
 mod defmt;
 mod dynamic;
 mod every_scheme;
+mod filter;
 mod first_spike;
 mod frames;
 mod gaussian;

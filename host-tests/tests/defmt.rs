@@ -6,6 +6,7 @@ use rand_pcg::Pcg32;
 use spikewire::{
     Calibration, Conditions, ConfigError, Differences, Histogram, NeuronSpike, Polarity, Recovery,
     Sample, SampleKind, Spike, Unfit,
+    filter::{Biquad, Filtered, FirstOrder},
     population::{
         FiredNeurons, Gaussian, Neuron, NeuronSlots, NonLinearSlots, Position, Probabilistic,
         RankOrder, SlotSpikes, Slots,
@@ -43,6 +44,9 @@ const fn is_format_in<S: Sample + Format>() {
     is_format::<LatencyPhase<S, 2, 16, 4>>();
     is_format::<WeightedPhase<S, 4>>();
     is_format::<Burst<S, 19>>();
+
+    is_format::<Filtered<Biquad<S>, StepForward<S>>>();
+    is_format::<FirstOrder<S>>();
 
     is_format::<Calibration<S>>();
     is_format::<Histogram<S, 4>>();

@@ -43,7 +43,7 @@ fn has_a_test_and_rows_in_the_docs() {
         let sources = files.filter(|path| path.extension().is_some_and(|it| it == "rs"));
         sources.map(|path| read(&path)).collect::<Vec<_>>()
     };
-    let beside = sources_of("catalogue/src/schemes");
+    let beside = sources_of("laptop/catalogue/src/schemes");
     let beside =
         beside.iter().filter_map(|text| Some(text.split_once("mod tests {")?.1.to_owned()));
     let tests: Vec<String> = sources_of("host-tests/tests").into_iter().chain(beside).collect();

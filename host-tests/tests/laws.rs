@@ -4,6 +4,7 @@
 //! |---|---|
 //! | SF and send-on-delta stay within the threshold of a slow signal, adaptive SF within two | here |
 //! | adaptive SF never overshoots | here |
+//! | to adaptive SF a sample that is not finite is a silent one, and counted | here |
 //! | strict HSA never exceeds the signal | here, in reals of eighths |
 //! | step codes are silent on a constant that the past does not hide | here |
 //! | population codes decode to within half a cell | here; `rank_order`, timing codes in their files |
@@ -70,6 +71,39 @@ fn a_slow_signal_is_followed() {
         within(&AdaptiveStepForward::new(threshold, 5), &x, 2.0 * threshold);
         let quarter = threshold / 4.0;
         within(&SendOnDelta::<_, 4>::new(quarter), &x, quarter);
+    });
+}
+
+/// The step shrinks with a sample that is not finite, as it does in the decoder, which sees no spike; and every form of
+/// encoding counts the sample.
+#[test]
+fn samples_that_are_not_finite_are_silent_to_adaptive_steps() {
+    let scheme = AdaptiveStepForward::new(1.0_f32, 4);
+    let x = [0.0, 99.0, 99.0, f32::NAN, 99.0, 99.0, 99.0, 6.0, 6.0, 6.0];
+    let values = followed(&scheme, &x);
+    assert_eq!(values, [0.0, 1.0, 2.0, 2.0, 3.0, 4.0, 6.0, 6.0, 6.0, 6.0]);
+    assert_eq!(encode(&scheme, &x).rejected, 1);
+
+    proptest!(cases(256), |(moves in walk(20), gaps in vec(0..200_usize, 0..20), run in 1..=8_u8)| {
+        let scheme = AdaptiveStepForward::new(0.5, 4).with_run(run);
+        let mut x = eighths(&moves);
+        let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
+        for (gap, &bad) in gaps.into_iter().zip(bad.iter().cycle()) {
+            if let Some(x) = x.get_mut(1 + gap) {
+                *x = bad;
+            }
+        }
+        let rejected = x.iter().filter(|x| !x.is_finite()).count();
+        assert_eq!(encode(&scheme, &x).rejected as usize, rejected);
+
+        // With silence until the step is the smallest, the encoder's baseline is what the decoder holds.
+        let held = *followed(&scheme, &x).last().unwrap();
+        let mut encoder = scheme.encoder();
+        x.extend([held; 5]);
+        for x in x {
+            encoder.encode(x);
+        }
+        assert_eq!(encoder.keyframe(), Some(held));
     });
 }
 

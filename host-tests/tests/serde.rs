@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde_json::json;
 use spikewire::{
     Calibration, ConfigError, Event, Histogram, NeuronSpike, Polarity, SampleKind, Scheme, Spike,
+    filter::{Biquad, FirstOrder},
     population::{
         FiredNeurons, Neuron, NeuronSlots, NonLinearSlots, Position, Probabilistic, RankOrder,
         Slots,
@@ -54,6 +55,22 @@ fn temporal_schemes() {
     assert_json(StepForward::new(0.25_f32), &json!({ "threshold": 0.25 }));
     let scheme = MovingWindow::<I8F8, 4>::new(I8F8::from_bits(64));
     assert_json(scheme, &json!({ "threshold": { "bits": 64 } }));
+}
+
+#[test]
+fn filters_before_schemes() {
+    // A quarter of the rate: s² is 1/2, and s c / q is 1.
+    let section = json!({ "gain": 1.0, "damping": 1.0, "tap": 0.25 });
+    let filtered = Biquad::low_pass_with_q(1.0, 4.0, 0.5).before(StepForward::new(0.25_f32));
+    assert_json(filtered, &json!({ "filter": section, "scheme": { "threshold": 0.25 } }));
+    assert_json(Biquad::<i16>::low_pass_with_q(1.0, 4.0, 0.5), &section);
+    assert_json(
+        Biquad::<i16>::notch(1.0, 4.0, 0.5),
+        &json!({ "gain": 1.0, "damping": 1.0, "tap": 0.5 }),
+    );
+    // A sixth of the rate: s is 1/2, and the gain sqrt(5)/2 - 1/2.
+    let gain = ((1.25_f64.sqrt() - 0.5) * 536_870_912.0).round() / 536_870_912.0;
+    assert_json(FirstOrder::<i16>::low_pass(1.0, 6.0), &json!({ "gain": gain }));
 }
 
 #[test]

@@ -134,7 +134,7 @@ const fn power_of_two(exponent: u8) -> f64 {
 }
 
 /// The nearest integer, halves upwards, saturating.
-const fn round(value: f64) -> i64 {
+pub(super) const fn round(value: f64) -> i64 {
     let towards_zero = value as i64;
     let rest = value - towards_zero as f64;
     if rest >= 0.5 {

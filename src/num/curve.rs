@@ -107,7 +107,11 @@ pub(crate) const fn growth(x: f64, part: usize, parts: usize) -> DoubleDouble {
 pub(crate) const fn sin_pi(part: usize, parts: usize) -> DoubleDouble {
     let rest = parts.saturating_sub(part);
     let part = if part < rest { part } else { rest };
-    let t = DoubleDouble::new(part as f64).over(DoubleDouble::new(parts as f64));
+    sin_pi_at(DoubleDouble::new(part as f64).over(DoubleDouble::new(parts as f64)))
+}
+
+/// `sin(pi t)` for `t` within 0 to 0.5.
+pub(crate) const fn sin_pi_at(t: DoubleDouble) -> DoubleDouble {
     let x = DoubleDouble::PI.times(t);
     let square = x.times(x).negated();
     let mut term = x;

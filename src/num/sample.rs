@@ -10,8 +10,8 @@ use fixed::{
 };
 
 use super::{
-    Arithmetic, Binary, Field, Rated, SampleKind, Spaced, Stored, Summed, Totalled, Windowed,
-    convert,
+    Arithmetic, Binary, Field, Rated, Recursive, SampleKind, Spaced, Stored, Summed, Totalled,
+    Windowed, convert,
 };
 
 /// A number that comes from a sensor: `f32`, raw `i16` counts, or, with the feature `fixed`,
@@ -42,6 +42,7 @@ pub trait Sample:
     + Binary
     + Windowed
     + Rated
+    + Recursive
     + Spaced
     + Summed
     + Totalled

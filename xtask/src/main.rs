@@ -32,7 +32,7 @@ cargo xtask <command>
   write [PART]...       writes again what is generated: tables and pictures of the pages, declarations, stubs; all, or
                         the named parts; a name that there is not lists them
   c-library [--target]  the library for C: archive, header, CMake package and pkg-config file for each core and the host
-  guides FIRMWARE DIR   builds the guide of c/guides for crazyflie, betaflight or px4 with a checkout of that firmware
+  guides FIRMWARE DIR   builds the guide of bindings/c/guides for crazyflie, betaflight or px4 with a checkout of that firmware
   new-firmware DIR --board NAME
                         writes a firmware project for a board, which builds as it comes; without arguments, the boards
   page [--serve]        a page to look at signals and their spikes, as one HTML file; serves it on this machine alone

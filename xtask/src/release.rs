@@ -2,7 +2,8 @@
 
 use crate::checks::package;
 use crate::common::{cargo, command, output, paths, run};
-use crate::programs::{published, python};
+use crate::programs::published::{self, CRATES};
+use crate::programs::python;
 use anyhow::{Context, Result, bail, ensure};
 use serde_json::json;
 use std::{fs, path::PathBuf};
@@ -11,7 +12,7 @@ use std::{fs, path::PathBuf};
 const OWNERS: [&str; 2] = ["repository", "authors"];
 
 /// Every workspace, each with a lock file of its own.
-const WORKSPACES: [&str; 5] = [".", "c", "examples", "page", "ros/node"];
+const WORKSPACES: [&str; 5] = [".", "bindings/c", "bindings/ros/node", "examples", "laptop/page"];
 
 /// Does everything but the upload, and says what the owner still has to fill in.
 pub fn release() -> Result<()> {
@@ -22,8 +23,9 @@ pub fn release() -> Result<()> {
 
     package::package()?;
     deny()?;
-    // The one crate that is published; the others are programs, tests and what they share.
-    run(&mut cargo("publish --package spikewire --dry-run --allow-dirty"))?;
+    for own in CRATES {
+        run(cargo("publish --dry-run --allow-dirty --package").arg(own.name))?;
+    }
     let materials = bill_of_materials(&version)?;
     println!("\n{} tells what the crate is built of.", materials.display());
     python_package()?;
@@ -40,9 +42,8 @@ pub fn release() -> Result<()> {
         "\nThe owner fills in: {}",
         if left.is_empty() { "nothing".into() } else { left.join("; ") }
     );
-    println!(
-        "Then, by hand: git tag v{version}; cargo publish --package spikewire; twine upload target/release/packed/*"
-    );
+    let uploads = CRATES.map(|own| format!("cargo publish --package {}", own.name)).join("; ");
+    println!("Then, by hand: git tag v{version}; {uploads}; twine upload target/release/packed/*");
     Ok(())
 }
 
@@ -122,7 +123,7 @@ fn python_package() -> Result<()> {
     let python = python::environment("release")?;
     python::install(&python, &["maturin>=1.9,<2", "twine"])?;
     run(command(python.with_file_name("maturin"))
-        .args(["sdist", "--manifest-path", "python/Cargo.toml", "--out"])
+        .args(["sdist", "--manifest-path", "bindings/python/Cargo.toml", "--out"])
         .arg(&packed))?;
     for one in fs::read_dir(&packed)? {
         run(command(&python).args(["-m", "twine", "check", "--strict"]).arg(one?.path()))?;

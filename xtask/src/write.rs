@@ -21,8 +21,8 @@ const fn part(name: &'static str, files: &'static str, write: fn() -> Result<()>
 
 /// From the catalogue first, then what measures or draws.
 const PARTS: [Part; 16] = [
-    part("c", "c/src/codecs.rs, c/src/sizes.rs", c_library::write),
-    part("python", "python/spikewire/_schemes.pyi", python_package::write_stub),
+    part("c", "bindings/c/src/codecs.rs, bindings/c/src/sizes.rs", c_library::write),
+    part("python", "bindings/python/spikewire/_schemes.pyi", python_package::write_stub),
     part("schemes", "docs/schemes.md: the table", schemes::write),
     part("jumps", "docs/jumps.svg", jumps::write),
     part("flight", "docs/flight.svg", demo::write),
@@ -32,7 +32,7 @@ const PARTS: [Part; 16] = [
     part("page", "docs/page.png", page::write),
     part("ros", "docs/ros.svg", ros::write),
     part("bits", "docs/bits.md: the table", firmware::write),
-    part("c-sizes", "c/README.md: the table of sizes", c_library::write_sizes),
+    part("c-sizes", "bindings/c/README.md: the table of sizes", c_library::write_sizes),
     part("costs", "docs/costs.md, README.md: the tables of costs", bench::write),
     part("faults", "SAFETY.md: the table of faults", faults::write),
     part("flash", "docs/costs.md: the table of flash", flash::write),

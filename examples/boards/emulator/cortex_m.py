@@ -14,6 +14,8 @@ LOOP = 0x60000000  # a page of ours, with `b .`
 RETURN = LOOP + 4  # where exceptions return to, in place of the architecture's 0xFFFFFFF9
 FRAME = (arm.UC_ARM_REG_R0, arm.UC_ARM_REG_R1, arm.UC_ARM_REG_R2, arm.UC_ARM_REG_R3, arm.UC_ARM_REG_R12, arm.UC_ARM_REG_LR)
 SYSTEM = 0xE000E000
+# The bits that begin what is not modelled: SysTick's, and those that pend an NMI, a PendSV or a SysTick.
+MISSING = {0x010: ("SysTick", 1), 0xD04: ("a system exception", 1 << 31 | 1 << 28 | 1 << 26)}
 WFE, WFI, SEV = 0xBF20, 0xBF30, 0xBF40
 POLLS, CLOSE = 16, 20  # so many reads of one register, each so few instructions after the last, are a loop
 
@@ -34,7 +36,7 @@ def segments(elf):
 def symbol(elf, name):
     """The address of a symbol, or None."""
     table, (size, count) = struct.unpack_from("<I", elf, 32)[0], struct.unpack_from("<HH", elf, 46)
-    for at in range(table, table + size * count, size):
+    for at in (table + size * one for one in range(count)):
         if struct.unpack_from("<I", elf, at + 4)[0] != 2:
             continue
         offset, length, link = struct.unpack_from("<3I", elf, at + 16)
@@ -267,6 +269,11 @@ class Core:
             (bank.difference_update if offset & 0x80 else bank.update)(named)
             self.pending |= self.lines & named
             self.deadline = 0.0
+        elif offset == 0xF00:
+            self.pending.add(value & 0x1FF)  # STIR
+            self.deadline = 0.0
+        elif offset in MISSING and value & MISSING[offset][1]:
+            self.raise_later(LookupError(f"nothing models {MISSING[offset][0]}"))
         elif offset == 0xD0C and value >> 16 == 0x05FA and value & 4:
             self.raise_later(Reset("software"))
         elif offset == 0xD08:

@@ -166,7 +166,7 @@ class Gpio(f4.Gpio):
 
 
 class Part(f4.Part):
-    KINDS = f4.Part.KINDS | {"I2C3": I2c, "USART2": Usart, "DMA1": Dma, "DMA2": f4.Registers, "GPIO": Gpio}
+    KINDS = f4.Part.KINDS | {"I2C3": I2c, "USART2": Usart, "DMA1": Dma, "DMA2": f4.NoDma, "GPIO": Gpio}
     SPI, PORT, DMA = "I2C3", "USART2", "DMA1"
     SCL, SDA, TX = ("A", 8, 4), ("C", 9, 4), ("A", 2, 7)
     SELECT, READY = ("", 0), ("C", 14)

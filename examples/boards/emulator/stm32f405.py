@@ -14,6 +14,9 @@ LOW_HZ = 32_000  # of the watchdog
 # RM0090, table 43: what a stream of DMA2 moves on which channel.
 REQUESTS = {(0, 3): "SPI_RX", (3, 3): "SPI_TX", (6, 5): "TX"}
 
+# Bits of a stream's control: what it must have, of all that is modelled. MINC; and not CIRC, wider words, two buffers.
+PLAIN, FANCY = 1 << 10, 1 << 8 | 15 << 11 | 1 << 18
+
 # Where each lies, and the bit of RCC that clocks it.
 PLACES = {
     "TIM5": (0x40000C00, 0x40, 3),
@@ -222,6 +225,14 @@ class Exti(Registers):
         self.core.line(40, active >> 10 & 0x3F != 0)
 
 
+class NoDma(Registers):
+    """A controller none of whose requests is modelled."""
+
+    def written(self, offset, before, value):
+        if offset >= 0x10 and (offset - 0x10) % 0x18 == 0 and value & 1:
+            self.part.missing("a stream of this DMA controller")
+
+
 class Dma(Registers):
     """A controller's streams: bytes, between memory and one register."""
 
@@ -268,6 +279,8 @@ class Dma(Registers):
         stream, register = divmod(offset - 0x10, 0x18)
         if offset >= 0x10 and register == 0:
             if value & 1 and not before & 1:
+                if self.request(stream, value) is None or value & (PLAIN | FANCY) != PLAIN:
+                    self.part.missing(f"what stream {stream} does with control {value:#x}")
                 self.part.moved()
             elif before & 1 and not value & 1:
                 self.part.stopped(stream)
@@ -283,16 +296,23 @@ class Dma(Registers):
 
 
 class Spi(Registers):
-    running = None
+    """With DMA alone: both ways, or sending."""
+
+    running, DATA = None, 0x0C
 
     def read(self, offset):
         return 2 | (self.running is not None) << 7 if offset == 8 else self.words[offset]
 
     def written(self, offset, before, value):
+        if offset == self.DATA:
+            self.part.missing("a byte that goes to SPI without DMA")
         self.part.moved()
 
     def is_on(self):
-        return self.words[0] >> 6 & 1 and self.words[4] & 3 == 3
+        return self.words[0] >> 6 & 1 and self.words[4] & 2
+
+    def receives(self):
+        return self.words[4] & 1
 
     def divider(self):
         return 2 << (self.words[0] >> 3 & 7)
@@ -300,21 +320,26 @@ class Spi(Registers):
     def go(self):
         part, dma = self.part, self.part.dma
         into, out = dma.stream("SPI_RX"), dma.stream("SPI_TX")
-        if self.running or not self.is_on() or into is None or out is None:
+        receives = self.receives()
+        if self.running or not self.is_on() or receives and into is None or out is None:
             return
         port, pin, _ = part.MISO
         pull = {1: "up", 2: "down"}.get(part.named["GPIO" + port].words[0x0C] >> 2 * pin & 3, "none")
-        part.wired(part.SCK, part.MISO, part.MOSI)
-        place, length = dma.memory(into)
+        part.wired(part.SCK, part.MOSI, *([part.MISO] if receives else []))
         sent = dma.bytes(out)
-        if sent is None or not part.reaches(place, length):
-            return dma.fail(into)
+        if receives:
+            place, length = dma.memory(into)
+            if sent is None or not part.reaches(place, length):
+                return dma.fail(into)
+        if sent is None:
+            return
 
         def done(read):
             self.running = None
-            self.core.uc.mem_write(place, read)
             dma.done(out)
-            dma.done(into)
+            if receives:
+                self.core.uc.mem_write(place, read)
+                dma.done(into)
 
         self.streams = (into, out)
         self.running = part.bench.transfer(sent, part.rcc.spi_hz() / self.divider(), pull, done)
@@ -327,12 +352,14 @@ class Spi(Registers):
 class Usart(Registers):
     """Its sending half: a byte in its register while the one before leaves."""
 
-    stream, free = None, 0.0
+    stream, free, DATA = None, 0.0, 0x04
 
     def read(self, offset):
         return 0xC0 if offset == 0 else self.words[offset]
 
     def written(self, offset, before, value):
+        if offset == self.DATA:
+            self.part.missing("a byte that goes to the serial port without DMA")
         self.part.moved()
 
     def is_on(self):
@@ -370,7 +397,7 @@ class Usart(Registers):
 
 class Part:
     MEMORIES, MODEL, PLACES = MEMORIES, UC_CPU_ARM_CORTEX_M4, PLACES
-    KINDS = {"TIM5": Timer, "IWDG": Watchdog, "USART6": Usart, "SPI1": Spi, "EXTI": Exti, "RCC": Rcc, "DMA2": Dma, "RNG": Random, "GPIO": Gpio}
+    KINDS = {"TIM5": Timer, "IWDG": Watchdog, "USART6": Usart, "SPI1": Spi, "EXTI": Exti, "RCC": Rcc, "DMA1": NoDma, "DMA2": Dma, "RNG": Random, "GPIO": Gpio}
     SPI, PORT, DMA = "SPI1", "USART6", "DMA2"
     # The wires: port, pin, alternate function.
     SCK, MISO, MOSI, TX = ("A", 5, 5), ("A", 6, 5), ("A", 7, 5), ("C", 6, 8)
@@ -412,6 +439,10 @@ class Part:
         for port, pin, function in pins:
             if not self.named["GPIO" + port].does(pin, function):
                 self.core.raise_later(LookupError(f"P{port}{pin} is not the peripheral's"))
+
+    def missing(self, what):
+        """Ends the run: the firmware asks for what a board has and this does not."""
+        self.core.raise_later(LookupError(f"nothing models {what}"))
 
     def moved(self):
         """A stream or a peripheral was turned on."""

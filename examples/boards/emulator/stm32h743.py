@@ -91,6 +91,8 @@ class Dma(f4.Dma):
 
 
 class Spi(f4.Spi):
+    DATA = 0x20
+
     def read(self, offset):
         return self.words[offset] if offset != 0x14 else 2 if self.running else 0x1002
 
@@ -98,12 +100,15 @@ class Spi(f4.Spi):
         if offset == 0x00 and value & 0x201 == 0x201:
             self.words[0] &= ~0x200
             self.asked = True
-        self.part.moved()
+        super().written(offset, before, value)
 
     asked = False
 
     def is_on(self):
-        return self.asked and self.words[0] & 1 and self.words[8] >> 14 & 3 == 3
+        return self.asked and self.words[0] & 1 and self.words[8] >> 15 & 1
+
+    def receives(self):
+        return self.words[8] >> 14 & 1
 
     def divider(self):
         return 2 << (self.words[8] >> 28 & 7)
@@ -115,6 +120,8 @@ class Spi(f4.Spi):
 
 
 class Usart(f4.Usart):
+    DATA = 0x28
+
     def read(self, offset):
         return 0x6000C0 if offset == 0x1C else self.words[offset]
 
@@ -133,7 +140,7 @@ class Part(f4.Part):
         (0x30000000, 0x20000),  # SRAM1
     )
     MODEL = UC_CPU_ARM_CORTEX_M7
-    KINDS = {"TIM5": f4.Timer, "IWDG": f4.Watchdog, "USART1": Usart, "SPI1": Spi, "EXTI": Exti, "RCC": Rcc, "DMA1": Dma, "RNG": f4.Random, "PWR": Power, "GPIO": f4.Gpio}
+    KINDS = {"TIM5": f4.Timer, "IWDG": f4.Watchdog, "USART1": Usart, "SPI1": Spi, "EXTI": Exti, "RCC": Rcc, "DMA1": Dma, "DMA2": f4.NoDma, "RNG": f4.Random, "PWR": Power, "GPIO": f4.Gpio}
     SPI, PORT, DMA = "SPI1", "USART1", "DMA1"
     SCK, MISO, MOSI, TX = ("A", 5, 5), ("A", 6, 5), ("D", 7, 5), ("A", 9, 7)
     SELECT, READY = ("C", 15), ("B", 2)

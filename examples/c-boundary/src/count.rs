@@ -1,4 +1,4 @@
-//! What the schemes take on a recorded flight, in instructions: the same work as `c/tests/count.c` does in C.
+//! What the schemes take on a recorded flight, in instructions: the same work as `bindings/c/tests/count.c` does in C.
 //!
 //! ```text
 //! sf f32 encode 12345 encode_slice 2345 decode 3456 decode_slice 1234

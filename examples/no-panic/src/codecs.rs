@@ -5,6 +5,7 @@ use core::hint::black_box;
 use catalogue::{Channel, Flight};
 use spikewire::{
     Calibration, Conditions, ConfigError, Histogram, Sample, Scheme, Start, Survey,
+    filter::{Biquad, Filter, FirstOrder},
     population::{Position, Slots},
     rate::{Bsa, Criterion, Taps},
     temporal::{StepForward, TemporalContrast},
@@ -65,6 +66,7 @@ fn others<S: Sample>() -> Result<(), ConfigError> {
     black_box((histogram.quantile(black_box(1), black_box(2)), histogram.rejected()));
     started(&Position::try_new(histogram.centres::<20>()?)?);
     surveyed(value)?;
+    filtered(value)?;
     started(
         &Slots::<S, 15, 10>::try_new(value..=value, black_box(1.5))?
             .try_with_floor(black_box(2))?,
@@ -74,6 +76,20 @@ fn others<S: Sample>() -> Result<(), ConfigError> {
 
 fn started<P: Start>(scheme: &P) {
     exercise::scheme(black_box(scheme));
+}
+
+/// Both filters before a scheme, one before the other, and by themselves.
+fn filtered<S: Sample>(value: S) -> Result<(), ConfigError> {
+    let [corner, rate, q] = black_box([40.0, 500.0, 2.0]);
+    let low_pass = FirstOrder::try_low_pass(corner, rate)?;
+    let notch = Biquad::try_notch(corner, rate, q)?;
+    started(&notch.before(low_pass.before(StepForward::try_new(value)?)));
+    black_box(Biquad::<S>::try_low_pass(corner, rate)?);
+    let (filter, mut state) = black_box((notch, Biquad::<S>::START));
+    let mut outputs = black_box([value; 5]);
+    black_box(filter.filter_slice(&mut state, &black_box([value; 5]), &mut outputs));
+    black_box((outputs, filter.filter(&mut state, value), filter.delay(), low_pass.delay()));
+    Ok(())
 }
 
 fn surveyed<S: Sample>(value: S) -> Result<(), ConfigError> {

@@ -12,6 +12,7 @@ mod codecs;
 mod exercise;
 mod frames;
 mod links;
+mod network;
 mod reckon;
 
 use fixed::{
@@ -26,6 +27,7 @@ fn link_all() {
     codecs::link::<i16>();
     links::link();
     frames::link();
+    network::link();
 }
 
 /// Where the linker begins.

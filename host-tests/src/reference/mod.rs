@@ -28,6 +28,7 @@ mod probabilistic;
 mod rank_order;
 mod rate_decoder;
 mod real;
+mod recursive;
 mod slots;
 mod step_decoder;
 mod step_forward;
@@ -58,6 +59,9 @@ pub use probabilistic::{probabilistic, probabilistic_from_levels};
 pub use rank_order::{nearest_first, rank_order_value};
 pub use rate_decoder::rate_decode;
 pub use real::{Real, rounded};
+pub use recursive::{
+    Kind, coefficients, delay_at_rest, direct_form, filter_floats, filter_integers, textbook,
+};
 pub use slots::{distance_radii, levels_by_distance, levels_exp, slots_decode, slots_of_levels};
 pub use step_decoder::{step_decode, step_decode_from_first, step_decode_within};
 pub use step_forward::step_forward;

@@ -4,7 +4,7 @@ use super::StepState;
 use super::band::Band;
 use super::steps::decode_steps;
 use crate::error::{step, unwrap};
-use crate::num::{Tally, groups, groups_mut, to_f64};
+use crate::num::{HAS_VECTORS, Tally, groups, groups_mut, to_f64};
 use crate::scheme::codec::{Until, encode_each};
 use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 
@@ -87,6 +87,10 @@ pub struct StepForwardState<S> {
 /// How many samples are compared with the band at once, if the core has vectors.
 const GROUP: usize = 4;
 
+/// After how many samples in a row without a spike the next ones are compared in groups. Where spikes are denser, a
+/// processor predicts the branches of single samples better than those of groups.
+const QUIET: usize = 8;
+
 impl<S: Sample> Start for StepForward<S> {
     const START: StepForwardState<S> =
         StepForwardState { base: S::NO_BASELINE, tally: Tally::NONE };
@@ -148,33 +152,32 @@ impl<S: Sample> Scheme for StepForward<S> {
         let threshold = self.threshold;
         let mut band = Band::around(state.base, threshold);
         let mut check = S::ZERO;
-        let mut follow = |band: &mut Band<S>, spike: &mut _, sample: S| {
-            Destination::write(spike, Spike::None);
-            if sample > band.upper {
-                *band = Band::around(band.upper, threshold);
-                check = check.including(sample);
-                Destination::write(spike, Spike::Up);
-            } else if band.is_above(sample) {
-                *band = Band::around(band.lower, threshold);
-                check = check.including(sample);
-                Destination::write(spike, Spike::Down);
-            }
-        };
-        let (groups, last) = groups::<_, GROUP>(samples);
-        let (spike_groups, last_spikes) = groups_mut::<_, GROUP>(spikes);
-        for (spikes, samples) in spike_groups.iter_mut().zip(groups) {
-            if samples.iter().fold(true, |is_quiet, &sample| is_quiet & band.holds(sample)) {
-                for spike in spikes {
-                    spike.write(Spike::None);
-                }
-            } else {
-                for (spike, &sample) in spikes.iter_mut().zip(samples) {
-                    follow(&mut band, spike, sample);
+        let (mut ahead, mut free) = (samples, &mut *spikes);
+        while !ahead.is_empty() {
+            let (mut last, mut taken) = (0, ahead.len());
+            // `enumerate` would check its count for overflow.
+            for ((spike, &sample), index) in free.iter_mut().zip(ahead).zip(0..ahead.len()) {
+                spike.write(Spike::None);
+                if sample > band.upper {
+                    band = Band::around(band.upper, threshold);
+                    check = check.including(sample);
+                    spike.write(Spike::Up);
+                    last = index;
+                } else if band.is_above(sample) {
+                    band = Band::around(band.lower, threshold);
+                    check = check.including(sample);
+                    spike.write(Spike::Down);
+                    last = index;
+                } else if HAS_VECTORS && index.wrapping_sub(last) == QUIET {
+                    taken = index.wrapping_add(1);
+                    break;
                 }
             }
-        }
-        for (spike, &sample) in last_spikes.iter_mut().zip(last) {
-            follow(&mut band, spike, sample);
+            ahead = ahead.get(taken..).unwrap_or_default();
+            free = free.get_mut(taken..).unwrap_or_default();
+            taken = pass_groups(band, ahead, free);
+            ahead = ahead.get(taken..).unwrap_or_default();
+            free = free.get_mut(taken..).unwrap_or_default();
         }
         if check.is_finite() {
             state.base = band.base;
@@ -201,4 +204,22 @@ impl<S: Sample> Scheme for StepForward<S> {
     }
 
     decode_steps!(threshold);
+}
+
+/// Writes that the first groups of samples have no spike, as far as they lie within the band, and returns how many
+/// samples these are: none on a core without vectors.
+#[inline]
+fn pass_groups<S: Sample>(
+    band: Band<S>,
+    samples: &[S],
+    spikes: &mut [impl Destination<Spike>],
+) -> usize {
+    let (groups, _) = groups::<_, GROUP>(samples);
+    let (spikes, _) = groups_mut::<_, GROUP>(spikes);
+    let quiet = spikes.iter_mut().zip(groups).take_while(|(_, samples)| {
+        samples.iter().fold(true, |is_quiet, &sample| is_quiet & band.holds(sample))
+    });
+    let written =
+        quiet.map(|(spikes, _)| spikes.iter_mut().for_each(|spike| spike.write(Spike::None)));
+    GROUP.wrapping_mul(written.count())
 }

@@ -35,7 +35,7 @@ const SLOW_CRYSTAL: u64 = 250;
 
 /// What the emulator in Python needs.
 const PYTHON: [&str; 2] = ["unicorn==2.1.3", "quickjs==1.19.4"];
-const FILES: [&str; 10] = [
+const FILES: [&str; 11] = [
     "package.json",
     "pico.mjs",
     "sensors.mjs",
@@ -46,6 +46,7 @@ const FILES: [&str; 10] = [
     "nrf52840.py",
     "stm32f405.py",
     "stm32h743.py",
+    "test_board.py",
 ];
 
 /// What breaks, and what mends it.
@@ -366,9 +367,7 @@ fn emulate(
         node.arg(home.join("pico.mjs"));
         node
     } else {
-        let python = python::environment("emulator-python")?;
-        python::install(&python, &PYTHON)?;
-        let mut python = command(python);
+        let mut python = command(unicorn()?);
         python.arg(home.join("board.py")).arg(part.memory);
         python
     };
@@ -380,6 +379,18 @@ fn emulate(
         bail!("{fault}; the log says\n{}", log(image, &directory)?);
     }
     Ok((seen, directory))
+}
+
+/// Runs small images on the emulated STM32F405: what is modelled works, and what is not ends the run.
+pub fn small_images() -> Result<()> {
+    run(command(unicorn()?).arg(installed()?.join("test_board.py")))
+}
+
+/// The Python that has the emulator's packages.
+fn unicorn() -> Result<PathBuf> {
+    let python = python::environment("emulator-python")?;
+    python::install(&python, &PYTHON)?;
+    Ok(python)
 }
 
 /// The emulators beside the package that the Pico's needs.

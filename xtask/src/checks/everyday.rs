@@ -3,7 +3,7 @@
 use crate::common::{cargo, output, paths, run};
 use crate::figures::{jumps, schemes};
 use crate::programs::host::{features, spikewire, tests};
-use crate::programs::{boards::Board, image};
+use crate::programs::{boards::Board, image, published::CRATES};
 use crate::setup::toolchain::{TARGETS, cargo_for_each};
 use anyhow::{Result, ensure};
 use std::{fs, process::Command};
@@ -11,12 +11,12 @@ use std::{fs, process::Command};
 pub fn fmt() -> Result<()> {
     run(&mut cargo("fmt --all --check"))?;
     run(&mut cargo("fmt --all --check --manifest-path examples/Cargo.toml"))?;
-    run(&mut cargo("fmt --check --manifest-path c/Cargo.toml"))?;
-    run(&mut cargo("fmt --check --manifest-path page/Cargo.toml"))?;
+    run(&mut cargo("fmt --check --manifest-path bindings/c/Cargo.toml"))?;
+    run(&mut cargo("fmt --check --manifest-path laptop/page/Cargo.toml"))?;
     // Modules that a macro declares are unknown to `cargo fmt`.
     let mut schemes = Command::new("rustfmt");
     schemes.args(["--edition", "2024", "--check"]);
-    for scheme in paths::root().join("catalogue/src/schemes").read_dir()? {
+    for scheme in paths::root().join("laptop/catalogue/src/schemes").read_dir()? {
         schemes.arg(scheme?.path());
     }
     run(&mut schemes)
@@ -46,8 +46,11 @@ pub fn readme() -> Result<()> {
 }
 
 pub fn doc() -> Result<()> {
-    run(cargo("doc --package spikewire --no-deps --all-features")
-        .env("RUSTDOCFLAGS", "-D warnings"))
+    let mut doc = cargo("doc --no-deps --all-features");
+    for own in CRATES {
+        doc.args(["--package", own.name]);
+    }
+    run(doc.env("RUSTDOCFLAGS", "-D warnings"))
 }
 
 pub fn each_feature() -> Result<()> {

@@ -70,7 +70,7 @@ pub fn beside() -> Result<()> {
 pub fn lints() -> Result<()> {
     let warnings = ["--", "-D", "warnings"];
     run(cargo("clippy --workspace --all-targets --all-features").args(warnings))?;
-    let library = "clippy --manifest-path c/Cargo.toml --features header --all-targets";
+    let library = "clippy --manifest-path bindings/c/Cargo.toml --features header --all-targets";
     run(cargo(library).args(warnings))?;
     let firmware = "clippy --workspace --manifest-path examples/Cargo.toml";
     run(cargo(firmware).args(warnings))?;

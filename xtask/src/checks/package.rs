@@ -1,6 +1,7 @@
 //! `cargo verify package`: what is published holds all that its pages show, and nothing else.
 
 use crate::common::{cargo, output, paths};
+use crate::programs::published::CRATES;
 use anyhow::{Result, ensure};
 use std::{
     fs,
@@ -14,18 +15,28 @@ const PUBLISHED: [&str; 6] =
 const ADDED: [&str; 4] = ["Cargo.toml", "Cargo.toml.orig", "Cargo.lock", ".cargo_vcs_info.json"];
 
 pub fn package() -> Result<()> {
-    let list = output(&mut cargo("package --package spikewire --list --allow-dirty"))?;
-    let files: Vec<&str> = list.lines().collect();
-    let wanted = |file: &&&str| {
-        ADDED.contains(file) || PUBLISHED.iter().any(|start| file.starts_with(start))
-    };
-    let unwanted: Vec<_> = files.iter().filter(|file| !wanted(file)).collect();
-    ensure!(unwanted.is_empty(), "published, and should not be: {unwanted:?}");
-    ensure!(files.contains(&"src/lib.rs"), "the list of published files has no src/lib.rs");
+    for own in CRATES {
+        let list = output(cargo("package --list --allow-dirty --package").arg(own.name))?;
+        let files: Vec<&str> = list.lines().collect();
+        let wanted = |file: &&&str| {
+            ADDED.contains(file) || PUBLISHED.iter().any(|start| file.starts_with(start))
+        };
+        let unwanted: Vec<_> = files.iter().filter(|file| !wanted(file)).collect();
+        ensure!(unwanted.is_empty(), "{}: published, and should not be: {unwanted:?}", own.name);
+        for file in ["src/lib.rs", "README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"] {
+            ensure!(files.contains(&file), "{}: its published files lack {file}", own.name);
+        }
+        let links = links(&paths::root().join(own.directory), &files)?;
+        println!("{}: {} files; their {links} links to each other hold.", own.name, files.len());
+    }
+    Ok(())
+}
 
+/// Follows the links of the pages among a crate's published files, and returns how many there are.
+fn links(top: &Path, files: &[&str]) -> Result<usize> {
     let mut links = 0;
     for page in files.iter().filter(|file| file.ends_with(".md")) {
-        let text = fs::read_to_string(paths::root().join(page))?;
+        let text = fs::read_to_string(top.join(page))?;
         for link in relative_links(&text) {
             let target = target(page, link);
             ensure!(
@@ -35,9 +46,7 @@ pub fn package() -> Result<()> {
             links += 1;
         }
     }
-    ensure!(links > 0, "no page links to another: are the links read?");
-    println!("{} files; their {links} links to each other hold.", files.len());
-    Ok(())
+    Ok(links)
 }
 
 /// The targets of a page's links and pictures that lie in this repository, without what follows a `#`.

@@ -15,23 +15,23 @@ pub fn peers() -> Result<()> {
 
 /// Logs of every kind, written and read by other people's programs.
 pub fn logs() -> Result<()> {
-    let python = environment("logs", "cli/python/logs_requirements.txt")?;
+    let python = environment("logs", "laptop/cli/python/logs_requirements.txt")?;
     run(&mut cargo("build --package spikewire-cli"))?;
     let program = paths::target().join("debug/spikewire");
     let place = paths::target().join("logs-check");
     let recording = paths::root().join("data/hexarotor.csv");
-    let check = paths::root().join("cli/python/logs_check.py");
+    let check = paths::root().join("laptop/cli/python/logs_check.py");
     run(command(&python).arg(check).args([program, recording, place]))
 }
 
 /// `spikewire tune` beside other people's optimisers, at equal numbers of settings.
 pub fn tuner() -> Result<()> {
-    let python = environment("tuner", "cli/python/tune_requirements.txt")?;
+    let python = environment("tuner", "laptop/cli/python/tune_requirements.txt")?;
     run(&mut cargo("build --release --package spikewire-cli"))?;
     let program = paths::target().join("release/spikewire");
     let results = paths::target().join("tuner/peers.json");
     let recording = paths::root().join("data/hexarotor.csv");
-    let check = paths::root().join("cli/python/tune_peers.py");
+    let check = paths::root().join("laptop/cli/python/tune_peers.py");
     run(command(&python).arg(check).args([program, recording, results]))
 }
 

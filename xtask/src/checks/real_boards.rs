@@ -36,6 +36,7 @@ pub fn more() -> Result<()> {
         Some(name) => part.name == name,
         None => part.name != EVERY_DAY,
     };
+    emulator::small_images()?;
     BOARDS.iter().filter(|part| is_asked(part)).try_for_each(|part| {
         if emulator::has(part) { fly(part) } else { build(part, true).map(drop) }
     })

@@ -53,7 +53,7 @@ pub fn ros() -> Result<()> {
 pub fn ros2() -> Result<()> {
     setup::packages("what installs the nodes, and a network of their own", &["cmake", "iproute2"])?;
     let top = paths::target().join("ros2");
-    let manifest = "--locked --manifest-path ros/node/Cargo.toml --target-dir";
+    let manifest = "--locked --manifest-path bindings/ros/node/Cargo.toml --target-dir";
     for command in ["test", "clippy --all-targets"] {
         let mut cargo = cargo(&format!("{command} {manifest}"));
         cargo.arg(&top);
@@ -62,11 +62,12 @@ pub fn ros2() -> Result<()> {
         }
         run(&mut cargo)?;
     }
-    run(cargo("fmt --check --manifest-path ros/node/Cargo.toml").current_dir(paths::root()))?;
+    run(cargo("fmt --check --manifest-path bindings/ros/node/Cargo.toml")
+        .current_dir(paths::root()))?;
     let (build, prefix) = (top.join("build"), top.join("install"));
     let define = |name: &str, path: &Path| format!("-D{name}={}", path.display());
     let mut cmake = command("cmake");
-    cmake.args(["-S", "ros/ros2/spikewire_ros", "-DCARGO_PROFILE=dev", "-B"]).arg(&build);
+    cmake.args(["-S", "bindings/ros/ros2/spikewire_ros", "-DCARGO_PROFILE=dev", "-B"]).arg(&build);
     output(cmake.args([define("BUILT", &top), define("CMAKE_INSTALL_PREFIX", &prefix)]))?;
     output(command("cmake").arg("--build").arg(&build))?;
     output(command("cmake").arg("--install").arg(&build))?;
@@ -106,7 +107,7 @@ impl Ros {
         // Compiled as the tests are, with which it shares its dependencies.
         run(pip.env("MATURIN_PEP517_ARGS", "--profile dev").env("CARGO_INCREMENTAL", "0"))?;
         let mut catkin = command("catkin_make_isolated");
-        catkin.args(["--source".into(), paths::root().join("ros/ros1")]);
+        catkin.args(["--source".into(), paths::root().join("bindings/ros/ros1")]);
         for space in ["build", "devel", "install-space"] {
             catkin.arg(format!("--{space}")).arg(ros.top.join(space));
         }
@@ -162,9 +163,9 @@ fn ensure_decoded(lines: &str, table: &Path) -> Result<()> {
 }
 
 fn tests() -> PathBuf {
-    paths::root().join("ros/tests")
+    paths::root().join("bindings/ros/tests")
 }
 
 fn sources() -> PathBuf {
-    paths::root().join("ros/ros1/spikewire_ros/src")
+    paths::root().join("bindings/ros/ros1/spikewire_ros/src")
 }

@@ -50,7 +50,7 @@ fn target() -> PathBuf {
 
 /// Copies the page's sources beside the packages that they import, and installs these.
 fn installed() -> Result<PathBuf> {
-    let (from, site) = (paths::root().join("page"), target().join("site"));
+    let (from, site) = (paths::root().join("laptop/page"), target().join("site"));
     fs::create_dir_all(site.join("js"))?;
     for part in ["", "js"] {
         for file in fs::read_dir(from.join(part))? {
@@ -79,7 +79,7 @@ fn library() -> Result<Command> {
     setup::wasm(TARGET)?;
     let by_default = toolchain::has_core(TARGET)?;
     let mut build = command(if by_default { "cargo" } else { distribution::CARGO });
-    build.args(["build", "--release", "--locked", "--manifest-path", "page/Cargo.toml"]);
+    build.args(["build", "--release", "--locked", "--manifest-path", "laptop/page/Cargo.toml"]);
     build.args(["--target", TARGET]);
     build.env("CARGO_TARGET_DIR", target()).env("CARGO_INCREMENTAL", "0");
     lint(&mut build);

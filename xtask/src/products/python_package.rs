@@ -9,7 +9,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The package's version, as in `python/Cargo.toml`.
+/// The package's version, as in `bindings/python/Cargo.toml`.
 const VERSION: &str = "0.1.0";
 
 /// Installs the package in an environment of its own and runs its tests, its doctests, its README and its example.
@@ -17,45 +17,44 @@ const VERSION: &str = "0.1.0";
 /// It is compiled as the other tests are, so that they share the dependencies.
 pub fn python() -> Result<()> {
     let python = environment("python")?;
-    install(&python, &["--requirement", "python/requirements.txt"])?;
+    install(&python, &["--requirement", "bindings/python/requirements.txt"])?;
     package(&python, "dev")?;
 
     let flight = paths::target().join("flight-log.txt");
     fs::write(&flight, host::flight_log()?)?;
-    let pytest =
-        "-m pytest --quiet -rP --no-header --doctest-modules python/tests --pyargs spikewire";
+    let pytest = "-m pytest --quiet -rP --no-header --doctest-modules bindings/python/tests --pyargs spikewire";
     run(command(&python).args(pytest.split_whitespace()).env("FLIGHT_LOG", &flight))?;
-    run(command(&python).arg("python/examples/flight.py").env("FLIGHT_LOG", &flight))?;
+    run(command(&python).arg("bindings/python/examples/flight.py").env("FLIGHT_LOG", &flight))?;
     source_package(&python).map(drop)
 }
 
 /// Writes the type stub of the schemes' classes.
 pub fn write_stub() -> Result<()> {
     let python = environment("python")?;
-    install(&python, &["--requirement", "python/requirements.txt"])?;
+    install(&python, &["--requirement", "bindings/python/requirements.txt"])?;
     package(&python, "dev")?;
-    let stub = output(command(&python).arg("python/tests/stubs.py"))?;
-    fs::write(paths::root().join("python/spikewire/_schemes.pyi"), stub)?;
+    let stub = output(command(&python).arg("bindings/python/tests/stubs.py"))?;
+    fs::write(paths::root().join("bindings/python/spikewire/_schemes.pyi"), stub)?;
     Ok(())
 }
 
 /// The package built from its source package, optimised, and its speed beside plain Python and other libraries.
 pub fn speed() -> Result<()> {
     let python = environment("python-speed")?;
-    install(&python, &["--requirement", "python/requirements.txt"])?;
+    install(&python, &["--requirement", "bindings/python/requirements.txt"])?;
     let packed = source_package(&python)?;
     let mut pip = pip(&python);
     // A build of its own, as a user has it.
     pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall"]).arg(packed);
     run(&mut pip)?;
-    run(command(&python).args(["python/examples/speed.py", "--check"]))
+    run(command(&python).args(["bindings/python/examples/speed.py", "--check"]))
 }
 
 /// The source package, which has all that the package is built from.
 fn source_package(python: &Path) -> Result<PathBuf> {
     let place = paths::target().join("python-source");
     let maturin = python.with_file_name("maturin");
-    let manifest = "python/Cargo.toml";
+    let manifest = "bindings/python/Cargo.toml";
     run(command(maturin).args(["sdist", "--manifest-path", manifest, "--out"]).arg(&place))?;
     let packed = place.join(format!("spikewire-{}.tar.gz", VERSION));
     let listed = output(command("tar").arg("--list").arg("--file").arg(&packed))?;

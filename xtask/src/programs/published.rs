@@ -8,6 +8,20 @@ use std::{
 };
 use tempfile::TempDir;
 
+/// A crate that is published.
+pub struct Crate {
+    pub name: &'static str,
+    /// Its directory, from the repository's top.
+    pub directory: &'static str,
+}
+
+/// The crates that are published, each after those that it needs.
+pub const CRATES: [Crate; 3] = [
+    Crate { name: "spikewire", directory: "" },
+    Crate { name: "spikewire-network", directory: "network" },
+    Crate { name: "flight-logs", directory: "flight-logs" },
+];
+
 /// What tells cargo to take the crate as it would be published.
 pub fn patch() -> Result<String> {
     Ok(format!("patch.crates-io.spikewire.path={:?}", unpacked()?.display().to_string()))

@@ -51,11 +51,12 @@ const PROSE: &[&str] = &[
     "docs",
 ];
 /// What firmware does not use.
-const HOST: &[&str] = &["cli", "host-tests", "lab"];
+const HOST: &[&str] = &["flight-logs", "host-tests", "laptop/cli", "laptop/lab"];
 /// What no other room uses.
-const LAST: &[&str] = &["c", "fuzz", "loop", "page", "python", "ros"];
+const LAST: &[&str] =
+    &["bindings/c", "bindings/python", "bindings/ros", "fuzz", "laptop/page", "loop"];
 /// What the crate does not use.
-const REST: &[&str] = &["catalogue", "data", "examples", "memory.x", "silicon"];
+const REST: &[&str] = &["data", "examples", "laptop/catalogue", "memory.x", "silicon"];
 /// For checks of emulated boards.
 const BOARDS: Apart = &[PROSE, HOST, LAST];
 
@@ -75,9 +76,22 @@ const STEPS: &[Step] = &[
         "hostile bytes for every reader, link, chip and codec: corpora and mutants",
         fuzz::replay,
     )
-    .apart(&[PROSE, &["c", "examples", "loop", "page", "python", "ros"]]),
-    step("peers", "event formats against other programs", peers::peers)
-        .apart(&[PROSE, &["c", "examples", "fuzz", "loop", "page", "python", "ros"]]),
+    .apart(&[
+        PROSE,
+        &["bindings/c", "bindings/python", "bindings/ros", "examples", "laptop/page", "loop"],
+    ]),
+    step("peers", "event formats against other programs", peers::peers).apart(&[
+        PROSE,
+        &[
+            "bindings/c",
+            "bindings/python",
+            "bindings/ros",
+            "examples",
+            "fuzz",
+            "laptop/page",
+            "loop",
+        ],
+    ]),
     step("readme", "the code of README and docs runs", everyday::readme),
     step("doc", "documentation without warnings", everyday::doc).apart(&[HOST, LAST, REST]),
     step("package", "what is published has all that its pages show", package::package),
@@ -93,7 +107,7 @@ const STEPS: &[Step] = &[
     step("c", "the library for C, on the host and on a Cortex-M4F", c_library::verify).apart(&[
         PROSE,
         HOST,
-        &["fuzz", "loop", "page", "python", "ros"],
+        &["bindings/python", "bindings/ros", "fuzz", "laptop/page", "loop"],
     ]),
     step(
         "boards",
@@ -117,7 +131,7 @@ const STEPS: &[Step] = &[
     step("laptop", "the laptop program on a flight, and the paper's tables", everyday::laptop)
         .apart(&[LAST]),
     step("python", "the Python package: tests, hashes, README, example", python_package::python)
-        .apart(&[PROSE, &["c", "fuzz", "loop", "page", "ros"]]),
+        .apart(&[PROSE, &["bindings/c", "bindings/ros", "fuzz", "laptop/page", "loop"]]),
     step("video", "the paper's figure of a video, from a packaged clip", video::video)
         .apart(&[PROSE, LAST]),
     step("bench", "instruction counts of a Cortex-M4F against the baseline", || {
@@ -176,10 +190,10 @@ const LONG: &[Step] = &[
     ),
     step("c-cost", "what the calls of C take beside the crate's", c_library::cost),
     step("page", "the page in a browser, against the laptop program", page::verify)
-        .apart(&[PROSE, &["c", "fuzz", "loop", "python", "ros"]]),
+        .apart(&[PROSE, &["bindings/c", "bindings/python", "bindings/ros", "fuzz", "loop"]]),
     step("ros2", "ROS 2 nodes against Cyclone DDS, on loopback alone", ros::ros2),
     step("ros", "ROS nodes in the distribution's ROS, a flight through every scheme", ros::ros)
-        .apart(&[PROSE, &["c", "fuzz", "loop", "page", "python"]]),
+        .apart(&[PROSE, &["bindings/c", "bindings/python", "fuzz", "laptop/page", "loop"]]),
     step(
         "py-speed",
         "the Python package from its source package, and its speed",

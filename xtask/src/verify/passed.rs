@@ -21,6 +21,9 @@ const NARROW: [&str; 10] = [
     "SWEEPS_SEED",
 ];
 
+/// Directories at the repository's top whose directories are rooms.
+const GROUPS: [&str; 2] = ["bindings", "laptop"];
+
 /// A line for each room and file at the repository's top, with git's name of all that it holds, committed or not; then
 /// each manifest and lock file, whose rooms cargo reads for one another; then the compiler. None where git does not tell.
 pub struct Passed(Option<String>);
@@ -68,7 +71,17 @@ fn told(root: &Path, place: &Path) -> Result<String> {
         output(git.env("GIT_INDEX_FILE", place.join("index")))
     };
     git("add --all")?;
-    let rooms = git(&format!("ls-tree {}", git("write-tree")?.trim()))?;
+    let tree = git("write-tree")?;
+    let top = git(&format!("ls-tree {}", tree.trim()))?;
+    // The rooms of a group are told apart, and the group itself is none.
+    let below = git(&format!(
+        "ls-tree {} {}",
+        tree.trim(),
+        GROUPS.map(|group| format!("{group}/")).join(" ")
+    ))?;
+    let is_room = |line: &&str| !GROUPS.iter().any(|group| line.ends_with(&format!("\t{group}")));
+    let rooms: String =
+        top.lines().filter(is_room).chain(below.lines()).flat_map(|line| [line, "\n"]).collect();
     let manifests = git("ls-files --stage -- *Cargo.toml *Cargo.lock")?;
     Ok([rooms, manifests, output(command("rustc").arg("-vV"))?].concat())
 }

@@ -7,7 +7,7 @@ use std::fmt::Write;
 const SAMPLES: [(&str, &str); 4] =
     [("f32", "f32"), ("i16", "i16"), ("I8F8", "q8_8"), ("I16F16", "q16_16")];
 
-/// `c/src/codecs.rs`.
+/// `bindings/c/src/codecs.rs`.
 pub fn codecs() -> String {
     let samples = SAMPLES.map(|(rust, suffix)| format!("{suffix}: {rust}")).join(", ");
     let mut text = format!(

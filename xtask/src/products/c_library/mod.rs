@@ -73,7 +73,7 @@ fn apart(built: &Path, name: &str, objcopy: &str) -> Result<PathBuf> {
 }
 
 fn room() -> PathBuf {
-    paths::root().join("c")
+    paths::root().join("bindings/c")
 }
 
 /// Everything that the tests make.
@@ -92,7 +92,7 @@ pub fn write() -> Result<()> {
 fn ensure_written() -> Result<()> {
     let is = |path: &str, text: &str| {
         let kept = fs::read_to_string(room().join(path)).with_context(|| path.to_owned())?;
-        ensure!(kept == text, "c/{path} is out of date: cargo xtask write c");
+        ensure!(kept == text, "bindings/c/{path} is out of date: cargo xtask write c");
         Ok(())
     };
     is("src/codecs.rs", &declared::codecs())?;

@@ -7,7 +7,7 @@ use crate::programs::boards::Board;
 use anyhow::{Context, Result};
 use std::{fmt::Write, fs};
 
-const PAGE: &str = "c/README.md";
+const PAGE: &str = "bindings/c/README.md";
 const MARKER: &str = "sizes";
 
 /// Puts the table into the page.

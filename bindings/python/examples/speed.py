@@ -1,0 +1,199 @@
+"""Million samples a second of each scheme, beside plain Python, NumPy and other libraries, in one run.
+
+    python python/examples/speed.py            # tables: medians, with the least and the most of all rounds
+    python python/examples/speed.py --check    # fails if a scheme is not as many times faster as it should be
+
+Plain Python is the pseudo-code of the paper line by line, on NumPy arrays: what one writes first. NumPy is the same
+work on whole arrays, where a code has such a form.
+"""
+
+import argparse
+import importlib.util
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+import spikewire as sw
+
+BENCH = Path(__file__).parents[3] / "laptop" / "cli" / "python" / "toolbox_bench.py"
+
+#: The signal: ten thousand samples for loops in Python, and more of the same for all else.
+SHORT, TIMES = 10_000, 400
+
+#: What is compared takes turns, so that a machine with other work slows both.
+ROUNDS = 9
+
+
+def plain():
+    """The transcriptions."""
+    spec = importlib.util.spec_from_file_location("toolbox_bench", BENCH)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def gaussian(x, neurons):
+    """The winner of Gaussian receptive fields, by their responses."""
+    low, spacing = x.min(), (x.max() - x.min()) / (neurons - 2)
+    centres = low + (2 * np.arange(neurons) - 1) / 2 * spacing
+    spikes = np.zeros((len(x), neurons))
+    for i in range(len(x)):
+        response = np.exp(-((x[i] - centres) ** 2) / (2 * (spacing / 1.5) ** 2))
+        spikes[i, np.argmax(response)] = 1
+    return spikes
+
+
+def seconds(call, clock=time.process_time):
+    """One run: of processor time, which leaves out what else the machine does."""
+    start = clock()
+    call()
+    return clock() - start
+
+
+def rates(call, samples, rounds=ROUNDS, clock=time.process_time):
+    """Million samples a second, round by round."""
+    return np.array([samples / seconds(call, clock) * 1e-6 for _ in range(rounds)])
+
+
+def spread(values, digits=1):
+    """Median, least and most."""
+    low, middle, high = (f"{value:.{digits}f}" for value in (values.min(), np.median(values), values.max()))
+    return f"{middle} ({low} to {high})"
+
+
+def signal(samples):
+    t = np.arange(samples) / 100
+    clean = 2 * np.sin(2 * np.pi * t) - 0.5 * np.cos(0.5 * np.pi * t) + 0.75 * np.sin(10 * np.pi * t)
+    return (clean - 0.5 * np.random.default_rng(1).random(samples)).astype(np.float32)
+
+
+def vectors(long, ends):
+    """The same work on whole arrays in NumPy, and the scheme: name, call, samples, scheme."""
+    low, range_ = np.float32(ends["min"]), np.float32(ends["max"] - ends["min"])
+    random = np.random.default_rng(2)
+
+    def contrast():
+        steps = np.diff(long, prepend=long[:1])
+        return (steps > 0.3).astype(np.int8) - (steps < -0.3)
+
+    def phase():
+        digits = np.minimum((long - low) * (256 / range_), 255).astype(np.uint8)
+        return np.unpackbits(digits[:, None], axis=1)
+
+    def chance():
+        return (random.random(len(long), dtype=np.float32) < (long - low) / range_).astype(np.int8)
+
+    yield "NumPy, differences", contrast, len(long), sw.TemporalContrast(threshold=0.3)
+    yield "NumPy `unpackbits`", phase, len(long), sw.WeightedPhase(slots=8, **ends)
+    yield "NumPy `random`", chance, len(long), sw.Bernoulli(**ends)
+
+
+def others(x, long, ends):
+    """What other libraries encode the same signal with, where they are installed, and the nearest scheme."""
+    try:
+        from spikify.encoders.temporal import contrast, global_referenced
+
+        short = x.astype(np.float64)
+        window = sw.MovingWindow(threshold=0.25, window=5)
+        each = np.repeat(short, 8)  # its phase code has one value for as many samples as digits
+        yield "spikify `threshold_based_representation`", (
+            lambda: contrast.threshold_based_representation(long.astype(np.float64), 1.0)
+        ), len(long), sw.TemporalContrast(threshold=0.3)
+        yield "spikify `step_forward`", lambda: contrast.step_forward(short, 0.5), len(x), sw.StepForward(threshold=0.5)
+        yield "spikify `moving_window`", lambda: contrast.moving_window(short, 5, 0.25), len(x), window
+        yield "spikify `phase`", (
+            lambda: global_referenced.phase(each, 8)
+        ), len(x), sw.WeightedPhase(slots=8, **ends)
+    except ImportError:
+        pass
+    try:
+        import torch
+
+        torch.set_num_threads(1)
+    except ImportError:
+        return
+    data = torch.from_numpy(long)
+    # SpikingJelly takes values from 0 to less than 1.
+    unit = (data - ends["min"]) / (ends["max"] - ends["min"]) * (1 - 2**-8)
+    try:
+        from snntorch import spikegen
+
+        delta = sw.TemporalContrast(threshold=0.3)
+        yield "snnTorch `spikegen.delta`", (
+            lambda: spikegen.delta(data, threshold=0.3, off_spike=True)
+        ), len(long), delta
+    except ImportError:
+        pass
+    try:
+        from spikingjelly.activation_based import encoding
+
+        phase, first = sw.WeightedPhase(slots=8, **ends), sw.FirstSpike(slots=8, **ends)
+        yield "SpikingJelly `PoissonEncoder`", lambda: encoding.PoissonEncoder()(unit), len(long), sw.Bernoulli(**ends)
+        yield "SpikingJelly `WeightedPhaseEncoder`", lambda: encoding.WeightedPhaseEncoder(8)(unit), len(long), phase
+        yield "SpikingJelly `LatencyEncoder`", lambda: encoding.LatencyEncoder(8)(unit), len(long), first
+    except ImportError:
+        pass
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--check", action="store_true", help="fail where it is slower than it should be")
+    check = parser.parse_args().check
+    bench = plain()
+    x = signal(SHORT)
+    long = np.tile(x, TIMES)
+    low = {"shift": float(x.min())}
+    ends = {"min": float(x.min()), "max": float(x.max())}
+    nine, fifteen = bench.triang(9), bench.triang(15)
+    rows = [
+        ("TBR", 10, sw.TemporalContrast(threshold=0.3), lambda: bench.contrast(x, 0.5)),
+        ("MW", 10, sw.MovingWindow(threshold=0.25, window=5), lambda: bench.moving_window(x, 0.25, 5)),
+        ("SF", 10, sw.StepForward(threshold=0.5), lambda: bench.step_forward(x, 0.5)),
+        ("BSA", 100, sw.Bsa(form="toolbox", filter="triang:9", threshold=1.15, **low), lambda: bench.ben(x, nine, 1.15)),
+        ("HSA", 100, sw.Hough(filter="triang:15", **low), lambda: bench.hough(x, fifteen)),
+        (
+            "T-HSA",
+            100,
+            sw.ThresholdHough(filter="triang:15", threshold=0.85, **low),
+            lambda: bench.threshold_hough(x, fifteen, 0.85),
+        ),
+        ("GRF", 100, sw.Gaussian(neurons=20, **ends), lambda: gaussian(x, 20)),
+    ]
+    slow = []
+    print("| scheme | plain Python, M samples/s | spikewire | times | decode | two channels |")
+    print("|---|--:|--:|--:|--:|--:|")
+    both = np.stack([long, long])
+    for name, wanted, scheme, transcription in rows:
+        by_hand = rates(transcription, len(x), rounds=1)[0]
+        own = rates(lambda: scheme.encode(long, progress=False), len(long))
+        two = rates(lambda: scheme.encode(both, progress=False), both.size, clock=time.perf_counter)
+        spikes = scheme.encode(long, progress=False)
+        back = rates(lambda: spikes.decode(progress=False), len(long))
+        times = np.median(own) / by_hand
+        print(
+            f"| {name} | {by_hand:.3f} | {spread(own)} | {times:.0f} | {spread(back)} | {np.median(two):.1f} |",
+            flush=True,
+        )
+        if times < wanted:
+            slow.append(f"{name} is {times:.0f} times as fast, not {wanted}")
+    print("\n| on whole arrays | M samples/s | spikewire | M samples/s | times |")
+    print("|---|--:|---|--:|--:|")
+    for name, call, samples, scheme in [*vectors(long, ends), *others(x, long, ends)]:
+        pairs = [
+            (samples / seconds(call) * 1e-6, len(long) / seconds(lambda: scheme.encode(long, progress=False)) * 1e-6)
+            for _ in range(ROUNDS)
+        ]
+        theirs, own = np.array(pairs).T
+        print(
+            f"| {name} | {spread(theirs, 1 if theirs.max() > 1 else 3)} | `{type(scheme).__name__}` | {spread(own)} "
+            f"| {spread(own / theirs)} |",
+            flush=True,
+        )
+    if check and slow:
+        sys.exit("; ".join(slow))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,235 @@
+"""What the laptop program does, on arrays: score, tune, advise, plot, and constants for the firmware."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Literal, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _native, _progress
+from ._arrays import tell_cut, unmasked
+from ._scheme import Scheme, _plain
+
+
+def score(x: ArrayLike, scheme: Scheme, rate: float | None = None) -> dict[str, Any]:
+    """How few spikes `scheme` makes of `x`, an array (samples,), and how near it comes: a dictionary.
+
+    ``efficiency`` is the percentage of samples without a spike, ``rmse`` is in the signal's unit, ``snr`` in dB;
+    `rate`, in samples a second, gives ``spikes_per_second``.
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = np.sin(np.linspace(0, 6, 200))
+    >>> figures = sw.score(x, sw.StepForward(threshold=0.1))
+    >>> figures["spikes"], round(figures["rmse"], 3)
+    (33, 0.062)
+    """
+    return json.loads(_native.score(scheme._coder, _one(x), _rate(rate)))
+
+
+class Tuned:
+    """A scheme with the parameters that were found for it."""
+
+    def __init__(self, told: tuple, sample: str):
+        from ._schemes import schemes
+
+        name, options, figures, comments = told
+        kind = schemes[name]
+        #: What flies: the parameters found, for `start` or where a signal begins the default.
+        self.scheme = kind._of(dict(options), sample)
+        #: Figures on the blocks tuned on, on those held out, and on the whole; costs; notes of what speaks against it.
+        self.figures = json.loads(figures)
+        self._comments = comments
+
+    def to_rust(self, name: str = "CHANNEL") -> str:
+        """The scheme as a constant in Rust, with how good it is in its documentation."""
+        return _native.to_rust(self.scheme._coder, name, self._comments)
+
+    def to_toml(self) -> str:
+        """The scheme as a file of parameters for the laptop program."""
+        return _native.to_toml(self.scheme._coder, self._comments)
+
+    def __repr__(self) -> str:
+        own = self.figures["held_out"] or self.figures["tuned_on"]
+        return f"Tuned({self.scheme!r}, rmse={own['rmse']:.4g}, efficiency={own['efficiency']:.1f})"
+
+
+@overload
+def tune(x: ArrayLike | list[ArrayLike], scheme: Literal["all"] = "all", **keywords: Any) -> list[Tuned]: ...
+@overload
+def tune(x: ArrayLike | list[ArrayLike], scheme: str | type[Scheme], **keywords: Any) -> Tuned: ...
+def tune(
+    x: ArrayLike | list[ArrayLike],
+    scheme: str | type[Scheme] = "all",
+    *,
+    rate: float | None = None,
+    min_efficiency: float | None = None,
+    max_rmse: float | None = None,
+    max_ram: float | None = None,
+    max_instructions: float | None = None,
+    max_latency: float | None = None,
+    max_rate: float | None = None,
+    core: str | None = None,
+    hold_out: float | None = None,
+    blocks: int | None = None,
+    seconds: float | None = None,
+    evaluations: int | None = None,
+    seed: int | None = None,
+    anyway: bool = False,
+    below: float | None = None,
+    sample: str = "f32",
+    name: str = "x",
+    progress: bool | Callable[[int, int], object] | None = None,
+    **kept: Any,
+) -> Tuned | list[Tuned]:
+    """The parameters of `scheme`, its short name or class, for the signal `x`: :class:`Tuned`.
+
+    `x` is an array (samples,), or a list of them that are tuned on together. Looked for is the least RMSE at
+    `min_efficiency` percent of samples without a spike, or the greatest efficiency at `max_rmse`; without either, the
+    least RMSE at the efficiency of the paper's settings. With `scheme` ``"all"`` it is a list, the best first.
+
+    `rate`: samples a second. `max_ram` in bytes a channel, `max_instructions` a sample on `core`, `max_latency` in
+    samples and `max_rate` in events a second limit what may be found. A part `hold_out` of `blocks` is kept back to
+    score on. It scores `evaluations` settings; the same number and `seed` give the same result, unless it is cut short
+    after so many `seconds`.
+    What is not given is as in ``spikewire tune``. `kept` are parameters that stay as given.
+    """
+    of_one = scheme != "all"
+    scheme = scheme if isinstance(scheme, str) else scheme._info["name"]
+    options = {
+        "min_efficiency": min_efficiency,
+        "max_rmse": max_rmse,
+        "max_ram": max_ram,
+        "max_instructions": max_instructions,
+        "max_latency": max_latency,
+        "max_rate": max_rate,
+        "core": core,
+        "hold_out": hold_out,
+        "blocks": blocks,
+        "seconds": seconds,
+        "evaluations": evaluations,
+        "seed": seed,
+        "anyway": anyway,
+        "below": below,
+        "sample": sample,
+        "scheme": scheme,
+        "kept": dict(_plain({name: value for name, value in kept.items() if value is not None})),
+    }
+    signals = [_one(own) for own in x] if isinstance(x, (list, tuple)) and np.ndim(x[0]) else [_one(x)]
+    with _progress.bar(progress, "tune") as tell:
+        told, _ = _native.tune(signals, _rate(rate), name, options, tell)
+    tell_cut(sample, *signals)
+    found = [Tuned(own, sample) for own in told]
+    return found[0] if of_one else found
+
+
+class Advice:
+    """What a signal is like, and which scheme suits it. Printed, it is a page to read."""
+
+    def __init__(self, told: tuple, sample: str):
+        page, figures, best = told
+        #: What a person reads.
+        self.page = page
+        #: All of it: the look at the signal, the schemes that come near enough, and why others do not.
+        self.figures = json.loads(figures)
+        #: The scheme advised: :class:`Tuned`, or ``None`` if there is none.
+        self.best = Tuned(best, sample) if best else None
+
+    def __repr__(self) -> str:
+        return self.page
+
+
+def advise(
+    x: ArrayLike,
+    *,
+    rate: float | None = None,
+    max_rmse: float | None = None,
+    max_latency: float | None = None,
+    loop_bandwidth: float | None = None,
+    core: str | None = None,
+    seconds: float | None = None,
+    evaluations: int | None = None,
+    seed: int | None = None,
+    sample: str = "f32",
+    name: str = "x",
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> Advice | list[Advice]:
+    """What the signal `x`, (samples,), is like and which scheme suits it: :class:`Advice`, for (channels, samples) a list.
+
+    All schemes are tuned for a moment. Of those within `max_rmse`, a fifth of the signal's deviation unless given, the
+    one with the fewest bytes a second on the link is advised. `loop_bandwidth` is the frequency in Hz up to which the
+    control loop acts that is to fly on it: codes that are late for it, or that fall behind the signal, are not advised.
+    """
+    options = {
+        "max_rmse": max_rmse,
+        "max_latency": max_latency,
+        "loop_bandwidth": loop_bandwidth,
+        "core": core,
+        "seconds": seconds,
+        "evaluations": evaluations,
+        "seed": seed,
+        "sample": sample,
+    }
+    x = np.asarray(x)
+    signals = [(name, _one(x))] if x.ndim == 1 else [(f"{name}[{i}]", _one(own)) for i, own in enumerate(x)]
+    with _progress.bar(progress, "advise") as tell:
+        told = [Advice(own, sample) for own in _native.advise(signals, _rate(rate), options, tell)]
+    tell_cut(sample, *(values for _, values in signals))
+    return told[0] if x.ndim == 1 else told
+
+
+class Picture:
+    """A picture, which a notebook shows."""
+
+    def __init__(self, drawn: Callable[[str], bytes], words: str):
+        self._drawn, self._words = drawn, words
+
+    def __repr__(self) -> str:
+        return f"Picture of {self._words}"
+
+    def save(self, path: str | Path) -> None:
+        """Writes it as ``.svg`` or ``.png``, by the ending of `path`."""
+        path = Path(path)
+        path.write_bytes(self._drawn(path.suffix[1:]))
+
+    def _repr_svg_(self) -> str:
+        return self._drawn("svg").decode()
+
+
+def plot(
+    x: ArrayLike,
+    *schemes: Scheme,
+    rate: float | None = None,
+    name: str = "x",
+    unit: str | None = None,
+    samples: tuple[int, int] | None = None,
+) -> Picture:
+    """A picture of `x`, (samples,), its spikes by each of `schemes` and what they decode to: :class:`Picture`.
+
+    `rate`, in samples a second, gives it a time axis; `samples`, a pair, shows some only, all of which are encoded.
+    """
+    if not schemes:
+        raise ValueError("plot takes schemes, as in plot(x, StepForward(threshold=0.1))")
+    x, coders = _one(x), [scheme._coder for scheme in schemes]
+
+    def drawn(ending: str) -> bytes:
+        return _native.plot(coders, x, _rate(rate), name, unit, samples, ending)
+
+    drawn("svg")  # what is wrong is told at once
+    for sample in dict.fromkeys(scheme.sample for scheme in schemes):
+        tell_cut(sample, x)
+    return Picture(drawn, f"{name} by {', '.join(repr(scheme) for scheme in schemes)}")
+
+
+def _one(x: ArrayLike) -> NDArray[np.float64]:
+    x = unmasked(x).astype(np.float64)
+    if x.ndim != 1:
+        raise ValueError(f"a signal is an array (samples,), not {x.shape}")
+    return x
+
+
+def _rate(rate: float | None) -> float | None:
+    return None if rate is None else float(rate)

@@ -1,0 +1,82 @@
+"""A bank of six channels at one end of a link, and its decoders at the other: the frames that fly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _native
+from ._arrays import tell_cut
+
+if TYPE_CHECKING:
+    from ._scheme import Scheme
+
+
+class Sender:
+    """The encoders of an inertial sensor's six channels, and the frames of their events.
+
+    `schemes` are one scheme for all channels, or one for each, of one kind and with as many neurons. A sample is taken
+    every `period` µs. After the first and every `keyframe_every` samples comes a keyframe, or a heartbeat of codes without.
+    The bytes are those of a firmware with the same schemes, `period` and `session`.
+
+    >>> import spikewire as sw
+    >>> scheme = sw.StepForward(threshold=0.1)
+    >>> sender, receiver = sw.Sender(scheme, period=2000), sw.Receiver(scheme, period=2000)
+    >>> for sample in [[0, 0, 0, 0, 0, 9.8], [0.25, 0, 0, 0, 0, 9.8]]:
+    ...     for frame in sender.encode(sample):
+    ...         receiver.hear(frame)
+    >>> receiver.advance(4000)
+    >>> receiver.values.round(2).tolist(), bool(receiver.exact.all())
+    ([0.1, 0.0, 0.0, 0.0, 0.0, 9.8], True)
+    """
+
+    def __init__(self, schemes: Scheme | Sequence[Scheme], period: int, keyframe_every: int = 25, session: int = 0):
+        self._native = _native.Sender(_six(schemes), period, keyframe_every, session)
+        self._sample = schemes[0].sample if isinstance(schemes, Sequence) else schemes.sample
+        #: The address of each event of the last sample, and whether it went up.
+        self.fired: list[tuple[int, bool]] = []
+
+    def encode(self, sample: ArrayLike) -> list[bytes]:
+        """The frames that a sample of the six channels makes: none, if nothing fired and no keyframe is due."""
+        sample = np.asarray(sample, dtype=float)
+        frames, self.fired = self._native.encode([float(value) for value in sample])
+        tell_cut(self._sample, sample)
+        return frames
+
+
+class Receiver:
+    """The decoders of a :class:`Sender`, which know whether their values are exact."""
+
+    def __init__(self, schemes: Scheme | Sequence[Scheme], period: int):
+        self._native = _native.Hearer(_six(schemes), period)
+
+    def hear(self, data: bytes) -> None:
+        """Takes the next bytes of the link, cut anywhere: frames that were lost are noticed."""
+        self._native.hear(data)
+
+    def advance(self, now: int) -> None:
+        """Says that all events before this time, in µs, have arrived: the samples that are over by then are decoded."""
+        self._native.advance(now)
+
+    @property
+    def values(self) -> NDArray[np.float64]:
+        """The value of each channel, exact or not."""
+        return np.array(self._native.values()[0])
+
+    @property
+    def exact(self) -> NDArray[np.bool_]:
+        """Whether each value has the bits of a decoder that lost no event."""
+        return np.array(self._native.values()[1])
+
+    @property
+    def lost(self) -> int:
+        """How many frames were lost, as far as later ones tell."""
+        return self._native.lost()
+
+
+def _six(schemes: Scheme | Sequence[Scheme]) -> list:
+    own = list(schemes) if isinstance(schemes, Sequence) else [schemes] * 6
+    return [scheme._coder for scheme in own]

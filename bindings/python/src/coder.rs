@@ -1,0 +1,460 @@
+//! A scheme with what was given of its parameters, and with all of them.
+
+use anyhow::{Context, Result, anyhow, bail};
+use catalogue::run::{
+    Asked, Calibrated, Codec, Known, RunTime, SampleType, Settings, Values, missing,
+};
+use lab::tune::costs::Costs;
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+use crate::array::{Lane, Samples};
+use crate::channel::{self, Bad};
+use crate::error::value;
+use crate::stream::{Decoder, Encoder};
+use crate::values::{self, Given};
+use crate::work::{self, Meter};
+
+/// What was given of a scheme's parameters; a signal may tell the rest.
+#[derive(Clone)]
+#[pyclass(frozen, from_py_object, module = "spikewire._native")]
+pub(crate) struct Coder {
+    pub(crate) scheme: &'static dyn RunTime,
+    pub(crate) sample: SampleType,
+    pub(crate) asked: Asked,
+}
+
+impl Coder {
+    /// Complete settings for one channel, as they run.
+    ///
+    /// # Errors
+    /// A parameter is missing or makes no sense.
+    pub(crate) fn settle(
+        &self,
+        first: &[f64],
+        calibrated: Option<&Calibrated>,
+    ) -> Result<Settings> {
+        if calibrated.is_none()
+            && let Some(what) = self.scheme.needs_signal(&self.asked)
+        {
+            bail!("{} needs {what} before it has seen a signal; fit(x) finds it", self.name());
+        }
+        let known = Known { calibrated, first, can_calibrate: calibrated.is_some() };
+        self.scheme.resolve(self.sample, &self.asked, &known)
+    }
+
+    /// The same for one channel of so many, which may have values of its own.
+    ///
+    /// # Errors
+    /// A parameter has another number of values.
+    pub(crate) fn channel(&self, channel: usize, channels: usize) -> Result<Self> {
+        let asked = self.asked.channel(self.scheme.info(), channel, channels)?;
+        Ok(Self { asked, ..self.clone() })
+    }
+
+    /// Any channel, for what is the same of all.
+    fn any(&self) -> Result<Self> {
+        self.channel(0, self.asked.channels(self.scheme.info())?.unwrap_or(1))
+    }
+
+    /// How many samples an encoder takes to start from.
+    pub(crate) fn looks_back(&self) -> usize {
+        self.scheme.looks_back(&self.asked)
+    }
+
+    /// A codec as it starts on these settings.
+    pub(crate) fn start(&self, settings: &Settings) -> Result<Codec> {
+        self.scheme.codec_from(settings, settings.first_value())
+    }
+
+    /// Refuses what makes no sense whatever the signal is.
+    fn check(&self) -> Result<()> {
+        let past = vec![0.0; self.looks_back()];
+        let Some(what) = self.scheme.needs_signal(&self.asked) else {
+            let settings = self.settle(&past, None)?;
+            return self.start(&settings).map(drop);
+        };
+        let is_end_given = ["min", "max"].iter().any(|name| self.asked.get(name).is_some());
+        if missing(self.scheme.info(), &self.asked) == Some(what) && !is_end_given {
+            // Any range will do, in a type that rounds none of it.
+            let mut calibrated = Calibrated::new(SampleType::F32);
+            calibrated.observe(&[0.0, 1.0]);
+            let plain = Self { sample: SampleType::F32, ..self.clone() };
+            let settings = plain.settle(&past, Some(&calibrated))?;
+            self.start(&settings)?;
+        }
+        Ok(())
+    }
+
+    /// Settings of some signal, for what does not depend on what a signal tells.
+    fn of_ramp(&self) -> Result<Settings> {
+        let ramp = [0.0, 1.0, 0.5];
+        let calibrated = self.scheme.needs_signal(&self.asked).map(|_| {
+            let mut calibrated = Calibrated::new(self.sample);
+            calibrated.observe(&ramp);
+            calibrated
+        });
+        self.any()?.settle(&ramp, calibrated.as_ref())
+    }
+
+    /// Says of each given parameter beyond the range of the sample type what it ran as.
+    fn beyond(&self) -> Result<Vec<String>> {
+        let (low, high) = self.sample.range();
+        let channels = self.asked.channels(self.scheme.info())?.unwrap_or(1);
+        let mut told = Vec::new();
+        for channel in 0..channels {
+            let own = self.channel(channel, channels)?;
+            let settings = own.of_ramp()?;
+            for (name, asked) in &settings.rounded {
+                let is_beyond = |value: &f64| *value < low || *value > high;
+                if own.asked.get(name).is_some()
+                    && asked.numbers().is_some_and(|all| all.iter().any(is_beyond))
+                    && let Some(ran) = settings.get(name)
+                {
+                    told.push(format!("in {}, {name} {asked} ran as {ran}", self.sample));
+                }
+            }
+        }
+        Ok(told)
+    }
+
+    fn name(&self) -> &'static str {
+        self.scheme.info().name
+    }
+
+    fn fitted(&self, lanes: &[Lane], is_shared: bool) -> Result<Fitted> {
+        for (channel, lane) in lanes.iter().enumerate() {
+            if lane.len() == 0 {
+                bail!("channel {channel} has no samples");
+            }
+            if let Some(bad) = lane.bad(self.sample) {
+                return Err(told(channel, 0, &bad));
+            }
+        }
+        let groups: Vec<&[Lane]> =
+            if is_shared { vec![lanes] } else { lanes.iter().map(std::slice::from_ref).collect() };
+        let settle = |(place, group): (usize, &&[Lane])| {
+            let calibrated = self.scheme.needs_signal(&self.asked).map(|_| {
+                let mut calibrated = Calibrated::new(self.sample);
+                group.iter().for_each(|lane| calibrated.observe(&lane.to_vec()));
+                calibrated
+            });
+            let lane = group.first().ok_or_else(|| anyhow!("there is no channel"))?;
+            let first = lane.part(0..lane.len().min(self.looks_back())).to_vec();
+            let settled = self.channel(place, groups.len())?.settle(&first, calibrated.as_ref());
+            if lanes.len() > 1 && !is_shared {
+                settled.with_context(|| format!("channel {place}"))
+            } else {
+                settled
+            }
+        };
+        let channels = if is_wide(lanes.len(), lanes.iter().map(Lane::len).sum()) {
+            groups.par_iter().enumerate().map(settle).collect::<Result<Vec<_>>>()?
+        } else {
+            groups.iter().enumerate().map(settle).collect::<Result<Vec<_>>>()?
+        };
+        Ok(Fitted { scheme: self.scheme, sample: self.sample, channels })
+    }
+}
+
+#[pymethods]
+impl Coder {
+    #[new]
+    fn new(scheme: &str, sample: &str, given: Vec<(String, Given)>, paper: bool) -> PyResult<Self> {
+        let scheme = named(scheme)?;
+        let asked = values::asked(scheme.info(), given, paper).map_err(|error| value(&error))?;
+        let sample = sample.parse().map_err(|error| value(&error))?;
+        let coder = Self { scheme, sample, asked };
+        coder.any().and_then(|any| any.check()).map_err(|error| value(&error))?;
+        Ok(coder)
+    }
+
+    /// What should be known of parameters that fixed point cut to its range.
+    fn cut(&self) -> Vec<String> {
+        // Settings that a ramp does not suit are told with the signal.
+        self.beyond().unwrap_or_default()
+    }
+
+    /// How many neurons and sub-timesteps a channel has.
+    fn shape(&self) -> PyResult<(usize, usize)> {
+        let settings = self.of_ramp().map_err(|error| value(&error))?;
+        let shape = self.scheme.shape(&settings).map_err(|error| value(&error))?;
+        Ok((shape.neurons, shape.slots))
+    }
+
+    /// What a signal must tell, if anything.
+    fn needs_signal(&self) -> Option<String> {
+        self.scheme.needs_signal(&self.asked)
+    }
+
+    /// With what these samples tell: each channel by itself, or one scheme for all.
+    fn fit(&self, py: Python, samples: Samples, is_shared: bool) -> PyResult<Fitted> {
+        let lanes = samples.lanes();
+        let is_wide = is_wide(lanes.len(), lanes.iter().map(Lane::len).sum());
+        work::detached(py, is_wide, || self.fitted(&lanes, is_shared))?
+            .map_err(|error| value(&error))
+    }
+
+    /// It with draws that start from this seed.
+    fn seeded(&self, seed: u64) -> Self {
+        let mut own = self.clone();
+        own.asked.set("seed", seed);
+        own
+    }
+
+    /// How many samples after its own the code of a sample comes out.
+    fn latency(&self) -> PyResult<usize> {
+        let settings = self.of_ramp().map_err(|error| value(&error))?;
+        let channel = self.start(&settings);
+        channel.map(|channel| channel.latency()).map_err(|error| value(&error))
+    }
+
+    /// Instructions of a Cortex-M4F to encode a sample, by the measured table; none if they were not measured.
+    fn instructions(&self) -> PyResult<Option<f64>> {
+        let settings = self.of_ramp().map_err(|error| value(&error))?;
+        Ok(Costs::new(self.scheme.into(), &settings, self.latency()?, "M4F").instructions)
+    }
+
+    /// An encoder of this many channels that keeps its state.
+    fn encoder(&self, channels: usize) -> PyResult<Encoder> {
+        if let Some(what) = self.scheme.needs_signal(&self.asked) {
+            let error = anyhow!("{} needs {what} to begin a stream; fit(x) finds it", self.name());
+            return Err(value(&error));
+        }
+        Ok(Encoder::new(self.clone(), channels, self.shape()?))
+    }
+
+    /// A decoder that keeps its state, of as many channels as there are first values or none of these.
+    fn decoder(&self, first: Vec<Option<f64>>) -> PyResult<Decoder> {
+        let channels = first.iter().enumerate().map(|(place, own)| {
+            let past = vec![own.unwrap_or_default(); self.looks_back()];
+            let settings = self.channel(place, first.len())?.settle(&past, None)?;
+            self.scheme.codec_from(&settings, settings.first_value().or(*own))
+        });
+        let channels = channels.collect::<Result<Vec<_>>>();
+        Ok(Decoder::new(channels.map_err(|error| value(&error))?, self.sample))
+    }
+}
+
+/// A scheme with all parameters of each channel.
+#[derive(Clone)]
+#[pyclass(frozen, from_py_object, module = "spikewire._native")]
+pub(crate) struct Fitted {
+    scheme: &'static dyn RunTime,
+    sample: SampleType,
+    /// Those of one stand for all.
+    channels: Vec<Settings>,
+}
+
+impl Fitted {
+    fn settings(&self, channel: usize) -> Result<&Settings> {
+        let own = self.channels.get(channel).or(self.channels.first());
+        own.ok_or_else(|| anyhow!("there is no channel"))
+    }
+
+    fn start(&self, channel: usize) -> Result<Codec> {
+        let settings = self.settings(channel)?.with_stream(channel as u64);
+        self.scheme.codec_from(&settings, settings.first_value())
+    }
+
+    /// How many cells a row has.
+    fn width(&self) -> Result<usize> {
+        let shape = self.scheme.shape(self.settings(0)?)?;
+        Ok(shape.neurons * shape.slots)
+    }
+}
+
+/// A channel's parameters by name, and its first samples.
+type Parts = (Vec<(String, String)>, Vec<f64>);
+
+/// Parameters as a file lists them.
+fn texts(settings: &Settings) -> Vec<(&'static str, String)> {
+    settings.entries().iter().map(|(name, value)| (*name, value.to_string())).collect()
+}
+
+/// The scheme of a short name.
+fn named(name: &str) -> PyResult<&'static dyn RunTime> {
+    let named = catalogue::ALL.iter().find(|own| own.info().name == name);
+    let unknown = || PyValueError::new_err(format!("there is no scheme {name:?}"));
+    named.copied().ok_or_else(unknown)
+}
+
+/// So many samples are coded before anybody asks whether to stop.
+const PIECE: usize = 1 << 16;
+
+/// Returns whether so many channels of so many numbers in all are worth more threads than one.
+pub(crate) fn is_wide(channels: usize, numbers: usize) -> bool {
+    /// About what one thread does while another wakes up.
+    const FEW: usize = 1 << 13;
+    channels > 1 && numbers > FEW
+}
+
+#[pymethods]
+impl Fitted {
+    /// How many neurons and sub-timesteps a channel has.
+    fn shape(&self) -> PyResult<(usize, usize)> {
+        let shape = self.settings(0).and_then(|settings| self.scheme.shape(settings));
+        shape.map(|shape| (shape.neurons, shape.slots)).map_err(|error| value(&error))
+    }
+
+    /// How many samples after its own the code of a sample comes out.
+    fn latency(&self) -> PyResult<usize> {
+        self.start(0).map(|channel| channel.latency()).map_err(|error| value(&error))
+    }
+
+    /// The parameters of each channel, as a file lists them.
+    fn parameters(&self) -> Vec<Vec<(&'static str, String)>> {
+        self.channels.iter().map(texts).collect()
+    }
+
+    /// The parameters of a channel as keywords that bring them about again.
+    fn keywords(&self, channel: usize) -> PyResult<Vec<(&'static str, Given)>> {
+        let settings = self.settings(channel).map_err(|error| value(&error))?;
+        Ok(values::keywords(&settings.to_asked(self.scheme.info())))
+    }
+
+    /// The cells of all samples, and of those that wait for later ones at the end.
+    fn encode<'py>(
+        &self,
+        py: Python<'py>,
+        samples: Samples,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<i8>>> {
+        let lanes = samples.lanes();
+        let length = samples.shape().last().copied().unwrap_or_default();
+        let width = self.width().map_err(|error| value(&error))?;
+        let total = length * lanes.len();
+        let output = PyArray1::zeros(py, total * width, false);
+        let mut access = output.readwrite();
+        let cells = access.as_slice_mut()?;
+        let is_wide = is_wide(lanes.len(), total * width);
+        let done = work::run(py, is_wide, total, progress.as_ref(), |meter| {
+            let encode = |(place, (lane, room)): (usize, (&Lane, &mut [i8]))| {
+                self.encode_lane(place, *lane, room, width, meter)
+            };
+            let size = (length * width).max(1);
+            if is_wide {
+                let rooms = cells.par_chunks_mut(size);
+                lanes.par_iter().zip(rooms).enumerate().try_for_each(encode)
+            } else {
+                lanes.iter().zip(cells.chunks_mut(size)).enumerate().try_for_each(encode)
+            }
+        })?;
+        done.map_err(|error| value(&error))?;
+        drop(access);
+        Ok(output)
+    }
+
+    /// The values of rows of cells, of this many channels.
+    fn decode<'py>(
+        &self,
+        py: Python<'py>,
+        cells: PyReadonlyArray1<i8>,
+        channels: usize,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let cells = cells.as_slice()?;
+        let width = self.width().map_err(|error| value(&error))?;
+        let total = cells.len() / width;
+        let progress = progress.as_ref();
+        macro_rules! decoded {
+            ($type:ty, $kind:ident) => {{
+                let output = PyArray1::<$type>::zeros(py, total, false);
+                let mut access = output.readwrite();
+                let values = access.as_slice_mut()?;
+                let is_wide = is_wide(channels, total * width);
+                let done = work::run(py, is_wide, total, progress, |meter| {
+                    let length = (total / channels.max(1)).max(1);
+                    let decode = |(place, (rows, room)): (usize, (&[i8], &mut [$type]))| {
+                        let mut channel = self.start(place)?;
+                        let pieces = rows.chunks(PIECE * width).zip(room.chunks_mut(PIECE));
+                        for (piece, (rows, room)) in pieces.enumerate() {
+                            if meter.is_stopped() {
+                                break;
+                            }
+                            let done =
+                                channel::decode(&mut channel, rows, &mut Values::$kind(room));
+                            done.map_err(|bad| told(place, piece * PIECE, &bad))?;
+                            meter.add(room.len());
+                        }
+                        Ok(())
+                    };
+                    if is_wide {
+                        let rooms = values.par_chunks_mut(length);
+                        let rows = cells.par_chunks(length * width);
+                        rows.zip(rooms).enumerate().try_for_each(decode)
+                    } else {
+                        let rooms = values.chunks_mut(length);
+                        let rows = cells.chunks(length * width);
+                        rows.zip(rooms).enumerate().try_for_each(decode)
+                    }
+                })?;
+                done.map_err(|error: anyhow::Error| value(&error))?;
+                drop(access);
+                Ok(output.into_any())
+            }};
+        }
+        match self.sample {
+            SampleType::F32 => decoded!(f32, F32),
+            SampleType::Fixed16 { fraction: 0 } => decoded!(i16, I16),
+            _ => decoded!(f64, F64),
+        }
+    }
+
+    /// The scheme, the sample type, and each channel's parameters and first samples, from which it is made again.
+    fn parts(&self) -> (&'static str, String, Vec<Parts>) {
+        let parts = |settings: &Settings| {
+            let texts = texts(settings).into_iter();
+            let texts = texts.map(|(name, text)| (name.to_owned(), text)).collect();
+            (texts, settings.first.clone())
+        };
+        let channels = self.channels.iter().map(parts).collect();
+        (self.scheme.info().name, self.sample.to_string(), channels)
+    }
+
+    /// Made of what [`parts`](Self::parts) gives.
+    #[staticmethod]
+    fn of_parts(scheme: &str, sample: &str, channels: Vec<Parts>) -> PyResult<Self> {
+        let scheme = named(scheme)?;
+        let sample = sample.parse().map_err(|error| value(&error))?;
+        let settings = |(mut texts, first): Parts| {
+            let mut settings = Settings::take(scheme.info(), sample, &mut texts)?;
+            settings.first = first;
+            Ok(settings)
+        };
+        let channels = channels.into_iter().map(settings).collect::<Result<_>>();
+        Ok(Self { scheme, sample, channels: channels.map_err(|error| value(&error))? })
+    }
+}
+
+impl Fitted {
+    fn encode_lane(
+        &self,
+        place: usize,
+        lane: Lane,
+        room: &mut [i8],
+        width: usize,
+        meter: &Meter,
+    ) -> Result<()> {
+        let mut channel = self.start(place).with_context(|| format!("channel {place}"))?;
+        let mut made = 0;
+        for start in (0..lane.len()).step_by(PIECE) {
+            if meter.is_stopped() {
+                return Ok(());
+            }
+            let part = lane.part(start..lane.len().min(start + PIECE));
+            let coded = channel::encode(&mut channel, self.sample, part, &mut room[made * width..]);
+            made += coded.map_err(|bad| told(place, start, &bad))?;
+            meter.add(part.len());
+        }
+        channel.finish_cells(&mut room[made * width..]);
+        Ok(())
+    }
+}
+
+/// What is bad, of which sample of which channel.
+pub(crate) fn told(channel: usize, start: usize, bad: &Bad) -> anyhow::Error {
+    anyhow!("channel {channel}, sample {}: {}", start + bad.sample, bad.what)
+}

@@ -1,0 +1,100 @@
+//! The compiled half of the Python package `spikewire`: a visitor of the catalogue that works on `NumPy` arrays.
+//!
+//! It knows no scheme by name. What Python calls things, and how arrays are shaped, is in the package's Python half.
+
+mod array;
+mod channel;
+mod coder;
+mod error;
+mod fingerprint;
+mod library;
+mod link;
+mod stream;
+mod values;
+mod work;
+
+use pyo3::prelude::*;
+
+/// The compiled half of the package.
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use super::array::cut;
+    #[pymodule_export]
+    use super::coder::{Coder, Fitted};
+    #[pymodule_export]
+    use super::fingerprint::fingerprint;
+    #[pymodule_export]
+    use super::info::schemes;
+    #[pymodule_export]
+    use super::library::{
+        advise, plot, read, read_events, score, to_c, to_rust, to_toml, tune, write_events,
+    };
+    #[pymodule_export]
+    use super::link::{Hearer, Sender};
+    #[pymodule_export]
+    use super::stream::{Decoder, Encoder};
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}
+
+/// What is known of each scheme.
+mod info {
+    use catalogue::{Found, Kind, Parameter, Unit};
+    use pyo3::prelude::*;
+    use pyo3::types::{PyDict, PyList};
+
+    /// Every scheme of the catalogue, in its order.
+    #[pyfunction]
+    pub(crate) fn schemes(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
+        let all = PyList::empty(py);
+        for info in catalogue::INFO {
+            let own = PyDict::new(py);
+            own.set_item("name", info.name)?;
+            own.set_item("type_name", info.type_name)?;
+            own.set_item("words", info.words)?;
+            own.set_item("good_for", info.good_for)?;
+            own.set_item("is_signed", info.is_signed)?;
+            own.set_item("has_first_value", info.has_first_value)?;
+            let parameters = info.parameters.iter().map(|own| parameter(py, own));
+            own.set_item("parameters", parameters.collect::<PyResult<Vec<_>>>()?)?;
+            all.append(own)?;
+        }
+        Ok(all)
+    }
+
+    fn parameter<'py>(py: Python<'py>, own: &Parameter) -> PyResult<Bound<'py, PyDict>> {
+        let told = PyDict::new(py);
+        told.set_item("name", own.name)?;
+        let (kind, words): (_, &[&str]) = match own.kind {
+            Kind::Number => ("number", &[]),
+            Kind::Count => ("count", &[]),
+            Kind::Choice(words) => ("choice", words),
+            Kind::Flag => ("flag", &[]),
+            Kind::Text => ("text", &[]),
+            Kind::Filter => ("filter", &[]),
+        };
+        told.set_item("kind", kind)?;
+        told.set_item("words", words.to_vec())?;
+        let unit = match own.unit {
+            Unit::None => "",
+            Unit::Signal => "the signal's unit",
+            Unit::Samples => "samples",
+        };
+        told.set_item("unit", unit)?;
+        told.set_item("help", own.help)?;
+        told.set_item("default", own.default)?;
+        let found = own.found.map(|found| match found {
+            Found::First => "the first sample",
+            Found::Min => "the signal's minimum",
+            Found::Max => "the signal's maximum",
+        });
+        told.set_item("found", found)?;
+        told.set_item("example", own.example)?;
+        Ok(told)
+    }
+}

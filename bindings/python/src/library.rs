@@ -1,0 +1,401 @@
+//! What the laptop program does, on arrays.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use anyhow::{Context, Result, anyhow, bail};
+use lab::advise::AdviseRequest;
+use lab::coding::Coding;
+use lab::emit::Codec;
+use lab::input::{ChannelOptions, InputOptions};
+use lab::look::known_unit;
+use lab::plot::Picture;
+use lab::scheme::Scheme;
+use lab::score::Figures;
+use lab::trial::{Recording, Trial};
+use lab::tune::report::Row;
+use lab::tune::{Goal, Limits, TuneRequest};
+use lab::watch::{Progress, Watch};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use spikewire::{Event, Polarity, Tick};
+
+use crate::coder::Coder;
+use crate::error::value;
+use crate::values::{self, Given, keywords};
+use crate::work;
+
+/// A tuned scheme: its name, its keywords, its figures as JSON, and what a file says of it.
+type Told = (&'static str, Vec<(&'static str, Given)>, String, Vec<String>);
+
+/// Long work tells this many parts.
+const PARTS: usize = 1_000_000;
+
+fn told(scheme: Scheme, row: &Row, channel: &str) -> Result<Told> {
+    let given = keywords(&row.settings.to_asked(scheme.info()));
+    Ok((scheme.name(), given, serde_json::to_string(row)?, row.comments(channel)))
+}
+
+/// A signal as the library has recordings.
+fn recording(name: &str, values: &PyReadonlyArray1<f64>, rate: Option<f64>) -> PyResult<Recording> {
+    let values = values.as_array().to_vec();
+    let refused = |text: String| Err(PyValueError::new_err(text));
+    if values.is_empty() {
+        return refused(format!("{name}: there is no sample"));
+    }
+    if let Some(place) = values.iter().position(|value| !value.is_finite()) {
+        return refused(format!("{name}, sample {place}: {} is not finite", values[place]));
+    }
+    if let Some(rate) = rate.filter(|rate| !(rate.is_finite() && *rate > 0.0)) {
+        return refused(format!("rate {rate} must be above 0 and finite"));
+    }
+    Ok(Recording::of(name.to_owned(), values, rate))
+}
+
+impl Coder {
+    fn coding(&self) -> Coding {
+        Coding { scheme: self.scheme.into(), sample: self.sample, asked: self.asked.clone() }
+    }
+
+    fn trial(&self, recording: &Recording) -> Result<Trial> {
+        Trial::new(self.scheme.into(), &self.asked, self.sample, recording)
+    }
+}
+
+/// Long work that can be watched and stopped.
+fn watched<T: Send>(
+    py: Python,
+    progress: Option<Py<PyAny>>,
+    job: impl FnOnce(&Watch) -> Result<T> + Send,
+) -> PyResult<T> {
+    let done = work::run(py, true, PARTS, progress.as_ref(), |meter| {
+        let tell = |now: &Progress| meter.set(now.done * PARTS / now.total.max(1));
+        let done = job(&Watch { is_stopped: &|| meter.is_stopped(), tell: &tell });
+        if meter.is_stopped() { Err(anyhow!("stopped")) } else { done }
+    })?;
+    done.map_err(|error| value(&error))
+}
+
+/// The figures of a scheme on a signal, as JSON.
+#[pyfunction]
+pub(crate) fn score(
+    py: Python,
+    coder: &Coder,
+    values: PyReadonlyArray1<f64>,
+    rate: Option<f64>,
+) -> PyResult<String> {
+    let recording = recording("x", &values, rate)?;
+    let scored = || Ok(serde_json::to_string(&Figures::of(&recording, &coder.trial(&recording)?))?);
+    work::detached(py, true, scored)?.map_err(|error| value(&error))
+}
+
+/// A picture of a signal through schemes, as the bytes of a file.
+#[pyfunction]
+#[pyo3(signature = (coders, values, rate, name, unit, range, ending))]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn plot<'py>(
+    py: Python<'py>,
+    coders: Vec<Coder>,
+    values: PyReadonlyArray1<f64>,
+    rate: Option<f64>,
+    name: String,
+    unit: Option<String>,
+    range: Option<(usize, usize)>,
+    ending: &str,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let recording = recording(&name, &values, rate)?;
+    let samples = recording.values.len();
+    let shown = range.map_or(0..samples, |(start, end)| start..end);
+    if shown.start + 1 >= shown.end || shown.end > samples {
+        let Range { start, end } = shown;
+        let text = format!("samples {start}..{end}: two samples at least, within 0..{samples}");
+        return Err(PyValueError::new_err(text));
+    }
+    let drawn = || {
+        let trials = coders.iter().map(|coder| coder.trial(&recording));
+        let trials = trials.collect::<Result<Vec<_>>>()?;
+        let unit = unit.as_deref().or_else(|| known_unit(&recording.name));
+        let picture = Picture { recording: &recording, trials: &trials, unit, shown };
+        lab::plot::bytes(ending, &picture)
+    };
+    let bytes = work::detached(py, true, drawn)?;
+    Ok(PyBytes::new(py, &bytes.map_err(|error| value(&error))?))
+}
+
+/// Keywords of `tune`; what is `None` is as the library has it.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Tune {
+    scheme: String,
+    sample: String,
+    min_efficiency: Option<f64>,
+    max_rmse: Option<f64>,
+    max_ram: Option<f64>,
+    max_instructions: Option<f64>,
+    max_latency: Option<f64>,
+    max_rate: Option<f64>,
+    core: Option<String>,
+    hold_out: Option<f64>,
+    blocks: Option<usize>,
+    seconds: Option<f64>,
+    evaluations: Option<usize>,
+    seed: Option<u64>,
+    anyway: bool,
+    below: Option<f64>,
+    kept: BTreeMap<String, Given>,
+}
+
+impl Tune {
+    fn request(self, recordings: Vec<Recording>) -> Result<TuneRequest> {
+        let schemes = match self.scheme.as_str() {
+            "all" => Scheme::all().collect(),
+            name => {
+                vec![Scheme::named(name).with_context(|| format!("there is no scheme `{name}`"))?]
+            }
+        };
+        let logs = recordings.into_iter().map(|recording| vec![recording]).collect();
+        let mut request = TuneRequest::new(logs, schemes);
+        let mut kept = self.kept;
+        if matches!(kept.get("filter"), Some(Given::Word(word)) if word == "free") {
+            request.free_taps = true;
+            kept.remove("filter");
+        }
+        match request.schemes[..] {
+            [scheme] => {
+                request.fixed = values::asked(scheme.info(), kept.into_iter().collect(), false)?;
+            }
+            _ if !kept.is_empty() => bail!("all schemes are searched with all their parameters"),
+            _ => {}
+        }
+        request.goal = match (self.min_efficiency, self.max_rmse) {
+            (Some(_), Some(_)) => bail!("`min_efficiency` and `max_rmse`: one of them is the goal"),
+            (Some(efficiency), None) => Some(Goal::LeastError(efficiency)),
+            (None, rmse) => rmse.map(Goal::MostEfficient),
+        };
+        request.sample = self.sample.parse()?;
+        request.limits = Limits {
+            ram: self.max_ram,
+            instructions: self.max_instructions,
+            latency: self.max_latency,
+            rate: self.max_rate,
+        };
+        (request.seconds, request.below, request.anyway) = (self.seconds, self.below, self.anyway);
+        request.core = self.core.unwrap_or(request.core);
+        request.hold_out.part = self.hold_out.unwrap_or(request.hold_out.part);
+        request.hold_out.blocks = self.blocks.unwrap_or(request.hold_out.blocks);
+        request.evaluations = self.evaluations.unwrap_or(request.evaluations);
+        request.seed = self.seed.unwrap_or(request.seed);
+        Ok(request)
+    }
+}
+
+/// The settings found for signals of one channel, the best first, and what reached no goal.
+#[pyfunction]
+pub(crate) fn tune(
+    py: Python,
+    signals: Vec<PyReadonlyArray1<f64>>,
+    rate: Option<f64>,
+    name: &str,
+    keywords: Tune,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(Vec<Told>, Vec<String>)> {
+    let recordings = signals.iter().map(|values| recording(name, values, rate));
+    let recordings = recordings.collect::<PyResult<Vec<_>>>()?;
+    watched(py, progress, |watch| {
+        let all = lab::tune::tune(&keywords.request(recordings)?, watch)?;
+        let Some(tuned) = all.first() else { bail!("there is no signal") };
+        if tuned.rows.is_empty() {
+            bail!("{name}: no settings keep to all limits: {}", tuned.missed.join("; "));
+        }
+        let rows = tuned.rows.iter().map(|(scheme, row)| told(*scheme, row, name));
+        Ok((rows.collect::<Result<_>>()?, tuned.missed.clone()))
+    })
+}
+
+/// Keywords of `advise`; what is `None` is as the library has it.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Advise {
+    sample: String,
+    max_rmse: Option<f64>,
+    max_latency: Option<f64>,
+    loop_bandwidth: Option<f64>,
+    core: Option<String>,
+    seconds: Option<f64>,
+    evaluations: Option<usize>,
+    seed: Option<u64>,
+}
+
+impl Advise {
+    fn request(self, recordings: Vec<Recording>) -> Result<AdviseRequest> {
+        let request = AdviseRequest::new(recordings);
+        Ok(AdviseRequest {
+            sample: self.sample.parse()?,
+            max_rmse: self.max_rmse,
+            max_latency: self.max_latency,
+            loop_bandwidth: self.loop_bandwidth,
+            core: self.core.unwrap_or(request.core),
+            seconds: self.seconds,
+            evaluations: self.evaluations.unwrap_or(request.evaluations),
+            seed: self.seed.unwrap_or(request.seed),
+            recordings: request.recordings,
+        })
+    }
+}
+
+/// What is said of each signal: a page, figures as JSON, and the scheme advised.
+#[pyfunction]
+pub(crate) fn advise(
+    py: Python,
+    signals: Vec<(String, PyReadonlyArray1<f64>)>,
+    rate: Option<f64>,
+    keywords: Advise,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Vec<(String, String, Option<Told>)>> {
+    let recordings = signals.iter().map(|(name, values)| recording(name, values, rate));
+    let recordings = recordings.collect::<PyResult<Vec<_>>>()?;
+    let names: Vec<&str> = signals.iter().map(|(name, _)| name.as_str()).collect();
+    watched(py, progress, |watch| {
+        let all = lab::advise::advise(&keywords.request(recordings)?, watch)?;
+        let said = all.iter().zip(&names).map(|(own, name)| {
+            let best = own.best().map(|(scheme, row)| told(scheme, row, name));
+            Ok((own.page(), serde_json::to_string(own)?, best.transpose()?))
+        });
+        said.collect()
+    })
+}
+
+/// A scheme as a constant in Rust.
+#[pyfunction]
+pub(crate) fn to_rust(coder: &Coder, name: &str, comments: Vec<String>) -> PyResult<String> {
+    lab::emit::rust(&coder.coding(), name, &comments).map_err(|error| value(&error))
+}
+
+/// A crate that makes the library for C of a scheme, in a new directory.
+#[pyfunction]
+pub(crate) fn to_c(
+    coder: &Coder,
+    name: &str,
+    directory: PathBuf,
+    spikewire: Option<PathBuf>,
+) -> PyResult<()> {
+    let named = Codec { name: name.to_owned(), coding: coder.coding() };
+    lab::emit::c_crate(&[named], &directory, spikewire.as_deref()).map_err(|error| value(&error))
+}
+
+/// A scheme as a file of parameters.
+#[pyfunction]
+pub(crate) fn to_toml(coder: &Coder, comments: Vec<String>) -> PyResult<String> {
+    lab::emit::toml(&coder.coding(), &comments).map_err(|error| value(&error))
+}
+
+/// Channels of a file: names, samples, times in µs, notes.
+type Read<'py> =
+    (Vec<String>, Vec<Bound<'py, PyArray1<f64>>>, Bound<'py, PyArray1<i64>>, Vec<String>);
+
+/// Keywords of `read`; what is `None` is as the library has it.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Input {
+    columns: Vec<String>,
+    time: Option<String>,
+    time_unit: Option<String>,
+    delimiter: Option<String>,
+    topic: Option<String>,
+    fields: Vec<String>,
+    rate: Option<f64>,
+    gap: Option<f64>,
+    skip_non_finite: bool,
+    accept_cut: bool,
+}
+
+impl Input {
+    fn options(self, path: &str) -> Result<InputOptions> {
+        for (name, value) in [("rate", self.rate), ("gap", self.gap)] {
+            if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
+                bail!("{name} {value} must be above 0 and finite");
+            }
+        }
+        let usual = ChannelOptions::default();
+        let channel = ChannelOptions {
+            columns: self.columns,
+            time: self.time,
+            time_unit: parsed("time_unit", self.time_unit)?,
+            delimiter: parsed("delimiter", self.delimiter)?,
+            topic: self.topic,
+            fields: self.fields,
+            rate: self.rate,
+            gap: self.gap.unwrap_or(usual.gap),
+            skip_non_finite: self.skip_non_finite,
+            accept_cut: self.accept_cut,
+            ..usual
+        };
+        InputOptions { input: path.into(), channel }.or_all()
+    }
+}
+
+/// Reads the text of a keyword.
+fn parsed<T: FromStr<Err = String>>(name: &str, text: Option<String>) -> Result<Option<T>> {
+    text.map(|text| text.parse().map_err(|error| anyhow!("{name}={text}: {error}"))).transpose()
+}
+
+/// Reads channels of a flight log or a table.
+#[pyfunction]
+pub(crate) fn read<'py>(py: Python<'py>, path: &str, keywords: Input) -> PyResult<Read<'py>> {
+    let done = work::detached(py, true, || {
+        let mut source = keywords.options(path)?.open()?;
+        let all = source.rest()?;
+        let names = source.names().into_iter().map(str::to_owned).collect();
+        anyhow::Ok((names, all, source.notes().to_vec()))
+    })?;
+    let (names, all, notes) = done.map_err(|error| value(&error))?;
+    let columns = all.columns.into_iter().map(|column| column.into_pyarray(py)).collect();
+    Ok((names, columns, all.times.into_pyarray(py), notes))
+}
+
+/// Times in µs, addresses, polarities, notes.
+type Events<'py> =
+    (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u16>>, Bound<'py, PyArray1<bool>>, Vec<String>);
+
+/// The events in bytes of a format.
+#[pyfunction]
+pub(crate) fn read_events<'py>(
+    py: Python<'py>,
+    bytes: &[u8],
+    format: &str,
+) -> PyResult<Events<'py>> {
+    let read =
+        py.detach(|| lab::events::read_events(bytes, format)).map_err(|error| value(&error))?;
+    let ticks: Vec<u32> = read.events.iter().map(|event| event.tick.micros()).collect();
+    let addresses: Vec<u16> = read.events.iter().map(|event| event.address).collect();
+    let are_up: Vec<bool> =
+        read.events.iter().map(|event| event.polarity == Polarity::Up).collect();
+    Ok((ticks.into_pyarray(py), addresses.into_pyarray(py), are_up.into_pyarray(py), read.notes))
+}
+
+/// Events as bytes of a format, and what it could not hold.
+#[pyfunction]
+pub(crate) fn write_events<'py>(
+    py: Python<'py>,
+    ticks: PyReadonlyArray1<u32>,
+    addresses: PyReadonlyArray1<u16>,
+    are_up: PyReadonlyArray1<bool>,
+    format: &str,
+) -> PyResult<(Bound<'py, PyBytes>, Vec<String>)> {
+    let (ticks, addresses) = (ticks.as_array(), addresses.as_array());
+    let fields = ticks.iter().zip(addresses).zip(are_up.as_array());
+    let events: Vec<Event> = fields
+        .map(|((tick, address), is_up)| Event {
+            tick: Tick::from(*tick),
+            address: *address,
+            polarity: if *is_up { Polarity::Up } else { Polarity::Down },
+        })
+        .collect();
+    let written = py.detach(|| lab::events::write_events(&events, format));
+    let (bytes, notes) = written.map_err(|error| value(&error))?;
+    Ok((PyBytes::new(py, &bytes), notes))
+}

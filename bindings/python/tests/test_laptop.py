@@ -1,0 +1,136 @@
+"""What the laptop program does, in Python: of the same code, so it is the arrays that are tested here."""
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import spikewire as sw
+
+FLIGHT = Path(__file__).parents[3] / "data" / "hexarotor.csv"
+
+
+@pytest.fixture(scope="module")
+def log():
+    return sw.read(FLIGHT, "gyro_x", "gyro_y")
+
+
+def test_a_recording_is_read_by_name(log):
+    assert log.names == ["gyro_x", "gyro_y"] and log.x.shape == (2, 3627)
+    assert log["gyro_y"][1] == 0.0034330138 and log.t[1] - log.t[0] == 5036
+    assert 190 < log.rate < 200
+    assert sw.read(FLIGHT).x.shape == (6, 3627)
+    with pytest.raises(ValueError, match="gyro_q"):
+        sw.read(FLIGHT, "gyro_q")
+    with pytest.raises(ValueError, match="cannot be opened"):
+        sw.read("nowhere.csv")
+    with pytest.raises(TypeError, match="colour"):
+        sw.read(FLIGHT, colour="red")
+    for bad, words in [
+        ({"topic": "imu"}, "a CSV table takes no `topic`"),
+        ({"time_unit": "hours"}, "time_unit=hours: must be `s`, `ms`, `us` or `ns`"),
+        ({"rate": 0}, "rate 0 must be above 0 and finite"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            sw.read(FLIGHT, **bad)
+
+
+def test_a_name_with_a_comma_is_one_name(tmp_path):
+    path = tmp_path / "quoted.csv"
+    path.write_text('"rate, raw",temperature\n0,20\n1,21\n')
+    log = sw.read(path)
+    assert log.names == ["rate, raw", "temperature"] and log["temperature"].tolist() == [20, 21]
+
+
+def test_score_is_what_spikes_decode_to(log):
+    scheme = sw.StepForward(threshold=0.1)
+    figures = sw.score(log.x[0], scheme, rate=log.rate)
+    spikes = scheme.encode(log.x[0])
+    off = spikes.decode() - log.x[0]
+    assert figures["spikes"] == spikes.count
+    assert figures["rmse"] == pytest.approx(np.sqrt(np.mean(off**2)), rel=1e-6)
+
+
+def test_what_is_tuned_keeps_to_its_goal(log):
+    tuned = sw.tune(log.x[0], "sf", max_rmse=0.3, hold_out=0, rate=log.rate, evaluations=60, name="gyro_x")
+    assert sw.score(log.x[0], tuned.scheme)["rmse"] <= 0.3
+    assert tuned.to_rust("ROLL").splitlines()[-1].startswith("pub static ROLL: spikewire::temporal::StepForward<f32>")
+    assert 'scheme = "sf"' in tuned.to_toml()
+    kept = sw.tune(log.x[0], sw.SendOnDelta, spikes=3, min_efficiency=50, evaluations=40)
+    assert kept.scheme.parameters["spikes"] == 3
+    for keywords, words in [
+        ({"hold_out": 2}, "`hold_out` 2 must be 0 or more and below 1"),
+        ({"max_rmse": 0}, "`max_rmse` 0 must be above 0 and finite"),
+        ({"window": 5}, "sf takes no `window`"),
+        ({"max_ram": 1}, "no settings keep to all limits"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            sw.tune(log.x[0], "sf", **{"evaluations": 20, **keywords})
+
+
+def test_advice_names_a_scheme(log):
+    advice = sw.advise(log.x[0][2000:2600], rate=log.rate, evaluations=12, name="gyro_x")
+    assert "take " in advice.page and advice.best.scheme.name in advice.page
+    assert json.dumps(advice.figures)
+
+
+def test_pictures(log, tmp_path):
+    picture = sw.plot(log.x[0], sw.StepForward(threshold=0.1), rate=log.rate, samples=(2000, 2400))
+    picture.save(tmp_path / "flight.png")
+    assert (tmp_path / "flight.png").read_bytes().startswith(b"\x89PNG")
+    assert picture._repr_svg_().startswith("<svg")
+    with pytest.raises(ValueError, match="a picture ends in .svg or .png"):
+        picture.save(tmp_path / "flight.gif")
+    with pytest.raises(ValueError, match=r"within 0\.\.3627"):
+        sw.plot(log.x[0], sw.StepForward(threshold=0.1), samples=(0, 4000))
+
+
+@pytest.mark.parametrize("scheme", sw.schemes.values())
+def test_every_scheme_has_a_constant_and_a_file(scheme, log):
+    own = scheme(paper=True).fit(log.x[0])
+    if any(known["name"] == "seed" for known in own._info["parameters"]):
+        with pytest.raises(ValueError, match="has no constant"):
+            own.to_rust("ROLL")
+    else:
+        assert own.to_rust("ROLL").startswith("pub static ROLL: spikewire::")
+    assert f'scheme = "{own.name}"' in own.to_toml()
+
+
+@pytest.mark.parametrize("name", ["es", "evt2", "link,period=1000,channels=4", "eieio,signed=1", "csv"])
+def test_events_there_and_back(name, tmp_path):
+    x = np.sin(np.linspace(0, 40, 4000)).reshape(4, 1000)
+    events = sw.Bank(sw.StepForward(threshold=0.1), channels=4).encode(x, period=1000)
+    data = sw.write_events(events, name, tmp_path / "events")
+    assert data == (tmp_path / "events").read_bytes()
+    again = sw.read_events(tmp_path / "events", name)
+    assert np.array_equal(again, events), name
+    with pytest.raises(ValueError, match="addresses must be 0 to 65535"):
+        sw.write_events(np.array([(0, 1 << 16, 1)], dtype=sw.EVENTS), name)
+
+
+def test_times_go_on_where_they_wrap():
+    events = np.array([(2**32 - 1000, 1, 1), (2**32 + 1000, 1, 0)], dtype=sw.EVENTS)
+    assert np.array_equal(sw.read_events(sw.write_events(events, "csv"), "csv"), events)
+    with pytest.raises(ValueError, match="no format `aedat`"):
+        sw.read_events(b"", "aedat")
+
+
+def test_a_flight_log_of_px4(tmp_path):
+    logs = list(Path.home().glob(".cargo/registry/src/*/ulog-rs-0.0.4/test_data/sample-small.ulg"))
+    if not logs:
+        pytest.skip("no flight log here; the laptop program's tests bring one")
+    path = shutil.copy(logs[0], tmp_path)
+    flight = sw.read_ulog(path, "sensor_combined", "gyro_rad[0]", "gyro_rad[1]")
+    table = sw.read(FLIGHT, "gyro_x", "gyro_y")
+    assert np.array_equal(flight.x.astype(np.float32), table.x.astype(np.float32))
+
+
+def test_a_library_for_c(tmp_path):
+    sw.StepForward(threshold=0.35).to_c(tmp_path / "roll", name="roll")
+    assert "roll: spikewire::temporal::StepForward<f32>" in (tmp_path / "roll/src/codecs.rs").read_text()
+    with pytest.raises(ValueError, match="roll: cannot be written"):
+        sw.StepForward(threshold=0.35).to_c(tmp_path / "roll", name="roll")
+    with pytest.raises(ValueError, match="draws from a generator"):
+        sw.Bernoulli(min=0, max=1).to_c(tmp_path / "chance")

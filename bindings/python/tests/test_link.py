@@ -1,0 +1,96 @@
+"""The link's two ends: the bits are those of the stream's encoder and decoder, and a loss is known."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import spikewire as sw
+
+PERIOD = 2000
+TOP = Path(__file__).parents[3]
+
+
+def signal(samples=400):
+    time = np.arange(samples)[:, None] * 0.02
+    return np.sin(time * np.arange(1, 7)) + np.arange(6) * 0.01
+
+
+def flown(schemes, x, lost=()):
+    """Values and exactness after each sample, with the frames of some samples lost."""
+    sender, receiver = sw.Sender(schemes, PERIOD, keyframe_every=10), sw.Receiver(schemes, PERIOD)
+    values, exact = [], []
+    for number, sample in enumerate(x):
+        for frame in sender.encode(sample):
+            if number not in lost:
+                receiver.hear(frame)
+        receiver.advance((number + 1) * PERIOD)
+        values.append(receiver.values)
+        exact.append(receiver.exact)
+    return np.array(values), np.array(exact), receiver
+
+
+@pytest.mark.parametrize(
+    "scheme",
+    [
+        sw.StepForward(threshold=0.1),
+        sw.SendOnDelta(threshold=0.05, spikes=5),
+        sw.AdaptiveStepForward(threshold=0.05, doublings=3),
+        sw.Position(min=-1.2, max=1.2, neurons=25),
+        sw.WeightedPhase(min=-1.2, max=1.2, slots=8),
+        sw.Slots(min=-1.2, max=1.2, neurons=10, slots=8),
+        sw.SigmaDelta(min=-1.2, max=1.2),
+        sw.SendOnDelta(threshold=50, spikes=5, sample="i16"),
+    ],
+    ids=lambda scheme: f"{scheme.name}-{scheme.sample}",
+)
+def test_without_losses_values_are_the_streams(scheme):
+    x = signal()
+    x = np.round(x * 1000) if scheme.sample == "i16" else x.astype(np.float32)
+    values, exact, receiver = flown(scheme, x)
+    encoder = scheme.encoder(6)
+    decoder = scheme.decoder(x[0] if scheme._info["has_first_value"] else None, channels=6)
+    expected = decoder.decode(encoder.encode(x.T.astype(np.int16) if scheme.sample == "i16" else x.T))
+    if scheme.name == "sigma-delta":  # a mean forgets how it began, and is never exact
+        assert np.allclose(values[300:], expected.T[300:], atol=1e-4)
+    else:
+        assert np.array_equal(values[50:], expected.T[50:].astype(float))
+    assert exact[50:].all() == (scheme.name != "sigma-delta")
+    assert receiver.lost == 0
+
+
+def test_a_loss_is_known_until_the_next_keyframe():
+    x = signal()
+    scheme = sw.StepForward(threshold=0.02)
+    whole, _, _ = flown(scheme, x)
+    values, exact, receiver = flown(scheme, x, lost={105})
+    assert receiver.lost == 1
+    assert exact[:105].all() and not exact[107].all() and exact[111:].all()
+    assert np.array_equal(values[111:], whole[111:]) and not np.array_equal(values[107], whole[107])
+
+
+def test_what_makes_no_bank_is_refused():
+    sf, sod = sw.StepForward(threshold=0.1), sw.SendOnDelta(threshold=0.1, spikes=4)
+    for schemes, words in [
+        ([sf] * 5, "6 channels, not 5"),
+        ([sf] * 3 + [sod] * 3, "one kind of scheme"),
+        (sw.Position(min=0, max=1, neurons=5, sample="f32"), None),
+        ([sw.Position(min=0, max=1, neurons=n) for n in (5, 5, 5, 6, 6, 6)], "same number of neurons"),
+        (sw.StepForward(threshold=0.1, start=0), "start="),
+        (sw.Gaussian(neurons=10), "needs"),
+    ]:
+        if words is None:
+            sw.Sender(schemes, PERIOD)
+        else:
+            with pytest.raises(ValueError, match=words):
+                sw.Sender(schemes, PERIOD)
+
+
+def test_usage_has_the_table_of_keyframes():
+    spec = importlib.util.spec_from_file_location("keyframes", TOP / "bindings" / "python" / "examples" / "keyframes.py")
+    example = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(example)
+    usage = (TOP / "docs" / "usage.md").read_text(encoding="utf-8")
+    for row in example.table():
+        assert row in usage

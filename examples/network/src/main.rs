@@ -1,0 +1,30 @@
+//! Counts the instructions of a step of two networks: A, 12 inputs, 100 LIF and 4 LI; D, 16 inputs, 256 recurrent
+//! `CubaLIF` and 4 LI. In every step another share of the inputs and neurons fires, chosen at random.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+mod sizes;
+mod weights;
+
+use core::fmt;
+
+fn run(out: &mut impl fmt::Write) -> fmt::Result {
+    writeln!(
+        out,
+        "network,numbers,percent firing,instructions mean,instructions most,bytes of state"
+    )?;
+    sizes::integer::a(out)?;
+    sizes::integer::d(out)?;
+    // A core without FPU has no use for these, and the weights of D leave no room in 256 KiB.
+    if cfg!(any(not(target_os = "none"), target_abi = "eabihf")) {
+        sizes::float::a(out)?;
+        sizes::float::d(out)?;
+    }
+    Ok(())
+}
+
+#[cfg_attr(target_os = "none", board::entry)]
+fn main() -> ! {
+    let result = run(&mut board::console());
+    board::finish(result)
+}

@@ -1,0 +1,180 @@
+//! The head of a log: `H name:value` lines, with the fields of each kind of frame.
+
+use super::encoding::Encoding;
+
+/// The part of the header that is needed to read frames.
+#[derive(Clone, Debug)]
+pub(crate) struct Header {
+    pub version: i64,
+    /// A frame of all numbers comes every so many iterations.
+    pub full_every: i64,
+    /// Numerator and denominator: so many of so many loop iterations are logged.
+    pub logged: (i64, i64),
+    pub min_throttle: i32,
+    pub min_motor: i32,
+    pub battery: i32,
+    /// Frames of all numbers, and those of what changed.
+    pub full: Fields,
+    pub changes: Fields,
+    pub slow: Fields,
+    pub gps: Fields,
+    pub home: Fields,
+}
+
+/// The fields of a kind of frame.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Fields {
+    pub names: Vec<String>,
+    pub signed: Vec<bool>,
+    pub predictors: Vec<i64>,
+    pub encodings: Vec<Encoding>,
+}
+
+/// The most iterations that a log leaves out.
+const MOST: i64 = 1 << 12;
+
+impl Header {
+    /// Reads the header from the lines of a log.
+    ///
+    /// # Errors
+    /// Returns an error that names what is missing or unknown.
+    pub(crate) fn parse(lines: &[(String, String)]) -> Result<Self, String> {
+        let get = |key: &str| {
+            lines.iter().rev().find(|(own, _)| own == key).map(|(_, value)| value.as_str())
+        };
+        let number = |key: &str| {
+            let first = get(key)?.split(',').next()?;
+            first.trim().parse::<i64>().ok()
+        };
+        let fields = |kind: &str| Fields::parse(kind, &get);
+        let full = fields("I")?;
+        if full.names.is_empty() {
+            return Err("no fields are defined".to_owned());
+        }
+        let mut changes = fields("P")?;
+        changes.names.clone_from(&full.names);
+        changes.signed.clone_from(&full.signed);
+        if changes.encodings.len() != full.names.len() {
+            return Err("frames of changes have other fields than those of all".to_owned());
+        }
+        let logged = match get("P interval").map(|own| own.split_once('/').unwrap_or(("1", own))) {
+            Some((some, of)) => (some.trim().parse().unwrap_or(1), of.trim().parse().unwrap_or(1)),
+            None => (1, 1),
+        };
+        Ok(Self {
+            version: number("Data version").unwrap_or(1),
+            full_every: number("I interval").unwrap_or(1).clamp(1, MOST),
+            logged: (i64::clamp(logged.0, 1, MOST), i64::clamp(logged.1, 1, MOST)),
+            min_throttle: number("minthrottle").unwrap_or(1150) as i32,
+            min_motor: number("motorOutput").unwrap_or(0) as i32,
+            battery: number("vbatref").unwrap_or(4095) as i32,
+            full,
+            changes,
+            slow: fields("S")?,
+            gps: fields("G")?,
+            home: fields("H")?,
+        })
+    }
+
+    /// How many iterations behind this one are not logged on purpose.
+    pub(crate) fn skipped(&self, after: i64) -> i64 {
+        let (some, of) = self.logged;
+        let is_logged =
+            |iteration: i64| (iteration.rem_euclid(self.full_every) + some - 1) % of < some;
+        let next = (1..=self.full_every.min(of)).find(|step| is_logged(after.wrapping_add(*step)));
+        next.map_or(0, |step| step - 1)
+    }
+}
+
+impl Fields {
+    fn parse<'a>(kind: &str, get: &impl Fn(&str) -> Option<&'a str>) -> Result<Self, String> {
+        const MOST: usize = 256;
+        let list = |what: &str| {
+            let text = get(&format!("Field {kind} {what}")).unwrap_or_default();
+            text.split(',').map(str::trim).filter(|part| !part.is_empty())
+        };
+        let number = |text: &str| {
+            text.parse::<i64>().map_err(|_| format!("`{text}` of a field is no number"))
+        };
+        let names: Vec<String> = list("name").map(str::to_owned).collect();
+        let predictors: Vec<i64> = list("predictor").map(number).collect::<Result<_, _>>()?;
+        let encodings = list("encoding").map(|text| {
+            Encoding::of(number(text)?).ok_or_else(|| format!("encoding {text} is not known"))
+        });
+        let encodings: Vec<Encoding> = encodings.collect::<Result<_, _>>()?;
+        let signed: Vec<bool> = list("signed").map(|text| text == "1").collect();
+        let count = encodings.len();
+        let is_same = |other: usize| other == count || (kind == "P" && other == 0);
+        if predictors.len() != count
+            || !is_same(names.len())
+            || !is_same(signed.len())
+            || count > MOST
+        {
+            return Err(format!("fields {kind} differ in number from line to line"));
+        }
+        Ok(Self { names, signed, predictors, encodings })
+    }
+
+    /// The index of a field.
+    pub(crate) fn place(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|own| own == name)
+    }
+
+    /// A definition of these fields as a message of numbers of eight bytes, arrays where names count from 0 on.
+    pub(crate) fn definition(&self) -> String {
+        let mut text = String::new();
+        let mut names = self.names.as_slice();
+        while let Some(first) = names.first() {
+            let (base, count) = match first.strip_suffix("[0]") {
+                Some(base) => {
+                    let own = (0..).zip(names);
+                    let count =
+                        own.take_while(|(n, name): &(usize, _)| **name == format!("{base}[{n}]"));
+                    (base.to_owned(), count.count())
+                }
+                None => (first.replace(['[', ']'], "_"), 1),
+            };
+            let kind =
+                if first.ends_with("[0]") { format!("int64[{count}]") } else { "int64".to_owned() };
+            text.extend([&kind, " ", &base, "\n"]);
+            names = &names[count..];
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Fields, Header};
+
+    #[test]
+    fn arrays_are_joined() {
+        let names = ["time", "gyroADC[0]", "gyroADC[1]", "vbat", "debug[2]"];
+        let fields = Fields { names: names.map(str::to_owned).to_vec(), ..Fields::default() };
+        assert_eq!(
+            fields.definition(),
+            "int64 time\nint64[2] gyroADC\nint64 vbat\nint64 debug_2_\n"
+        );
+    }
+
+    #[test]
+    fn iterations_that_are_not_logged_are_known() {
+        let line = |key: &str, value: &str| (key.to_owned(), value.to_owned());
+        let mut lines = vec![
+            line("Field I name", "loopIteration"),
+            line("Field I signed", "0"),
+            line("Field I predictor", "0"),
+            line("Field I encoding", "1"),
+            line("Field P predictor", "6"),
+            line("Field P encoding", "9"),
+            line("I interval", "32"),
+            line("P interval", "1/2"),
+        ];
+        let header = Header::parse(&lines).unwrap();
+        assert_eq!((header.skipped(0), header.skipped(30)), (1, 1));
+        lines.push(line("P interval", "1"));
+        assert_eq!(Header::parse(&lines).unwrap().skipped(0), 0);
+        lines.push(line("Field I encoding", "5"));
+        assert_eq!(Header::parse(&lines).unwrap_err(), "encoding 5 is not known");
+    }
+}

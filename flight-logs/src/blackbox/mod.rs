@@ -1,0 +1,435 @@
+//! Blackbox logs of Betaflight and its kin: frames of all numbers, and of what changed since.
+//!
+//! A topic each for the frames of the main loop (`main`), for what changes seldom (`slow`) and for `gps`; those of a
+//! second log in the file are `main:1`. Numbers are as logged, in the flight controller's units.
+
+mod encoding;
+mod header;
+
+use super::bytes::Bytes;
+use super::definition::Dialect;
+use super::faults::Faults;
+use super::topic::Topic;
+use super::{Entry, Log};
+use crate::{Error, Result};
+use encoding::{Fault, Input};
+use header::{Fields, Header};
+use std::path::Path;
+
+/// The first bytes of a log.
+pub(crate) const START: &[u8] = b"H Product:Blackbox";
+
+/// The topic of the frames of the main loop.
+pub(crate) const MAIN: &str = "main";
+
+/// The longest frame, and the longest line of the header.
+const LONGEST: usize = 4096;
+/// A frame is not later than so by the log's counts, unless those after it agree: in µs and in iterations.
+const LONGEST_JUMP: (i64, i64) = (10_000_000, 5000);
+
+/// A log that is read from its start to its end.
+pub(crate) struct Blackbox {
+    bytes: Bytes,
+    faults: Faults,
+    /// Bytes read from the file and not yet taken, from `at` on, and the place of the first in the file.
+    window: Vec<u8>,
+    at: usize,
+    start: u64,
+    is_read: bool,
+    /// How many logs of the file began.
+    logs: usize,
+    session: Option<Session>,
+    topics: Vec<Topic>,
+    message: Vec<u8>,
+    /// The place at which the present damage began.
+    damaged: Option<u64>,
+}
+
+/// A log of the file.
+struct Session {
+    header: Header,
+    /// The places of its topics.
+    main: usize,
+    slow: Option<usize>,
+    gps: Option<usize>,
+    /// The frame before, and the one before that.
+    previous: Option<[Vec<i32>; 2]>,
+    home: Vec<i32>,
+    /// The iteration and the time of the last good frame.
+    last: Option<(i64, i64)>,
+    /// The iteration and time of a frame that is far from it, until another confirms them.
+    doubted: Option<(i64, i64)>,
+    /// The place of `loopIteration` and `time`.
+    iteration: Option<usize>,
+    time: usize,
+}
+
+/// The result of reading a frame.
+enum Frame {
+    Message { topic: usize, time: i64, numbers: Vec<i64> },
+    Other,
+    End,
+}
+
+impl Blackbox {
+    pub(crate) fn open(path: &Path, faults: Faults) -> Result<Self> {
+        Ok(Self {
+            bytes: Bytes::open(path)?,
+            faults,
+            window: Vec::new(),
+            at: 0,
+            start: 0,
+            is_read: false,
+            logs: 0,
+            session: None,
+            topics: Vec::new(),
+            message: Vec::new(),
+            damaged: None,
+        })
+    }
+
+    /// Sees to it that a frame is in the window, unless the file ends.
+    fn fill(&mut self) -> Result<()> {
+        const MORE: u64 = 1 << 16;
+        if self.is_read || self.window.len() - self.at >= LONGEST {
+            return Ok(());
+        }
+        self.window.drain(..self.at);
+        self.start += self.at as u64;
+        self.at = 0;
+        let mut more = Vec::new();
+        let at = self.bytes.at();
+        match self.bytes.take(MORE, &mut more) {
+            Ok(is_whole) => self.is_read = !is_whole,
+            Err(error) => {
+                self.faults.end(at, error)?;
+                self.is_read = true;
+            }
+        }
+        self.window.append(&mut more);
+        Ok(())
+    }
+
+    fn left(&self) -> &[u8] {
+        &self.window[self.at..]
+    }
+
+    fn place(&self) -> u64 {
+        self.start + self.at as u64
+    }
+
+    /// Reads the head of a log.
+    fn head(&mut self) -> Result<()> {
+        let place = self.place();
+        let mut lines = Vec::new();
+        loop {
+            self.fill()?;
+            let left = self.left();
+            let end = left.iter().take(LONGEST).position(|&byte| byte == b'\n');
+            let Some(end) = end.filter(|_| left.starts_with(b"H ")) else { break };
+            let line = String::from_utf8_lossy(&left[2..end.max(2)]).into_owned();
+            if let Some((key, value)) = line.split_once(':') {
+                lines.push((key.trim().to_owned(), value.trim().to_owned()));
+            }
+            self.at += end + 1;
+        }
+        // Where there is not even a line, the start is passed over.
+        if lines.is_empty() {
+            self.at += START.len();
+        }
+        let header = match Header::parse(&lines) {
+            Ok(header) => header,
+            Err(why) => {
+                let what = format!("the head of a log: {why}");
+                return self.faults.skip(place, what);
+            }
+        };
+        let name = |name: &str| match self.logs {
+            0 => name.to_owned(),
+            log => format!("{name}:{log}"),
+        };
+        let mut add = |own: &str, fields: &Fields| {
+            let definition = fields.definition();
+            let topic = Topic::new(name(own), String::new(), Dialect::Ros1, &definition);
+            self.topics.push(topic);
+            self.topics.len() - 1
+        };
+        let main = add(MAIN, &header.full);
+        let slow = (!header.slow.names.is_empty()).then(|| add("slow", &header.slow));
+        let gps = (!header.gps.names.is_empty()).then(|| add("gps", &header.gps));
+        let (iteration, time) = (header.full.place("loopIteration"), header.full.place("time"));
+        self.logs += 1;
+        let Some(time) = time else {
+            return self.faults.skip(place, "the head of a log: it has no field `time`");
+        };
+        self.session = Some(Session {
+            header,
+            main,
+            slow,
+            gps,
+            previous: None,
+            home: Vec::new(),
+            last: None,
+            doubted: None,
+            iteration,
+            time,
+        });
+        Ok(())
+    }
+
+    /// Takes a frame, or a byte that begins none.
+    fn frame(&mut self) -> Result<Option<Entry>> {
+        let place = self.place();
+        let Some(session) = &mut self.session else {
+            self.at += 1;
+            return Ok(None);
+        };
+        let left = &self.window[self.at..];
+        let mut input = Input { bytes: left, at: 0 };
+        let frame = session.frame(&mut input).and_then(|frame| {
+            // What follows tells whether it was one.
+            let is_followed = left.get(input.at).is_none_or(|next| KINDS.contains(next));
+            if is_followed || matches!(frame, Frame::End) { Ok(frame) } else { Err(Fault::Odd) }
+        });
+        let taken = input.at;
+        if frame.is_ok()
+            && let Some(damaged) = self.damaged.take()
+        {
+            let what = format!("{} bytes are no frames", place - damaged);
+            self.faults.skip(damaged, what)?;
+        }
+        match frame {
+            Ok(Frame::Message { topic, time, numbers }) => {
+                self.at += taken;
+                self.message.clear();
+                self.message.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+                let time = time.saturating_mul(1000);
+                return Ok(Some(Entry { topic, time, at: place, sequence: None }));
+            }
+            Ok(Frame::Other) => self.at += taken,
+            Ok(Frame::End) => {
+                self.at += taken;
+                self.session = None;
+            }
+            Err(Fault::End) if self.is_read && left.len() < LONGEST && self.damaged.is_none() => {
+                self.at = self.window.len();
+                self.faults.end(place, "the log ends within a frame")?;
+            }
+            Err(_) => {
+                session.previous = None;
+                self.damaged.get_or_insert(place);
+                self.at += 1;
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// The bytes with which frames begin.
+const KINDS: &[u8] = b"IPSGHE";
+
+impl Session {
+    fn frame(&mut self, input: &mut Input<'_>) -> Result<Frame, Fault> {
+        match input.byte()? {
+            b'I' => {
+                let frame = self.numbers(&self.header.full, false, input)?;
+                self.main(frame, true)
+            }
+            b'P' => {
+                let frame = self.numbers(&self.header.changes, true, input)?;
+                self.main(frame, false)
+            }
+            b'S' => {
+                let frame = self.numbers(&self.header.slow, false, input)?;
+                let numbers = self.header.slow.told(&frame);
+                let time = self.last.map_or(0, |(_, time)| time);
+                Ok(self.slow.map_or(Frame::Other, |topic| Frame::Message { topic, time, numbers }))
+            }
+            b'G' => {
+                let frame = self.numbers(&self.header.gps, false, input)?;
+                let numbers = self.header.gps.told(&frame);
+                let own = self.header.gps.place("time").and_then(|place| numbers.get(place));
+                let time = own.copied().or(self.last.map(|(_, time)| time)).unwrap_or_default();
+                Ok(self.gps.map_or(Frame::Other, |topic| Frame::Message { topic, time, numbers }))
+            }
+            b'H' => {
+                self.home = self.numbers(&self.header.home, false, input)?;
+                Ok(Frame::Other)
+            }
+            b'E' => self.event(input),
+            _ => Err(Fault::Odd),
+        }
+    }
+
+    /// Takes a frame of the main loop, if it follows from the one before.
+    fn main(&mut self, frame: Vec<i32>, is_full: bool) -> Result<Frame, Fault> {
+        let mut numbers = self.header.full.told(&frame);
+        let mut time = numbers[self.time];
+        let iteration =
+            self.iteration.and_then(|place| numbers.get(place)).copied().unwrap_or_default();
+        if let Some((before, last)) = self.last {
+            // The count of µs starts anew at 32 bits.
+            let wraps = (last - time + (1 << 31)).div_euclid(1 << 32).max(0);
+            time += wraps << 32;
+            let follows = |(before, last): (i64, i64)| {
+                (0..LONGEST_JUMP.0).contains(&(time - last))
+                    && (0..LONGEST_JUMP.1).contains(&(iteration - before))
+            };
+            let is_confirmed = is_full && self.doubted.is_some_and(follows);
+            if !follows((before, last)) && !is_confirmed {
+                self.doubted = is_full.then_some((iteration, time));
+                return Err(Fault::Odd);
+            }
+        }
+        numbers[self.time] = time;
+        self.last = Some((iteration, time));
+        self.doubted = None;
+        self.previous = Some(match self.previous.take() {
+            Some([previous, _]) if !is_full => [frame, previous],
+            _ => [frame.clone(), frame],
+        });
+        Ok(Frame::Message { topic: self.main, time, numbers })
+    }
+
+    /// The numbers of a frame: what is packed, on top of what is predicted.
+    fn numbers(
+        &self,
+        fields: &Fields,
+        is_change: bool,
+        input: &mut Input<'_>,
+    ) -> Result<Vec<i32>, Fault> {
+        let none = [Vec::new(), Vec::new()];
+        let before = match (&self.previous, is_change) {
+            (Some(previous), true) => previous,
+            // Changes of a frame that is missing mean nothing.
+            (None, true) => return Err(Fault::Odd),
+            (_, false) => &none,
+        };
+        let mut frame: Vec<i32> = Vec::with_capacity(fields.encodings.len());
+        while let Some(&encoding) = fields.encodings.get(frame.len()) {
+            let own = fields.encodings[frame.len()..].iter().take_while(|own| **own == encoding);
+            let count = encoding.group(own.count());
+            let packed = input.numbers(encoding, count, self.header.version)?;
+            for number in packed.into_iter().take(count) {
+                let place = frame.len();
+                let Some(&predictor) = fields.predictors.get(place) else { break };
+                let past = |frame: &Vec<i32>| frame.get(place).copied().unwrap_or_default();
+                let (one, two) = (past(&before[0]), past(&before[1]));
+                let predicted = match predictor {
+                    0 => 0,
+                    1 => one,
+                    2 => one.wrapping_mul(2).wrapping_sub(two),
+                    3 => i64::midpoint(one.into(), two.into()) as i32,
+                    4 => self.header.min_throttle,
+                    5 => self
+                        .header
+                        .full
+                        .place("motor[0]")
+                        .and_then(|motor| frame.get(motor).copied())
+                        .unwrap_or_default(),
+                    6 => one.wrapping_add(1).wrapping_add(self.header.skipped(one.into()) as i32),
+                    7 => {
+                        // The second of two is the longitude.
+                        let is_second = place > 0 && fields.predictors[place - 1] == 7;
+                        self.home.get(usize::from(is_second)).copied().unwrap_or_default()
+                    }
+                    8 => 1500,
+                    9 => self.header.battery,
+                    10 => self.last.map_or(0, |(_, time)| time as i32),
+                    11 => self.header.min_motor,
+                    _ => return Err(Fault::Odd),
+                };
+                frame.push(number.wrapping_add(predicted));
+            }
+        }
+        Ok(frame)
+    }
+
+    fn event(&mut self, input: &mut Input<'_>) -> Result<Frame, Fault> {
+        match input.byte()? {
+            0 | 15 | 40 => drop(input.unsigned()?),
+            13 => {
+                if input.byte()? & 0x80 == 0 {
+                    input.signed()?;
+                } else {
+                    for _ in 0..4 {
+                        input.byte()?;
+                    }
+                }
+            }
+            // Logging goes on at an iteration and a time.
+            14 => {
+                let (iteration, time) = (input.unsigned()?, input.unsigned()?);
+                self.last = Some((iteration.into(), time.into()));
+            }
+            30 => {
+                input.unsigned()?;
+                input.unsigned()?;
+            }
+            255 => {
+                const WORDS: &[u8] = b"End of log";
+                if !input.bytes[input.at..].starts_with(WORDS) {
+                    return Err(Fault::Odd);
+                }
+                while input.byte()? != 0 {}
+                return Ok(Frame::End);
+            }
+            _ => return Err(Fault::Odd),
+        }
+        Ok(Frame::Other)
+    }
+}
+
+impl Fields {
+    /// The numbers of a frame, those without a sign as such.
+    fn told(&self, frame: &[i32]) -> Vec<i64> {
+        let numbers = frame.iter().zip(&self.signed);
+        numbers
+            .map(|(&number, &signed)| if signed { number.into() } else { (number as u32).into() })
+            .collect()
+    }
+}
+
+impl Log for Blackbox {
+    fn next(&mut self) -> Result<Option<Entry>> {
+        loop {
+            self.fill()?;
+            if self.left().is_empty() {
+                if let Some(damaged) = self.damaged.take() {
+                    let what = format!("{} bytes are no frames", self.place() - damaged);
+                    self.faults.skip(damaged, what)?;
+                }
+                if self.session.take().is_some() {
+                    self.faults.note("the log has no end, as when power is cut".to_owned());
+                }
+                if self.logs == 0 {
+                    return Err(Error::not_a_log(
+                        self.faults.file(),
+                        "no log, where lines `H Product:Blackbox …` should stand",
+                    ));
+                }
+                return Ok(None);
+            }
+            if self.left().starts_with(START) {
+                self.head()?;
+                continue;
+            }
+            let entry = self.frame()?;
+            if entry.is_some() {
+                return Ok(entry);
+            }
+        }
+    }
+
+    fn topics(&self) -> &[Topic] {
+        &self.topics
+    }
+
+    fn message(&self) -> &[u8] {
+        &self.message
+    }
+
+    fn faults(&mut self) -> &mut Faults {
+        &mut self.faults
+    }
+}

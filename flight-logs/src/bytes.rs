@@ -1,0 +1,153 @@
+//! The bytes of a log from its start to its end, and where one is among them.
+
+use crate::files::File;
+use crate::zstd::{Frames, ZSTD};
+use crate::{Error, ErrorKind, Result};
+use flate2::read::MultiGzDecoder;
+use std::io::{self, BufReader, Cursor, Read};
+use std::path::Path;
+
+/// The first bytes of a file packed by gzip.
+pub const GZIP: [u8; 2] = [0x1f, 0x8b];
+
+/// The bytes of a file, unpacked if it is packed as a whole.
+pub(crate) struct Bytes {
+    input: Box<dyn Read>,
+    at: u64,
+}
+
+impl Bytes {
+    /// # Errors
+    /// Returns an error if the file is missing or cannot be unpacked.
+    pub(crate) fn open(path: &Path) -> Result<Self> {
+        let input =
+            unpacked(open(path)?).map_err(|error| Error::of(path, ErrorKind::Read(error)))?;
+        Ok(Self { input, at: 0 })
+    }
+
+    /// Copies all bytes.
+    ///
+    /// # Errors
+    /// Returns an error if the bytes cannot be unpacked or written.
+    pub(crate) fn copy(mut self, output: &mut File) -> io::Result<u64> {
+        io::copy(&mut self.input, output)
+    }
+
+    /// How many bytes were taken.
+    pub(crate) fn at(&self) -> u64 {
+        self.at
+    }
+
+    /// Takes this many bytes, or fewer at the end. A false length takes no memory, as bytes are read before room is
+    /// made.
+    ///
+    /// # Errors
+    /// Returns an error if the bytes cannot be read or unpacked.
+    pub(crate) fn take(&mut self, count: u64, bytes: &mut Vec<u8>) -> io::Result<bool> {
+        bytes.clear();
+        let taken = self.input.by_ref().take(count).read_to_end(bytes)?;
+        self.at += taken as u64;
+        Ok(taken as u64 == count)
+    }
+
+    /// Passes over so many bytes; whether they were there.
+    ///
+    /// # Errors
+    /// Returns an error if the bytes cannot be read or unpacked.
+    pub(crate) fn pass(&mut self, count: u64) -> io::Result<bool> {
+        let passed = io::copy(&mut self.input.by_ref().take(count), &mut io::sink())?;
+        self.at += passed;
+        Ok(passed == count)
+    }
+}
+
+/// Opens a file.
+///
+/// # Errors
+/// Returns an error if the file cannot be opened.
+pub(crate) fn open(path: &Path) -> Result<File> {
+    File::open(path).map_err(|error| Error::of(path, ErrorKind::Open(error)))
+}
+
+/// Whether a file is packed as a whole.
+///
+/// # Errors
+/// Returns an error if the file cannot be read.
+pub(crate) fn is_packed(path: &Path) -> Result<bool> {
+    let mut start = Vec::new();
+    let read = open(path)?.take(4).read_to_end(&mut start);
+    read.map_err(|error| Error::of(path, ErrorKind::Read(error)))?;
+    Ok(start.starts_with(&GZIP) || start.starts_with(&ZSTD))
+}
+
+/// The content of a file, whether packed or not.
+fn unpacked(file: File) -> io::Result<Box<dyn Read>> {
+    const BUFFER: usize = 1 << 18;
+    let mut head = Vec::new();
+    let mut input = BufReader::with_capacity(BUFFER, file);
+    input.by_ref().take(4).read_to_end(&mut head)?;
+    let is_gzip = head.starts_with(&GZIP);
+    let is_zstd = head.starts_with(&ZSTD);
+    let all = Cursor::new(head).chain(input);
+    Ok(if is_gzip {
+        Box::new(BufReader::with_capacity(BUFFER, MultiGzDecoder::new(all)))
+    } else if is_zstd {
+        Box::new(BufReader::with_capacity(BUFFER, Frames::new(all)))
+    } else {
+        Box::new(all)
+    })
+}
+
+/// Unpacks a compressed part of a log: all of it, or as much as can be unpacked and what is wrong.
+pub(crate) fn unpack(how: &str, packed: &[u8], size: u64) -> (Vec<u8>, Option<String>) {
+    let mut bytes = Vec::new();
+    let mut limited =
+        |input: &mut dyn Read| input.take(size.saturating_add(1)).read_to_end(&mut bytes);
+    let read = match how {
+        "" | "none" => limited(&mut &*packed),
+        "lz4" => limited(&mut lz4_flex::frame::FrameDecoder::new(packed)),
+        "bz2" => limited(&mut bzip2::read::BzDecoder::new(packed)),
+        "zstd" => limited(&mut Frames::new(packed)),
+        _ => {
+            let what =
+                format!("compression `{how}` is not known; there are none, lz4, bz2 and zstd");
+            return (Vec::new(), Some(what));
+        }
+    };
+    let unpacked = bytes.len() as u64;
+    let fault = match read {
+        Err(error) => Some(format!("{how} cannot be unpacked: {error}")),
+        Ok(_) if unpacked < size => Some(format!("a chunk of {size} bytes unpacks to {unpacked}")),
+        Ok(_) if unpacked > size => Some(format!("a chunk of {size} bytes unpacks to more")),
+        Ok(_) => None,
+    };
+    (bytes, fault)
+}
+
+/// A number of two bytes from the front.
+pub(crate) fn u16_from(bytes: &mut &[u8]) -> Option<u16> {
+    let (first, rest) = bytes.split_first_chunk()?;
+    *bytes = rest;
+    Some(u16::from_le_bytes(*first))
+}
+
+/// A number of four bytes from the front.
+pub(crate) fn u32_from(bytes: &mut &[u8]) -> Option<u32> {
+    let (first, rest) = bytes.split_first_chunk()?;
+    *bytes = rest;
+    Some(u32::from_le_bytes(*first))
+}
+
+/// A number of eight bytes from the front.
+pub(crate) fn u64_from(bytes: &mut &[u8]) -> Option<u64> {
+    let (first, rest) = bytes.split_first_chunk()?;
+    *bytes = rest;
+    Some(u64::from_le_bytes(*first))
+}
+
+/// Takes this many bytes from the front.
+pub(crate) fn take<'a>(bytes: &mut &'a [u8], count: u64) -> Option<&'a [u8]> {
+    let (first, rest) = bytes.split_at_checked(usize::try_from(count).ok()?)?;
+    *bytes = rest;
+    Some(first)
+}

@@ -1,0 +1,572 @@
+//! Definitions of messages: `type name` lines, and in ROS those of the messages within after `MSG: package/Type`.
+
+use super::known::known;
+use std::collections::HashMap;
+
+/// A message's layout, with those of the messages in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Definition {
+    /// The message itself comes first.
+    structs: Vec<Struct>,
+}
+
+/// The fields of a message in order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Struct {
+    /// The fields, in the order of the bytes.
+    pub fields: Vec<Field>,
+}
+
+/// A field of a message.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// Its name.
+    pub name: String,
+    /// Its content.
+    pub kind: Kind,
+    /// Its shape: one, or an array.
+    pub shape: Shape,
+}
+
+/// The content of a field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A number.
+    Number(Number),
+    /// A number that no one asks for by name.
+    Hidden(Number),
+    /// A text.
+    Text,
+    /// A character of a text that has a length.
+    Character,
+    /// Text of two or four bytes a character, by the writer's taste.
+    WideText,
+    /// Another message, by its place in the definition.
+    Nested(usize),
+}
+
+/// The types of numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Number {
+    /// One byte, 0 or 1.
+    Bool,
+    /// A signed byte.
+    I8,
+    /// An unsigned byte.
+    U8,
+    /// Two bytes, signed.
+    I16,
+    /// Two bytes, unsigned.
+    U16,
+    /// Four bytes, signed.
+    I32,
+    /// Four bytes, unsigned.
+    U32,
+    /// Eight bytes, signed.
+    I64,
+    /// Eight bytes, unsigned.
+    U64,
+    /// A float of four bytes.
+    F32,
+    /// A float of eight bytes.
+    F64,
+}
+
+impl Number {
+    /// Returns its size in bytes.
+    pub fn size(self) -> usize {
+        match self {
+            Self::Bool | Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::I64 | Self::U64 | Self::F64 => 8,
+        }
+    }
+}
+
+/// The shape of a field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// One value.
+    One,
+    /// An array of so many.
+    Fixed(usize),
+    /// An array whose length is in the message.
+    Counted,
+}
+
+/// The dialect of a definition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dialect {
+    /// Definitions of ROS 1.
+    Ros1,
+    /// Definitions of ROS 2.
+    Ros2,
+    /// Formats of a PX4 log.
+    Px4,
+}
+
+/// The steps to a number within a message.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Path(pub Vec<Step>);
+
+/// One step to a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Into the field of this index.
+    Field(usize),
+    /// Into the item of this index of an array.
+    Item(usize),
+}
+
+/// The reason that a name leads to no number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoNumber {
+    /// There is no field of this name.
+    Missing,
+    /// It is text.
+    Text,
+    /// A message or an array of numbers, not one number.
+    Several,
+}
+
+/// The places of the two numbers of a time: seconds and nanoseconds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Stamp {
+    /// The place of the seconds.
+    pub seconds: Path,
+    /// The place of the nanoseconds.
+    pub nanoseconds: Path,
+}
+
+/// Deeper nesting has no use, and may have no end.
+const DEEPEST: usize = 16;
+/// Longer arrays of a fixed length do not fit a message.
+const LONGEST: usize = 1 << 28;
+/// The field with the time at which PX4 logged a message.
+const TIME: &str = "timestamp";
+/// The start of the names of PX4's padding.
+const PADDING: &str = "_padding";
+
+impl Definition {
+    /// Reads the text in a log, for a message of this type, such as `sensor_msgs/Imu`.
+    ///
+    /// # Errors
+    /// Returns an error that names what cannot be understood.
+    pub fn parse(name: &str, text: &str, dialect: Dialect) -> Result<Self, String> {
+        let mut texts = HashMap::new();
+        let mut own = String::new();
+        let mut current: Option<String> = None;
+        for line in text.lines() {
+            if line.starts_with("====") {
+                continue;
+            }
+            if let Some(next) = line.trim().strip_prefix("MSG:") {
+                current = Some(short(next.trim()));
+                continue;
+            }
+            let text = match &current {
+                None => &mut own,
+                Some(name) => texts.entry(name.clone()).or_default(),
+            };
+            text.push_str(line);
+            text.push('\n');
+        }
+        let name = short(name);
+        texts.entry(name.clone()).or_insert(own);
+        Parser::parse(&name, &|name| texts.get(name).cloned(), dialect)
+    }
+
+    /// Finds a message of ROS 2, whose definition and those of the messages in it are looked up by `package/Type`.
+    ///
+    /// # Errors
+    /// Returns an error that names what cannot be understood.
+    pub fn of_ros2(name: &str, look_up: &LookUp) -> Result<Self, String> {
+        Parser::parse(&short(name), look_up, Dialect::Ros2)
+    }
+
+    /// Finds a message among the definitions of a PX4 log.
+    ///
+    /// # Errors
+    /// Returns an error that names what cannot be understood.
+    pub fn of_px4(name: &str, texts: &HashMap<String, String>) -> Result<Self, String> {
+        Parser::parse(name, &|name| texts.get(name).cloned(), Dialect::Px4)
+    }
+
+    /// Finds the time at which PX4 logged a message.
+    pub fn time(&self) -> Option<Path> {
+        let is_time = |field: &Field| {
+            let is_one = (field.kind, field.shape) == (Kind::Hidden(Number::U64), Shape::One);
+            field.name == TIME && is_one
+        };
+        let place = self.root().fields.iter().position(is_time)?;
+        Some(Path(vec![Step::Field(place)]))
+    }
+
+    /// Returns how many bytes of padding end a message of PX4.
+    pub fn padding(&self) -> usize {
+        let fields = self.root().fields.iter().rev();
+        let padding = fields.take_while(|field| field.name.starts_with(PADDING));
+        let size = |field: &Field| match (field.kind, field.shape) {
+            (Kind::Hidden(number), Shape::Fixed(count)) => number.size() * count,
+            (Kind::Hidden(number), _) => number.size(),
+            _ => 0,
+        };
+        padding.map(size).sum()
+    }
+
+    /// Returns the message itself.
+    pub fn root(&self) -> &Struct {
+        self.structs.first().unwrap_or(const { &Struct { fields: Vec::new() } })
+    }
+
+    /// Returns the message of this place within it; [`Kind::Nested`] has the place.
+    pub fn nested(&self, place: usize) -> &Struct {
+        self.structs.get(place).unwrap_or(const { &Struct { fields: Vec::new() } })
+    }
+
+    /// Finds the number of this name, such as `angular_velocity.x` or `ranges[5]`.
+    ///
+    /// # Errors
+    /// Returns the reason if the name leads to no number.
+    pub fn number(&self, asked: &str) -> Result<Path, NoNumber> {
+        match self.find(asked)? {
+            (path, Kind::Number(_)) => Ok(path),
+            (_, Kind::Text | Kind::WideText | Kind::Character) => Err(NoNumber::Text),
+            (_, Kind::Nested(_)) => Err(NoNumber::Several),
+            (_, Kind::Hidden(_)) => Err(NoNumber::Missing),
+        }
+    }
+
+    /// Finds the text of this name.
+    pub fn text(&self, asked: &str) -> Option<Path> {
+        self.find(asked).ok().filter(|(_, kind)| *kind == Kind::Text).map(|(path, _)| path)
+    }
+
+    /// Finds the time of this name, such as `header.stamp`.
+    pub fn stamp(&self, asked: &str) -> Option<Stamp> {
+        let Ok((path, Kind::Nested(place))) = self.find(asked) else { return None };
+        let [seconds, nanoseconds] = &self.nested(place).fields[..] else { return None };
+        let is_stamp = matches!(
+            (seconds.name.as_str(), nanoseconds.name.as_str()),
+            ("secs", "nsecs") | ("sec", "nanosec")
+        );
+        let within = |field| Path(path.0.iter().copied().chain([Step::Field(field)]).collect());
+        is_stamp.then(|| Stamp { seconds: within(0), nanoseconds: within(1) })
+    }
+
+    fn find(&self, asked: &str) -> Result<(Path, Kind), NoNumber> {
+        let mut path = Path::default();
+        let mut within = self.root();
+        let mut parts = asked.split('.').peekable();
+        while let Some(part) = parts.next() {
+            let (name, item) = match part.strip_suffix(']').and_then(|part| part.split_once('[')) {
+                Some((name, item)) => (name, Some(item.parse().map_err(|_| NoNumber::Missing)?)),
+                None => (part, None),
+            };
+            let place = within.fields.iter().position(|field| field.name == name);
+            let place = place.ok_or(NoNumber::Missing)?;
+            let field = &within.fields[place];
+            path.0.push(Step::Field(place));
+            match (field.shape, item) {
+                (Shape::One, None) => {}
+                (Shape::Fixed(count), Some(item)) if item < count => path.0.push(Step::Item(item)),
+                (Shape::Counted, Some(item)) => path.0.push(Step::Item(item)),
+                (Shape::One, Some(_)) if field.kind == Kind::Text => return Err(NoNumber::Text),
+                (_, None) if field.kind == Kind::Character => return Err(NoNumber::Text),
+                (Shape::Fixed(_) | Shape::Counted, None) => return Err(NoNumber::Several),
+                (Shape::One | Shape::Fixed(_), Some(_)) => return Err(NoNumber::Missing),
+            }
+            match (field.kind, parts.peek()) {
+                (kind, None) => return Ok((path, kind)),
+                (Kind::Nested(place), Some(_)) => within = self.nested(place),
+                (_, Some(_)) => return Err(NoNumber::Missing),
+            }
+        }
+        Err(NoNumber::Missing)
+    }
+
+    /// Returns the names of all numbers and of all texts, arrays as `name[0..9]` or, of any length, `name[]`.
+    pub fn names(&self) -> (Vec<String>, Vec<String>) {
+        let (mut numbers, mut texts) = (Vec::new(), Vec::new());
+        self.add_names(self.root(), "", &mut numbers, &mut texts);
+        (numbers, texts)
+    }
+
+    fn add_names(
+        &self,
+        within: &Struct,
+        prefix: &str,
+        numbers: &mut Vec<String>,
+        texts: &mut Vec<String>,
+    ) {
+        for field in &within.fields {
+            let name = match field.shape {
+                Shape::One => format!("{prefix}{}", field.name),
+                Shape::Fixed(count) => format!("{prefix}{}[0..{count}]", field.name),
+                Shape::Counted => format!("{prefix}{}[]", field.name),
+            };
+            match field.kind {
+                Kind::Number(_) => numbers.push(name),
+                Kind::Hidden(_) => {}
+                Kind::Text | Kind::WideText => texts.push(name),
+                Kind::Character => texts.push(format!("{prefix}{}", field.name)),
+                Kind::Nested(place) => {
+                    self.add_names(self.nested(place), &format!("{name}."), numbers, texts);
+                }
+            }
+        }
+    }
+}
+
+/// `package/Type`, also of `package/msg/Type`.
+pub(crate) fn short(name: &str) -> String {
+    name.replacen("/msg/", "/", 1)
+}
+
+/// The definition of a message by its name, if there is one.
+type LookUp<'a> = dyn Fn(&str) -> Option<String> + 'a;
+
+struct Parser<'a> {
+    look_up: &'a LookUp<'a>,
+    dialect: Dialect,
+    structs: Vec<Struct>,
+    places: HashMap<String, usize>,
+}
+
+impl<'a> Parser<'a> {
+    fn parse(name: &str, look_up: &'a LookUp<'a>, dialect: Dialect) -> Result<Definition, String> {
+        let mut parser = Self { look_up, dialect, structs: Vec::new(), places: HashMap::new() };
+        parser.add(name, 0)?;
+        Ok(Definition { structs: parser.structs })
+    }
+
+    /// The place of a message, which is read now unless it was before.
+    fn add(&mut self, name: &str, depth: usize) -> Result<usize, String> {
+        if depth > DEEPEST {
+            return Err(format!("{name} is nested too deeply, perhaps within itself"));
+        }
+        if let Some(&place) = self.places.get(name) {
+            // A message that is not complete yet is within itself.
+            return if place == usize::MAX {
+                Err(format!("{name} holds itself"))
+            } else {
+                Ok(place)
+            };
+        }
+        let text = (self.look_up)(name)
+            .or_else(|| built_in(name, self.dialect).map(str::to_owned))
+            .or_else(|| known(name).filter(|_| self.dialect == Dialect::Ros2))
+            .ok_or_else(|| format!("there is no definition of {name}"))?;
+        self.places.insert(name.to_owned(), usize::MAX);
+        let place = self.structs.len();
+        self.structs.push(Struct::default());
+        let mut fields = Vec::new();
+        for line in text.lines() {
+            if let Some((kind, name_of_field)) = declared(line) {
+                fields.push(self.field(name, kind, name_of_field, depth)?);
+            }
+        }
+        self.structs[place].fields = fields;
+        self.places.insert(name.to_owned(), place);
+        Ok(place)
+    }
+
+    fn field(&mut self, of: &str, kind: &str, name: &str, depth: usize) -> Result<Field, String> {
+        let not_understood = || format!("`{kind} {name}` is not understood");
+        let (base, shape) = match kind.strip_suffix(']').and_then(|kind| kind.split_once('[')) {
+            None => (kind, Shape::One),
+            Some((base, "")) => (base, Shape::Counted),
+            Some((base, bound)) if bound.starts_with("<=") => (base, Shape::Counted),
+            Some((base, count)) => {
+                let count = count.parse().ok().filter(|&count: &usize| count <= LONGEST);
+                (base, Shape::Fixed(count.ok_or_else(not_understood)?))
+            }
+        };
+        let base = base.split("<=").next().unwrap_or(base);
+        let kind = match base {
+            "bool" => Kind::Number(Number::Bool),
+            "byte" if self.dialect == Dialect::Ros1 => Kind::Number(Number::I8),
+            "int8" | "int8_t" => Kind::Number(Number::I8),
+            "char" if self.dialect == Dialect::Px4 => Kind::Character,
+            "uint8" | "uint8_t" | "char" | "byte" => Kind::Number(Number::U8),
+            "int16" | "int16_t" => Kind::Number(Number::I16),
+            "uint16" | "uint16_t" => Kind::Number(Number::U16),
+            "int32" | "int32_t" => Kind::Number(Number::I32),
+            "uint32" | "uint32_t" => Kind::Number(Number::U32),
+            "int64" | "int64_t" => Kind::Number(Number::I64),
+            "uint64" | "uint64_t" => Kind::Number(Number::U64),
+            "float32" | "float" => Kind::Number(Number::F32),
+            "float64" | "double" => Kind::Number(Number::F64),
+            "string" => Kind::Text,
+            "wstring" => Kind::WideText,
+            "time" | "duration" if self.dialect == Dialect::Ros1 => {
+                Kind::Nested(self.add(base, depth + 1)?)
+            }
+            "Header" => Kind::Nested(self.add("std_msgs/Header", depth + 1)?),
+            nested => {
+                let is_name = |byte: u8| byte.is_ascii_alphanumeric() || b"_/".contains(&byte);
+                if nested.is_empty() || !nested.bytes().all(is_name) {
+                    return Err(not_understood());
+                }
+                let nested = if nested.contains('/') || self.dialect == Dialect::Px4 {
+                    short(nested)
+                } else {
+                    let package = of.split_once('/').map_or("", |(package, _)| package);
+                    format!("{package}/{nested}")
+                };
+                Kind::Nested(self.add(&nested, depth + 1)?)
+            }
+        };
+        let is_time = depth == 0 && name == TIME;
+        let kind = match kind {
+            Kind::Number(number)
+                if self.dialect == Dialect::Px4 && (is_time || name.starts_with(PADDING)) =>
+            {
+                Kind::Hidden(number)
+            }
+            kind => kind,
+        };
+        Ok(Field { name: name.to_owned(), kind, shape })
+    }
+}
+
+/// The type and name of a line that declares a field, none of a constant or a comment.
+pub(crate) fn declared(line: &str) -> Option<(&str, &str)> {
+    let line = line.split('#').next().unwrap_or(line).trim();
+    let (kind, rest) = line.split_once(char::is_whitespace)?;
+    let rest = rest.trim_start();
+    // A default value may follow the name, after a blank; a constant's after a `=`.
+    let name = rest.split(|c: char| c.is_whitespace() || c == '=').next()?;
+    let behind = rest.get(name.len()..)?.trim_start();
+    (!name.is_empty() && !behind.starts_with('=')).then_some((kind, name))
+}
+
+/// The definition of a type that logs leave out, as every ROS has it.
+fn built_in(name: &str, dialect: Dialect) -> Option<&'static str> {
+    Some(match (name, dialect) {
+        ("time", Dialect::Ros1) => "uint32 secs\nuint32 nsecs",
+        ("duration", Dialect::Ros1) => "int32 secs\nint32 nsecs",
+        ("builtin_interfaces/Time" | "builtin_interfaces/Duration", Dialect::Ros2) => {
+            "int32 sec\nuint32 nanosec"
+        }
+        ("std_msgs/Header", Dialect::Ros1) => "uint32 seq\ntime stamp\nstring frame_id",
+        ("std_msgs/Header", Dialect::Ros2) => "builtin_interfaces/Time stamp\nstring frame_id",
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Definition, Dialect, NoNumber, Path, Step};
+
+    const IMU: &str = "\
+Header header # when
+int8 A=1
+string NAME=with # sign
+float64[9] covariance
+geometry_msgs/Vector3 rate
+float32[] ranges
+Point[2] two
+================================================================================
+MSG: std_msgs/Header
+uint32 seq
+time stamp
+string frame_id
+================================================================================
+MSG: geometry_msgs/Vector3
+float64 x
+float64 y
+================================================================================
+MSG: test/Point
+uint8 a
+";
+
+    #[test]
+    fn names_lead_to_numbers() {
+        use Step::{Field, Item};
+        let imu = Definition::parse("test/Imu", IMU, Dialect::Ros1).unwrap();
+        let path = |steps: &[Step]| Ok(Path(steps.to_vec()));
+        for (name, found) in [
+            ("rate.y", path(&[Field(2), Field(1)])),
+            ("header.stamp.nsecs", path(&[Field(0), Field(1), Field(1)])),
+            ("covariance[8]", path(&[Field(1), Item(8)])),
+            ("covariance[9]", Err(NoNumber::Missing)),
+            ("covariance", Err(NoNumber::Several)),
+            ("ranges[500]", path(&[Field(3), Item(500)])),
+            ("two[1].a", path(&[Field(4), Item(1), Field(0)])),
+            ("two.a", Err(NoNumber::Several)),
+            ("rate", Err(NoNumber::Several)),
+            ("rate.x.x", Err(NoNumber::Missing)),
+            ("header.frame_id", Err(NoNumber::Text)),
+            ("header.frame_id[0]", Err(NoNumber::Text)),
+            ("A", Err(NoNumber::Missing)),
+            ("", Err(NoNumber::Missing)),
+        ] {
+            assert_eq!(imu.number(name), found, "{name}");
+        }
+        let stamp = imu.stamp("header.stamp").unwrap();
+        assert_eq!(stamp.nanoseconds, Path(vec![Field(0), Field(1), Field(1)]));
+        assert_eq!(imu.stamp("rate"), None);
+        let (numbers, texts) = imu.names();
+        assert_eq!(texts, ["header.frame_id"]);
+        let all = "header.seq header.stamp.secs header.stamp.nsecs covariance[0..9] rate.x rate.y ranges[] two[0..2].a";
+        assert_eq!(numbers.join(" "), all);
+    }
+
+    #[test]
+    fn ros2_has_bounds_defaults_and_two_part_packages() {
+        let text = "\
+std_msgs/Header header
+string<=10 word \"hello\"
+int32[<=3] few
+float32 gain 1.5
+uint8 MOST = 5
+";
+        let parsed = Definition::parse("test/msg/Two", text, Dialect::Ros2).unwrap();
+        let (numbers, texts) = parsed.names();
+        assert_eq!(numbers.join(" "), "header.stamp.sec header.stamp.nanosec few[] gain");
+        assert_eq!(texts, ["header.frame_id", "word"]);
+    }
+
+    #[test]
+    fn px4s_time_and_padding_have_no_names() {
+        use Step::{Field, Item};
+        let texts = [
+            ("inner", "uint16_t a\nchar[5] word"),
+            ("outer", "bool on\nuint64_t timestamp\ninner[2] two\nuint8_t[3] _padding0"),
+            ("endless", "uint64_t timestamp\nendless again"),
+        ];
+        let texts = texts.map(|(name, text)| (name.to_owned(), text.to_owned())).into();
+        let outer = Definition::of_px4("outer", &texts).unwrap();
+        assert_eq!(
+            outer.names(),
+            (vec!["on".into(), "two[0..2].a".into()], vec!["two[0..2].word".into()])
+        );
+        assert_eq!((outer.time(), outer.padding()), (Some(Path(vec![Field(1)])), 3));
+        for (name, found) in [
+            ("two[1].a", Ok(Path(vec![Field(2), Item(1), Field(0)]))),
+            ("two[1].word", Err(NoNumber::Text)),
+            ("two[1].word[0]", Err(NoNumber::Text)),
+            ("timestamp", Err(NoNumber::Missing)),
+            ("_padding0[0]", Err(NoNumber::Missing)),
+        ] {
+            assert_eq!(outer.number(name), found, "{name}");
+        }
+        assert!(Definition::of_px4("endless", &texts).is_err());
+        assert_eq!(Definition::of_px4("inner", &texts).unwrap().time(), None);
+    }
+
+    #[test]
+    fn what_is_no_definition_is_said() {
+        for (text, said) in [
+            ("Endless again", "t/Endless holds itself"),
+            ("other/Unknown a", "there is no definition of other/Unknown"),
+            ("float32[x] a", "`float32[x] a` is not understood"),
+            ("fl\u{f6}at a", "is not understood"),
+        ] {
+            let told = Definition::parse("t/Endless", text, Dialect::Ros1).unwrap_err();
+            assert!(told.contains(said), "{told}");
+        }
+    }
+}

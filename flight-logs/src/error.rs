@@ -1,0 +1,165 @@
+//! Errors, as values that a program can act on.
+
+use crate::wire;
+use std::path::Path;
+use std::{error, fmt, io};
+
+/// The result of reading a log.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// The error of a log that cannot be read, or is damaged.
+///
+/// Its text names the file and, where there is one, the byte. It gives no advice: [`ErrorKind::rest`] says whether
+/// [`Damage::Skip`](crate::Damage::Skip) would read more.
+#[derive(Debug)]
+pub struct Error {
+    /// The file's path, as it was given.
+    pub file: String,
+    /// The reason.
+    pub kind: ErrorKind,
+}
+
+/// The reason that a log is refused.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// The file cannot be opened.
+    Open(io::Error),
+    /// The file cannot be read.
+    Read(io::Error),
+    /// The file cannot be unpacked.
+    Unpack(io::Error),
+    /// The file ends within its head.
+    ShortHead(io::Error),
+    /// The file has no bytes.
+    Empty,
+    /// The file is not a log of the kind that its name or its first bytes promise. The text says what is missing.
+    NotALog(String),
+    /// Something within the log cannot be read.
+    Fault {
+        /// The place in the file, in bytes.
+        at: u64,
+        /// What is wrong there.
+        what: String,
+        /// What can still be read.
+        rest: Rest,
+    },
+    /// A stretch of bytes makes no sense.
+    Damaged {
+        /// The first damaged byte.
+        at: u64,
+        /// The length of the file in bytes.
+        length: u64,
+        /// The byte at which messages go on.
+        next: u64,
+    },
+    /// The file ends within a message.
+    Cut {
+        /// The first byte of that message.
+        at: u64,
+        /// The length of the file in bytes.
+        length: u64,
+    },
+    /// A message does not hold what was asked of it.
+    Message {
+        /// The place of the message, in bytes.
+        at: u64,
+        /// Its topic.
+        topic: String,
+        /// The reason.
+        fault: MessageFault,
+    },
+    /// No message has been read yet.
+    NoMessage,
+}
+
+/// The part of a damaged log that can still be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rest {
+    /// What comes before the damage, and what comes after it.
+    Behind,
+    /// What comes before the damage, and what comes from this byte on.
+    From(u64),
+    /// What comes before the damage.
+    Before,
+}
+
+/// The reason that a message does not hold what was asked of it.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum MessageFault {
+    /// Its definition cannot be understood. The text says what is wrong with it.
+    Undefined(String),
+    /// It has no number of this name.
+    NoNumber(String),
+    /// Its bytes are not as its definition says.
+    Bytes(wire::Fault),
+}
+
+impl Error {
+    pub(crate) fn new(file: impl Into<String>, kind: ErrorKind) -> Self {
+        Self { file: file.into(), kind }
+    }
+
+    pub(crate) fn of(path: &Path, kind: ErrorKind) -> Self {
+        Self::new(path.display().to_string(), kind)
+    }
+
+    pub(crate) fn not_a_log(file: impl Into<String>, what: impl Into<String>) -> Self {
+        Self::new(file, ErrorKind::NotALog(what.into()))
+    }
+}
+
+impl ErrorKind {
+    /// Returns what [`Damage::Skip`](crate::Damage::Skip) would still read, if the log is damaged.
+    pub fn rest(&self) -> Option<Rest> {
+        match *self {
+            Self::Fault { rest, .. } => Some(rest),
+            Self::Damaged { next, .. } => Some(Rest::From(next)),
+            Self::Cut { .. } => Some(Rest::Before),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { file, kind } = self;
+        match kind {
+            ErrorKind::Open(_) => write!(f, "{file}: cannot be opened"),
+            ErrorKind::Read(_) => write!(f, "{file}: cannot be read"),
+            ErrorKind::Unpack(_) => write!(f, "{file}: cannot be unpacked"),
+            ErrorKind::ShortHead(_) => write!(f, "{file}: shorter than its head"),
+            ErrorKind::Empty => write!(f, "{file}: empty"),
+            ErrorKind::NotALog(what) => write!(f, "{file}: {what}"),
+            ErrorKind::Fault { at, what, .. } => write!(f, "{file}: byte {at}: {what}"),
+            ErrorKind::Damaged { at, length, .. } => {
+                write!(f, "{file}: damaged at byte {at} of {length}")
+            }
+            ErrorKind::Cut { at, length } => {
+                write!(f, "{file}: cut short within the message at byte {at} of {length}")
+            }
+            ErrorKind::Message { at, topic, fault } => {
+                write!(f, "{file}: byte {at}, a message of topic {topic}: ")?;
+                match fault {
+                    MessageFault::Undefined(why) => f.write_str(why),
+                    MessageFault::NoNumber(field) => write!(f, "it has no number `{field}`"),
+                    MessageFault::Bytes(fault) => fault.fmt(f),
+                }
+            }
+            ErrorKind::NoMessage => write!(f, "{file}: there is no message"),
+        }
+    }
+}
+
+impl error::Error for Error {
+    fn source(&self) -> Option<&(dyn error::Error + 'static)> {
+        match &self.kind {
+            ErrorKind::Open(error)
+            | ErrorKind::Read(error)
+            | ErrorKind::Unpack(error)
+            | ErrorKind::ShortHead(error) => Some(error),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! The faults of a log, and the notes on them.
+
+use crate::{Damage, Error, ErrorKind, Rest, Result};
+use std::fmt::Display;
+
+/// The damaged places of a log: refused, or counted and noted.
+#[derive(Debug)]
+pub struct Faults {
+    file: String,
+    damage: Damage,
+    skipped: u64,
+    /// Messages that are longer than their definition, and where the first is.
+    long: u64,
+    first_long: u64,
+    notes: Vec<String>,
+}
+
+impl Faults {
+    pub(crate) fn new(file: &str, damage: Damage) -> Self {
+        Self {
+            file: file.to_owned(),
+            damage,
+            skipped: 0,
+            long: 0,
+            first_long: 0,
+            notes: Vec::new(),
+        }
+    }
+
+    pub(crate) fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// The treatment of damaged places.
+    pub(crate) fn damage(&self) -> Damage {
+        self.damage
+    }
+
+    /// # Errors
+    /// Returns an error if damage is refused.
+    fn refuse(&self, at: u64, what: &impl Display, rest: Rest) -> Result<()> {
+        match self.damage {
+            Damage::Skip => Ok(()),
+            Damage::Refuse => {
+                let what = what.to_string();
+                Err(Error::new(&self.file, ErrorKind::Fault { at, what, rest }))
+            }
+        }
+    }
+
+    /// Counts a fault at a byte behind which reading goes on.
+    ///
+    /// # Errors
+    /// Returns an error if damage is refused.
+    pub fn skip(&mut self, at: u64, what: impl Display) -> Result<()> {
+        self.refuse(at, &what, Rest::Behind)?;
+        self.skipped += 1;
+        if self.skipped == 1 {
+            self.notes.push(format!("skipped at byte {at}: {what}"));
+        }
+        Ok(())
+    }
+
+    /// Notes a fault at a byte behind which nothing can be read.
+    ///
+    /// # Errors
+    /// Returns an error if damage is refused.
+    pub(crate) fn end(&mut self, at: u64, what: impl Display) -> Result<()> {
+        self.refuse(at, &what, Rest::Before)?;
+        self.note(format!("nothing is read from byte {at} on: {what}"));
+        Ok(())
+    }
+
+    /// Counts a message that is longer than its definition.
+    pub fn long(&mut self, at: u64) {
+        if self.long == 0 {
+            self.first_long = at;
+        }
+        self.long += 1;
+    }
+
+    /// Adds a note.
+    pub(crate) fn note(&mut self, note: String) {
+        self.notes.push(note);
+    }
+
+    /// Returns the notes on the log, a sentence each.
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = self.notes.clone();
+        if self.skipped > 1 {
+            notes.push(format!("{} damaged places were skipped in all", self.skipped));
+        }
+        if self.long > 0 {
+            let Self { long, first_long, .. } = self;
+            notes.push(format!(
+                "{long} messages are longer than their definition, the first at byte {first_long}; what is behind it is not read"
+            ));
+        }
+        notes
+    }
+}

@@ -1,0 +1,70 @@
+//! Damaged logs: a thousand of each kind are read or refused, and none makes the program panic.
+
+use super::made::{KINDS, Kind, blackbox};
+use super::{Damage, Kind as LogKind, Reading, Result};
+use std::fs;
+use std::path::Path;
+
+/// A generator with a fixed start.
+struct Random(u32);
+
+impl Random {
+    fn below(&mut self, end: usize) -> usize {
+        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (self.0 >> 8) as usize % end
+    }
+
+    /// Changes, cuts out or sets some bytes, or cuts the end off.
+    fn damage(&mut self, log: &mut Vec<u8>) {
+        /// About so long is what comes before the messages.
+        const HEAD: usize = 700;
+        for _ in 0..=self.below(4) {
+            let within = if self.below(2) == 0 { log.len().min(HEAD) } else { log.len() };
+            let at = self.below(within);
+            match self.below(5) {
+                0 => log[at] = self.below(256) as u8,
+                1 => log[at] ^= 1 << self.below(8),
+                2 => log.truncate(at.max(16)),
+                3 => drop(log.drain(at..(at + self.below(16)).min(log.len()))),
+                _ => log[at] = 0xff,
+            }
+        }
+    }
+}
+
+/// Reads a log to its end, and refuses damage.
+fn read_through(path: &Path, kind: LogKind) -> Result<()> {
+    let mut log = Reading::open(path, kind, Damage::Refuse)?;
+    while log.advance()? {}
+    Ok(())
+}
+
+#[test]
+fn a_thousand_damaged_logs_of_each_kind_panic_nowhere() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut random = Random(1);
+    let own = |made: Kind| made.packings().iter().map(|how| made.log(how)).collect();
+    let mut all: Vec<(&str, Vec<Vec<u8>>)> =
+        KINDS.into_iter().map(|made| (made.name(), own(made))).collect();
+    all.push(("log.bbl", vec![blackbox()]));
+    for (name, logs) in all {
+        let (mut read, mut refused) = (0, 0);
+        for round in 0..1000 {
+            let mut log = logs[round % logs.len()].clone();
+            random.damage(&mut log);
+            let path = directory.path().join(name);
+            fs::write(&path, &log).unwrap();
+            let Some(kind) = LogKind::of(&path).unwrap() else { continue };
+            // Both as it is, and with what is whole of it.
+            refused += u32::from(read_through(&path, kind).is_err());
+            let Ok(mut log) = Reading::open(&path, kind, Damage::Skip) else { continue };
+            while let Ok(true) = log.advance() {
+                for field in ["rate", "few[0]", "gyroADC[0]"] {
+                    read += u32::from(log.number(field).is_ok());
+                }
+                let _ = (log.text("header.frame_id"), log.time());
+            }
+        }
+        assert!(read > 10_000 && refused > 100, "{name}: {read} numbers, {refused} refused");
+    }
+}

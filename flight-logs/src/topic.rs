@@ -1,0 +1,75 @@
+//! Topics of a log, and how their messages are read.
+
+use super::definition::{Definition, Dialect, Path, Stamp};
+use super::wire::{self, Fault, Wire};
+
+/// A topic, and how its messages are read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Topic {
+    /// Its name, as in the log.
+    pub name: String,
+    /// The type of its messages.
+    pub kind: String,
+    /// The encoding of its messages.
+    pub wire: Wire,
+    /// The definition of its messages, or the reason that they cannot be read.
+    pub definition: Result<Definition, String>,
+}
+
+impl Topic {
+    /// A topic whose messages have a definition in this dialect.
+    pub(crate) fn new(name: String, kind: String, dialect: Dialect, text: &str) -> Self {
+        let wire = match dialect {
+            Dialect::Ros1 | Dialect::Px4 => Wire::Ros1,
+            Dialect::Ros2 => Wire::Cdr,
+        };
+        let definition = Definition::parse(&kind, text, dialect);
+        Self { name, kind, wire, definition }
+    }
+
+    /// A topic whose messages cannot be read, and why.
+    pub(crate) fn unread(name: String, kind: String, why: String) -> Self {
+        Self { name, kind, wire: Wire::Ros1, definition: Err(why) }
+    }
+
+    /// The index of the topic among others, to which it is added if it is new.
+    pub(crate) fn place_in(self, topics: &mut Vec<Self>) -> usize {
+        let known = topics.iter().position(|own| *own == self);
+        known.unwrap_or_else(|| {
+            topics.push(self);
+            topics.len() - 1
+        })
+    }
+
+    /// Reads a number of a message; `None` where an array is shorter than that.
+    ///
+    /// # Errors
+    /// Returns an error if the message is not as its definition says.
+    pub fn number(&self, path: &Path, message: &[u8]) -> Result<Option<f64>, Fault> {
+        match &self.definition {
+            Ok(definition) => wire::number(self.wire, definition, path, message),
+            Err(_) => Ok(None),
+        }
+    }
+
+    /// Returns whether a message is longer than its definition.
+    pub fn is_longer(&self, message: &[u8]) -> bool {
+        self.definition.as_ref().is_ok_and(|own| wire::is_longer(self.wire, own, message))
+    }
+
+    /// Reads a text of a message.
+    pub fn text(&self, field: &str, message: &[u8]) -> Option<String> {
+        let definition = self.definition.as_ref().ok()?;
+        wire::text(self.wire, definition, &definition.text(field)?, message)
+    }
+
+    /// Reads a time in a message, in ns.
+    ///
+    /// # Errors
+    /// Returns an error if the message is not as its definition says.
+    pub fn stamp(&self, stamp: &Stamp, message: &[u8]) -> Result<Option<i64>, Fault> {
+        let read = |path| self.number(path, message);
+        let parts = read(&stamp.seconds)?.zip(read(&stamp.nanoseconds)?);
+        Ok(parts.map(|(seconds, nanoseconds)| seconds as i64 * 1_000_000_000 + nanoseconds as i64))
+    }
+}

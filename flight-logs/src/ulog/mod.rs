@@ -1,0 +1,81 @@
+//! PX4 flight logs, which are read as a whole: a topic each for what is registered, later instances as `topic:1`.
+
+mod scan;
+
+use super::bytes::Bytes;
+use super::faults::Faults;
+use super::topic::Topic;
+use super::{Entry, Log};
+use crate::{Damage, Error, ErrorKind, Result};
+use scan::{DATA, HEADER, Scan, Series};
+use std::ops::Range;
+use std::path::Path;
+
+/// The first bytes of a log.
+pub(crate) const START: &[u8] = b"ULog";
+
+/// A log, all in memory.
+pub(crate) struct Ulog {
+    bytes: Vec<u8>,
+    topics: Vec<Topic>,
+    /// More about each of the topics.
+    series: Vec<Series>,
+    /// The good messages of data in their order: which topic, and where in the file.
+    messages: std::vec::IntoIter<(usize, usize)>,
+    /// The content of the present message.
+    present: Range<usize>,
+    faults: Faults,
+}
+
+impl Ulog {
+    /// Reads a log and sees to it that it is whole.
+    pub(crate) fn open(path: &Path, mut faults: Faults) -> Result<Self> {
+        let refused = |kind| Err(Error::of(path, kind));
+        let mut bytes = Vec::new();
+        let read = Bytes::open(path)?.take(u64::MAX, &mut bytes);
+        read.map_err(|error| Error::of(path, ErrorKind::Read(error)))?;
+        if bytes.is_empty() {
+            return refused(ErrorKind::Empty);
+        }
+        if bytes.len() < HEADER || !bytes.starts_with(START) {
+            let what = "not a flight log; ULog files start with `ULog` and 12 bytes more";
+            return refused(ErrorKind::NotALog(what.to_owned()));
+        }
+        let Scan { topics, series, messages, findings, .. } = Scan::run(&bytes);
+        if faults.damage() == Damage::Refuse {
+            let length = bytes.len() as u64;
+            if let Some(Range { start, end }) = findings.damage {
+                let (at, next) = (start as u64, end as u64);
+                return refused(ErrorKind::Damaged { at, length, next });
+            }
+            if let Some(cut) = findings.cut {
+                return refused(ErrorKind::Cut { at: cut as u64, length });
+            }
+        }
+        findings.to_string().lines().for_each(|line| faults.note(line.to_owned()));
+        Ok(Self { bytes, topics, series, messages: messages.into_iter(), present: 0..0, faults })
+    }
+}
+
+impl Log for Ulog {
+    fn next(&mut self) -> Result<Option<Entry>> {
+        let Some((topic, at)) = self.messages.next() else { return Ok(None) };
+        let series = &self.series[topic];
+        self.present = at + DATA..at + DATA + series.lengths.0;
+        let time = self.topics[topic].number(&series.time, self.message());
+        let time = time.ok().flatten().unwrap_or_default() as i64;
+        Ok(Some(Entry { topic, time: time.saturating_mul(1000), at: at as u64, sequence: None }))
+    }
+
+    fn topics(&self) -> &[Topic] {
+        &self.topics
+    }
+
+    fn message(&self) -> &[u8] {
+        &self.bytes[self.present.clone()]
+    }
+
+    fn faults(&mut self) -> &mut Faults {
+        &mut self.faults
+    }
+}

@@ -1,0 +1,298 @@
+//! The messages of a log one by one, and which of them can be read.
+
+use super::super::definition::{Definition, Path, declared};
+use super::super::topic::Topic;
+use super::super::wire::{self, Wire};
+use std::collections::HashMap;
+use std::fmt;
+use std::ops::Range;
+
+/// The length of the file's header.
+pub(crate) const HEADER: usize = 16;
+/// What comes before the content of a message of data: length, kind and id.
+pub(crate) const DATA: usize = 5;
+
+/// Findings on a log besides its data.
+#[derive(Debug, Default)]
+pub(crate) struct Findings {
+    unregistered: Found,
+    formats: Found,
+    lengths: Found,
+    damaged: Found,
+    dropouts: Dropouts,
+    /// The place at which the last message, which does not end, begins.
+    pub(crate) cut: Option<usize>,
+    /// The place of the first damage, and that at which messages go on.
+    pub(crate) damage: Option<Range<usize>>,
+}
+
+/// Messages that were skipped.
+#[derive(Debug, Default)]
+struct Found {
+    count: u64,
+    first: usize,
+}
+
+/// Times in which the logger could not write.
+#[derive(Debug, Default)]
+struct Dropouts {
+    count: u64,
+    milliseconds: u64,
+    longest: u64,
+}
+
+impl Found {
+    fn at(&mut self, place: usize) {
+        if self.count == 0 {
+            self.first = place;
+        }
+        self.count += 1;
+    }
+}
+
+/// A line for each thing found.
+impl fmt::Display for Findings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Dropouts { count, milliseconds, longest } = self.dropouts;
+        if count > 0 {
+            writeln!(
+                f,
+                "{count} dropouts of the logger, {milliseconds} ms in all, {longest} ms the longest"
+            )?;
+        }
+        for (found, what) in [
+            (&self.unregistered, "messages with an id that is not registered"),
+            (&self.formats, "definitions that cannot be read"),
+            (&self.lengths, "messages longer or shorter than their format"),
+            (&self.damaged, "damaged stretches"),
+        ] {
+            let Found { count, first } = found;
+            if *count > 0 {
+                writeln!(f, "{count} {what} were skipped, the first at byte {first}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A message: where it begins, its kind, and its content.
+struct Message {
+    at: usize,
+    kind: u8,
+    content: Range<usize>,
+}
+
+/// The walk over a log.
+pub(crate) struct Scan<'a> {
+    bytes: &'a [u8],
+    /// The definitions by name, a line for each field.
+    formats: HashMap<String, String>,
+    /// The present meaning of each registered id, as an index of `topics`.
+    registered: HashMap<u16, usize>,
+    /// What was registered.
+    pub topics: Vec<Topic>,
+    /// More about each of them.
+    pub series: Vec<Series>,
+    /// The good messages of data in their order: which of the above, and where in the file.
+    pub messages: Vec<(usize, usize)>,
+    pub findings: Findings,
+}
+
+/// The messages of a topic.
+pub(crate) struct Series {
+    /// The place of the time at which a message was logged.
+    pub time: Path,
+    /// How long a message is, without the padding at its end, which is seldom logged, and with it.
+    pub lengths: (usize, usize),
+}
+
+impl<'a> Scan<'a> {
+    /// Takes all messages of a log that is as long as its header at least.
+    pub(crate) fn run(bytes: &'a [u8]) -> Self {
+        let mut scan = Self {
+            bytes,
+            formats: HashMap::new(),
+            registered: HashMap::new(),
+            topics: Vec::new(),
+            series: Vec::new(),
+            messages: Vec::new(),
+            findings: Findings::default(),
+        };
+        let appended = scan.appended();
+        let before = appended.unwrap_or(bytes.len());
+        scan.part(HEADER..before, appended.is_some());
+        if let Some(start) = appended {
+            scan.part(start..bytes.len(), false);
+        }
+        scan
+    }
+
+    /// The place at which data was appended later, such as after a crash.
+    fn appended(&self) -> Option<usize> {
+        let first = self.header(HEADER, self.bytes.len()).filter(|first| first.kind == b'B')?;
+        let content = &self.bytes[first.content];
+        let is_appended = content.get(8)? & 1 == 1;
+        let place = u64::from_le_bytes(content.get(16..24)?.try_into().ok()?);
+        let place = usize::try_from(place).ok()?;
+        (is_appended && (HEADER..self.bytes.len()).contains(&place)).then_some(place)
+    }
+
+    fn part(&mut self, part: Range<usize>, may_be_cut: bool) {
+        let mut at = part.start;
+        while at < part.end {
+            if let Some(message) = self.accepted(at, part.end) {
+                at = message.content.end;
+                self.take(&message);
+                continue;
+            }
+            if let Some(next) = (at + 1..part.end).find(|&next| self.goes_on(next, part.end)) {
+                self.findings.damaged.at(at);
+                self.findings.damage.get_or_insert(at..next);
+                at = next;
+            } else {
+                if !may_be_cut {
+                    self.findings.cut = Some(at);
+                }
+                return;
+            }
+        }
+    }
+
+    fn header(&self, at: usize, end: usize) -> Option<Message> {
+        let &[low, high, kind] = self.bytes.get(at..at + 3)? else { return None };
+        let length = usize::from(u16::from_le_bytes([low, high]));
+        let content = at + 3..at + 3 + length;
+        (content.end <= end).then_some(Message { at, kind, content })
+    }
+
+    /// A message here that may be skipped but leads to the next.
+    fn accepted(&self, at: usize, end: usize) -> Option<Message> {
+        let message = self.header(at, end)?;
+        if self.is_good(&message) {
+            return Some(message);
+        }
+        let next = message.content.end;
+        let is_led = next == end || self.header(next, end).is_some_and(|next| is_known(&next));
+        let is_one = message.kind != 0 && !message.content.is_empty();
+        (is_one && is_led).then_some(message)
+    }
+
+    /// Whether good messages follow each other from here.
+    fn goes_on(&self, at: usize, end: usize) -> bool {
+        const ENOUGH: usize = 3;
+        let mut next = at;
+        for _ in 0..ENOUGH {
+            match self.header(next, end).filter(|message| self.is_good(message)) {
+                Some(message) => next = message.content.end,
+                None => return false,
+            }
+        }
+        true
+    }
+
+    fn is_good(&self, message: &Message) -> bool {
+        let fits = || {
+            let (id, length) = self.data_of(message)?;
+            let (short, long) = self.series.get(*self.registered.get(&id)?)?.lengths;
+            (length == short || length == long).then_some(())
+        };
+        is_known(message) && (message.kind != b'D' || fits().is_some())
+    }
+
+    /// The id of a message of data, and how many bytes follow.
+    fn data_of(&self, message: &Message) -> Option<(u16, usize)> {
+        let id = self.bytes[message.content.clone()].first_chunk()?;
+        Some((u16::from_le_bytes(*id), message.content.len() - 2))
+    }
+
+    fn take(&mut self, message: &Message) {
+        let content = &self.bytes[message.content.clone()];
+        match message.kind {
+            b'F' => self.define(message.at, content),
+            b'A' => self.register(message.at, content),
+            b'D' => {
+                let id = self.data_of(message).map(|(id, _)| id);
+                match id.map(|id| self.registered.get(&id)) {
+                    Some(None) => self.findings.unregistered.at(message.at),
+                    Some(Some(&series)) if self.is_good(message) => {
+                        self.messages.push((series, message.at));
+                    }
+                    _ => self.findings.lengths.at(message.at),
+                }
+            }
+            b'O' => {
+                if let Some(&milliseconds) = content.first_chunk() {
+                    let milliseconds = u64::from(u16::from_le_bytes(milliseconds));
+                    let dropouts = &mut self.findings.dropouts;
+                    dropouts.count += 1;
+                    dropouts.milliseconds += milliseconds;
+                    dropouts.longest = dropouts.longest.max(milliseconds);
+                }
+            }
+            // Parameters, messages in words and the like are not asked for.
+            _ => {}
+        }
+    }
+
+    /// Keeps a definition, `name:type field;type[8] field;`.
+    fn define(&mut self, at: usize, content: &[u8]) {
+        let defined = str::from_utf8(content).ok().and_then(|text| text.split_once(':'));
+        let fields = |fields: &str| fields.replace(';', "\n");
+        let defined = defined.map(|(name, own)| (name.to_owned(), fields(own)));
+        let are_fields = |fields: &str| {
+            fields.lines().all(|field| field.trim().is_empty() || declared(field).is_some())
+        };
+        match defined.filter(|(_, fields)| are_fields(fields)) {
+            Some((name, fields)) => drop(self.formats.insert(name, fields)),
+            None => self.findings.formats.at(at),
+        }
+    }
+
+    fn register(&mut self, at: usize, content: &[u8]) {
+        /// More than the longest message.
+        const NOTHING: &[u8] = &[0; 1 << 16];
+        let registered = || {
+            let (&[instance, low, high], name) = content.split_first_chunk()?;
+            let name = str::from_utf8(name).ok()?;
+            let definition = Definition::of_px4(name, &self.formats).ok()?;
+            let length = wire::length(Wire::Ros1, &definition, NOTHING).ok()?;
+            let series = Series {
+                time: definition.time()?,
+                lengths: (length - definition.padding(), length),
+            };
+            let name = match instance {
+                0 => name.to_owned(),
+                instance => format!("{name}:{instance}"),
+            };
+            let topic =
+                Topic { name, kind: String::new(), wire: Wire::Ros1, definition: Ok(definition) };
+            Some((u16::from_le_bytes([low, high]), topic, series))
+        };
+        let Some((id, topic, series)) = registered() else {
+            self.findings.formats.at(at);
+            return;
+        };
+        let place = topic.place_in(&mut self.topics);
+        if place == self.series.len() {
+            self.series.push(series);
+        }
+        self.registered.insert(id, place);
+    }
+}
+
+/// Whether there is such a kind, of this length.
+fn is_known(message: &Message) -> bool {
+    let length = message.content.len();
+    match message.kind {
+        b'B' => length >= 40,
+        b'F' => length >= 3,
+        b'A' => length >= 4,
+        b'R' | b'O' => length == 2,
+        b'D' => length > 2,
+        b'S' => length == 8,
+        b'L' => length >= 9,
+        b'C' => length >= 11,
+        b'I' | b'M' | b'P' | b'Q' => length >= 2,
+        _ => false,
+    }
+}

@@ -1,0 +1,13 @@
+//! Writes a log of each kind that is made byte by byte, for checks in other languages.
+
+use flight_logs::made as logs;
+use std::{env, fs, io, path::Path};
+
+fn main() -> io::Result<()> {
+    let directory = env::args().nth(1).ok_or(io::ErrorKind::InvalidInput)?;
+    let write = |name: &str, bytes: Vec<u8>| fs::write(Path::new(&directory).join(name), bytes);
+    for kind in logs::KINDS {
+        write(kind.name(), kind.log(kind.packings().last().unwrap_or(&"none")))?;
+    }
+    write("log.bbl", logs::blackbox())
+}

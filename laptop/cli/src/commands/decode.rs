@@ -1,0 +1,245 @@
+//! `spikewire decode`: spikes back to values, in constant memory.
+
+use crate::options::tell_each;
+use anyhow::{Context, Result, anyhow, bail};
+use catalogue::run::{Event, SampleType};
+use clap::Args;
+use flight_logs::Kind;
+use lab::bank::Bank;
+use lab::input::text;
+use lab::output::Output;
+use lab::spikes::{Header, Item, Messages, Reader, Spikes};
+use lab::timeline::Timeline;
+use std::fs::File;
+use std::io::{self, BufReader, Read, Write};
+use std::path::{Path, PathBuf};
+
+/// Decode a file of spikes, as `encode` writes it, from that file alone, or a log of the toolbox's messages.
+///
+/// Writes `index,value`, with several channels a column for each by its name, and with recorded times
+/// `time_us`: exact where there are events and at gaps, between them evenly spaced.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Example:
+  spikewire encode --scheme sf --threshold 0.1 --column gyro_x flight.csv -o spikes.csv
+  spikewire decode spikes.csv -o decoded.csv")]
+pub(crate) struct Decode {
+    /// File of spikes, or ROS bag or MCAP file of them; `-` is a file of spikes on standard input
+    #[arg(default_value = "-")]
+    spikes: PathBuf,
+    /// Take the whole messages of a log that is cut short or damaged
+    #[arg(long)]
+    accept_cut: bool,
+    /// CSV file `index,value` and perhaps `time_us`; standard output unless given
+    #[arg(short, long)]
+    output: Option<PathBuf>,
+}
+
+const BUFFER: usize = 1 << 18;
+
+/// Runs the command.
+///
+/// # Errors
+/// The file of spikes or the output are not good.
+pub(crate) fn run(options: &Decode) -> Result<()> {
+    let Decode { spikes, output, accept_cut } = options;
+    let is_stdin = spikes == Path::new("-");
+    let kind = if is_stdin { None } else { Kind::of(spikes)? };
+    let open = || Output::open(output.as_deref(), spikes);
+    if let Some(kind) = kind {
+        let (log, header) = Messages::open(spikes, kind, *accept_cut)?;
+        return decode(log, &header, &spikes.display().to_string(), open);
+    }
+    if *accept_cut {
+        bail!("{}: a file of spikes takes no --accept-cut", spikes.display());
+    }
+    let (input, name): (Box<dyn Read>, _) = if is_stdin {
+        (Box::new(io::stdin()), "standard input".to_owned())
+    } else {
+        let name = spikes.display().to_string();
+        let file = File::open(spikes).with_context(|| format!("{name}: cannot be opened"))?;
+        (Box::new(file), name)
+    };
+    let input = BufReader::with_capacity(BUFFER, text(input, &name)?);
+    let (reader, header) = Reader::open(input, &name)?;
+    decode(reader, &header, &name, open)
+}
+
+fn decode(
+    mut reader: impl Spikes,
+    header: &Header,
+    file: &str,
+    open: impl FnOnce() -> Result<Output>,
+) -> Result<()> {
+    /// How many events or times are taken together.
+    const BATCH: usize = 4096;
+    let bank = Bank::new(header.scheme, &header.channels).with_context(|| file.to_owned())?;
+    let mut decoding = Decoding::new(bank, header, reader.is_timed(), open()?)?;
+    let mut events: Vec<Event> = Vec::new();
+    loop {
+        let decoded = match reader.next()? {
+            Item::Event { event, time } => {
+                if let Some(time) = time {
+                    decoding.timeline.learn(event.sample, time);
+                }
+                // Events of one sample stay together.
+                let is_next = events.last().is_some_and(|last| last.sample < event.sample);
+                let decoded = if events.len() >= BATCH && is_next {
+                    decoding.advance(event.sample, &mut events)
+                } else {
+                    Ok(())
+                };
+                events.push(event);
+                decoded
+            }
+            Item::Time { sample, time } => {
+                decoding.timeline.learn(sample, time);
+                if decoding.timeline.ahead() > BATCH {
+                    decoding.advance(sample, &mut events)
+                } else {
+                    Ok(())
+                }
+            }
+            Item::Rejected { first, count } => {
+                decoding.advance(first, &mut events).and_then(|()| decoding.skip(count))
+            }
+            Item::End { samples } => {
+                tell_each(&reader.notes());
+                decoding
+                    .advance(samples, &mut events)
+                    .map_err(|error| error.at(&reader.place()))?;
+                return decoding.output.finish();
+            }
+        };
+        decoded.map_err(|error| error.at(&reader.place()))?;
+    }
+}
+
+/// Values in the making.
+struct Decoding {
+    bank: Bank,
+    output: Output,
+    is_single: bool,
+    is_timed: bool,
+    timeline: Timeline,
+    /// The next sample, as the file counts.
+    next: u64,
+    /// How many were skipped before.
+    skipped: u64,
+    columns: Vec<Vec<f64>>,
+    line: Vec<u8>,
+}
+
+enum Failure {
+    Code(Event),
+    Output(io::Error),
+}
+
+impl Failure {
+    fn at(self, place: &str) -> anyhow::Error {
+        match self {
+            Self::Code(event) => {
+                anyhow!(
+                    "{place} or before: sample {} has events that no encoder emits together",
+                    event.sample
+                )
+            }
+            Self::Output(error) => error.into(),
+        }
+    }
+}
+
+impl Decoding {
+    fn new(bank: Bank, header: &Header, is_timed: bool, mut output: Output) -> Result<Self> {
+        let names = names(header).join(",");
+        writeln!(output, "index,{names}{}", if is_timed { ",time_us" } else { "" })?;
+        Ok(Self {
+            bank,
+            output,
+            is_single: header.sample == SampleType::F32,
+            is_timed,
+            timeline: Timeline::new(header.rate),
+            next: 0,
+            skipped: 0,
+            columns: vec![Vec::new(); header.channels.len()],
+            line: Vec::new(),
+        })
+    }
+
+    /// Decodes up to this sample, which takes all events.
+    fn advance(&mut self, end: u64, events: &mut Vec<Event>) -> Result<(), Failure> {
+        const MOST: u64 = 8192;
+        for event in events.iter_mut() {
+            event.sample = event.sample.saturating_sub(self.skipped);
+        }
+        let mut left = events.as_slice();
+        while self.next < end {
+            let count = (end - self.next).min(MOST);
+            let stop = self.next - self.skipped + count;
+            let (now, later) = left.split_at(left.partition_point(|event| event.sample < stop));
+            self.columns.iter_mut().for_each(Vec::clear);
+            self.bank.decode(count as usize, now, &mut self.columns).map_err(|event| {
+                Failure::Code(Event { sample: event.sample + self.skipped, ..event })
+            })?;
+            self.write().map_err(Failure::Output)?;
+            left = later;
+        }
+        events.clear();
+        Ok(())
+    }
+
+    /// Samples that the encoder never saw have no value.
+    fn skip(&mut self, count: u64) -> Result<(), Failure> {
+        const MOST: u64 = 8192;
+        self.skipped += count;
+        let mut left = count;
+        while left > 0 {
+            let now = left.min(MOST);
+            for column in &mut self.columns {
+                column.clear();
+                column.resize(now as usize, f64::NAN);
+            }
+            self.write().map_err(Failure::Output)?;
+            left -= now;
+        }
+        Ok(())
+    }
+
+    fn write(&mut self) -> io::Result<()> {
+        self.line.clear();
+        let (mut whole, mut decimals) = (itoa::Buffer::new(), zmij::Buffer::new());
+        let rows = self.columns.first().map_or(0, Vec::len);
+        for row in 0..rows {
+            self.line.extend(whole.format(self.next).as_bytes());
+            for column in &self.columns {
+                let value = column[row];
+                self.line.push(b',');
+                let text = if self.is_single {
+                    decimals.format(value as f32)
+                } else {
+                    decimals.format(value)
+                };
+                self.line.extend(text.as_bytes());
+            }
+            if self.is_timed {
+                self.line.push(b',');
+                self.line.extend(whole.format(self.timeline.at(self.next)).as_bytes());
+            }
+            self.line.push(b'\n');
+            self.next += 1;
+        }
+        self.output.write_all(&self.line)
+    }
+}
+
+/// The names of the columns: `value`, or with several channels as in the recording.
+fn names(header: &Header) -> Vec<String> {
+    let count = header.channels.len();
+    if count == 1 {
+        return vec!["value".to_owned()];
+    }
+    let note = header.notes.iter().find(|(key, _)| matches!(*key, "column" | "field"));
+    let names: Vec<String> =
+        note.map_or(Vec::new(), |(_, names)| names.split(',').map(str::to_owned).collect());
+    if names.len() == count { names } else { (0..count).map(|n| format!("value{n}")).collect() }
+}

@@ -1,0 +1,147 @@
+//! Running the program.
+#![allow(dead_code, unreachable_pub, unused_imports, unused_macros)]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// What a run left behind.
+pub struct Ran {
+    pub status: i32,
+    pub output: String,
+    pub told: String,
+}
+
+impl Ran {
+    /// Its output, which is JSON.
+    pub fn json(&self) -> serde_json::Value {
+        serde_json::from_str(&self.output).unwrap()
+    }
+}
+
+/// Runs `spikewire` with these words, which are formatted; nothing goes wrong.
+macro_rules! ran {
+    ($($words:tt)*) => { $crate::common::good(&format!($($words)*), "") };
+}
+pub(crate) use ran;
+
+/// Runs `spikewire` with arguments separated by blanks, and with this on standard input.
+pub fn spikewire(arguments: &str, input: &str) -> Ran {
+    let RanBytes { status, output, told } = spikewire_bytes(arguments, input.as_bytes());
+    Ran { status, output: String::from_utf8(output).unwrap(), told }
+}
+
+/// What a run on bytes left behind.
+pub struct RanBytes {
+    pub status: i32,
+    pub output: Vec<u8>,
+    pub told: String,
+}
+
+/// The same with bytes.
+pub fn spikewire_bytes(arguments: &str, input: &[u8]) -> RanBytes {
+    use std::io::Write;
+    let mut child = Command::new(env!("CARGO_BIN_EXE_spikewire"))
+        .args(arguments.split_whitespace())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    let done = std::thread::scope(|scope| {
+        // A program that refuses its options does not read; one with much to say writes meanwhile.
+        scope.spawn(move || {
+            let _ = stdin.write_all(input);
+        });
+        child.wait_with_output().unwrap()
+    });
+    RanBytes {
+        status: done.status.code().unwrap(),
+        output: done.stdout,
+        told: String::from_utf8(done.stderr).unwrap(),
+    }
+}
+
+/// The same with bytes where nothing goes wrong.
+pub fn good_bytes(arguments: &str, input: &[u8]) -> RanBytes {
+    let ran = spikewire_bytes(arguments, input);
+    assert_eq!(ran.status, 0, "spikewire {arguments}: {}", ran.told);
+    ran
+}
+
+/// The same where nothing goes wrong.
+pub fn good(arguments: &str, input: &str) -> Ran {
+    let ran = spikewire(arguments, input);
+    assert_eq!(ran.status, 0, "spikewire {arguments}: {}", ran.told);
+    ran
+}
+
+/// The same where it is refused, with words that the message holds.
+pub fn refused(arguments: &str, input: &str, words: &[&str]) {
+    let ran = spikewire_bytes(arguments, input.as_bytes());
+    assert_eq!(ran.status, 2, "spikewire {arguments}: {}", ran.told);
+    for word in words {
+        assert!(ran.told.contains(word), "spikewire {arguments}: `{word}` is not in: {}", ran.told);
+    }
+}
+
+/// A table of one column `x`.
+pub fn table(values: &[f64]) -> String {
+    let lines = values.iter().map(|value| format!("{value}\n"));
+    "x\n".to_owned() + &lines.collect::<String>()
+}
+
+/// The events of a file of spikes as (index, address, polarity).
+pub fn events(spikes: &str) -> Vec<(usize, usize, i32)> {
+    let lines = spikes.lines().filter(|line| !line.starts_with('#')).skip(1);
+    lines
+        .map(|line| {
+            let fields: Vec<i32> =
+                line.split(',').take(3).map(|field| field.parse().unwrap()).collect();
+            (fields[0] as usize, fields[1] as usize, fields[2])
+        })
+        .collect()
+}
+
+/// The spikes of one neuron, one number a sample.
+pub fn train(spikes: &str) -> Vec<i32> {
+    let samples = spikes.lines().find_map(|line| line.strip_prefix("# samples=")).unwrap();
+    let mut train = vec![0; samples.parse().unwrap()];
+    for (index, _, polarity) in events(spikes) {
+        train[index] = polarity;
+    }
+    train
+}
+
+/// The values of a decoded file of one channel.
+pub fn values(decoded: &str) -> Vec<f64> {
+    decoded.lines().skip(1).map(|line| line.split(',').nth(1).unwrap().parse().unwrap()).collect()
+}
+
+/// A file that holds this, and its directory, which goes with the value.
+pub fn file(name: &str, content: impl AsRef<[u8]>) -> (tempfile::TempDir, String) {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join(name);
+    std::fs::write(&path, content).unwrap();
+    (directory, path.display().to_string())
+}
+
+/// A file of the repository's flight data.
+pub fn flight(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data").join(name).display().to_string()
+}
+
+/// The flight logs that two published crates carry: name and path.
+pub fn flight_logs() -> [PathBuf; 2] {
+    let metadata = cargo_metadata::MetadataCommand::new()
+        .manifest_path(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"))
+        // What other systems need was never downloaded.
+        .other_options(["--offline", "--filter-platform", "host-tuple"].map(str::to_owned))
+        .exec()
+        .unwrap();
+    let file = |package: &str, file: &str| {
+        let package = metadata.packages.iter().find(|found| found.name == package).unwrap();
+        package.manifest_path.parent().unwrap().join(file).into_std_path_buf()
+    };
+    [file("ulog-rs", "test_data/sample-small.ulg"), file("yule_log", "data/sample_log_small.ulg")]
+}

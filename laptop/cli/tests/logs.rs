@@ -1,0 +1,301 @@
+//! ROS bags and MCAP files, read and written, whole and with faults.
+
+mod common;
+
+use common::{file, flight, good, ran, refused, values};
+use flight_logs::made::{
+    CHUNKED, KINDS, Kind, PAGE, blackbox, fields, frame, gyro, long, record, seconds, time, wave,
+};
+use serde_json::Value;
+
+/// What `info` says of a log, with these options.
+fn info(name: &str, log: impl AsRef<[u8]>, options: &str) -> String {
+    let (_directory, path) = file(name, log);
+    ran!("info {options} {path}").output
+}
+
+/// A log that `info` refuses with these words; what it says of it where damage is accepted.
+fn damaged(name: &str, log: &[u8], words: &[&str]) -> String {
+    let (_directory, path) = file(name, log);
+    refused(&format!("info {path}"), "", words);
+    ran!("info --accept-cut {path}").output
+}
+
+const SCHEME: &str = "encode --scheme sf --threshold 0.1 --topic imu --field rate";
+
+#[test]
+fn every_packing_reads_the_same() {
+    for kind in KINDS {
+        let mut all = kind.packings().iter().map(|how| {
+            let (_directory, path) = file(kind.name(), kind.log(how));
+            let told = ran!("info {path}").output;
+            assert!(told.contains("/imu: 100 samples of t/"), "{told}");
+            assert!(told.contains("0.495 s, 200.00 Hz\n  0 gaps above 7.500 ms"), "{told}");
+            assert!(told.contains("rate, few[]\n  text: header.frame_id\n"), "{told}");
+            let spikes = ran!("{SCHEME} {path}").output;
+            assert!(spikes.contains("# time=99,1700000000495000\n# samples=100\n"), "{spikes}");
+            spikes
+        });
+        let first = all.next().unwrap();
+        assert!(all.all(|other| other == first), "{kind:?}");
+        // The values came through: decoded, they are within two steps.
+        let decoded = values(&good("decode", &first).output);
+        for (sample, value) in (0..).zip(decoded) {
+            assert!((value - wave(sample)).abs() < 0.2, "{kind:?}: sample {sample}: {value}");
+        }
+    }
+}
+
+#[test]
+fn a_log_that_is_cut_gives_what_is_before_where_that_is_accepted() {
+    for kind in CHUNKED {
+        for how in kind.packings() {
+            let log = kind.log(how);
+            // Within the third chunk from the end, and not at its start.
+            let chunk = (log.len() - kind.start().len()) / 10;
+            let log = &log[..log.len() - 2 * chunk - chunk / 2];
+            let words = ["byte", "ends within the record; --accept-cut"];
+            let told = damaged(kind.name(), log, &words);
+            let count = told.split("/imu: ").nth(1).unwrap().split(' ').next().unwrap();
+            let count: u32 = count.parse().unwrap();
+            assert!((69..80).contains(&count), "{kind:?} {how}: {told}");
+            assert!(told.starts_with("nothing is read from byte"), "{told}");
+        }
+    }
+}
+
+#[test]
+fn a_damaged_chunk_is_refused_or_passed_over() {
+    for kind in CHUNKED {
+        for how in kind.packings().iter().filter(|how| !(kind == Kind::Bag && **how == "none")) {
+            let records: Vec<u8> = (0..10).flat_map(|sample| kind.record(sample)).collect();
+            let (start, chunk) = (kind.start(), kind.chunk(how, &records));
+            let mut odd = chunk.clone();
+            let middle = odd.len() - 40;
+            odd[middle..middle + 20].fill(0x55);
+            let place = start.len() + chunk.len();
+            let log = [&start, &chunk, &odd, &chunk, &kind.end()].map(Vec::as_slice).concat();
+            let told = damaged(kind.name(), &log, &[&format!("byte {place}: ")]);
+            let skipped = format!("skipped at byte {place}: ");
+            assert!(told.starts_with(&skipped), "{kind:?} {how}: {told}");
+        }
+    }
+}
+
+#[test]
+fn a_database_that_is_cut_or_damaged_gives_the_pages_that_are_whole() {
+    let log = Kind::Db3.log("none");
+    let place = log.len() - PAGE;
+    let words = format!("byte {place}: the file ends within its page {}", log.len() / PAGE);
+    let told = damaged("log.db3", &log[..log.len() - PAGE / 2], &[&words, "--accept-cut"]);
+    assert!(told.contains("/imu: 90 samples of t/msg/Imu"), "{told}");
+    let mut other = log.clone();
+    other[log.len() - 3 * PAGE] = 10;
+    let words = "it is no page of a table; --accept-cut goes on behind it";
+    let told = damaged("log.db3", &other, &[words]);
+    assert!(told.contains("/imu: 90 samples of t/msg/Imu") && told.contains("1 gaps"), "{told}");
+    let (directory, path) = file("log.db3", &log);
+    std::fs::write(directory.path().join("log.db3-wal"), b"more").unwrap();
+    let words = "log.db3-wal holds messages that are not in the file yet";
+    refused(&format!("info {path}"), "", &[words]);
+}
+
+#[test]
+fn the_files_of_a_directory_are_read_one_after_the_other() {
+    let directory = tempfile::tempdir().unwrap();
+    let write = |name: &str, content: &[u8]| {
+        std::fs::write(directory.path().join(name), content).unwrap();
+    };
+    let metadata =
+        "rosbag2_bagfile_information:\n  relative_file_paths:\n    - b.db3\n    - a.mcap\n";
+    write("metadata.yaml", metadata.as_bytes());
+    write("b.db3", &Kind::Db3.log("none"));
+    write("a.mcap", &Kind::Mcap.log("none"));
+    let path = directory.path().display();
+    for path in [path.to_string(), format!("{path}/metadata.yaml")] {
+        let told = ran!("info {path}").output;
+        assert!(told.contains("/imu: 200 samples of t/msg/Imu"), "{told}");
+        let anew = "starts anew 1 times, each a segment of its own: -495.000 ms after sample 99";
+        assert!(told.contains(anew), "{told}");
+    }
+    std::fs::remove_file(directory.path().join("b.db3")).unwrap();
+    refused(&format!("info {path}"), "", &["b.db3: cannot be opened"]);
+    let empty = tempfile::tempdir().unwrap();
+    refused(&format!("info {}", empty.path().display()), "", &["metadata.yaml: cannot be read"]);
+}
+
+/// Steps of 100 follow the rate, which changes by less from frame to frame.
+#[test]
+fn a_blackbox_log_is_read_frame_by_frame() {
+    let (_directory, path) = file("log.bbl", blackbox());
+    let spikes = ran!("encode --scheme sf --threshold 101 --field gyroADC[0] {path}").output;
+    for (sample, value) in (0..).zip(values(&good("decode", &spikes).output)) {
+        assert!((value - gyro(sample) as f64).abs() <= 101.0, "sample {sample}: {value}");
+    }
+}
+
+#[test]
+fn a_blackbox_log_that_is_cut_or_damaged_goes_on_where_it_can() {
+    let log = blackbox();
+    let end = log.len() - b"E\xffEnd of log\0".len();
+    let words = "the log ends within a frame; --accept-cut";
+    let told = damaged("cut.bbl", &log[..end - 3], &[words]);
+    assert!(told.contains("main: 199 samples"), "{told}");
+    // Without its end it is whole.
+    let told = info("unended.bbl", &log[..end], "");
+    assert!(told.starts_with("the log has no end") && told.contains("200 samples"), "{told}");
+    // A damaged frame: the one before it is doubted, and those up to the next of all numbers mean nothing.
+    let before: usize = (0..69).map(|sample| frame(sample).len()).sum();
+    let head = end - (0..200).map(|sample| frame(sample).len()).sum::<usize>();
+    let mut other = log.clone();
+    other[head + before + frame(69).len()] = 0;
+    let words = format!("byte {}: ", head + before);
+    let words = [&words, "bytes are no frames; --accept-cut goes on"];
+    let told = damaged("damaged.bbl", &other, &words);
+    assert!(told.contains("main: 173 samples") && told.contains("1 gaps"), "{told}");
+    // Two logs in one file.
+    let (_directory, path) = file("two.bbl", [blackbox(), blackbox()].concat());
+    let told = ran!("info {path}").output;
+    assert!(told.contains("main: 200 samples") && told.contains("main:1: 200 samples"), "{told}");
+    let ran = ran!("encode --scheme sf --threshold 101 --topic main:1 --field time {path}");
+    assert!(ran.output.contains("# samples=200\n"), "{}", ran.output);
+}
+
+#[test]
+fn logs_without_an_end_or_an_index_are_read() {
+    let mut bag = Kind::Bag.log("none");
+    let place = bag.windows(10).position(|window| window == b"index_pos=").unwrap() + 10;
+    bag[place..place + 8].fill(0);
+    let mut mcap = Kind::Mcap.log("none");
+    mcap.truncate(mcap.len() - Kind::Mcap.end().len());
+    for (kind, log, said) in [(Kind::Bag, bag, "has no index"), (Kind::Mcap, mcap, "has no end")] {
+        let told = info(kind.name(), log, "");
+        assert!(told.contains(said) && told.contains("/imu: 100 samples"), "{told}");
+    }
+}
+
+#[test]
+fn encodings_that_are_not_known_are_named() {
+    let mut log = Kind::Mcap.log("none");
+    let place = log.windows(3).position(|window| window == b"cdr").unwrap();
+    log[place..place + 3].copy_from_slice(b"foo");
+    let (_directory, path) = file("log.mcap", &log);
+    let told = ran!("info {path}").output;
+    assert!(told.contains("not read: encoding `foo` with a schema of `ros2msg`"), "{told}");
+    refused(&format!("{SCHEME} {path}"), "", &["encoding `foo` with a schema of `ros2msg`"]);
+    let chunk = record(&[("op", &[5]), ("compression", b"zip"), ("size", &[0; 4])], &[]);
+    let (_directory, path) = file("log.bag", [Kind::Bag.start(), chunk].concat());
+    refused(&format!("info {path}"), "", &["compression `zip` is not known; there are none, lz4"]);
+    let (_directory, path) = file("old.bag", b"#ROSBAG V1.2\nand so on");
+    refused(&format!("info {path}"), "", &["of another version than 2.0"]);
+}
+
+#[test]
+fn gaps_missing_messages_and_rates_that_jump_are_told() {
+    let told = info("log.bag", Kind::Bag.of((0..50).chain(60..100)), "");
+    for words in [
+        "1 gaps above 7.500 ms where 5.000 ms are usual: 55.000 ms after sample 49",
+        "  10 messages are missing, by the numbers of those there\n",
+    ] {
+        assert!(told.contains(words), "{told}");
+    }
+    let (_directory, path) = file("log.mcap", Kind::Mcap.of((0..400).step_by(2).chain(400..500)));
+    let said = "the rate jumps 1 times: 200.00 Hz from about sample 192\n";
+    for ran in [ran!("info {path}"), ran!("{SCHEME} {path}")] {
+        assert!((ran.output + &ran.told).contains(said));
+    }
+}
+
+#[test]
+fn bags_are_tuned_and_advised_on() {
+    for kind in CHUNKED {
+        let (_directory, path) = file(kind.name(), kind.of(0..400));
+        let channel = format!("--topic /imu --field rate --evaluations 10 {path}");
+        let tuned = ran!("tune --scheme sf --min-efficiency 10 --emit toml {channel}");
+        assert!(tuned.output.contains("threshold = "), "{kind:?}: {}", tuned.output);
+        let advised = ran!("advise --json --max-rmse 0.4 {channel}").json();
+        assert_eq!(advised[0]["look"]["samples"], 400, "{kind:?}: {advised:#}");
+        assert_ne!(advised[0]["reaching"], Value::Array(Vec::new()), "{kind:?}: {advised:#}");
+    }
+}
+
+/// What is decoded from a log is what is decoded from a table of spikes, for one neuron and several, with a sign and
+/// without, with sub-timesteps and with several spikes a sample, for one channel and two.
+#[test]
+fn spikes_as_messages_decode_as_those_of_a_table() {
+    let flight = flight("hexarotor.csv");
+    let directory = tempfile::tempdir().unwrap();
+    let path = |name: &str| directory.path().join(name).display().to_string();
+    for scheme in [
+        "sf --threshold 0.1",
+        "bsa --filter triang:15,peak=2 --threshold 1",
+        "burst",
+        "grf --neurons 5",
+        "grf-slots --neurons 4 --slots 5",
+    ] {
+        for columns in ["gyro_x", "gyro_x,gyro_y"] {
+            let encode = format!("encode --scheme {scheme} --columns {columns} {flight}");
+            let table = good(&encode, "").output;
+            let without_times = |decoded: String| {
+                let lines = decoded.lines().map(|line| line.rsplit_once(',').unwrap().0.to_owned());
+                lines.collect::<Vec<_>>()
+            };
+            let expected = without_times(good("decode", &table).output);
+            for name in ["spikes.bag", "spikes.mcap"] {
+                ran!("{encode} -o {}", path(name));
+                let decoded = ran!("decode {}", path(name)).output;
+                assert!(without_times(decoded) == expected, "{scheme} of {columns} by {name}");
+            }
+        }
+    }
+    let told = ran!("info {}", path("spikes.mcap")).output;
+    assert!(told.contains("event_1: 3627 samples of spyke_msgs/msg/SpykeArray"), "{told}");
+}
+
+/// The toolbox's script takes the mean of the thresholds, and leaves out the spike of the first message.
+#[test]
+fn the_toolboxs_own_bag_decodes_as_its_script_does() {
+    let numbers =
+        "float32 start\nfloat32 min_input\nfloat32 max_input\nfloat32 threshold\nfloat32 input\n";
+    let definition =
+        format!("# A spyke event\nint8    spike\n{numbers}string  scheme\ntime    timestamp");
+    for (scheme, expected) in
+        [("step_forward", [1.5, 2.0, 1.5, 1.5]), ("temporal_contrast", [0.0, 1.0, 0.0, 0.0])]
+    {
+        let data = fields(&[
+            ("topic", b"event"),
+            ("type", b"spyke_msgs/spyke"),
+            ("message_definition", definition.as_bytes()),
+        ]);
+        let mut bag = b"#ROSBAG V2.0\n".to_vec();
+        bag.extend(record(&[("op", &[7]), ("conn", &[0; 4]), ("topic", b"event")], &data));
+        for (spike, threshold) in [(1_i8, 0.25_f32), (1, 0.75), (-1, 0.5), (0, 0.5)] {
+            let mut message = spike.to_le_bytes().to_vec();
+            for number in [1.5, -3.0, 3.0, threshold, 9.0] {
+                message.extend(f32::to_le_bytes(number));
+            }
+            message.extend(long(scheme.as_bytes()));
+            message.extend([0; 8]);
+            bag.extend(record(&[("op", &[2]), ("conn", &[0; 4]), ("time", &[0; 8])], &message));
+        }
+        let (_directory, path) = file("encoding.bag", &bag);
+        assert_eq!(values(&ran!("decode {path}").output), expected, "{scheme}");
+    }
+}
+
+#[test]
+fn messages_longer_than_their_definition_are_told() {
+    let long = |sample: u32| {
+        let stamp = seconds(time(sample)).concat();
+        let message = [Kind::Bag.message(sample), vec![0; (sample / 10) as usize]].concat();
+        record(&[("op", &[2]), ("conn", &[0; 4]), ("time", &stamp)], &message)
+    };
+    let chunk = Kind::Bag.chunk("none", &(0..30).flat_map(long).collect::<Vec<u8>>());
+    let (_directory, path) = file("x.bag", [Kind::Bag.start(), chunk, Kind::Bag.end()].concat());
+    let words = "20 messages are longer than their definition, the first at byte ";
+    let info = ran!("info {path}").output;
+    assert!(info.contains(words), "{info}");
+    let score = format!("score --scheme sf --threshold 0.1 --topic imu --field rate {path}");
+    let told = good(&score, "").told;
+    assert!(told.contains(words), "{told}");
+}

@@ -1,0 +1,332 @@
+//! Networks onto chips: from NIR and JSON to the constant, what it costs, and what is refused.
+
+mod common;
+
+use common::{file, flight, good, ran, refused, spikewire};
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// How `roll.nir` was trained, if it had been.
+const CODE: &str = "--scheme position --neurons 20 --min -2 --max 2 --column gyro_x";
+
+fn peers(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers").join(name)
+}
+
+fn network(file: &str) -> String {
+    format!("network {file} {CODE} {}", flight("hexarotor.csv"))
+}
+
+/// The figures of a line of the report.
+fn figures(told: &str, start: &str) -> Vec<f64> {
+    let line = told.lines().find_map(|line| line.strip_prefix(start)).expect(start);
+    let numbers = line.split([' ', ',', ';', '%', ':']);
+    numbers.filter_map(|number| number.parse().ok()).collect()
+}
+
+/// The firmware `rate-loop` compiles it for every core, and flies it in QEMU.
+#[test]
+fn a_nir_graph_becomes_the_constant_of_the_firmware() {
+    let ran = good(&network(&peers("roll.nir").display().to_string()), "");
+    let firmware =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/rate-loop/src/roll.rs");
+    assert_eq!(ran.output, fs::read_to_string(firmware).unwrap());
+    let [neurons, _, spikes, on_chip, distance] = figures(&ran.told, "node `lif1`: ")[..] else {
+        panic!("{}", ran.told)
+    };
+    assert_eq!(neurons, 12.0);
+    assert!(spikes > 2_000.0 && (spikes - on_chip).abs() < 0.05 * spikes, "{}", ran.told);
+    assert!(distance < 0.1 * spikes, "{}", ran.told);
+    let winners = figures(&ran.told, "the output that fires most is the same in ");
+    assert!(winners[0] > 80.0, "{}", ran.told);
+}
+
+/// A network in JSON that step forward drives, and the command that brings it onto the chip.
+fn driven(layers: &str, threshold: f64, options: &str) -> (tempfile::TempDir, String) {
+    let (directory, path) = file("net.json", format!("{{\"layers\": [{layers}}}"));
+    let sf = format!("--scheme sf --threshold {threshold} --column gyro_x");
+    (directory, format!("network {path} {options} {sf} {}", flight("hexarotor.csv")))
+}
+
+/// Networks of the chips' own numbers: with thresholds between what weights add up to nothing is rounded. One spike a
+/// sample reaches one neuron after the other, so that neither order nor sums within a step play a part.
+#[test]
+fn networks_that_a_chip_can_hold_cost_nothing() {
+    let three = r#"{"name": "one", "weights": [[3, 0], [0, 5]], "threshold": 11.5},
+        {"name": "two", "weights": [[7, -4]], "threshold": [12.5]}, {"weights": [[2]], "threshold": 3.5}]"#;
+    // The second neuron follows the first; its own spikes hold it back.
+    let recurrent = r#"{"name": "one", "weights": [[3, 3], [2, 1]], "recurrent": [[0, 0], [-2, 0]],
+        "threshold": [8.5, 30.5]}]"#;
+    // Of ReckOn the first layer's third neuron has a pair of its own.
+    let reckon = r#"{"name": "one", "weights": [[3, 0], [0, 5], [2, 2]], "threshold": 11.5, "bias": [0, 1, 0],
+        "recurrent": [[0, 2, 0], [0, 0, -4], [0, 0, 0]]},
+        {"name": "two", "weights": [[7, 4, -4], [1, 6, 5]], "threshold": [12.5, 6.5]}]"#;
+    let bias = r#"{"weights": [[0, 0]], "bias": [0.25], "threshold": 1.1}]"#;
+    for (options, layers, names, written) in [
+        ("", three, &["one", "two", "layer 3"][..], &["    outputs: [3],\n", "<2, 4, 1>"][..]),
+        ("", recurrent, &["one"], &["recurrent: &[\n        [0, -"]),
+        ("", bias, &[], &["pub const BIAS: u16 = 2;"]),
+        ("--chip reckon", reckon, &["one", "two"], &["pub const BIAS: u8 = 2;", "<3, 6, 2>"]),
+    ] {
+        let (_directory, command) = driven(layers, 0.05, options);
+        let ran = good(&command, "");
+        assert!(ran.told.contains("\noutputs agree in 100.0 % of 3627 steps"), "{}", ran.told);
+        let spikes = ran.told.rsplit("layer: neurons").next().unwrap();
+        for layer in names {
+            let figures = figures(spikes, &format!("{layer}: "));
+            let [_, clipped, spikes, on_chip, distance] = figures[..] else {
+                panic!("{}", ran.told)
+            };
+            assert!(spikes > 10.0, "{}", ran.told);
+            assert_eq!((clipped, distance, on_chip), (0.0, 0.0, spikes), "{}", ran.told);
+        }
+        assert!(written.iter().all(|words| ran.output.contains(words)), "{}", ran.output);
+        assert_eq!(ran.output.contains("BIAS"), layers.contains("bias"), "{}", ran.output);
+    }
+}
+
+#[test]
+fn what_is_no_network_or_does_not_fit_is_refused_by_name() {
+    let ones = |rows: usize, columns: usize| {
+        let row = format!("[{}]", vec!["1"; columns].join(","));
+        format!("{{\"weights\": [{}], \"threshold\": 1}}", vec![row; rows].join(","))
+    };
+    let of = |sizes: &[(usize, usize)]| {
+        sizes.iter().map(|&(rows, columns)| ones(rows, columns)).collect::<Vec<_>>().join(",") + "]"
+    };
+    let one = |weights: &str, rest: &str| format!("{{\"weights\": {weights}, {rest}}}]");
+    let leaky = r#"[[1, 1]], "threshold": 1}], "readout": {"weights": [[1],[1]], "keep": 0.001"#;
+    for (options, layers, words) in [
+        ("", "]".to_owned(), &["net.json", "no layer"][..]),
+        ("", of(&[(2, 2); 4]), &["4 layers", "3 at most"]),
+        ("", of(&[(257, 2)]), &["layer 1: the chip has 256 neurons"]),
+        ("", of(&[(255, 2), (1, 255)]), &["2 inputs with 256 neurons", "need 258"]),
+        ("", of(&[(3, 2), (2, 4)]), &["layer 2: weights for 4 inputs", "3 neurons"]),
+        (
+            "",
+            of(&[(2, 3)]),
+            &["layer 1 has 3 inputs, but sf gives 2, of 1 column, each up and down"],
+        ),
+        ("", one("[[1, 2], [1]]", r#""threshold": 1"#), &["neuron 1 has 1 weights"]),
+        ("", one("[[1, 1e999]]", r#""threshold": 1"#), &["number out of range"]),
+        ("", one("[[1, 1]]", r#""threshold": 0"#), &["layer 1: neuron 0 fires at 0 above rest"]),
+        ("", one("[[1, 1]]", r#""threshold": [1, 2]"#), &["2 values of `threshold` for 1"]),
+        ("", one("[[1, 1]]", r#""threshold": 1, "keep": 1.5"#), &["keeps 1.5"]),
+        ("", one("[[1, 1]]", r#""threshold": 1, "leek": 1"#), &["unknown field `leek`"]),
+        ("", one("[]", r#""threshold": 1"#), &["layer 1: no weights"]),
+        // tinyODIN has no outputs that never fire, and those of ReckOn are read after a leak.
+        ("", format!("{{\"weights\": {leaky}}}"), &["readout: tinyODIN has no outputs"]),
+        ("--chip reckon", format!("{{\"weights\": {leaky}}}"), &["read after they have leaked"]),
+        ("--chip reckon", of(&[(257, 2)]), &["256 neurons"]),
+        ("--chip reckon", of(&[(17, 2)]), &["16 outputs"]),
+    ] {
+        let (_directory, command) = driven(&layers, 1.0, options);
+        refused(&command, "", words);
+    }
+    let (hexarotor, roll) = (flight("hexarotor.csv"), peers("roll.nir").display().to_string());
+    refused(&network(&hexarotor), "", &["hexarotor.csv: neither a NIR graph", "JSON"]);
+    refused(&network("nowhere.nir"), "", &["nowhere.nir: cannot be opened"]);
+    let dt = format!("{} --dt 0.1", network(&roll));
+    refused(&dt, "", &["roll.nir: node `lif1`", "0.03 s is shorter than a step of 0.1 s", "--dt"]);
+    let other =
+        format!("network {roll} --scheme position --neurons 10 --column gyro_x {hexarotor}");
+    refused(&other, "", &["node `lif1` has 20 inputs, but position gives 10"]);
+}
+
+#[test]
+fn what_a_chip_changes_is_told_and_a_recording_is_held_out() {
+    // Neurons of ReckOn keep 0.875 at least.
+    let half = r#"{"weights": [[0.4, -0.3]], "keep": 0.6, "threshold": 0.5}]"#;
+    let (_directory, command) = driven(half, 0.05, "--chip reckon");
+    let told = good(&command, "").told;
+    let leaks = "warning: 1 neurons or outputs leak otherwise than trained, by up to 0.2750";
+    assert!(told.contains(leaks), "{told}");
+
+    let (_directory, command) = driven(r#"{"weights": [[1, 1]], "threshold": 1e9}]"#, 0.1, "");
+    let silent = good(&command, "").told;
+    assert!(silent.contains("warning: no output fires") && !silent.contains("100.0 %"), "{silent}");
+    assert!(silent.contains("--held-out shows another"), "{silent}");
+
+    // Fires above 0.5 after a leak by halves: what the chip has not.
+    let low = r#"{"weights": [[0.31, -0.29], [0.27, 0.33]], "keep": 0.5, "threshold": 0.5},
+        {"weights": [[0.61, -0.59]], "keep": 0.3, "threshold": 0.55}]"#;
+    let (_directory, command) = driven(low, 0.1, "");
+    let low = ran!("{command} --held-out {}", flight("vtol_at_rest.csv")).told;
+    let shares = figures(&low, "outputs agree in ");
+    assert_eq!(low.contains("warning: step by step"), shares[2] < 50.0, "{low}");
+    let held_out = low.split("the recording that was held out:\n").nth(1).unwrap();
+    assert!(held_out.starts_with("layer 1: 2, ") && !low.contains("--held-out"), "{low}");
+}
+
+/// A line of spikes is a step: each weight is added, and the neuron fires at 12. The line that comes later is answered
+/// as the chip does it, which keeps its potentials.
+#[test]
+fn spikes_as_they_are_drive_a_network_that_answers_step_by_step() {
+    let json = r#"{"layers": [{"weights": [[3, 0], [0, 5]], "threshold": 11.5}]}"#;
+    let (_network, network) = file("two.json", json);
+    let (_steps, steps) = file("steps.txt", "0 1\n\n1\n0\n1\n0\n0\n");
+    let ran = good(&format!("network {network} {steps} --live"), "1\n0 1\n\n1\n1\n");
+    let outputs = ran.output.lines().map(|line| line.split(' ').skip(1).collect::<Vec<_>>());
+    assert_eq!(outputs.collect::<Vec<_>>(), [vec![], vec![], vec![], vec!["1"], vec![]]);
+    // Nothing leaks, so that nothing is done in a step without a spike.
+    let idle = ran.output.lines().map(|line| line.starts_with('0')).collect::<Vec<_>>();
+    assert_eq!(idle, [false, false, true, false, false], "{}", ran.output);
+    assert!(ran.told.contains("outputs agree in 100.0 % of 7 steps"), "{}", ran.told);
+    // Without --live there is the constant, as from a recording.
+    let ran = ran!("network {network} {steps}");
+    assert!(ran.output.contains("TinyOdinNetwork<2, 2, 2>"), "{}", ran.output);
+
+    refused(&format!("network {network} {steps} --live"), "2\n", &["2 inputs", "[2]"]);
+    let (_odd, odd) = file("odd.txt", "0\n0 x\n");
+    refused(&format!("network {network} {odd}"), "", &["line 2", "`x`"]);
+    let (_wide, wide) = file("wide.txt", "0 7\n");
+    refused(&format!("network {network} {wide}"), "", &["2 inputs", "7"]);
+    let reckon = format!("network {network} {steps} --chip reckon --live");
+    refused(&reckon, "0\n", &["only tinyODIN"]);
+}
+
+/// How `turns.py` trains: of the roll rates every third stretch of 250 is held out.
+fn stretches(is_held_out: bool) -> String {
+    let flight = fs::read_to_string(flight("hexarotor.csv")).unwrap();
+    let rows: Vec<&str> = flight.lines().skip(1).collect();
+    let chosen = rows.chunks(250).enumerate().filter(|(at, _)| (at % 3 == 2) == is_held_out);
+    let rates = chosen.flat_map(|(_, rows)| rows).map(|row| row.split(',').nth(1).unwrap());
+    let mut table = "time_s,gyro_x\n".to_owned();
+    for (at, rate) in rates.enumerate() {
+        writeln!(table, "{},{rate}", at as f64 / 200.0).unwrap();
+    }
+    table
+}
+
+/// `turns.py` says how often its neurons fire; double precision fires as often here, and the chip almost. The firmware
+/// `rate-loop` has the constant.
+#[test]
+fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
+    let (_trained, trained) = file("trained.csv", stretches(false));
+    let (_held_out, held_out) = file("held_out.csv", stretches(true));
+    let (_bytes, bytes) = file("turns.bin", "");
+    let turns = peers("turns.nir").display().to_string();
+    let ran = ran!(
+        "network {turns} --chip reckon --scheme position --neurons 25 --min=-1.2 --max 1.2 --dt 0.005 --column \
+             gyro_x {trained} --held-out {held_out} --bytes {bytes}"
+    );
+    // A header, pairs, and 25 inputs, 32 neurons and 3 outputs for each neuron.
+    assert_eq!(fs::read(bytes).unwrap().len(), 16 + 16 * 4 + 32 * (25 + 32 + 3));
+    assert!(
+        ran.told.contains("32 of the chip's 256 neurons, 25 of its 256 inputs"),
+        "{}",
+        ran.told
+    );
+    let (tuned, held_out) = ran.told.split_once("held out:\n").unwrap();
+    for (told, expected) in [(tuned, 2147.0), (held_out, 1365.0)] {
+        let of_spikes = told.rsplit_once("\nlayer: neurons").map_or(told, |(_, told)| told);
+        let [neurons, clipped, spikes, on_chip, _] = figures(of_spikes, "node `neurons`: ")[..]
+        else {
+            panic!("{}", ran.told)
+        };
+        assert_eq!((neurons, clipped, spikes), (32.0, 0.0, expected), "{}", ran.told);
+        assert!((on_chip - spikes).abs() < 0.03 * spikes, "{}", ran.told);
+        let [_, _, agreeing, _] = figures(told, "outputs agree")[..] else {
+            panic!("{}", ran.told)
+        };
+        assert!(agreeing > 97.0, "{}", ran.told);
+        let of_outputs = told.rsplit("node `outputs`: ").next().unwrap();
+        let [_, size, error] = figures(of_outputs, "3 outputs, ")[..] else {
+            panic!("{}", ran.told)
+        };
+        assert!(error < 0.15 * size, "{}", ran.told);
+    }
+    let firmware =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/rate-loop/src/turns.rs");
+    assert_eq!(ran.output, fs::read_to_string(firmware).unwrap());
+}
+
+/// As snnTorch and Norse write layers: graphs in the graph, one that leads back to itself.
+#[test]
+fn nested_and_recurrent_graphs_are_taken() {
+    let whole = good(&network(&peers("roll.nir").display().to_string()), "");
+    let nested = good(&network(&peers("nested.nir").display().to_string()), "");
+    let body = |output: &str| output.lines().skip(1).map(str::to_owned).collect::<Vec<_>>();
+    let named: Vec<_> = body(&nested.output);
+    let expected: Vec<_> = body(&whole.output)
+        .iter()
+        .map(|line| line.replace("node `lif2`", "node `lif2.lif`"))
+        .collect();
+    assert_eq!(named, expected);
+
+    let recurrent = good(&network(&peers("recurrent.nir").display().to_string()), "");
+    let rows = recurrent.output.split("recurrent: &[").nth(1).unwrap();
+    // From neuron 1 to neuron 0, below 0, as in the graph; none to itself.
+    let row: Vec<i32> = rows
+        .lines()
+        .nth(2)
+        .unwrap()
+        .trim_matches([' ', '[', ']', ','])
+        .split(", ")
+        .map(|weight| weight.parse().unwrap())
+        .collect();
+    assert!(row[0] < 0 && row[1] == 0, "{row:?}");
+    let [_, _, spikes, on_chip, _] = figures(&recurrent.told, "node `lif1.lif`: ")[..] else {
+        panic!("{}", recurrent.told)
+    };
+    assert!(spikes > 1_000.0 && (spikes - on_chip).abs() < 0.1 * spikes, "{}", recurrent.told);
+}
+
+/// A damaged file is refused, or is another network; the program never breaks down.
+#[test]
+fn damaged_files_are_refused() {
+    let whole = fs::read(peers("roll.nir")).unwrap();
+    let (_directory, table) = file("short.csv", "x\n1\n2\n3\n1\n");
+    let code = format!("--scheme position --neurons 20 --dt 0.005 --column x {table}");
+    let mut refusals = 0;
+    for at in (8..whole.len()).step_by(whole.len() / 60) {
+        let mut flipped = whole.clone();
+        flipped[at] ^= 0x55;
+        for bytes in [&whole[..at], &flipped] {
+            let (_directory, path) = file("damaged.nir", bytes);
+            let ran = spikewire(&format!("network {path} {code}"), "");
+            assert!([0, 2].contains(&ran.status), "{at}: {} {}", ran.status, ran.told);
+            refusals += usize::from(ran.status == 2);
+        }
+    }
+    assert!(refusals >= 60, "{refusals}");
+}
+
+/// `cargo verify peers` runs this with the Python package `nir`.
+#[test]
+#[ignore = "needs PEERS_PYTHON with nir"]
+fn files_of_pypis_nir_are_read_and_what_is_wrong_is_named() {
+    let python = std::env::var("PEERS_PYTHON").unwrap();
+    let directory = tempfile::tempdir().unwrap();
+    let written = |name: &str, fault: &[&str]| {
+        let path = directory.path().join(name);
+        let mut script = Command::new(&python);
+        let status = script.arg(peers("roll.py")).arg(&path).args(fault).status().unwrap();
+        assert!(status.success(), "{fault:?}");
+        path.display().to_string()
+    };
+    let kept = good(&network(&peers("roll.nir").display().to_string()), "");
+    let fresh = good(&network(&written("roll.nir", &[])), "");
+    assert_eq!(fresh.output, kept.output);
+    let short = good(&network(&written("short.nir", &["short"])), "");
+    let body = |output: &str| output.lines().skip(1).map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(body(&short.output), body(&kept.output), "a current of a step is none");
+    for (fault, words) in [
+        (
+            "cuba",
+            "node `lif2`: a spike's current lasts: its time constant of 1 s is longer than a step",
+        ),
+        ("odd", "node `lif2` (Threshold): no chip here has anything like it"),
+        ("back", "node `lif2` leads to 2 nodes"),
+        ("deep", "4 layers, of which 3 at most"),
+        ("nan", "node `lif2`: neuron 1 has a weight of NaN"),
+        ("narrow", "node `lif2`: weights for 11 inputs, but node `lif1` has 12 neurons"),
+        ("unweighted", "node `lif1` (LIF): no weights lead to it"),
+        ("reset", "node `lif1`: neuron 0 returns to -0.5"),
+        ("wide", "node `lif1`: the chip has 256 neurons"),
+    ] {
+        refused(&network(&written("bad.nir", &[fault])), "", &["bad.nir", words]);
+    }
+}

@@ -1,0 +1,127 @@
+//! What the program says: the tables in `said`, a case a line.
+//!
+//! `command << input => words | words`: refused with these words, on standard error. `->` in place of `=>`: goes well, with
+//! these words on either output, and without those behind a `!`. `==`: goes well, and writes exactly this. Behind `|>` stands
+//! a command that takes what the one before it wrote. `\n`, `\r`, `\t` and `\\` are escapes. `NAME := text` gives a text a name,
+//! `@NAME := text` writes it to a file whose path the name is; `{NAME}` stands for either.
+
+mod common;
+
+use common::{RanBytes, flight, flight_logs, good_bytes, spikewire_bytes, table};
+use flight_logs::made::{KINDS, blackbox};
+use std::fs;
+use std::path::Path;
+
+/// What names stand for, the last first.
+type Names = Vec<(String, String)>;
+
+/// The names that every table has.
+fn names(directory: &Path) -> Names {
+    let wave = |size: f64| -> Vec<f64> {
+        (0..500).map(|sample| (f64::from(sample) * 0.05).sin() * size).collect()
+    };
+    let [log, _] = flight_logs();
+    let mut names = vec![
+        ("hexarotor".to_owned(), flight("hexarotor.csv")),
+        ("log".to_owned(), log.display().to_string()),
+        ("dir".to_owned(), directory.display().to_string()),
+        ("wave".to_owned(), table(&wave(20.0))),
+        ("low wave".to_owned(), table(&wave(2.0))),
+    ];
+    let mut write = |name: &str, content: &[u8]| {
+        let path = directory.join(name);
+        fs::write(&path, content).unwrap();
+        names.push((name.to_owned(), path.display().to_string()));
+    };
+    for kind in KINDS {
+        write(kind.name(), &kind.log("none"));
+    }
+    write("log.bbl", &blackbox());
+    names
+}
+
+/// With names and escapes replaced.
+fn plain(text: &str, names: &Names) -> String {
+    let mut text = text.to_owned();
+    for (name, value) in names.iter().rev() {
+        text = text.replace(&format!("{{{name}}}"), value);
+    }
+    text
+}
+
+fn unescaped(text: &str) -> String {
+    let text = text.replace(r"\\", "\0").replace(r"\n", "\n").replace(r"\r", "\r");
+    text.replace(r"\t", "\t").replace('\0', r"\")
+}
+
+/// What is wrong with what a case says.
+fn fault(case: &str, names: &Names) -> Option<String> {
+    let parts = ["=>", "->", "=="].into_iter().filter_map(|sign| {
+        let (start, words) = case.split_once(&format!(" {sign}"))?;
+        Some((start, sign, words))
+    });
+    let Some((start, sign, words)) = parts.min_by_key(|(start, ..)| start.len()) else {
+        return Some(format!("no case: {case}"));
+    };
+    let mut commands = start.split(" |> ");
+    let first = commands.next().unwrap();
+    let (first, input) = first.split_once(" << ").unwrap_or((first, ""));
+    let mut input = unescaped(&plain(input, names)).into_bytes();
+    let mut command = plain(first, names);
+    for next in commands {
+        input = good_bytes(&command, &input).output;
+        command = plain(next, names);
+    }
+    let RanBytes { status, output, told } = spikewire_bytes(&command, &input);
+    let output = String::from_utf8_lossy(&output);
+    let words = unescaped(&plain(words.trim_start_matches(' '), names));
+    let is_right = match sign {
+        "==" => status == 0 && output == words,
+        "=>" => status == 2 && words.split(" | ").all(|own| told.contains(own)),
+        _ => {
+            let said = format!("{output}{told}");
+            let is_said = |own: &str| match own.strip_prefix('!') {
+                Some(unsaid) => !said.contains(unsaid),
+                None => said.contains(own),
+            };
+            status == 0 && words.split(" | ").all(is_said)
+        }
+    };
+    (!is_right).then(|| {
+        let most = |text: &str| text.chars().take(1000).collect::<String>();
+        format!("{case}\n{status}: {}{}", most(&output), most(&told))
+    })
+}
+
+fn check(table: &str) {
+    let directory = tempfile::tempdir().unwrap();
+    let mut names = names(directory.path());
+    let mut faults = Vec::new();
+    for line in table.lines().filter(|line| !line.is_empty() && !line.starts_with("# ")) {
+        match line.split_once(" := ") {
+            Some((name, text)) => {
+                let text = plain(text, &names);
+                let Some(name) = name.strip_prefix('@') else {
+                    names.push((name.to_owned(), text));
+                    continue;
+                };
+                let path = directory.path().join(name);
+                fs::write(&path, unescaped(&text)).unwrap();
+                names.push((name.to_owned(), path.display().to_string()));
+            }
+            None => faults.extend(fault(line, &names)),
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+macro_rules! tables {
+    ($($name:ident)*) => {
+        $(#[test]
+        fn $name() {
+            check(include_str!(concat!("said/", stringify!($name), ".txt")));
+        })*
+    };
+}
+
+tables!(channels events inputs logs options parameters recordings schemes spikes times);

@@ -1,0 +1,163 @@
+//! Tables as other programs write them, and files that are none.
+
+mod common;
+
+use common::{file, good, good_bytes, ran, refused, spikewire_bytes, table, train};
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use std::fs;
+use std::io::Write;
+
+const SF: &str = "encode --scheme sf --threshold 0.5";
+
+fn zstd(bytes: &[u8]) -> Vec<u8> {
+    ruzstd::encoding::compress_to_vec(bytes, ruzstd::encoding::CompressionLevel::Fastest)
+}
+
+fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(bytes).unwrap();
+    encoder.finish().unwrap()
+}
+
+#[test]
+fn other_encodings_and_compressed_tables_are_read() {
+    let text = "t,roll µ,x\n0,1,0\n0.005,1,1\n";
+    let utf16 = |to_bytes: fn(u16) -> [u8; 2]| -> Vec<u8> {
+        text.encode_utf16().flat_map(to_bytes).collect()
+    };
+    let latin1: Vec<u8> = text.chars().map(|letter| letter as u8).collect();
+    let with_mark = |mark: &[u8], text: &[u8]| [mark, text].concat();
+    let (little, big) = (utf16(u16::to_le_bytes), utf16(u16::to_be_bytes));
+    for (what, bytes) in [
+        ("UTF-8", text.as_bytes().to_vec()),
+        ("UTF-8, marked", with_mark(b"\xef\xbb\xbf", text.as_bytes())),
+        ("Latin-1", latin1),
+        ("UTF-16, marked", with_mark(b"\xff\xfe", &little)),
+        ("UTF-16, marked, big", with_mark(b"\xfe\xff", &big)),
+        ("UTF-16", little.clone()),
+        ("UTF-16, big", big),
+        ("gzip", gzip(text.as_bytes())),
+        ("Zstandard", zstd(text.as_bytes())),
+        ("Zstandard of UTF-16, marked", zstd(&with_mark(b"\xff\xfe", &little))),
+        ("gzip of UTF-16", gzip(&with_mark(b"\xff\xfe", &little))),
+    ] {
+        for channel in ["x", "3"] {
+            let ran = spikewire_bytes(&format!("{SF} --column {channel} -"), &bytes);
+            let output = String::from_utf8(ran.output).unwrap();
+            assert!(output.contains("\n1,0,1,5000\n"), "{what}: {}", ran.told);
+        }
+        let ran = good_bytes(&format!("{SF} --column 2 -"), &bytes);
+        assert!(String::from_utf8(ran.output).unwrap().contains("# column=roll µ\n"), "{what}");
+    }
+    // A file of spikes through a shell that writes UTF-16.
+    let spikes = good(&format!("{SF} -"), &table(&[0.0, 1.0])).output;
+    let wide: Vec<u8> = spikes.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let decoded = good_bytes("decode", &with_mark(b"\xff\xfe", &wide)).output;
+    assert_eq!(decoded, good("decode", &spikes).output.as_bytes());
+}
+
+/// As packers that run on several cores write them: frames with and without content.
+#[test]
+fn all_frames_of_zstandard_are_read() {
+    let skipped = b"\x5a\x2a\x4d\x18\x03\0\0\0abc";
+    let (first, rest) = (zstd(b"x\n0\n1"), zstd(b".5\n0\n"));
+    let whole = [&first[..], skipped, &rest, skipped].concat();
+    let ran = good_bytes(&format!("{SF} -"), &whole).output;
+    assert!(String::from_utf8(ran).unwrap().contains("# samples=3\n"));
+    let mut damaged = whole.clone();
+    damaged[first.len() - 1] ^= 1;
+    for (bytes, words) in [
+        (&whole[..whole.len() - skipped.len() - 1], "standard input"),
+        (&whole[..first.len() + 9], "standard input"),
+        (&damaged[..], "damaged"),
+    ] {
+        let ran = spikewire_bytes(&format!("{SF} -"), bytes);
+        assert!(ran.status == 2 && ran.told.contains(words), "{}", ran.told);
+    }
+}
+
+#[test]
+fn other_files_are_named() {
+    for (start, words) in [
+        (&b"PK\x03\x04\x14\x00\x06\x00\x08\x00\x00\x00\x21\x00"[..], "spreadsheet"),
+        (b"\xa3\x95\x80\x80\x59FMT\x00BBnNZ\x00\x00\x00\x00", "mavlogdump.py"),
+        (b"#ROSBAG V2.0\nE", "a log needs --topic and --field"),
+        (b"\x89MCAP0\r\n\x01\x00\x00", "a log needs --topic and --field"),
+        (b"SQLite format 3\0\x10\0", "a log needs --topic and --field"),
+        (b"\x00\x01\x02\x03\x04\x05", "binary, no table"),
+        (b"\x1f\x8b\x08\x00", "cannot be unpacked"),
+    ] {
+        let (_directory, path) = file("log.bin", start);
+        refused(&format!("{SF} {path}"), "", &[words, "log.bin"]);
+    }
+}
+
+#[test]
+fn a_binary_file_is_no_file_of_spikes() {
+    let mut noise: Vec<u8> =
+        (0..5000_u32).map(|byte| (byte.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+    for start in
+        [&b"\x7fELF\x02\x01\x01"[..], b"# spikewire=1\n\x01\x02", b"\xff\xd8\xff\xe0\x00\x10JFIF"]
+    {
+        noise.splice(..start.len(), start.iter().copied());
+        let (_directory, path) = file("spikes", &noise);
+        let told = common::spikewire(&format!("decode {path}"), "");
+        assert_eq!((told.status, told.told.lines().count()), (2, 1), "{}", told.told);
+        assert!(told.told.contains("binary") && told.told.len() < 300, "{}", told.told);
+    }
+}
+
+/// However late the first value comes.
+#[test]
+fn missing_values_may_stand_first() {
+    let late = [vec![f64::NAN; 20_000], vec![0.0, 1.0]].concat();
+    let ran = good(&format!("{SF} --skip-non-finite -"), &table(&late)).output;
+    assert_eq!(train(&ran)[20_001], 1);
+    assert!(ran.contains("# first=0\n"), "{}", &ran[..200]);
+}
+
+#[test]
+fn outputs_never_overwrite_their_input() {
+    let (directory, path) = file("x.csv", table(&[0.0, 1.0]));
+    let link = directory.path().join("link.csv");
+    std::os::unix::fs::symlink(&path, &link).unwrap();
+    for output in [path.clone(), link.display().to_string()] {
+        refused(&format!("{SF} {path} -o {output}"), "", &["the input itself"]);
+    }
+    let spikes = directory.path().join("spikes.csv").display().to_string();
+    ran!("{SF} {path} -o {spikes}");
+    let before = fs::read(&spikes).unwrap();
+    refused(&format!("decode {spikes} -o {spikes}"), "", &["the input itself"]);
+    for command in ["convert --from csv --to csv", "listen --from csv"] {
+        refused(&format!("{command} {spikes} -o {spikes}"), "", &["the input itself"]);
+    }
+    let picture = directory.path().join("x.svg").display().to_string();
+    fs::copy(&path, &picture).unwrap();
+    let plot = format!("plot --scheme sf --threshold 1 {picture} -o {picture}");
+    refused(&plot, "", &["the input itself"]);
+    let status = std::process::Command::new(env!("CARGO_BIN_EXE_spikewire"))
+        .args(["decode", "-", "-o", &spikes])
+        .stdin(fs::File::open(&spikes).unwrap())
+        .stderr(std::process::Stdio::null())
+        .status();
+    assert_eq!(status.unwrap().code(), Some(2));
+    assert_eq!(fs::read(&spikes).unwrap(), before);
+}
+
+#[test]
+fn outputs_follow_links() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    fs::create_dir(at("runs")).unwrap();
+    fs::write(at("runs/old.csv"), "old").unwrap();
+    for (link, to, file) in [
+        ("latest.csv", "runs/old.csv", "runs/old.csv"),
+        ("next.csv", "runs/new.csv", "runs/new.csv"),
+    ] {
+        std::os::unix::fs::symlink(to, at(link)).unwrap();
+        good(&format!("{SF} - -o {}", at(link).display()), &table(&[0.0, 1.0]));
+        assert!(fs::symlink_metadata(at(link)).unwrap().is_symlink(), "{link}");
+        assert!(fs::read_to_string(at(file)).unwrap().starts_with("# spikewire=1\n"), "{file}");
+    }
+}

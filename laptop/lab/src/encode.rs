@@ -1,0 +1,161 @@
+//! A recording to a file of spikes, in constant memory.
+
+use crate::bank::Bank;
+use crate::fit::{Fit, explained, rounding};
+use crate::input::{Chunk, Clock, InputOptions, Source};
+use crate::output::Output;
+use crate::scheme::Scheme;
+use crate::spikes::{Format, Header, Record, Recorder, Summary, Writer, unrecorded};
+use anyhow::{Result, bail};
+use catalogue::run::{Asked, Calibrated, Event, Known, SET, SampleType, Settings};
+
+/// Encodes channels of a recording into an output, which is opened once all else is known to be good. Without a format
+/// it is a table. Returns the output, to be finished, and what a user should know, a line each.
+///
+/// # Errors
+/// The recording, the parameters or the output are not good.
+pub fn encode(
+    input: &InputOptions,
+    scheme: Scheme,
+    sample: SampleType,
+    parameters: &Asked,
+    format: Option<Format>,
+    output: impl FnOnce() -> Result<Output>,
+) -> Result<(Output, Vec<String>)> {
+    parameters.check(scheme.info())?;
+    if format.is_some() && input.is_stdin() {
+        bail!("messages tell the signal's range, which standard input gives only at its end");
+    }
+    let calibrated = match scheme.needs_signal(parameters) {
+        None => None,
+        Some(what) if input.is_stdin() => bail!(
+            "{} calibrates over the whole signal, which standard input gives only once; give {what}",
+            scheme.name()
+        ),
+        Some(_) => Some(calibrate(input, sample)?),
+    };
+
+    let mut source = input.open()?;
+    let mut chunk = first(source.as_mut(), scheme.looks_back(parameters))?;
+    let mut clock = Clock::new(&chunk.times, input.rate, input.gap);
+    let rows = chunk.finite_rows();
+    let (count, firsts) = (rows.len(), chunk.kept(&rows));
+    if firsts.first().is_none_or(Vec::is_empty) {
+        bail!("{}: none of the {count} samples is finite", input.name());
+    }
+    let mut told = Vec::new();
+    let mut channels: Vec<Settings> = Vec::new();
+    for (channel, first) in firsts.iter().enumerate() {
+        let calibrated = calibrated.as_ref().and_then(|all| all.get(channel));
+        let known = Known { calibrated, first, can_calibrate: !input.is_stdin() };
+        let own = parameters.channel(scheme.info(), channel, firsts.len())?;
+        let settings = scheme.resolve(sample, &own, &known);
+        let settings = settings.map_err(|error| explained(error, sample, first))?;
+        told.extend(rounding(&settings).filter(|rounding| !told.contains(rounding)));
+        channels.push(settings);
+    }
+    let mut bank = Bank::new(scheme, &channels)?;
+
+    let mut notes = source.origin().to_vec();
+    let made_from = unrecorded(scheme).into_iter().filter_map(|name| {
+        parameters.get(name).filter(|value| **value != SET).map(|value| (name, value.to_string()))
+    });
+    notes.extend(made_from);
+    let mut fits: Vec<Fit> = channels.iter().map(|own| Fit::new(scheme, own)).collect();
+    let rate = clock.rate();
+    let header = Header { scheme, sample, channels, rate, notes };
+    let is_timed = !chunk.times.is_empty();
+    let output = output()?;
+    let mut writer: Box<dyn Record> = match format {
+        None => Box::new(Writer::new(output, &header, is_timed)?),
+        Some(format) => {
+            let calibrated = calibrated.map_or_else(|| calibrate(input, sample), Ok)?;
+            let ranges: Vec<_> = calibrated.iter().filter_map(Calibrated::range).collect();
+            Box::new(Recorder::new(output, format, &header, is_timed, &ranges)?)
+        }
+    };
+
+    let mut events = Vec::new();
+    let mut spikes = vec![0; header.channels.len()];
+    let neurons = bank.neurons();
+    let mut count = |events: &[Event]| {
+        for event in events {
+            spikes[usize::from(event.neuron) / neurons] += 1;
+        }
+    };
+    let mut finite: u64 = 0;
+    while !chunk.is_empty() {
+        let steps = clock.observe(&chunk.times);
+        writer.observe(&mut chunk, &steps)?;
+        for (fit, column) in fits.iter_mut().zip(&chunk.columns) {
+            fit.observe(column);
+        }
+        bank.encode(&chunk.columns, &mut events);
+        finite += chunk.len() as u64;
+        count(&events);
+        writer.write(&mut events, finite.saturating_sub(bank.latency() as u64))?;
+        source.next(&mut chunk)?;
+    }
+    bank.finish(&mut events);
+    count(&events);
+    let (output, summary) = writer.finish(&mut events)?;
+    let mut notes = source.notes().to_vec();
+    notes.append(&mut told);
+    notes.extend(report(&summary, &clock, header.channels.len()));
+    for (((fit, settings), spikes), name) in
+        fits.iter().zip(&header.channels).zip(spikes).zip(source.names())
+    {
+        let of = if fits.len() > 1 { format!("{name}: ") } else { String::new() };
+        for note in fit.notes(settings, spikes).lines() {
+            notes.push(format!("{of}{note}"));
+        }
+    }
+    Ok((output, notes))
+}
+
+/// The first samples: at least so many finite ones, or all there are.
+fn first(source: &mut dyn Source, enough: usize) -> Result<Chunk> {
+    let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
+    let mut finite = 0;
+    while finite < enough {
+        source.next(&mut chunk)?;
+        if chunk.is_empty() {
+            break;
+        }
+        finite += chunk.finite_rows().iter().filter(|finite| **finite).count();
+        all.append(&mut chunk);
+    }
+    Ok(all)
+}
+
+/// A pass over the recording.
+///
+/// # Errors
+/// Returns an error if the input cannot be read.
+fn calibrate(input: &InputOptions, sample: SampleType) -> Result<Vec<Calibrated>> {
+    let mut calibrated = Vec::new();
+    let (mut source, mut chunk) = (input.open()?, Chunk::default());
+    loop {
+        source.next(&mut chunk)?;
+        if chunk.is_empty() {
+            return Ok(calibrated);
+        }
+        let finite = chunk.kept(&chunk.finite_rows());
+        calibrated.resize_with(finite.len(), || Calibrated::new(sample));
+        for (calibrated, column) in calibrated.iter_mut().zip(&finite) {
+            calibrated.observe(column);
+        }
+    }
+}
+
+/// The counts, in words.
+fn report(summary: &Summary, clock: &Clock, channels: usize) -> Vec<String> {
+    let Summary { samples, rejected, events } = *summary;
+    let of = if channels > 1 { format!(" of {channels} channels") } else { String::new() };
+    let mut lines = vec![format!("{samples} samples{of}, {events} spikes")];
+    if rejected > 0 {
+        lines.push(format!("{rejected} samples were not finite or missing and emitted nothing"));
+    }
+    lines.push(clock.to_string());
+    lines
+}

@@ -1,0 +1,149 @@
+//! Whether a sample type and the parameters suit a recording.
+
+use crate::brief::short;
+use crate::resolution::Resolution;
+use crate::scheme::Scheme;
+use catalogue::run::{SampleType, Settings};
+use std::fmt::Write;
+
+/// The range of a channel's samples, and how many of them a type cannot hold or a code not reach.
+pub struct Fit {
+    scheme: Scheme,
+    sample: SampleType,
+    min: f64,
+    max: f64,
+    samples: u64,
+    resolution: Resolution,
+    saturated: u64,
+    reach: Option<f64>,
+    beyond: u64,
+}
+
+impl Fit {
+    /// The fit of a channel that has no samples yet.
+    pub fn new(scheme: Scheme, settings: &Settings) -> Self {
+        // A rate code adds up its filters on its shift.
+        let reach = settings
+            .number("shift")
+            .ok()
+            .zip(settings.numbers("taps").ok())
+            .map(|(shift, taps)| shift + taps.iter().filter(|tap| **tap > 0.0).sum::<f64>());
+        let (min, max) = (f64::INFINITY, f64::NEG_INFINITY);
+        Self {
+            scheme,
+            sample: settings.sample,
+            min,
+            max,
+            samples: 0,
+            resolution: Resolution::new(settings.sample),
+            saturated: 0,
+            reach,
+            beyond: 0,
+        }
+    }
+
+    /// Takes the next samples, all finite.
+    pub fn observe(&mut self, values: &[f64]) {
+        let (low, high) = self.sample.range();
+        let reach = self.reach.unwrap_or(f64::INFINITY);
+        for &value in values {
+            self.min = self.min.min(value);
+            self.max = self.max.max(value);
+            self.saturated += u64::from(value < low || value > high);
+            self.beyond += u64::from(value > reach);
+        }
+        self.samples += values.len() as u64;
+        self.resolution.observe(values);
+    }
+
+    /// The notes for the user, a line each.
+    pub fn notes(&self, settings: &Settings, spikes: u64) -> String {
+        let mut notes = String::new();
+        // Writing to a string cannot fail.
+        let _ = self.write(&mut notes, settings, spikes);
+        notes
+    }
+
+    fn write(&self, notes: &mut String, settings: &Settings, spikes: u64) -> std::fmt::Result {
+        /// A signal of fewer steps is mostly rounding.
+        const STEPS: f64 = 16.0;
+        let Self { sample, min, max, samples, saturated, .. } = *self;
+        if samples == 0 {
+            return Ok(());
+        }
+        if let Some(cut) = cut(sample, saturated) {
+            writeln!(notes, "{cut}")?;
+        }
+        let range = max - min;
+        let said =
+            format!("the signal's range, {} ({} to {})", short(range), short(min), short(max));
+        let step = sample.step();
+        if let Some(lost) = self.resolution.lost() {
+            writeln!(notes, "{lost}")?;
+        } else if range > 0.0 && range < STEPS * step && self.resolution.is_rounded() {
+            writeln!(
+                notes,
+                "{said}, is {} steps of {sample}, whose step is {step}; {}",
+                short(range / step),
+                self.resolution.holders()
+            )?;
+        }
+        if let (0, Some(threshold)) = (spikes, threshold(self.scheme, settings))
+            && threshold >= range
+        {
+            writeln!(notes, "no spike: the threshold, {}, is above {said}", short(threshold))?;
+        }
+        if let (1.., Some(reach)) = (self.beyond, self.reach) {
+            writeln!(
+                notes,
+                "{} of {samples} samples are above {}, the shift and the filter's sum, which is the most \
+                 that the code can mean: it decodes too low there; after a shape, `,sum={}` reaches the maximum",
+                self.beyond,
+                short(reach),
+                short(range),
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// The threshold of a code that spikes on changes.
+fn threshold(scheme: Scheme, settings: &Settings) -> Option<f64> {
+    settings.number("threshold").ok().filter(|_| scheme.info().has_first_value)
+}
+
+/// A sentence on how many samples the sample type could not hold, if any.
+pub fn cut(sample: SampleType, count: u64) -> Option<String> {
+    let (low, high) = sample.range();
+    (count > 0)
+        .then(|| format!("{count} samples were cut to the range of {sample}, {low} to {high}"))
+}
+
+/// A sentence on what the sample type has rounded.
+pub fn rounding(settings: &Settings) -> Option<String> {
+    let (mut told, mut lists) = (Vec::new(), Vec::new());
+    for (name, asked) in &settings.rounded {
+        let (Some(asked), Ok(ran)) = (asked.numbers(), settings.numbers(name)) else { continue };
+        match (asked, ran) {
+            // Samples are rounded like that, too.
+            _ if ["start", "first"].contains(name) => {}
+            ([asked], [ran]) => told.push(format!("{name} {} ran as {ran}", short(*asked))),
+            _ => {
+                let off = asked.iter().zip(ran).map(|(asked, ran)| (asked - ran).abs());
+                let count = off.clone().filter(|off| *off > 0.0).count();
+                let most = short(off.fold(0.0, f64::max));
+                lists.push(format!("{count} {name} were rounded by at most {most}"));
+            }
+        }
+    }
+    told.extend(lists);
+    (!told.is_empty()).then(|| format!("in {}, {}", settings.sample, told.join(", ")))
+}
+
+/// An error of settings that a column gives, with why where the sample type does not hold the column's steps.
+pub fn explained(error: anyhow::Error, sample: SampleType, values: &[f64]) -> anyhow::Error {
+    match Resolution::of(sample, values).lost() {
+        Some(lost) => error.context(lost),
+        None => error,
+    }
+}

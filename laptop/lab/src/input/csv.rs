@@ -1,0 +1,422 @@
+//! Columns of a CSV table.
+
+use super::header::{Header, Start, is_data};
+use super::text::{name, shown, text};
+use super::time::{Named, Reading, TimeUnit, implausible};
+use super::time::{microseconds, number, of_given, of_name};
+use super::{ALL, CHUNK, Chunk, InputOptions, Source, near};
+use anyhow::{Context, Result, anyhow, bail};
+use csv::{ByteRecord, Reader, ReaderBuilder};
+use std::cell::Cell;
+use std::collections::VecDeque;
+use std::io::{self, BufReader, Cursor, Read};
+use std::rc::Rc;
+
+/// Names of columns that hold counts unless the user says otherwise.
+const COUNTS: [&str; 8] =
+    ["index", "sample", "i", "", "unnamed: 0", "loopiteration", "lineno", "header.seq"];
+/// Rows that are looked at before the first is taken.
+const AHEAD: usize = 64;
+
+/// Columns, and perhaps others with the times.
+pub(super) struct Table {
+    rows: Rows,
+    /// How many comments stand below the header.
+    comments: Rc<Cell<u64>>,
+    ahead: VecDeque<ByteRecord>,
+    /// The row in hand, and whether it was one of those ahead.
+    record: ByteRecord,
+    was_ahead: bool,
+    file: String,
+    columns: Vec<Column>,
+    time: Option<Time>,
+    has_decimal_commas: bool,
+    skip_non_finite: bool,
+    count: u64,
+    origin: Vec<(&'static str, String)>,
+    notes: Vec<String>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Column {
+    index: usize,
+    name: String,
+}
+
+/// The column with the times.
+struct Time {
+    column: Column,
+    reading: Reading,
+    /// Nanoseconds beside whole seconds.
+    nanoseconds: Option<Column>,
+    has_decimal_commas: bool,
+}
+
+impl Table {
+    pub(super) fn open(
+        input: impl Read + 'static,
+        file: &str,
+        options: &InputOptions,
+    ) -> Result<Self> {
+        let mut input = BufReader::with_capacity(1 << 16, text(input, file)?);
+        let start = Start::read(&mut input).with_context(|| file.to_owned())?;
+        let asked = options.delimiter.map(|own| own.0);
+        let comment = start.comment(asked);
+        let delimiter = asked
+            .or(comment.as_ref().map(|own| own.delimiter))
+            .unwrap_or_else(|| start.delimiter());
+        let comments = Rc::default();
+        let mut rows = Rows::new(start, input, delimiter, &comments);
+        let mut ahead = ahead(&mut rows, file)?;
+        let Some(first) = ahead.front() else {
+            bail!("{file}: empty; a CSV table starts with a header");
+        };
+        let mut notes = Vec::new();
+        let names = match comment {
+            Some(Header { names, .. }) if is_data(&ahead, delimiter) => {
+                notes.push("the header is the comment above the first row".to_owned());
+                names
+            }
+            _ if is_data(&ahead, delimiter) => {
+                let line = line(first);
+                bail!("{file}: line {line} holds numbers; a CSV table starts with a header");
+            }
+            _ => ahead.pop_front().iter().flatten().map(name).collect(),
+        };
+        let mut table = Self {
+            ahead,
+            rows,
+            comments,
+            record: ByteRecord::new(),
+            was_ahead: false,
+            file: file.to_owned(),
+            columns: Vec::new(),
+            time: None,
+            has_decimal_commas: delimiter != b',',
+            skip_non_finite: options.skip_non_finite,
+            count: 0,
+            origin: Vec::new(),
+            notes,
+        };
+        let time = table.time_column(&names, options)?;
+        table.columns = match options.columns().collect::<Vec<_>>()[..] {
+            [] => vec![only(&names, time.as_ref().map(|(column, _)| column), file)?],
+            [ALL] => signals(&names, time.as_ref().map(|(column, _)| column)).collect(),
+            ref asked => {
+                asked.iter().map(|name| find(name, &names, file)).collect::<Result<_>>()?
+            }
+        };
+        if let Some((column, named)) = time.filter(|(time, _)| !table.columns.contains(time)) {
+            if let Some(rate) = options.rate {
+                let name = &column.name;
+                bail!("{file}: `rate` {rate} contradicts the times that column {name} records");
+            }
+            table.read_times(column, named, &names, options);
+        } else if let Some(unit) = options.time_unit {
+            bail!(
+                "{file}: `time_unit` {unit}: no column is known to hold times; `time` says which"
+            );
+        }
+        table.origin = vec![("column", table.names().join(","))];
+        Ok(table)
+    }
+
+    /// The column of the times, and what its name says.
+    fn time_column(
+        &self,
+        names: &[String],
+        options: &InputOptions,
+    ) -> Result<Option<(Column, Named)>> {
+        if let Some(asked) = &options.time {
+            let column = find(asked, names, &self.file)?;
+            let says = of_given(&column.name);
+            return Ok(Some((column, says)));
+        }
+        let is_betaflight = names.iter().any(|name| name == "loopIteration");
+        let times = names.iter().enumerate().filter_map(|(index, name)| {
+            let says = match of_name(name)? {
+                Named::Whole(_) if is_betaflight => Named::Whole(TimeUnit::Us),
+                Named::Dates => {
+                    Reading::new(Named::Dates, &self.first(index), self.has_decimal_commas)
+                        .map(|_| Named::Dates)?
+                }
+                other => other,
+            };
+            Some((Column { index, name: name.clone() }, says))
+        });
+        Ok(times.into_iter().next())
+    }
+
+    /// Settles how the times are read, and what is to be said of them.
+    fn read_times(
+        &mut self,
+        column: Column,
+        says: Named,
+        names: &[String],
+        options: &InputOptions,
+    ) {
+        let first = self.first(column.index);
+        let says = options.time_unit.map_or(says, Named::In);
+        // What is no time is told where it stands.
+        let fallback = Reading::Numbers(options.time_unit.unwrap_or(TimeUnit::S));
+        let reading = Reading::new(says, &first, self.has_decimal_commas).unwrap_or(fallback);
+        let how = match reading {
+            Reading::Numbers(unit) => format!("in {unit}"),
+            Reading::Dates => "as dates".to_owned(),
+            Reading::Durations => "as durations".to_owned(),
+        };
+        let nanoseconds = nanoseconds(&column, names);
+        let has_decimal_commas = self.has_decimal_commas;
+        let time = Time { column, reading, nanoseconds, has_decimal_commas };
+        let times: Option<Vec<i128>> = self.ahead.iter().map(|record| time.read(record)).collect();
+        let name = &time.column.name;
+        let doubt = times.and_then(|times| implausible(&times));
+        let doubt =
+            doubt.map_or(String::new(), |what| format!(": {what}; is `time_unit` another?"));
+        self.notes.push(format!("times {how} from column `{name}`{doubt}"));
+        self.time = Some(time);
+    }
+
+    /// The first values of a column.
+    fn first(&self, index: usize) -> Vec<&[u8]> {
+        self.ahead.iter().filter_map(|record| record.get(index)).map(<[u8]>::trim_ascii).collect()
+    }
+
+    /// Takes the next row, if there is one.
+    fn advance(&mut self) -> Result<bool> {
+        let record = self.ahead.pop_front();
+        self.was_ahead = record.is_some();
+        if let Some(record) = record {
+            self.record = record;
+            return Ok(true);
+        }
+        let is_there = self.rows.next(&mut self.record, &self.file)?;
+        let comments = if is_there { 0 } else { self.comments.take() };
+        if comments > 0 {
+            let what = "below the header begin with # and are left out";
+            self.notes.push(format!("{comments} lines {what}"));
+        }
+        Ok(is_there)
+    }
+
+    fn number(&self, column: &Column) -> Result<f64> {
+        let field = self.record.get(column.index).unwrap_or_default().trim_ascii();
+        if let Some(number) = number(field, self.has_decimal_commas) {
+            return Ok(number);
+        }
+        if is_missing(field) {
+            return Ok(f64::NAN);
+        }
+        Err(anyhow!("{}: `{}` is not a number", self.place(column), shown(field)))
+    }
+
+    fn value(&self, column: &Column) -> Result<f64> {
+        let value = self.number(column)?;
+        if !value.is_finite() && !self.skip_non_finite {
+            let field = self.record.get(column.index).unwrap_or_default().trim_ascii();
+            let what = match shown(field) {
+                shown if is_missing(field) => format!("`{shown}` is a missing value"),
+                shown => format!("{shown} is not finite"),
+            };
+            bail!("{}: {what}; `skip_non_finite` goes on over such values", self.place(column));
+        }
+        Ok(value)
+    }
+
+    fn place(&self, column: &Column) -> String {
+        let record = &self.record;
+        let line = if self.was_ahead { line(record) } else { self.rows.line(record) };
+        format!("{}: line {line}, column {}", self.file, column.name)
+    }
+}
+
+impl Time {
+    /// The time, in ps.
+    fn read(&self, record: &ByteRecord) -> Option<i128> {
+        let field = |column: &Column| record.get(column.index).unwrap_or_default().trim_ascii();
+        let time = self.reading.read(field(&self.column), self.has_decimal_commas)?;
+        match &self.nanoseconds {
+            Some(column) => Some(
+                time.saturating_add(Reading::Numbers(TimeUnit::Ns).read(field(column), false)?),
+            ),
+            None => Some(time),
+        }
+    }
+}
+
+impl Source for Table {
+    fn next(&mut self, chunk: &mut Chunk) -> Result<()> {
+        chunk.clear(self.columns.len());
+        while chunk.len() < CHUNK && self.advance()? {
+            for (column, values) in self.columns.iter().zip(&mut chunk.columns) {
+                values.push(self.value(column)?);
+            }
+            if let Some(time) = &self.time {
+                let Some(picoseconds) = time.read(&self.record) else {
+                    let field = self.record.get(time.column.index).unwrap_or_default();
+                    let text = shown(field.trim_ascii());
+                    bail!("{}: `{text}` is not a time", self.place(&time.column));
+                };
+                chunk.times.push(microseconds(picoseconds));
+            }
+            self.count += 1;
+        }
+        if self.count == 0 {
+            bail!("{}: no samples below the header", self.file);
+        }
+        Ok(())
+    }
+
+    fn names(&self) -> Vec<&str> {
+        self.columns.iter().map(|column| column.name.as_str()).collect()
+    }
+
+    fn origin(&self) -> &[(&'static str, String)] {
+        &self.origin
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.notes
+    }
+}
+
+/// Whether a field is a spelling of a missing value, such as `NA`.
+pub(super) fn is_missing(field: &[u8]) -> bool {
+    const WORDS: [&str; 8] = ["", "na", "n/a", "#n/a", "<na>", "null", "none", "-"];
+    WORDS.iter().any(|word| field.eq_ignore_ascii_case(word.as_bytes()))
+}
+
+/// The rows of a table.
+struct Rows {
+    reader: Reader<Box<dyn Read>>,
+    /// Whether lines end in two bytes, the second of which the reader takes for the next line's.
+    is_of_windows: bool,
+}
+
+impl Rows {
+    /// The rows of a table whose start was read already; the comments among the others are counted.
+    fn new(start: Start, input: impl Read + 'static, delimiter: u8, count: &Rc<Cell<u64>>) -> Self {
+        let is_of_windows = start.is_of_windows();
+        // With it the last line ends as the others do; an empty line is none.
+        let end: &[u8] = if is_of_windows { b"\r\n" } else { b"\n" };
+        let rest = Comments { input, before: b'\n', count: count.clone() };
+        let all: Box<dyn Read> = Box::new(Cursor::new(start.text).chain(rest).chain(end));
+        let reader = ReaderBuilder::new()
+            .buffer_capacity(1 << 18)
+            .comment(Some(b'#'))
+            .has_headers(false)
+            .delimiter(delimiter)
+            .from_reader(all);
+        Self { reader, is_of_windows }
+    }
+
+    /// Takes the next row, if there is one.
+    fn next(&mut self, record: &mut ByteRecord, file: &str) -> Result<bool> {
+        let read = self.reader.read_byte_record(record);
+        if let Err(error) = read {
+            bail!("{}", unreadable(file, &error, self.line(record)));
+        }
+        Ok(read?)
+    }
+
+    /// The line at which the row that was read last begins: the reader itself counts comments before it in.
+    fn line(&self, record: &ByteRecord) -> u64 {
+        let within = record.as_slice().split(|byte| *byte == b'\n').skip(1).count() as u64;
+        let ends = within + u64::from(!self.is_of_windows);
+        self.reader.position().line().saturating_sub(ends).max(1)
+    }
+}
+
+/// Counts the lines that begin with `#` while they are read.
+struct Comments<R> {
+    input: R,
+    /// The byte read last.
+    before: u8,
+    count: Rc<Cell<u64>>,
+}
+
+impl<R: Read> Read for Comments<R> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let read = self.input.read(bytes)?;
+        let bytes = &bytes[..read];
+        let (Some(first), Some(last)) = (bytes.first(), bytes.last()) else { return Ok(0) };
+        let begins = |before: u8, own: u8| u64::from(before == b'\n' && own == b'#');
+        let within: u64 = bytes.iter().zip(&bytes[1..]).map(|(a, b)| begins(*a, *b)).sum();
+        self.count.set(self.count.get() + begins(self.before, *first) + within);
+        self.before = *last;
+        Ok(read)
+    }
+}
+
+/// The first rows, each with the line that it begins at as its position.
+fn ahead(rows: &mut Rows, file: &str) -> Result<VecDeque<ByteRecord>> {
+    let mut records = VecDeque::new();
+    let mut record = ByteRecord::new();
+    while records.len() < AHEAD && rows.next(&mut record, file)? {
+        let mut position = csv::Position::new();
+        position.set_line(rows.line(&record));
+        record.set_position(Some(position));
+        records.push_back(record.clone());
+    }
+    Ok(records)
+}
+
+/// The line of a row ahead.
+fn line(record: &ByteRecord) -> u64 {
+    record.position().map_or(1, csv::Position::line)
+}
+
+fn unreadable(file: &str, error: &csv::Error, line: u64) -> anyhow::Error {
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            anyhow!("{file}: line {line} has {len} columns where the header has {expected_len}")
+        }
+        _ => anyhow!("{file}: {error}"),
+    }
+}
+
+/// The nanoseconds that ROS writes beside whole seconds.
+fn nanoseconds(seconds: &Column, names: &[String]) -> Option<Column> {
+    let lower = seconds.name.to_lowercase();
+    let stem = lower.strip_suffix("secs").or_else(|| lower.strip_suffix("sec"))?;
+    let is_rest = |name: &str| {
+        name.strip_prefix(stem).is_some_and(|word| matches!(word, "nsecs" | "nsec" | "nanosec"))
+    };
+    let index = names.iter().position(|name| is_rest(&name.to_lowercase()))?;
+    Some(Column { index, name: names[index].clone() })
+}
+
+fn find(asked: &str, names: &[String], file: &str) -> Result<Column> {
+    let asked = asked.trim();
+    if let Some(index) = names.iter().position(|name| name == asked) {
+        return Ok(Column { index, name: asked.to_owned() });
+    }
+    match asked.parse::<usize>() {
+        Ok(number) if (1..=names.len()).contains(&number) => {
+            Ok(Column { index: number - 1, name: names[number - 1].clone() })
+        }
+        Ok(_) => bail!("{file}: no column {asked}; columns are numbered from 1 to {}", names.len()),
+        Err(_) => {
+            bail!("{file}: no column `{asked}`; {}", near(asked, names.iter().map(String::as_str)))
+        }
+    }
+}
+
+/// The columns that are neither times nor counts.
+fn signals(names: &[String], time: Option<&Column>) -> impl Iterator<Item = Column> {
+    let is_signal = move |&(index, name): &(usize, &String)| {
+        time.is_none_or(|time| time.index != index)
+            && !COUNTS.contains(&name.to_lowercase().as_str())
+    };
+    let signals = names.iter().enumerate().filter(is_signal);
+    signals.map(|(index, name)| Column { index, name: name.clone() })
+}
+
+/// The column that is neither a time nor a count, if there is just one.
+fn only(names: &[String], time: Option<&Column>, file: &str) -> Result<Column> {
+    let mut signals = signals(names, time);
+    match (signals.next(), signals.next()) {
+        (Some(column), None) => Ok(column),
+        _ => bail!("{file}: `column` must say which; there are {}", names.join(", ")),
+    }
+}

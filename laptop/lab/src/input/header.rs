@@ -1,0 +1,105 @@
+//! The header of a table: its first line, or the comment above its first row, as `EuRoC`, TUM-VI and `NumPy` write it.
+
+use super::csv::is_missing;
+use super::text::name;
+use super::time::number;
+use csv::{ByteRecord, ReaderBuilder};
+use std::collections::VecDeque;
+use std::io::{self, BufRead, Read};
+
+/// The comments that a table begins with, and its first line that is none.
+pub(super) struct Start {
+    /// All of it, as the file has it.
+    pub text: Vec<u8>,
+    /// Where the line that is no comment begins.
+    line: usize,
+}
+
+/// The names of a table's columns, and the delimiter between them.
+pub(super) struct Header {
+    pub names: Vec<String>,
+    pub delimiter: u8,
+}
+
+impl Start {
+    /// Reads lines up to the first that is neither a comment nor empty.
+    ///
+    /// # Errors
+    /// Returns an error if the input cannot be read.
+    pub(super) fn read(input: &mut impl BufRead) -> io::Result<Self> {
+        const LONGEST: u64 = 1 << 20;
+        let mut text = Vec::new();
+        loop {
+            let line = text.len();
+            input.by_ref().take(LONGEST).read_until(b'\n', &mut text)?;
+            let is_passed = text[line..].starts_with(b"#") || text[line..].trim_ascii().is_empty();
+            if text.len() == line || !is_passed {
+                return Ok(Self { text, line });
+            }
+        }
+    }
+
+    /// Whether its lines end as Windows ends them.
+    pub(super) fn is_of_windows(&self) -> bool {
+        self.text.ends_with(b"\r\n")
+    }
+
+    /// The delimiter that separates most names, if the first line that is no comment is the header.
+    pub(super) fn delimiter(&self) -> u8 {
+        delimiter(&self.text[self.line..])
+    }
+
+    /// The last comment that has a name for each column of the line below, where that line has a number.
+    pub(super) fn comment(&self, asked: Option<u8>) -> Option<Header> {
+        let (above, line) = self.text.split_at(self.line);
+        let comments = above.split(|&byte| byte == b'\n').filter_map(|own| own.strip_prefix(b"#"));
+        comments.rev().find_map(|comment| {
+            let delimiter = asked.unwrap_or_else(|| delimiter(comment));
+            let (names, row) = (split(comment, delimiter), split(line, delimiter));
+            let has_number = |row: &ByteRecord| row.iter().any(|own| is_number(own, delimiter));
+            let is_header = names.len() == row.len() && has_number(&row) && !has_number(&names);
+            is_header.then(|| Header { names: names.iter().map(name).collect(), delimiter })
+        })
+    }
+}
+
+/// Whether the first of these rows holds samples and no names: it has numbers, and no text stands above a number.
+pub(super) fn is_data(rows: &VecDeque<ByteRecord>, delimiter: u8) -> bool {
+    let Some(first) = rows.front() else { return false };
+    let is_number = |field: &[u8]| is_number(field, delimiter);
+    let is_name = |(place, field): (usize, &[u8])| {
+        let below = rows.get(1).and_then(|row| row.get(place));
+        // pandas leaves the name of an index empty, which stands first.
+        let is_text = if is_missing(field.trim_ascii()) { place == 0 } else { !is_number(field) };
+        is_text && below.is_some_and(is_number)
+    };
+    first.iter().any(is_number) && !first.iter().enumerate().any(is_name)
+}
+
+fn is_number(field: &[u8], delimiter: u8) -> bool {
+    number(field.trim_ascii(), delimiter != b',').is_some()
+}
+
+/// The fields of a line.
+fn split(line: &[u8], delimiter: u8) -> ByteRecord {
+    let mut record = ByteRecord::new();
+    let mut builder = ReaderBuilder::new();
+    let mut reader = builder.has_headers(false).delimiter(delimiter).from_reader(line.trim_ascii());
+    // Memory is always read, and one line has no other length than the first.
+    let _ = reader.read_byte_record(&mut record);
+    record
+}
+
+/// Finds the delimiter that separates most names of a header.
+fn delimiter(header: &[u8]) -> u8 {
+    let mut is_quoted = false;
+    let mut counts = [(b',', 0), (b';', 0), (b'\t', 0), (b'|', 0)];
+    for byte in header.trim_ascii_end() {
+        is_quoted ^= *byte == b'"';
+        for (delimiter, count) in &mut counts {
+            *count += u32::from(!is_quoted && byte == delimiter);
+        }
+    }
+    // The comma where there is no other.
+    counts.into_iter().rev().max_by_key(|&(_, count)| count).map_or(b',', |(found, _)| found)
+}

@@ -1,0 +1,222 @@
+//! Fields of one topic of a log, as samples.
+
+use super::{advised, damage};
+use crate::input::time::{Named, TimeUnit, of_given};
+use crate::input::{CHUNK, Chunk, InputOptions, Source, near};
+use anyhow::{Result, bail};
+use flight_logs::definition::{Definition, NoNumber, Path, Stamp};
+use flight_logs::{Entry, Fault, Kind, Log, Topic, microseconds, open};
+
+/// Fields of one topic of a log.
+pub struct Channel {
+    log: Box<dyn Log>,
+    file: String,
+    topic: String,
+    fields: Vec<String>,
+    time: Option<String>,
+    time_unit: Option<TimeUnit>,
+    skip_non_finite: bool,
+    /// The places of the fields, for each topic of the log that has this name.
+    plans: Vec<Option<Plan>>,
+    samples: u64,
+    values: Vec<f64>,
+    origin: Vec<(&'static str, String)>,
+    notes: Vec<String>,
+}
+
+/// The places of the fields in a message, and of the time if the message has it.
+struct Plan {
+    fields: Vec<Path>,
+    time: Option<Time>,
+}
+
+enum Time {
+    Stamp(Stamp),
+    Number(Path, TimeUnit),
+}
+
+impl Channel {
+    /// Opens the channels of a log.
+    ///
+    /// # Errors
+    /// The log, topic or fields are missing, or cannot be read.
+    pub fn open(options: &InputOptions, kind: Kind) -> Result<Self> {
+        let file = options.name();
+        let fields: Vec<String> = options.fields().map(str::to_owned).collect();
+        let first = |topic: &str| topic.strip_suffix(":0").unwrap_or(topic).to_owned();
+        let topic = options.topic.as_deref().or(kind.usual_topic()).map(first);
+        let Some(topic) = topic.filter(|_| !fields.is_empty()) else {
+            bail!("{file}: a log needs `topic` and `field`; `spikewire info` lists them");
+        };
+        Ok(Self {
+            log: open(&options.input, kind, damage(options.accept_cut)).map_err(advised)?,
+            file,
+            origin: vec![("topic", topic.clone()), ("field", fields.join(","))],
+            topic,
+            fields,
+            time: options.time.clone(),
+            time_unit: options.time_unit,
+            skip_non_finite: options.skip_non_finite,
+            plans: Vec::new(),
+            samples: 0,
+            values: Vec::new(),
+            notes: Vec::new(),
+        })
+    }
+
+    /// Plans for the topics that came up.
+    fn plan(&mut self) -> Result<()> {
+        for topic in self.log.topics().iter().skip(self.plans.len()) {
+            // ROS takes names with and without a slash before them.
+            let is_asked = topic.name.trim_start_matches('/') == self.topic.trim_start_matches('/');
+            let plan = if is_asked { Some(self.plan_of(topic)?) } else { None };
+            self.plans.push(plan);
+        }
+        Ok(())
+    }
+
+    fn plan_of(&self, topic: &Topic) -> Result<Plan> {
+        let (file, name) = (&self.file, &topic.name);
+        let definition = match &topic.definition {
+            Ok(definition) => definition,
+            Err(error) => bail!("{file}: topic {name} of {}: {error}", topic.kind),
+        };
+        let find = |field: &String| {
+            definition.number(field).or_else(|why| match why {
+                NoNumber::Text => bail!("{file}: topic {name}: field `{field}` is text, not a signal"),
+                NoNumber::Several => bail!(
+                    "{file}: topic {name}: field `{field}` is not one number but several; there are {}",
+                    within(definition, field)
+                ),
+                NoNumber::Missing => {
+                    let (numbers, _) = definition.names();
+                    let near = near(field, numbers.iter().map(String::as_str));
+                    bail!("{file}: topic {name} has no field `{field}`; {near}")
+                }
+            })
+        };
+        let fields = self.fields.iter().map(find).collect::<Result<_>>()?;
+        let time = match &self.time {
+            None => None,
+            Some(field) => Some(match definition.stamp(field) {
+                Some(stamp) => Time::Stamp(stamp),
+                None => Time::Number(find(field)?, self.unit(field)),
+            }),
+        };
+        Ok(Plan { fields, time })
+    }
+
+    /// The unit of a number that is a time.
+    fn unit(&self, field: &str) -> TimeUnit {
+        self.time_unit.unwrap_or_else(|| {
+            match of_given(field.rsplit('.').next().unwrap_or(field)) {
+                Named::In(unit) | Named::Whole(unit) => unit,
+                Named::Dates => TimeUnit::S,
+            }
+        })
+    }
+
+    /// Takes a message of the topic.
+    fn take(&mut self, entry: Entry, chunk: &mut Chunk) -> Result<()> {
+        let Some(plan) = self.plans[entry.topic].as_ref() else { return Ok(()) };
+        let topic = &self.log.topics()[entry.topic];
+        self.values.clear();
+        let read = read(topic, plan, self.log.message(), entry.time, &mut self.values);
+        let time = match read {
+            Ok(time) => time,
+            Err(fault) => {
+                let what = format!("topic {}: {fault}", self.topic);
+                return self.log.faults().skip(entry.at, what).map_err(advised);
+            }
+        };
+        if topic.is_longer(self.log.message()) {
+            self.log.faults().long(entry.at);
+        }
+        let odd = self.values.iter().position(|value| !value.is_finite());
+        if let Some(odd) = odd.filter(|_| !self.skip_non_finite) {
+            bail!(
+                "{}: byte {}: topic {}, field {}: {} at {time} µs (sample {}) is missing or not finite; \
+                 `skip_non_finite` goes on over such values",
+                self.file,
+                entry.at,
+                self.topic,
+                self.fields[odd],
+                self.values[odd],
+                self.samples
+            );
+        }
+        for (column, value) in chunk.columns.iter_mut().zip(&self.values) {
+            column.push(*value);
+        }
+        chunk.times.push(time);
+        self.samples += 1;
+        Ok(())
+    }
+
+    /// The error of a topic without messages, or of an unknown topic.
+    fn nothing(&self) -> anyhow::Error {
+        let (file, topic) = (&self.file, &self.topic);
+        if self.plans.iter().any(Option::is_some) {
+            return anyhow::anyhow!("{file}: topic {topic} has no messages");
+        }
+        let names = self.log.topics().iter().map(|topic| topic.name.as_str());
+        anyhow::anyhow!("{file}: no topic `{topic}`; {}", near(topic, names))
+    }
+}
+
+/// The values of a message, those of short arrays not a number, and its time in µs.
+fn read(
+    topic: &Topic,
+    plan: &Plan,
+    message: &[u8],
+    recorded: i64,
+    values: &mut Vec<f64>,
+) -> Result<i64, Fault> {
+    for path in &plan.fields {
+        values.push(topic.number(path, message)?.unwrap_or(f64::NAN));
+    }
+    Ok(match &plan.time {
+        None => microseconds(recorded),
+        Some(Time::Stamp(stamp)) => microseconds(topic.stamp(stamp, message)?.unwrap_or(recorded)),
+        Some(Time::Number(path, unit)) => match topic.number(path, message)? {
+            Some(time) => (time * unit.microseconds()).round() as i64,
+            None => microseconds(recorded),
+        },
+    })
+}
+
+/// The numbers of a field that has several.
+fn within(definition: &Definition, field: &str) -> String {
+    let (numbers, _) = definition.names();
+    let own: Vec<&str> =
+        numbers.iter().map(String::as_str).filter(|name| name.starts_with(field)).collect();
+    own.join(", ")
+}
+
+impl Source for Channel {
+    fn next(&mut self, chunk: &mut Chunk) -> Result<()> {
+        chunk.clear(self.fields.len());
+        while chunk.len() < CHUNK {
+            let Some(entry) = self.log.next().map_err(advised)? else { break };
+            self.plan()?;
+            self.take(entry, chunk)?;
+        }
+        if self.samples == 0 {
+            return Err(self.nothing());
+        }
+        self.notes = self.log.faults().notes();
+        Ok(())
+    }
+
+    fn names(&self) -> Vec<&str> {
+        self.fields.iter().map(String::as_str).collect()
+    }
+
+    fn origin(&self) -> &[(&'static str, String)] {
+        &self.origin
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.notes
+    }
+}

@@ -1,0 +1,145 @@
+//! An overview of a log: its topics, and how their messages came.
+
+use super::{advised, damage};
+use crate::input::{CHUNK, Clock, Rollover};
+use anyhow::Result;
+use flight_logs::definition::Path as FieldPath;
+use flight_logs::{Kind, Topic, microseconds, open};
+use std::path::Path;
+
+/// A summary of one topic of a log.
+#[derive(Debug)]
+pub struct Overview {
+    /// Its name.
+    pub name: String,
+    /// The type of its messages, if they have one.
+    pub kind: String,
+    /// Its fields of numbers.
+    pub fields: Vec<String>,
+    /// Its fields of text.
+    pub texts: Vec<String>,
+    /// The reason that its fields cannot be read.
+    pub unread: Option<String>,
+    /// Number of messages.
+    pub count: u64,
+    /// Its length, rate and gaps.
+    pub clock: Clock,
+    /// The times that its clock ran over.
+    pub rollover: Rollover,
+    /// Number of messages missing, by the numbers that they have.
+    pub missing: u64,
+}
+
+/// Summarises a log by topic, with notes on all else.
+///
+/// # Errors
+/// Returns an error if the log cannot be read.
+pub fn overview(
+    path: &Path,
+    kind: Kind,
+    accept_cut: bool,
+    gap: f64,
+) -> Result<(Vec<Overview>, Vec<String>)> {
+    let mut log = open(path, kind, damage(accept_cut)).map_err(advised)?;
+    let mut watched: Vec<Watched> = Vec::new();
+    while let Some(entry) = log.next().map_err(advised)? {
+        for topic in log.topics().iter().skip(watched.len()) {
+            watched.push(Watched::new(topic, gap));
+        }
+        let own = &mut watched[entry.topic];
+        own.observe(microseconds(entry.time));
+        let topic = &log.topics()[entry.topic];
+        let counted = match &own.counter {
+            Some(path) => topic.number(path, log.message()).ok().flatten().map(|own| own as u32),
+            None => entry.sequence,
+        };
+        if let Some(sequence) = counted {
+            own.count(sequence);
+        }
+        if topic.is_longer(log.message()) {
+            log.faults().long(entry.at);
+        }
+    }
+    let both = log.topics().iter().zip(watched).filter(|(_, own)| own.count > 0);
+    let mut topics: Vec<Overview> = both.map(|(topic, own)| own.told(topic)).collect();
+    topics.sort_by(|a, b| (&a.name, &a.kind).cmp(&(&b.name, &b.kind)));
+    Ok((topics, log.faults().notes()))
+}
+
+/// The messages of one topic as they come.
+struct Watched {
+    gap: f64,
+    /// The first times, which tell what is usual.
+    first: Vec<i64>,
+    clock: Option<Clock>,
+    rollover: Rollover,
+    count: u64,
+    /// The place of the number with which messages count themselves.
+    counter: Option<FieldPath>,
+    previous: Option<u32>,
+    missing: u64,
+}
+
+impl Watched {
+    fn new(topic: &Topic, gap: f64) -> Self {
+        let definition = topic.definition.as_ref().ok();
+        Self {
+            gap,
+            first: Vec::new(),
+            clock: None,
+            rollover: Rollover::default(),
+            count: 0,
+            counter: definition.and_then(|own| own.number("header.seq").ok()),
+            previous: None,
+            missing: 0,
+        }
+    }
+
+    fn observe(&mut self, time: i64) {
+        let time = self.rollover.take(time);
+        self.count += 1;
+        if let Some(clock) = &mut self.clock {
+            clock.observe(&[time]);
+            return;
+        }
+        self.first.push(time);
+        if self.first.len() == CHUNK {
+            self.clock = Some(self.started());
+            self.first = Vec::new();
+        }
+    }
+
+    fn started(&self) -> Clock {
+        let mut clock = Clock::new(&self.first, None, self.gap);
+        clock.observe(&self.first);
+        clock
+    }
+
+    fn count(&mut self, sequence: u32) {
+        let before = self.previous.replace(sequence);
+        let step = before.map_or(1, |before| sequence.wrapping_sub(before));
+        // A larger step is a counter that began anew.
+        if (2..1 << 16).contains(&step) {
+            self.missing += u64::from(step - 1);
+        }
+    }
+
+    fn told(mut self, topic: &Topic) -> Overview {
+        let clock = self.clock.take().unwrap_or_else(|| self.started());
+        let ((fields, texts), unread) = match &topic.definition {
+            Ok(definition) => (definition.names(), None),
+            Err(error) => (Default::default(), Some(error.clone())),
+        };
+        Overview {
+            name: topic.name.clone(),
+            kind: topic.kind.clone(),
+            fields,
+            texts,
+            unread,
+            count: self.count,
+            clock,
+            rollover: self.rollover,
+            missing: self.missing,
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! Clocks of 32 bits that run over: 71.6 minutes in µs, 49.7 days in ms.
+
+use super::{Chunk, Source};
+use anyhow::Result;
+
+/// The values that a clock of 32 bits has, in µs where it counts µs and where it counts ms.
+const RANGES: [i64; 2] = [1 << 32, 1000 << 32];
+
+/// A clock runs over within a step of a second or four steps before it, whichever is longer.
+const SECOND: i64 = 1_000_000;
+const STEPS: i64 = 4;
+
+/// Times of a clock, as if it had more bits.
+#[derive(Debug, Default)]
+pub struct Rollover {
+    previous: Option<i64>,
+    /// The last step forward.
+    step: i64,
+    samples: u64,
+    /// How often it ran over, by how much each time, and the sample before the first time.
+    count: i64,
+    range: i64,
+    first: u64,
+}
+
+impl Rollover {
+    /// The time of the next sample, in µs, from what its clock shows.
+    pub fn take(&mut self, shown: i64) -> i64 {
+        let previous = self.previous.unwrap_or(shown);
+        let step = shown.saturating_sub(previous);
+        let longest = SECOND.max(STEPS.saturating_mul(self.step));
+        let is_over = |range: i64| {
+            let (low, high) = if shown < 0 { (-range / 2, range / 2) } else { (0, range) };
+            (low..high).contains(&shown)
+                && (low..high).contains(&previous)
+                && (1..=longest).contains(&(range - step.saturating_abs()))
+        };
+        let ranges = if self.count == 0 { RANGES } else { [self.range; 2] };
+        match ranges.into_iter().find(|range| is_over(*range)) {
+            Some(range) if step < 0 => {
+                if self.count == 0 {
+                    self.first = self.samples - 1;
+                }
+                self.count += 1;
+                self.range = range;
+            }
+            // A sample from before it ran over, out of order.
+            Some(_) if self.count > 0 => self.count -= 1,
+            _ if step > 0 => self.step = step,
+            _ => {}
+        }
+        self.previous = Some(shown);
+        self.samples += 1;
+        shown.saturating_add(self.count.saturating_mul(self.range))
+    }
+
+    /// A note for the user.
+    pub fn note(&self) -> Option<String> {
+        let Self { count, first, .. } = self;
+        (*count > 0).then(|| {
+            format!(
+                "the clock of 32 bits runs over {count} times, first after sample {first}; times go on behind it"
+            )
+        })
+    }
+}
+
+/// A recording with the times of a clock that does not run over.
+pub(super) struct Unwrapped {
+    source: Box<dyn Source>,
+    rollover: Rollover,
+    notes: Vec<String>,
+}
+
+impl Unwrapped {
+    pub(super) fn new(source: Box<dyn Source>) -> Self {
+        let notes = source.notes().to_vec();
+        Self { source, rollover: Rollover::default(), notes }
+    }
+}
+
+impl Source for Unwrapped {
+    fn next(&mut self, chunk: &mut Chunk) -> Result<()> {
+        self.source.next(chunk)?;
+        for time in &mut chunk.times {
+            *time = self.rollover.take(*time);
+        }
+        self.notes = self.source.notes().iter().cloned().chain(self.rollover.note()).collect();
+        Ok(())
+    }
+
+    fn names(&self) -> Vec<&str> {
+        self.source.names()
+    }
+
+    fn origin(&self) -> &[(&'static str, String)] {
+        self.source.origin()
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.notes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Rollover;
+
+    fn unwrapped(times: impl Iterator<Item = i64>, shown: fn(i64) -> i64) -> Rollover {
+        let mut rollover = Rollover::default();
+        let mut first = None;
+        for time in times {
+            let taken = rollover.take(shown(time));
+            let first = *first.get_or_insert(taken - time);
+            assert_eq!(taken - time, first, "at {time}");
+        }
+        rollover
+    }
+
+    #[test]
+    fn clocks_of_32_bits_go_on() {
+        let three = 3 * (1_i64 << 32) / 5000;
+        let hours = || (0..three).map(|sample| sample * 5000 + 17);
+        assert_eq!(unwrapped(hours(), |time| time % (1 << 32)).count, 2);
+        assert_eq!(unwrapped(hours(), |time| i64::from(time as i32)).count, 3);
+        let days = (0..3_000_000).map(|sample| sample * 3_000_000);
+        assert_eq!(unwrapped(days, |time| time % (1000 << 32)).count, 2);
+    }
+
+    #[test]
+    fn a_sample_out_of_order_runs_over_once() {
+        let mut rollover = Rollover::default();
+        let end = 1 << 32;
+        let shown = [end - 20, end - 10, 5, end - 2, 15, 25];
+        let taken = shown.map(|time| rollover.take(time));
+        assert_eq!(taken, [end - 20, end - 10, end + 5, end - 2, end + 15, end + 25]);
+    }
+
+    #[test]
+    fn a_clock_of_ms_never_steps_back_by_a_range_of_us() {
+        let (short, long) = (1 << 32, 1000 << 32);
+        let mut rollover = Rollover::default();
+        let shown = [long - 10, 5, short + 1, 10, short + 2, 10];
+        let taken = shown.map(|time| rollover.take(time));
+        assert_eq!(taken, shown.map(|time| if time == long - 10 { time } else { long + time }));
+    }
+
+    #[test]
+    fn a_reboot_is_no_rollover() {
+        for shown in [[4_000_000_000, 4_000_005_000, 0], [1 << 40, (1 << 40) + 5000, 5]] {
+            let mut rollover = Rollover::default();
+            assert_eq!(shown.map(|time| rollover.take(time)), shown);
+            assert_eq!(rollover.note(), None);
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Tables as they come: compressed, or in another encoding than UTF-8.
+
+use anyhow::{Context, Result, bail};
+use flate2::read::MultiGzDecoder;
+use flight_logs::GZIP;
+use flight_logs::zstd::{Frames, ZSTD};
+use std::io::{self, BufReader, Cursor, Read};
+
+/// How far a file is looked at to tell what it is.
+const HEAD: usize = 16;
+
+/// The first bytes of files that are no tables, the name of each kind, and the way to export it.
+const OTHERS: [(&[u8], &str); 11] = [
+    (b"PK\x03\x04", "a zip archive or a spreadsheet; export it as CSV"),
+    (b"\xd0\xcf\x11\xe0", "an old spreadsheet; export it as CSV"),
+    (b"\xa3\x95", "an ArduPilot log; `mavlogdump.py --format csv --types IMU` exports it"),
+    (b"H Product:Blackbox", "a Betaflight log; it is read from a file only"),
+    (b"#ROSBAG", "a ROS bag; it is read from a file only"),
+    (b"SQLite format 3", "a database, perhaps a ROS 2 bag; those are read from a file only"),
+    (b"\x89MCAP", "an MCAP file; it is read from a file only"),
+    (b"PAR1", "a Parquet file; export it as CSV"),
+    (b"\x89HDF", "an HDF5 or MATLAB file; export it as CSV"),
+    (b"MATLAB", "a MATLAB file; export it as CSV"),
+    (b"ULog", "a flight log; it is read from a file only"),
+];
+
+/// The text of a file as UTF-8, or in bytes that extend ASCII.
+///
+/// # Errors
+/// Returns an error if the file is no text.
+pub fn text(input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
+    let (head, input) = peek(input).with_context(|| name.to_owned())?;
+    let unpacked: Box<dyn Read> = if head.starts_with(&GZIP) {
+        Box::new(MultiGzDecoder::new(input))
+    } else if head.starts_with(&ZSTD) {
+        Box::new(Frames::new(BufReader::new(input)))
+    } else {
+        return decode(&head, input, name);
+    };
+    let (head, input) = peek(unpacked).with_context(|| format!("{name}: cannot be unpacked"))?;
+    decode(&head, input, name)
+}
+
+/// A name in a table, from UTF-8 or else from Latin-1.
+pub(super) fn name(bytes: &[u8]) -> String {
+    match str::from_utf8(bytes) {
+        Ok(text) => text.trim().to_owned(),
+        Err(_) => encoding::latin(bytes).trim().to_owned(),
+    }
+}
+
+/// Bytes as a message shows them: bytes that are no UTF-8 and control characters as escapes, the first of many only.
+pub fn shown(bytes: &[u8]) -> String {
+    const MOST: usize = 60;
+    let mut text = String::new();
+    for chunk in bytes.utf8_chunks() {
+        for own in chunk.valid().chars() {
+            if own.is_control() { text.extend(own.escape_default()) } else { text.push(own) }
+        }
+        text.extend(chunk.invalid().escape_ascii().map(char::from));
+    }
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text,
+    }
+}
+
+fn decode(head: &[u8], input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
+    let is_utf16 = head.len() >= 4 && head.len().is_multiple_of(2);
+    match *head {
+        [0xff, 0xfe, ..] => return encoding::utf16(input, false, name),
+        [0xfe, 0xff, ..] => return encoding::utf16(input, true, name),
+        [1..=255, 0, 1..=255, 0, ..] if is_utf16 => return encoding::utf16(input, false, name),
+        [0, 1..=255, 0, 1..=255, ..] if is_utf16 => return encoding::utf16(input, true, name),
+        [0xef, 0xbb, 0xbf, ..] => {
+            let mut input = input;
+            input.read_exact(&mut [0; 3])?;
+            return Ok(Box::new(input));
+        }
+        _ => {}
+    }
+    for (start, what) in OTHERS {
+        // Long names are cut to what was looked at.
+        if head.starts_with(&start[..start.len().min(HEAD)]) {
+            bail!("{name}: {what}");
+        }
+    }
+    if head.iter().any(|byte| matches!(byte, 0..=8 | 14..=31)) {
+        bail!("{name}: binary, no table");
+    }
+    Ok(Box::new(input))
+}
+
+/// The first bytes, and all of them again.
+fn peek<R: Read>(mut input: R) -> io::Result<(Vec<u8>, impl Read + use<R>)> {
+    let mut head = Vec::new();
+    input.by_ref().take(HEAD as u64).read_to_end(&mut head)?;
+    Ok((head.clone(), Cursor::new(head).chain(input)))
+}
+
+#[cfg(not(target_family = "wasm"))]
+mod encoding {
+    use anyhow::Result;
+    use encoding_rs::{UTF_16BE, UTF_16LE, WINDOWS_1252};
+    use encoding_rs_io::DecodeReaderBytesBuilder;
+    use std::borrow::Cow;
+    use std::io::Read;
+
+    pub(super) fn latin(bytes: &[u8]) -> Cow<'_, str> {
+        WINDOWS_1252.decode_without_bom_handling(bytes).0
+    }
+
+    #[expect(clippy::unnecessary_wraps, reason = "in a browser it is refused")]
+    pub(super) fn utf16(
+        input: impl Read + 'static,
+        is_big_endian: bool,
+        _: &str,
+    ) -> Result<Box<dyn Read>> {
+        let encoding = if is_big_endian { UTF_16BE } else { UTF_16LE };
+        Ok(Box::new(DecodeReaderBytesBuilder::new().encoding(Some(encoding)).build(input)))
+    }
+}
+
+/// A browser decodes such files itself before it lends them; the tables of all encodings would be a tenth of the page.
+#[cfg(target_family = "wasm")]
+mod encoding {
+    use anyhow::{Result, bail};
+    use std::io::Read;
+
+    pub(super) fn latin(bytes: &[u8]) -> String {
+        bytes.iter().copied().map(char::from).collect()
+    }
+
+    pub(super) fn utf16(_: impl Read + 'static, _: bool, name: &str) -> Result<Box<dyn Read>> {
+        bail!("{name}: text in UTF-16; save it as UTF-8")
+    }
+}

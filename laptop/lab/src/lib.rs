@@ -1,0 +1,36 @@
+//! The laptop's library: recordings in; spikes, scores, parameters, advice, pictures and networks out.
+//!
+//! It knows no command line and prints nothing: the program `spikewire` and the Python bindings are built on it.
+
+pub mod advise;
+pub mod bank;
+pub mod bench;
+pub mod brief;
+pub mod coding;
+pub mod emit;
+pub mod encode;
+pub mod events;
+pub mod fit;
+#[cfg(feature = "frames")]
+pub mod frames;
+pub mod input;
+pub mod look;
+#[cfg(feature = "networks")]
+pub mod network;
+pub mod output;
+#[cfg(not(target_family = "wasm"))]
+pub mod plot;
+#[cfg(all(feature = "ports", not(target_family = "wasm")))]
+pub mod port;
+pub mod resolution;
+#[cfg(any(test, feature = "capture"))]
+pub mod rtt;
+pub mod scheme;
+pub mod score;
+pub mod spikes;
+pub mod steep;
+pub mod timeline;
+pub mod trial;
+pub mod tune;
+pub mod values;
+pub mod watch;

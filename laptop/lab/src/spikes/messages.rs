@@ -1,0 +1,275 @@
+//! Reads spikes out of logs: ours, and those that the paper's toolbox wrote.
+
+use super::recorder::{EVENT, HEADER};
+use super::{Header, Item, Spikes};
+use crate::input::messages::{advised, damage};
+use anyhow::{Context, Result, bail};
+use catalogue::run::Event;
+use catalogue::toolbox::{GAUSSIAN_FIELDS, meant};
+use flight_logs::{Kind, Reading};
+use spikewire::Polarity;
+use std::collections::VecDeque;
+use std::path::Path;
+
+/// A log of spikes that is read from its start to its end.
+pub struct Messages {
+    log: Reading,
+    /// The topic of each channel, and how many samples it had until now.
+    channels: Vec<(String, u64)>,
+    /// How many neurons a channel has, and sub-timesteps.
+    neurons: usize,
+    slots: usize,
+    is_signed: bool,
+    /// Samples without spikes whose input is missing were not encoded.
+    has_header: bool,
+    items: VecDeque<Item>,
+}
+
+impl Messages {
+    /// Reads what decoding needs: the header where there is one, or else what all messages say together.
+    ///
+    /// # Errors
+    /// Returns an error if the log has no spikes, or does not say enough of their scheme.
+    pub fn open(path: &Path, kind: Kind, accept_cut: bool) -> Result<(Self, Header)> {
+        let file = path.display().to_string();
+        let found = Found::read(Reading::open(path, kind, damage(accept_cut)).map_err(advised)?)?;
+        let lines = found.lines().with_context(|| file.clone())?;
+        let header = Header::parse(lines).with_context(|| file.clone())?;
+        let settings = header.channels.first().context("the header has no channel")?;
+        let shape = header.scheme.shape(settings).with_context(|| file.clone())?;
+        let topic = |channel: usize| match channel {
+            0 => found.topic.clone(),
+            _ => format!("{}_{channel}", found.topic),
+        };
+        let messages = Self {
+            log: Reading::open(path, kind, damage(accept_cut)).map_err(advised)?,
+            channels: (0..header.channels.len()).map(|channel| (topic(channel), 0)).collect(),
+            neurons: shape.neurons,
+            slots: shape.slots,
+            is_signed: header.scheme.info().is_signed,
+            has_header: found.header.is_some(),
+            items: VecDeque::new(),
+        };
+        Ok((messages, header))
+    }
+
+    /// Takes a message of a channel.
+    fn take(&mut self, channel: usize) -> Result<()> {
+        let (neurons, slots) = (self.neurons, self.slots);
+        let sample = self.channels[channel].1;
+        self.channels[channel].1 += 1;
+        if channel > 0 && self.channels[0].1 != sample + 1 {
+            bail!(
+                "{}: its sample {sample} comes before or after that of the first channel",
+                self.place()
+            );
+        }
+        let is_rejected = self.has_header && self.log.number("input")?.is_none_or(f64::is_nan);
+        if is_rejected && channel == 0 {
+            self.items.push_back(Item::Rejected { first: sample, count: 1 });
+        }
+        if is_rejected {
+            return Ok(());
+        }
+        if channel == 0 {
+            self.items.push_back(Item::Time { sample, time: self.log.time()? });
+        }
+        for place in 0..neurons * slots {
+            let Some(spikes) = spike(&self.log, place, neurons * slots)? else {
+                bail!("{}: it has not the {} neurons of its scheme", self.place(), neurons * slots);
+            };
+            let polarity = if spikes > 0 { Polarity::Up } else { Polarity::Down };
+            if spikes < 0 && !self.is_signed {
+                bail!("{}: a spike of {spikes}, where there are none below 0", self.place());
+            }
+            let neuron = (channel * neurons + place % neurons) as u16;
+            let event = Event { sample, neuron, slot: (place / neurons) as u16, polarity };
+            let item = || Item::Event { event, time: None };
+            self.items.extend((0..spikes.unsigned_abs()).map(|_| item()));
+        }
+        Ok(())
+    }
+}
+
+impl Spikes for Messages {
+    fn is_timed(&self) -> bool {
+        true
+    }
+
+    fn next(&mut self) -> Result<Item> {
+        loop {
+            if let Some(item) = self.items.pop_front() {
+                return Ok(item);
+            }
+            if !self.log.advance().map_err(advised)? {
+                let samples = self.channels.first().map_or(0, |(_, samples)| *samples);
+                return Ok(Item::End { samples });
+            }
+            let own = self.channels.iter().position(|(topic, _)| *topic == self.log.topic());
+            if let Some(channel) = own {
+                self.take(channel)?;
+            }
+        }
+    }
+
+    fn place(&self) -> String {
+        self.log.place()
+    }
+
+    fn notes(&mut self) -> Vec<String> {
+        self.log.notes()
+    }
+}
+
+/// Reads a neuron's spike: that of the field `spike`, or of its place in the array of that name.
+///
+/// # Errors
+/// Returns an error if there is no such field.
+fn spike(log: &Reading, place: usize, of: usize) -> Result<Option<i8>> {
+    let number = match (log.has_number("spike"), place, of) {
+        (true, 0, 1 | usize::MAX) => log.number("spike")?,
+        (true, ..) => None,
+        (false, ..) => log.number(&format!("spike[{place}]"))?,
+    };
+    Ok(number.map(|number| number as i8))
+}
+
+/// The findings of a pass over a log.
+#[derive(Default)]
+struct Found {
+    topic: String,
+    /// The header, in our logs.
+    header: Option<String>,
+    scheme: String,
+    /// The start value of the first message.
+    start: f64,
+    range: (f64, f64),
+    neurons: usize,
+    first: i64,
+    /// The sum of the thresholds of all messages; the toolbox takes their mean.
+    thresholds: f64,
+    samples: u64,
+    last: i64,
+}
+
+impl Found {
+    fn read(mut log: Reading) -> Result<Self> {
+        let mut found = Self::default();
+        while log.advance().map_err(advised)? {
+            if log.topic() == HEADER {
+                found.header = Some(log.text("data").with_context(|| log.place())?);
+                EVENT.clone_into(&mut found.topic);
+                return Ok(found);
+            }
+            // The toolbox publishes on `event`; what is remapped is known by its type.
+            let kind = log.kind().rsplit('/').next().unwrap_or_default().to_owned();
+            let is_spyke = ["spyke", "spyke_array", "Spyke", "SpykeArray"].contains(&kind.as_str());
+            if !is_spyke || (found.samples > 0 && found.topic != log.topic()) {
+                continue;
+            }
+            let number = |name| {
+                log.number(name)?.with_context(|| format!("{}: it has no {name}", log.place()))
+            };
+            if found.samples == 0 {
+                log.topic().clone_into(&mut found.topic);
+                found.scheme = log.text("scheme").with_context(|| log.place())?;
+                found.start = number("start")?;
+                found.range = (number("min_input")?, number("max_input")?);
+                found.first = log.time()?;
+                while spike(&log, found.neurons, usize::MAX)?.is_some() && found.neurons < MOST {
+                    found.neurons += 1;
+                }
+            }
+            found.thresholds += number("threshold")?;
+            found.samples += 1;
+            found.last = log.time()?;
+        }
+        if found.samples == 0 {
+            bail!(
+                "{}: no messages of spikes, such as spyke_msgs/spyke on a topic `{EVENT}`",
+                log.file()
+            );
+        }
+        Ok(found)
+    }
+
+    /// The keys and values of a file of spikes.
+    fn lines(&self) -> Result<Vec<(String, String)>> {
+        if let Some(header) = &self.header {
+            let pairs = header.lines().filter_map(|line| line.split_once('='));
+            return Ok(pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect());
+        }
+        let scheme = meant(&self.scheme);
+        let threshold = self.thresholds / self.samples as f64;
+        let line = |key: &str, value: String| (key.to_owned(), value);
+        let own = match scheme {
+            // As the toolbox decodes: from 0 on, and the result doubled.
+            "tbr" => vec![
+                line("threshold", threshold.to_string()),
+                line("step", (2.0 * threshold).to_string()),
+                line("first", "0".to_owned()),
+            ],
+            "sf" => vec![
+                line("threshold", threshold.to_string()),
+                line("first", self.start.to_string()),
+            ],
+            "mw" => vec![
+                line("threshold", threshold.to_string()),
+                line("window", "1".to_owned()),
+                line("first", self.start.to_string()),
+            ],
+            "grf" => {
+                let (min, max) = self.range;
+                let field = (max - min) / (self.neurons.saturating_sub(2).max(1)) as f64;
+                // The range in which our neurons have the centres of the toolbox's.
+                let lower = if self.scheme == GAUSSIAN_FIELDS { field } else { 0.0 };
+                vec![
+                    line("neurons", self.neurons.to_string()),
+                    line("min", (min - lower).to_string()),
+                    line("max", (max - lower).to_string()),
+                ]
+            }
+            other => bail!(
+                "messages do not say all that decoding `{other}` needs, and there is no topic `{HEADER}` that does"
+            ),
+        };
+        let mut lines = vec![
+            line("spikewire", "1".to_owned()),
+            line("scheme", scheme.to_owned()),
+            line("sample", "f32".to_owned()),
+        ];
+        lines.extend(own);
+        let microseconds = self.last.saturating_sub(self.first) as f64;
+        if microseconds > 0.0 {
+            let rate = (self.samples - 1) as f64 * 1e6 / microseconds;
+            lines.push(line("rate", rate.to_string()));
+        }
+        Ok(lines)
+    }
+}
+
+/// The number of neurons that addresses can tell apart.
+const MOST: usize = 1 << 16;
+
+#[cfg(test)]
+mod tests {
+    use super::Found;
+
+    /// Neuron 7 of the toolbox has the centre of our neuron 6, whose range begins a field lower.
+    #[test]
+    fn the_toolbox_numbers_its_fields_from_0() {
+        for (scheme, min, max) in [("gaussian_fields", "-1.5", "7.5"), ("grf", "-1", "8")] {
+            let found = Found {
+                scheme: scheme.to_owned(),
+                range: (-1.0, 8.0),
+                neurons: 20,
+                samples: 1,
+                ..Found::default()
+            };
+            let lines = found.lines().unwrap();
+            let value = |key| lines.iter().find(|line| line.0 == key).map(|line| line.1.as_str());
+            assert_eq!((value("scheme"), value("neurons")), (Some("grf"), Some("20")));
+            assert_eq!((value("min"), value("max")), (Some(min), Some(max)));
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! Spikes as messages on a topic `event`, one a sample, as the paper's toolbox has them.
+//!
+//! A topic `event_header` says once, as text, what a file of spikes says in its header, so that every scheme decodes.
+//! Of several channels the second is on `event_1`, and so on.
+
+use super::bag::Bag;
+use super::mcap::Mcap;
+use super::spyke::{self, Kind, Spyke};
+use super::{Header, Record, Summary};
+use crate::input::{Chunk, Step};
+use crate::output::Output;
+use anyhow::{Context, Result, bail};
+use catalogue::run::Event;
+use catalogue::toolbox::published;
+use spikewire::Polarity;
+use std::collections::VecDeque;
+use std::path::Path;
+use std::time::Duration;
+
+/// A topic of a log in the making.
+pub(super) struct Topic {
+    pub name: String,
+    pub kind: Kind,
+}
+
+/// A log in the making.
+pub(super) trait Container {
+    /// Adds a message of a topic.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be written.
+    fn add(&mut self, topic: usize, nanoseconds: u64, message: &[u8]) -> Result<()>;
+
+    /// Writes the end and gives back the output.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be written.
+    fn finish(self: Box<Self>) -> Result<Output>;
+}
+
+/// The format of recorded messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// A ROS 1 bag.
+    Bag,
+    /// An MCAP file of ROS 2's messages.
+    Mcap,
+}
+
+impl Format {
+    /// The container of a file of this name; `None` if it is a table.
+    pub fn of(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()? {
+            "bag" => Some(Self::Bag),
+            "mcap" => Some(Self::Mcap),
+            _ => None,
+        }
+    }
+}
+
+/// Samples must have times, in a log.
+const UNTIMED: &str =
+    "messages have times, and these samples none; `rate` says how many there are a second";
+
+/// A log of spikes in the making.
+pub struct Recorder {
+    container: Box<dyn Container>,
+    format: Format,
+    kind: Kind,
+    /// The part that all messages of a channel share.
+    empty: Vec<Spyke>,
+    /// The lines of the header, until they are written.
+    header: Option<String>,
+    neurons: usize,
+    /// The step from sample to sample, in µs, if no times are recorded.
+    period: Option<f64>,
+    /// Samples that are not written yet, and how many were.
+    pending: VecDeque<Pending>,
+    /// The finite samples that were written, as the encoder counts.
+    finite: u64,
+    /// Events of samples that are not decided yet.
+    events: VecDeque<Event>,
+    summary: Summary,
+}
+
+struct Pending {
+    time: Duration,
+    inputs: Vec<f64>,
+    is_finite: bool,
+}
+
+/// The end of seconds of 32 bits, in µs.
+const LATEST: u64 = (1 << 32) * 1_000_000;
+/// The topic of the spikes, as in the toolbox.
+pub(super) const EVENT: &str = "event";
+/// The topic of the header.
+pub(super) const HEADER: &str = "event_header";
+
+impl Recorder {
+    /// Starts a log. The ranges are those of the channels.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be written, or samples have no times.
+    pub fn new(
+        output: Output,
+        format: Format,
+        header: &Header,
+        is_timed: bool,
+        ranges: &[(f64, f64)],
+    ) -> Result<Self> {
+        let period = if is_timed { None } else { Some(1e6 / header.rate.context(UNTIMED)?) };
+        let shape = header.scheme.shape(header.channels.first().context("there is no channel")?)?;
+        let kind = if shape.neurons * shape.slots > 1 { Kind::SpykeArray } else { Kind::Spyke };
+        let mut topics: Vec<Topic> = (0..header.channels.len())
+            .map(|channel| Topic {
+                name: if channel == 0 { EVENT.to_owned() } else { format!("{EVENT}_{channel}") },
+                kind,
+            })
+            .collect();
+        topics.push(Topic { name: HEADER.to_owned(), kind: Kind::String });
+        let empty = header.channels.iter().zip(ranges).map(|(settings, &(min, max))| Spyke {
+            spikes: vec![0; shape.neurons * shape.slots],
+            start: settings.first_value().unwrap_or_default() as f32,
+            range: (min as f32, max as f32),
+            threshold: settings.number("threshold").unwrap_or_default() as f32,
+            scheme: published(header.scheme.name()),
+            ..Spyke::default()
+        });
+        let empty: Vec<Spyke> = empty.collect();
+        let lines = header.lines().into_iter().map(|(key, value)| format!("{key}={value}\n"));
+        Ok(Self {
+            container: match format {
+                Format::Bag => Box::new(Bag::new(output, topics)?),
+                Format::Mcap => Box::new(Mcap::new(output, topics)?),
+            },
+            format,
+            kind,
+            empty,
+            header: Some(lines.collect()),
+            neurons: shape.neurons,
+            period,
+            pending: VecDeque::new(),
+            finite: 0,
+            events: VecDeque::new(),
+            summary: Summary::default(),
+        })
+    }
+
+    /// Writes the messages of a sample.
+    fn sample(&mut self, pending: &Pending) -> Result<()> {
+        let nanoseconds = pending.time.as_nanos() as u64;
+        if let Some(header) = self.header.take() {
+            let message = spyke::text(&header, self.format);
+            self.container.add(self.empty.len(), nanoseconds, &message)?;
+        }
+        let mut messages = self.empty.clone();
+        for (message, input) in messages.iter_mut().zip(&pending.inputs) {
+            (message.input, message.time) = (*input as f32, pending.time);
+        }
+        while let Some(event) = self.events.front().copied()
+            && pending.is_finite
+            && event.sample == self.finite
+        {
+            self.events.pop_front();
+            let (channel, neuron) = (
+                usize::from(event.neuron) / self.neurons,
+                usize::from(event.neuron) % self.neurons,
+            );
+            let place = usize::from(event.slot) * self.neurons + neuron;
+            let spike = if event.polarity == Polarity::Up { 1 } else { -1 };
+            if let Some(own) = messages.get_mut(channel).and_then(|own| own.spikes.get_mut(place)) {
+                *own = own.saturating_add(spike);
+            }
+            self.summary.events += 1;
+        }
+        self.finite += u64::from(pending.is_finite);
+        for (channel, message) in messages.iter().enumerate() {
+            let bytes = message.bytes(self.kind, self.format);
+            self.container.add(channel, nanoseconds, &bytes)?;
+        }
+        Ok(())
+    }
+}
+
+impl Record for Recorder {
+    fn observe(&mut self, chunk: &mut Chunk, _: &[Step]) -> Result<()> {
+        let rows = chunk.finite_rows();
+        for (row, &is_finite) in rows.iter().enumerate() {
+            let microseconds = match self.period {
+                Some(period) => (self.summary.samples as f64 * period).round() as i64,
+                None => chunk.times[row],
+            };
+            let time = u64::try_from(microseconds).ok().filter(|time| *time < LATEST);
+            let Some(time) = time else {
+                bail!("the time {microseconds} µs does not fit a message: 0 to 2106");
+            };
+            let inputs = chunk.columns.iter().map(|column| column[row]).collect();
+            self.pending.push_back(Pending {
+                time: Duration::from_micros(time),
+                inputs,
+                is_finite,
+            });
+            self.summary.samples += 1;
+            self.summary.rejected += u64::from(!is_finite);
+        }
+        if rows.contains(&false) {
+            chunk.columns = chunk.kept(&rows);
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, events: &mut Vec<Event>, decided: u64) -> Result<()> {
+        events.sort_by_key(|event| event.sample);
+        self.events.extend(events.drain(..));
+        while let Some(pending) = self.pending.pop_front() {
+            if pending.is_finite && self.finite >= decided {
+                self.pending.push_front(pending);
+                break;
+            }
+            self.sample(&pending)?;
+        }
+        Ok(())
+    }
+
+    fn finish(mut self: Box<Self>, events: &mut Vec<Event>) -> Result<(Output, Summary)> {
+        self.write(events, u64::MAX)?;
+        Ok((self.container.finish()?, self.summary))
+    }
+}

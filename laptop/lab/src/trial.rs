@@ -1,0 +1,218 @@
+//! A recording there and back, for looking at and for scoring.
+
+use crate::brief::short;
+use crate::fit::{Fit, explained, rounding};
+use crate::input::{Clock, InputOptions, Kind};
+use crate::scheme::Scheme;
+use anyhow::{Context, Result, anyhow, bail};
+use catalogue::run::{Asked, Calibrated, Event, Known, SampleType, Settings, Shape};
+use std::ops::Range;
+
+/// A recording in memory.
+pub struct Recording {
+    /// Its finite samples.
+    pub values: Vec<f64>,
+    /// Their times in µs, if recorded. Where the clock started anew, a segment follows the one before it after a usual step.
+    pub times: Vec<i64>,
+    /// The samples of each segment, from one start of the clock to the next.
+    pub segments: Vec<Range<usize>>,
+    /// Samples a second, if known.
+    pub rate: Option<f64>,
+    /// Its name.
+    pub name: String,
+    /// How many samples were not finite.
+    rejected: usize,
+    clock: Clock,
+    /// How it was read.
+    notes: Vec<String>,
+}
+
+impl Recording {
+    /// A recording of samples in memory, all finite, evenly spaced.
+    pub fn of(name: String, values: Vec<f64>, rate: Option<f64>) -> Self {
+        /// No step is longer than another.
+        const STEPS: f64 = 1.5;
+        let clock = Clock::new(&[], rate, STEPS);
+        let segments = between(Vec::new(), values.len());
+        let (times, notes) = (Vec::new(), Vec::new());
+        Self { values, times, segments, rate, name, rejected: 0, clock, notes }
+    }
+
+    /// Reads all of its one channel.
+    ///
+    /// # Errors
+    /// Returns an error if the input cannot be read, has several channels, or no finite sample.
+    pub fn read(input: &InputOptions) -> Result<Self> {
+        input.single("this command")?;
+        Self::read_all(input)?.pop().with_context(|| format!("{}: no channel", input.name()))
+    }
+
+    /// Reads all of every channel asked for.
+    ///
+    /// # Errors
+    /// Returns an error if the input cannot be read, or no row is finite in all columns.
+    pub fn read_all(input: &InputOptions) -> Result<Vec<Self>> {
+        let mut source = input.open()?;
+        let all = source.rest()?;
+        let rows = all.finite_rows();
+        let mut clock = Clock::new(&all.times, input.rate, input.gap);
+        let steps = clock.observe(&all.times);
+        let restarts = steps.iter().filter(|step| step.kind == Kind::Restart);
+        let starts = restarts.map(|step| step.after as usize + 1);
+        let segments = between(starts.collect(), rows.len());
+        let times = in_a_row(&all.times, &segments, clock.period());
+        let times: Vec<i64> =
+            times.into_iter().zip(&rows).filter(|(_, row)| **row).map(|(time, _)| time).collect();
+        let finite = |row: usize| rows[..row].iter().filter(|row| **row).count();
+        let segments = segments.into_iter().map(|own| finite(own.start)..finite(own.end));
+        let segments: Vec<Range<usize>> = segments.filter(|own| !own.is_empty()).collect();
+        let channels = all.kept(&rows).into_iter().zip(source.names());
+        channels
+            .map(|(values, name)| {
+                if values.is_empty() {
+                    bail!("{}: none of the {} samples is finite", input.name(), rows.len());
+                }
+                Ok(Self {
+                    rejected: rows.len() - values.len(),
+                    values,
+                    times: times.clone(),
+                    segments: segments.clone(),
+                    rate: clock.rate(),
+                    name: name.to_owned(),
+                    clock: clock.clone(),
+                    notes: source.notes().to_vec(),
+                })
+            })
+            .collect()
+    }
+
+    /// Notes for the user on the recording, a line each.
+    pub fn notes(&self) -> String {
+        let mut notes = self.notes.clone();
+        if self.rejected > 0 {
+            let count = self.rejected;
+            notes.push(format!("{count} samples were not finite or missing and emitted nothing"));
+        }
+        notes.push(format!("{}\n", self.clock));
+        notes.join("\n")
+    }
+
+    /// How many samples were missing or not finite.
+    pub fn rejected(&self) -> usize {
+        self.rejected
+    }
+
+    /// How long it is in seconds, if that is known; the unknown time between two segments does not count.
+    pub fn seconds(&self) -> Option<f64> {
+        if self.times.is_empty() {
+            return Some(self.values.len() as f64 / self.rate?);
+        }
+        Some(self.clock.seconds())
+    }
+}
+
+/// The segments of so many samples, of which those after the first start here.
+fn between(mut bounds: Vec<usize>, samples: usize) -> Vec<Range<usize>> {
+    bounds.insert(0, 0);
+    bounds.push(samples);
+    bounds.windows(2).map(|pair| pair[0]..pair[1]).collect()
+}
+
+/// Times of which each segment follows the one before it after a usual step.
+fn in_a_row(times: &[i64], segments: &[Range<usize>], period: i64) -> Vec<i64> {
+    let mut all: Vec<i64> = Vec::with_capacity(times.len());
+    let mut latest: Option<i64> = None;
+    for own in segments.iter().filter_map(|segment| times.get(segment.clone())) {
+        let Some(earliest) = own.iter().min() else { continue };
+        let follow = |latest: i64| latest.saturating_add(period).saturating_sub(*earliest);
+        let shift = latest.map_or(0, follow);
+        all.extend(own.iter().map(|time| time.saturating_add(shift)));
+        latest = own.iter().max().map(|time| time.saturating_add(shift));
+    }
+    all
+}
+
+/// The result of a scheme on a recording.
+pub struct Trial {
+    /// The scheme.
+    pub scheme: Scheme,
+    /// Its parameters, as they ran.
+    pub settings: Settings,
+    /// How many neurons and sub-timesteps it has.
+    pub shape: Shape,
+    /// How many samples after its own the code of a sample comes out.
+    pub latency: usize,
+    /// Notes for the user on how the parameters suit the recording.
+    pub notes: Vec<String>,
+    /// The spikes.
+    pub events: Vec<Event>,
+    /// The decoded values, one a sample.
+    pub decoded: Vec<f64>,
+}
+
+impl Trial {
+    /// Encodes and decodes the recording.
+    ///
+    /// # Errors
+    /// The parameters make no sense.
+    pub fn new(
+        scheme: Scheme,
+        asked: &Asked,
+        sample: SampleType,
+        recording: &Recording,
+    ) -> Result<Self> {
+        let mut calibrated = Calibrated::new(sample);
+        calibrated.observe(&recording.values);
+        let asked = asked.channel(scheme.info(), 0, 1)?;
+        let resolved = |first: &[f64]| {
+            let known = Known { calibrated: Some(&calibrated), first, can_calibrate: true };
+            let settings = scheme.resolve(sample, &asked, &known);
+            settings.map_err(|error| explained(error, sample, first))
+        };
+        let settings = resolved(&recording.values)?;
+        let (mut latency, mut all, mut decoded) = (0, Vec::new(), Vec::new());
+        for segment in &recording.segments {
+            let values = &recording.values[segment.clone()];
+            let mut codec = scheme.codec(&resolved(values)?)?;
+            let mut events = Vec::new();
+            codec.encode(values, &mut events);
+            codec.finish(&mut events);
+            let start = segment.start as u64;
+            codec.decode(values.len(), &events, &mut decoded).map_err(|event| {
+                anyhow!("{}: sample {} does not decode", scheme.name(), start + event.sample)
+            })?;
+            latency = codec.latency();
+            all.extend(events.into_iter().map(|own| Event { sample: start + own.sample, ..own }));
+        }
+        let events: Vec<Event> = all;
+        let mut fit = Fit::new(scheme, &settings);
+        fit.observe(&recording.values);
+        let mut notes: Vec<String> = rounding(&settings).into_iter().collect();
+        let suits = fit.notes(&settings, events.len() as u64);
+        notes.extend(suits.lines().map(str::to_owned));
+        notes.extend(low(&recording.values, &decoded));
+        let shape = scheme.shape(&settings)?;
+        Ok(Self { scheme, settings, shape, latency, notes, events, decoded })
+    }
+
+    /// `(1 - spikes / samples) * 100`.
+    pub fn efficiency(&self) -> f64 {
+        (1.0 - self.events.len() as f64 / self.decoded.len() as f64) * 100.0
+    }
+}
+
+/// A note if the decoded values are off on the whole, by more than the signal itself moves.
+fn low(values: &[f64], decoded: &[f64]) -> Option<String> {
+    let mean = |sum: f64| sum / values.len() as f64;
+    let center = mean(values.iter().sum());
+    let deviation = mean(values.iter().map(|value| (value - center).powi(2)).sum()).sqrt();
+    let off = mean(values.iter().zip(decoded).map(|(value, decoded)| decoded - value).sum());
+    (off.abs() > deviation).then(|| {
+        let direction = if off < 0.0 { "low" } else { "high" };
+        format!(
+            "decodes {} too {direction} on average, where the signal's own deviation is {}",
+            short(off.abs()),
+            short(deviation)
+        )
+    })
+}

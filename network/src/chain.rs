@@ -1,0 +1,112 @@
+//! Networks: layers one behind the other.
+
+use core::fmt::Debug;
+use spikewire::{Event, Tick};
+
+/// A network: a layer, or layers one behind the other. Its parameters are references to data in flash.
+pub trait Network: Copy {
+    /// What it takes in a step: the numbers of the inputs that fired, `[u16]`, or a value for each input.
+    type Input: ?Sized;
+    /// What it keeps from step to step.
+    type State: State;
+    /// Number of inputs.
+    const INPUTS: usize;
+    /// Number of neurons of the last layer.
+    const OUTPUTS: usize;
+
+    /// Returns a state at rest: all potentials and currents 0, and nothing fired.
+    fn state(&self) -> Self::State;
+
+    /// Takes a step through all layers, and returns the neurons of the last layer that fired, by rising number. Inputs
+    /// that the network does not have, and values that are not finite, are left out and [counted](State::rejected).
+    fn step<'s>(&self, state: &'s mut Self::State, input: &Self::Input) -> &'s [u16];
+}
+
+/// The state of a network.
+pub trait State: Copy + Debug {
+    /// The type of potentials.
+    type Value;
+
+    /// Returns the neurons of the last layer that fired in the last step, by rising number.
+    fn spikes(&self) -> &[u16];
+
+    /// Returns the potentials of the last layer, in the units of its weights.
+    fn values(&self) -> &[Self::Value];
+
+    /// Number of inputs that were left out: spikes of inputs that do not exist, values that are not finite or above ±10¹⁵.
+    fn rejected(&self) -> u32;
+
+    /// Number of potentials and currents that left the range of their integers, and were set to its end.
+    fn saturated(&self) -> u32;
+
+    /// Returns the spikes of the last step as events, the first neuron's address being `first_address`: for a queue, a
+    /// link, a chip or a [`Readout`](spikewire::Readout). Leaves out addresses above 65 535.
+    fn events(&self, tick: Tick, first_address: u16) -> impl Iterator<Item = Event> {
+        crate::spikes::events(self.spikes(), tick, first_address)
+    }
+}
+
+/// A network, and behind it another that takes its spikes in the same step.
+#[derive(Clone, Copy, Debug)]
+pub struct Then<A, B> {
+    first: A,
+    next: B,
+}
+
+/// The state of two networks, one behind the other.
+#[derive(Clone, Copy, Debug)]
+pub struct ThenState<A, B> {
+    /// The state of the first one.
+    pub first: A,
+    /// The state of the one behind it.
+    pub next: B,
+}
+
+impl<A: Network, B: Network<Input = [u16]>> Then<A, B> {
+    pub(crate) const fn new(first: A, next: B) -> Self {
+        const { assert!(A::OUTPUTS == B::INPUTS, "a layer has an input for each neuron before it") };
+        Self { first, next }
+    }
+
+    /// A network of these layers and, behind them, another.
+    pub const fn then<C: Network<Input = [u16]>>(self, next: C) -> Then<Self, C> {
+        Then::new(self, next)
+    }
+}
+
+impl<A: Network, B: Network<Input = [u16]>> Network for Then<A, B> {
+    type Input = A::Input;
+    type State = ThenState<A::State, B::State>;
+    const INPUTS: usize = A::INPUTS;
+    const OUTPUTS: usize = B::OUTPUTS;
+
+    fn state(&self) -> Self::State {
+        ThenState { first: self.first.state(), next: self.next.state() }
+    }
+
+    #[inline]
+    fn step<'s>(&self, state: &'s mut Self::State, input: &A::Input) -> &'s [u16] {
+        let spikes = self.first.step(&mut state.first, input);
+        self.next.step(&mut state.next, spikes)
+    }
+}
+
+impl<A: State, B: State> State for ThenState<A, B> {
+    type Value = B::Value;
+
+    fn spikes(&self) -> &[u16] {
+        self.next.spikes()
+    }
+
+    fn values(&self) -> &[B::Value] {
+        self.next.values()
+    }
+
+    fn rejected(&self) -> u32 {
+        self.first.rejected().saturating_add(self.next.rejected())
+    }
+
+    fn saturated(&self) -> u32 {
+        self.first.saturated().saturating_add(self.next.saturated())
+    }
+}

@@ -1,0 +1,200 @@
+//! The numbers in which potentials and currents are kept.
+
+use crate::sealed::Sealed;
+use core::fmt::Debug;
+
+/// The type of potentials, currents, thresholds and biases: `f32`, or `i32` with weights of 8 bits.
+///
+/// | | `f32` | `i32` |
+/// |---|---|---|
+/// | weights | `f32` | `i8`, shifted up by [`Weights`](crate::Weights)' shift |
+/// | decays | `f32`, 0 to 1 | [`u32`], 65 536 stands for 1; a product is rounded down |
+/// | values of inputs | `f32` up to ±10¹⁵ | `i16` |
+/// | largest weight, bias, threshold | ±10¹⁵ | ±2²⁷ (biases, thresholds) |
+/// | largest potential, current | any finite | ±2²⁹; saturates there, and counts it |
+pub trait Number: Copy + Default + PartialOrd + Debug + Sealed + 'static {
+    /// The type of a decay.
+    type Factor: Copy + Debug + PartialEq;
+    /// The type of an input's value.
+    type Value: Copy + Default + Debug;
+    /// The weights of one input onto `OUT` neurons.
+    type Row<const OUT: usize>: Copy + Debug;
+    /// The number of binary places by which sums of weights are shifted.
+    type Shift: Copy + Debug;
+
+    /// The most spikes that a step takes from outside.
+    #[doc(hidden)]
+    const MOST_SPIKES: usize;
+
+    #[doc(hidden)]
+    #[must_use]
+    fn scaled(self, factor: Self::Factor) -> Self;
+    #[doc(hidden)]
+    #[must_use]
+    fn plus(self, other: Self) -> Self;
+    #[doc(hidden)]
+    #[must_use]
+    fn minus(self, other: Self) -> Self;
+    /// A number above [`OUTSIDE`] if the potential or current has left its range.
+    #[doc(hidden)]
+    fn outside(self) -> u32;
+    /// Brings the number into its range, and returns 1 if it was outside.
+    #[doc(hidden)]
+    fn clamp(&mut self) -> u32;
+    /// The value, unless it is not finite or out of range.
+    #[doc(hidden)]
+    fn accept(value: Self::Value) -> Option<Self::Value>;
+    /// Adds to `sums`, of the `W` times 4 neurons from the `first` four on, the weights of the inputs that fired, in the order of
+    /// the list.
+    #[doc(hidden)]
+    fn add_spikes<const W: usize, const OUT: usize>(
+        rows: &[Self::Row<OUT>],
+        shift: Self::Shift,
+        spikes: &[u16],
+        first: usize,
+        sums: &mut [[Self; 4]; W],
+    );
+    /// The same for one neuron.
+    #[doc(hidden)]
+    fn add_spikes_to_one<const OUT: usize>(
+        rows: &[Self::Row<OUT>],
+        shift: Self::Shift,
+        spikes: &[u16],
+        neuron: usize,
+        sum: &mut Self,
+    );
+    /// Adds the weight of every input times its value, in the order of the inputs.
+    #[doc(hidden)]
+    fn add_values<const W: usize, const OUT: usize>(
+        rows: &[Self::Row<OUT>],
+        shift: Self::Shift,
+        values: &[Self::Value],
+        first: usize,
+        sums: &mut [[Self; 4]; W],
+    );
+    /// The same for one neuron.
+    #[doc(hidden)]
+    fn add_values_to_one<const OUT: usize>(
+        rows: &[Self::Row<OUT>],
+        shift: Self::Shift,
+        values: &[Self::Value],
+        neuron: usize,
+        sum: &mut Self,
+    );
+}
+
+/// The largest result of [`Number::outside`] for a number in its range.
+pub(crate) const OUTSIDE: u32 = (1 << 30) - 1;
+
+/// The largest weight, bias, threshold, value to reset to, and value of an input in `f32`: sums and products of these
+/// stay finite, so that no potential is ever infinite or NaN.
+pub(crate) const LARGEST: f32 = 1e15;
+
+impl Sealed for f32 {}
+
+impl Number for f32 {
+    type Factor = Self;
+    type Value = Self;
+    type Row<const OUT: usize> = [Self; OUT];
+    type Shift = ();
+    const MOST_SPIKES: usize = usize::MAX;
+
+    #[inline(always)]
+    fn scaled(self, factor: Self) -> Self {
+        self * factor
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        self + other
+    }
+
+    #[inline(always)]
+    fn minus(self, other: Self) -> Self {
+        self - other
+    }
+
+    #[inline(always)]
+    fn outside(self) -> u32 {
+        0
+    }
+
+    #[inline(always)]
+    fn clamp(&mut self) -> u32 {
+        0
+    }
+
+    #[inline(always)]
+    fn accept(value: Self) -> Option<Self> {
+        (value.abs() <= LARGEST).then_some(value)
+    }
+
+    #[inline(always)]
+    fn add_spikes<const W: usize, const OUT: usize>(
+        rows: &[[Self; OUT]],
+        (): (),
+        spikes: &[u16],
+        first: usize,
+        sums: &mut [[Self; 4]; W],
+    ) {
+        let mut own = *sums;
+        for &spike in spikes {
+            let Some(row) = rows.get(usize::from(spike)) else { continue };
+            let Some(weights) = block::<_, W>(row, first) else { continue };
+            for (sum, weight) in own.as_flattened_mut().iter_mut().zip(weights.as_flattened()) {
+                *sum += weight;
+            }
+        }
+        *sums = own;
+    }
+
+    #[inline(always)]
+    fn add_spikes_to_one<const OUT: usize>(
+        rows: &[[Self; OUT]],
+        (): (),
+        spikes: &[u16],
+        neuron: usize,
+        sum: &mut Self,
+    ) {
+        for &spike in spikes {
+            *sum += rows.get(usize::from(spike)).and_then(|row| row.get(neuron)).unwrap_or(&0.0);
+        }
+    }
+
+    #[inline(always)]
+    fn add_values<const W: usize, const OUT: usize>(
+        rows: &[[Self; OUT]],
+        (): (),
+        values: &[Self],
+        first: usize,
+        sums: &mut [[Self; 4]; W],
+    ) {
+        let mut own = *sums;
+        for (row, value) in rows.iter().zip(values) {
+            let Some(weights) = block::<_, W>(row, first) else { continue };
+            for (sum, weight) in own.as_flattened_mut().iter_mut().zip(weights.as_flattened()) {
+                *sum += weight * value;
+            }
+        }
+        *sums = own;
+    }
+
+    #[inline(always)]
+    fn add_values_to_one<const OUT: usize>(
+        rows: &[[Self; OUT]],
+        (): (),
+        values: &[Self],
+        neuron: usize,
+        sum: &mut Self,
+    ) {
+        for (row, value) in rows.iter().zip(values) {
+            *sum += row.get(neuron).unwrap_or(&0.0) * value;
+        }
+    }
+}
+
+/// `W` fours of a row, from the `first` on.
+#[inline(always)]
+pub(crate) fn block<T, const W: usize>(row: &[T], first: usize) -> Option<&[[T; 4]; W]> {
+    row.as_chunks().0.get(first..)?.first_chunk()
+}

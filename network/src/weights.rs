@@ -1,0 +1,66 @@
+//! Weights, in flash.
+
+use crate::error::{ParameterError, unwrap};
+use crate::integer::{self, Packed};
+use crate::number::{LARGEST, Number};
+
+/// The weights from `IN` inputs onto `OUT` neurons, a row an input: `static` data, which is read where it lies.
+///
+/// `Weights<f32, …>` takes 4 bytes a weight, `Weights<i32, …>` one: weights of 8 bits onto potentials of 32.
+#[derive(Clone, Copy, Debug)]
+pub struct Weights<V: Number, const IN: usize, const OUT: usize> {
+    pub(crate) rows: [V::Row<OUT>; IN],
+    pub(crate) shift: V::Shift,
+}
+
+impl<const IN: usize, const OUT: usize> Weights<f32, IN, OUT> {
+    /// Weights by input, then neuron: the transpose of a NIR file's.
+    ///
+    /// # Panics
+    /// Panics if a weight is not finite or beyond ±10¹⁵; at compile time where it initialises a constant.
+    pub const fn new(rows: &[[f32; OUT]; IN]) -> Self {
+        unwrap(Self::try_new(rows))
+    }
+
+    /// Weights by input, then neuron.
+    ///
+    /// # Errors
+    /// Returns an error if a weight is not finite or beyond ±10¹⁵.
+    #[expect(clippy::indexing_slicing, reason = "below the arrays' lengths")]
+    pub const fn try_new(rows: &[[f32; OUT]; IN]) -> Result<Self, ParameterError> {
+        let mut row = 0;
+        while row < IN {
+            let mut column = 0;
+            while column < OUT {
+                let value = rows[row][column];
+                if !(value >= -LARGEST && value <= LARGEST) {
+                    let place = (row, column);
+                    let (parameter, min, max) = ("weight", -LARGEST, LARGEST);
+                    return Err(ParameterError { parameter, place, value, min, max });
+                }
+                column += 1;
+            }
+            row += 1;
+        }
+        Ok(Self { rows: *rows, shift: () })
+    }
+}
+
+impl<const IN: usize, const OUT: usize> Weights<i32, IN, OUT> {
+    /// Weights by input, then neuron. A sum of weights is multiplied by 2 to the power of `shift`, 0 to 10, before it is
+    /// added to a potential, so that potentials are finer than weights; a sum of weights times values is divided by it.
+    ///
+    /// # Panics
+    /// Panics if the shift is above 10; at compile time where it initialises a constant.
+    #[expect(clippy::indexing_slicing, reason = "below the arrays' lengths")]
+    pub const fn packed(rows: &[[i8; OUT]; IN], shift: u32) -> Self {
+        assert!(shift <= integer::MOST_SHIFT, "a shift is 10 at most");
+        let mut packed = [Packed::new(&[0; OUT]); IN];
+        let mut row = 0;
+        while row < IN {
+            packed[row] = Packed::new(&rows[row]);
+            row += 1;
+        }
+        Self { rows: packed, shift }
+    }
+}
