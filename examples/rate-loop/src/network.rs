@@ -2,9 +2,9 @@
 
 use core::num::NonZeroU32;
 use spikewire::{
-    chip::{Inputs, TinyOdinNetwork, TinyOdinNeuron, neurons_from},
     population::Position,
 };
+use spikewire_chips::{Inputs, TinyOdinNetwork, TinyOdinNeuron, neurons_from};
 
 /// A neuron for each quarter of a rad/s.
 pub static RATES: Position<f32, 64> = Position::linear(-8.0..=8.0);

@@ -9,8 +9,8 @@ use core::{
 use silicon::Board;
 use spikewire::{
     Event, FromEvents,
-    chip::{Describe, Input, TinyOdin, TinyOdinInput},
 };
+use spikewire_chips::{Describe, Input, TinyOdin, TinyOdinInput};
 
 type Chip = TinyOdin<silicon::Spi<silicon::TinyOdin>, Recording<silicon::Port<silicon::TinyOdin>>>;
 type Twin = TinyOdin<ChipBus, Repeating>;

@@ -16,8 +16,9 @@ pub struct Crate {
 }
 
 /// The crates that are published, each after those that it needs.
-pub const CRATES: [Crate; 3] = [
+pub const CRATES: [Crate; 4] = [
     Crate { name: "spikewire", directory: "" },
+    Crate { name: "spikewire-chips", directory: "chips" },
     Crate { name: "spikewire-network", directory: "network" },
     Crate { name: "flight-logs", directory: "flight-logs" },
 ];

@@ -12,11 +12,11 @@ use board::chip_bus::ChipBus;
 use embedded_hal::delay::DelayNs;
 use spikewire::{
     Bins, Event, FromEvents, Polarity, Tick,
-    chip::{
+};
+use spikewire_chips::{
         AerPort, ChipError, ConvolutionEvent, DenseEvent, Input, OdinInput, TinyOdin,
         TinyOdinInput, pack_counts,
-    },
-};
+    };
 
 use super::{ensure, flight, meter::Cost};
 
