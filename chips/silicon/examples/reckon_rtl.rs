@@ -8,10 +8,10 @@
 use std::io::{BufReader, BufWriter, Read, Write};
 use std::process::{ChildStdin, ChildStdout, Command, Stdio};
 
-use silicon::ReckOn;
-use silicon::reckon::{Inputs, State};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
+use silicon::ReckOn;
+use silicon::reckon::{Inputs, State};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>>;
 

@@ -21,8 +21,8 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{ErrorType, SpiDevice};
 
 use super::ChipError;
-use spikewire::Event;
 use aer::{Aer, Carries};
+use spikewire::Event;
 use step::Beacon;
 use time::Time;
 use wire::Wire;

@@ -4,14 +4,14 @@
 use std::num::NonZeroU32;
 
 use embedded_hal::spi::SpiDevice;
-use silicon::board::{CallFault, ClockFault};
-use silicon::{Board};
 use proptest::prelude::*;
+use silicon::Board;
+use silicon::board::{CallFault, ClockFault};
+use spikewire::{Event, FromEvents, Polarity};
 use spikewire_chips::{
     ChipError, Odin, OdinInput, OdinNeuron, OdinRegisters, OdinSynapse, OutputSource, TinyOdin,
     TinyOdinInput, TinyOdinNeuron, TinyOdinRegisters,
 };
-use spikewire::{Event, FromEvents, Polarity};
 
 type TinyBoard = Board<silicon::TinyOdin>;
 type Tiny = TinyOdin<silicon::Spi<silicon::TinyOdin>, silicon::Port<silicon::TinyOdin>>;

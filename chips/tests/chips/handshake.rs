@@ -6,13 +6,13 @@ use std::rc::Rc;
 
 use crate::bus::Failing;
 use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
-use silicon::{Board};
 use proptest::prelude::*;
+use silicon::Board;
+use spikewire::{Event, FromEvents, Polarity};
 use spikewire_chips::{
     AerPort, ChipError, Input, Odin, OdinInput, OdinRegisters, OutputSource, Phase, TinyOdin,
     TinyOdinInput, TinyOdinNeuron, TinyOdinRegisters,
 };
-use spikewire::{Event, FromEvents, Polarity};
 
 type TinyBoard = Board<silicon::TinyOdin>;
 type Tiny = TinyOdin<silicon::Spi<silicon::TinyOdin>, silicon::Port<silicon::TinyOdin>>;

@@ -7,11 +7,11 @@ mod bus;
 mod akd1500;
 mod faults;
 mod handshake;
+mod models;
 mod network;
 mod reckon;
 mod reckon_pairs;
 mod search;
-mod models;
 mod words;
 mod xylo;
 

@@ -9,8 +9,8 @@
 )]
 
 use embedded_hal::spi::SpiDevice;
-use silicon::{Board, Kind, Odin, TinyOdin};
 use proptest::prelude::*;
+use silicon::{Board, Kind, Odin, TinyOdin};
 use spikewire_chips::AerPort;
 
 const WRITE: u32 = 1 << 18;

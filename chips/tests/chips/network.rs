@@ -2,18 +2,18 @@
 
 use std::num::NonZeroU32;
 
+use proptest::prelude::*;
 use silicon::board::ClockFault;
 use silicon::chip::{Drive, Registers};
 use silicon::{Board, Kind};
-use proptest::prelude::*;
-use spikewire_chips::{
-    ChipError, Describe, FormatError, Input, Inputs, NetworkBytes, Odin, OdinInput, OdinNetwork,
-    OdinNeuron, Spikes, TinyOdin, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, neurons_from,
-};
 use spikewire::population::Position;
 use spikewire::temporal::StepForward;
 use spikewire::{
     Bank, Event, EventQueue, FromEvents, Overflow, Polarity, Readout, Scheme, Source, Tick,
+};
+use spikewire_chips::{
+    ChipError, Describe, FormatError, Input, Inputs, NetworkBytes, Odin, OdinInput, OdinNetwork,
+    OdinNeuron, Spikes, TinyOdin, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, neurons_from,
 };
 
 type TinyBoard = Board<silicon::TinyOdin>;

@@ -5,16 +5,16 @@
 use std::cell::Cell;
 
 use embedded_hal::spi::{ErrorKind, SpiDevice};
-use silicon::board::{CallFault, ClockFault};
-use silicon::reckon::{Board, Port, Spi, State};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
+use silicon::board::{CallFault, ClockFault};
+use silicon::reckon::{Board, Port, Spi, State};
+use spikewire::{Bank, Tick, population::Position};
 use spikewire_chips::{
     ChipError, DescribeReckOn, FormatError, Phase, ReckOn, ReckOnAnswer, ReckOnBytes,
     ReckOnLearning, ReckOnNetwork, ReckOnPair, ReckOnPort, ReckOnSample, ReckOnSettings,
     ReckOnShared, ReckOnStep, ReckOnTarget, ReckOnTask,
 };
-use spikewire::{Bank, Tick, population::Position};
 
 type Chip = ReckOn<Spi, Port>;
 type Error = ChipError<ErrorKind, u64>;

@@ -1,10 +1,10 @@
 //! A lost and a doubled SPI clock within one access to `ReckOn`, which bring chip and bus back into step.
 
 use embedded_hal::spi::ErrorKind;
-use silicon::board::ClockFault::{self, Doubled, Lost};
-use silicon::reckon::{Board, Port, ReckOn as Model, Spi};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
+use silicon::board::ClockFault::{self, Doubled, Lost};
+use silicon::reckon::{Board, Port, ReckOn as Model, Spi};
 use spikewire_chips::{ChipError, ReckOn, ReckOnNetwork, ReckOnPair, ReckOnSettings, ReckOnShared};
 
 type Chip = ReckOn<Spi, Port>;

@@ -6,11 +6,11 @@
 
 use std::num::NonZeroU32;
 
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
 use silicon::board::ClockFault;
 use silicon::chip::{Drive, Registers};
 use silicon::{Board, Kind};
-use rand_core::{Rng, SeedableRng};
-use rand_pcg::Pcg32;
 use spikewire_chips::{
     ChipError, Describe, Input, Inputs, OutputSource, Phase, TinyOdin, TinyOdinInput,
     TinyOdinNetwork, TinyOdinNeuron, TinyOdinRegisters,

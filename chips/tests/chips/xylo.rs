@@ -3,8 +3,8 @@
 use std::num::NonZeroU32;
 
 use proptest::prelude::*;
-use spikewire_chips::{ChipError, InputBank, Registers, Xylo, XyloMap, pack_counts};
 use spikewire::{Bins, Event, Polarity, Tick};
+use spikewire_chips::{ChipError, InputBank, Registers, Xylo, XyloMap, pack_counts};
 
 /// Done after some reads of the status; the outputs 0 and 2 fired.
 #[derive(Debug, Default)]

@@ -22,10 +22,10 @@ use spikewire::{
     temporal::StepForward,
 };
 use spikewire_chips::{
-        AerPort, Akd1500, ConvolutionEvent, DenseEvent, Describe, Input, InputBank, NetworkBytes,
-        Odin, OdinChip, OdinInput, OdinRegisters, OdinSynapse, Registers, Running, Spikes,
-        TinyOdin, TinyOdinInput, Xylo, XyloMap,
-    };
+    AerPort, Akd1500, ConvolutionEvent, DenseEvent, Describe, Input, InputBank, NetworkBytes, Odin,
+    OdinChip, OdinInput, OdinRegisters, OdinSynapse, Registers, Running, Spikes, TinyOdin,
+    TinyOdinInput, Xylo, XyloMap,
+};
 
 use crate::exercise::{EVENTS, event, hide, tick};
 use crate::reckon;

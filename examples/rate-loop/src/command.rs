@@ -9,9 +9,7 @@ use crate::{
 use board::digest::Digest;
 use board::stopwatch::instructions;
 use core::fmt::{self, Write};
-use spikewire::{
-    Bank, Readout,
-};
+use spikewire::{Bank, Readout};
 use spikewire_chips::{Describe, Spikes, TinyOdinInput};
 
 /// Of the commanded turn to the rate, per second.

@@ -11,10 +11,7 @@ use board::digest::Digest;
 use board::stopwatch::instructions;
 use core::fmt::{self, Write};
 use silicon::reckon::{Board, Port, Spi};
-use spikewire::{
-    Scheme,
-    population::Position,
-};
+use spikewire::{Scheme, population::Position};
 use spikewire_chips::{ReckOn, ReckOnAnswer, ReckOnSample, ReckOnSettings, ReckOnStep};
 
 /// As `--scheme position --neurons 25 --min=-1.2 --max 1.2`.

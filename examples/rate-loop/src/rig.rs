@@ -7,9 +7,7 @@ use core::{
     num::NonZeroU32,
 };
 use silicon::Board;
-use spikewire::{
-    Event, FromEvents,
-};
+use spikewire::{Event, FromEvents};
 use spikewire_chips::{Describe, Input, TinyOdin, TinyOdinInput};
 
 type Chip = TinyOdin<silicon::Spi<silicon::TinyOdin>, Recording<silicon::Port<silicon::TinyOdin>>>;
