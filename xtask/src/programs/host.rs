@@ -3,7 +3,7 @@
 use super::published::CRATES;
 use crate::common::{cargo, command, lint, output, paths, run};
 use anyhow::{Context, Result};
-use std::{fs, path::PathBuf, process::Command};
+use std::{path::PathBuf, process::Command};
 
 /// `cargo test` of the whole workspace with every feature but the debug probe's driver, linted as it is compiled.
 pub fn tests(args: &str) -> Result<Command> {
