@@ -49,8 +49,10 @@ use wire::{Address, Wire};
 /// # What to know about the chip
 /// - After reset learning is on, and the first tick with a target waits for it for ever: [`Programmed::run`] writes
 ///   [`ReckOnSettings::learning`].
-/// - A tick that comes before the last step is done stops the chip until a reset, and `TIMING_ERROR_RDY` then says ready:
-///   [`ReckOnSample::step`] waits for the line before, and checks that it falls after.
+/// - A tick that comes before the last step is done stops the chip until a reset, and `TIMING_ERROR_RDY` then says ready.
+///   [`ReckOnSample::step`] waits for the line before. After, the line is low for 2 N + 4 clocks, which pins that are read
+///   seldom miss: so the chip is always told to send its answer in each step, until whose last byte is taken the line stays
+///   low, and a step without an answer is an error.
 /// - If `SAMPLE` falls while the chip learns, it goes on learning without end, through all weights.
 /// - Neurons work in pairs, as far as the number of neurons, inputs or outputs, whichever is the most. A pair beyond the
 ///   network whose memory holds a threshold of 0 fires at every step: [`Programmed::load`] writes all 128 pairs.
@@ -142,7 +144,8 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
     pub const MAX_CLOCKS: u32 = 76_000;
 
     /// A chip that must be [reset](Self::reset) first. Every wait reads the pins up to `polls` times;
-    /// [`MAX_CLOCKS`](Self::MAX_CLOCKS) suffice if each takes a clock of the chip or longer.
+    /// [`MAX_CLOCKS`](Self::MAX_CLOCKS) suffice if each takes a clock of the chip or longer. If pins are read more often
+    /// than that, multiply it by the reads in a clock, rounded up: two short waits count clocks so.
     pub const fn new(device: D, port: P, polls: u32) -> Self {
         let wire = Wire { device };
         let sizes = Sizes { input: 255, neuron: 255, output: 15 };
@@ -272,9 +275,14 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         Ok(())
     }
 
-    /// Reads the ready line until it is as asked. The number of looks is that of every wait.
-    fn wait_ready(&mut self, is_high: bool) -> Result<bool, P::Error> {
-        for _ in 0..self.polls {
+    /// Number of reads of a pin that take this many clocks of the chip or longer.
+    fn looks(&self, clocks: u32) -> u32 {
+        self.polls.div_ceil(Self::MAX_CLOCKS).saturating_mul(clocks)
+    }
+
+    /// Reads the ready line until it is as asked, up to `looks` times.
+    fn wait_ready(&mut self, is_high: bool, looks: u32) -> Result<bool, P::Error> {
+        for _ in 0..looks {
             if self.port.ready()? == is_high {
                 return Ok(true);
             }

@@ -159,11 +159,11 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         check_settings::<D::Error, P::Error>(settings)?;
         let answers = settings.answers;
         // A step that comes too early stops the chip, the ready line says ready, and MISO is that of SPI alone.
-        let fixed = [(3, 0), (10, 0), (11, 1), (23, 0)];
+        // An answer in each step proves the step, also where the ready line is read too seldom to be seen low.
+        let fixed = [(3, 0), (10, 0), (11, 1), (23, 0), (30, 1)];
         let chosen = [
             (25, u32::from(settings.task == super::ReckOnTask::Regression)),
             (26, u32::from(settings.task == super::ReckOnTask::Classification)),
-            (30, u32::from(answers.is_each_step())),
             (31, u32::from(answers.is_label())),
         ];
         for (register, value) in fixed.into_iter().chain(chosen) {

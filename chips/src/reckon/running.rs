@@ -49,10 +49,11 @@ pub enum ReckOnAnswer {
 }
 
 impl<'a, D: SpiDevice, P: ReckOnPort> Started<'a, D, P> {
-    /// Begins a sample with a first tick: all potentials are 0.
+    /// Begins a sample with a first tick: all potentials are 0. If the chip does not take the tick, the first
+    /// [`step`](ReckOnSample::step) or [`end`](ReckOnSample::end) is an error.
     ///
     /// # Errors
-    /// Returns an error if the chip does not take the tick, or the port failed: then reset the chip.
+    /// Returns an error if the chip is not ready, or the port failed: then reset the chip.
     pub fn begin(self) -> Outcome<ReckOnSample<'a, D, P>, D, P> {
         let chip = self.chip;
         let result = begin(chip);
@@ -86,8 +87,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
         self.chip.send(input, false)
     }
 
-    /// Ends a time step and begins the next: waits until the chip is ready, ticks, and passes on its answer, if one is
-    /// asked for in each step.
+    /// Ends a time step and begins the next: waits until the chip is ready, ticks, takes its answer, which proves the
+    /// step, and returns it if [one is asked for in each step](ReckOnAnswers::PotentialsEachStep).
     ///
     /// # Errors
     /// Returns an error if the target is not one of the network or of the settings: nothing was sent. Also if the
@@ -95,7 +96,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
     pub fn step(&mut self, step: ReckOnStep<'_>) -> Outcome<Option<ReckOnAnswer>, D, P> {
         self.check(&step)?;
         let result = self.try_step(step);
-        self.chip.heed(result)
+        let answer = self.chip.heed(result)?;
+        Ok(self.chip.settings.answers.is_each_step().then_some(answer))
     }
 
     /// Ends the sample with a last tick, and returns the chip's answer. Then all potentials are 0.
@@ -129,7 +131,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
         }
     }
 
-    fn try_step(&mut self, step: ReckOnStep<'_>) -> Outcome<Option<ReckOnAnswer>, D, P> {
+    fn try_step(&mut self, step: ReckOnStep<'_>) -> Outcome<ReckOnAnswer, D, P> {
         let chip = &mut *self.chip;
         chip.until_ready()?;
         chip.port.set_infer(step.counts).map_err(ChipError::Port)?;
@@ -153,7 +155,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
         chip.handshake(low, true)?;
         chip.tick()?;
         // The last byte only counts once the neurons have leaked, and no line shows when they have.
-        for _ in 0..STEP_LOOKS {
+        for _ in 0..chip.looks(STEP_CLOCKS) {
             chip.port.ready().map_err(ChipError::Port)?;
         }
         chip.handshake(high, true)?;
@@ -166,37 +168,45 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
         chip.port.set_sample(false).map_err(ChipError::Port)?;
         chip.port.set_target_valid(false).map_err(ChipError::Port)?;
         chip.tick()?;
-        chip.finish()?.ok_or(ChipError::Unfinished)
+        chip.finish()
     }
 }
 
 /// Clocks from a tick until all neurons have leaked, with some to spare.
-const STEP_LOOKS: u32 = 280;
+const STEP_CLOCKS: u32 = 280;
+
+/// Clocks from a tick until the ready line has fallen, with some to spare.
+const TICK_CLOCKS: u32 = 16;
 
 fn begin<D: SpiDevice, P: ReckOnPort>(chip: &mut ReckOn<D, P>) -> Outcome<(), D, P> {
     chip.port.set_infer(false).map_err(ChipError::Port)?;
     chip.port.set_target_valid(false).map_err(ChipError::Port)?;
     chip.port.set_sample(true).map_err(ChipError::Port)?;
     chip.until_ready()?;
-    chip.tick()?;
+    chip.port.set_tick(true).map_err(ChipError::Port)?;
+    // The line is low for as many clocks as there are inputs or neurons, and pins that are read seldom miss that: an
+    // answer to the first step proves the tick.
+    chip.wait_ready(false, chip.looks(TICK_CLOCKS)).map_err(ChipError::Port)?;
+    chip.port.set_tick(false).map_err(ChipError::Port)?;
     chip.until_ready()
 }
 
 impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
     fn until_ready(&mut self) -> Outcome<(), D, P> {
-        let is_ready = self.wait_ready(true).map_err(ChipError::Port)?;
+        let is_ready = self.wait_ready(true, self.polls).map_err(ChipError::Port)?;
         if is_ready { Ok(()) } else { Err(ChipError::Unfinished) }
     }
 
+    /// A tick that an answer follows: the line stays low until that is taken.
     fn tick(&mut self) -> Outcome<(), D, P> {
         self.port.set_tick(true).map_err(ChipError::Port)?;
-        let is_taken = self.wait_ready(false).map_err(ChipError::Port)?;
+        let is_taken = self.wait_ready(false, self.polls).map_err(ChipError::Port)?;
         self.port.set_tick(false).map_err(ChipError::Port)?;
         if is_taken { Ok(()) } else { Err(ChipError::Handshake(Phase::Acknowledge)) }
     }
 
-    /// Waits until the step is done, and takes bytes meanwhile.
-    fn finish(&mut self) -> Outcome<Option<ReckOnAnswer>, D, P> {
+    /// Waits until the step is done, and takes the answer's bytes meanwhile.
+    fn finish(&mut self) -> Outcome<ReckOnAnswer, D, P> {
         let mut bytes = [0; 32];
         let mut taken = 0_usize;
         for _ in 0..self.polls {
@@ -226,21 +236,21 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         Err(ChipError::Handshake(Phase::Release))
     }
 
-    fn answer(&self, bytes: [u8; 32], taken: usize) -> Outcome<Option<ReckOnAnswer>, D, P> {
+    fn answer(&self, bytes: [u8; 32], taken: usize) -> Outcome<ReckOnAnswer, D, P> {
         let [first, ..] = bytes;
         let is_label = self.settings.answers == ReckOnAnswers::Label;
         let whole = 2 * (usize::from(self.sizes.output) + 1);
         match taken {
-            0 => Ok(None),
-            1 if is_label => Ok(Some(ReckOnAnswer::Label(first))),
+            1 if is_label => Ok(ReckOnAnswer::Label(first)),
             _ if taken == whole && !is_label => {
                 let mut potentials = [0; 16];
                 let (pairs, _) = bytes.as_chunks();
                 for (potential, &bytes) in potentials.iter_mut().zip(pairs) {
                     *potential = i16::from_le_bytes(bytes);
                 }
-                Ok(Some(ReckOnAnswer::Potentials(potentials)))
+                Ok(ReckOnAnswer::Potentials(potentials))
             }
+            // None at all: the tick began the sample, as the chip did not take the one before.
             _ => Err(ChipError::Unfinished),
         }
     }

@@ -1,6 +1,7 @@
 //! `ReckOn`'s registers, as far as a network, its answers and its learning need them.
 
-/// The kind of the chip's answers, and when they come.
+/// The kind of the chip's answers, and when they are returned. The chip sends one in every step, as a proof of the step:
+/// one byte for a label, two for each output's potential.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

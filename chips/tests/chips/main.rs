@@ -11,6 +11,7 @@ mod models;
 mod network;
 mod reckon;
 mod reckon_pairs;
+mod reckon_pins;
 mod search;
 mod words;
 mod xylo;
