@@ -71,7 +71,7 @@
 //! | `heapless` | `heapless::Vec`, `Deque`, `spsc` and `mpmc` as ends of queues, by way of `Counted` |
 //! | `portable-atomic` | `heapless::mpmc` on a Cortex-M0; needs a `critical-section` implementation in the program |
 //! | `link` | `link`: framed events over any byte transport |
-//! | `embedded-hal` | [`out`]: SPI; `chip`: neuromorphic chips |
+//! | `embedded-hal` | [`out`]: SPI |
 //! | `async` | [`out`]: asynchronous SPI; waiting on a queue |
 //! | `embedded-io` | [`out`]: UART and USB serial, over ports of `embedded-io` 0.7 |
 //! | `embedded-io-06` | [`out`]: the same over ports of `embedded-io` 0.6 |
@@ -83,8 +83,6 @@ extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
-#[cfg(feature = "embedded-hal")]
-pub mod chip;
 mod error;
 mod event;
 pub mod filter;

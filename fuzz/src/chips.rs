@@ -8,7 +8,7 @@ use std::rc::Rc;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 use spikewire::Tick;
-use spikewire::chip::{
+use spikewire_chips::{
     AerPort, Akd1500, ConvolutionEvent, DenseEvent, Input, InputBank, NetworkBytes, Odin, OdinChip,
     OdinInput, OdinRegisters, OdinSynapse, OutputSource, ReckOn, ReckOnPort, ReckOnSettings,
     ReckOnStep, ReckOnTarget, Registers, TinyOdin, TinyOdinInput, TinyOdinRegisters, Xylo, XyloMap,

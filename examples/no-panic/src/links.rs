@@ -16,15 +16,15 @@ use embedded_hal::{
 use spikewire::{
     Bank, Bins, Consumer, EventQueue, FromEvents, FromItems, Item, Keyframe, Overflow, Put,
     Readout, Sample, SampleKind, Source, SpscQueue, Tick,
-    chip::{
-        AerPort, Akd1500, ConvolutionEvent, DenseEvent, Describe, Input, InputBank, NetworkBytes,
-        Odin, OdinChip, OdinInput, OdinRegisters, OdinSynapse, Registers, Running, Spikes,
-        TinyOdin, TinyOdinInput, Xylo, XyloMap,
-    },
     format::{Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, eieio},
     link::{Coding, FrameView, Framer, MAX_FRAME, Reader, Receiver, Session, Transmitter},
     out::{AsyncSpiSink, Batch, Formatted, SerialSink, SpiSink},
     temporal::StepForward,
+};
+use spikewire_chips::{
+    AerPort, Akd1500, ConvolutionEvent, DenseEvent, Describe, Input, InputBank, NetworkBytes, Odin,
+    OdinChip, OdinInput, OdinRegisters, OdinSynapse, Registers, Running, Spikes, TinyOdin,
+    TinyOdinInput, Xylo, XyloMap,
 };
 
 use crate::exercise::{EVENTS, event, hide, tick};

@@ -2,7 +2,7 @@
 
 use core::hint::black_box;
 use embedded_hal::spi::ErrorKind;
-use spikewire::chip::{
+use spikewire_chips::{
     ReckOn, ReckOnBytes, ReckOnLearning, ReckOnPort, ReckOnSettings, ReckOnStep, ReckOnTarget,
 };
 

@@ -9,10 +9,8 @@ use crate::{
 use board::digest::Digest;
 use board::stopwatch::instructions;
 use core::fmt::{self, Write};
-use spikewire::{
-    Bank, Readout,
-    chip::{Describe, Spikes, TinyOdinInput},
-};
+use spikewire::{Bank, Readout};
+use spikewire_chips::{Describe, Spikes, TinyOdinInput};
 
 /// Of the commanded turn to the rate, per second.
 const GAIN: f32 = -0.5;

@@ -1,10 +1,8 @@
 //! A network of 64 neurons: each passes on what the last rate was, unless the next one comes before it has leaked.
 
 use core::num::NonZeroU32;
-use spikewire::{
-    chip::{Inputs, TinyOdinNetwork, TinyOdinNeuron, neurons_from},
-    population::Position,
-};
+use spikewire::population::Position;
+use spikewire_chips::{Inputs, TinyOdinNetwork, TinyOdinNeuron, neurons_from};
 
 /// A neuron for each quarter of a rad/s.
 pub static RATES: Position<f32, 64> = Position::linear(-8.0..=8.0);

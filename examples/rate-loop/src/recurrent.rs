@@ -11,11 +11,8 @@ use board::digest::Digest;
 use board::stopwatch::instructions;
 use core::fmt::{self, Write};
 use silicon::reckon::{Board, Port, Spi};
-use spikewire::{
-    Scheme,
-    chip::{ReckOn, ReckOnAnswer, ReckOnSample, ReckOnSettings, ReckOnStep},
-    population::Position,
-};
+use spikewire::{Scheme, population::Position};
+use spikewire_chips::{ReckOn, ReckOnAnswer, ReckOnSample, ReckOnSettings, ReckOnStep};
 
 /// As `--scheme position --neurons 25 --min=-1.2 --max 1.2`.
 static RATES: Position<f32, 25> = Position::linear(-1.2..=1.2);

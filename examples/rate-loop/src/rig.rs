@@ -7,10 +7,8 @@ use core::{
     num::NonZeroU32,
 };
 use silicon::Board;
-use spikewire::{
-    Event, FromEvents,
-    chip::{Describe, Input, TinyOdin, TinyOdinInput},
-};
+use spikewire::{Event, FromEvents};
+use spikewire_chips::{Describe, Input, TinyOdin, TinyOdinInput};
 
 type Chip = TinyOdin<silicon::Spi<silicon::TinyOdin>, Recording<silicon::Port<silicon::TinyOdin>>>;
 type Twin = TinyOdin<ChipBus, Repeating>;

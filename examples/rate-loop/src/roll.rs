@@ -1,7 +1,7 @@
 //! roll.nir, brought onto tinyODIN by `spikewire network`.
 
 use core::num::NonZeroU32;
-use spikewire::chip::{Inputs, TinyOdinNetwork, TinyOdinNeuron};
+use spikewire_chips::{Inputs, TinyOdinNetwork, TinyOdinNeuron};
 
 /// The input that every step must be told, before its others.
 pub const BIAS: u16 = 20;

@@ -4,7 +4,7 @@
 use alloc::{boxed::Box, vec};
 use core::{cell::Cell, convert::Infallible};
 use embedded_hal::delay::DelayNs;
-use spikewire::chip::{AerPort, ReckOnPort};
+use spikewire_chips::{AerPort, ReckOnPort};
 
 /// The most answers of an event.
 const LENGTH: usize = 8 * 1024;

@@ -4,11 +4,8 @@
 use crate::{rates, rig::Rig, roll, tape::Tape};
 use board::digest::Digest;
 use core::fmt::{self, Write};
-use spikewire::{
-    Bank, Event,
-    chip::{Describe, Spikes, TinyOdinInput},
-    population::Position,
-};
+use spikewire::{Bank, Event, population::Position};
+use spikewire_chips::{Describe, Spikes, TinyOdinInput};
 
 /// As `--scheme position --neurons 20 --min -2 --max 2`.
 static RATES: Position<f32, 20> = Position::linear(-2.0..=2.0);

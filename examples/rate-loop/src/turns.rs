@@ -1,6 +1,6 @@
 //! turns.nir, brought onto ReckOn by `spikewire network`.
 
-use spikewire::chip::{ReckOnNetwork, ReckOnPair, ReckOnShared};
+use spikewire_chips::{ReckOnNetwork, ReckOnPair, ReckOnShared};
 
 /// Steps from inputs to the answer that shows what they did; a step is a tick, 5000 µs in the recording.
 pub const LATE: usize = 2;

@@ -2,7 +2,7 @@
 
 use crate::common::{cargo, output, paths, run};
 use crate::figures::{jumps, schemes};
-use crate::programs::host::{features, spikewire, tests};
+use crate::programs::host::{spikewire, tests};
 use crate::programs::{boards::Board, image, published::CRATES};
 use crate::setup::toolchain::{TARGETS, cargo_for_each};
 use anyhow::{Result, ensure};
@@ -54,23 +54,31 @@ pub fn doc() -> Result<()> {
 }
 
 pub fn each_feature() -> Result<()> {
-    run(&mut cargo("check --package spikewire --no-default-features"))?;
-    for feature in features()? {
-        run(cargo("check --package spikewire --no-default-features --features").arg(feature))?;
+    for own in CRATES.iter().filter(|own| own.flies) {
+        let check = format!("check --package {} --no-default-features", own.name);
+        run(&mut cargo(&check))?;
+        for feature in own.features()? {
+            run(cargo(&check).args(["--features", &feature]))?;
+        }
     }
     Ok(())
 }
 
-/// The crate alone and with every feature for the core that has least, no compare-and-swap and no FPU. The firmware is
+/// The crates that fly, alone and with every feature for the core that has least, no compare-and-swap and no FPU. The firmware is
 /// compiled for all of them elsewhere; `cargo verify lints` has both on every core.
 pub fn targets() -> Result<()> {
     check_for(&TARGETS[..1])
 }
 
-/// Checks the crate without and with all features for Cortex-M targets.
+/// Checks the crates that fly without and with all features for Cortex-M targets.
 pub fn check_for(targets: &[&str]) -> Result<()> {
+    let packages: String = CRATES
+        .iter()
+        .filter(|own| own.flies)
+        .map(|own| format!(" --package {}", own.name))
+        .collect();
     for features in ["--no-default-features", "--all-features"] {
-        let check = format!("check --package spikewire {features}");
+        let check = format!("check{packages} {features}");
         for mut cargo in cargo_for_each(targets, &check)? {
             run(&mut cargo)?;
         }

@@ -29,9 +29,9 @@ pub fn reckon() -> Result<()> {
         .args(["--top-module", "reckon", "-CFLAGS", "-O2", "-o", "simulation", "--Mdir"])
         .arg(&built)
         .args(files.map(|file| sources.join(file)))
-        .arg(paths::root().join("host-tests/rtl/reckon.cpp"));
+        .arg(paths::root().join("chips/silicon/rtl/reckon.cpp"));
     run(&mut verilator)?;
-    let program = "run --release --package host-tests --example reckon_rtl --";
+    let program = "run --release --package silicon --example reckon_rtl --";
     run(cargo(program).arg(built.join("simulation")).arg("1000000"))
 }
 

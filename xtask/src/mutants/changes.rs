@@ -1,5 +1,6 @@
 //! The changes to be tried, as cargo-mutants lists them.
 
+use super::CRATES;
 use crate::common::{
     paths,
     shell::{cargo, command, output, run},
@@ -12,7 +13,7 @@ use std::{
     fs,
 };
 
-/// One change of the crate's source.
+/// One change of a crate's source.
 #[derive(Deserialize)]
 pub struct Change {
     /// The source file, from the repository's top.
@@ -44,7 +45,7 @@ impl Change {
     }
 }
 
-/// All changes of the crate.
+/// All changes of the crates.
 pub fn all() -> Result<Vec<Change>> {
     listed(&[])
 }
@@ -53,7 +54,10 @@ pub fn all() -> Result<Vec<Change>> {
 pub fn since(commit: &str) -> Result<HashSet<String>> {
     let lines = paths::target().join("mutants/lines.diff");
     fs::create_dir_all(paths::target().join("mutants"))?;
-    fs::write(&lines, output(command("git").args(["diff", commit, "--", "src"]))?)?;
+    fs::write(
+        &lines,
+        output(command("git").args(["diff", commit, "--"]).args(CRATES.map(|(_, source)| source)))?,
+    )?;
     let changes = listed(&["--in-diff".as_ref(), lines.as_os_str()])?;
     Ok(changes.into_iter().map(|change| change.name).collect())
 }
@@ -66,8 +70,10 @@ fn listed(of: &[&OsStr]) -> Result<Vec<Change>> {
         let mut install = cargo("install cargo-mutants --locked --root");
         run(install.arg(&tools).arg("--target-dir").arg(tools.join("build")))?;
     }
-    let list = ["mutants", "--package", "spikewire", "--list", "--json"];
-    Ok(serde_json::from_str(&output(command(program).args(list).args(of))?)?)
+    let packages = CRATES.iter().flat_map(|(name, _)| ["--package", name]);
+    let mut list = command(program);
+    list.args(["mutants", "--list", "--json"]).args(packages).args(of);
+    Ok(serde_json::from_str(&output(&mut list)?)?)
 }
 
 /// Names that an edit above them in the file leaves as they are: without line and column, and numbered where several

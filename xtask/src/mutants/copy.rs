@@ -1,7 +1,7 @@
-//! A copy of the repository, whose crate has each change behind a switch.
+//! A copy of the repository, whose crates have each change behind a switch.
 
 use super::{
-    Out,
+    CRATES, Out,
     changes::Change,
     schemata::{Sites, switched},
 };
@@ -35,16 +35,10 @@ pub struct Copy {
 }
 
 impl Copy {
-    /// Below `target/mutants`. All but the crate's source are links.
+    /// Below `target/mutants`. All but the crates' sources are links.
     pub fn new(switched: Vec<usize>) -> Result<Self> {
         let top = paths::target().join("mutants/tree");
-        fs::create_dir_all(&top)?;
-        for entry in fs::read_dir(paths::root())? {
-            let name = entry?.file_name();
-            if name != "src" && name != "target" && name != ".git" && !top.join(&name).exists() {
-                run(command("ln").arg("-s").arg(paths::root().join(&name)).arg(top.join(&name)))?;
-            }
-        }
+        link(Path::new(""), &top)?;
         Ok(Self { top, switched, out: BTreeMap::new() })
     }
 
@@ -56,15 +50,16 @@ impl Copy {
             .ok()
             .and_then(|out| serde_json::from_slice(&out).ok())
             .unwrap_or_default();
-        self.compile(changes, "check --package spikewire --all-features")?;
+        let packages = CRATES.map(|(name, _)| format!(" --package {name}")).concat();
+        self.compile(changes, &format!("check{packages} --all-features"))?;
         fs::write(&kept, serde_json::to_string(&self.out)?)?;
         let tests =
             env::var("MUTANTS_TESTS").unwrap_or_else(|_| "catalogue chips codes wire".into());
         let (own, tests): (Vec<_>, Vec<_>) =
             tests.split(' ').partition(|name| *name == "catalogue");
         let tests = tests.iter().map(|name| format!(" --test {name}")).collect::<String>();
-        let build = "test --no-run --package spikewire --package host-tests --lib";
-        let mut told = self.compile(changes, &format!("{build}{tests}"))?;
+        let build = format!("test --no-run{packages} --package host-tests --lib{tests}");
+        let mut told = self.compile(changes, &build)?;
         if !own.is_empty() {
             told.extend(self.compile(changes, "test --no-run --package catalogue --lib")?);
         }
@@ -119,7 +114,8 @@ impl Copy {
             return Ok(());
         };
         let file = self.top.join(file);
-        if file.starts_with(self.top.join("src")) && span["is_primary"] == true {
+        let is_changed = |(_, source): &(_, &str)| file.starts_with(self.top.join(source));
+        if CRATES.iter().any(is_changed) && span["is_primary"] == true {
             let text = fs::read_to_string(file)?;
             self.out.extend(innermost(&text[..at as usize]));
         }
@@ -133,23 +129,30 @@ impl Copy {
             let sites = files.entry(&change.file).or_default();
             sites.entry(change.site()).or_default().push((*number, change.replacement.clone()));
         }
-        for file in sources(&paths::root().join("src"))? {
+        for file in all_sources()? {
             let name = file.strip_prefix(paths::root())?;
             let text = fs::read_to_string(&file)?;
             let sites = files.remove(name.to_str().context("a file's name is no text")?);
             let (mut text, out) = switched(&text, &sites.unwrap_or_default())?;
             self.out.extend(out);
-            if name == Path::new("src/lib.rs") {
-                let features = "#![no_std]\n#![feature(core_intrinsics, const_eval_select)]";
-                text = text.replacen("#![no_std]", features, 1);
-                text = text
-                    .replace("#[cfg(test)]\nextern crate std;", "extern crate std;\nmod mutant;");
+            if CRATES.iter().any(|(_, source)| name == Path::new(source).join("lib.rs")) {
+                // Features before what else is said of the whole crate, modules behind it.
+                for (old, new) in [
+                    ("#[cfg(test)]\nextern crate std;", ""),
+                    ("#![no_std]", "#![no_std]\n#![feature(core_intrinsics, const_eval_select)]"),
+                    (FORBID, &*format!("{FORBID}\nextern crate std;\nmod mutant;")),
+                ] {
+                    text = text.replacen(old, new, 1);
+                }
             }
             write_if_new(&self.top.join(name), &text)?;
         }
         let switch =
             format!("{}\nconst CHANGES: usize = {};\n", include_str!("switch.rs"), changes.len());
-        write_if_new(&self.top.join("src/mutant.rs"), &switch)
+        for (_, source) in CRATES {
+            write_if_new(&self.top.join(source).join("mutant.rs"), &switch)?;
+        }
+        Ok(())
     }
 
     /// Cargo in the copy. Optimised a little: the tests run many times.
@@ -162,16 +165,37 @@ impl Copy {
             .env("CARGO_PROFILE_DEV_OPT_LEVEL", "1")
             .env("RUSTFLAGS", "--cap-lints=allow")
             // The switch asks whether it runs within a constant, which only the compiler's own library may.
-            .env("RUSTC_BOOTSTRAP", "spikewire")
+            .env("RUSTC_BOOTSTRAP", CRATES.map(|(name, _)| name.replace('-', "_")).join(","))
             .stderr(Stdio::inherit());
         cargo
     }
 }
 
-/// The file of what is left out of the crate as it is.
+/// The last of what a crate's root says of the whole crate.
+const FORBID: &str = "#![forbid(unsafe_code)]";
+
+/// Links all that a directory holds, but for sources and for the directories on the way to them, which are made.
+fn link(below: &Path, top: &Path) -> Result<()> {
+    fs::create_dir_all(top.join(below))?;
+    for entry in fs::read_dir(paths::root().join(below))? {
+        let name = below.join(entry?.file_name());
+        let is_own = CRATES.iter().any(|(_, source)| name == Path::new(source));
+        if is_own || [".git", "target"].iter().any(|left| name == Path::new(left)) {
+            continue;
+        }
+        if CRATES.iter().any(|(_, source)| Path::new(source).starts_with(&name)) {
+            link(&name, top)?;
+        } else if !top.join(&name).exists() {
+            run(command("ln").arg("-s").arg(paths::root().join(&name)).arg(top.join(&name)))?;
+        }
+    }
+    Ok(())
+}
+
+/// The file of what is left out of the crates as they are.
 fn kept() -> Result<PathBuf> {
     let mut hasher = DefaultHasher::new();
-    for file in sources(&paths::root().join("src"))? {
+    for file in all_sources()? {
         (&file, fs::read(&file)?).hash(&mut hasher);
     }
     Ok(paths::target().join(format!("mutants/out-{:016x}.json", hasher.finish())))
@@ -183,6 +207,11 @@ fn write_if_new(file: &Path, text: &str) -> Result<()> {
     }
     fs::create_dir_all(file.parent().context("a file without a directory")?)?;
     Ok(fs::write(file, text)?)
+}
+
+fn all_sources() -> Result<Vec<PathBuf>> {
+    let all = CRATES.map(|(_, source)| sources(&paths::root().join(source)));
+    Ok(all.into_iter().collect::<Result<Vec<_>>>()?.concat())
 }
 
 /// All Rust files below a directory.

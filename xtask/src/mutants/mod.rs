@@ -1,6 +1,6 @@
-//! `cargo verify mutants`: changes of the crate's code, each of which the tests have to notice.
+//! `cargo verify mutants`: changes of the crates' code, each of which the tests have to notice.
 //!
-//! cargo-mutants lists them. A copy of the crate has all of them at once, each behind a switch that is read from the
+//! cargo-mutants lists them. A copy of the crates has all of them at once, each behind a switch that is read from the
 //! environment, so that its tests are compiled once. Each test runs alone and records which changes it reaches; then each
 //! change is switched on for the tests that reach it, the quickest first. `host-tests/mutants.toml` lists those that none
 //! notices; any other fails.
@@ -23,9 +23,12 @@ use std::{collections::BTreeMap, env};
 /// The rooms, which their tests' programs are named after, and where their sources begin.
 const ROOMS: [(&str, &[&str]); 3] = [
     ("wire", &["src/wire/", "src/event/", "src/out/", "src/serial.rs"]),
-    ("chips", &["src/chip/"]),
+    ("chips", &["chips/src/"]),
     ("codes", &["src/scheme/", "src/num/", "src/frame/", "src/error/"]),
 ];
+
+/// The crates that are changed, and their sources.
+const CRATES: [(&str, &str); 2] = [("spikewire", "src"), ("spikewire-chips", "chips/src")];
 
 /// Why a change cannot be switched on.
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -1,13 +1,16 @@
 //! What the checks build for the host. All of them build the same, so that each crate is compiled once.
 
+use super::published::CRATES;
 use crate::common::{cargo, command, lint, output, paths, run};
 use anyhow::{Context, Result};
-use std::{fs, path::PathBuf, process::Command};
+use std::{path::PathBuf, process::Command};
 
 /// `cargo test` of the whole workspace with every feature but the debug probe's driver, linted as it is compiled.
 pub fn tests(args: &str) -> Result<Command> {
-    let features = features()?.into_iter().map(|name| format!("spikewire/{name}"));
-    let features: Vec<_> = features.chain(["host-tests/extract".into()]).collect();
+    let mut features = vec!["host-tests/extract".to_owned()];
+    for own in CRATES {
+        features.extend(own.features()?.into_iter().map(|name| format!("{}/{name}", own.name)));
+    }
     let mut cargo = cargo("test --workspace --features");
     cargo.arg(features.join(",")).args(args.split_whitespace());
     lint(&mut cargo);
@@ -48,18 +51,4 @@ pub const FLIGHT_LOG: [&str; 2] = ["flight-log", "flight-log-fixed"];
 /// What these print here.
 pub fn flight_log() -> Result<String> {
     FLIGHT_LOG.into_iter().map(on_host).collect()
-}
-
-/// The names in Cargo.toml's `[features]`, so that a new feature is checked without a word here.
-pub fn features() -> Result<Vec<String>> {
-    let manifest = fs::read_to_string(paths::root().join("Cargo.toml"))?;
-    let (_, rest) = manifest.split_once("[features]\n").context("Cargo.toml has no [features]")?;
-    let names = rest
-        .lines()
-        .take_while(|line| !line.starts_with('['))
-        .filter(|line| !line.starts_with('#'))
-        .filter_map(|line| line.split_once(" = "))
-        .map(|(name, _)| name.to_owned())
-        .collect();
-    Ok(names)
 }

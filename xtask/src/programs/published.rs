@@ -13,13 +13,33 @@ pub struct Crate {
     pub name: &'static str,
     /// Its directory, from the repository's top.
     pub directory: &'static str,
+    /// Whether it runs on a microcontroller.
+    pub flies: bool,
+}
+
+impl Crate {
+    /// The names in its manifest's `[features]`, so that a new feature is checked without a word here.
+    pub fn features(&self) -> Result<Vec<String>> {
+        let manifest = paths::root().join(self.directory).join("Cargo.toml");
+        let text = fs::read_to_string(manifest)?;
+        let Some((_, rest)) = text.split_once("[features]\n") else { return Ok(Vec::new()) };
+        let names = rest
+            .lines()
+            .take_while(|line| !line.starts_with('['))
+            .filter(|line| !line.starts_with('#'))
+            .filter_map(|line| line.split_once(" = "))
+            .map(|(name, _)| name.to_owned())
+            .collect();
+        Ok(names)
+    }
 }
 
 /// The crates that are published, each after those that it needs.
-pub const CRATES: [Crate; 3] = [
-    Crate { name: "spikewire", directory: "" },
-    Crate { name: "spikewire-network", directory: "network" },
-    Crate { name: "flight-logs", directory: "flight-logs" },
+pub const CRATES: [Crate; 4] = [
+    Crate { name: "spikewire", directory: "", flies: true },
+    Crate { name: "spikewire-chips", directory: "chips", flies: true },
+    Crate { name: "spikewire-network", directory: "network", flies: true },
+    Crate { name: "flight-logs", directory: "flight-logs", flies: false },
 ];
 
 /// What tells cargo to take the crate as it would be published.

@@ -10,12 +10,10 @@ use core::{
 
 use board::chip_bus::ChipBus;
 use embedded_hal::delay::DelayNs;
-use spikewire::{
-    Bins, Event, FromEvents, Polarity, Tick,
-    chip::{
-        AerPort, ChipError, ConvolutionEvent, DenseEvent, Input, OdinInput, TinyOdin,
-        TinyOdinInput, pack_counts,
-    },
+use spikewire::{Bins, Event, FromEvents, Polarity, Tick};
+use spikewire_chips::{
+    AerPort, ChipError, ConvolutionEvent, DenseEvent, Input, OdinInput, TinyOdin, TinyOdinInput,
+    pack_counts,
 };
 
 use super::{ensure, flight, meter::Cost};

@@ -23,7 +23,7 @@ use std::fs;
 use std::io::{self, BufRead, Write, stdin, stdout};
 use std::path::{Path, PathBuf};
 
-/// Bring a trained network onto a chip: a Rust constant for `spikewire::chip`, and what quantising costs.
+/// Bring a trained network onto a chip: a Rust constant for `spikewire-chips`, and what quantising costs.
 ///
 /// A recording's spikes run through the network in double precision and, with the chip's weights and arithmetic, through
 /// its model, clock by clock. NETWORK is a NIR graph (an HDF5 file of snnTorch, Norse, Rockpool, Sinabs, Lava and

@@ -2,7 +2,7 @@
 
 use super::{ReckOn, TinyOdin, Trained, Trains};
 use anyhow::{Result, anyhow, bail};
-use spikewire::chip::ChipError;
+use spikewire_chips::ChipError;
 use std::fmt::{Debug, Display};
 
 /// A chip that a trained network can be brought onto.

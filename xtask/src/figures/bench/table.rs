@@ -198,7 +198,7 @@ const ROOMS: [(&str, &[&str]); 6] = [
     ("link", &["spikewire::wire::link::"]),
     ("formats and batches", &["spikewire::wire::format::", "spikewire::wire::batch::"]),
     ("sinks", &["spikewire::out::"]),
-    ("chips", &["spikewire::chip::"]),
+    ("chips", &["spikewire_chips::"]),
     ("cameras", &["spikewire::frame::"]),
 ];
 

@@ -1,9 +1,9 @@
-//! The network as Rust: constant data for `spikewire::chip`.
+//! The network as Rust: constant data for `spikewire_chips`.
 
 use super::super::chip::{Told, lines, list};
 use super::Quantised;
 use super::quantise::FIRED;
-use spikewire::chip::{DescribeReckOn, ReckOnPair, ReckOnShared};
+use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
 
 pub(super) fn emit(network: &Quantised, told: &Told) -> String {
     let (inputs, count, outputs) = (network.inputs(), network.neurons(), network.outputs());
@@ -36,7 +36,7 @@ pub const FIRED: u32 = {FIRED};"
     format!(
         "//! {source}, brought onto ReckOn by `spikewire network`.
 
-use spikewire::chip::{{ReckOnNetwork, ReckOnPair, ReckOnShared}};
+use spikewire_chips::{{ReckOnNetwork, ReckOnPair, ReckOnShared}};
 {bias}
 /// Steps from inputs to the answer that shows what they did; a step is a tick{micros}.
 pub const LATE: usize = {late};

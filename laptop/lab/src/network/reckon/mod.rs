@@ -9,7 +9,7 @@ use super::chip::{Chip, OnChip, Ran, Told, written};
 use super::{Trained, Trains};
 use anyhow::Result;
 use quantise::{Quantised, quantise};
-use spikewire::chip::{DescribeReckOn, ReckOnBytes};
+use spikewire_chips::{DescribeReckOn, ReckOnBytes};
 
 /// The chip `ReckOn`.
 pub struct ReckOn;

@@ -5,7 +5,7 @@ use super::super::{Distance, Trained, Trains};
 use super::place::Places;
 use anyhow::{Result, ensure};
 use rayon::prelude::*;
-use spikewire::chip::{DescribeReckOn, ReckOnPair, ReckOnShared};
+use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A share of the potential, as the chip holds it for neurons and for outputs.

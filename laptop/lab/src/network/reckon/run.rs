@@ -6,7 +6,7 @@ use super::Quantised;
 use super::quantise::FIRED;
 use anyhow::{Result, bail};
 use silicon::reckon::{Board, Port, Spi};
-use spikewire::chip::{ReckOn, ReckOnAnswer, ReckOnSettings, ReckOnStep};
+use spikewire_chips::{ReckOn, ReckOnAnswer, ReckOnSettings, ReckOnStep};
 
 type Chip = ReckOn<Spi, Port>;
 

@@ -1,8 +1,8 @@
-//! The network as Rust: constant data for `spikewire::chip`.
+//! The network as Rust: constant data for `spikewire_chips`.
 
 use super::super::chip::{Told, lines, list};
 use super::Quantised;
-use spikewire::chip::{Describe, TinyOdinNeuron};
+use spikewire_chips::{Describe, TinyOdinNeuron};
 
 /// A file of Rust, which compiles without `std` beside the crate's feature `embedded-hal`.
 pub(super) fn emit(network: &Quantised, told: &Told) -> String {
@@ -38,7 +38,7 @@ pub(super) fn emit(network: &Quantised, told: &Told) -> String {
         "//! {source}, brought onto tinyODIN by `spikewire network`.
 
 use core::num::NonZeroU32;
-use spikewire::chip::{{Inputs, TinyOdinNetwork, TinyOdinNeuron}};
+use spikewire_chips::{{Inputs, TinyOdinNetwork, TinyOdinNeuron}};
 {bias}
 /// Steps from one leak of all neurons to the next{micros}.{idle}
 pub const STEPS_A_LEAK: NonZeroU32 = NonZeroU32::new({every}).unwrap();

@@ -8,7 +8,7 @@ use super::chip::{Chip, OnChip, Ran, Stepped, Told, written};
 use super::{Trained, Trains};
 use anyhow::{Result, bail};
 use quantise::{Quantised, quantise};
-use spikewire::chip::NetworkBytes;
+use spikewire_chips::NetworkBytes;
 
 /// The chip tinyODIN.
 pub struct TinyOdin;

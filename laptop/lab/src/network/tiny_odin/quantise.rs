@@ -4,7 +4,7 @@ use super::super::trained::{Layer, Neuron};
 use super::super::{Distance, Trained, Trains};
 use anyhow::{Result, ensure};
 use rayon::prelude::*;
-use spikewire::chip::{Describe, Input, TinyOdinInput, TinyOdinNeuron};
+use spikewire_chips::{Describe, Input, TinyOdinInput, TinyOdinNeuron};
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::atomic::{AtomicUsize, Ordering};
 

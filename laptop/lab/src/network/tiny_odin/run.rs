@@ -5,7 +5,7 @@ use super::super::chip::{Ran, Stepped, refused};
 use super::Quantised;
 use anyhow::Result;
 use silicon::Board;
-use spikewire::chip::{Describe, Input, TinyOdin, TinyOdinInput};
+use spikewire_chips::{Describe, Input, TinyOdin, TinyOdinInput};
 
 /// The chip's clocks to one of its SPI.
 const RATIO: u32 = 4;

@@ -1,0 +1,250 @@
+//! Akida AKD1500: access to the chip's memory over SPI, and its event words.
+
+use embedded_hal::spi::{Operation, SpiDevice};
+
+use super::ChipError;
+use super::error::{at_most, in_range};
+
+/// AKD1500 over SPI: reads and writes memory. An inference also needs a program from the vendor's compiler, which is
+/// written with this.
+///
+/// - **SPI:** mode 0, high bit first, 8 MHz; chip select low over header and data.
+/// - **Blocks:** 1, 4, 8, 16 or 32 words each; a longer run takes several.
+/// - **Addresses:** multiples of 4 from `0xFC00_0000` to `0xFCFF_FFFC`, as in the vendor's driver. The bus carries the low
+///   26 bits, and the chip adds the rest.
+/// - **Faults:** chip select begins every block anew, so that a clock lost or doubled spoils one block and no more. There
+///   is no checksum: [`program`](Self::program) reads all back. A disturbed header may write a block to another
+///   address: after [`ReadBack`](ChipError::ReadBack) write all memory again that must be right. If the right address
+///   already held the same words, this goes unnoticed.
+///
+/// Checked against the vendor's sources, and a model of the transport written from them; never against a chip.
+///
+/// Source: the vendor's Arduino library and engine, for the protocol; no code was taken.
+///
+/// ```
+/// use embedded_hal_mock::eh1::spi::{Mock, Transaction};
+/// use spikewire_chips::Akd1500;
+///
+/// let spi = Mock::new(&[
+///     Transaction::transaction_start(),
+///     Transaction::write_vec(vec![0x80, 0x20, 0x00, 0x08]),
+///     Transaction::write_vec(vec![0x11, 0x22, 0x33, 0x44]),
+///     Transaction::transaction_end(),
+/// ]);
+/// let mut chip = Akd1500::new(spi);
+/// assert_eq!(chip.write(0xFC80_0020, &[0x1122_3344]), Ok(()));
+/// # chip.release().done();
+/// ```
+#[derive(Debug)]
+pub struct Akd1500<D> {
+    device: D,
+}
+
+const WRITE: u8 = 0x80;
+const READ: u8 = 0x60;
+/// The number of words of a block, and its code; longest first.
+const BLOCKS: [(usize, u8); 5] = [(32, 4), (16, 3), (8, 2), (4, 1), (1, 0)];
+/// The first address; the chip adds its high 6 bits to those of the bus.
+const BASE: u32 = 0xFC00_0000;
+/// The end of the addresses, exclusive.
+const END: u32 = 0xFD00_0000;
+const MAX_BLOCK_BYTES: usize = 128;
+
+impl<D: SpiDevice> Akd1500<D> {
+    /// A chip on this device.
+    pub const fn new(device: D) -> Self {
+        Self { device }
+    }
+
+    /// Writes words from an address on.
+    ///
+    /// # Errors
+    /// Returns an error if the bus failed, and some blocks may be written; or the address is out of range.
+    pub fn write(&mut self, address: u32, words: &[u32]) -> Result<(), ChipError<D::Error>> {
+        check(address, words.len())?;
+        for (address, code, block) in blocks(address, words) {
+            let mut bytes = [0; MAX_BLOCK_BYTES];
+            for (bytes, word) in bytes.chunks_exact_mut(4).zip(block) {
+                for (byte, value) in bytes.iter_mut().zip(word.to_be_bytes()) {
+                    *byte = value;
+                }
+            }
+            let data = bytes.get(..4 * block.len()).unwrap_or_default();
+            let header = header(WRITE | code, address);
+            let mut operations = [Operation::Write(&header), Operation::Write(data)];
+            self.device.transaction(&mut operations).map_err(ChipError::Bus)?;
+        }
+        Ok(())
+    }
+
+    /// Reads words from an address on.
+    ///
+    /// # Errors
+    /// Returns an error if the bus failed, or the address is out of range.
+    pub fn read(&mut self, address: u32, words: &mut [u32]) -> Result<(), ChipError<D::Error>> {
+        check(address, words.len())?;
+        let mut address = address;
+        let mut rest = words;
+        while let Some((count, code)) = block_of(rest.len()) {
+            let (block, after) = rest.split_at_mut_checked(count).unwrap_or_default();
+            let mut bytes = [0; MAX_BLOCK_BYTES];
+            let data = bytes.get_mut(..4 * count).unwrap_or_default();
+            let [a, b, c, d] = header(READ | code, address);
+            let mut operations = [Operation::Write(&[a, b, c, d, 0]), Operation::Read(data)];
+            self.device.transaction(&mut operations).map_err(ChipError::Bus)?;
+            for (word, bytes) in block.iter_mut().zip(bytes.chunks_exact(4)) {
+                *word = bytes.first_chunk().copied().map_or(0, u32::from_be_bytes);
+            }
+            address = address.wrapping_add(4 * count as u32);
+            rest = after;
+        }
+        Ok(())
+    }
+
+    /// Writes words and reads them back.
+    ///
+    /// # Errors
+    /// Returns the errors of [`write`](Self::write), or the first word that reads back differently.
+    pub fn program(&mut self, address: u32, words: &[u32]) -> Result<(), ChipError<D::Error>> {
+        self.write(address, words)?;
+        for (address, _, block) in blocks(address, words) {
+            let mut back = [0; MAX_BLOCK_BYTES / 4];
+            let back = back.get_mut(..block.len()).unwrap_or_default();
+            self.read(address, back)?;
+            for (offset, (&written, &read)) in (0..).step_by(4).zip(block.iter().zip(&*back)) {
+                if written != read {
+                    let address = address.wrapping_add(offset);
+                    return Err(ChipError::ReadBack { address, written, read });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The device, for other uses.
+    pub fn release(self) -> D {
+        self.device
+    }
+}
+
+fn check<E>(address: u32, words: usize) -> Result<(), ChipError<E>> {
+    let bytes =
+        u32::try_from(words).ok().and_then(|words| words.checked_mul(4)).unwrap_or(u32::MAX);
+    in_range("address", address.into(), BASE.into(), (END - 1).into())?;
+    at_most("offset into a word", address & 3, 0)?;
+    at_most("length in bytes", bytes, END.saturating_sub(address))
+}
+
+/// `{command, word address}`, of 24 bits.
+fn header(command: u8, address: u32) -> [u8; 4] {
+    let [_, high, middle, low] = (address >> 2).to_be_bytes();
+    [command, high, middle, low]
+}
+
+/// The longest block of at most this many words.
+fn block_of(words: usize) -> Option<(usize, u8)> {
+    BLOCKS.into_iter().find(|&(count, _)| count <= words)
+}
+
+fn blocks(address: u32, words: &[u32]) -> impl Iterator<Item = (u32, u8, &[u32])> {
+    let mut next = (address, words);
+    core::iter::from_fn(move || {
+        let (address, words) = next;
+        let (count, code) = block_of(words.len())?;
+        let (block, rest) = words.split_at_checked(count)?;
+        next = (address.wrapping_add(4 * count as u32), rest);
+        Some((address, code, block))
+    })
+}
+
+/// An event of a convolutional layer.
+///
+/// ```
+/// use spikewire_chips::{ChipError, ConvolutionEvent};
+///
+/// let event = ConvolutionEvent { x: 0x123, y: 0x456, feature: 0x7FF, activation: 0x89 };
+/// let words: Result<_, ChipError<()>> = event.words();
+/// assert_eq!(words, Ok([0x0456_0123, 0x0089_07FF]));
+/// assert_eq!(ConvolutionEvent::from_words([0x0456_0123, 0x0089_07FF]), event);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ConvolutionEvent {
+    /// The column, 0 to 4095.
+    pub x: u16,
+    /// The row, 0 to 4095.
+    pub y: u16,
+    /// The feature, 0 to 2047.
+    pub feature: u16,
+    /// The activation, 0 to 255.
+    pub activation: u8,
+}
+
+impl ConvolutionEvent {
+    /// The words of the event.
+    ///
+    /// # Errors
+    /// Returns an error if a value has too many bits.
+    pub fn words<E>(self) -> Result<[u32; 2], ChipError<E>> {
+        let [x, y, feature] = [self.x, self.y, self.feature].map(u32::from);
+        at_most("x", x, 0xFFF)?;
+        at_most("y", y, 0xFFF)?;
+        at_most("feature", feature, 0x7FF)?;
+        Ok([y << 16 | x, u32::from(self.activation) << 16 | feature])
+    }
+
+    /// The event of these words.
+    pub fn from_words([first, second]: [u32; 2]) -> Self {
+        Self {
+            x: first as u16 & 0xFFF,
+            y: (first >> 16) as u16 & 0xFFF,
+            feature: second as u16 & 0x7FF,
+            activation: (second >> 16) as u8,
+        }
+    }
+}
+
+/// An event of a dense layer.
+///
+/// ```
+/// use spikewire_chips::{ChipError, DenseEvent};
+///
+/// let event = DenseEvent { feature: 0x2_0001, activation: 7 };
+/// let words: Result<_, ChipError<()>> = event.words();
+/// assert_eq!(words, Ok([0x2_0001, 0x8000_0007]));
+/// assert_eq!(DenseEvent::from_words([0x2_0001, 0x8000_0007]), Some(event));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct DenseEvent {
+    /// The feature, 0 to 262 143.
+    pub feature: u32,
+    /// The activation, 0 to 67 108 863.
+    pub activation: u32,
+}
+
+impl DenseEvent {
+    const MAX_FEATURE: u32 = (1 << 18) - 1;
+    const MAX_ACTIVATION: u32 = (1 << 26) - 1;
+    const DENSE: u32 = 1 << 31;
+
+    /// The words of the event.
+    ///
+    /// # Errors
+    /// Returns an error if a value has too many bits.
+    pub fn words<E>(self) -> Result<[u32; 2], ChipError<E>> {
+        at_most("feature", self.feature, Self::MAX_FEATURE)?;
+        at_most("activation", self.activation, Self::MAX_ACTIVATION)?;
+        Ok([self.feature, Self::DENSE | self.activation])
+    }
+
+    /// The event of these words, if they are those of a dense layer.
+    pub fn from_words([first, second]: [u32; 2]) -> Option<Self> {
+        (second & Self::DENSE != 0).then_some(Self {
+            feature: first & Self::MAX_FEATURE,
+            activation: second & Self::MAX_ACTIVATION,
+        })
+    }
+}

@@ -1,0 +1,66 @@
+//! Feeds the events of a source to the chip.
+
+use embedded_hal::spi::SpiDevice;
+
+use super::aer::Carries;
+use super::{AerPort, Input, Outcome, Running};
+use spikewire::{Event, Source};
+
+impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
+    /// Sends the events of a source, each as the input that `to_input` returns for it, and the time steps between them.
+    /// Returns how many events were sent. Events without an input, for which `to_input` returns `None`, are left out and
+    /// [counted](super::Counters::unmapped_events); [`Describe::input_for`](super::Describe::input_for) gives the input of a
+    /// network. For the consumer of a queue, pass `events.waiting()`, which ends even if
+    /// events come faster than the chip takes them. Skips keyframes and breaks.
+    ///
+    /// Events must come in the order of time. An event of a time step that is over is sent in the present one, and
+    /// counted as [late](super::Counters::late_events).
+    ///
+    /// # Errors
+    /// Returns the errors of [`send`](Self::send). After any error call it again with the events that remain: no
+    /// event is lost or sent twice, except those that a reset [counts](super::Counters::repeated_events) and those
+    /// whose input is not valid, which are dropped.
+    pub fn feed<A: Into<Option<I>>>(
+        &mut self,
+        mut events: impl Source,
+        mut to_input: impl FnMut(Event) -> A,
+        mut on_output: impl FnMut(u8),
+    ) -> Outcome<u32, D, P> {
+        self.chip.aer.finish(&mut on_output)?;
+        let mut sent = 0_u32;
+        while let Some(event) = self.chip.held.take().or_else(|| self.next_of(&mut events)) {
+            let Some(input) = to_input(event).into() else {
+                let count = &mut self.chip.counters.unmapped_events;
+                *count = count.saturating_add(1);
+                continue;
+            };
+            let word = input.word()?;
+            self.feed_word(word, event, &mut on_output)?;
+            sent = sent.wrapping_add(1);
+        }
+        Ok(sent)
+    }
+
+    /// Sends an event as this word. Holds the event until the word is under way.
+    fn feed_word(
+        &mut self,
+        word: u32,
+        event: Event,
+        on_output: &mut impl FnMut(u8),
+    ) -> Outcome<(), D, P> {
+        self.chip.held = Some(event);
+        self.advance_with(event.tick, on_output)?;
+        self.chip.aer.begin(word, Carries::Event(event), on_output)?;
+        self.chip.held = None;
+        Ok(self.chip.aer.finish(on_output)?)
+    }
+
+    fn next_of(&mut self, events: &mut impl Source) -> Option<Event> {
+        let event = events.take_event()?;
+        if self.chip.time.is_some_and(|time| time.is_over(event.tick)) {
+            let count = &mut self.chip.counters.late_events;
+            *count = count.saturating_add(1);
+        }
+        Some(event)
+    }
+}

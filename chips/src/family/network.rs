@@ -1,0 +1,283 @@
+//! The trait of networks for a chip, and a network as constant data.
+
+use super::{AerPort, Input};
+use crate::ChipError;
+use spikewire::{Code, Event, Polarity, Scheme, Tick};
+
+/// The neurons and weights of a network, as [constant data](Network) or as [bytes](super::NetworkBytes).
+/// [`Gated::load`](super::Gated::load) writes them to the chip.
+///
+/// The network's neurons are the chip's neurons from 0 on. An input is either a row of synapses onto all neurons, or a
+/// virtual event for one neuron. In open loop the chip's rows from 0 on belong to the inputs; in closed loop they belong
+/// to the neurons, and the rows of the inputs follow.
+pub trait Describe<I: Input> {
+    /// How many neurons, 1 to 256.
+    fn neurons(&self) -> u16;
+
+    /// A neuron; a [disabled](Input::DISABLED) one if the network has no such neuron.
+    fn neuron(&self, neuron: u8) -> I::Neuron;
+
+    /// How many inputs.
+    fn inputs(&self) -> u16;
+
+    /// The neuron on which an input acts without a synapse, and its weight; `None` if it has a row.
+    fn virtual_input(&self, input: u16) -> Option<(u8, i8)>;
+
+    /// The weight from an input with a row to a neuron.
+    fn input_weight(&self, input: u16, post: u8) -> i8;
+
+    /// Whether neurons send spikes to neurons.
+    fn is_recurrent(&self) -> bool;
+
+    /// The weight from a neuron to a neuron.
+    fn weight(&self, pre: u8, post: u8) -> i8;
+
+    /// The number of the output that a neuron is; `None` if it is no output.
+    fn output(&self, neuron: u8) -> Option<u16>;
+
+    /// Returns the chip's input for an event of a bank with this scheme, or `None` if the network has no such input.
+    ///
+    /// A neuron of a bank is an input of the network, in order. A [signed](Code::IS_SIGNED) code, such as that of
+    /// step-forward, takes two inputs for each neuron: the even one for [`Polarity::Up`], the odd one after it for
+    /// [`Polarity::Down`]. Rate codes have the same type of spikes and never go down: their odd inputs stay silent.
+    ///
+    /// ```
+    /// use spikewire_chips::{Describe, Inputs, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, neurons_from};
+    /// use spikewire::{Event, Polarity, Tick, temporal::StepForward};
+    ///
+    /// static RATE: StepForward<f32> = StepForward::new(0.1);
+    /// /// Rises and falls of three axes.
+    /// static NETWORK: TinyOdinNetwork<6, 6, 6> = TinyOdinNetwork {
+    ///     neurons: [TinyOdinNeuron { threshold: 20, leak: 1, ..TinyOdinNeuron::REST }; 6],
+    ///     inputs: Inputs::one_to_one(7),
+    ///     recurrent: &[],
+    ///     outputs: neurons_from::<0, 6>(),
+    /// };
+    ///
+    /// let yaw = |polarity| Event { tick: Tick::from_micros(0), address: 2, polarity };
+    /// let [rises, falls] = [Polarity::Up, Polarity::Down].map(|polarity| NETWORK.input_for(&RATE, yaw(polarity)));
+    /// assert_eq!(rises, NETWORK.input(4));
+    /// assert_eq!(falls, NETWORK.input(5));
+    /// // In flight: `chip.feed(events.waiting(), |event| NETWORK.input_for(&RATE, event), on_output)`.
+    /// ```
+    fn input_for<P: Scheme>(&self, _scheme: &P, event: Event) -> Option<I> {
+        if !P::Code::IS_SIGNED {
+            return self.input(event.address);
+        }
+        let falls = u16::from(event.polarity == Polarity::Down);
+        self.input(event.address.checked_mul(2)?.checked_add(falls)?)
+    }
+
+    /// Returns the chip's input for an input of the network, or `None` if the network has no such input. The number of an
+    /// input is not the address of an event: see [`input_for`](Self::input_for).
+    fn input(&self, input: u16) -> Option<I> {
+        if input >= self.inputs() {
+            return None;
+        }
+        match self.virtual_input(input) {
+            Some((neuron, weight)) => Some(I::virtual_event(neuron, weight)),
+            None => u8::try_from(self.first_input_row().saturating_add(input)).ok().map(I::spike),
+        }
+    }
+
+    /// A callback for the neurons that fire. It passes outputs to `sink`, as events whose address is the number of the
+    /// output, and ignores the other neurons.
+    fn answers(&self, tick: Tick, mut sink: impl FnMut(Event)) -> impl FnMut(u8) {
+        move |neuron| {
+            if let Some(address) = self.output(neuron) {
+                sink(Event { tick, address, polarity: Polarity::Up });
+            }
+        }
+    }
+
+    /// The registers to [run](super::Gated::run) the network with: closed loop if it is recurrent, outputs from its
+    /// neurons, and no other neurons in use.
+    fn registers(&self) -> I::Registers {
+        let mut inhibitory = [0; 16];
+        for row in 0..self.rows() {
+            let inhibits = (0..self.neurons()).any(|post| self.row_weight(row, post as u8) < 0);
+            if let Some(word) = inhibitory.get_mut(usize::from(row >> 4)) {
+                *word |= u16::from(inhibits) << (row & 15);
+            }
+        }
+        I::registers(self.neurons().saturating_sub(1) as u8, !self.is_recurrent(), inhibitory)
+    }
+
+    /// The row of the first input.
+    fn first_input_row(&self) -> u16 {
+        if self.is_recurrent() { self.neurons() } else { 0 }
+    }
+
+    /// How many rows of synapses the network has, from row 0 on.
+    fn rows(&self) -> u16 {
+        let is_virtual = self.virtual_input(0).is_some();
+        self.first_input_row().saturating_add(if is_virtual { 0 } else { self.inputs() })
+    }
+
+    /// The weight from a row to a neuron.
+    fn row_weight(&self, row: u16, post: u8) -> i8 {
+        match row.checked_sub(self.first_input_row()) {
+            Some(input) => self.input_weight(input, post),
+            None => self.weight(row as u8, post),
+        }
+    }
+}
+
+/// The inputs of a network.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Inputs<const IN: usize, const N: usize> {
+    /// Each input's weights to all neurons.
+    Rows([[i8; N]; IN]),
+    /// The neuron on which each input acts, and its weight. tinyODIN has virtual events for its first 16 neurons only.
+    Virtual([(u8, i8); IN]),
+}
+
+impl<const IN: usize, const N: usize> Inputs<IN, N> {
+    /// Input `n` drives neuron `n` with this weight, and no other neuron.
+    #[must_use]
+    pub const fn one_to_one(weight: i8) -> Self {
+        let mut rows = [[0; N]; IN];
+        let mut n = 0;
+        while n < IN && n < N {
+            #[allow(clippy::indexing_slicing)] // n is below both
+            {
+                rows[n][n] = weight;
+            }
+            n += 1;
+        }
+        Self::Rows(rows)
+    }
+}
+
+/// The neurons from `FIRST` on, for [`Network::outputs`].
+#[must_use]
+pub const fn neurons_from<const FIRST: u8, const OUT: usize>() -> [u8; OUT] {
+    const { assert!(FIRST as usize + OUT <= 256, "a chip has 256 neurons") };
+    let mut neurons = [0; OUT];
+    let mut n = 0;
+    while n < OUT {
+        #[allow(clippy::indexing_slicing)] // n is below
+        {
+            neurons[n] = FIRST + n as u8;
+        }
+        n += 1;
+    }
+    neurons
+}
+
+/// A network of `N` neurons, with `IN` inputs and `OUT` outputs, as constant data.
+///
+/// Weights are -7 to 7, for tinyODIN also -8. In ODIN all weights from an input or a neuron have one sign.
+///
+/// **Memory:** a byte a weight. [`NetworkBytes`](super::NetworkBytes) take half of that.
+///
+/// ```
+/// use spikewire_chips::{Describe, Inputs, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, neurons_from};
+///
+/// // Each of four inputs drives a neuron of its own and holds down the others.
+/// static NETWORK: TinyOdinNetwork<4, 4, 4> = TinyOdinNetwork {
+///     neurons: [TinyOdinNeuron { threshold: 20, leak: 1, ..TinyOdinNeuron::REST }; 4],
+///     inputs: Inputs::Rows([[7, -1, -1, -1], [-1, 7, -1, -1], [-1, -1, 7, -1], [-1, -1, -1, 7]]),
+///     recurrent: &[],
+///     outputs: neurons_from::<0, 4>(),
+/// };
+/// assert_eq!(NETWORK.input(2), Some(TinyOdinInput::Spike { pre: 2 }));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Network<I: Input, const IN: usize, const N: usize, const OUT: usize> {
+    /// The neurons.
+    pub neurons: [I::Neuron; N],
+    /// The inputs.
+    pub inputs: Inputs<IN, N>,
+    /// The weights from neuron 0, 1 and so on to all neurons. Neurons without a row have no effect on others; without any
+    /// row the loop is open.
+    pub recurrent: &'static [[i8; N]],
+    /// The neurons that are outputs, in the order of the outputs.
+    pub outputs: [u8; OUT],
+}
+
+impl<I: Input, const IN: usize, const N: usize, const OUT: usize> Describe<I>
+    for Network<I, IN, N, OUT>
+{
+    fn neurons(&self) -> u16 {
+        const { assert!(N >= 1 && N <= 256, "a chip has 256 neurons") };
+        N as u16
+    }
+
+    fn neuron(&self, neuron: u8) -> I::Neuron {
+        self.neurons.get(usize::from(neuron)).copied().unwrap_or(I::DISABLED)
+    }
+
+    fn inputs(&self) -> u16 {
+        const { assert!(IN <= 256, "a chip has 256 rows of synapses") };
+        IN as u16
+    }
+
+    fn virtual_input(&self, input: u16) -> Option<(u8, i8)> {
+        match &self.inputs {
+            Inputs::Virtual(inputs) => inputs.get(usize::from(input)).copied(),
+            Inputs::Rows(_) => None,
+        }
+    }
+
+    fn input_weight(&self, input: u16, post: u8) -> i8 {
+        match &self.inputs {
+            Inputs::Rows(rows) => at(rows, input.into(), post),
+            Inputs::Virtual(_) => 0,
+        }
+    }
+
+    fn is_recurrent(&self) -> bool {
+        !self.recurrent.is_empty()
+    }
+
+    fn weight(&self, pre: u8, post: u8) -> i8 {
+        at(self.recurrent, pre.into(), post)
+    }
+
+    fn output(&self, neuron: u8) -> Option<u16> {
+        let at = self.outputs.iter().position(|&output| output == neuron)?;
+        Some(at as u16)
+    }
+}
+
+fn at<const N: usize>(rows: &[[i8; N]], row: usize, post: u8) -> i8 {
+    rows.get(row).and_then(|row| row.get(usize::from(post))).copied().unwrap_or(0)
+}
+
+/// Checks that a network fits the chip, and that its values are in range.
+pub(super) fn check<I: Input, B, P: AerPort>(
+    network: &impl Describe<I>,
+) -> Result<(), ChipError<B, P::Error>> {
+    let out_of_range = |what, value: u16, max: u16| {
+        if value > max {
+            return Err(ChipError::OutOfRange {
+                what,
+                value: value.into(),
+                min: 0,
+                max: max.into(),
+            });
+        }
+        Ok(())
+    };
+    out_of_range("neurons", network.neurons(), 256)?;
+    out_of_range("rows of synapses", network.rows(), 256)?;
+    for neuron in 0..network.neurons() {
+        I::neuron_bytes(&network.neuron(neuron as u8))?;
+    }
+    for input in 0..network.inputs() {
+        if let Some(input) = network.input(input) {
+            input.word()?;
+        }
+    }
+    for row in 0..network.rows() {
+        let weights = || (0..network.neurons()).map(|post| network.row_weight(row, post as u8));
+        for weight in weights() {
+            I::weight_bits(weight)?;
+        }
+        if I::SIGNS_BY_ROW && weights().any(|w| w < 0) && weights().any(|w| w > 0) {
+            return Err(ChipError::MixedSigns { pre: row as u8 });
+        }
+    }
+    Ok(())
+}

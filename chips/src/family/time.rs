@@ -1,0 +1,68 @@
+//! Time steps, which the chip gets as leak events.
+
+use core::num::NonZeroU32;
+
+use embedded_hal::spi::SpiDevice;
+
+use super::aer::Carries;
+use super::{AerPort, Input, Outcome, Running};
+use spikewire::Tick;
+
+/// The most leak events at once.
+const MAX_LEAKS: u32 = 255;
+
+/// When leak events are due.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Time {
+    step: NonZeroU32,
+    /// When the last leak event was due.
+    last: Option<Tick>,
+}
+
+impl Time {
+    pub(super) const fn new(step: NonZeroU32) -> Self {
+        Self { step, last: None }
+    }
+
+    /// Whether the time step of this tick is over.
+    pub(super) fn is_over(&self, tick: Tick) -> bool {
+        self.last.is_some_and(|last| tick.is_before(last))
+    }
+}
+
+impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
+    /// Sends the leak events of the time steps that have passed at this tick, also those that passed while the chip was
+    /// gated; the first call only notes the time. Sends at most 255; others are skipped and
+    /// [counted](super::Counters::skipped_steps). (255 leaks of 1 may not bring a potential of 12 bits to 0.)
+    ///
+    /// # Errors
+    /// Returns the errors of [`send`](Self::send). Time steps that were not sent are due the next time.
+    pub fn advance(&mut self, now: Tick, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
+        self.advance_with(now, &mut on_output)
+    }
+
+    pub(super) fn advance_with(
+        &mut self,
+        now: Tick,
+        on_output: &mut impl FnMut(u8),
+    ) -> Outcome<(), D, P> {
+        let chip = &mut *self.chip;
+        let Some(Time { step, last }) = &mut chip.time else { return Ok(()) };
+        let last = last.get_or_insert(now);
+        let due = now.since(*last).max(0) as u32 / *step;
+        if due == 0 {
+            return Ok(());
+        }
+        let word = I::LEAK_ALL.word()?;
+        let skipped = due.saturating_sub(MAX_LEAKS);
+        *last += skipped.wrapping_mul(step.get());
+        let count = &mut chip.counters.skipped_steps;
+        *count = count.saturating_add(skipped);
+        for _ in skipped..due {
+            chip.aer.begin(word, Carries::Step, on_output)?;
+            *last += step.get();
+            chip.aer.finish(on_output)?;
+        }
+        Ok(())
+    }
+}

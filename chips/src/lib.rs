@@ -1,0 +1,31 @@
+//! Drivers for neuromorphic chips.
+#![doc = include_str!("../README.md")]
+#![no_std]
+#![forbid(unsafe_code)]
+
+mod akd1500;
+mod error;
+mod family;
+mod odin;
+mod output_source;
+mod reckon;
+mod tinyodin;
+mod xylo;
+
+pub use akd1500::{Akd1500, ConvolutionEvent, DenseEvent};
+pub use error::ChipError;
+pub use family::{
+    AerPort, Counters, Describe, FormatError, Gated, Input, Inputs, Network, NetworkBytes,
+    OdinChip, Phase, Progress, Running, Spikes, neurons_from,
+};
+pub use odin::{
+    Odin, OdinInput, OdinLearning, OdinNetwork, OdinNeuron, OdinRegisters, OdinSynapse,
+};
+pub use output_source::OutputSource;
+pub use reckon::{
+    DescribeReckOn, Programmed, ReckOn, ReckOnAnswer, ReckOnAnswers, ReckOnBytes, ReckOnLearning,
+    ReckOnNetwork, ReckOnPair, ReckOnPort, ReckOnSample, ReckOnSettings, ReckOnShared, ReckOnStep,
+    ReckOnTarget, ReckOnTask, Started,
+};
+pub use tinyodin::{TinyOdin, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, TinyOdinRegisters};
+pub use xylo::{InputBank, Registers, Xylo, XyloMap, pack_counts};

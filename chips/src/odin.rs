@@ -1,0 +1,315 @@
+//! ODIN: 256 neurons and 64k synapses that can learn; 17-bit words.
+
+use super::error::in_range;
+use super::{ChipError, Input, Network, OdinChip, OutputSource};
+
+/// ODIN; see [`OdinChip`].
+///
+/// Source: RTL and documentation, ChFrenkel/ODIN.
+///
+/// ```
+/// use spikewire_chips::{ChipError, Input, OdinInput};
+///
+/// type Word = Result<u32, ChipError<(), ()>>;
+/// let word: Word = OdinInput::Synapse { pre: 7, post: 5 }.word();
+/// assert_eq!(word, Ok(0x1_0705));
+/// ```
+pub type Odin<D, P> = OdinChip<OdinInput, D, P>;
+
+/// A network for ODIN, as constant data.
+pub type OdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
+    Network<OdinInput, IN, N, OUT>;
+
+/// A leaky integrate-and-fire neuron of ODIN, in 128 bits. Its Izhikevich neurons are not described here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct OdinNeuron {
+    /// Bits 9-16: the potential at which the neuron fires and returns to 0, 1 to 255.
+    pub threshold: u8,
+    /// Bits 1-7, and bit 8 unless 0: how much the potential falls in a time step, 0 to 127.
+    pub leak: u8,
+    /// Bits 70-77: the potential, which saturates at 0 and 255.
+    pub potential: u8,
+    /// Bits 17-39: how the synapses onto the neuron learn; `None` if they do not.
+    pub learning: Option<OdinLearning>,
+    /// Bit 127: whether the neuron never fires. Its potential still changes.
+    pub is_disabled: bool,
+}
+
+impl OdinNeuron {
+    /// A neuron with potential 0 and the highest threshold, without leak and learning.
+    pub const REST: Self =
+        Self { threshold: 255, leak: 0, potential: 0, learning: None, is_disabled: false };
+    /// A neuron that is not in use.
+    pub const DISABLED: Self = Self { is_disabled: true, ..Self::REST };
+}
+
+/// How the synapses onto a neuron learn (SDSP): they grow while its potential is high and its calcium
+/// between the outer thresholds, and shrink while its potential is low and its calcium between the lower
+/// ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct OdinLearning {
+    /// Bits 18-25: the potential from which on synapses grow.
+    pub potential: u8,
+    /// Bits 26-34, 3 each: the thresholds of calcium, 0 to 7.
+    pub calcium: [u8; 3],
+    /// Bits 35-39: calcium falls by 1 after this many time steps, 1 to 31; 0: never.
+    pub calcium_leak: u8,
+}
+
+/// A synapse of ODIN. Its sign is that of the presynaptic neuron.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct OdinSynapse {
+    /// The weight, 0 to 7.
+    pub weight: u8,
+    /// The mapping bit. A synapse without it does nothing, and does not learn, unless registers
+    /// [24](OdinRegisters::propagates_unmapped) and [23](OdinRegisters::updates_unmapped) say otherwise.
+    pub is_mapped: bool,
+}
+
+/// ODIN's configuration registers. They cannot be read back and have no value after reset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[allow(clippy::struct_excessive_bools, reason = "each is a register")]
+pub struct OdinRegisters {
+    /// Register 1: the neurons' spikes go to the output bus only, and not to other neurons.
+    pub is_open_loop: bool,
+    /// Registers 2 to 17: bit `n % 16` of word `n / 16` is 1 if neuron `n` inhibits.
+    pub inhibitory: [u16; 16],
+    /// Register 18: clocks of the interval in a burst, 20 bits; 0 without bursts.
+    pub burst_clocks: u32,
+    /// Register 19: the source of the output bus.
+    pub output_source: OutputSource,
+    /// Registers 20 to 22: the neuron, and the presynaptic neuron of one of its synapses, whose states go to the output
+    /// bus instead of spikes.
+    pub monitored: Option<(u8, u8)>,
+    /// Register 23: synapses without the mapping bit learn.
+    pub updates_unmapped: bool,
+    /// Register 24: synapses without the mapping bit act.
+    pub propagates_unmapped: bool,
+    /// Register 25: synapses learn from [`OdinInput::Synapse`] too.
+    pub learns_from_synapse: bool,
+}
+
+impl OdinRegisters {
+    /// Open loop, all neurons excite, without bursts, monitoring and unmapped synapses.
+    pub const PLAIN: Self = Self {
+        is_open_loop: true,
+        inhibitory: [0; 16],
+        burst_clocks: 0,
+        output_source: OutputSource::Neurons,
+        monitored: None,
+        updates_unmapped: false,
+        propagates_unmapped: false,
+        learns_from_synapse: false,
+    };
+}
+
+/// An input word of ODIN: 17 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum OdinInput {
+    /// Neuron `pre` fired, for one synapse only. It acts if the synapse has the mapping bit, or with
+    /// [`propagates_unmapped`](OdinRegisters::propagates_unmapped).
+    Synapse {
+        /// The neuron that fired.
+        pre: u8,
+        /// The neuron onto which the synapse acts.
+        post: u8,
+    },
+    /// Neuron `pre` fired: all its synapses act.
+    Spike {
+        /// The neuron that fired.
+        pre: u8,
+    },
+    /// Acts on one neuron without a synapse.
+    Virtual {
+        /// The neuron.
+        neuron: u8,
+        /// The weight, 1 to 7.
+        weight: u8,
+        /// Whether it inhibits.
+        is_inhibitory: bool,
+    },
+    /// A time step for one neuron, in turn with virtual events and spikes.
+    VirtualLeak {
+        /// The neuron.
+        neuron: u8,
+    },
+    /// A time step for one neuron, at once.
+    Leak {
+        /// The neuron.
+        neuron: u8,
+    },
+    /// A time step for all neurons.
+    LeakAll,
+    /// Moves the synapses *from* one neuron a step towards their stable states, 0 and 7. (The chip's manual says the
+    /// synapses onto it; its RTL differs.) Synapses without the mapping bit stay as they are, unless
+    /// [`updates_unmapped`](OdinRegisters::updates_unmapped) is set.
+    Bistability {
+        /// The neuron.
+        neuron: u8,
+    },
+    /// Moves all synapses a step towards their stable states.
+    BistabilityAll,
+}
+
+impl Input for OdinInput {
+    const LEAK_ALL: Self = Self::LeakAll;
+    const PROBED: u8 = 255;
+    const NEURON_BYTES: u8 = 16;
+    const PARAMETERS: [u8; 16] = 0xFFFF_FFFF_FFC0_003F_FFFF_FFFF_FFFF_FFFF_u128.to_le_bytes();
+    /// `BistabilityAll` takes 64 clocks a neuron, and waits for up to 33 spikes of 512 each. The others
+    /// take 1600 at most: `LeakAll` 512, after no more than two spikes.
+    const MAX_CLOCKS: u32 = 34_000;
+    const QUEUE: u32 = 32;
+    const OPEN_LOOP: u16 = 1;
+    const KIND: u8 = 2;
+    const DISABLED: OdinNeuron = OdinNeuron::DISABLED;
+    const SIGNS_BY_ROW: bool = true;
+
+    type Neuron = OdinNeuron;
+    type Registers = OdinRegisters;
+    type Synapse = OdinSynapse;
+
+    fn word<B, P>(self) -> Result<u32, ChipError<B, P>> {
+        let word = |high: u8, low: u8| Ok(u32::from(high) << 8 | u32::from(low));
+        match self {
+            Self::Synapse { pre, post } => Ok(1 << 16 | u32::from(pre) << 8 | u32::from(post)),
+            Self::Spike { pre } => word(pre, 0x07),
+            Self::Virtual { weight: 0, .. } => Err(ChipError::ZeroWeight),
+            Self::Virtual { weight, .. } if weight > 7 => {
+                Err(ChipError::OutOfRange { what: "weight", value: weight.into(), min: 1, max: 7 })
+            }
+            Self::Virtual { neuron, weight, is_inhibitory } => {
+                word(neuron, weight << 5 | u8::from(is_inhibitory) << 4 | 0b001)
+            }
+            Self::VirtualLeak { neuron } => word(neuron, 0b1001),
+            Self::Leak { neuron } => word(neuron, 0xFF),
+            Self::LeakAll => word(0, 0x7F),
+            Self::Bistability { neuron } => word(neuron, 0x80),
+            Self::BistabilityAll => word(0, 0x00),
+        }
+    }
+
+    fn spike(pre: u8) -> Self {
+        Self::Spike { pre }
+    }
+
+    fn probe(neuron: u8) -> Self {
+        Self::Leak { neuron }
+    }
+
+    fn virtual_event(neuron: u8, weight: i8) -> Self {
+        Self::Virtual { neuron, weight: weight.unsigned_abs(), is_inhibitory: weight < 0 }
+    }
+
+    fn neuron_bytes<B, P>(neuron: &OdinNeuron) -> Result<[u8; 16], ChipError<B, P>> {
+        let &OdinNeuron { threshold, leak, potential, learning, is_disabled } = neuron;
+        in_range("threshold", threshold.into(), 1, 255)?;
+        in_range("leak", leak.into(), 0, 127)?;
+        let mut bits = 1
+            | u128::from(leak) << 1
+            | u128::from(leak != 0) << 8
+            | u128::from(threshold) << 9
+            | u128::from(potential) << 70
+            | u128::from(is_disabled) << 127;
+        if let Some(OdinLearning { potential, calcium, calcium_leak }) = learning {
+            in_range("calcium leak", calcium_leak.into(), 0, 31)?;
+            bits |= 1 << 17 | u128::from(potential) << 18 | u128::from(calcium_leak) << 35;
+            for (at, calcium) in [26, 29, 32].into_iter().zip(calcium) {
+                in_range("calcium", calcium.into(), 0, 7)?;
+                bits |= u128::from(calcium) << at;
+            }
+        }
+        Ok(bits.to_le_bytes())
+    }
+
+    fn neuron(bytes: [u8; 16]) -> OdinNeuron {
+        let bits = u128::from_le_bytes(bytes);
+        let field = |at: u32, width: u32| (bits >> at) as u8 & (0xFF >> (8 - width));
+        let learning = OdinLearning {
+            potential: field(18, 8),
+            calcium: [26, 29, 32].map(|at| field(at, 3)),
+            calcium_leak: field(35, 5),
+        };
+        OdinNeuron {
+            threshold: field(9, 8),
+            leak: if field(8, 1) == 1 { field(1, 7) } else { 0 },
+            potential: field(70, 8),
+            learning: (field(17, 1) == 1).then_some(learning),
+            is_disabled: field(127, 1) == 1,
+        }
+    }
+
+    fn before_step(neuron: &OdinNeuron) -> Option<OdinNeuron> {
+        let &OdinNeuron { threshold, leak, potential, learning, is_disabled } = neuron;
+        // A time step changes calcium, too.
+        if learning.is_some() {
+            return None;
+        }
+        // The potential of a neuron that never fires is of no account.
+        if is_disabled || potential == 0 && threshold > 0 {
+            return Some(*neuron);
+        }
+        let before = potential.checked_add(leak).filter(|_| potential < threshold)?;
+        Some(OdinNeuron { potential: before, ..*neuron })
+    }
+
+    /// The mapping bit is set unless the weight is 0.
+    fn weight_bits<B, P>(weight: i8) -> Result<u8, ChipError<B, P>> {
+        in_range("weight", weight.into(), -7, 7)?;
+        Ok(if weight == 0 { 0 } else { 8 | weight.unsigned_abs() })
+    }
+
+    fn synapse_bits<B, P>(synapse: OdinSynapse) -> Result<u8, ChipError<B, P>> {
+        in_range("weight", synapse.weight.into(), 0, 7)?;
+        Ok(u8::from(synapse.is_mapped) << 3 | synapse.weight)
+    }
+
+    fn synapse(bits: u8) -> OdinSynapse {
+        OdinSynapse { weight: bits & 7, is_mapped: bits & 8 != 0 }
+    }
+
+    fn registers(_: u8, is_open_loop: bool, inhibitory: [u16; 16]) -> OdinRegisters {
+        OdinRegisters { is_open_loop, inhibitory, ..OdinRegisters::PLAIN }
+    }
+
+    fn each_register<E>(
+        registers: &OdinRegisters,
+        mut write: impl FnMut(u16, u32) -> Result<(), E>,
+    ) -> Result<(), E> {
+        for (register, &bits) in (2..).zip(&registers.inhibitory) {
+            write(register, bits.into())?;
+        }
+        let (neuron, synapse) = registers.monitored.unwrap_or((0, 0));
+        write(18, registers.burst_clocks)?;
+        write(19, registers.output_source.bit())?;
+        write(20, registers.monitored.is_some().into())?;
+        write(21, neuron.into())?;
+        write(22, synapse.into())?;
+        write(23, registers.updates_unmapped.into())?;
+        write(24, registers.propagates_unmapped.into())?;
+        write(25, registers.learns_from_synapse.into())?;
+        write(Self::OPEN_LOOP, registers.is_open_loop.into())
+    }
+
+    fn check_registers<B, P>(registers: &OdinRegisters) -> Result<(), ChipError<B, P>> {
+        in_range("burst clocks", registers.burst_clocks.into(), 0, (1 << 20) - 1)
+    }
+
+    fn is_open_loop(registers: &OdinRegisters) -> bool {
+        registers.is_open_loop
+    }
+
+    fn sweep_clocks(_: &OdinRegisters) -> u32 {
+        516
+    }
+}

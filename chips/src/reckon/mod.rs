@@ -1,0 +1,319 @@
+//! `ReckOn`: 256 recurrent neurons, 16 leaky outputs, weights of 8 bits, learning on the chip.
+
+mod bytes;
+mod network;
+mod port;
+mod programmed;
+mod running;
+mod settings;
+mod wire;
+
+pub use bytes::ReckOnBytes;
+pub use network::{DescribeReckOn, ReckOnNetwork, ReckOnPair, ReckOnShared};
+pub use port::ReckOnPort;
+pub use programmed::Programmed;
+pub use running::{ReckOnAnswer, ReckOnSample, ReckOnStep, ReckOnTarget, Started};
+pub use settings::{ReckOnAnswers, ReckOnLearning, ReckOnSettings, ReckOnTask};
+
+use embedded_hal::delay::DelayNs;
+use embedded_hal::spi::{ErrorType, SpiDevice};
+
+use super::ChipError;
+use super::family::Phase;
+use wire::{Address, Wire};
+
+/// `ReckOn`, on an SPI device and a port.
+///
+/// Source: RTL and documentation, ChFrenkel/ReckOn; nothing of them is in here.
+///
+/// - **SPI:** mode 0; the chip has no chip select: it needs a bus of its own and a device whose chip select is not
+///   wired. SCK at most a tenth of the chip's clock: a word that is read must be ready within half a clock of SCK.
+/// - **States:** [`reset`](Self::reset) gives a [`Programmed`] chip, whose memories can be accessed;
+///   [`Programmed::run`] a [`Started`] one; [`Started::begin`] a [`ReckOnSample`], which takes inputs and time steps
+///   until [`ReckOnSample::end`]. [`Started::program`] leads back. After an error of the bus, of a handshake or of a
+///   step all calls are refused until the next reset.
+/// - **Checks:** memories are read back. Registers cannot be read; after each, a word that no network uses is written
+///   and read twice, so that a clock lost or doubled before it is an error. A lost and a doubled clock, one of
+///   them in a register's own frame or in the one before it, may cancel out and go unseen: the register keeps its value,
+///   takes another, or another register does. The same pair in the first bits of a frame that writes neurons' weights may
+///   reach a register, too; that is seen unless the memory held these weights before. And a read with which a load
+///   compares may become a write: [`Programmed::verify`] after the load sees that in weights and parameters, but nobody does
+///   in the potential of a neuron or an output.
+/// - **Waits** read the pins a given number of times, then return an error.
+///
+/// # A time step
+/// Inputs that are sent before a tick act after it; neurons leak and fire at the next tick; their spikes act after that,
+/// and outputs show them at the third. With as many inputs as neurons, N, a step takes 2 N + 4 clocks of the chip and N
+/// more for each event.
+///
+/// # What to know about the chip
+/// - After reset learning is on, and the first tick with a target waits for it for ever: [`Programmed::run`] writes
+///   [`ReckOnSettings::learning`].
+/// - A tick that comes before the last step is done stops the chip until a reset, and `TIMING_ERROR_RDY` then says ready.
+///   [`ReckOnSample::step`] waits for the line before. After, the line is low for 2 N + 4 clocks, which pins that are read
+///   seldom miss: so the chip is always told to send its answer in each step, until whose last byte is taken the line stays
+///   low, and a step without an answer is an error.
+/// - If `SAMPLE` falls while the chip learns, it goes on learning without end, through all weights.
+/// - Neurons work in pairs, as far as the number of neurons, inputs or outputs, whichever is the most. A pair beyond the
+///   network whose memory holds a threshold of 0 fires at every step: [`Programmed::load`] writes all 128 pairs.
+/// - With an odd number of neurons the last would never fire: the driver tells the chip of one more.
+/// - A word to a register with a count above 1 writes the same register again.
+/// - An input sent twice within a step counts once. Inputs that are sent after the last tick of a sample are lost.
+/// - Reset clears no memory.
+/// - With a `keep` above 32 768 a potential near the end of its range changes its sign as it grows out of it.
+///
+/// # A bank's samples as time steps
+/// ```
+/// use embedded_hal::{delay::DelayNs, spi::SpiDevice};
+/// use spikewire_chips::{
+///     ChipError, ReckOn, ReckOnAnswer, ReckOnNetwork, ReckOnPair, ReckOnPort, ReckOnSettings, ReckOnShared, ReckOnStep,
+///     Spikes,
+/// };
+/// use spikewire::{Bank, Tick, population::Position};
+///
+/// static RATES: Position<f32, 16> = Position::linear(-8.0..=8.0);
+/// static NETWORK: ReckOnNetwork<16, 16, 1> = ReckOnNetwork {
+///     pairs: &[ReckOnPair { keep: 31_000, threshold: 1_000 }; 8],
+///     inputs: [[40; 16]; 16],
+///     recurrent: &[[-5; 16]; 16],
+///     outputs: [[10]; 16],
+///     shared: ReckOnShared { shifts: [4, 4, 0], keep: 120, resets_to_zero: true },
+/// };
+///
+/// fn fly<D: SpiDevice, P: ReckOnPort>(
+///     chip: &mut ReckOn<D, P>,
+///     delay: &mut impl DelayNs,
+///     rates: impl Iterator<Item = (Tick, f32)>, // rad/s
+///     mut command: impl FnMut(i16),
+/// ) -> Result<(), ChipError<D::Error, P::Error>> {
+///     let mut programmed = chip.reset(delay)?;
+///     programmed.load(&NETWORK, |_| ())?;
+///     let mut sample = programmed.run(&ReckOnSettings::POTENTIALS)?.begin()?;
+///     let mut bank = Bank::<_, 1>::new(&RATES);
+///     for (now, rate) in rates {
+///         let mut events = Spikes::<16>::new();
+///         bank.encode(now, [rate], |event| events.push(event));
+///         for event in events.as_slice() {
+///             sample.send(event.address as u8)?;
+///         }
+///         if let Some(ReckOnAnswer::Potentials([output, ..])) = sample.step(ReckOnStep::default())? {
+///             command(output);
+///         }
+///     }
+///     sample.end()?;
+///     Ok(())
+/// }
+/// ```
+#[derive(Debug)]
+pub struct ReckOn<D, P> {
+    wire: Wire<D>,
+    port: P,
+    polls: u32,
+    state: State,
+    settings: ReckOnSettings,
+    sizes: Sizes,
+}
+
+/// The last input, neuron and output.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Sizes {
+    input: u8,
+    neuron: u8,
+    output: u8,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    /// Out of step, or not reset yet.
+    NotReset,
+    Programmed,
+    Started,
+    Sample,
+}
+
+type Outcome<T, D, P> = Result<T, ChipError<<D as ErrorType>::Error, <P as ReckOnPort>::Error>>;
+
+/// How long reset is high, and how long the chip is then left alone.
+const RESET_US: u32 = 10;
+
+/// The register that opens the memories to SPI.
+const OPEN: u16 = 0;
+
+impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
+    /// The longest step in clocks of the chip: 256 neurons that all fire, and learning.
+    pub const MAX_CLOCKS: u32 = 76_000;
+
+    /// A chip that must be [reset](Self::reset) first. Every wait reads the pins up to `polls` times;
+    /// [`MAX_CLOCKS`](Self::MAX_CLOCKS) suffice if each takes a clock of the chip or longer. If pins are read more often
+    /// than that, multiply it by the reads in a clock, rounded up: two short waits count clocks so.
+    pub const fn new(device: D, port: P, polls: u32) -> Self {
+        let wire = Wire { device };
+        let sizes = Sizes { input: 255, neuron: 255, output: 15 };
+        let settings = ReckOnSettings::LABEL;
+        Self { wire, port, polls, state: State::NotReset, settings, sizes }
+    }
+
+    /// Pulses reset, which brings chip and bus into step, and checks that the chip answers. Memories keep what they
+    /// held; registers do not.
+    ///
+    /// # Errors
+    /// Returns an error if the port or the bus failed, or the chip does not read back what is written.
+    pub fn reset(&mut self, delay: &mut impl DelayNs) -> Outcome<Programmed<'_, D, P>, D, P> {
+        self.state = State::NotReset;
+        self.clear_pins().map_err(ChipError::Port)?;
+        delay.delay_us(RESET_US);
+        self.port.set_reset(false).map_err(ChipError::Port)?;
+        delay.delay_us(RESET_US);
+        self.state = State::Programmed;
+        self.check_step()?;
+        Ok(Programmed { chip: self })
+    }
+
+    fn clear_pins(&mut self) -> Result<(), P::Error> {
+        let port = &mut self.port;
+        port.set_reset(true)?;
+        port.set_input_request(false)?;
+        port.set_input(0, false)?;
+        port.set_output_acknowledge(false)?;
+        port.set_sample(false)?;
+        port.set_tick(false)?;
+        port.set_target_valid(false)?;
+        port.set_infer(false)
+    }
+
+    /// The chip, if its memories can be accessed.
+    ///
+    /// # Errors
+    /// Returns [`NotReset`](ChipError::NotReset) or [`NotGated`](ChipError::NotGated).
+    pub fn programmed(&mut self) -> Outcome<Programmed<'_, D, P>, D, P> {
+        match self.state {
+            State::NotReset => Err(ChipError::NotReset),
+            State::Programmed => Ok(Programmed { chip: self }),
+            State::Started | State::Sample => Err(ChipError::NotGated),
+        }
+    }
+
+    /// The chip, if it runs and is between samples.
+    ///
+    /// # Errors
+    /// Returns [`NotReset`](ChipError::NotReset), [`Gated`](ChipError::Gated), or [`Busy`](ChipError::Busy) within a
+    /// sample.
+    pub fn started(&mut self) -> Outcome<Started<'_, D, P>, D, P> {
+        match self.state {
+            State::NotReset => Err(ChipError::NotReset),
+            State::Programmed => Err(ChipError::Gated),
+            State::Started => Ok(Started { chip: self }),
+            State::Sample => Err(ChipError::Busy),
+        }
+    }
+
+    /// The chip, if it is within a sample.
+    ///
+    /// # Errors
+    /// Returns [`NotReset`](ChipError::NotReset), [`Gated`](ChipError::Gated), or
+    /// [`NotStarted`](ChipError::NotStarted) between samples.
+    pub fn sample(&mut self) -> Outcome<ReckOnSample<'_, D, P>, D, P> {
+        match self.state {
+            State::NotReset => Err(ChipError::NotReset),
+            State::Programmed => Err(ChipError::Gated),
+            State::Started => Err(ChipError::NotStarted),
+            State::Sample => Ok(ReckOnSample { chip: self }),
+        }
+    }
+
+    /// The device and the port, for other uses.
+    pub fn release(self) -> (D, P) {
+        (self.wire.device, self.port)
+    }
+
+    fn expect_programmed(&self) -> Outcome<(), D, P> {
+        match self.state {
+            State::NotReset => Err(ChipError::NotReset),
+            State::Programmed => Ok(()),
+            State::Started | State::Sample => Err(ChipError::NotGated),
+        }
+    }
+
+    /// Demands a reset after an error.
+    fn heed<T>(&mut self, result: Outcome<T, D, P>) -> Outcome<T, D, P> {
+        if result.is_err() {
+            self.state = State::NotReset;
+        }
+        result
+    }
+
+    fn heed_bus<T>(&mut self, result: Result<T, D::Error>) -> Outcome<T, D, P> {
+        self.heed(result.map_err(ChipError::Bus))
+    }
+
+    fn write(&mut self, address: Address, word: u32) -> Outcome<(), D, P> {
+        self.expect_programmed()?;
+        let result = self.wire.write(address, word);
+        self.heed_bus(result)
+    }
+
+    fn read(&mut self, address: Address) -> Outcome<u32, D, P> {
+        self.expect_programmed()?;
+        let result = self.wire.read(address);
+        self.heed_bus(result)
+    }
+
+    fn expect(&mut self, address: Address, written: u32) -> Outcome<(), D, P> {
+        let read = self.read(address)?;
+        if read == written {
+            return Ok(());
+        }
+        self.heed(Err(ChipError::ReadBack { address: address.0, written, read }))
+    }
+
+    /// Writes a word that no network uses, and reads it, twice: moved by a bit, each is another.
+    fn check_step(&mut self) -> Outcome<(), D, P> {
+        for word in [0xA53C_0F96, 0x5AC3_F069] {
+            self.write(Address::anchor(), word)?;
+            self.expect(Address::anchor(), word)?;
+        }
+        Ok(())
+    }
+
+    /// Number of reads of a pin that take this many clocks of the chip or longer.
+    fn looks(&self, clocks: u32) -> u32 {
+        self.polls.div_ceil(Self::MAX_CLOCKS).saturating_mul(clocks)
+    }
+
+    /// Reads the ready line until it is as asked, up to `looks` times.
+    fn wait_ready(&mut self, is_high: bool, looks: u32) -> Result<bool, P::Error> {
+        for _ in 0..looks {
+            if self.port.ready()? == is_high {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn send(&mut self, byte: u8, is_target: bool) -> Outcome<(), D, P> {
+        let result = self.handshake(byte, is_target);
+        self.heed(result)
+    }
+
+    fn handshake(&mut self, byte: u8, is_target: bool) -> Outcome<(), D, P> {
+        self.port.set_input(byte, is_target).map_err(ChipError::Port)?;
+        self.port.set_input_request(true).map_err(ChipError::Port)?;
+        if !self.wait_acknowledge(true).map_err(ChipError::Port)? {
+            return Err(ChipError::Handshake(Phase::Acknowledge));
+        }
+        self.port.set_input_request(false).map_err(ChipError::Port)?;
+        if self.wait_acknowledge(false).map_err(ChipError::Port)? {
+            return Ok(());
+        }
+        Err(ChipError::Handshake(Phase::Release))
+    }
+
+    fn wait_acknowledge(&mut self, is_high: bool) -> Result<bool, P::Error> {
+        for _ in 0..self.polls {
+            if self.port.input_acknowledge()? == is_high {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+}

@@ -1,0 +1,297 @@
+//! A chip whose memories can be accessed.
+
+use embedded_hal::spi::SpiDevice;
+
+use super::network::check;
+use super::wire::Address;
+use super::{
+    DescribeReckOn, OPEN, Outcome, ReckOn, ReckOnPair, ReckOnPort, ReckOnSettings, Sizes, Started,
+    State,
+};
+use crate::error::{at_most, in_range};
+use crate::{ChipError, Progress};
+
+/// A chip between reset and its run: its memories can be accessed.
+#[derive(Debug)]
+pub struct Programmed<'a, D, P> {
+    pub(super) chip: &'a mut ReckOn<D, P>,
+}
+
+/// Pairs of neurons.
+const PAIRS: u16 = 128;
+
+impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
+    /// Writes a network, sets all other pairs of neurons at rest, and reads all of it back. Calls `progress` after each
+    /// pair and each row.
+    ///
+    /// **Time:** two transfers of 8 bytes for each word: 512 for the pairs, and one for each four weights; 256 inputs,
+    /// neurons and 16 outputs take 68 608 transfers, 4.4 s at 1 MHz.
+    ///
+    /// # Errors
+    /// Returns an error if the network does not fit: then nothing is written. Also if the bus failed, or the chip
+    /// does not read back what was written: then reset it, and load again.
+    pub fn load(
+        &mut self,
+        network: &impl DescribeReckOn,
+        mut progress: impl FnMut(Progress),
+    ) -> Outcome<(), D, P> {
+        check::<D::Error, P::Error>(network)?;
+        let half = words(network);
+        let total = half.wrapping_mul(2);
+        let chip = &mut *self.chip;
+        each_word(
+            network,
+            |address, word| chip.write(address, word),
+            |done| progress(Progress { done, total }),
+        )?;
+        chip.check_step()?;
+        each_word(
+            network,
+            |address, word| chip.expect(address, word),
+            |done| progress(Progress { done: half.wrapping_add(done), total }),
+        )?;
+        chip.check_step()?;
+        chip.sizes = sizes(network);
+        let shared = network.shared();
+        for (register, shift) in (12..).zip(shared.shifts) {
+            self.set_register(register, shift.into())?;
+        }
+        self.set_register(8, shared.resets_to_zero.into())?;
+        self.set_register(69, shared.keep.into())?;
+        let Sizes { input, neuron, output } = self.chip.sizes;
+        for (register, last) in (94..).zip([input, neuron, output]) {
+            self.set_register(register, last.into())?;
+        }
+        for register in 0..4 {
+            let pairs = (0..32).filter(|&bit| pair(network, register * 32 + bit).keep >> 15 == 1);
+            let bits = pairs.fold(0_u32, |bits, bit| bits | 1 << bit);
+            self.set_register(register.wrapping_add(65), bits)?;
+        }
+        Ok(())
+    }
+
+    /// Compares the chip's memories with a network, as to weights that may have learnt.
+    ///
+    /// # Errors
+    /// Returns an error if the network does not fit or the bus failed, and [`ReadBack`](ChipError::ReadBack) at the
+    /// first difference. Then reset the chip.
+    pub fn verify(&mut self, network: &impl DescribeReckOn) -> Outcome<(), D, P> {
+        check::<D::Error, P::Error>(network)?;
+        let chip = &mut *self.chip;
+        each_word(
+            network,
+            // The first quarters hold what changes as the network runs.
+            |address, word| match address.0 >> 28 {
+                1 if address.0 & 3 != 3 => Ok(()),
+                1 => match chip.read(address)? {
+                    read if (read ^ word) >> 4 == 0 => Ok(()),
+                    read => {
+                        let error = ChipError::ReadBack { address: address.0, written: word, read };
+                        chip.heed(Err(error))
+                    }
+                },
+                _ => chip.expect(address, word),
+            },
+            |_| (),
+        )?;
+        chip.check_step()
+    }
+
+    /// The weight from an input to a neuron, as learning may have moved it.
+    ///
+    /// # Errors
+    /// Returns an error if the bus failed or is out of step: then reset the chip.
+    pub fn input_weight(&mut self, input: u8, neuron: u8) -> Outcome<i8, D, P> {
+        self.weight(Address::input(input.into()), neuron)
+    }
+
+    /// The weight from a neuron to a neuron.
+    ///
+    /// # Errors
+    /// See [`input_weight`](Self::input_weight).
+    pub fn recurrent_weight(&mut self, from: u8, to: u8) -> Outcome<i8, D, P> {
+        self.weight(Address::recurrent(from.into()), to)
+    }
+
+    /// The weight from a neuron to an output.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such output; see [`input_weight`](Self::input_weight).
+    pub fn output_weight(&mut self, neuron: u8, output: u8) -> Outcome<i8, D, P> {
+        at_most("output", output.into(), 15)?;
+        self.weight(Address::output(neuron.into()), output)
+    }
+
+    fn weight(&mut self, row: Address, at: u8) -> Outcome<i8, D, P> {
+        let address = row.next(u16::from(at >> 2));
+        let word = self.chip.read(address)?;
+        self.chip.check_step()?;
+        self.chip.expect(address, word)?;
+        // A bus out of step may read 0, as the weight is, and write.
+        self.chip.check_step()?;
+        Ok((word >> (8 * u32::from(at & 3))) as i8)
+    }
+
+    /// Writes a register, for what [`ReckOnSettings`] and the network do not hold, and checks that chip and bus are still
+    /// in step. Register 0 opens the memories and is the driver's.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such register; or the bus failed or is out of step: then reset the chip.
+    pub fn set_register(&mut self, register: u16, value: u32) -> Outcome<(), D, P> {
+        in_range("register", register.into(), 1, 104)?;
+        self.configure(register, value)
+    }
+
+    fn configure(&mut self, register: u16, value: u32) -> Outcome<(), D, P> {
+        self.chip.expect_programmed()?;
+        let result = self.chip.wire.configure(register, value);
+        self.chip.heed_bus(result)?;
+        self.chip.check_step()
+    }
+
+    /// Writes the registers and lets the chip run. That the memories have closed shows in a word that then reads as
+    /// another did.
+    ///
+    /// # Errors
+    /// Returns an error if a value is out of its range: the chip is as it was. Also if the bus failed or is out of
+    /// step, or the memories are still open: then reset the chip.
+    pub fn run(mut self, settings: &ReckOnSettings) -> Outcome<Started<'a, D, P>, D, P> {
+        check_settings::<D::Error, P::Error>(settings)?;
+        let answers = settings.answers;
+        // A step that comes too early stops the chip, the ready line says ready, and MISO is that of SPI alone.
+        // An answer in each step proves the step, also where the ready line is read too seldom to be seen low.
+        let fixed = [(3, 0), (10, 0), (11, 1), (23, 0), (30, 1)];
+        let chosen = [
+            (25, u32::from(settings.task == super::ReckOnTask::Regression)),
+            (26, u32::from(settings.task == super::ReckOnTask::Classification)),
+            (31, u32::from(answers.is_label())),
+        ];
+        for (register, value) in fixed.into_iter().chain(chosen) {
+            self.configure(register, value)?;
+        }
+        let learns = settings.learning.map_or([false; 3], |learning| learning.learns);
+        if let Some(learning) = &settings.learning {
+            self.learn(learning)?;
+        }
+        let learns = learns.into_iter().rev().fold(0, |bits, is| bits << 1 | u32::from(is));
+        self.configure(9, learns)?;
+
+        let chip = self.chip;
+        let anchor = Address::anchor();
+        let open = chip.read(anchor)?;
+        let result = chip.wire.configure(OPEN, 0);
+        chip.heed_bus(result)?;
+        // Closed, the chip takes no write and reads what it read last.
+        let result = chip.wire.write(anchor, !open).and_then(|()| chip.wire.read(anchor));
+        let read = chip.heed_bus(result)?;
+        if read != open {
+            return chip.heed(Err(ChipError::NotStarted));
+        }
+        chip.settings = *settings;
+        chip.state = State::Started;
+        Ok(Started { chip })
+    }
+
+    fn learn(&mut self, learning: &super::ReckOnLearning) -> Outcome<(), D, P> {
+        let traces = (15..18).zip(learning.traces.map(u32::from));
+        let thresholds = (70..74).zip(learning.thresholds.map(|at| u32::from(at as u16)));
+        let slopes = (74..79).zip(learning.slopes.map(|slope| u32::from(slope as u8 & 31)));
+        let others = [(18, learning.signal.into()), (27, learning.is_linear.into())];
+        let all = traces.chain(thresholds).chain(slopes).chain(others);
+        for (register, value) in all {
+            self.configure(register, value)?;
+        }
+        let rates = learning.rates.into_iter().flat_map(|(right, left)| [right, left]);
+        for (register, rate) in (79..85).zip(rates) {
+            self.configure(register, rate.into())?;
+        }
+        Ok(())
+    }
+}
+
+fn check_settings<B, X>(settings: &ReckOnSettings) -> Result<(), ChipError<B, X>> {
+    let is_regression = settings.task == super::ReckOnTask::Regression;
+    at_most("label of a regression", (settings.answers.is_label() && is_regression).into(), 0)?;
+    let Some(learning) = &settings.learning else { return Ok(()) };
+    at_most("signal", learning.signal.into(), 15)?;
+    for trace in learning.traces {
+        at_most("trace", trace.into(), 7)?;
+    }
+    for slope in learning.slopes {
+        in_range("slope", slope.into(), -16, 15)?;
+    }
+    for (right, left) in learning.rates {
+        at_most("rate", right.into(), 31)?;
+        at_most("rate", left.into(), 31)?;
+    }
+    Ok(())
+}
+
+fn sizes(network: &impl DescribeReckOn) -> Sizes {
+    let last = |count: u16| count.saturating_sub(1) as u8;
+    Sizes {
+        input: last(network.inputs()),
+        // The chip works on pairs: it would leave the first of an odd pair out.
+        neuron: last(network.neurons()) | 1,
+        output: last(network.outputs()),
+    }
+}
+
+fn pair(network: &impl DescribeReckOn, pair: u16) -> ReckOnPair {
+    if pair < network.neurons().div_ceil(2) { network.pair(pair) } else { ReckOnPair::REST }
+}
+
+/// How many words [`each_word`] visits.
+fn words(network: &impl DescribeReckOn) -> u32 {
+    let rows = u32::from(network.inputs()) + 256;
+    let row = u32::from(network.neurons().div_ceil(4));
+    let outputs = 256 * u32::from(network.outputs().div_ceil(4));
+    // Below 2³¹ for any counts.
+    rows.wrapping_mul(row).wrapping_add(outputs).wrapping_add(4 * u32::from(PAIRS))
+}
+
+/// Visits every word of the chip's memories that the network needs, and its value.
+fn each_word<B, X>(
+    network: &impl DescribeReckOn,
+    mut visit: impl FnMut(Address, u32) -> Result<(), ChipError<B, X>>,
+    mut progress: impl FnMut(u32),
+) -> Result<(), ChipError<B, X>> {
+    let mut done = 0_u32;
+    for at in 0..PAIRS {
+        let ReckOnPair { keep, threshold } = pair(network, at);
+        let (keep, threshold) = (u32::from(keep & 0xFFF), u32::from(threshold as u16));
+        for (quarter, word) in (0..).zip([0, 0, 0, keep << 20 | threshold << 4]) {
+            visit(Address::pair(at, quarter), word)?;
+            done = done.wrapping_add(1);
+        }
+        progress(done);
+    }
+    let neurons = network.neurons();
+    let mut row = |row: Address, length: u16, weight: &dyn Fn(u16) -> i8| {
+        for word in 0..length.div_ceil(4) {
+            let weights = [0, 1, 2, 3].map(|at| {
+                let at = word.wrapping_mul(4).wrapping_add(at);
+                if at < length { weight(at) as u8 } else { 0 }
+            });
+            visit(row.next(word), u32::from_le_bytes(weights))?;
+            done = done.wrapping_add(1);
+        }
+        progress(done);
+        Ok::<(), ChipError<B, X>>(())
+    };
+    for input in 0..network.inputs() {
+        row(Address::input(input), neurons, &|neuron| network.input_weight(input, neuron))?;
+    }
+    // All rows: a neuron beyond the network does not fire, but nothing is left to that.
+    for from in 0..256 {
+        let is_own = from < neurons;
+        let weight = |to| if is_own { network.recurrent_weight(from, to) } else { 0 };
+        row(Address::recurrent(from), neurons, &weight)?;
+    }
+    for from in 0..256 {
+        let is_own = from < neurons;
+        let weight = |output| if is_own { network.output_weight(from, output) } else { 0 };
+        row(Address::output(from), network.outputs(), &weight)?;
+    }
+    Ok(())
+}

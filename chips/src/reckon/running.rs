@@ -1,0 +1,257 @@
+//! A chip that runs: samples of time steps.
+
+use embedded_hal::spi::SpiDevice;
+
+use super::{OPEN, Outcome, Programmed, ReckOn, ReckOnAnswers, ReckOnPort, ReckOnTask, State};
+use crate::error::at_most;
+use crate::{ChipError, Phase};
+
+/// A chip that runs, between samples.
+#[derive(Debug)]
+pub struct Started<'a, D, P> {
+    pub(super) chip: &'a mut ReckOn<D, P>,
+}
+
+/// A chip within a sample: it takes inputs and time steps.
+#[derive(Debug)]
+pub struct ReckOnSample<'a, D, P> {
+    pub(super) chip: &'a mut ReckOn<D, P>,
+}
+
+/// A time step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ReckOnStep<'a> {
+    /// Whether the highest output of this step counts for the label.
+    pub counts: bool,
+    /// The target of this step; `None` if it does not learn.
+    pub target: Option<ReckOnTarget<'a>>,
+}
+
+/// The target of a step that learns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum ReckOnTarget<'a> {
+    /// The output that should be the highest, told once a sample.
+    Label(u8),
+    /// A potential for each output.
+    Potentials(&'a [i16]),
+}
+
+/// An answer of the chip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum ReckOnAnswer {
+    /// The output that was the highest in the most steps that count; the first of several.
+    Label(u8),
+    /// The outputs' potentials, and 0 beyond the network.
+    Potentials([i16; 16]),
+}
+
+impl<'a, D: SpiDevice, P: ReckOnPort> Started<'a, D, P> {
+    /// Begins a sample with a first tick: all potentials are 0. If the chip does not take the tick, the first
+    /// [`step`](ReckOnSample::step) or [`end`](ReckOnSample::end) is an error.
+    ///
+    /// # Errors
+    /// Returns an error if the chip is not ready, or the port failed: then reset the chip.
+    pub fn begin(self) -> Outcome<ReckOnSample<'a, D, P>, D, P> {
+        let chip = self.chip;
+        let result = begin(chip);
+        chip.heed(result)?;
+        chip.state = State::Sample;
+        Ok(ReckOnSample { chip })
+    }
+
+    /// Opens the memories again, as to read what was learnt.
+    ///
+    /// # Errors
+    /// Returns an error if the bus failed or is out of step: then reset the chip.
+    pub fn program(self) -> Outcome<Programmed<'a, D, P>, D, P> {
+        let chip = self.chip;
+        let result = chip.wire.configure(OPEN, 1);
+        chip.heed_bus(result)?;
+        chip.state = State::Programmed;
+        chip.check_step()?;
+        Ok(Programmed { chip })
+    }
+}
+
+impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
+    /// Sends an input's spike, which acts after the next tick. Sent twice within a step, it counts once.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such input. Also if the chip does not answer, or the port failed: then reset
+    /// the chip.
+    pub fn send(&mut self, input: u8) -> Outcome<(), D, P> {
+        at_most("input", input.into(), self.chip.sizes.input.into())?;
+        self.chip.send(input, false)
+    }
+
+    /// Ends a time step and begins the next: waits until the chip is ready, ticks, takes its answer, which proves the
+    /// step, and returns it if [one is asked for in each step](ReckOnAnswers::PotentialsEachStep).
+    ///
+    /// # Errors
+    /// Returns an error if the target is not one of the network or of the settings: nothing was sent. Also if the
+    /// chip does not finish its step, does not take the tick, or the port failed: then reset the chip.
+    pub fn step(&mut self, step: ReckOnStep<'_>) -> Outcome<Option<ReckOnAnswer>, D, P> {
+        self.check(&step)?;
+        let result = self.try_step(step);
+        let answer = self.chip.heed(result)?;
+        Ok(self.chip.settings.answers.is_each_step().then_some(answer))
+    }
+
+    /// Ends the sample with a last tick, and returns the chip's answer. Then all potentials are 0.
+    ///
+    /// # Errors
+    /// Returns an error if the chip does not finish, or the port failed: then reset the chip.
+    pub fn end(mut self) -> Outcome<(ReckOnAnswer, Started<'a, D, P>), D, P> {
+        let result = self.try_end();
+        let answer = self.chip.heed(result)?;
+        self.chip.state = State::Started;
+        Ok((answer, Started { chip: self.chip }))
+    }
+
+    fn check(&self, step: &ReckOnStep<'_>) -> Outcome<(), D, P> {
+        let outputs = i64::from(self.chip.sizes.output) + 1;
+        let wrong =
+            |what, value| Err(ChipError::OutOfRange { what, value, min: outputs, max: outputs });
+        match (step.target, self.chip.settings.task) {
+            (None, _) => Ok(()),
+            (Some(_), _) if self.chip.settings.learning.is_none() => wrong("learning", 0),
+            (Some(ReckOnTarget::Label(label)), ReckOnTask::Classification) => {
+                at_most("label", label.into(), self.chip.sizes.output.into())
+            }
+            (Some(ReckOnTarget::Potentials(targets)), ReckOnTask::Regression)
+                if targets.len() as i64 == outputs =>
+            {
+                Ok(())
+            }
+            (Some(ReckOnTarget::Potentials(targets)), _) => wrong("targets", targets.len() as i64),
+            (Some(ReckOnTarget::Label(_)), ReckOnTask::Regression) => wrong("targets", 1),
+        }
+    }
+
+    fn try_step(&mut self, step: ReckOnStep<'_>) -> Outcome<ReckOnAnswer, D, P> {
+        let chip = &mut *self.chip;
+        chip.until_ready()?;
+        chip.port.set_infer(step.counts).map_err(ChipError::Port)?;
+        chip.port.set_target_valid(step.target.is_some()).map_err(ChipError::Port)?;
+        let last = match step.target {
+            Some(ReckOnTarget::Potentials(targets)) => targets.split_last(),
+            Some(ReckOnTarget::Label(label)) => {
+                chip.handshake(label, true)?;
+                None
+            }
+            None => None,
+        };
+        let Some((last, targets)) = last else {
+            chip.tick()?;
+            return chip.finish();
+        };
+        for byte in targets.iter().flat_map(|target| target.to_le_bytes()) {
+            chip.handshake(byte, true)?;
+        }
+        let [low, high] = last.to_le_bytes();
+        chip.handshake(low, true)?;
+        chip.tick()?;
+        // The last byte only counts once the neurons have leaked, and no line shows when they have.
+        for _ in 0..chip.looks(STEP_CLOCKS) {
+            chip.port.ready().map_err(ChipError::Port)?;
+        }
+        chip.handshake(high, true)?;
+        chip.finish()
+    }
+
+    fn try_end(&mut self) -> Outcome<ReckOnAnswer, D, P> {
+        let chip = &mut *self.chip;
+        chip.until_ready()?;
+        chip.port.set_sample(false).map_err(ChipError::Port)?;
+        chip.port.set_target_valid(false).map_err(ChipError::Port)?;
+        chip.tick()?;
+        chip.finish()
+    }
+}
+
+/// Clocks from a tick until all neurons have leaked, with some to spare.
+const STEP_CLOCKS: u32 = 280;
+
+/// Clocks from a tick until the ready line has fallen, with some to spare.
+const TICK_CLOCKS: u32 = 16;
+
+fn begin<D: SpiDevice, P: ReckOnPort>(chip: &mut ReckOn<D, P>) -> Outcome<(), D, P> {
+    chip.port.set_infer(false).map_err(ChipError::Port)?;
+    chip.port.set_target_valid(false).map_err(ChipError::Port)?;
+    chip.port.set_sample(true).map_err(ChipError::Port)?;
+    chip.until_ready()?;
+    chip.port.set_tick(true).map_err(ChipError::Port)?;
+    // The line is low for as many clocks as there are inputs or neurons, and pins that are read seldom miss that: an
+    // answer to the first step proves the tick.
+    chip.wait_ready(false, chip.looks(TICK_CLOCKS)).map_err(ChipError::Port)?;
+    chip.port.set_tick(false).map_err(ChipError::Port)?;
+    chip.until_ready()
+}
+
+impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
+    fn until_ready(&mut self) -> Outcome<(), D, P> {
+        let is_ready = self.wait_ready(true, self.polls).map_err(ChipError::Port)?;
+        if is_ready { Ok(()) } else { Err(ChipError::Unfinished) }
+    }
+
+    /// A tick that an answer follows: the line stays low until that is taken.
+    fn tick(&mut self) -> Outcome<(), D, P> {
+        self.port.set_tick(true).map_err(ChipError::Port)?;
+        let is_taken = self.wait_ready(false, self.polls).map_err(ChipError::Port)?;
+        self.port.set_tick(false).map_err(ChipError::Port)?;
+        if is_taken { Ok(()) } else { Err(ChipError::Handshake(Phase::Acknowledge)) }
+    }
+
+    /// Waits until the step is done, and takes the answer's bytes meanwhile.
+    fn finish(&mut self) -> Outcome<ReckOnAnswer, D, P> {
+        let mut bytes = [0; 32];
+        let mut taken = 0_usize;
+        for _ in 0..self.polls {
+            if self.port.output_request().map_err(ChipError::Port)? {
+                let byte = self.take()?;
+                // More than the chip has outputs are refused below.
+                if let Some(place) = bytes.get_mut(taken) {
+                    *place = byte;
+                }
+                taken = taken.wrapping_add(1);
+            } else if self.port.ready().map_err(ChipError::Port)? {
+                return self.answer(bytes, taken);
+            }
+        }
+        Err(ChipError::Unfinished)
+    }
+
+    fn take(&mut self) -> Outcome<u8, D, P> {
+        let byte = self.port.output().map_err(ChipError::Port)?;
+        self.port.set_output_acknowledge(true).map_err(ChipError::Port)?;
+        for _ in 0..self.polls {
+            if !self.port.output_request().map_err(ChipError::Port)? {
+                self.port.set_output_acknowledge(false).map_err(ChipError::Port)?;
+                return Ok(byte);
+            }
+        }
+        Err(ChipError::Handshake(Phase::Release))
+    }
+
+    fn answer(&self, bytes: [u8; 32], taken: usize) -> Outcome<ReckOnAnswer, D, P> {
+        let [first, ..] = bytes;
+        let is_label = self.settings.answers == ReckOnAnswers::Label;
+        let whole = 2 * (usize::from(self.sizes.output) + 1);
+        match taken {
+            1 if is_label => Ok(ReckOnAnswer::Label(first)),
+            _ if taken == whole && !is_label => {
+                let mut potentials = [0; 16];
+                let (pairs, _) = bytes.as_chunks();
+                for (potential, &bytes) in potentials.iter_mut().zip(pairs) {
+                    *potential = i16::from_le_bytes(bytes);
+                }
+                Ok(ReckOnAnswer::Potentials(potentials))
+            }
+            // None at all: the tick began the sample, as the chip did not take the one before.
+            _ => Err(ChipError::Unfinished),
+        }
+    }
+}

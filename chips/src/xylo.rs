@@ -1,0 +1,218 @@
+//! `SynSense` Xylo: spike counts of 16 channels for each time step, in two registers.
+
+use super::ChipError;
+
+/// Access to the chip's registers, which the user supplies: the bytes on its bus are not public.
+pub trait Registers {
+    /// The error of the bus.
+    type Error;
+
+    /// Writes a register.
+    ///
+    /// # Errors
+    /// Returns an error if the bus failed.
+    fn write(&mut self, address: u16, value: u32) -> Result<(), Self::Error>;
+
+    /// Reads a register.
+    ///
+    /// # Errors
+    /// Returns an error if the bus failed.
+    fn read(&mut self, address: u16) -> Result<u32, Self::Error>;
+}
+
+/// Packs counts into two register values: channel `k` in nibble `k`, saturating at 15.
+///
+/// ```
+/// use spikewire_chips::pack_counts;
+///
+/// let mut counts = [0; 16];
+/// (counts[0], counts[7], counts[8], counts[15]) = (1, 2, 3, 200);
+/// assert_eq!(pack_counts(counts), [0x2000_0001, 0xF000_0003]);
+/// ```
+pub fn pack_counts(counts: [u8; 16]) -> [u32; 2] {
+    let nibbles = counts.into_iter().rev();
+    let packed = nibbles.fold(0_u64, |packed, count| packed << 4 | u64::from(count.min(15)));
+    [packed as u32, (packed >> 32) as u32]
+}
+
+/// One of the two banks of input registers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum InputBank {
+    /// The first bank.
+    First,
+    /// The second bank.
+    Second,
+}
+
+/// The registers of a member of the Xylo family.
+///
+/// Checked only against the sources of `rockpool`: `syns65302/reg.py` for Audio 3, `syns61201/xa2_devkit_utils.py` for
+/// A2. Both poll for the end of a time step as [`step`](Xylo::step) does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct XyloMap {
+    /// The first register of the first input bank; the second bank begins two registers later.
+    pub input: u16,
+    /// The register that triggers a time step; write-only.
+    pub control: u16,
+    /// The only value to write there; bit 0 would be the reset.
+    pub trigger: u32,
+    /// The register that shows whether the time step is done.
+    pub status: u16,
+    /// The mask of the bit of `status` that shows it.
+    pub done: u32,
+    /// The register with the outputs that fired.
+    pub outputs: u16,
+    /// The mask of the bits of `outputs` in use: bit `i` is output `i`.
+    pub output_bits: u32,
+    /// The register that shows which input bank the next time step reads, and the mask of its bit: 1 for the second. `None`
+    /// where the public sources do not tell the bit.
+    pub next_bank: Option<(u16, u32)>,
+}
+
+impl XyloMap {
+    /// Xylo Audio 3: 32 outputs.
+    pub const AUDIO_3: Self = Self {
+        input: 0x149,
+        control: 0x10,
+        trigger: 1 << 4,
+        status: 0x153,
+        done: 1,
+        outputs: 0x152,
+        output_bits: u32::MAX,
+        next_bank: Some((0x171, 1 << 16)),
+    };
+
+    /// Xylo Audio A2: 8 outputs. The word that triggers a time step has to come from the vendor:
+    /// `rockpool` leaves that to `samna`, which is not open.
+    pub const fn a2(trigger: u32) -> Self {
+        Self {
+            input: 0x11,
+            control: 0x0E,
+            trigger,
+            status: 0x15,
+            done: 1 << 16,
+            outputs: 0x15,
+            output_bits: 0xFF,
+            next_bank: None,
+        }
+    }
+}
+
+/// Xylo Audio 3 and A2 in manual mode: set the counts, run a time step, get the outputs that fired.
+///
+/// Count the events of a time step with [`Bins<16>`](spikewire::Bins), with a limit of 15 so that events beyond it are
+/// counted as saturated.
+///
+/// - **Banks:** a step reads one of two banks of counts. [`set_next_input`](Self::set_next_input) asks the chip which.
+/// - **Order:** the counts, then the step. While a step is under way no counts are taken, and [`step`](Self::step) goes on
+///   waiting for that one, without a second trigger.
+/// - **Counts stay** in the chip: a step without new ones has those of the bank again, until they are
+///   [cleared](Self::clear_input), as the vendor's programs do.
+/// - **Faults:** the chip confirms nothing that is written, and the public sources do not say which registers can be read
+///   back. So the [`Registers`] that you supply must report every write that fails: a lost write leaves the old counts,
+///   a lost trigger the outputs of the step before.
+///
+/// Checked against the vendor's sources alone, never against a chip.
+///
+/// Source: register names and layouts of synsense/rockpool.
+#[derive(Debug)]
+pub struct Xylo<R> {
+    registers: R,
+    map: XyloMap,
+    polls: u32,
+    is_under_way: bool,
+}
+
+impl<R: Registers> Xylo<R> {
+    /// A chip with these registers. [`step`](Self::step) reads the status up to `polls` times.
+    pub const fn new(registers: R, map: XyloMap, polls: u32) -> Self {
+        Self { registers, map, polls, is_under_way: false }
+    }
+
+    /// Sets the counts of a time step.
+    ///
+    /// # Errors
+    /// Returns an error if the bus failed: then set them again. Returns [`Unfinished`](ChipError::Unfinished) if a
+    /// step is under way: nothing was written.
+    pub fn set_input(
+        &mut self,
+        bank: InputBank,
+        counts: [u8; 16],
+    ) -> Result<(), ChipError<R::Error>> {
+        let first = match bank {
+            InputBank::First => self.map.input,
+            InputBank::Second => self.map.input.wrapping_add(2),
+        };
+        if self.is_under_way {
+            return Err(ChipError::Unfinished);
+        }
+        let [low, high] = pack_counts(counts);
+        self.registers.write(first, low).map_err(ChipError::Bus)?;
+        self.registers.write(first.wrapping_add(1), high).map_err(ChipError::Bus)
+    }
+
+    /// Reads which bank of counts the next time step reads; `None` if the map does not tell where that stands.
+    ///
+    /// # Errors
+    /// Returns an error if the bus failed, and [`Unfinished`](ChipError::Unfinished) if a step is under way.
+    pub fn next_bank(&mut self) -> Result<Option<InputBank>, ChipError<R::Error>> {
+        if self.is_under_way {
+            return Err(ChipError::Unfinished);
+        }
+        let Some((register, mask)) = self.map.next_bank else { return Ok(None) };
+        let is_second = self.registers.read(register).map_err(ChipError::Bus)? & mask != 0;
+        Ok(Some(if is_second { InputBank::Second } else { InputBank::First }))
+    }
+
+    /// Sets the counts that the next time step reads: in its bank, or in both if the map does not tell which that is.
+    ///
+    /// # Errors
+    /// See [`set_input`](Self::set_input).
+    pub fn set_next_input(&mut self, counts: [u8; 16]) -> Result<(), ChipError<R::Error>> {
+        if let Some(bank) = self.next_bank()? {
+            return self.set_input(bank, counts);
+        }
+        self.set_input(InputBank::First, counts)?;
+        self.set_input(InputBank::Second, counts)
+    }
+
+    /// Sets the counts of both banks to 0.
+    ///
+    /// # Errors
+    /// See [`set_input`](Self::set_input).
+    pub fn clear_input(&mut self) -> Result<(), ChipError<R::Error>> {
+        self.set_input(InputBank::First, [0; 16])?;
+        self.set_input(InputBank::Second, [0; 16])
+    }
+
+    /// Runs a time step and returns the outputs that fired: bit `i` is output `i`.
+    ///
+    /// # Errors
+    /// Returns [`Unfinished`](ChipError::Unfinished) if the step is not done yet; call this again, which waits for
+    /// it. Returns another error if the bus failed: call this again. If it failed after the trigger, nothing is lost;
+    /// if it failed at the trigger, the step may have begun, and the next call triggers again.
+    pub fn step(&mut self) -> Result<u32, ChipError<R::Error>> {
+        let XyloMap { control, trigger, status, done, outputs, output_bits, .. } = self.map;
+        if !self.is_under_way {
+            self.registers.write(control, trigger).map_err(ChipError::Bus)?;
+            self.is_under_way = true;
+        }
+        for _ in 0..self.polls {
+            if self.registers.read(status).map_err(ChipError::Bus)? & done != 0 {
+                let fired = self.registers.read(outputs).map_err(ChipError::Bus)?;
+                self.is_under_way = false;
+                return Ok(fired & output_bits);
+            }
+        }
+        Err(ChipError::Unfinished)
+    }
+
+    /// The registers, for other uses.
+    pub fn release(self) -> R {
+        self.registers
+    }
+}

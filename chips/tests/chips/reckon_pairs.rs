@@ -1,0 +1,196 @@
+//! A lost and a doubled SPI clock within one access to `ReckOn`, which bring chip and bus back into step.
+
+use embedded_hal::spi::ErrorKind;
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
+use silicon::board::ClockFault::{self, Doubled, Lost};
+use silicon::reckon::{Board, Port, ReckOn as Model, Spi};
+use spikewire_chips::{ChipError, ReckOn, ReckOnNetwork, ReckOnPair, ReckOnSettings, ReckOnShared};
+
+type Chip = ReckOn<Spi, Port>;
+/// What of a chip is compared, and what the driver does before.
+type Look = (fn(&Model) -> (Vec<u32>, Vec<u128>), fn(&mut Chip) -> Outcome<()>);
+type Outcome<T> = Result<T, ChipError<ErrorKind, u64>>;
+
+/// Clocks of a frame.
+const FRAME: u64 = 64;
+
+/// Registers and memories, but for the word with which the driver checks its step.
+fn all(chip: &Model) -> (Vec<u32>, Vec<u128>) {
+    let registers = (0..=104).map(|register| chip.register_value(register)).collect();
+    let outputs = chip.output_weights.iter().enumerate().filter(|(at, _)| *at != 0x1AA);
+    let weights = chip.input_weights.iter().chain(chip.recurrent_weights.iter());
+    let memories = chip.neurons.iter().copied().chain(weights);
+    let potentials = chip.output_potentials().iter().map(|&potential| potential as u128);
+    let memories = memories.chain(potentials);
+    (registers, memories.chain(outputs.map(|(_, word)| word)).collect())
+}
+
+/// Of the registers all, of the memories only what `verify` reads of [`NETWORK`]: of a pair of neurons its last quarter, and
+/// of a row the first word, which two neurons and an output take. Potentials are not among it.
+fn of_network(chip: &Model) -> (Vec<u32>, Vec<u128>) {
+    let word = |row: u128| row & u128::from(u32::MAX);
+    let rows = (0..256).map(|neuron| word(chip.recurrent_weights[neuron << 4]));
+    let outputs = (0..256).map(|neuron| word(chip.output_weights[neuron]));
+    let parameters = chip.neurons.iter().map(|pair| pair >> 100);
+    let own = parameters.chain([word(chip.input_weights[0])]);
+    (all(chip).0, own.chain(rows).chain(outputs).collect())
+}
+
+/// What an access does to a chip whose memories hold `words`, with these faults: its result, all that the chip then holds,
+/// and its clocks.
+fn with<T>(
+    words: u128,
+    faults: &[(u64, ClockFault)],
+    (view, confirm): Look,
+    access: impl FnOnce(&mut Chip) -> Outcome<T>,
+) -> (Outcome<T>, (Vec<u32>, Vec<u128>), u64) {
+    let board = Board::new(10, 1);
+    let mut chip = ReckOn::new(board.spi(), board.port(), 1_000);
+    chip.reset(&mut board.clone()).unwrap();
+    let start = {
+        let mut pins = board.pins();
+        pins.chip.neurons.fill(words);
+        for row in [0, 1, 2, 3, 5, 10, 21, 42].map(|row| row << 4) {
+            pins.chip.input_weights.set(row, words);
+            pins.chip.recurrent_weights.set(row, !words);
+            pins.chip.output_weights.set(row >> 4, words.rotate_left(1));
+        }
+        pins.spi_clocks
+    };
+    board.pins().clock_faults.extend(faults.iter().map(|&(at, fault)| (start + at, fault)));
+    let result = access(&mut chip);
+    let clocks = board.pins().spi_clocks - start;
+    let result = result.and_then(|told| confirm(&mut chip).map(|()| told));
+    let mut pins = board.pins();
+    pins.chip.run(20);
+    (result, view(&pins.chip), clocks)
+}
+
+const NETWORK: ReckOnNetwork<1, 2, 1> = ReckOnNetwork {
+    pairs: &[ReckOnPair { keep: 30_000, threshold: 300 }],
+    inputs: [[1, 2]],
+    recurrent: &[],
+    outputs: [[3], [4]],
+    shared: ReckOnShared { shifts: [0; 3], keep: 110, resets_to_zero: true },
+};
+
+/// Words that a load of it writes: 128 pairs of four, rows of one input, of all neurons and to outputs.
+const LOADED: u64 = 512 + 1 + 256 + 256;
+
+/// All of it, at once.
+const AT_ONCE: Look = (all, |_| Ok(()));
+/// What a network needs, once it is read anew: a read that became a write of it is seen then.
+const VERIFIED: Look = (of_network, |chip| chip.programmed()?.verify(&NETWORK));
+
+const WORDS: [u128; 3] = [0, u128::MAX, 0x8765_4321_0FED_CBA9_A5A5_3C3C_1234_5678];
+
+/// Where two chips differ, and the second's word.
+fn differences(a: &(Vec<u32>, Vec<u128>), b: &(Vec<u32>, Vec<u128>)) -> Vec<(usize, u128, u128)> {
+    let words = |of: &(Vec<u32>, Vec<u128>)| {
+        of.0.iter().map(|&word| u128::from(word)).chain(of.1.iter().copied()).collect::<Vec<_>>()
+    };
+    let both = words(a).into_iter().zip(words(b)).enumerate();
+    both.filter(|(_, (a, b))| a != b).map(|(at, (a, b))| (at, a, b)).collect()
+}
+
+/// Tries pairs of faults in an access but those of which one is in a register's own frame, of which `is_register` says so,
+/// or in the one before. So many at random whose second fault comes within `reach` clocks, and every pair within the first frame if `all_in_first`.
+fn pairs<T: PartialEq + std::fmt::Debug>(
+    (some, all_in_first): (usize, bool),
+    reach: u64,
+    look: Look,
+    is_register: impl Fn(u64) -> bool,
+    access: impl Fn(&mut Chip) -> Outcome<T>,
+) -> usize {
+    let mut random = Pcg32::seed_from_u64(7);
+    let mut tried = 0;
+    for words in WORDS {
+        let (result, right, clocks) = with(words, &[], look, &access);
+        let result = result.unwrap();
+        let mut pair = |first: u64, second: u64| {
+            // A header whose count of words moves by a bit takes the next frame along.
+            let is_own = [first, second].into_iter().any(|at| {
+                [at.saturating_sub(1), at, at + 1, at + FRAME]
+                    .iter()
+                    .any(|at| is_register(at / FRAME))
+            });
+            if first == second || is_own {
+                return;
+            }
+            for faults in [[(first, Lost), (second, Doubled)], [(first, Doubled), (second, Lost)]] {
+                tried += 1;
+                if let (Ok(told), held, _) = with(words, &faults, look, &access) {
+                    assert_eq!(told, result, "{words:x}: {faults:?}");
+                    let differ = differences(&held, &right);
+                    assert!(differ.is_empty(), "{words:x}: {faults:?}: {differ:x?}");
+                }
+            }
+        };
+        for _ in 0..some {
+            let first = u64::from(random.next_u32()) % clocks;
+            pair(first, (first + u64::from(random.next_u32()) % reach).min(clocks - 1));
+        }
+        for first in 0..if all_in_first { FRAME } else { 0 } {
+            (first + 1..FRAME).for_each(|second| pair(first, second));
+        }
+    }
+    tried
+}
+
+fn accesses((some, all_in_first): (usize, bool)) -> usize {
+    let (none, tries) = (|_| false, (some, all_in_first));
+    pairs(tries, 400, AT_ONCE, none, |chip| chip.programmed()?.input_weight(5, 2))
+        + pairs(tries, 400, AT_ONCE, none, |chip| chip.programmed()?.recurrent_weight(21, 3))
+        + pairs(tries, 400, AT_ONCE, none, |chip| chip.programmed()?.output_weight(42, 1))
+        // A register's frame, then four that check the step.
+        + pairs(tries, 400, AT_ONCE, |frame| frame == 0, |chip| chip.programmed()?.set_register(69, 110))
+        // The same for each register; then the memories close.
+        + pairs(
+            (some / 3, false),
+            2 * FRAME,
+            AT_ONCE,
+            |frame| frame % 5 == 0,
+            |chip| chip.programmed()?.run(&ReckOnSettings::POTENTIALS).map(drop),
+        )
+        // Written, checked, read, checked; then registers.
+        + pairs(
+            (some / 60, false),
+            FRAME,
+            VERIFIED,
+            |frame| frame.checked_sub(2 * LOADED + 8).is_some_and(|frame| frame % 5 == 0),
+            |chip| chip.programmed()?.load(&NETWORK, |_| ()),
+        )
+}
+
+#[test]
+fn a_lost_and_a_doubled_clock_within_an_access_are_an_error_or_right() {
+    assert!(accesses((30, false)) > 500);
+}
+
+/// A clock doubled before the second reading makes it a write, which reads 0; one lost at its end hides that.
+#[test]
+fn a_weight_that_is_read_is_not_written_where_it_ends() {
+    let faults = [(5 * FRAME - 1, Doubled), (6 * FRAME - 1, Lost)];
+    let (result, ..) = with(0, &faults, AT_ONCE, |chip| chip.programmed()?.input_weight(5, 2));
+    assert!(result.is_err());
+}
+
+/// Without its first bit, the header that reads a word of neurons writes an output's potential, and what is read is 0, as
+/// the word should be.
+#[test]
+fn a_word_of_neurons_that_is_read_moves_no_output() {
+    // All words; the check; the first word that is read.
+    let first = (LOADED + 4 + 1) * FRAME;
+    let faults = [(first, Lost), (first + 8, Doubled)];
+    let (result, (_, held), _) =
+        with(0, &faults, AT_ONCE, |chip| chip.programmed()?.load(&NETWORK, |_| ()));
+    assert_eq!(result, Ok(()), "nobody notices");
+    assert!(held.iter().rev().skip(511).take(16).all(|potential| *potential == 0));
+}
+
+#[test]
+#[ignore = "minutes: run with --release"]
+fn many_lost_and_doubled_clocks_within_an_access_are_an_error_or_right() {
+    println!("{} pairs", accesses((3_000, true)));
+}

@@ -1,0 +1,220 @@
+//! `ReckOn` behind pins that are read seldom, and late: what the chip did is what the driver says, for any size of network.
+
+use std::cell::Cell;
+
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
+use silicon::reckon::{Board, Port, Spi};
+use spikewire_chips::{
+    ChipError, DescribeReckOn, ReckOn, ReckOnAnswer, ReckOnAnswers, ReckOnPair, ReckOnPort,
+    ReckOnSettings, ReckOnShared, ReckOnStep, Started,
+};
+
+/// A network of so many neurons, each with an input of its own, and three outputs.
+struct Drawn {
+    neurons: u16,
+}
+
+impl Drawn {
+    /// A weight from place to place.
+    fn weight(&self, kind: u64, from: u16, to: u16) -> i8 {
+        let place = kind << 32 | u64::from(from) << 16 | u64::from(to);
+        Pcg32::seed_from_u64(place).next_u32() as i8
+    }
+}
+
+impl DescribeReckOn for Drawn {
+    fn neurons(&self) -> u16 {
+        self.neurons
+    }
+    fn inputs(&self) -> u16 {
+        self.neurons.min(8)
+    }
+    fn outputs(&self) -> u16 {
+        3
+    }
+    fn pair(&self, _: u16) -> ReckOnPair {
+        ReckOnPair { keep: 30_000, threshold: 200 }
+    }
+    fn input_weight(&self, input: u16, neuron: u16) -> i8 {
+        self.weight(0, input, neuron)
+    }
+    fn recurrent_weight(&self, from: u16, to: u16) -> i8 {
+        self.weight(1, from, to) / 8
+    }
+    fn output_weight(&self, neuron: u16, output: u16) -> i8 {
+        self.weight(2, neuron, output)
+    }
+    fn shared(&self) -> ReckOnShared {
+        ReckOnShared { shifts: [2, 0, 0], keep: 110, resets_to_zero: true }
+    }
+}
+
+/// How long the calls of a port take, in clocks of the chip: before it reads or sets a pin, and after.
+#[derive(Default)]
+struct Pace {
+    before: Cell<u32>,
+    after: Cell<u32>,
+    /// The tick that does not reach the chip.
+    lost: Cell<Option<u32>>,
+    /// Ticks so far.
+    ticks: Cell<u32>,
+}
+
+struct Slow<'a> {
+    port: Port,
+    board: Board,
+    pace: &'a Pace,
+}
+
+impl Slow<'_> {
+    fn slowly<T>(&mut self, call: impl FnOnce(&mut Port) -> T) -> T {
+        self.board.run(self.pace.before.get());
+        let result = call(&mut self.port);
+        self.board.run(self.pace.after.get());
+        result
+    }
+}
+
+impl ReckOnPort for Slow<'_> {
+    type Error = u64;
+
+    fn set_input(&mut self, byte: u8, is_target: bool) -> Result<(), u64> {
+        self.slowly(|port| port.set_input(byte, is_target))
+    }
+    fn set_input_request(&mut self, is_high: bool) -> Result<(), u64> {
+        self.slowly(|port| port.set_input_request(is_high))
+    }
+    fn input_acknowledge(&mut self) -> Result<bool, u64> {
+        self.slowly(Port::input_acknowledge)
+    }
+    fn output_request(&mut self) -> Result<bool, u64> {
+        self.slowly(Port::output_request)
+    }
+    fn output(&mut self) -> Result<u8, u64> {
+        self.slowly(Port::output)
+    }
+    fn set_output_acknowledge(&mut self, is_high: bool) -> Result<(), u64> {
+        self.slowly(|port| port.set_output_acknowledge(is_high))
+    }
+    fn set_sample(&mut self, is_high: bool) -> Result<(), u64> {
+        self.slowly(|port| port.set_sample(is_high))
+    }
+    fn set_tick(&mut self, is_high: bool) -> Result<(), u64> {
+        let tick = self.pace.ticks.get();
+        let is_lost = self.pace.lost.get() == Some(tick);
+        self.pace.ticks.set(tick + u32::from(!is_high));
+        self.slowly(|port| if is_lost { Ok(()) } else { port.set_tick(is_high) })
+    }
+    fn set_target_valid(&mut self, is_high: bool) -> Result<(), u64> {
+        self.slowly(|port| port.set_target_valid(is_high))
+    }
+    fn set_infer(&mut self, is_high: bool) -> Result<(), u64> {
+        self.slowly(|port| port.set_infer(is_high))
+    }
+    fn ready(&mut self) -> Result<bool, u64> {
+        self.slowly(Port::ready)
+    }
+    fn set_reset(&mut self, is_high: bool) -> Result<(), u64> {
+        self.slowly(|port| port.set_reset(is_high))
+    }
+}
+
+type Error = ChipError<embedded_hal::spi::ErrorKind, u64>;
+
+/// Steps of a sample.
+const STEPS: u32 = 6;
+
+const SETTINGS: [ReckOnSettings; 3] = [
+    ReckOnSettings::LABEL,
+    ReckOnSettings { answers: ReckOnAnswers::Potentials, ..ReckOnSettings::POTENTIALS },
+    ReckOnSettings::POTENTIALS,
+];
+
+/// A board, and a driver whose pins have this pace. Calls of the board's own port take no time.
+fn on<'a>(pace: &'a Pace) -> (Board, ReckOn<Spi, Slow<'a>>) {
+    let board = Board::new(10, 0);
+    let port = Slow { port: board.port(), board: board.clone(), pace };
+    let chip = ReckOn::new(board.spi(), port, ReckOn::<Spi, Slow<'a>>::MAX_CLOCKS);
+    (board, chip)
+}
+
+/// What a sample answers, and which neurons fired in it.
+type Answered = (Vec<Option<ReckOnAnswer>>, Vec<u8>);
+
+fn sample<'a, 'b>(
+    started: Started<'a, Spi, Slow<'b>>,
+    board: &Board,
+    inputs: u16,
+) -> Result<(Answered, Started<'a, Spi, Slow<'b>>), Error> {
+    board.pins().chip.fired.clear();
+    let mut sample = started.begin()?;
+    let mut answers = vec![];
+    for step in 0..STEPS {
+        for input in (0..inputs).filter(|input| (u32::from(*input) + step) % 3 != 2) {
+            sample.send(input as u8)?;
+        }
+        answers.push(sample.step(ReckOnStep { counts: true, target: None })?);
+    }
+    let (last, started) = sample.end()?;
+    answers.push(Some(last));
+    let fired = board.pins().chip.fired.clone();
+    Ok(((answers, fired), started))
+}
+
+/// At 26 clocks a call, the ready line of a network of up to 10 neurons is low for less than a call at a step, and of up to
+/// 25 at the tick that begins a sample.
+#[test]
+fn pins_that_are_read_seldom_change_no_answer() {
+    for neurons in [1, 2, 3, 5, 8, 10, 11, 12, 16, 20, 24, 25, 26, 32, 64, 256] {
+        let network = Drawn { neurons };
+        let pace = Pace::default();
+        let (board, mut chip) = on(&pace);
+        pace.before.set(1);
+        let mut programmed = chip.reset(&mut board.clone()).unwrap();
+        programmed.load(&network, |_| ()).unwrap();
+        let every = if neurons < 32 { 1 } else { 25 };
+        for settings in &SETTINGS {
+            let started = programmed.run(settings).unwrap();
+            let (expected, mut started) = sample(started, &board, network.inputs()).unwrap();
+            assert!(neurons < 8 || !expected.1.is_empty(), "{neurons} neurons: none fires");
+            for clocks in (1..=26).step_by(every) {
+                for (before, after) in [(clocks, 0), (1, clocks - 1)] {
+                    let at = format!("{neurons} neurons, {settings:?}, {before} and {after} clocks");
+                    (pace.before.set(before), pace.after.set(after));
+                    let (answered, next) = sample(started, &board, network.inputs())
+                        .unwrap_or_else(|error| panic!("{at}: {error}"));
+                    assert_eq!(answered, expected, "{at}");
+                    started = next;
+                }
+            }
+            (pace.before.set(1), pace.after.set(0));
+            programmed = started.program().unwrap();
+        }
+        programmed.verify(&network).unwrap();
+    }
+}
+
+/// A tick that does not reach the chip: no answer is one of another step, at any pace.
+#[test]
+fn a_tick_that_is_lost_is_an_error_before_an_answer_is_wrong() {
+    for neurons in [2, 16, 64] {
+        for settings in &SETTINGS {
+            for (lost, clocks) in (0..=STEPS + 1).flat_map(|lost| [1, 9, 26].map(|at| (lost, at))) {
+                let network = Drawn { neurons };
+                let pace = Pace::default();
+                let (board, mut chip) = on(&pace);
+                pace.before.set(clocks);
+                let mut programmed = chip.reset(&mut board.clone()).unwrap();
+                programmed.load(&network, |_| ()).unwrap();
+                let started = programmed.run(settings).unwrap();
+                (pace.ticks.set(0), pace.lost.set(Some(lost)));
+                let told = sample(started, &board, network.inputs()).map(|(answered, _)| answered);
+                let at = format!("tick {lost}, {neurons} neurons, {settings:?}, {clocks} clocks");
+                let is_said = matches!(told, Err(ChipError::Handshake(_) | ChipError::Unfinished));
+                assert!(is_said, "{at}: {told:?}");
+                assert!(matches!(chip.sample(), Err(ChipError::NotReset)), "{at}");
+            }
+        }
+    }
+}
