@@ -76,6 +76,7 @@
 //! | `embedded-io` | [`out`]: UART and USB serial, over ports of `embedded-io` 0.7 |
 //! | `embedded-io-06` | [`out`]: the same over ports of `embedded-io` 0.6 |
 #![no_std]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "alloc")]

@@ -1,6 +1,7 @@
 //! Drivers for neuromorphic chips.
 #![doc = include_str!("../README.md")]
 #![no_std]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
 mod akd1500;

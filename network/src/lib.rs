@@ -5,6 +5,7 @@
 //! A layer adds the row of weights of each input that fired, and multiplies nothing that did not.
 #![doc = include_str!("../README.md")]
 #![no_std]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 #![expect(
     clippy::inline_always,

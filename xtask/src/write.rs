@@ -1,6 +1,6 @@
 //! `cargo xtask write`: all that is generated, written again.
 
-use crate::checks::{firmware, ros, simulated_drone, video};
+use crate::checks::{firmware, interface, ros, simulated_drone, video};
 use crate::common::usage;
 use crate::figures::{bench, demo, faults, flash, jumps, schemes};
 use crate::products::{c_library, page, python_package};
@@ -20,7 +20,8 @@ const fn part(name: &'static str, files: &'static str, write: fn() -> Result<()>
 }
 
 /// From the catalogue first, then what measures or draws.
-const PARTS: [Part; 16] = [
+const PARTS: [Part; 17] = [
+    part("interface", "interface.txt of each published crate", interface::write),
     part("c", "bindings/c/src/codecs.rs, bindings/c/src/sizes.rs", c_library::write),
     part("python", "bindings/python/spikewire/_schemes.pyi", python_package::write_stub),
     part("schemes", "docs/schemes.md: the table", schemes::write),

@@ -5,6 +5,7 @@ pub mod everyday;
 pub mod fifo;
 pub mod firmware;
 pub mod fuzz;
+pub mod interface;
 pub mod link;
 pub mod logging;
 pub mod long;

@@ -3,8 +3,8 @@
 mod passed;
 
 use crate::checks::{
-    everyday, fifo, firmware, fuzz, link, logging, long, nucleo, package, peers, rate_loop,
-    real_boards, reckon, ros, simulated_drone, soak, storm, tuned, video,
+    everyday, fifo, firmware, fuzz, interface, link, logging, long, nucleo, package, peers,
+    rate_loop, real_boards, reckon, ros, simulated_drone, soak, storm, tuned, video,
 };
 use crate::common::{cpu, usage};
 use crate::figures::{bench, demo, faults, flash};
@@ -98,6 +98,8 @@ const STEPS: &[Step] = &[
         LAST,
         REST,
     ]),
+    step("interface", "what each crate offers is what its interface.txt says", interface::verify)
+        .apart(&[&["host-tests", "laptop/cli", "laptop/lab"], LAST, REST]),
     step("package", "what is published has all that its pages show", package::package),
     step("features", "every feature of what flies alone, on the host", everyday::each_feature)
         .apart(&[PROSE, HOST, LAST, REST]),
