@@ -158,6 +158,19 @@ fn a_network_as_bytes_is_the_same_and_damaged_bytes_are_refused() {
     assert_eq!(buffer[5], 2, "it has no flag but that of neurons that return to 0");
 }
 
+/// More neurons than 16 bits count are not a few.
+#[test]
+fn a_network_of_far_too_many_neurons_is_refused() {
+    static LARGE: ReckOnNetwork<1, 65_540, 1> = ReckOnNetwork {
+        pairs: &PAIRS,
+        inputs: [[0; 65_540]; 1],
+        recurrent: &[],
+        outputs: [[0; 1]; 65_540],
+        shared: NETWORK.shared,
+    };
+    assert_eq!(ReckOnBytes::write(&LARGE, &mut [0; 256]), Err(FormatError::Size));
+}
+
 #[test]
 fn the_label_is_the_output_that_was_highest_most_often() {
     let board = Board::new(10, 1);
