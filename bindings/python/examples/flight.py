@@ -16,7 +16,7 @@ import numpy as np
 import spikewire as sw
 
 HERE = Path(__file__).parent
-log = sw.read(HERE.parents[3] / "data" / "hexarotor.csv")
+log = sw.read(HERE.parents[2] / "data" / "hexarotor.csv")
 x = log.x.astype(np.float32)
 print(f"{len(log.names)} channels of {x.shape[1]} samples, {log.rate:.0f} a second")
 

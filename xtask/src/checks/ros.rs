@@ -103,7 +103,7 @@ impl Ros {
         let top = paths::target().join("ros");
         let ros = Self { site: top.join("site"), top };
         let mut pip = python::pip(&python::environment("ros/pip")?);
-        pip.args(["--no-deps", "--upgrade", "--target"]).arg(&ros.site).arg("./python");
+        pip.args(["--no-deps", "--upgrade", "--target"]).arg(&ros.site).arg("./bindings/python");
         // Compiled as the tests are, with which it shares its dependencies.
         run(pip.env("MATURIN_PEP517_ARGS", "--profile dev").env("CARGO_INCREMENTAL", "0"))?;
         let mut catkin = command("catkin_make_isolated");
