@@ -15,12 +15,10 @@ struct Drawn {
     neurons: u16,
 }
 
-impl Drawn {
-    /// A weight from place to place.
-    fn weight(&self, kind: u64, from: u16, to: u16) -> i8 {
-        let place = kind << 32 | u64::from(from) << 16 | u64::from(to);
-        Pcg32::seed_from_u64(place).next_u32() as i8
-    }
+/// A weight from place to place.
+fn weight(kind: u64, from: u16, to: u16) -> i8 {
+    let place = kind << 32 | u64::from(from) << 16 | u64::from(to);
+    Pcg32::seed_from_u64(place).next_u32() as i8
 }
 
 impl DescribeReckOn for Drawn {
@@ -37,13 +35,13 @@ impl DescribeReckOn for Drawn {
         ReckOnPair { keep: 30_000, threshold: 200 }
     }
     fn input_weight(&self, input: u16, neuron: u16) -> i8 {
-        self.weight(0, input, neuron)
+        weight(0, input, neuron)
     }
     fn recurrent_weight(&self, from: u16, to: u16) -> i8 {
-        self.weight(1, from, to) / 8
+        weight(1, from, to) / 8
     }
     fn output_weight(&self, neuron: u16, output: u16) -> i8 {
-        self.weight(2, neuron, output)
+        weight(2, neuron, output)
     }
     fn shared(&self) -> ReckOnShared {
         ReckOnShared { shifts: [2, 0, 0], keep: 110, resets_to_zero: true }
@@ -182,14 +180,16 @@ fn pins_that_are_read_seldom_change_no_answer() {
                 for (before, after) in [(clocks, 0), (1, clocks - 1)] {
                     let at =
                         format!("{neurons} neurons, {settings:?}, {before} and {after} clocks");
-                    (pace.before.set(before), pace.after.set(after));
+                    pace.before.set(before);
+                    pace.after.set(after);
                     let (answered, next) = sample(started, &board, network.inputs())
                         .unwrap_or_else(|error| panic!("{at}: {error}"));
                     assert_eq!(answered, expected, "{at}");
                     started = next;
                 }
             }
-            (pace.before.set(1), pace.after.set(0));
+            pace.before.set(1);
+            pace.after.set(0);
             programmed = started.program().unwrap();
         }
         programmed.verify(&network).unwrap();
@@ -217,7 +217,8 @@ fn a_tick_that_is_lost_is_an_error_before_an_answer_is_wrong() {
                     programmed.set_register(register, value).unwrap();
                 }
                 let started = programmed.run(settings).unwrap();
-                (pace.ticks.set(0), pace.lost.set(Some(lost)));
+                pace.ticks.set(0);
+                pace.lost.set(Some(lost));
                 pace.before.set(clocks);
                 let told = sample(started, &board, network.inputs()).map(|(answered, _)| answered);
                 let at = format!("tick {lost}, {neurons} neurons, {settings:?}, {clocks} clocks");
