@@ -28,7 +28,7 @@ pub enum FormatError {
         /// The length given.
         given: usize,
     },
-    /// A neuron or a weight has a value out of its range.
+    /// A neuron or a weight has a value out of its range; or outputs are not neurons of the network, each another.
     Value,
 }
 
@@ -156,6 +156,11 @@ impl<'a, I: Input> NetworkBytes<'a, I> {
             is_virtual: network.virtual_input(0).is_some(),
         };
         shape.check()?;
+        // The bytes name a neuron for each output: none of them may be without one.
+        let is_told = |neuron| network.output(neuron).is_none_or(|output| output < shape.outputs);
+        if !(0..shape.neurons).all(|neuron| is_told(neuron as u8)) {
+            return Err(FormatError::Value);
+        }
         let needed = HEADER + shape.lengths::<I>().iter().sum::<usize>();
         let given = buffer.len();
         let target = buffer.get_mut(..needed).ok_or(FormatError::Length { needed, given })?;
@@ -180,17 +185,20 @@ impl<'a, I: Input> NetworkBytes<'a, I> {
         let weights = |row| (0..shape.neurons).map(move |post| network.row_weight(row, post as u8));
         let first = network.first_input_row();
         if shape.is_virtual {
-            for (neuron, weight) in (0..shape.inputs).filter_map(|n| network.virtual_input(n)) {
+            for input in 0..shape.inputs {
+                let (neuron, weight) = network.virtual_input(input).ok_or(FormatError::Value)?;
+                let word = I::virtual_event(neuron, weight).word::<(), ()>();
+                word.map_err(|_| FormatError::Value)?;
                 put(neuron);
                 put(weight as u8);
             }
         } else {
             for row in first..network.rows() {
-                pack(weights(row), &mut put)?;
+                pack::<I>(weights(row), &mut put)?;
             }
         }
         for row in 0..first {
-            pack(weights(row), &mut put)?;
+            pack::<I>(weights(row), &mut put)?;
         }
         outputs_of(network).for_each(put);
         Ok(needed)
@@ -214,14 +222,14 @@ fn outputs_of<I: Input>(network: &impl Describe<I>) -> impl Iterator<Item = u8> 
 }
 
 /// Packs two weights a byte, the first in the low half.
-fn pack(
+fn pack<I: Input>(
     mut weights: impl Iterator<Item = i8>,
     put: &mut impl FnMut(u8),
 ) -> Result<(), FormatError> {
     while let Some(low) = weights.next() {
         let high = weights.next().unwrap_or(0);
-        if !(-8..=7).contains(&low) || !(-8..=7).contains(&high) {
-            return Err(FormatError::Value);
+        for weight in [low, high] {
+            I::weight_bits::<(), ()>(weight).map_err(|_| FormatError::Value)?;
         }
         put((high << 4) as u8 | low as u8 & 0xF);
     }

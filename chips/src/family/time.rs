@@ -11,6 +11,16 @@ use spikewire::Tick;
 /// The most leak events at once.
 const MAX_LEAKS: u32 = 255;
 
+/// How late a tick may be, in µs: 67 s. One that lies further back is of the clock's next round instead, as after an hour in
+/// which the chip was gated.
+const LATEST: u32 = 1 << 26;
+
+/// The µs from `last` to `now`; none if `now` is late.
+fn passed(last: Tick, now: Tick) -> Option<u32> {
+    let passed = now.micros().wrapping_sub(last.micros());
+    (passed < LATEST.wrapping_neg()).then_some(passed)
+}
+
 /// When leak events are due.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Time {
@@ -26,13 +36,13 @@ impl Time {
 
     /// Whether the time step of this tick is over.
     pub(super) fn is_over(&self, tick: Tick) -> bool {
-        self.last.is_some_and(|last| tick.is_before(last))
+        self.last.is_some_and(|last| passed(last, tick).is_none())
     }
 }
 
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     /// Sends the leak events of the time steps that have passed at this tick, also those that passed while the chip was
-    /// gated; the first call only notes the time. Sends at most 255; others are skipped and
+    /// gated, up to 70 minutes; the first call only notes the time. Sends at most 255; others are skipped and
     /// [counted](super::Counters::skipped_steps). (255 leaks of 1 may not bring a potential of 12 bits to 0.)
     ///
     /// # Errors
@@ -49,7 +59,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
         let chip = &mut *self.chip;
         let Some(Time { step, last }) = &mut chip.time else { return Ok(()) };
         let last = last.get_or_insert(now);
-        let due = now.since(*last).max(0) as u32 / *step;
+        let due = passed(*last, now).unwrap_or(0) / *step;
         if due == 0 {
             return Ok(());
         }

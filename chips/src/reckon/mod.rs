@@ -53,7 +53,8 @@ use wire::{Address, Wire};
 ///   [`ReckOnSample::step`] waits for the line before. After, the line is low for 2 N + 4 clocks, which pins that are read
 ///   seldom miss: so the chip is always told to send its answer in each step, until whose last byte is taken the line stays
 ///   low, and a step without an answer is an error.
-/// - If `SAMPLE` falls while the chip learns, it goes on learning without end, through all weights.
+/// - If `SAMPLE` falls while the chip learns and sends no answer in each step, it goes on learning without end, through
+///   all weights.
 /// - Neurons work in pairs, as far as the number of neurons, inputs or outputs, whichever is the most. A pair beyond the
 ///   network whose memory holds a threshold of 0 fires at every step: [`Programmed::load`] writes all 128 pairs.
 /// - With an odd number of neurons the last would never fire: the driver tells the chip of one more.

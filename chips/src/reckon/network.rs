@@ -76,15 +76,16 @@ impl<const IN: usize, const N: usize, const OUT: usize> DescribeReckOn
     for ReckOnNetwork<IN, N, OUT>
 {
     fn neurons(&self) -> u16 {
-        N as u16
+        // More than the chip has stay more.
+        N.min(usize::from(u16::MAX)) as u16
     }
 
     fn inputs(&self) -> u16 {
-        IN as u16
+        IN.min(usize::from(u16::MAX)) as u16
     }
 
     fn outputs(&self) -> u16 {
-        OUT as u16
+        OUT.min(usize::from(u16::MAX)) as u16
     }
 
     fn pair(&self, pair: u16) -> ReckOnPair {

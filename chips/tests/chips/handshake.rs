@@ -426,6 +426,31 @@ fn leak_events_are_the_time_step() {
     assert_eq!((taken, running.counters().skipped_steps), (8 + 255, 745));
 }
 
+/// The clock of ticks wraps after 71.6 minutes.
+#[test]
+fn time_steps_that_passed_in_an_hour_are_not_taken_for_the_past() {
+    const MINUTE: u32 = 60_000_000;
+    for minutes in [30, 36, 50, 70] {
+        let (board, chip) = running(4, 1_600, 0);
+        let mut chip = chip.with_time_step(NonZeroU32::new(1_000).unwrap());
+        let mut running = chip.running().unwrap();
+        running.advance(MINUTE.into(), drop).unwrap();
+        let later = MINUTE.wrapping_add(minutes * MINUTE);
+        running.advance(later.into(), drop).unwrap();
+        assert_eq!(board.pins().chip.taken.len(), 255, "{minutes} minutes");
+        let counters = running.counters();
+        assert_eq!(counters.skipped_steps, minutes * 60_000 - 255, "{minutes} minutes");
+        running.feed(FromEvents([event(later, 9)].into_iter()), spike, drop).unwrap();
+        running.advance(later.wrapping_add(1_000).into(), drop).unwrap();
+        assert_eq!(board.pins().chip.taken.len(), 255 + 2, "{minutes} minutes");
+        // A minute late is late.
+        let late = event(later.wrapping_sub(MINUTE), 9);
+        running.feed(FromEvents([late].into_iter()), spike, drop).unwrap();
+        assert_eq!(board.pins().chip.taken.len(), 255 + 3, "{minutes} minutes");
+        assert_eq!(running.counters().late_events, 1, "{minutes} minutes");
+    }
+}
+
 #[test]
 fn events_of_a_step_that_is_over_are_sent_in_the_present_one_and_counted() {
     let (board, chip) = running(4, 1_600, 0);

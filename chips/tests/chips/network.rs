@@ -331,6 +331,35 @@ fn network(
     }
 }
 
+/// Bytes that were written are the same network, or are not written.
+#[test]
+fn bytes_do_not_leave_out_what_they_cannot_say() {
+    let network = network(&[3], &[50], true, false);
+    let written = |network: &TinyOdinNetwork<4, 7, 3>| {
+        NetworkBytes::<TinyOdinInput>::write(network, &mut [0; 200])
+    };
+    assert!(written(&network).is_ok());
+    // A neuron that is two outputs is the first of them alone, and neuron 7 is none of the network.
+    for outputs in [[6, 6, 4], [6, 7, 4], [7, 6, 4]] {
+        assert_eq!(written(&TinyOdinNetwork { outputs, ..network }), Err(FormatError::Value));
+    }
+    // A weight of 0 would act as a spike of its own; virtual events reach 16 neurons.
+    for virtual_input in [(0, 0), (0, 8), (16, 1)] {
+        let inputs = Inputs::Virtual([virtual_input; 4]);
+        assert_eq!(written(&TinyOdinNetwork { inputs, ..network }), Err(FormatError::Value));
+    }
+    // ODIN has signs and three bits.
+    let odin = |weight| OdinNetwork::<1, 1, 1> {
+        neurons: [OdinNeuron::REST],
+        inputs: Inputs::Rows([[weight]]),
+        recurrent: &[],
+        outputs: [0],
+    };
+    let write = |weight| NetworkBytes::<OdinInput>::write(&odin(weight), &mut [0; 200]);
+    assert!(write(-7).is_ok());
+    assert_eq!(write(-8), Err(FormatError::Value));
+}
+
 proptest! {
     #![proptest_config(crate::cases(48))]
 

@@ -15,12 +15,10 @@ struct Drawn {
     neurons: u16,
 }
 
-impl Drawn {
-    /// A weight from place to place.
-    fn weight(&self, kind: u64, from: u16, to: u16) -> i8 {
-        let place = kind << 32 | u64::from(from) << 16 | u64::from(to);
-        Pcg32::seed_from_u64(place).next_u32() as i8
-    }
+/// A weight from place to place.
+fn weight(kind: u64, from: u16, to: u16) -> i8 {
+    let place = kind << 32 | u64::from(from) << 16 | u64::from(to);
+    Pcg32::seed_from_u64(place).next_u32() as i8
 }
 
 impl DescribeReckOn for Drawn {
@@ -37,13 +35,13 @@ impl DescribeReckOn for Drawn {
         ReckOnPair { keep: 30_000, threshold: 200 }
     }
     fn input_weight(&self, input: u16, neuron: u16) -> i8 {
-        self.weight(0, input, neuron)
+        weight(0, input, neuron)
     }
     fn recurrent_weight(&self, from: u16, to: u16) -> i8 {
-        self.weight(1, from, to) / 8
+        weight(1, from, to) / 8
     }
     fn output_weight(&self, neuron: u16, output: u16) -> i8 {
-        self.weight(2, neuron, output)
+        weight(2, neuron, output)
     }
     fn shared(&self) -> ReckOnShared {
         ReckOnShared { shifts: [2, 0, 0], keep: 110, resets_to_zero: true }
@@ -180,15 +178,18 @@ fn pins_that_are_read_seldom_change_no_answer() {
             assert!(neurons < 8 || !expected.1.is_empty(), "{neurons} neurons: none fires");
             for clocks in (1..=26).step_by(every) {
                 for (before, after) in [(clocks, 0), (1, clocks - 1)] {
-                    let at = format!("{neurons} neurons, {settings:?}, {before} and {after} clocks");
-                    (pace.before.set(before), pace.after.set(after));
+                    let at =
+                        format!("{neurons} neurons, {settings:?}, {before} and {after} clocks");
+                    pace.before.set(before);
+                    pace.after.set(after);
                     let (answered, next) = sample(started, &board, network.inputs())
                         .unwrap_or_else(|error| panic!("{at}: {error}"));
                     assert_eq!(answered, expected, "{at}");
                     started = next;
                 }
             }
-            (pace.before.set(1), pace.after.set(0));
+            pace.before.set(1);
+            pace.after.set(0);
             programmed = started.program().unwrap();
         }
         programmed.verify(&network).unwrap();
@@ -199,21 +200,32 @@ fn pins_that_are_read_seldom_change_no_answer() {
 #[test]
 fn a_tick_that_is_lost_is_an_error_before_an_answer_is_wrong() {
     for neurons in [2, 16, 64] {
+        let network = Drawn { neurons };
+        let pace = Pace::default();
+        let (board, mut chip) = on(&pace);
+        pace.before.set(1);
+        chip.reset(&mut board.clone()).unwrap().load(&network, |_| ()).unwrap();
         for settings in &SETTINGS {
             for (lost, clocks) in (0..=STEPS + 1).flat_map(|lost| [1, 9, 26].map(|at| (lost, at))) {
-                let network = Drawn { neurons };
-                let pace = Pace::default();
-                let (board, mut chip) = on(&pace);
-                pace.before.set(clocks);
+                pace.before.set(1);
                 let mut programmed = chip.reset(&mut board.clone()).unwrap();
-                programmed.load(&network, |_| ()).unwrap();
+                // A reset leaves the memories and not the registers.
+                let last = u32::from(neurons) - 1;
+                for (register, value) in
+                    [(12, 2), (8, 1), (69, 110), (94, last.min(7)), (95, last | 1), (96, 2)]
+                {
+                    programmed.set_register(register, value).unwrap();
+                }
                 let started = programmed.run(settings).unwrap();
-                (pace.ticks.set(0), pace.lost.set(Some(lost)));
+                pace.ticks.set(0);
+                pace.lost.set(Some(lost));
+                pace.before.set(clocks);
                 let told = sample(started, &board, network.inputs()).map(|(answered, _)| answered);
                 let at = format!("tick {lost}, {neurons} neurons, {settings:?}, {clocks} clocks");
                 let is_said = matches!(told, Err(ChipError::Handshake(_) | ChipError::Unfinished));
                 assert!(is_said, "{at}: {told:?}");
                 assert!(matches!(chip.sample(), Err(ChipError::NotReset)), "{at}");
+                pace.lost.set(None);
             }
         }
     }
