@@ -21,7 +21,7 @@ use anyhow::Result;
 use checks::{firmware, simulated_drone};
 use common::{Usage, progress, usage};
 use figures::{bench, demo};
-use products::{c_library, new_firmware, page};
+use products::{c_library, new_firmware, new_scheme, page};
 use std::{env, process::ExitCode};
 
 const USAGE: &str = "\
@@ -35,6 +35,8 @@ cargo xtask <command>
   guides FIRMWARE DIR   builds the guide of bindings/c/guides for crazyflie, betaflight or px4 with a checkout of that firmware
   new-firmware DIR --board NAME
                         writes a firmware project for a board, which builds as it comes; without arguments, the boards
+  scheme NAME TYPE --like NAME
+                        a scheme to begin from: a copy of one that there is under another name, and the lines that list it
   page [--serve]        a page to look at signals and their spikes, as one HTML file; serves it on this machine alone
   loop [CODE]           flies a simulated drone on spikes and draws it; installs RotorPy from PyPI, 0.5 GB
   demo                  real flight data through encoder, emulated flight controller and decoder
@@ -68,6 +70,7 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "write" => write::write(args),
         "c-library" => c_library::library(args),
         "guides" => c_library::guides(args),
+        "scheme" => new_scheme::new_scheme(args),
         "new-firmware" => new_firmware::new_firmware(args),
         "page" => page::page(args),
         "demo" => demo::demo(args),

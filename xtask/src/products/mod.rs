@@ -2,6 +2,7 @@
 
 pub mod c_library;
 pub mod new_firmware;
+pub mod new_scheme;
 pub mod page;
 pub mod parts;
 pub mod python_package;

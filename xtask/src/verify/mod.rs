@@ -9,7 +9,7 @@ use crate::checks::{
 use crate::common::{cpu, usage};
 use crate::figures::{bench, demo, faults, flash};
 use crate::mutants;
-use crate::products::{c_library, page, python_package};
+use crate::products::{c_library, new_scheme, page, python_package};
 use crate::release;
 use crate::setup::{needs, setup};
 use anyhow::{Result, bail};
@@ -183,6 +183,7 @@ const LONG: &[Step] = &[
         long::lints,
     ),
     step("capture", "the laptop program with a debug probe's driver", long::capture),
+    step("new-scheme", "what `cargo xtask scheme` writes compiles", new_scheme::verify),
     step("logs", "logs of every kind, read as independent readers do", peers::logs),
     step(
         "c-cores",

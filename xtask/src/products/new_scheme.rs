@@ -1,0 +1,204 @@
+//! `cargo xtask scheme NAME TYPE --like NAME`: a scheme to begin from, which compiles as it comes.
+//!
+//! It is a copy of one that there is, under another name, in the crate and in the catalogue, with the lines that list it. The
+//! reference and its test are not copied: they would prove nothing.
+
+use crate::common::{cargo, command, output, paths, run, usage};
+use anyhow::{Context, Result, ensure};
+use catalogue::INFO;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+pub const USAGE: &str =
+    "cargo xtask scheme NAME TYPE --like NAME, as in: trial TrialForward --like sf";
+
+/// Tables with a row for each scheme.
+const PAGES: [&str; 3] = ["src/lib.rs", "docs/schemes.md", "docs/codes.md"];
+
+pub fn new_scheme(args: &[String]) -> Result<()> {
+    let args: Vec<&str> = args.iter().map(String::as_str).collect();
+    let [name, type_name, "--like", like] = args[..] else { return Err(usage(USAGE.into())) };
+    let like = INFO.iter().find(|info| info.name == like).ok_or_else(|| {
+        let names: Vec<_> = INFO.iter().map(|info| info.name).collect();
+        usage(format!("no scheme `{like}`; there are {}", names.join(", ")))
+    })?;
+    if INFO.iter().any(|info| info.name == name || info.type_name == type_name) {
+        return Err(usage(format!("`{name}` or `{type_name}` is there already")));
+    }
+    let names = Names::new((like.name, like.type_name), (name, type_name))?;
+    for file in names.write(&paths::root())? {
+        println!("{file}");
+    }
+    println!(
+        "By hand now: the law in the first, names and parameters in the second, the rows' words; then \
+         host-tests/src/reference/{module}.rs and host-tests/tests/{module}.rs, and `cargo xtask write`.",
+        module = names.new.module
+    );
+    Ok(())
+}
+
+/// What a scheme is called.
+struct Called {
+    /// On the command line: `step-forward`.
+    name: String,
+    /// `StepForward`.
+    type_name: String,
+    /// Its file in the crate: `step_forward`.
+    module: String,
+    /// Its file in the catalogue.
+    entry: String,
+}
+
+impl Called {
+    fn new(name: &str, type_name: &str, module: String) -> Self {
+        Self { name: name.into(), type_name: type_name.into(), module, entry: snake(name) }
+    }
+}
+
+/// The scheme that is copied, and the new one.
+struct Names {
+    /// The directory of its file, from the repository's top.
+    room: PathBuf,
+    old: Called,
+    new: Called,
+}
+
+impl Names {
+    fn new(old: (&str, &str), new: (&str, &str)) -> Result<Self> {
+        let (room, module) = declared(&paths::root().join("src/scheme"), old.1)?;
+        Ok(Self {
+            room: Path::new("src/scheme").join(room),
+            old: Called::new(old.0, old.1, module),
+            new: Called::new(new.0, new.1, snake(new.1)),
+        })
+    }
+
+    /// A text of the old scheme, of the new one.
+    fn renamed(&self, text: &str) -> String {
+        let (old, new) = (&self.old, &self.new);
+        replaced(text, &old.type_name, &new.type_name)
+            .replace(&format!("\"{}\"", old.name), &format!("\"{}\"", new.name))
+            .replace(&format!("`{}`", old.name), &format!("`{}`", new.name))
+            .replace(&format!("\"{}\"", old.module), &format!("\"{}\"", new.module))
+    }
+
+    /// Writes the files, and returns them.
+    fn write(&self, root: &Path) -> Result<Vec<String>> {
+        let (old, new, room) = (&self.old, &self.new, root.join(&self.room));
+        let entries = root.join("laptop/catalogue/src");
+        let copies = [
+            (room.clone(), &old.module, &new.module),
+            (entries.join("schemes"), &old.entry, &new.entry),
+        ];
+        let mut files = Vec::new();
+        for (room, from, to) in copies {
+            let target = room.join(format!("{to}.rs"));
+            ensure!(!target.exists(), "{} is there already", target.display());
+            let text = fs::read_to_string(room.join(format!("{from}.rs")))?;
+            fs::write(&target, self.renamed(&text))?;
+            files.push(target);
+        }
+        let module = room.join("mod.rs");
+        let text = fs::read_to_string(&module)?;
+        fs::write(
+            &module,
+            self.listed(&text, &|line| {
+                line.contains(&format!("{};", old.module))
+                    || line.contains(&format!("{}::", old.module))
+            }),
+        )?;
+        let list = entries.join("lib.rs");
+        let text = fs::read_to_string(&list)?;
+        fs::write(&list, self.listed(&text, &|line| line.trim() == format!("{},", old.entry)))?;
+        files.extend([module, list]);
+        for page in PAGES {
+            let page = root.join(page);
+            let text = fs::read_to_string(&page)?;
+            let is_row =
+                |line: &str| line.contains('|') && replaced(line, &old.type_name, "") != line;
+            fs::write(&page, self.listed(&text, &is_row))?;
+            files.push(page);
+        }
+        let shown = |file: PathBuf| file.strip_prefix(root).unwrap_or(&file).display().to_string();
+        Ok(files.into_iter().map(shown).collect())
+    }
+
+    /// The text with each line that lists the old scheme once more, for the new one.
+    fn listed(&self, text: &str, is_listed: &dyn Fn(&str) -> bool) -> String {
+        let mut lines = Vec::new();
+        for line in text.lines() {
+            lines.push(line.to_owned());
+            if is_listed(line) {
+                let again = line
+                    .replace(&format!("{};", self.old.module), &format!("{};", self.new.module));
+                let again = again
+                    .replace(&format!("{}::", self.old.module), &format!("{}::", self.new.module));
+                let again =
+                    again.replace(&format!("{},", self.old.entry), &format!("{},", self.new.entry));
+                lines.push(self.renamed(&again));
+            }
+        }
+        lines.join("\n") + "\n"
+    }
+}
+
+/// The text with another beginning of words: `StepForward` in `StepForwardState` and not in `AdaptiveStepForward`.
+fn replaced(text: &str, from: &str, to: &str) -> String {
+    let mut parts = text.split(from);
+    let mut done = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let is_within = done.ends_with(|letter: char| letter.is_alphanumeric());
+        done.push_str(if is_within { from } else { to });
+        done.push_str(part);
+    }
+    done
+}
+
+/// The room and the file without its ending in which a type is declared.
+fn declared(rooms: &Path, type_name: &str) -> Result<(PathBuf, String)> {
+    for room in fs::read_dir(rooms)?.collect::<Result<Vec<_>, _>>()? {
+        let Ok(files) = fs::read_dir(room.path()) else { continue };
+        for file in files.collect::<Result<Vec<_>, _>>()? {
+            let text = fs::read_to_string(file.path()).unwrap_or_default();
+            if text.contains(&format!("pub struct {type_name}<")) {
+                let module = file.path().file_stem().context("no name")?.to_string_lossy().into();
+                return Ok((room.file_name().into(), module));
+            }
+        }
+    }
+    anyhow::bail!("no file of src/scheme declares `{type_name}`: take another scheme to begin from")
+}
+
+/// `TrialForward` or `trial-forward` as a module's name.
+fn snake(name: &str) -> String {
+    let mut snake = String::new();
+    for letter in name.chars() {
+        if letter.is_uppercase() && !snake.is_empty() {
+            snake.push('_');
+        }
+        snake.extend(letter.to_lowercase());
+    }
+    snake.replace('-', "_")
+}
+
+/// Makes one in a copy of the repository's files, which must compile there.
+pub fn verify() -> Result<()> {
+    let copy = tempfile::tempdir()?;
+    let files =
+        output(command("git").args(["ls-files", "--cached", "--others", "--exclude-standard"]))?;
+    for file in files.lines().filter(|file| paths::root().join(file).is_file()) {
+        let to = copy.path().join(file);
+        fs::create_dir_all(to.parent().context("a file without directory")?)?;
+        fs::copy(paths::root().join(file), to)?;
+    }
+    let names = Names::new(("sf", "StepForward"), ("trial", "TrialForward"))?;
+    let files = names.write(copy.path())?;
+    let mut check = cargo("check --package catalogue --all-features --all-targets");
+    run(check
+        .current_dir(copy.path())
+        .env("CARGO_TARGET_DIR", paths::target().join("new-scheme")))?;
+    println!("A scheme to begin from compiles; {} files are written.", files.len());
+    Ok(())
+}
