@@ -169,7 +169,7 @@ fn limits_hold_and_what_cannot_be_had_is_told() {
             "tune {flight} --channel gyro_x --scheme sf --max-rate 0.001 --max-rmse 0.01 {SHORT}"
         ),
         "",
-        &["nothing keeps to all limits", "nearest", "--max-rmse 0.01 is ", "threshold="],
+        &["settings keeps to all limits", "nearest", "--max-rmse 0.01 is ", "threshold="],
     );
     refused(&format!("tune {hsa} --max-ram 8"), "", &["--max-ram 8 is "]);
 }

@@ -38,8 +38,8 @@ pub(crate) struct Advise {
     /// Samples until a code comes out at most
     #[arg(long, value_name = "SAMPLES")]
     max_latency: Option<f64>,
-    /// Hz up to which the control loop acts that is to fly on the code: codes that are late for it, or that fall behind
-    /// the signal, are not advised
+    /// Hz up to which the control loop acts that is to fly on the code, a quarter of the samples a second at most: codes
+    /// that are late for it, or that fall behind the signal, are not advised
     #[arg(long, value_name = "HZ", value_parser = lab::input::above_zero)]
     loop_bandwidth: Option<f64>,
     /// Core of the measured table: M0 or M4F

@@ -178,7 +178,7 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
             eprintln!("{}: {}", channel.name, spelled(&words));
         }
         if rows.is_empty() && curves.is_empty() {
-            bail!("{}: no settings keep to all limits", channel.name);
+            bail!("{}: of the settings tried none keeps to all limits", channel.name);
         }
         if let Some((scheme, row)) = rows.first() {
             emitted += &options.emitted(*scheme, &channel, row)?;
@@ -310,7 +310,7 @@ fn position(settings: f64, time: f64) -> u64 {
 
 fn texts(cut: &Cut, rows: &[(Scheme, Row)], core: &str, below: Option<f64>) -> String {
     let count = |stretches: &[Stretch]| -> usize {
-        stretches.iter().map(|stretch| stretch.values.len()).sum()
+        stretches.iter().map(Stretch::samples).sum()
     };
     let head = format!(
         "{}: {} samples to tune on, {} held out\n",
