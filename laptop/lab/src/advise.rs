@@ -167,10 +167,11 @@ impl Advice {
         let loop_latency = match (request.loop_bandwidth, recording.rate) {
             (None, _) => None,
             (Some(bandwidth), Some(rate)) if bandwidth * FEWEST > rate => bail!(
-                "`loop_bandwidth` {bandwidth} must be {} or less: {} has {rate:.4} samples a second, and a loop acts on {FEWEST} \
+                "`loop_bandwidth` {bandwidth} must be {} or less: {} has {} samples a second, and a loop acts on {FEWEST} \
                  or more in a period of its bandwidth",
                 short(rate / FEWEST),
-                recording.name
+                recording.name,
+                short(rate)
             ),
             (Some(bandwidth), Some(rate)) if bandwidth > 0.0 => Some(borne(bandwidth, rate)),
             (Some(_), None) => bail!("`loop_bandwidth` needs the rate of {}", recording.name),

@@ -309,9 +309,7 @@ fn position(settings: f64, time: f64) -> u64 {
 }
 
 fn texts(cut: &Cut, rows: &[(Scheme, Row)], core: &str, below: Option<f64>) -> String {
-    let count = |stretches: &[Stretch]| -> usize {
-        stretches.iter().map(Stretch::samples).sum()
-    };
+    let count = |stretches: &[Stretch]| -> usize { stretches.iter().map(Stretch::samples).sum() };
     let head = format!(
         "{}: {} samples to tune on, {} held out\n",
         cut.name,

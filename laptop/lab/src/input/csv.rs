@@ -207,7 +207,7 @@ impl Table {
         if is_missing(field) {
             return Ok(f64::NAN);
         }
-        Err(anyhow!("{}: `{}` is not a number", self.place(column), shown(field)))
+        Err(anyhow!("{}: value `{}` is not a number", self.place(column), shown(field)))
     }
 
     fn value(&self, column: &Column) -> Result<f64> {
@@ -215,7 +215,7 @@ impl Table {
         if !value.is_finite() && !self.skip_non_finite {
             let field = self.record.get(column.index).unwrap_or_default().trim_ascii();
             let what = match shown(field) {
-                shown if is_missing(field) => format!("`{shown}` is a missing value"),
+                shown if is_missing(field) => format!("value `{shown}` is missing"),
                 shown => format!("{shown} is not finite"),
             };
             bail!("{}: {what}; `skip_non_finite` goes on over such values", self.place(column));
@@ -255,7 +255,7 @@ impl Source for Table {
                 let Some(picoseconds) = time.read(&self.record) else {
                     let field = self.record.get(time.column.index).unwrap_or_default();
                     let text = shown(field.trim_ascii());
-                    bail!("{}: `{text}` is not a time", self.place(&time.column));
+                    bail!("{}: value `{text}` is not a time", self.place(&time.column));
                 };
                 chunk.times.push(microseconds(picoseconds));
             }
@@ -412,11 +412,21 @@ fn signals(names: &[String], time: Option<&Column>) -> impl Iterator<Item = Colu
     signals.map(|(index, name)| Column { index, name: name.clone() })
 }
 
+/// The first names, and how many more there are: a table may have a million columns.
+pub(super) fn first_of(names: &[String]) -> String {
+    const MOST: usize = 20;
+    let first = names.get(..MOST).unwrap_or(names).join(", ");
+    match names.len().saturating_sub(MOST) {
+        0 => first,
+        more => format!("{first} and {more} more"),
+    }
+}
+
 /// The column that is neither a time nor a count, if there is just one.
 fn only(names: &[String], time: Option<&Column>, file: &str) -> Result<Column> {
     let mut signals = signals(names, time);
     match (signals.next(), signals.next()) {
         (Some(column), None) => Ok(column),
-        _ => bail!("{file}: `column` must say which; there are {}", names.join(", ")),
+        _ => bail!("{file}: `column` must say which; there are {}", first_of(names)),
     }
 }

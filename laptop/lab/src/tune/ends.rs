@@ -46,7 +46,10 @@ pub(super) fn ends(problem: &Problem, space: &Space, best: &Asked) -> Vec<End> {
         let is_near = if is_high { point[place] >= 1.0 - NEAR } else { point[place] <= NEAR };
         let mut beyond = numbers.clone();
         beyond[place] = further(axis, is_high);
-        if is_near && is_built(&space.meant(&beyond)) {
+        let is_count = matches!(axis.role, Role::Whole | Role::Most);
+        // No count is below 0.
+        let is_bound = is_count && meaning(axis, beyond[place]) < 0.0;
+        if is_near && !is_bound && is_built(&space.meant(&beyond)) {
             let searched = [axis.low, axis.high].map(|end| short(meaning(axis, end)));
             found.push(End { parameter: axis.name, value: short(value), searched });
         }

@@ -113,7 +113,8 @@ pub fn cut(recording: &Recording, hold_out: HoldOut) -> Result<(Vec<Stretch>, Ve
             Stretch::scored(recording, own, scored)
         }));
         if !scored.is_empty() {
-            let from_start = |own: &Range<usize>| own.start - segment.start..own.end - segment.start;
+            let from_start =
+                |own: &Range<usize>| own.start - segment.start..own.end - segment.start;
             let scored = scored.iter().map(from_start).collect();
             held_out.push(Stretch::scored(recording, segment, scored));
         }
