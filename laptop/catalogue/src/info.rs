@@ -95,8 +95,7 @@ pub enum Search {
     Thresholds(f64, f64),
     /// A whole number between these.
     Whole(u32, u32),
-    /// A most that settings allow, between these, as likely between 1 and 2 as between 10 and 20. What a signal never comes
-    /// to changes nothing, so that the least that suffices is best.
+    /// A most that settings allow, a whole number between these. More than a signal ever comes to changes nothing.
     Most(u32, u32),
     /// One of these words.
     Words(&'static [&'static str]),

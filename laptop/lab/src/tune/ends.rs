@@ -21,7 +21,7 @@ impl End {
     pub fn words(&self) -> String {
         let Self { parameter, value, searched: [low, high] } = self;
         format!(
-            "{parameter} {value} is where its search ends, {low} to {high}: beyond was not tried"
+            "{parameter} {value} is at the end of its search, {low} to {high}: beyond was not tried"
         )
     }
 }
@@ -30,7 +30,7 @@ impl End {
 /// bounds the scheme, not the search.
 pub(super) fn ends(problem: &Problem, space: &Space, best: &Asked) -> Vec<End> {
     /// The part of an axis that counts as its end.
-    const NEAR: f64 = 0.005;
+    const NEAR: f64 = 0.02;
     let point = space.point(best);
     let Some(first) = problem.train.first() else { return Vec::new() };
     let is_built = |options: &Asked| {
@@ -70,7 +70,6 @@ fn meaning(axis: &Axis, number: f64) -> f64 {
     match axis.role {
         Role::Log(unit) => number.exp() * unit,
         Role::Around(base, unit) => base + number * unit,
-        Role::Most => number.exp().round(),
         _ => number,
     }
 }
@@ -79,8 +78,7 @@ fn meaning(axis: &Axis, number: f64) -> f64 {
 fn further(axis: &Axis, is_high: bool) -> f64 {
     let (end, sign) = if is_high { (axis.high, 1.0) } else { (axis.low, -1.0) };
     match axis.role {
-        Role::Whole => end + sign,
-        Role::Most => (end.exp().round() + sign).ln(),
+        Role::Whole | Role::Most => end + sign,
         _ => end + sign * 0.02 * (axis.high - axis.low),
     }
 }

@@ -57,6 +57,8 @@ pub(super) const BATCH: usize = 64;
 const PARENTS: (usize, usize) = (10, 100);
 /// Goals between which a front is spread, in percent of samples without a spike.
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
+/// The least that a most is lowered to.
+const ROOM: usize = 16;
 /// The value of what cannot even be built.
 const NONE: f64 = 1e30;
 
@@ -242,8 +244,8 @@ impl Run<'_> {
         points
     }
 
-    /// Lowers a most that the signal does not come near to twice what it comes to: more costs memory and time for nothing,
-    /// and another recording may come to more than this one.
+    /// Lowers a most that the signal does not come near to twice what it comes to, as more may cost time. Not below
+    /// [`ROOM`]: held-out blocks and other recordings may jump where these do not.
     fn tighten(&mut self, space: &Space) -> Option<()> {
         let axis = space.axes().iter().find(|axis| axis.role == Role::Most)?;
         let problem = self.problem;
@@ -254,7 +256,7 @@ impl Run<'_> {
             let counts = events.chunk_by(|a, b| a.sample == b.sample).map(<[_]>::len);
             needed = needed.max(counts.max().unwrap_or_default());
         }
-        let enough = (2 * needed).max(1);
+        let enough = (2 * needed).max(ROOM);
         if enough as f64 >= best.options.number(axis.name)? {
             return None;
         }

@@ -43,7 +43,7 @@ pub(super) enum Role {
     /// The logarithm of a number of thresholds.
     Thresholds,
     Whole,
-    /// The logarithm of a whole number.
+    /// A whole number, a most that settings allow.
     Most,
     Words(&'static [&'static str]),
     /// The logarithm of a number of taps.
@@ -226,8 +226,7 @@ impl Space {
                     options.set(axis.name, base + value * unit);
                 }
                 Role::Thresholds => options.set(axis.name, format!("{}x", value.exp())),
-                Role::Whole => options.set(axis.name, whole as u64),
-                Role::Most => options.set(axis.name, value.exp().round() as u64),
+                Role::Whole | Role::Most => options.set(axis.name, whole as u64),
                 Role::Words(words) => options.set(axis.name, words[whole as usize]),
                 Role::Length => filter.length = value.exp().round() as usize,
                 Role::Shape => filter.shape = SHAPES[whole as usize],
@@ -273,8 +272,7 @@ impl Space {
                     let sum: f64 = taps.iter().map(|tap| tap.abs()).sum();
                     number(axis.name).map(|value| value / sum)
                 }
-                Role::Whole => number(axis.name),
-                Role::Most => number(axis.name).map(f64::ln),
+                Role::Whole | Role::Most => number(axis.name),
                 // Given in thresholds, or found as a number.
                 Role::Thresholds => {
                     match options.word(axis.name).and_then(|text| text.strip_suffix('x')) {
@@ -344,9 +342,7 @@ fn axes_of(parameter: &'static Parameter, search: Search, extent: Extent) -> Vec
         Search::OfFilter(low, high) => vec![axis(Role::OfFilter, low, high)],
         Search::Thresholds(low, high) => vec![axis(Role::Thresholds, low.ln(), high.ln())],
         Search::Whole(low, high) => vec![axis(Role::Whole, low.into(), high.into())],
-        Search::Most(low, high) => {
-            vec![axis(Role::Most, f64::from(low).ln(), f64::from(high).ln())]
-        }
+        Search::Most(low, high) => vec![axis(Role::Most, low.into(), high.into())],
         Search::Words(words) => vec![axis(Role::Words(words), 0.0, words.len() as f64 - 1.0)],
         Search::Filter(longest, low, high) => vec![
             axis(Role::Length, 0.0, f64::from(longest).ln()),
