@@ -7,9 +7,11 @@ use catalogue::{Found, Info, Kind, Parameter, Unit};
 use clap::builder::{MapValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, CommandFactory};
 use lab::coding::Coding as File;
+use lab::output::Output;
 use lab::scheme::Scheme;
 use std::collections::BTreeSet;
-use std::fmt::{Display, Write};
+use std::fmt::{Display, Write as _};
+use std::io::Write as _;
 use std::str::FromStr;
 use std::sync::LazyLock;
 
@@ -283,6 +285,16 @@ fn spelled_of(text: &str, is_setting: fn(&str) -> bool) -> String {
         all += parts.next().unwrap_or_default();
     }
     all
+}
+
+/// Writes an answer to standard output.
+///
+/// # Errors
+/// It cannot be written.
+pub(crate) fn answer(text: impl Display) -> Checked<()> {
+    let mut output = Output::to(None)?;
+    write!(output, "{text}")?;
+    output.finish()
 }
 
 /// Writes what the library says to standard error.

@@ -174,7 +174,7 @@ fn where_a_search_ends_is_said() {
     assert!(position.contains("position: none of 100 settings"), "{position}");
     assert!(position.contains("is at the end of its search, 3 to 64"), "{position}");
     let most = ask("--scheme sod");
-    assert!(most.contains("spikes=12") && !most.contains("spikes 127 is at the end"), "{most}");
+    assert!(most.contains("spikes=1") && !most.contains("spikes 127 is at the end"), "{most}");
     let given = ask("--scheme position --neurons 64");
     assert!(!given.contains("neurons 64 is at the end"), "{given}");
 }

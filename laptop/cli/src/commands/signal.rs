@@ -4,7 +4,7 @@ use crate::options::whole;
 use anyhow::Result;
 use clap::Args;
 use lab::bench::signal::{RATE, Waveform};
-use lab::output::Output;
+use lab::output::{Output, is_table};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -37,6 +37,9 @@ fn seconds(text: &str) -> Result<usize, String> {
 /// # Errors
 /// The output cannot be written.
 pub(crate) fn run(options: &Signal) -> Result<()> {
+    if let Some(output) = &options.output {
+        is_table(output, "")?;
+    }
     let mut output = Output::to(options.output.as_deref())?;
     writeln!(output, "time_us,signal")?;
     for (step, value) in (1..).zip(Waveform::new(options.seconds).with_noise(options.seed, 0)) {

@@ -1,5 +1,9 @@
 //! Columns of a CSV table.
 
+mod overview;
+
+pub use overview::{ColumnSummary, Summary, summary};
+
 use super::header::{Header, Start, is_data};
 use super::text::{name, shown, text};
 use super::time::{Named, Reading, TimeUnit, implausible};
@@ -223,10 +227,20 @@ impl Table {
         Ok(value)
     }
 
+    /// The error of a row whose time cannot be read.
+    fn no_time(&self, time: &Time) -> String {
+        let field = self.record.get(time.column.index).unwrap_or_default();
+        format!("{}: value `{}` is not a time", self.place(&time.column), shown(field.trim_ascii()))
+    }
+
     fn place(&self, column: &Column) -> String {
+        format!("{}: line {}, column {}", self.file, self.line(), column.name)
+    }
+
+    /// The line at which the row in hand begins.
+    fn line(&self) -> u64 {
         let record = &self.record;
-        let line = if self.was_ahead { line(record) } else { self.rows.line(record) };
-        format!("{}: line {line}, column {}", self.file, column.name)
+        if self.was_ahead { line(record) } else { self.rows.line(record) }
     }
 }
 
@@ -253,9 +267,7 @@ impl Source for Table {
             }
             if let Some(time) = &self.time {
                 let Some(picoseconds) = time.read(&self.record) else {
-                    let field = self.record.get(time.column.index).unwrap_or_default();
-                    let text = shown(field.trim_ascii());
-                    bail!("{}: value `{text}` is not a time", self.place(&time.column));
+                    bail!("{}", self.no_time(time));
                 };
                 chunk.times.push(microseconds(picoseconds));
             }

@@ -31,6 +31,24 @@ enum Place {
     Memory(Vec<u8>),
 }
 
+/// Refuses to write a table into a file whose name ends as that of another kind, whose programs could not read it. The
+/// endings of `others` are named beside those of tables. A device has any name.
+///
+/// # Errors
+/// The name does not end as that of a table.
+pub fn is_table(path: &Path, others: &str) -> Result<()> {
+    let Some(ending) = path.extension() else { return Ok(()) };
+    let is_device = path.metadata().is_ok_and(|data| !data.is_file());
+    if is_device || ["csv", "txt"].iter().any(|own| ending.eq_ignore_ascii_case(own)) {
+        return Ok(());
+    }
+    bail!(
+        "{}: no file .{} is written here; there are .csv, .txt and names without an ending, as tables{others}",
+        path.display(),
+        ending.display()
+    )
+}
+
 #[cfg(not(target_family = "wasm"))]
 const BUFFER: usize = 1 << 18;
 
