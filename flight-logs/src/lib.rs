@@ -122,14 +122,18 @@ impl Kind {
     /// Finds a log's kind from its first bytes, packed or not; `None` if the file is no log.
     ///
     /// # Errors
-    /// Returns an error if the file cannot be opened or read.
+    /// Returns an error if the file cannot be opened or read, or promises a log by its name and is none: a directory
+    /// without `metadata.yaml`, or a file `.ulg` with other bytes.
     pub fn of(path: &Path) -> Result<Option<Self>> {
         const START: u64 = 32;
-        if files::is_dir(path) || path.file_name().is_some_and(|name| name == rosbag2::METADATA) {
+        if path.file_name().is_some_and(|name| name == rosbag2::METADATA) {
             return Ok(Some(Self::Directory));
         }
-        if path.extension().is_some_and(|own| own == "ulg") {
-            return Ok(Some(Self::Ulog));
+        if files::is_dir(path) {
+            return match files::is_file(&path.join(rosbag2::METADATA)) {
+                true => Ok(Some(Self::Directory)),
+                false => Err(Error::not_a_log(path.display().to_string(), NO_BAG)),
+            };
         }
         // What can be read only once is no log.
         if !files::is_file(path) {
@@ -137,11 +141,18 @@ impl Kind {
             return Ok(None);
         }
         let mut start = Vec::new();
-        // What cannot be unpacked is no log.
-        if Bytes::open(path)?.take(START, &mut start).is_err() {
-            return Ok(None);
+        let read = Bytes::open(path)?.take(START, &mut start);
+        let is_named = path.extension().is_some_and(|own| own == "ulg");
+        match (read, of_start(&start)) {
+            (Err(error), _) if is_named => Err(Error::of(path, ErrorKind::Unpack(error))),
+            // What cannot be unpacked is no log.
+            (Err(_), _) => Ok(None),
+            (Ok(_), None) if is_named && start.is_empty() => Err(Error::of(path, ErrorKind::Empty)),
+            (Ok(_), None) if is_named => {
+                Err(Error::not_a_log(path.display().to_string(), ulog::OTHER))
+            }
+            (Ok(_), kind) => Ok(kind),
         }
-        Ok(of_start(&start))
     }
 
     /// Returns the topic that is meant unless another is named.
@@ -152,6 +163,9 @@ impl Kind {
         }
     }
 }
+
+/// The error of a directory that is no log.
+const NO_BAG: &str = "a directory, and no bag of ROS 2, which has a file metadata.yaml";
 
 /// The kind of a log that starts with these bytes.
 fn of_start(start: &[u8]) -> Option<Kind> {

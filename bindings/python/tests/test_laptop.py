@@ -64,7 +64,7 @@ def test_what_is_tuned_keeps_to_its_goal(log):
         ({"hold_out": 2}, "`hold_out` 2 must be 0 or more and below 1"),
         ({"max_rmse": 0}, "`max_rmse` 0 must be above 0 and finite"),
         ({"window": 5}, "sf takes no `window`"),
-        ({"max_ram": 1}, "no settings keep to all limits"),
+        ({"max_ram": 1}, "of the settings tried none keeps to all limits: sf: none of"),
     ]:
         with pytest.raises(ValueError, match=words):
             sw.tune(log.x[0], "sf", **{"evaluations": 20, **keywords})

@@ -14,6 +14,9 @@ use std::path::Path;
 /// The first bytes of a log.
 pub(crate) const START: &[u8] = b"ULog";
 
+/// The error of a file that starts with others.
+pub(crate) const OTHER: &str = "not a flight log; ULog files start with `ULog` and 12 bytes more";
+
 /// A log, all in memory.
 pub(crate) struct Ulog {
     bytes: Vec<u8>,
@@ -38,8 +41,7 @@ impl Ulog {
             return refused(ErrorKind::Empty);
         }
         if bytes.len() < HEADER || !bytes.starts_with(START) {
-            let what = "not a flight log; ULog files start with `ULog` and 12 bytes more";
-            return refused(ErrorKind::NotALog(what.to_owned()));
+            return refused(ErrorKind::NotALog(OTHER.to_owned()));
         }
         let Scan { topics, series, messages, findings, .. } = Scan::run(&bytes);
         if faults.damage() == Damage::Refuse {

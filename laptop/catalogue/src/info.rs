@@ -18,6 +18,8 @@ pub struct Info {
     pub is_signed: bool,
     /// Whether its decoder adds up steps from a first value.
     pub has_first_value: bool,
+    /// Whether errors of its steps add up in its decoder until a keyframe comes, though every spike arrives.
+    pub drifts: bool,
     /// Whether its keyframes are what its decoder holds already, and by which parameter it climbs a sample at
     /// most.
     pub climbs_by: Option<&'static str>,
@@ -39,6 +41,7 @@ impl Info {
         good_for: "",
         is_signed: false,
         has_first_value: false,
+        drifts: false,
         climbs_by: None,
         is_drawn: false,
         colour: [0; 3],
@@ -92,6 +95,8 @@ pub enum Search {
     Thresholds(f64, f64),
     /// A whole number between these.
     Whole(u32, u32),
+    /// A most that settings allow, a whole number between these. More than a signal ever comes to changes nothing.
+    Most(u32, u32),
     /// One of these words.
     Words(&'static [&'static str]),
     /// Shape and length of a filter of at most so many taps, and its sum in parts of the signal's range.
@@ -314,7 +319,7 @@ impl Parameter {
     pub const SPIKES: Self = Self::count("spikes", "most spikes a sample, 1 to 127")
         .with_example("4")
         .with_paper(Paper::Text("4"))
-        .searched(Search::Whole(1, 16));
+        .searched(Search::Most(1, 127));
 
     /// How many neurons there are.
     pub const fn neurons(paper: &'static str) -> Self {

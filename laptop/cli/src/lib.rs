@@ -43,7 +43,8 @@ const FAILURE: u8 = 2;
 
 /// Runs the program with the arguments that it was started with.
 pub fn run() -> ExitCode {
-    let done = match Program::parse().command {
+    let command = Program::parse().command;
+    let done = stop::handle().and_then(|()| match command {
         Command::Encode(options) => encode::run(&options),
         Command::Decode(options) => decode::run(&options),
         Command::Listen(options) => listen::run(&options),
@@ -59,7 +60,7 @@ pub fn run() -> ExitCode {
         Command::Emit(options) => commands::emit::run(&options),
         Command::Tune(options) => commands::tune::run(&options),
         Command::Frames(options) => commands::frames::run(&options),
-    };
+    });
     match done {
         Ok(()) => ExitCode::SUCCESS,
         // Whoever reads has read enough.

@@ -7,9 +7,12 @@ use catalogue::{Found, Info, Kind, Parameter, Unit};
 use clap::builder::{MapValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, CommandFactory};
 use lab::coding::Coding as File;
+use lab::output::Output;
 use lab::scheme::Scheme;
 use std::collections::BTreeSet;
-use std::fmt::{Display, Write};
+use std::fmt::{Display, Write as _};
+use std::io::Write as _;
+use std::str::FromStr;
 use std::sync::LazyLock;
 
 /// The scheme to run and its settings: from the command line, and from a file if that leaves some open.
@@ -26,6 +29,11 @@ pub(crate) struct Coding {
     params: Option<File>,
     #[command(flatten)]
     parameters: SchemeOptions,
+}
+
+/// Reads a whole number, 0 or more.
+pub(crate) fn whole<T: FromStr>(text: &str) -> Result<T, String> {
+    text.parse().map_err(|_| "must be a whole number, 0 or more".to_owned())
 }
 
 /// The value of `--params`.
@@ -253,7 +261,8 @@ pub(crate) fn spelled(text: &str) -> String {
 
 fn spelled_of(text: &str, is_setting: fn(&str) -> bool) -> String {
     /// Words behind which text in backticks came from the user or a file.
-    const DATA: [&str; 9] = [
+    const DATA: [&str; 10] = [
+        "value ",
         "channel ",
         "column ",
         "core ",
@@ -276,6 +285,16 @@ fn spelled_of(text: &str, is_setting: fn(&str) -> bool) -> String {
         all += parts.next().unwrap_or_default();
     }
     all
+}
+
+/// Writes an answer to standard output.
+///
+/// # Errors
+/// It cannot be written.
+pub(crate) fn answer(text: impl Display) -> Checked<()> {
+    let mut output = Output::to(None)?;
+    write!(output, "{text}")?;
+    output.finish()
 }
 
 /// Writes what the library says to standard error.
@@ -313,6 +332,7 @@ mod tests {
         for (text, spelt) in [
             ("sf needs `threshold` (or `paper`)", "sf needs --threshold (or --paper)"),
             ("no column `min`", "no column `min`"),
+            ("column x: value `min` is not a number", "column x: value `min` is not a number"),
             ("2 values of `threshold` for 1 neurons", "2 values of `threshold` for 1 neurons"),
             ("`linear` and `max`", "`linear` and --max"),
             ("an open ` alone", "an open ` alone"),

@@ -1,12 +1,31 @@
-//! Ctrl-C ends what has no end of its own, with all that it has so far kept.
+//! Ctrl-C ends what has no end of its own, with all that it has so far kept, and leaves no half-written file of the rest.
 
 use anyhow::{Context, Result};
+use lab::output::abandon;
 use spikewire::Tick;
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 static IS_WANTED: AtomicBool = AtomicBool::new(false);
+/// Whether the command looks at it.
+static IS_AWAITED: AtomicBool = AtomicBool::new(false);
+
+/// Handles Ctrl-C: a command that awaits it ends by itself; another, and at the second time any, ends here and now.
+///
+/// # Errors
+/// The system refuses.
+pub(crate) fn handle() -> Result<()> {
+    /// As a shell tells of a program that Ctrl-C ended.
+    const INTERRUPTED: i32 = 130;
+    ctrlc::set_handler(|| {
+        if IS_WANTED.swap(true, Ordering::Relaxed) || !IS_AWAITED.load(Ordering::Relaxed) {
+            abandon();
+            process::exit(INTERRUPTED);
+        }
+    })?;
+    Ok(())
+}
 
 /// When to stop.
 pub(crate) struct Stop {
@@ -20,14 +39,8 @@ impl Stop {
     /// # Errors
     /// The number is not above 0.
     pub(crate) fn new(seconds: Option<f64>) -> Result<Self> {
-        /// As a shell tells of a program that Ctrl-C ended.
-        const INTERRUPTED: i32 = 130;
         let after = seconds.map(duration).transpose()?;
-        ctrlc::set_handler(|| {
-            if IS_WANTED.swap(true, Ordering::Relaxed) {
-                process::exit(INTERRUPTED);
-            }
-        })?;
+        IS_AWAITED.store(true, Ordering::Relaxed);
         Ok(Self { start: Instant::now(), after })
     }
 

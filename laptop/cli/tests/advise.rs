@@ -65,7 +65,18 @@ fn a_loop_is_advised_no_code_that_is_late_or_falls_behind() {
     assert!(!within.is_empty(), "{advice:#}");
     assert!(within.iter().all(|(scheme, latency)| *latency <= 1.0 && scheme != "sf"), "{within:?}");
     let others = advice["others"].to_string();
+    assert!(
+        others.contains("at the nearest of 16 settings") && !others.contains("at best"),
+        "{others}"
+    );
     assert!(others.contains("in a loop sf follows this signal but for"), "{others}");
+    // A quarter of the rate is the most that a loop can act on, and Nyquist's frequency is twice that.
+    ran!("advise {log} --column x --rate 100 --max-rmse 0.4 --evaluations 1 --loop-bandwidth 25");
+    refused(
+        &format!("advise {log} --column x --rate 100 --loop-bandwidth 25.1"),
+        "",
+        &["--loop-bandwidth 25.1 must be 25 or less: x has 100 samples a second"],
+    );
     // Without a rate nobody knows what a sample is in the loop's time.
     let unknown = format!("advise {log} --column x --loop-bandwidth 5");
     refused(&unknown, "", &["--loop-bandwidth needs the rate of x"]);

@@ -7,7 +7,7 @@ use crate::scheme::Scheme;
 use crate::steep::Steep;
 use crate::trial::{Recording, Trial};
 use crate::tune::problem::Limit;
-use crate::tune::report::{Cut, Row};
+use crate::tune::report::{Cut, DRIFTS, Row};
 use crate::tune::search::{Budget, Method, search, share};
 use crate::tune::stretch::{HoldOut, cut};
 use crate::tune::{Goal, Limits, Problem, Stretch, costs};
@@ -26,6 +26,10 @@ const PHASE: f64 = 20.0;
 /// flies, and one that does so at 3.9 % loses steps and flips.
 const STEEP: f64 = 0.02;
 
+/// Samples that a control loop takes in a period of its bandwidth at least. Two are Nyquist's, with which nobody controls
+/// anything.
+const FEWEST: f64 = 4.0;
+
 /// The latency in samples that a loop of this bandwidth bears.
 fn borne(bandwidth: f64, rate: f64) -> f64 {
     (PHASE / 360.0 * rate / bandwidth).floor()
@@ -41,7 +45,7 @@ pub struct AdviseRequest {
     pub max_rmse: Option<f64>,
     /// Number of samples at most until a code comes out.
     pub max_latency: Option<f64>,
-    /// The frequency up to which the control loop acts that is to fly on the code, in Hz. Codes that are too late for it, or
+    /// The frequency up to which the control loop acts that is to fly on the code, in Hz, a quarter of the rate at most. Codes that are too late for it, or
     /// that fall behind the signal, are not advised.
     pub loop_bandwidth: Option<f64>,
     /// Core of the measured table that tells instructions.
@@ -162,6 +166,13 @@ impl Advice {
         let bytes = if matches!(request.sample, SampleType::Fixed16 { .. }) { 2.0 } else { 4.0 };
         let loop_latency = match (request.loop_bandwidth, recording.rate) {
             (None, _) => None,
+            (Some(bandwidth), Some(rate)) if bandwidth * FEWEST > rate => bail!(
+                "`loop_bandwidth` {bandwidth} must be {} or less: {} has {} samples a second, and a loop acts on {FEWEST} \
+                 or more in a period of its bandwidth",
+                short(rate / FEWEST),
+                recording.name,
+                short(rate)
+            ),
             (Some(bandwidth), Some(rate)) if bandwidth > 0.0 => Some(borne(bandwidth, rate)),
             (Some(_), None) => bail!("`loop_bandwidth` needs the rate of {}", recording.name),
             (Some(bandwidth), _) => bail!("`loop_bandwidth` {bandwidth} must be above 0"),
@@ -211,8 +222,14 @@ impl Advice {
                 Some(excess) if excess.limit == Limit::Latency => {
                     format!("has a latency of {} samples", best.costs.latency)
                 }
-                _ => format!("reaches {} at best", short(best.tally.rmse())),
+                _ => format!(
+                    "comes to {} at the nearest of {} settings",
+                    short(best.tally.rmse()),
+                    found.evaluated
+                ),
             };
+            let ends = found.ends.iter().map(|end| format!(" ({})", end.words()));
+            let what = what + &ends.collect::<String>();
             self.others.push(format!("{} {what}", scheme.name()));
             return Ok(());
         }
@@ -327,7 +344,7 @@ impl Advice {
         } else {
             format!("next: {}", next.join(", "))
         };
-        vec![
+        let mut reasons = vec![
             format!("  take {} in {sample}: {}", row.scheme, brief(row.settings.entries())),
             format!(
                 "    RMSE {}{held_out}, {:.1} % of the samples without a spike, {} events a second",
@@ -346,7 +363,11 @@ impl Advice {
                 self.reaching.len(),
                 short(self.max_rmse)
             ),
-        ]
+        ];
+        if best.scheme.is_some_and(|scheme| scheme.info().drifts) {
+            reasons.push(format!("    ! {DRIFTS}"));
+        }
+        reasons
     }
 }
 

@@ -52,7 +52,9 @@ fn slider(search: Search) -> Option<Value> {
     let (of, low, high, is_log) = match search {
         Search::Log(low, high) => ("unit", low, high, true),
         Search::Around(low, high) => ("around", low, high, false),
-        Search::Whole(low, high) => ("whole", low.into(), high.into(), false),
+        Search::Whole(low, high) | Search::Most(low, high) => {
+            ("whole", low.into(), high.into(), false)
+        }
         Search::OfFilter(..) | Search::Thresholds(..) | Search::Words(_) | Search::Filter(..) => {
             return None;
         }

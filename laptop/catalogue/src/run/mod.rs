@@ -332,6 +332,7 @@ impl<T: Build + Sync> RunTime for T {
     fn resolve(&self, sample: SampleType, asked: &Asked, known: &Known) -> Result<Settings> {
         let resolve = Resolve::new(&T::INFO, asked, known)?;
         let mut settings = T::resolve(&resolve)?;
+        resolve.check_range(&settings)?;
         if T::INFO.has_first_value {
             settings.first = resolve.first_window(T::looks_back(asked))?;
         }

@@ -71,6 +71,20 @@ impl<'a> Resolve<'a> {
         Ok(settings)
     }
 
+    /// Checks that the lower end of a range is below the upper one, which the user, or one of them the signal, has given.
+    pub(super) fn check_range(&self, settings: &Settings) -> Result<()> {
+        let ends = ["min", "max"].map(|name| settings.get(name).and_then(Value::number));
+        let [Some(min), Some(max)] = ends else { return Ok(()) };
+        let is_given = ["min", "max"].map(|name| self.user(name).is_some());
+        match is_given {
+            _ if min < max => Ok(()),
+            [false, false] => Ok(()),
+            [true, true] => bail!("`min` {min} must be below `max` {max}"),
+            [true, false] => bail!("`min` {min} must be below {max}, the signal's maximum"),
+            [false, true] => bail!("`max` {max} must be above {min}, the signal's minimum"),
+        }
+    }
+
     /// Settings of a population whose `centres` are a list, which says what its neurons and its range would; `None` if
     /// they are one of these words.
     ///

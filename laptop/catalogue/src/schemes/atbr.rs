@@ -18,6 +18,7 @@ impl Entry for Scheme {
         good_for: "changes whose size differs much between rest and flight; drifts",
         is_signed: true,
         has_first_value: true,
+        drifts: true,
         colour: [0x6c, 0x8f, 0xc9],
         parameters: &[
             Parameter::threshold(

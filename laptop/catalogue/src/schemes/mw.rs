@@ -17,6 +17,7 @@ impl Entry for Scheme {
         good_for: "changes against a short past; drifts",
         is_signed: true,
         has_first_value: true,
+        drifts: true,
         is_drawn: true,
         colour: [0xe0, 0x85, 0x3a],
         parameters: &[

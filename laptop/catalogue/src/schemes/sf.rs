@@ -17,6 +17,7 @@ impl Entry for Scheme {
         good_for: "following a signal closely with few spikes, while it changes by a threshold a sample at most",
         is_signed: true,
         has_first_value: true,
+        drifts: false,
         climbs_by: Some("threshold"),
         is_drawn: true,
         colour: [0xe9, 0xc4, 0x3a],

@@ -1,7 +1,7 @@
 //! `spikewire advise`: what a log is like, and which scheme suits each of its channels.
 
 use crate::inputs::InputOptions;
-use crate::options::tell;
+use crate::options::{answer, tell, whole};
 use crate::stop::Stop;
 use anyhow::{Result, bail};
 use catalogue::run::SampleType;
@@ -13,7 +13,6 @@ use lab::plot::{Picture, draw};
 use lab::trial::{Recording, Trial};
 use lab::tune::costs;
 use lab::watch::{Progress, Watch};
-use std::io::{Write, stdout};
 use std::path::{Path, PathBuf};
 
 /// Look at a log and say which scheme suits each channel, with which parameters, and why.
@@ -38,8 +37,8 @@ pub(crate) struct Advise {
     /// Samples until a code comes out at most
     #[arg(long, value_name = "SAMPLES")]
     max_latency: Option<f64>,
-    /// Hz up to which the control loop acts that is to fly on the code: codes that are late for it, or that fall behind
-    /// the signal, are not advised
+    /// Hz up to which the control loop acts that is to fly on the code, a quarter of the samples a second at most: codes
+    /// that are late for it, or that fall behind the signal, are not advised
     #[arg(long, value_name = "HZ", value_parser = lab::input::above_zero)]
     loop_bandwidth: Option<f64>,
     /// Core of the measured table: M0 or M4F
@@ -49,10 +48,10 @@ pub(crate) struct Advise {
     #[arg(long, value_parser = lab::input::above_zero)]
     seconds: Option<f64>,
     /// Settings of each scheme and channel to score at most
-    #[arg(long, default_value_t = AdviseRequest::EVALUATIONS)]
+    #[arg(long, default_value_t = AdviseRequest::EVALUATIONS, value_parser = whole::<usize>)]
     evaluations: usize,
     /// Seed of the search
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
     /// Draw one channel's signal, spikes and reconstruction by the scheme advised, `.svg` or `.png`
     #[arg(long)]
@@ -96,11 +95,9 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
     let all = advise(&request, &Watch { is_stopped: &|| stop.is_due(), tell: &tell })?;
     bar.finish_and_clear();
     if options.json {
-        writeln!(stdout(), "{}", serde_json::to_string_pretty(&all)?)?;
+        answer(serde_json::to_string_pretty(&all)? + "\n")?;
     } else {
-        for advice in &all {
-            write!(stdout(), "{}", advice.page())?;
-        }
+        answer(all.iter().map(Advice::page).collect::<String>())?;
     }
     if let (Some(path), [advice], [recording]) =
         (&options.picture, &all[..], &request.recordings[..])

@@ -1,10 +1,10 @@
 //! `spikewire bench`: the paper's Tables I and II.
 
+use crate::options::answer;
 use anyhow::{Result, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::bench::{self, paper};
-use std::io::{Write, stdout};
 use std::time::Instant;
 
 /// Reproduce Tables I and II of the paper, cell by cell; an error if a cell is not the paper's.
@@ -56,9 +56,9 @@ pub(crate) fn run(options: &Bench) -> Result<()> {
         rayon::current_num_threads()
     );
     if json {
-        writeln!(stdout(), "{:#}", bench::json(&results, seed))?;
+        answer(format_args!("{:#}\n", bench::json(&results, seed)))?;
     } else {
-        write!(stdout(), "{}", bench::print(&results))?;
+        answer(bench::print(&results))?;
     }
     let differing = bench::differing(&results);
     if !differing.is_empty() {

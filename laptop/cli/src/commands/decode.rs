@@ -7,7 +7,7 @@ use clap::Args;
 use flight_logs::Kind;
 use lab::bank::Bank;
 use lab::input::text;
-use lab::output::Output;
+use lab::output::{Output, is_table};
 use lab::spikes::{Header, Item, Messages, Reader, Spikes};
 use lab::timeline::Timeline;
 use std::fs::File;
@@ -43,6 +43,9 @@ const BUFFER: usize = 1 << 18;
 /// The file of spikes or the output are not good.
 pub(crate) fn run(options: &Decode) -> Result<()> {
     let Decode { spikes, output, accept_cut } = options;
+    if let Some(output) = output {
+        is_table(output, "")?;
+    }
     let is_stdin = spikes == Path::new("-");
     let kind = if is_stdin { None } else { Kind::of(spikes)? };
     let open = || Output::open(output.as_deref(), spikes);

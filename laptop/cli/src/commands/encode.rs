@@ -25,7 +25,8 @@ pub(crate) struct Encode {
     coding: Coding,
     #[command(flatten)]
     input: InputOptions,
-    /// File of spikes, of the toolbox's messages if it is called `.bag` (ROS 1) or `.mcap` (ROS 2); standard output unless given
+    /// File of spikes, `.csv`, `.txt` or without an ending, or of the toolbox's messages, `.bag` (ROS 1) or `.mcap` (ROS 2);
+    /// standard output unless given
     #[arg(short, long)]
     output: Option<PathBuf>,
 }
@@ -37,7 +38,7 @@ pub(crate) struct Encode {
 pub(crate) fn run(options: &Encode) -> Result<()> {
     let Encode { coding, input, output } = options;
     let (scheme, sample, parameters) = coding.one()?;
-    let format = output.as_deref().and_then(Format::of);
+    let format = output.as_deref().map(Format::of).transpose()?.flatten();
     let open = || Output::open(output.as_deref(), &input.input);
     let (output, notes) = encode(&input.to_lab(), scheme, sample, &parameters, format, open)?;
     output.finish()?;

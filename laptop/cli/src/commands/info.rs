@@ -1,24 +1,23 @@
-//! `spikewire info`: what a log holds.
+//! `spikewire info`: what a log or a table holds.
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use clap::Args;
 use flight_logs::Kind;
-use lab::input::above_zero;
 use lab::input::messages::{Overview, overview};
-use std::io::{Write, stdout};
-use std::path::PathBuf;
+use lab::input::{ChannelOptions, InputOptions, Summary, above_zero, summary};
+use lab::output::Output;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
-/// The kinds of logs that are read.
-const KINDS: &str =
-    "there are PX4's ULog, bags of ROS 1 and 2, MCAP files and Betaflight's blackbox";
-
-/// List a log's topics with their fields, rates and gaps, and what its logger missed.
+/// List a log's topics with their fields, rates and gaps, and what its logger missed; of a table its columns, rows, rate
+/// and gaps.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
   spikewire info flight.ulg")]
 pub(crate) struct Info {
-    /// PX4's `ULog`, a bag of ROS 1 or 2, an MCAP file or Betaflight's blackbox, also compressed by gzip
+    /// PX4's `ULog`, a bag of ROS 1 or 2, an MCAP file, Betaflight's blackbox or a CSV table, also compressed by gzip; `-` is
+    /// a table on standard input
     log: PathBuf,
     /// Report steps in time above this many usual steps
     #[arg(long, default_value_t = 1.5, value_parser = above_zero)]
@@ -34,16 +33,48 @@ pub(crate) struct Info {
 /// The log cannot be read.
 pub(crate) fn run(options: &Info) -> Result<()> {
     let Info { log, gap, accept_cut } = options;
-    let Some(kind) = Kind::of(log)? else {
-        bail!("{}: not a log that is known; {KINDS}", log.display())
+    let (gap, accept_cut) = (*gap, *accept_cut);
+    let kind = if log == Path::new("-") { None } else { Kind::of(log)? };
+    let mut output = Output::to(None)?;
+    let Some(kind) = kind else {
+        let channel = ChannelOptions { gap, accept_cut, ..ChannelOptions::default() };
+        let input = InputOptions { input: log.clone(), channel };
+        write_table(&input.name(), &summary(&input)?, &mut output)?;
+        return output.finish();
     };
-    let (topics, notes) = overview(log, kind, *accept_cut, *gap)?;
-    let mut output = stdout().lock();
+    let (topics, notes) = overview(log, kind, accept_cut, gap)?;
     for note in notes {
         writeln!(output, "{note}")?;
     }
     for topic in &topics {
         write(topic, &mut output)?;
+    }
+    output.finish()
+}
+
+fn write_table(name: &str, table: &Summary, output: &mut impl Write) -> Result<()> {
+    let Summary { columns, rows, clock, rollover, notes } = table;
+    for note in notes {
+        writeln!(output, "{note}")?;
+    }
+    write!(output, "{name}: {rows} rows")?;
+    if let Some(rate) = clock.rate() {
+        write!(output, ", {:.3} s, {rate:.2} Hz", clock.seconds())?;
+    }
+    writeln!(output, "\n  {clock}")?;
+    if let Some(note) = rollover.note() {
+        writeln!(output, "  {note}")?;
+    }
+    let numbers = columns.iter().filter(|own| own.text.is_none());
+    let numbers: Vec<&str> = numbers.map(|own| own.name.as_str()).collect();
+    writeln!(output, "  {}", numbers.join(", "))?;
+    for own in columns {
+        if let Some((line, text)) = &own.text {
+            writeln!(output, "  {}: no signal, as line {line} has `{text}`", own.name)?;
+        } else if own.missing > 0 {
+            let rows = if own.missing == 1 { "row" } else { "rows" };
+            writeln!(output, "  {}: missing or not finite in {} {rows}", own.name, own.missing)?;
+        }
     }
     Ok(())
 }

@@ -20,7 +20,7 @@ use lab::trial::Recording;
 use spikewire::Polarity;
 use std::fmt::Write as _;
 use std::fs;
-use std::io::{self, BufRead, Write, stdin, stdout};
+use std::io::{self, BufRead, Write, stdin};
 use std::path::{Path, PathBuf};
 
 /// Bring a trained network onto a chip: a Rust constant for `spikewire-chips`, and what quantising costs.
@@ -150,7 +150,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
 
 /// Steps in by standard input, answers out.
 fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
-    let (mut answers, mut line) = (stdout().lock(), String::new());
+    let (mut answers, mut line) = (Output::to(None)?, String::new());
     let step = |line: io::Result<String>| {
         let step = spikes(&line?)?;
         let is_known = step.iter().all(|input| usize::from(*input) < inputs);

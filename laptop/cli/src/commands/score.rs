@@ -1,15 +1,16 @@
 //! `spikewire score`: how few spikes, and how near to the signal.
 
 use crate::inputs::InputOptions;
-use crate::options::{Coding, tell};
+use crate::options::{Coding, answer, tell};
 use anyhow::{Result, bail};
 use catalogue::run::{Asked, SampleType};
 use clap::Args;
+use lab::output::Output;
 use lab::scheme::Scheme;
 use lab::score::Figures;
 use lab::trial::{Recording, Trial};
 use serde::Serialize;
-use std::io::{self, Write, stdout};
+use std::io::Write;
 
 /// Score one scheme, or without `--scheme` all with the paper's settings, on one channel of a recording.
 ///
@@ -83,7 +84,7 @@ pub(crate) fn run(options: &Score) -> Result<()> {
         }
     }
     if *json {
-        writeln!(stdout(), "{}", serde_json::to_string_pretty(&scored)?)?;
+        answer(serde_json::to_string_pretty(&scored)? + "\n")?;
     } else {
         print_table(&scored)?;
     }
@@ -113,8 +114,8 @@ pub(crate) fn chosen(coding: &Coding) -> Result<(Vec<Scheme>, SampleType, Asked)
     }
 }
 
-fn print_table(scored: &[Scored]) -> io::Result<()> {
-    let mut output = stdout().lock();
+fn print_table(scored: &[Scored]) -> Result<()> {
+    let mut output = Output::to(None)?;
     writeln!(
         output,
         "| scheme              |  spikes | efficiency % |       RMSE |  SNR dB | spikes/s | parameters |"
@@ -142,5 +143,5 @@ fn print_table(scored: &[Scored]) -> io::Result<()> {
             "| {scheme:19} | {spikes:7} | {efficiency:12.2} | {rmse:10.5} | {snr:7.2} | {rate:>8} | {brief} |"
         )?;
     }
-    Ok(())
+    output.finish()
 }

@@ -1,9 +1,10 @@
 //! `spikewire signal`: a signal of the paper's benchmark, to try things on.
 
-use anyhow::{Result, bail};
+use crate::options::whole;
+use anyhow::Result;
 use clap::Args;
 use lab::bench::signal::{RATE, Waveform};
-use lab::output::Output;
+use lab::output::{Output, is_table};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -13,15 +14,22 @@ use std::path::PathBuf;
 Example:
   spikewire signal --seconds 15 | spikewire encode --scheme sf --threshold 0.5 -")]
 pub(crate) struct Signal {
-    /// Its duration in seconds
-    #[arg(long, default_value_t = 1)]
+    /// Its duration in seconds, 0 to 1000000
+    #[arg(long, default_value_t = 1, value_parser = seconds)]
     seconds: usize,
     /// Seed of its noise
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
     /// CSV file; standard output unless given
     #[arg(short, long)]
     output: Option<PathBuf>,
+}
+
+/// Reads a number of seconds of which all samples fit into memory.
+fn seconds(text: &str) -> Result<usize, String> {
+    const MOST: usize = 1_000_000;
+    let seconds = whole(text).ok().filter(|seconds| *seconds <= MOST);
+    seconds.ok_or_else(|| format!("must be a whole number, 0 to {MOST}"))
 }
 
 /// Runs the command.
@@ -29,10 +37,8 @@ pub(crate) struct Signal {
 /// # Errors
 /// The output cannot be written.
 pub(crate) fn run(options: &Signal) -> Result<()> {
-    // All of it is held in memory.
-    const MOST: usize = 1_000_000;
-    if options.seconds > MOST {
-        bail!("--seconds {} must be {MOST} at most", options.seconds);
+    if let Some(output) = &options.output {
+        is_table(output, "")?;
     }
     let mut output = Output::to(options.output.as_deref())?;
     writeln!(output, "time_us,signal")?;

@@ -1,7 +1,7 @@
 //! `spikewire tune`: the parameters of a scheme, from flight logs.
 
 use crate::inputs::ChannelOptions;
-use crate::options::{FREE, augment, given, option_group, spelled, tell};
+use crate::options::{FREE, answer, augment, given, option_group, spelled, tell, whole};
 use crate::stop::Stop;
 use anyhow::{Context, Result, bail};
 use catalogue::Parameter;
@@ -18,7 +18,7 @@ use lab::tune::report::{Cut, Row, print};
 use lab::tune::stretch::HoldOut;
 use lab::tune::{Goal, Limits, Stretch, TuneRequest, Tuned, costs, emit, tune};
 use lab::watch::{Progress, Watch};
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -77,17 +77,17 @@ pub(crate) struct Tune {
     #[arg(long, value_name = "PART", default_value_t = 0.3, help_heading = "Search")]
     hold_out: f64,
     /// Blocks of equal length that each log is cut into
-    #[arg(long, default_value_t = 20, help_heading = "Search")]
+    #[arg(long, default_value_t = 20, value_parser = whole::<usize>, help_heading = "Search")]
     blocks: usize,
     /// Stop after so many seconds in all, which makes the settings depend on the machine's speed; Ctrl-C stops as well.
     /// The best so far is kept
     #[arg(long, value_parser = lab::input::above_zero, help_heading = "Search")]
     seconds: Option<f64>,
     /// Settings of each scheme and channel to score at most
-    #[arg(long, default_value_t = TuneRequest::EVALUATIONS, help_heading = "Search")]
+    #[arg(long, default_value_t = TuneRequest::EVALUATIONS, value_parser = whole::<usize>, help_heading = "Search")]
     evaluations: usize,
     /// Seed of the search; the same seed and budget of evaluations give the same settings
-    #[arg(long, default_value_t = 1, help_heading = "Search")]
+    #[arg(long, default_value_t = 1, value_parser = whole::<u64>, help_heading = "Search")]
     seed: u64,
     /// Search although the log says little: noise, all on the ground, full of holes, clipped
     #[arg(long, help_heading = "Search")]
@@ -178,7 +178,7 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
             eprintln!("{}: {}", channel.name, spelled(&words));
         }
         if rows.is_empty() && curves.is_empty() {
-            bail!("{}: no settings keep to all limits", channel.name);
+            bail!("{}: of the settings tried none keeps to all limits", channel.name);
         }
         if let Some((scheme, row)) = rows.first() {
             emitted += &options.emitted(*scheme, &channel, row)?;
@@ -283,8 +283,7 @@ impl Tune {
                     (cut.name.clone(), serde_json::json!(rows))
                 })
                 .collect();
-            writeln!(stdout(), "{:#}", serde_json::Value::Object(channels))?;
-            return Ok(());
+            return answer(format_args!("{:#}\n", serde_json::Value::Object(channels)));
         }
         let is_to_stdout =
             self.emit.is_some() && self.output.as_deref().is_none_or(|path| path == Path::new("-"));
@@ -293,7 +292,7 @@ impl Tune {
             if is_to_stdout {
                 eprint!("{text}");
             } else {
-                write!(stdout(), "{text}")?;
+                answer(text)?;
             }
         }
         Ok(())
@@ -309,9 +308,7 @@ fn position(settings: f64, time: f64) -> u64 {
 }
 
 fn texts(cut: &Cut, rows: &[(Scheme, Row)], core: &str, below: Option<f64>) -> String {
-    let count = |stretches: &[Stretch]| -> usize {
-        stretches.iter().map(|stretch| stretch.values.len()).sum()
-    };
+    let count = |stretches: &[Stretch]| -> usize { stretches.iter().map(Stretch::samples).sum() };
     let head = format!(
         "{}: {} samples to tune on, {} held out\n",
         cut.name,

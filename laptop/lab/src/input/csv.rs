@@ -1,5 +1,9 @@
 //! Columns of a CSV table.
 
+mod overview;
+
+pub use overview::{ColumnSummary, Summary, summary};
+
 use super::header::{Header, Start, is_data};
 use super::text::{name, shown, text};
 use super::time::{Named, Reading, TimeUnit, implausible};
@@ -207,7 +211,7 @@ impl Table {
         if is_missing(field) {
             return Ok(f64::NAN);
         }
-        Err(anyhow!("{}: `{}` is not a number", self.place(column), shown(field)))
+        Err(anyhow!("{}: value `{}` is not a number", self.place(column), shown(field)))
     }
 
     fn value(&self, column: &Column) -> Result<f64> {
@@ -215,7 +219,7 @@ impl Table {
         if !value.is_finite() && !self.skip_non_finite {
             let field = self.record.get(column.index).unwrap_or_default().trim_ascii();
             let what = match shown(field) {
-                shown if is_missing(field) => format!("`{shown}` is a missing value"),
+                shown if is_missing(field) => format!("value `{shown}` is missing"),
                 shown => format!("{shown} is not finite"),
             };
             bail!("{}: {what}; `skip_non_finite` goes on over such values", self.place(column));
@@ -223,10 +227,20 @@ impl Table {
         Ok(value)
     }
 
+    /// The error of a row whose time cannot be read.
+    fn no_time(&self, time: &Time) -> String {
+        let field = self.record.get(time.column.index).unwrap_or_default();
+        format!("{}: value `{}` is not a time", self.place(&time.column), shown(field.trim_ascii()))
+    }
+
     fn place(&self, column: &Column) -> String {
+        format!("{}: line {}, column {}", self.file, self.line(), column.name)
+    }
+
+    /// The line at which the row in hand begins.
+    fn line(&self) -> u64 {
         let record = &self.record;
-        let line = if self.was_ahead { line(record) } else { self.rows.line(record) };
-        format!("{}: line {line}, column {}", self.file, column.name)
+        if self.was_ahead { line(record) } else { self.rows.line(record) }
     }
 }
 
@@ -253,9 +267,7 @@ impl Source for Table {
             }
             if let Some(time) = &self.time {
                 let Some(picoseconds) = time.read(&self.record) else {
-                    let field = self.record.get(time.column.index).unwrap_or_default();
-                    let text = shown(field.trim_ascii());
-                    bail!("{}: `{text}` is not a time", self.place(&time.column));
+                    bail!("{}", self.no_time(time));
                 };
                 chunk.times.push(microseconds(picoseconds));
             }
@@ -412,11 +424,21 @@ fn signals(names: &[String], time: Option<&Column>) -> impl Iterator<Item = Colu
     signals.map(|(index, name)| Column { index, name: name.clone() })
 }
 
+/// The first names, and how many more there are: a table may have a million columns.
+pub(super) fn first_of(names: &[String]) -> String {
+    const MOST: usize = 20;
+    let first = names.get(..MOST).unwrap_or(names).join(", ");
+    match names.len().saturating_sub(MOST) {
+        0 => first,
+        more => format!("{first} and {more} more"),
+    }
+}
+
 /// The column that is neither a time nor a count, if there is just one.
 fn only(names: &[String], time: Option<&Column>, file: &str) -> Result<Column> {
     let mut signals = signals(names, time);
     match (signals.next(), signals.next()) {
         (Some(column), None) => Ok(column),
-        _ => bail!("{file}: `column` must say which; there are {}", names.join(", ")),
+        _ => bail!("{file}: `column` must say which; there are {}", first_of(names)),
     }
 }

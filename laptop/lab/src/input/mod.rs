@@ -8,8 +8,10 @@ mod names;
 mod rollover;
 mod text;
 mod time;
+mod times;
 
 pub use clock::{Clock, Kind, Step};
+pub use csv::{ColumnSummary, Summary, summary};
 pub use names::near;
 pub use rollover::Rollover;
 pub use text::{shown, text};
@@ -214,12 +216,6 @@ impl InputOptions {
     }
 
     fn open_as_is(&self) -> Result<Box<dyn Source>> {
-        let of_logs = [
-            ("topic", self.topic.is_some()),
-            ("field", !self.field.is_empty()),
-            ("fields", !self.fields.is_empty()),
-            ("accept_cut", self.accept_cut),
-        ];
         let of_tables = [
             ("column", !self.column.is_empty()),
             ("columns", !self.columns.is_empty()),
@@ -227,11 +223,8 @@ impl InputOptions {
             ("rate", self.rate.is_some()),
         ];
         let of_times = [("time", self.time.is_some()), ("time_unit", self.time_unit.is_some())];
-        if self.is_stdin() {
-            self.refuse(&of_logs, "a CSV table")?;
-            return Ok(Box::new(csv::Table::open(io::stdin(), "standard input", self)?));
-        }
-        if let Some(kind) = flight_logs::Kind::of(&self.input)? {
+        let kind = if self.is_stdin() { None } else { flight_logs::Kind::of(&self.input)? };
+        if let Some(kind) = kind {
             if let Some(named) = self.named_by_topic() {
                 return named.open_as_is();
             }
@@ -241,10 +234,25 @@ impl InputOptions {
             }
             return Ok(Box::new(messages::Channel::open(self, kind)?));
         }
+        Ok(Box::new(self.open_table()?))
+    }
+
+    /// Opens a table.
+    fn open_table(&self) -> Result<csv::Table> {
+        let of_logs = [
+            ("topic", self.topic.is_some()),
+            ("field", !self.field.is_empty()),
+            ("fields", !self.fields.is_empty()),
+            ("accept_cut", self.accept_cut),
+        ];
+        if self.is_stdin() {
+            self.refuse(&of_logs, "a CSV table")?;
+            return csv::Table::open(io::stdin(), "standard input", self);
+        }
         let name = self.input.display().to_string();
         let file = File::open(&self.input).with_context(|| format!("{name}: cannot be opened"))?;
         self.refuse(&of_logs, "a CSV table")?;
-        Ok(Box::new(csv::Table::open(file, &name, self)?))
+        csv::Table::open(file, &name, self)
     }
 
     /// Splits columns `TOPIC.FIELD` of one topic into the topic and its fields.

@@ -1,15 +1,33 @@
 //! Files that are written beside their place and then moved there.
 
-use anyhow::{Context, Result};
 use same_file::Handle;
 use std::fs;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::NamedTempFile;
+
+/// The files in the making, which a program that is ended must not leave behind.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Deletes all files that are being written. The program must end at once: no file can be started or finished any more,
+/// so that none appears after this.
+pub fn abandon() {
+    let files = unfinished();
+    for file in files.iter() {
+        // It may be in its place by now, or its directory gone.
+        let _ = fs::remove_file(file);
+    }
+    std::mem::forget(files);
+}
 
 /// A file in the making.
 pub(super) struct Beside {
-    file: BufWriter<NamedTempFile>,
+    file: Option<BufWriter<NamedTempFile>>,
     path: PathBuf,
 }
 
@@ -18,13 +36,18 @@ impl Beside {
     ///
     /// # Errors
     /// Nothing can be written there.
-    pub(super) fn new(path: &Path) -> Result<Self> {
-        let name = path.display();
-        let path = target(path.to_owned()).with_context(|| format!("{name}: cannot be written"))?;
+    pub(super) fn new(path: &Path) -> io::Result<Self> {
+        let path = target(path.to_owned())?;
         let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-        let file = named(directory.unwrap_or(Path::new(".")))
-            .with_context(|| format!("{name}: cannot be written"))?;
-        Ok(Self { file: BufWriter::with_capacity(super::BUFFER, file), path })
+        // Nobody may end the program between the two.
+        let mut files = unfinished();
+        let file = named(directory.unwrap_or(Path::new(".")))?;
+        files.push(file.path().to_owned());
+        Ok(Self { file: Some(BufWriter::with_capacity(super::BUFFER, file)), path })
+    }
+
+    fn file(&mut self) -> io::Result<&mut BufWriter<NamedTempFile>> {
+        self.file.as_mut().ok_or_else(|| io::Error::other("it is finished"))
     }
 
     /// Writes again what stands at a place of the file.
@@ -32,9 +55,10 @@ impl Beside {
     /// # Errors
     /// Returns an error if the file cannot be written.
     pub(super) fn overwrite(&mut self, place: u64, bytes: &[u8]) -> io::Result<()> {
-        self.file.seek(SeekFrom::Start(place))?;
-        self.file.write_all(bytes)?;
-        self.file.seek(SeekFrom::End(0))?;
+        let file = self.file()?;
+        file.seek(SeekFrom::Start(place))?;
+        file.write_all(bytes)?;
+        file.seek(SeekFrom::End(0))?;
         Ok(())
     }
 
@@ -42,21 +66,37 @@ impl Beside {
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
-    pub(super) fn finish(self) -> Result<()> {
-        let name = self.path.display();
-        let file = self.file.into_inner().map_err(io::IntoInnerError::into_error)?;
-        file.persist(&self.path).with_context(|| format!("{name}: cannot be written"))?;
+    pub(super) fn finish(mut self) -> io::Result<()> {
+        let Some(file) = self.file.take() else { return Ok(()) };
+        let temporary = file.get_ref().path().to_owned();
+        let file = file.into_inner().map_err(io::IntoInnerError::into_error);
+        let mut files = unfinished();
+        files.retain(|own| *own != temporary);
+        file?.persist(&self.path)?;
         Ok(())
+    }
+}
+
+impl Drop for Beside {
+    /// Deletes what was not finished.
+    fn drop(&mut self) {
+        let Some(file) = self.file.take() else { return };
+        let path = file.get_ref().path().to_owned();
+        let mut files = unfinished();
+        // What is left in the buffer is not wanted.
+        let (file, _) = file.into_parts();
+        drop(file);
+        files.retain(|own| *own != path);
     }
 }
 
 impl Write for Beside {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.file.write(bytes)
+        self.file()?.write(bytes)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
+        self.file()?.flush()
     }
 }
 

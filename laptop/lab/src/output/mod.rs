@@ -3,6 +3,9 @@
 #[cfg(not(target_family = "wasm"))]
 mod beside;
 
+#[cfg(not(target_family = "wasm"))]
+pub use beside::abandon;
+
 use anyhow::{Result, bail};
 #[cfg(not(target_family = "wasm"))]
 use std::io::BufWriter;
@@ -11,6 +14,8 @@ use std::path::Path;
 
 /// Standard output, a file that is written beside its place and then moved there, or memory.
 pub struct Output {
+    /// The name in errors.
+    name: String,
     place: Place,
     bytes: u64,
 }
@@ -26,13 +31,31 @@ enum Place {
     Memory(Vec<u8>),
 }
 
+/// Refuses to write a table into a file whose name ends as that of another kind, whose programs could not read it. The
+/// endings of `others` are named beside those of tables. A device has any name.
+///
+/// # Errors
+/// The name does not end as that of a table.
+pub fn is_table(path: &Path, others: &str) -> Result<()> {
+    let Some(ending) = path.extension() else { return Ok(()) };
+    let is_device = path.metadata().is_ok_and(|data| !data.is_file());
+    if is_device || ["csv", "txt"].iter().any(|own| ending.eq_ignore_ascii_case(own)) {
+        return Ok(());
+    }
+    bail!(
+        "{}: no file .{} is written here; there are .csv, .txt and names without an ending, as tables{others}",
+        path.display(),
+        ending.display()
+    )
+}
+
 #[cfg(not(target_family = "wasm"))]
 const BUFFER: usize = 1 << 18;
 
 impl Output {
     /// Writes into memory.
     pub fn memory() -> Self {
-        Self { place: Place::Memory(Vec::new()), bytes: 0 }
+        Self { name: "memory".to_owned(), place: Place::Memory(Vec::new()), bytes: 0 }
     }
 
     /// Opens the output; without a path it is standard output. A link is followed.
@@ -53,25 +76,21 @@ impl Output {
     /// Nothing can be written there.
     #[cfg(not(target_family = "wasm"))]
     pub fn to(path: Option<&Path>) -> Result<Self> {
-        use anyhow::Context;
         use std::fs::{File, metadata};
 
+        let direct = |output| Place::Direct(BufWriter::with_capacity(BUFFER, output));
         let Some(path) = path.filter(|path| *path != Path::new("-")) else {
-            return Ok(Self::direct(Box::new(io::stdout().lock())));
+            let name = "standard output".to_owned();
+            return Ok(Self { name, place: direct(Box::new(io::stdout().lock())), bytes: 0 });
         };
+        let name = path.display().to_string();
         // Nothing is moved onto a device.
-        if metadata(path).is_ok_and(|data| !data.is_file()) {
-            let name = path.display();
-            let device =
-                File::create(path).with_context(|| format!("{name}: cannot be written"))?;
-            return Ok(Self::direct(Box::new(device)));
-        }
-        Ok(Self { place: Place::Beside(beside::Beside::new(path)?), bytes: 0 })
-    }
-
-    #[cfg(not(target_family = "wasm"))]
-    fn direct(output: Box<dyn Write>) -> Self {
-        Self { place: Place::Direct(BufWriter::with_capacity(BUFFER, output)), bytes: 0 }
+        let place = if metadata(path).is_ok_and(|data| !data.is_file()) {
+            File::create(path).map(|device| direct(Box::new(device)))
+        } else {
+            beside::Beside::new(path).map(Place::Beside)
+        };
+        Ok(Self { place: place.map_err(|error| unwritten(&name, &error))?, name, bytes: 0 })
     }
 
     /// Refuses: a browser has no files to write.
@@ -113,7 +132,9 @@ impl Output {
     pub fn overwrite(&mut self, place: u64, bytes: &[u8]) -> Result<()> {
         match &mut self.place {
             #[cfg(not(target_family = "wasm"))]
-            Place::Beside(file) => file.overwrite(place, bytes)?,
+            Place::Beside(file) => {
+                file.overwrite(place, bytes).map_err(|error| unwritten(&self.name, &error))?;
+            }
             Place::Memory(all) => {
                 let own = usize::try_from(place).ok().and_then(|place| all.get_mut(place..));
                 match own.and_then(|own| own.get_mut(..bytes.len())) {
@@ -132,15 +153,20 @@ impl Output {
     /// # Errors
     /// Returns an error if the output cannot be written.
     pub fn finish(self) -> Result<()> {
-        match self.place {
+        let done = match self.place {
             #[cfg(not(target_family = "wasm"))]
-            Place::Direct(mut output) => output.flush()?,
+            Place::Direct(mut output) => output.flush(),
             #[cfg(not(target_family = "wasm"))]
-            Place::Beside(file) => file.finish()?,
-            Place::Memory(_) => {}
-        }
-        Ok(())
+            Place::Beside(file) => file.finish(),
+            Place::Memory(_) => Ok(()),
+        };
+        Ok(done.map_err(|error| unwritten(&self.name, &error))?)
     }
+}
+
+/// The error of a file that cannot be written, of the same kind, with its name.
+fn unwritten(name: &str, error: &io::Error) -> io::Error {
+    io::Error::new(error.kind(), format!("{name}: cannot be written: {error}"))
 }
 
 impl Write for Output {
@@ -151,18 +177,20 @@ impl Write for Output {
             #[cfg(not(target_family = "wasm"))]
             Place::Beside(file) => file.write(bytes),
             Place::Memory(all) => all.write(bytes),
-        }?;
+        };
+        let written = written.map_err(|error| unwritten(&self.name, &error))?;
         self.bytes += written as u64;
         Ok(written)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        match &mut self.place {
+        let flushed = match &mut self.place {
             #[cfg(not(target_family = "wasm"))]
             Place::Direct(output) => output.flush(),
             #[cfg(not(target_family = "wasm"))]
             Place::Beside(file) => file.flush(),
             Place::Memory(_) => Ok(()),
-        }
+        };
+        flushed.map_err(|error| unwritten(&self.name, &error))
     }
 }

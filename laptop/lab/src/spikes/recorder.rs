@@ -8,7 +8,7 @@ use super::mcap::Mcap;
 use super::spyke::{self, Kind, Spyke};
 use super::{Header, Record, Summary};
 use crate::input::{Chunk, Step};
-use crate::output::Output;
+use crate::output::{Output, is_table};
 use anyhow::{Context, Result, bail};
 use catalogue::run::Event;
 use catalogue::toolbox::published;
@@ -49,11 +49,14 @@ pub enum Format {
 
 impl Format {
     /// The container of a file of this name; `None` if it is a table.
-    pub fn of(path: &Path) -> Option<Self> {
-        match path.extension()?.to_str()? {
-            "bag" => Some(Self::Bag),
-            "mcap" => Some(Self::Mcap),
-            _ => None,
+    ///
+    /// # Errors
+    /// The name ends as that of another kind of file.
+    pub fn of(path: &Path) -> Result<Option<Self>> {
+        match path.extension().and_then(|own| own.to_str()) {
+            Some("bag") => Ok(Some(Self::Bag)),
+            Some("mcap") => Ok(Some(Self::Mcap)),
+            _ => is_table(path, ", .bag (ROS 1) and .mcap (ROS 2)").map(|()| None),
         }
     }
 }

@@ -7,7 +7,7 @@ use realfft::RealFftPlanner;
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// Figures over stretches that were coded each by itself.
+/// Figures over what is scored of stretches, each of which was coded in one piece.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Figures {
     /// Number of samples.
@@ -51,13 +51,23 @@ impl Figures {
         let mut codes: HashMap<Vec<Event>, usize> = HashMap::new();
         for stretch in stretches {
             let (events, decoded, _) = problem.run(options, sample, stretch)?;
-            sums.observe(stretch, &events, &decoded);
-            correlate(&stretch.values, &decoded, &mut correlations);
-            count_codes(&events, stretch.values.len(), &mut codes);
-            if let (Some(limit), Some(rate)) = (below, stretch.rate) {
-                let off: Vec<f64> =
-                    stretch.values.iter().zip(&decoded).map(|(value, own)| own - value).collect();
-                sums.below += squares_below(&off, limit / rate);
+            let events: Vec<Event> =
+                events.into_iter().filter(|own| stretch.is_scored(own.sample)).collect();
+            sums.spikes += events.len();
+            count_codes(&events, stretch.samples(), &mut codes);
+            sums.seconds = match sums.samples {
+                0 => stretch.seconds(),
+                _ => sums.seconds.zip(stretch.seconds()).map(|(all, own)| all + own),
+            };
+            for scored in &stretch.scored {
+                let (values, decoded) = (&stretch.values[scored.clone()], &decoded[scored.clone()]);
+                sums.observe(values, decoded);
+                correlate(values, decoded, &mut correlations);
+                if let (Some(limit), Some(rate)) = (below, stretch.rate) {
+                    let off: Vec<f64> =
+                        values.iter().zip(decoded).map(|(value, own)| own - value).collect();
+                    sums.below += squares_below(&off, limit / rate);
+                }
             }
         }
         let samples = sums.samples as f64;
@@ -108,17 +118,12 @@ struct Sums {
 }
 
 impl Sums {
-    fn observe(&mut self, stretch: &Stretch, events: &[Event], decoded: &[f64]) {
-        let seconds = stretch.rate.map(|rate| stretch.values.len() as f64 / rate);
+    fn observe(&mut self, values: &[f64], decoded: &[f64]) {
         if self.samples == 0 {
             (self.min, self.max) = (f64::INFINITY, f64::NEG_INFINITY);
-            self.seconds = seconds;
-        } else {
-            self.seconds = self.seconds.zip(seconds).map(|(all, own)| all + own);
         }
-        self.samples += stretch.values.len();
-        self.spikes += events.len();
-        for (value, decoded) in stretch.values.iter().zip(decoded) {
+        self.samples += values.len();
+        for (value, decoded) in values.iter().zip(decoded) {
             let off = value - decoded;
             self.squares += off * off;
             self.worst = self.worst.max(off.abs());

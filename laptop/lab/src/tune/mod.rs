@@ -3,6 +3,7 @@
 mod chance;
 pub mod costs;
 pub mod emit;
+mod ends;
 mod evolution;
 pub mod figures;
 mod listed;
@@ -15,6 +16,7 @@ mod strategy;
 pub mod stretch;
 
 pub use costs::Costs;
+pub use ends::End;
 pub use figures::Figures;
 pub use problem::{Goal, Limits, Problem, Scored};
 pub use request::{Curve, TuneRequest, Tuned, tune};

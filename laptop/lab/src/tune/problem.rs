@@ -210,7 +210,7 @@ impl<'a> Problem<'a> {
         Ok((events, decoded, codec.latency()))
     }
 
-    /// The score of settings on stretches, and the latency.
+    /// The score of settings on what is scored of stretches, and the latency.
     ///
     /// # Errors
     /// Returns an error if the settings make no sense.
@@ -243,12 +243,13 @@ impl<'a> Problem<'a> {
             }
             let (events, decoded, own) = self.coded(&settings, stretch)?;
             latency = own;
-            tally.samples += stretch.values.len();
-            tally.spikes += events.len();
-            let off = stretch.values.iter().zip(&decoded).map(|(value, own)| (value - own).powi(2));
-            tally.squares += off.sum::<f64>();
-            let seconds = stretch.rate.map(|rate| stretch.values.len() as f64 / rate);
-            tally.seconds = tally.seconds.zip(seconds).map(|(all, own)| all + own);
+            tally.samples += stretch.samples();
+            tally.spikes += events.iter().filter(|own| stretch.is_scored(own.sample)).count();
+            for scored in &stretch.scored {
+                let pairs = stretch.values[scored.clone()].iter().zip(&decoded[scored.clone()]);
+                tally.squares += pairs.map(|(value, own)| (value - own).powi(2)).sum::<f64>();
+            }
+            tally.seconds = tally.seconds.zip(stretch.seconds()).map(|(all, own)| all + own);
         }
         Ok((tally, latency, settings))
     }

@@ -2,7 +2,7 @@
 
 use super::problem::{Goal, Tally};
 use super::search::Found;
-use super::{Costs, Figures, Problem, Scored, Stretch};
+use super::{Costs, End, Figures, Problem, Scored, Stretch};
 use crate::brief::{brief, json, short};
 use anyhow::{Context, Result};
 use catalogue::run::{Asked, SampleType, Settings};
@@ -10,6 +10,10 @@ use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;
+
+/// The note on settings of a code that drifts.
+pub(crate) const DRIFTS: &str = "drifts: the errors of all its steps add up until a keyframe comes, and each flight's add up \
+     otherwise: not to be relied on in another flight";
 
 /// Recordings of one channel, cut.
 pub struct Cut {
@@ -128,6 +132,8 @@ impl Row {
     fn flags(&self, problem: &Problem, cut: &Cut, found: &Found) -> Vec<String> {
         /// Others may be better on held-out blocks by chance.
         const BY_CHANCE: f64 = 1.25;
+        /// Blocks that are harder for any settings do not explain this much.
+        const FAR: f64 = 1.5;
         let mut flags = Vec::new();
         if found.is_cut_short {
             flags.push(format!(
@@ -135,13 +141,10 @@ impl Row {
                 found.evaluated
             ));
         }
-        if problem.scheme.info().parameters.iter().any(|parameter| parameter.name == "step") {
-            flags.push(
-                "its step is fitted to how these recordings drift, and each drifts otherwise: not to be relied on \
-                 in another flight"
-                    .to_owned(),
-            );
+        if problem.scheme.info().drifts {
+            flags.push(DRIFTS.to_owned());
         }
+        flags.extend(found.ends.iter().map(End::words));
         let told = self.held_out.as_ref().unwrap_or(&self.tuned_on);
         // Which of two nothings is nearer says nothing.
         if told.spikes == 0 {
@@ -174,6 +177,16 @@ impl Row {
                 ));
             }
             _ => {}
+        }
+        let growth = held_out.rmse / self.tuned_on.rmse;
+        if growth > FAR {
+            flags.push(format!(
+                "{} times the RMSE on held-out blocks, {} where it is {} on those it was tuned on: those are coded each \
+                 from its first sample on, the held-out ones within the flight",
+                short((growth * 10.0).round() / 10.0),
+                short(held_out.rmse),
+                short(self.tuned_on.rmse)
+            ));
         }
         // Of what was looked at, something may do far better there.
         let stride = found.front.len().div_ceil(64).max(1);
@@ -305,7 +318,7 @@ fn details(text: &mut String, row: &Row, core: &str) -> std::fmt::Result {
 }
 
 /// The reason that the best settings are not allowed, and how near they come.
-pub fn missed(problem: &Problem, best: &Scored) -> String {
+pub fn missed(problem: &Problem, found: &Found, best: &Scored) -> String {
     let words = best.excess.iter().map(|one| {
         let is = if one.is.is_finite() { short(one.is) } else { "not known".to_owned() };
         format!("`{}` {} is {is}", one.limit.name(), short(one.may_be))
@@ -315,12 +328,15 @@ pub fn missed(problem: &Problem, best: &Scored) -> String {
         .train
         .first()
         .and_then(|stretch| problem.settings(&best.options, problem.sample, stretch).ok());
+    let ends = found.ends.iter().map(|end| format!("; {}", end.words()));
     format!(
-        "{}: nothing keeps to all limits; nearest, with an RMSE of {} at {:.2} % efficiency ({}): {}",
+        "{}: none of {} settings keeps to all limits; nearest, with an RMSE of {} at {:.2} % efficiency ({}): {}{}",
         problem.scheme.name(),
+        found.evaluated,
         short(best.tally.rmse()),
         best.tally.efficiency(),
         settings.map_or(String::new(), |settings| brief(settings.entries())),
-        words.join(", ")
+        words.join(", "),
+        ends.collect::<String>()
     )
 }

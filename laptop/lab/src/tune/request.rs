@@ -256,7 +256,7 @@ fn one(request: &TuneRequest, scheme: Scheme, channel: &Cut, budget: &Budget) ->
         return Ok(Outcome::Curve(curve(&problem, channel, &found, paper.as_ref())));
     }
     if problem.goal == Goal::Front || !best.is_allowed() {
-        return Ok(Outcome::Missed(missed(&problem, best)));
+        return Ok(Outcome::Missed(missed(&problem, &found, best)));
     }
     Ok(Outcome::Row(Box::new(Row::new(&problem, channel, &found, best, request.below)?)))
 }

@@ -2,9 +2,11 @@
 //!
 //! How far it goes is a number of settings that the codec scores, so that the result is the same on every machine.
 
+use super::End;
+use super::ends::ends;
 use super::evolution::Evolution;
 use super::problem::{Goal, Problem, Scored, front};
-use super::space::{Inner, Space};
+use super::space::{Inner, Role, Space};
 use super::strategy::Strategy;
 use catalogue::run::{Asked, LANES, Value};
 use rayon::prelude::*;
@@ -36,6 +38,8 @@ pub struct Found {
     pub is_complete: bool,
     /// Whether the search ended before its budget of settings, by its deadline or by somebody's wish.
     pub is_cut_short: bool,
+    /// The ends of the search at which the best settings lie, though the scheme has values beyond.
+    pub ends: Vec<End>,
 }
 
 /// The method of a search.
@@ -53,6 +57,8 @@ pub(super) const BATCH: usize = 64;
 const PARENTS: (usize, usize) = (10, 100);
 /// Goals between which a front is spread, in percent of samples without a spike.
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
+/// The least that a most is lowered to.
+const ROOM: usize = 16;
 /// The value of what cannot even be built.
 const NONE: f64 = 1e30;
 
@@ -71,6 +77,7 @@ pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
             listed: 0,
             is_complete: false,
             is_cut_short: false,
+            ends: Vec::new(),
         },
         least: f64::INFINITY,
     };
@@ -80,7 +87,9 @@ pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
     paper.paper = true;
     run.try_all(&[paper]);
     if space.len() > 0 && !run.exactly(&space) {
-        let (seed, all) = (method.seed, budget.evaluations);
+        // One is left to tighten the best.
+        let is_loose = space.axes().iter().any(|axis| axis.role == Role::Most);
+        let (seed, all) = (method.seed, budget.evaluations - usize::from(is_loose));
         if method.free_taps {
             run.evolve(&space, problem.goal, seed, all / 2);
             run.free(&space, seed);
@@ -93,6 +102,10 @@ pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
         } else {
             run.evolve(&space, problem.goal, seed, all);
         }
+    }
+    run.tighten(&space);
+    if let Some(best) = &run.found.best {
+        run.found.ends = ends(problem, &space, &best.options);
     }
     run.found.front = front(run.found.front);
     run.found
@@ -229,6 +242,29 @@ impl Run<'_> {
             best(point);
         });
         points
+    }
+
+    /// Lowers a most that the signal does not come near to twice what it comes to, as more may cost time. Not below
+    /// [`ROOM`]: held-out blocks and other recordings may jump where these do not.
+    fn tighten(&mut self, space: &Space) -> Option<()> {
+        let axis = space.axes().iter().find(|axis| axis.role == Role::Most)?;
+        let problem = self.problem;
+        let best = self.found.best.clone()?;
+        let mut needed = 0;
+        for stretch in problem.train {
+            let (events, ..) = problem.run(&best.options, problem.sample, stretch).ok()?;
+            let counts = events.chunk_by(|a, b| a.sample == b.sample).map(<[_]>::len);
+            needed = needed.max(counts.max().unwrap_or_default());
+        }
+        let enough = (2 * needed).max(ROOM);
+        if enough as f64 >= best.options.number(axis.name)? {
+            return None;
+        }
+        let mut options = best.options;
+        options.set(axis.name, enough as u64);
+        let [scored] = self.try_all(&[options]).try_into().ok()?;
+        self.found.best = scored.or(self.found.best.take());
+        Some(())
     }
 
     /// An evolution strategy on the taps of the best filter so far, again and again.

@@ -24,16 +24,16 @@ impl Extent {
 
 /// One number of the search.
 #[derive(Clone, Debug)]
-struct Axis {
-    name: &'static str,
-    role: Role,
-    low: f64,
-    high: f64,
+pub(super) struct Axis {
+    pub name: &'static str,
+    pub role: Role,
+    pub low: f64,
+    pub high: f64,
 }
 
 /// The parameter that a number becomes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Role {
+pub(super) enum Role {
     /// The logarithm of a number in this unit.
     Log(f64),
     /// An offset from a value, in parts of a range.
@@ -43,6 +43,8 @@ enum Role {
     /// The logarithm of a number of thresholds.
     Thresholds,
     Whole,
+    /// A whole number, a most that settings allow.
+    Most,
     Words(&'static [&'static str]),
     /// The logarithm of a number of taps.
     Length,
@@ -97,7 +99,7 @@ impl Space {
         for axis in &self.axes {
             match axis.role {
                 Role::Length | Role::Shape | Role::Alpha | Role::Sum(..) => {}
-                Role::Whole | Role::Words(_) => {
+                Role::Whole | Role::Most | Role::Words(_) => {
                     if let Some(value) = found.get(axis.name) {
                         fixed.set(axis.name, value.clone());
                     }
@@ -113,6 +115,11 @@ impl Space {
     /// How many numbers there are.
     pub(crate) fn len(&self) -> usize {
         self.axes.len()
+    }
+
+    /// The numbers, with the bounds between which each is searched.
+    pub(super) fn axes(&self) -> &[Axis] {
+        &self.axes
     }
 
     /// The number that a place in 0 to 1 means on an axis.
@@ -199,15 +206,19 @@ impl Space {
     pub(crate) fn options(&self, point: &[f64]) -> Asked {
         let numbers: Vec<f64> =
             point.iter().enumerate().map(|(axis, place)| self.number(axis, *place)).collect();
-        let point = numbers.as_slice();
+        self.meant(&numbers)
+    }
+
+    /// The options that numbers on all axes mean, also beyond the bounds.
+    pub(super) fn meant(&self, numbers: &[f64]) -> Asked {
         let mut options = self.fixed.clone();
         let (mut filter, mut free) = (Shaped::default(), Vec::new());
-        let shifts = self.axes.iter().zip(point).find_map(|(axis, value)| match axis.role {
+        let shifts = self.axes.iter().zip(numbers).find_map(|(axis, value)| match axis.role {
             Role::Around(base, unit) => Some(base + value * unit),
             _ => None,
         });
         let shift = shifts.or_else(|| self.fixed.number("shift"));
-        for (axis, &value) in self.axes.iter().zip(point) {
+        for (axis, &value) in self.axes.iter().zip(numbers) {
             let whole = value.round();
             match axis.role {
                 Role::Log(unit) => options.set(axis.name, value.exp() * unit),
@@ -215,7 +226,7 @@ impl Space {
                     options.set(axis.name, base + value * unit);
                 }
                 Role::Thresholds => options.set(axis.name, format!("{}x", value.exp())),
-                Role::Whole => options.set(axis.name, whole as u64),
+                Role::Whole | Role::Most => options.set(axis.name, whole as u64),
                 Role::Words(words) => options.set(axis.name, words[whole as usize]),
                 Role::Length => filter.length = value.exp().round() as usize,
                 Role::Shape => filter.shape = SHAPES[whole as usize],
@@ -232,7 +243,7 @@ impl Space {
         } else if filter.length > 0 {
             options.set("filter", filter.taps());
         }
-        for (axis, value) in self.axes.iter().zip(point) {
+        for (axis, value) in self.axes.iter().zip(numbers) {
             if axis.role == Role::OfFilter {
                 let sum =
                     taps_of(&options).map_or(1.0, |taps| taps.iter().map(|tap| tap.abs()).sum());
@@ -261,7 +272,7 @@ impl Space {
                     let sum: f64 = taps.iter().map(|tap| tap.abs()).sum();
                     number(axis.name).map(|value| value / sum)
                 }
-                Role::Whole => number(axis.name),
+                Role::Whole | Role::Most => number(axis.name),
                 // Given in thresholds, or found as a number.
                 Role::Thresholds => {
                     match options.word(axis.name).and_then(|text| text.strip_suffix('x')) {
@@ -331,6 +342,7 @@ fn axes_of(parameter: &'static Parameter, search: Search, extent: Extent) -> Vec
         Search::OfFilter(low, high) => vec![axis(Role::OfFilter, low, high)],
         Search::Thresholds(low, high) => vec![axis(Role::Thresholds, low.ln(), high.ln())],
         Search::Whole(low, high) => vec![axis(Role::Whole, low.into(), high.into())],
+        Search::Most(low, high) => vec![axis(Role::Most, low.into(), high.into())],
         Search::Words(words) => vec![axis(Role::Words(words), 0.0, words.len() as f64 - 1.0)],
         Search::Filter(longest, low, high) => vec![
             axis(Role::Length, 0.0, f64::from(longest).ln()),

@@ -6,23 +6,45 @@ use anyhow::{Result, bail};
 use catalogue::run::SampleType;
 use std::ops::Range;
 
-/// Samples in a row, coded from the first of them on.
+/// Samples in a row, coded in one piece from the first of them on, and the ranges of them that are scored.
 #[derive(Clone, Debug)]
 pub struct Stretch {
-    /// The samples.
+    /// The samples that are coded.
     pub values: Vec<f64>,
     /// Samples a second, if known.
     pub rate: Option<f64>,
+    /// The ranges that are scored, in order and apart from each other.
+    pub scored: Vec<Range<usize>>,
 }
 
 impl Stretch {
     /// All of a recording, a stretch for each segment.
     pub fn whole(recording: &Recording) -> Vec<Self> {
-        let stretch = |segment: &Range<usize>| Self {
-            values: recording.values[segment.clone()].to_vec(),
-            rate: recording.rate,
+        let stretch = |own: &Range<usize>| {
+            let scored = std::iter::once(0..own.len()).collect();
+            Self::scored(recording, own, scored)
         };
         recording.segments.iter().map(stretch).collect()
+    }
+
+    /// Samples of a recording of which these ranges, counted from the first of them, are scored.
+    fn scored(recording: &Recording, own: &Range<usize>, scored: Vec<Range<usize>>) -> Self {
+        Self { values: recording.values[own.clone()].to_vec(), rate: recording.rate, scored }
+    }
+
+    /// Number of samples that are scored.
+    pub fn samples(&self) -> usize {
+        self.scored.iter().map(Range::len).sum()
+    }
+
+    /// How long the scored samples last, if the rate is known.
+    pub fn seconds(&self) -> Option<f64> {
+        self.rate.map(|rate| self.samples() as f64 / rate)
+    }
+
+    /// Whether a sample is scored.
+    pub fn is_scored(&self, sample: u64) -> bool {
+        self.scored.iter().any(|own| (own.start as u64..own.end as u64).contains(&sample))
     }
 
     /// The samples as a sample type holds them.
@@ -46,7 +68,11 @@ const SHORTEST: usize = 20;
 /// The offset with which the blocks held out are evenly spread, and neither the first nor the last.
 const OFFSET: f64 = 0.35;
 
-/// The stretches to tune on, and those held out: blocks next to each other are one stretch.
+/// The stretches to tune on, and those held out.
+///
+/// Blocks to tune on that are next to each other are one stretch. What is held out is coded as it would fly: each segment in
+/// one piece, through the blocks to tune on as well, of which only the held-out ones are scored. Coded block by block, a code
+/// that drifts would start from the right value in each, and hide how far it goes astray.
 ///
 /// # Errors
 /// The blocks are too short, or none is left to tune on.
@@ -66,28 +92,54 @@ pub fn cut(recording: &Recording, hold_out: HoldOut) -> Result<(Vec<Stretch>, Ve
     }
     let before_it = |block: usize| (block as f64 * part + OFFSET).floor();
     let is_held_out = |block: usize| before_it(block + 1) > before_it(block);
-    let (mut kept, mut kept_back) = (Vec::new(), Vec::new());
-    let mut before = None;
-    for block in 0..blocks {
-        let (start, end) = (samples * block / blocks, samples * (block + 1) / blocks);
-        let side = if is_held_out(block) { &mut kept_back } else { &mut kept };
-        for segment in &recording.segments {
+    let (mut kept, mut held_out) = (Vec::new(), Vec::new());
+    for segment in &recording.segments {
+        let mut ranges: [Vec<Range<usize>>; 2] = Default::default();
+        for block in 0..blocks {
+            let (start, end) = (samples * block / blocks, samples * (block + 1) / blocks);
             let own = start.max(segment.start)..end.min(segment.end);
             if own.is_empty() {
                 continue;
             }
-            // A block goes on from the one before it, if both are of one segment.
-            let goes_on = before == Some(is_held_out(block)) && own.start > segment.start;
-            let values = &recording.values[own];
-            match side.last_mut().filter(|_| goes_on) {
-                Some(Stretch { values: last, .. }) => last.extend_from_slice(values),
-                None => side.push(Stretch { values: values.to_vec(), rate: recording.rate }),
+            let side = &mut ranges[usize::from(is_held_out(block))];
+            match side.last_mut().filter(|last| last.end == own.start) {
+                Some(last) => last.end = own.end,
+                None => side.push(own),
             }
-            before = Some(is_held_out(block));
+        }
+        let [to_tune_on, scored] = ranges;
+        kept.extend(to_tune_on.iter().map(|own| {
+            let scored = std::iter::once(0..own.len()).collect();
+            Stretch::scored(recording, own, scored)
+        }));
+        if !scored.is_empty() {
+            let from_start =
+                |own: &Range<usize>| own.start - segment.start..own.end - segment.start;
+            let scored = scored.iter().map(from_start).collect();
+            held_out.push(Stretch::scored(recording, segment, scored));
         }
     }
-    if kept.is_empty() || kept_back.is_empty() {
+    if kept.is_empty() || held_out.is_empty() {
         bail!("`hold_out` {part} of {blocks} blocks leaves none to tune on or none to check on");
     }
-    Ok((kept, kept_back))
+    Ok((kept, held_out))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{HoldOut, Stretch, cut};
+    use crate::trial::Recording;
+
+    /// 5 blocks, of which the second and the fifth are held out.
+    #[test]
+    fn what_is_held_out_is_coded_with_what_is_before_it() {
+        let values: Vec<f64> = (0..200).map(f64::from).collect();
+        let recording = Recording::of("x".to_owned(), values.clone(), Some(100.0));
+        let (kept, held_out) = cut(&recording, HoldOut { blocks: 5, part: 0.4 }).unwrap();
+        let firsts = kept.iter().map(|own| own.values[0]);
+        assert_eq!(firsts.collect::<Vec<_>>(), [0.0, 80.0]);
+        let [Stretch { values: coded, scored, .. }] = &held_out[..] else { panic!("{held_out:?}") };
+        assert_eq!((coded, &scored[..]), (&values, &[40..80, 160..200][..]));
+        assert_eq!((held_out[0].samples(), held_out[0].seconds()), (80, Some(0.8)));
+    }
 }

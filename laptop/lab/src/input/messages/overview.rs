@@ -1,7 +1,8 @@
 //! An overview of a log: its topics, and how their messages came.
 
 use super::{advised, damage};
-use crate::input::{CHUNK, Clock, Rollover};
+use crate::input::times::Times;
+use crate::input::{Clock, Rollover};
 use anyhow::Result;
 use flight_logs::definition::Path as FieldPath;
 use flight_logs::{Kind, Topic, microseconds, open};
@@ -68,11 +69,7 @@ pub fn overview(
 
 /// The messages of one topic as they come.
 struct Watched {
-    gap: f64,
-    /// The first times, which tell what is usual.
-    first: Vec<i64>,
-    clock: Option<Clock>,
-    rollover: Rollover,
+    times: Times,
     count: u64,
     /// The place of the number with which messages count themselves.
     counter: Option<FieldPath>,
@@ -84,10 +81,7 @@ impl Watched {
     fn new(topic: &Topic, gap: f64) -> Self {
         let definition = topic.definition.as_ref().ok();
         Self {
-            gap,
-            first: Vec::new(),
-            clock: None,
-            rollover: Rollover::default(),
+            times: Times::new(gap),
             count: 0,
             counter: definition.and_then(|own| own.number("header.seq").ok()),
             previous: None,
@@ -96,23 +90,8 @@ impl Watched {
     }
 
     fn observe(&mut self, time: i64) {
-        let time = self.rollover.take(time);
+        self.times.observe(time);
         self.count += 1;
-        if let Some(clock) = &mut self.clock {
-            clock.observe(&[time]);
-            return;
-        }
-        self.first.push(time);
-        if self.first.len() == CHUNK {
-            self.clock = Some(self.started());
-            self.first = Vec::new();
-        }
-    }
-
-    fn started(&self) -> Clock {
-        let mut clock = Clock::new(&self.first, None, self.gap);
-        clock.observe(&self.first);
-        clock
     }
 
     fn count(&mut self, sequence: u32) {
@@ -124,8 +103,8 @@ impl Watched {
         }
     }
 
-    fn told(mut self, topic: &Topic) -> Overview {
-        let clock = self.clock.take().unwrap_or_else(|| self.started());
+    fn told(self, topic: &Topic) -> Overview {
+        let (clock, rollover) = self.times.finish();
         let ((fields, texts), unread) = match &topic.definition {
             Ok(definition) => (definition.names(), None),
             Err(error) => (Default::default(), Some(error.clone())),
@@ -138,7 +117,7 @@ impl Watched {
             unread,
             count: self.count,
             clock,
-            rollover: self.rollover,
+            rollover,
             missing: self.missing,
         }
     }

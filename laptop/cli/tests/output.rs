@@ -1,0 +1,72 @@
+//! Files that are written: whole or not at all, whatever ends the program, and errors with their name.
+#![cfg(unix)]
+
+mod common;
+
+use common::{refused, spikewire};
+use std::fs::{self, File};
+use std::io::Write;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// More rows than are read before the output is opened.
+const ROWS: usize = 20_000;
+
+#[test]
+fn ctrl_c_leaves_no_file() {
+    let directory = tempfile::tempdir().unwrap();
+    let files = || fs::read_dir(directory.path()).unwrap().count();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_spikewire"))
+        .args(["encode", "--scheme", "sf", "--threshold", "0.5", "-", "-o"])
+        .arg(directory.path().join("spikes.csv"))
+        .stdin(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut input = child.stdin.take().unwrap();
+    input.write_all(("x\n".to_owned() + &"0\n1\n".repeat(ROWS)).as_bytes()).unwrap();
+    let end = Instant::now() + Duration::from_secs(20);
+    while files() == 0 && Instant::now() < end {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!(files(), 1, "a file in the making");
+    let interrupted = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(interrupted.unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(files(), 0);
+}
+
+#[test]
+fn a_full_disk_is_told_with_the_file() {
+    for command in ["signal -o /dev/full", "signal --seconds 5000 -o /dev/full"] {
+        refused(command, "", &["error: /dev/full: cannot be written: No space left"]);
+    }
+    for command in ["signal", "score --rate 100 -", "info -"] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_spikewire"))
+            .args(command.split(' '))
+            .stdin(Stdio::piped())
+            .stdout(File::options().write(true).open("/dev/full").unwrap())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        child.stdin.take().unwrap().write_all(b"x\n1\n2\n1\n").unwrap();
+        let done = child.wait_with_output().unwrap();
+        let told = String::from_utf8(done.stderr).unwrap();
+        assert_eq!(done.status.code(), Some(2), "{told}");
+        assert!(
+            told.contains("error: standard output: cannot be written: No space left"),
+            "{told}"
+        );
+    }
+}
+
+/// A table of 100 000 columns is told by the first of them.
+#[test]
+fn a_message_is_short_though_names_are_many() {
+    let names: Vec<String> = (0..100_000).map(|own| format!("c{own}")).collect();
+    let row = vec!["0"; names.len()].join(",");
+    let table = format!("{}\n{row}\n{row}\n", names.join(","));
+    let ran = spikewire("encode --scheme sf --threshold 1 -", &table);
+    assert_eq!(ran.status, 2);
+    assert!(ran.told.contains("c18, c19 and 99980 more") && ran.told.len() < 500, "{}", ran.told);
+}

@@ -1,0 +1,69 @@
+//! An overview of a table: its columns, and how its rows came.
+
+use super::is_missing;
+use crate::input::text::shown;
+use crate::input::time::{microseconds, number};
+use crate::input::times::Times;
+use crate::input::{ALL, Clock, InputOptions, Rollover, Source};
+use anyhow::{Result, bail};
+
+/// A summary of a table.
+#[derive(Debug)]
+pub struct Summary {
+    /// Its columns besides times and counts.
+    pub columns: Vec<ColumnSummary>,
+    /// Number of rows.
+    pub rows: u64,
+    /// Its length, rate and gaps.
+    pub clock: Clock,
+    /// The times that its clock ran over.
+    pub rollover: Rollover,
+    /// Notes for the user on how it is read.
+    pub notes: Vec<String>,
+}
+
+/// A summary of one column of a table.
+#[derive(Debug)]
+pub struct ColumnSummary {
+    /// Its name.
+    pub name: String,
+    /// Number of rows without a value, or with one that is not finite.
+    pub missing: u64,
+    /// The first value that is no number, and its line.
+    pub text: Option<(u64, String)>,
+}
+
+/// Summarises a table, whose columns need not all hold numbers.
+///
+/// # Errors
+/// Returns an error if the table cannot be read, or a time is none.
+pub fn summary(input: &InputOptions) -> Result<Summary> {
+    let mut options = input.clone();
+    options.channel.columns = vec![ALL.to_owned()];
+    let mut table = options.open_table()?;
+    let columns = table.names().into_iter().map(str::to_owned);
+    let mut columns: Vec<ColumnSummary> =
+        columns.map(|name| ColumnSummary { name, missing: 0, text: None }).collect();
+    let mut times = Times::new(input.gap);
+    let mut rows = 0;
+    while table.advance()? {
+        for (own, column) in columns.iter_mut().zip(&table.columns) {
+            let field = table.record.get(column.index).unwrap_or_default().trim_ascii();
+            match number(field, table.has_decimal_commas) {
+                Some(value) => own.missing += u64::from(!value.is_finite()),
+                None if is_missing(field) => own.missing += 1,
+                None if own.text.is_none() => own.text = Some((table.line(), shown(field))),
+                None => {}
+            }
+        }
+        if let Some(time) = &table.time {
+            let Some(picoseconds) = time.read(&table.record) else {
+                bail!("{}", table.no_time(time));
+            };
+            times.observe(microseconds(picoseconds));
+        }
+        rows += 1;
+    }
+    let (clock, rollover) = times.finish();
+    Ok(Summary { columns, rows, clock, rollover, notes: table.notes })
+}

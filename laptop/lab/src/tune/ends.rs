@@ -1,0 +1,84 @@
+//! Ends of a search that the best settings lie at, where the scheme itself would go on.
+
+use super::Problem;
+use super::space::{Axis, Role, Space};
+use crate::brief::short;
+use catalogue::run::Asked;
+
+/// The end of a parameter's search.
+#[derive(Clone, Debug)]
+pub struct End {
+    /// The parameter.
+    pub parameter: &'static str,
+    /// The searched value that the best settings have, in words.
+    pub value: String,
+    /// The values between which it was searched, in words.
+    pub searched: [String; 2],
+}
+
+impl End {
+    /// A sentence for the user.
+    pub fn words(&self) -> String {
+        let Self { parameter, value, searched: [low, high] } = self;
+        format!(
+            "{parameter} {value} is at the end of its search, {low} to {high}: beyond was not tried"
+        )
+    }
+}
+
+/// The ends of the search at which these settings lie. An end beyond which nothing can be built is not one of them: it
+/// bounds the scheme, not the search.
+pub(super) fn ends(problem: &Problem, space: &Space, best: &Asked) -> Vec<End> {
+    /// The part of an axis that counts as its end.
+    const NEAR: f64 = 0.02;
+    let point = space.point(best);
+    let Some(first) = problem.train.first() else { return Vec::new() };
+    let is_built = |options: &Asked| {
+        let settings = problem.settings(options, problem.sample, first);
+        settings.and_then(|settings| problem.scheme.codec(&settings)).is_ok()
+    };
+    let numbers: Vec<f64> =
+        point.iter().enumerate().map(|(axis, place)| space.number(axis, *place)).collect();
+    let mut found = Vec::new();
+    for (place, axis) in space.axes().iter().enumerate() {
+        let Some(value) = number(axis, best) else { continue };
+        let is_high = point[place] > 0.5;
+        let is_near = if is_high { point[place] >= 1.0 - NEAR } else { point[place] <= NEAR };
+        let mut beyond = numbers.clone();
+        beyond[place] = further(axis, is_high);
+        let is_count = matches!(axis.role, Role::Whole | Role::Most);
+        // No count is below 0.
+        let is_bound = is_count && meaning(axis, beyond[place]) < 0.0;
+        if is_near && !is_bound && is_built(&space.meant(&beyond)) {
+            let searched = [axis.low, axis.high].map(|end| short(meaning(axis, end)));
+            found.push(End { parameter: axis.name, value: short(value), searched });
+        }
+    }
+    found
+}
+
+/// The value of the options on an axis, as a user gives it; `None` where an end means nothing.
+fn number(axis: &Axis, options: &Asked) -> Option<f64> {
+    match axis.role {
+        Role::Log(_) | Role::Around(..) | Role::Whole | Role::Most => options.number(axis.name),
+        _ => None,
+    }
+}
+
+/// A number of the axis as a user gives it.
+fn meaning(axis: &Axis, number: f64) -> f64 {
+    match axis.role {
+        Role::Log(unit) => number.exp() * unit,
+        Role::Around(base, unit) => base + number * unit,
+        _ => number,
+    }
+}
+
+/// A number a little beyond an end: the next whole one, or one a fiftieth of the axis away.
+fn further(axis: &Axis, is_high: bool) -> f64 {
+    let (end, sign) = if is_high { (axis.high, 1.0) } else { (axis.low, -1.0) };
+    match axis.role {
+        Role::Whole | Role::Most => end + sign,
+        _ => end + sign * 0.02 * (axis.high - axis.low),
+    }
+}
