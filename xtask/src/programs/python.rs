@@ -40,7 +40,7 @@ pub fn install(python: &Path, what: &[&str]) -> Result<()> {
 /// Compiles the package in a profile of cargo, linted as the other crates are, and installs it.
 pub fn package(python: &Path, profile: &str) -> Result<()> {
     let mut pip = pip(python);
-    pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall", "./python"]);
+    pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall", "./bindings/python"]);
     pip.env("MATURIN_PEP517_ARGS", format!("--profile {profile}")).env("CARGO_INCREMENTAL", "0");
     run(lint(&mut pip))
 }
