@@ -61,6 +61,18 @@ pub fn each_feature() -> Result<()> {
     Ok(())
 }
 
+/// Each two features of the crate. A pair of which one brings the other is that one alone, and compiles at once.
+pub fn pairs() -> Result<()> {
+    let features = features()?;
+    for (place, one) in features.iter().enumerate() {
+        for other in &features[place + 1..] {
+            let check = "check --quiet --package spikewire --no-default-features --features";
+            run(cargo(check).arg(format!("{one},{other}")))?;
+        }
+    }
+    Ok(())
+}
+
 /// The crate alone and with every feature for the core that has least, no compare-and-swap and no FPU. The firmware is
 /// compiled for all of them elsewhere; `cargo verify lints` has both on every core.
 pub fn targets() -> Result<()> {

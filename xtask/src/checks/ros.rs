@@ -7,7 +7,6 @@ use crate::setup;
 use anyhow::{Context, Result, bail, ensure};
 use std::{
     fs,
-    os::unix::fs::symlink,
     path::{Path, PathBuf},
     process::Command,
 };
@@ -102,11 +101,7 @@ impl Workspace {
         let python = python::environment("ros2/colcon")?;
         run(python::pip(&python).arg("--requirement").arg(tests().join("colcon.txt")))?;
         let place = top.join("workspace");
-        let (package, link) = (package_2(), place.join("src/spikewire_ros"));
-        fs::create_dir_all(place.join("src"))?;
-        if !link.is_symlink() {
-            symlink(package, &link)?;
-        }
+        link(&package_2(), &place.join("src"))?;
         let colcon = python.with_file_name("colcon");
         Ok(Self { place, built: top.into(), colcon })
     }
@@ -163,6 +158,12 @@ impl Workspace {
     }
 }
 
+/// Links a package into a workspace.
+fn link(package: &Path, source: &Path) -> Result<()> {
+    fs::create_dir_all(source)?;
+    output(command("ln").args(["-s", "-f", "-n"]).arg(package).arg(source)).map(drop)
+}
+
 fn package_2() -> PathBuf {
     paths::root().join("bindings/ros/ros2/spikewire_ros")
 }
@@ -205,10 +206,7 @@ impl Ros {
         let source = self.room("src")?;
         fs::write(self.top.join("COLCON_IGNORE"), "")?;
         for package in ["spikewire_ros", "spyke_coding", "spyke_msgs"] {
-            let link = source.join(package);
-            if !link.is_symlink() {
-                symlink(paths::root().join("bindings/ros/ros1").join(package), link)?;
-            }
+            link(&paths::root().join("bindings/ros/ros1").join(package), &source)?;
         }
         Ok(source)
     }
