@@ -9,7 +9,7 @@ use spikewire::{
     temporal::{MovingWindow, StepForward, TemporalContrast},
 };
 
-use crate::timing::Turns;
+use crate::timing::{Turns, variants};
 
 const ROUNDS: usize = 61;
 
@@ -120,16 +120,13 @@ where
     P: Scheme<Sample = f32, Code = Spike, Output = Spike> + Start,
 {
     let theirs = coding::TemporalContrast::new(threshold, mode).unwrap();
-    let encode = |signal: &[f64]| theirs.encode(signal, 0).unwrap();
-    let spikes = encode(signal);
-    let decode = || theirs.decode(&spikes, 0, signal.len(), signal[0]);
     row(
         name,
         scheme,
         signal,
-        spikes.len(),
-        |x| drop(black_box(encode(x))),
-        || drop(black_box(decode())),
+        |spikes: &Vec<_>| spikes.len(),
+        |x| theirs.encode(x, 0).unwrap(),
+        |spikes, signal| drop(black_box(theirs.decode(spikes, 0, signal.len(), signal[0]))),
     );
 }
 
@@ -142,47 +139,52 @@ fn rate<P>(
 ) where
     P: Scheme<Sample = f32, Code = Spike, Output = Option<Spike>> + Start,
 {
-    let spikes = encode(signal);
-    let fired = spikes.iter().filter(|fired| **fired).count();
-    row(
-        name,
-        scheme,
-        signal,
-        fired,
-        |x| drop(black_box(encode(x))),
-        || drop(black_box(decode(&spikes))),
-    );
+    let count = |spikes: &Vec<bool>| spikes.iter().filter(|fired| **fired).count();
+    let decode = |spikes: &Vec<bool>, _: &[f64]| drop(black_box(decode(spikes)));
+    row(name, scheme, signal, count, encode, decode);
 }
 
 /// Both ways, ours and theirs.
-fn row<P: Scheme<Sample = f32, Code = Spike, Output: Output<Code = Spike> + Default> + Start>(
+fn row<P, T>(
     name: &str,
     scheme: &P,
     signal: &[f64],
-    their_spikes: usize,
-    their_encode: impl Fn(&[f64]),
-    their_decode: impl Fn(),
-) {
-    let samples: Vec<f32> = signal.iter().map(|&sample| sample as f32).collect();
-    let mut outputs = vec![P::Output::default(); samples.len()];
-    scheme.encoder().encode_slice(&samples, &mut outputs);
-    let codes: Vec<Spike> = outputs.iter().filter_map(|output| output.code()).collect();
-    let spikes = codes.iter().filter(|code| **code != Spike::None).count();
-    let encode = || {
-        scheme.encoder().encode_slice(black_box(&samples), black_box(&mut outputs));
-    };
-    let mut values = vec![0.0; codes.len()];
-    let decode = || {
-        scheme.decoder().decode_slice(black_box(&codes), black_box(&mut values));
-    };
-    let spikes = [spikes, their_spikes];
-    print(
-        name,
-        signal.len(),
-        spikes,
-        &Turns::take(ROUNDS, encode, || their_encode(black_box(signal))),
+    count: impl Fn(&T) -> usize,
+    their_encode: impl Fn(&[f64]) -> T,
+    their_decode: impl Fn(&T, &[f64]),
+) where
+    P: Scheme<Sample = f32, Code = Spike, Output: Output<Code = Spike> + Default> + Start,
+{
+    let wide = variants(signal);
+    let samples = wide.iter().map(|own| own.iter().map(|&sample| sample as f32).collect());
+    let samples: Vec<Vec<f32>> = samples.collect();
+    let mut outputs = vec![P::Output::default(); signal.len()];
+    let codes = samples.iter().map(|samples| {
+        scheme.encoder().encode_slice(samples, &mut outputs);
+        outputs.iter().filter_map(|output| output.code()).collect()
+    });
+    let codes: Vec<Vec<Spike>> = codes.collect();
+    let their_codes: Vec<T> = wide.iter().map(|own| their_encode(own)).collect();
+    let spikes = codes[0].iter().filter(|code| **code != Spike::None).count();
+    let spikes = [spikes, count(&their_codes[0])];
+    let turns = Turns::take(
+        ROUNDS,
+        |variant| {
+            let samples = black_box(&samples[variant]);
+            scheme.encoder().encode_slice(samples, black_box(&mut outputs));
+        },
+        |variant| drop(black_box(their_encode(black_box(&wide[variant])))),
     );
-    let turns = Turns::take(ROUNDS, decode, their_decode);
+    print(name, signal.len(), spikes, &turns);
+    let mut values = vec![0.0; codes[0].len()];
+    let turns = Turns::take(
+        ROUNDS,
+        |variant| {
+            let codes = black_box(&codes[variant]);
+            scheme.decoder().decode_slice(codes, black_box(&mut values));
+        },
+        |variant| their_decode(&their_codes[variant], &wide[variant]),
+    );
     print(&format!("{name}, decoding"), signal.len(), spikes, &turns);
 }
 

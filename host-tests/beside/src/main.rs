@@ -16,9 +16,9 @@ const LEAST: f64 = 0.9;
 fn main() -> ExitCode {
     beside::tables();
     memory();
-    let mut measured = slices::every_scheme::<f32>("f32", 1.0);
-    measured.append(&mut slices::every_scheme::<i16>("i16", 1000.0 / 4.0));
-    measured.append(&mut slices::every_scheme::<I16F16>("q16.16", 1.0));
+    let mut measured = slices::every_scheme::<f32>("f32", None);
+    measured.append(&mut slices::every_scheme::<i16>("i16", Some(32768.0)));
+    measured.append(&mut slices::every_scheme::<I16F16>("q16.16", None));
     report(measured)
 }
 

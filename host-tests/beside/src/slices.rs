@@ -6,7 +6,7 @@ use std::hint::black_box;
 use catalogue::{Channel, Flight, State};
 use spikewire::{Calibration, ConfigError, Output, Sample, Scheme};
 
-use crate::timing::Turns;
+use crate::timing::{Turns, variants};
 
 const ROUNDS: usize = 41;
 /// Those and the rounds of a second look.
@@ -27,7 +27,7 @@ pub struct Measured {
 }
 
 struct Slices<'a, S> {
-    samples: &'a [S],
+    variants: &'a [Vec<S>],
     channel: &'a str,
     measured: Vec<Measured>,
 }
@@ -38,8 +38,8 @@ impl<S: Sample> Slices<'_, S> {
         &mut self,
         name: &'static str,
         way: &'static str,
-        mut slice: impl FnMut(),
-        mut each: impl FnMut(),
+        mut slice: impl FnMut(usize),
+        mut each: impl FnMut(usize),
     ) {
         let mut turns = Turns::take(ROUNDS, &mut slice, &mut each);
         if turns.ratio() * NOISE < 1.0 {
@@ -50,7 +50,7 @@ impl<S: Sample> Slices<'_, S> {
             way,
             channel: self.channel.into(),
             times: turns.ratio(),
-            samples: 1e-6 * self.samples.len() as f64 / turns.of(0),
+            samples: 1e-6 * self.variants[0].len() as f64 / turns.of(0),
         });
     }
 }
@@ -74,40 +74,46 @@ impl<S: Sample> Flight for Slices<'_, S> {
         let state = || -> P::EncoderState { postcard::from_bytes(&start).unwrap() };
         let states = || (0..MOST_ROUNDS).map(|_| state()).collect::<Vec<_>>();
         let (mut ones, mut others) = (states(), states());
-        let samples = self.samples;
-        let mut state_of_outputs = state();
-        let outputs: Vec<P::Output> =
-            samples.iter().map(|&sample| scheme.encode(&mut state_of_outputs, sample)).collect();
-        let codes: Vec<P::Code> = outputs.iter().filter_map(|output| output.code()).collect();
-        let mut outputs = [outputs.clone(), outputs];
-        let [sliced, single] = &mut outputs;
+        let variants = self.variants;
+        let outputs = variants.iter().map(|samples| {
+            let mut state = state();
+            samples.iter().map(|&sample| scheme.encode(&mut state, sample)).collect()
+        });
+        let outputs: Vec<Vec<P::Output>> = outputs.collect();
+        let codes =
+            outputs.iter().map(|all| all.iter().filter_map(|output| output.code()).collect());
+        let codes: Vec<Vec<P::Code>> = codes.collect();
+        let (mut sliced, mut single) = (outputs[0].clone(), outputs[0].clone());
         self.measure(
             name,
             "encoding",
-            || {
+            |variant| {
                 let mut state = ones.pop().unwrap();
-                scheme.encode_slice(&mut state, black_box(samples), black_box(sliced));
+                let samples = black_box(&variants[variant][..]);
+                scheme.encode_slice(&mut state, samples, black_box(&mut sliced));
             },
-            || {
+            |variant| {
                 let mut state = others.pop().unwrap();
-                for (output, &sample) in black_box(&mut *single).iter_mut().zip(black_box(samples))
-                {
+                let samples = black_box(&variants[variant]);
+                for (output, &sample) in black_box(&mut single).iter_mut().zip(samples) {
                     *output = scheme.encode(&mut state, sample);
                 }
             },
         );
-        let mut values = [vec![S::default(); codes.len()], vec![S::default(); codes.len()]];
-        let [sliced, single] = &mut values;
+        let mut sliced = vec![S::default(); codes[0].len()];
+        let mut single = sliced.clone();
         self.measure(
             name,
             "decoding",
-            || {
+            |variant| {
                 let mut state = scheme.decoder_state();
-                scheme.decode_slice(&mut state, black_box(&codes[..]), black_box(sliced));
+                let codes = black_box(&codes[variant][..]);
+                scheme.decode_slice(&mut state, codes, black_box(&mut sliced));
             },
-            || {
+            |variant| {
                 let mut state = scheme.decoder_state();
-                for (value, &code) in black_box(&mut *single).iter_mut().zip(black_box(&codes)) {
+                let codes = black_box(&codes[variant]);
+                for (value, &code) in black_box(&mut single).iter_mut().zip(codes) {
                     *value = scheme.decode(&mut state, code);
                 }
             },
@@ -116,20 +122,25 @@ impl<S: Sample> Flight for Slices<'_, S> {
     }
 }
 
-/// Measures every scheme in one type of samples, whose unit is so many of theirs.
-pub fn every_scheme<S: Sample>(words: &str, unit: f64) -> Vec<Measured> {
+/// Measures every scheme in one type of samples. In whole numbers a channel fills three quarters of the type.
+pub fn every_scheme<S: Sample>(words: &str, largest: Option<f64>) -> Vec<Measured> {
     let mut measured = Vec::new();
     for (flight, recording) in
         [("hexarotor", flight_data::HEXAROTOR), ("vtol_at_rest", flight_data::VTOL_AT_REST)]
     {
         for index in 0..6 {
-            let samples = flight_data::channel(recording, index);
-            let samples: Vec<S> =
-                samples.map(|sample| S::from_f64(f64::from(sample) * unit)).collect();
+            let samples: Vec<f64> = flight_data::channel(recording, index).map(f64::from).collect();
+            let peak = samples.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
+            let unit = largest.map_or(1.0, |largest| 0.75 * largest / peak);
+            let of = |x: f64| S::from_f64(x * unit);
+            let variants = variants(&samples).into_iter();
+            let variants: Vec<Vec<S>> =
+                variants.map(|samples| samples.into_iter().map(of).collect()).collect();
             let mut calibration = Calibration::new();
-            samples.iter().for_each(|&sample| calibration.observe(sample));
+            variants[0].iter().for_each(|&sample| calibration.observe(sample));
             let channel = format!("{words}, {flight}, channel {index}");
-            let mut slices = Slices { samples: &samples, channel: &channel, measured: Vec::new() };
+            let mut slices =
+                Slices { variants: &variants, channel: &channel, measured: Vec::new() };
             catalogue::fly(&Channel::new(index, calibration), &mut slices).unwrap();
             measured.append(&mut slices.measured);
         }
