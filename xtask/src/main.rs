@@ -7,6 +7,8 @@
 mod checks;
 mod common;
 mod figures;
+#[cfg(test)]
+mod habits;
 mod mutants;
 mod products;
 mod programs;

@@ -1,6 +1,6 @@
 """From a flight log to a network trained on the very spikes that the firmware emits.
 
-    python python/examples/flight.py
+    python bindings/python/examples/flight.py
 
 A hexarotor stands, takes off, flies, and lands hard. Its log is read, an encoder is tuned for each of six inertial channels,
 and a layer of leaky neurons with a readout learns from the spikes alone whether the aircraft flies. At the end the flight's

@@ -1,7 +1,7 @@
 """Million samples a second of each scheme, beside plain Python, NumPy and other libraries, in one run.
 
-    python python/examples/speed.py            # tables: medians, with the least and the most of all rounds
-    python python/examples/speed.py --check    # fails if a scheme is not as many times faster as it should be
+    python bindings/python/examples/speed.py            # tables: medians, with the least and the most of all rounds
+    python bindings/python/examples/speed.py --check    # fails if a scheme is not as many times faster as it should be
 
 Plain Python is the pseudo-code of the paper line by line, on NumPy arrays: what one writes first. NumPy is the same
 work on whole arrays, where a code has such a form.
@@ -76,7 +76,7 @@ def vectors(long, ends):
 
     def contrast():
         steps = np.diff(long, prepend=long[:1])
-        return (steps > 0.3).astype(np.int8) - (steps < -0.3)
+        return (steps > 0.3).view(np.int8) - (steps < -0.3).view(np.int8)
 
     def phase():
         digits = np.minimum((long - low) * (256 / range_), 255).astype(np.uint8)
@@ -98,9 +98,10 @@ def others(x, long, ends):
         short = x.astype(np.float64)
         window = sw.MovingWindow(threshold=0.25, window=5)
         each = np.repeat(short, 8)  # its phase code has one value for as many samples as digits
+        # Both find the threshold in the differences of the signal, as it is.
         yield "spikify `threshold_based_representation`", (
-            lambda: contrast.threshold_based_representation(long.astype(np.float64), 1.0)
-        ), len(long), sw.TemporalContrast(threshold=0.3)
+            lambda: contrast.threshold_based_representation(long, 1.0)
+        ), len(long), sw.TemporalContrast(factor=1.0)
         yield "spikify `step_forward`", lambda: contrast.step_forward(short, 0.5), len(x), sw.StepForward(threshold=0.5)
         yield "spikify `moving_window`", lambda: contrast.moving_window(short, 5, 0.25), len(x), window
         yield "spikify `phase`", (

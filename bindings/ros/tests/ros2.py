@@ -2,7 +2,7 @@
 
     ros2.py PREFIX TABLE DEMO DIRECTORY
 
-PREFIX is where the package is installed, TABLE the recorded flight, DEMO the firmware's program. It runs in a network
+PREFIX is where colcon has installed the package, TABLE the recorded flight, DEMO the firmware's program. It runs in a network
 namespace of its own, whose only interface is loopback, and in one of processes, which end with it.
 """
 
@@ -102,14 +102,17 @@ def has_readers(writer: DataWriter, count: int = 1) -> bool:
 
 
 class Node:
-    """A node as `ros2 run` starts it."""
+    """A node with the arguments that `ros2 run` hands on."""
 
-    def __init__(self, place: Path, kind: str, parameters: dict[str, Any], *arguments: str, namespace: str = "/") -> None:
+    def __init__(
+        self, start: list[str], place: Path, parameters: dict[str, Any], *arguments: str, namespace: str = "/"
+    ) -> None:
         given = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
-        self.command = [str(place / kind), "--ros-args", "-r", f"__ns:={namespace}", *given, *arguments]
-        self._said = place.parent / f"said-{time.monotonic_ns()}.txt"
+        self.command = [*start, "--ros-args", "-r", f"__ns:={namespace}", *given, *arguments]
+        self._said = place / f"said-{time.monotonic_ns()}.txt"
         with open(self._said, "w") as said:
-            self.process = subprocess.Popen(self.command, stderr=said)
+            # A group of its own, as a shell makes it: Ctrl-C goes to all of it.
+            self.process = subprocess.Popen(self.command, stderr=said, stdout=said, start_new_session=True)
 
     def said(self) -> str:
         return self._said.read_text()
@@ -119,12 +122,12 @@ class Node:
 
     def __exit__(self, *_: object) -> None:
         if self.process.poll() is None:
-            self.process.kill()
+            os.killpg(self.process.pid, signal.SIGKILL)
             self.process.wait()
 
     def stop(self) -> str:
         """Ends it as Ctrl-C does; what it told at its end."""
-        self.process.send_signal(signal.SIGINT)
+        os.killpg(self.process.pid, signal.SIGINT)
         assert self.process.wait(20) == 0, self.said()
         return self.said().strip().splitlines()[-1].split("]: ", 1)[1]
 
@@ -166,12 +169,37 @@ def launched(launch: Path, arguments: dict[str, str]) -> list[str]:
 
 class Tests:
     def __init__(self, prefix: Path, table: Path, demo: Path, directory: Path) -> None:
-        self.place = prefix / "lib" / "spikewire_ros"
-        self.launch = prefix / "share" / "spikewire_ros" / "launch" / "encode.launch.xml"
+        self.prefix = prefix
+        self.launch = prefix / "spikewire_ros" / "share" / "spikewire_ros" / "launch" / "encode.launch.xml"
         self.table, self.demo, self.directory = table, demo, directory
 
     def node(self, kind: str, parameters: dict[str, Any], *arguments: str, namespace: str = "/") -> Node:
-        return Node(self.place, kind, parameters, *arguments, namespace=namespace)
+        program = self.prefix / "spikewire_ros" / "lib" / "spikewire_ros" / kind
+        return Node([str(program)], self.directory, parameters, *arguments, namespace=namespace)
+
+    def run(self, package: str, kind: str, parameters: dict[str, Any]) -> Node:
+        """A node by `ros2 run`, in a shell that has read the workspace's `setup.bash`."""
+        shell = '. "$0/setup.bash" && unset PYTHONPATH && exec /usr/bin/python3 "$@"'
+        program = str(Path(__file__).with_name("ros2_run.py"))
+        return Node(["bash", "-c", shell, str(self.prefix), program, package, kind], self.directory, parameters)
+
+    def ros2_run(self) -> None:
+        """After the README's commands `ros2 run` finds the nodes, hands on arguments and exit status, and ends by Ctrl-C."""
+        peer = Peer()
+        writer, events = peer.writer("/imu", Imu), peer.reader("/event", Spyke)
+        values = peer.reader("/decode/decoded", SpykeValue)
+        with self.run("spikewire_ros", "encode", SF) as encoder, self.run("spikewire_ros", "decode", {}) as decoder:
+            until(lambda: has_readers(writer) and events.is_matched() and values.is_matched(), "discovery")
+            time.sleep(2.0)
+            play(writer, [imu(EPOCH + number * 10**6, 0.15 * number) for number in range(4)])
+            until(lambda: len(values.messages) == 4, "four values")
+            assert [event.spike for event in events.messages] == [0, 1, 1, 1], events.messages
+            told = [node.stop() for node in (encoder, decoder)]
+        with self.run("spikewire_ros", "encode", {**SF, "threshold": 0.0}) as node:
+            assert node.process.wait(20) == 2 and "threshold 0 must be above 0" in node.said(), node.said()
+        with self.run("spikewire", "encode", SF) as node:
+            assert node.process.wait(20) == 1 and "Package 'spikewire' not found" in node.said(), node.said()
+        print(f"ros2 run: encoder and decoder started, {len(values.messages)} values, ended: {told}")
 
     def params(self, name: str, node: str, parameters: dict[str, Any]) -> str:
         """A file as ROS 2 reads it."""
@@ -377,7 +405,7 @@ def main() -> None:
     links = subprocess.run(["ip", "-o", "link"], check=True, capture_output=True, text=True).stdout.splitlines()
     assert len(links) == 1, f"a network of its own has loopback alone, and no {links}"
     tests = Tests(prefix, table, demo, directory)
-    for test in (tests.refused, tests.faults, tests.comers, tests.latency, tests.flight):
+    for test in (tests.ros2_run, tests.refused, tests.faults, tests.comers, tests.latency, tests.flight):
         start = time.monotonic()
         test()
         print(f"--- {test.__name__}: {time.monotonic() - start:.1f} s")

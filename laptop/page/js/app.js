@@ -350,7 +350,7 @@ const inC = (toml) => `/* Save as roll.toml:\n\n${toml}\n   then
    writes a crate that makes the library for C with this very codec. */
 #include "roll.h"
 
-/* sw_roll_codec is the constant; c/README.md in the repository has the loop around it. */
+/* sw_roll_codec is the constant; bindings/c/README.md in the repository has the loop around it. */
 `;
 const texts = {
   rust: { file: "spikes.rs", make: async () => (await ask("rust")).text },

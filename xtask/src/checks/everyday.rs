@@ -64,6 +64,21 @@ pub fn each_feature() -> Result<()> {
     Ok(())
 }
 
+/// Each two features of a crate that flies. A pair of which one brings the other is that one alone, and compiles at once.
+pub fn pairs() -> Result<()> {
+    for own in CRATES.iter().filter(|own| own.flies) {
+        let features = own.features()?;
+        let check =
+            format!("check --quiet --package {} --no-default-features --features", own.name);
+        for (place, one) in features.iter().enumerate() {
+            for other in &features[place + 1..] {
+                run(cargo(&check).arg(format!("{one},{other}")))?;
+            }
+        }
+    }
+    Ok(())
+}
+
 /// The crates that fly, alone and with every feature for the core that has least, no compare-and-swap and no FPU. The firmware is
 /// compiled for all of them elsewhere; `cargo verify lints` has both on every core.
 pub fn targets() -> Result<()> {

@@ -4,7 +4,7 @@ use crate::common::{cargo, command, output, paths, run};
 use crate::figures::drawing;
 use crate::programs::{host, python};
 use crate::setup;
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -25,6 +25,10 @@ const PACKAGES: [&str; 11] = [
     "python3-yaml",
     "ros-message-generation",
 ];
+/// What the build of a package of ROS 2 asks for, what `ros2 run` finds packages by, and a network.
+const PACKAGES_2: [&str; 4] = ["ament-cmake", "cmake", "iproute2", "python3-ament-index"];
+/// The Python that has ament's modules, the first one on the path or not.
+const PYTHON: &str = "-DPython3_EXECUTABLE=/usr/bin/python3";
 /// The programs of the distribution, and no others: its Python has its ROS.
 const PATH: &str = "/usr/bin:/bin";
 
@@ -47,11 +51,11 @@ pub fn ros() -> Result<()> {
     ensure_decoded(&output(spikewire.arg("decode").arg(bag))?, &ros.table()?)
 }
 
-/// Tests the Rust nodes, installs them as colcon does, and runs them against Eclipse Cyclone DDS.
+/// Tests the Rust nodes, builds their package by colcon, and runs them against Eclipse Cyclone DDS.
 ///
 /// All that they send stays in a network namespace with nothing but loopback in it.
 pub fn ros2() -> Result<()> {
-    setup::packages("what installs the nodes, and a network of their own", &["cmake", "iproute2"])?;
+    setup::packages("what builds the nodes' package, and a network of their own", &PACKAGES_2)?;
     let top = paths::target().join("ros2");
     let manifest = "--locked --manifest-path bindings/ros/node/Cargo.toml --target-dir";
     for command in ["test", "clippy --all-targets"] {
@@ -64,13 +68,10 @@ pub fn ros2() -> Result<()> {
     }
     run(cargo("fmt --check --manifest-path bindings/ros/node/Cargo.toml")
         .current_dir(paths::root()))?;
-    let (build, prefix) = (top.join("build"), top.join("install"));
-    let define = |name: &str, path: &Path| format!("-D{name}={}", path.display());
-    let mut cmake = command("cmake");
-    cmake.args(["-S", "bindings/ros/ros2/spikewire_ros", "-DCARGO_PROFILE=dev", "-B"]).arg(&build);
-    output(cmake.args([define("BUILT", &top), define("CMAKE_INSTALL_PREFIX", &prefix)]))?;
-    output(command("cmake").arg("--build").arg(&build))?;
-    output(command("cmake").arg("--install").arg(&build))?;
+    let workspace = Workspace::ready(&top)?;
+    workspace.ensure_clone_is_unambiguous()?;
+    workspace.ensure_copy_asks_for_a_clone()?;
+    workspace.build()?;
 
     let python = python::environment("ros2/cyclone")?;
     run(python::pip(&python).arg("--requirement").arg(tests().join("ros2.txt")))?;
@@ -80,8 +81,91 @@ pub fn ros2() -> Result<()> {
     test.args(["--map-root-user", "--net", "--pid", "--fork", "--kill-child"])
         .arg(python)
         .arg(tests().join("ros2.py"));
-    test.arg(prefix).arg(paths::root().join("data/hexarotor.csv")).arg(host::example("demo")?);
+    test.arg(workspace.place.join("install"));
+    test.arg(paths::root().join("data/hexarotor.csv")).arg(host::example("demo")?);
     run(test.arg(room).env("PYTHONPATH", sources()).env("PYTHONDONTWRITEBYTECODE", "1"))
+}
+
+/// A workspace of ROS 2 with the nodes' package as the README links it. `spyke_msgs` is not in it: it needs generators
+/// of messages that only a ROS 2 has.
+struct Workspace {
+    /// Beside what cargo builds.
+    place: PathBuf,
+    /// Where cargo builds what the tests share.
+    built: PathBuf,
+    colcon: PathBuf,
+}
+
+impl Workspace {
+    fn ready(top: &Path) -> Result<Self> {
+        let python = python::environment("ros2/colcon")?;
+        run(python::pip(&python).arg("--requirement").arg(tests().join("colcon.txt")))?;
+        let place = top.join("workspace");
+        link(&package_2(), &place.join("src"))?;
+        let colcon = python.with_file_name("colcon");
+        Ok(Self { place, built: top.into(), colcon })
+    }
+
+    fn colcon(&self, verb: &str) -> Command {
+        let mut colcon = command(&self.colcon);
+        colcon.current_dir(&self.place).arg(verb);
+        colcon
+    }
+
+    /// Fails if colcon finds other packages than those of ROS 2 in a clone of the repository, or one twice.
+    fn ensure_clone_is_unambiguous(&self) -> Result<()> {
+        let listed = output(self.colcon("list").arg("--base-paths").arg(paths::root()))?;
+        let mut found: Vec<_> = listed.lines().filter_map(|line| line.split('\t').nth(1)).collect();
+        found.sort_unstable();
+        let of = |name: &str| paths::root().join("bindings/ros/ros2").join(name);
+        let wanted = [of("spikewire_ros"), of("spyke_msgs")];
+        ensure!(
+            found.iter().map(Path::new).eq(wanted.iter().map(PathBuf::as_path)),
+            "in a clone colcon finds\n{listed}"
+        );
+        println!("In a clone of the repository colcon finds the two packages of ROS 2, once each.");
+        Ok(())
+    }
+
+    /// A copy of the package alone cannot know where the nodes' code is: it says so, and takes the place of a clone.
+    fn ensure_copy_asks_for_a_clone(&self) -> Result<()> {
+        let copy = self.place.join("copied");
+        fs::create_dir_all(&copy)?;
+        fs::write(copy.join("COLCON_IGNORE"), "")?;
+        for file in ["CMakeLists.txt", "package.xml"] {
+            fs::copy(package_2().join(file), copy.join(file))?;
+        }
+        let configure = |clone: &Path| {
+            let mut cmake = command("cmake");
+            cmake.arg("-S").arg(&copy).arg("-B").arg(copy.join("build"));
+            cmake.args([PYTHON.into(), format!("-DSPIKEWIRE={}", clone.display())]);
+            output(&mut cmake)
+        };
+        let Err(refusal) = configure(&copy) else {
+            bail!("a copy configures without the nodes' code")
+        };
+        ensure!(refusal.to_string().contains("=/path/to/spikewire"), "a copy says: {refusal}");
+        configure(paths::root().as_path())?;
+        println!("A copy of the package asks for a clone, and takes one.");
+        Ok(())
+    }
+
+    /// Builds as the README says, in the profile of the tests.
+    fn build(&self) -> Result<()> {
+        let mut colcon = self.colcon("build");
+        colcon.args(["--cmake-args", "-DCARGO_PROFILE=dev", PYTHON]);
+        output(colcon.arg(format!("-DBUILT={}", self.built.display()))).map(drop)
+    }
+}
+
+/// Links a package into a workspace.
+fn link(package: &Path, source: &Path) -> Result<()> {
+    fs::create_dir_all(source)?;
+    output(command("ln").args(["-s", "-f", "-n"]).arg(package).arg(source)).map(drop)
+}
+
+fn package_2() -> PathBuf {
+    paths::root().join("bindings/ros/ros2/spikewire_ros")
 }
 
 /// Draws the figure into the page.
@@ -107,13 +191,24 @@ impl Ros {
         // Compiled as the tests are, with which it shares its dependencies.
         run(pip.env("MATURIN_PEP517_ARGS", "--profile dev").env("CARGO_INCREMENTAL", "0"))?;
         let mut catkin = command("catkin_make_isolated");
-        catkin.args(["--source".into(), paths::root().join("bindings/ros/ros1")]);
+        catkin.arg("--source").arg(ros.linked()?);
         for space in ["build", "devel", "install-space"] {
             catkin.arg(format!("--{space}")).arg(ros.top.join(space));
         }
         // Quiet: what it says fills pages. It leaves a mark where it is started.
         output(catkin.arg("--install").current_dir(&ros.top).env("PATH", PATH))?;
         Ok(ros)
+    }
+
+    /// A source space with links to the packages, as the README makes it. What is built here stays out of the sight of a
+    /// colcon that finds the repository in its workspace.
+    fn linked(&self) -> Result<PathBuf> {
+        let source = self.room("src")?;
+        fs::write(self.top.join("COLCON_IGNORE"), "")?;
+        for package in ["spikewire_ros", "spyke_coding", "spyke_msgs"] {
+            link(&paths::root().join("bindings/ros/ros1").join(package), &source)?;
+        }
+        Ok(source)
     }
 
     /// A directory for what a test leaves behind.

@@ -3,7 +3,7 @@
 use crate::common::{paths, usage};
 use crate::figures::{drawing, flown, flown::Flown, names::full_name, picture, signal::Signal};
 use crate::programs::{boards::Board, host, image, qemu};
-use crate::setup;
+use crate::setup::{self, needs};
 use anyhow::{Result, bail};
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ pub fn demo(args: &[String]) -> Result<()> {
         return Err(usage("`cargo demo` takes no arguments".into()));
     }
     println!("=== What this needs");
-    setup::setup()?;
+    setup::provide(&needs::DEMO)?;
     fly().map(drop)
 }
 

@@ -8,12 +8,16 @@ use std::{fs, path::Path};
 
 /// Builds it, copies it as root, and removes what was compiled with another one.
 pub fn install(target: &str) -> Result<()> {
+    let is_replaced = libraries(target).exists();
     build(target).with_context(|| format!("the core library for {target}"))?;
+    remove(&work())?;
     // Cargo knows the compiler by its version only, and would go on with what the old core library made.
-    for stale in [work(), paths::thumb_target()] {
-        if stale.exists() {
-            fs::remove_dir_all(stale)?;
-        }
+    if is_replaced { remove(&paths::thumb_target()) } else { Ok(()) }
+}
+
+fn remove(stale: &Path) -> Result<()> {
+    if stale.exists() {
+        fs::remove_dir_all(stale)?;
     }
     Ok(())
 }

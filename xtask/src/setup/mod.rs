@@ -10,13 +10,19 @@ pub mod toolchain;
 
 use crate::common::shell;
 use anyhow::Result;
-use needs::{Missing, missing};
+use needs::{Missing, Needs, missing};
 use std::env;
 
+/// Puts there what the checks need.
 pub fn setup() -> Result<()> {
-    let missing = missing()?;
+    provide(&needs::CHECKS)
+}
+
+/// Puts there what these needs are, and no more.
+pub fn provide(needs: &Needs) -> Result<()> {
+    let missing = missing(needs)?;
     if missing.is_empty() {
-        println!("All is there: Cortex-M compiler, QEMU, binutils.");
+        println!("All is there: {}.", needs.words());
         return Ok(());
     }
     println!("Missing:\n  {}", missing.lines().join("\n  "));
@@ -26,7 +32,7 @@ pub fn setup() -> Result<()> {
     if !missing.targets.is_empty() {
         compiler(&missing.targets)?;
     }
-    println!("Done: Cortex-M compiler, QEMU, binutils.");
+    println!("Done: {}.", needs.words());
     Ok(())
 }
 
@@ -87,9 +93,11 @@ fn plan(missing: &Missing) -> Vec<String> {
     }
     for target in &missing.targets {
         let place = distribution::libraries(target);
-        plan.push(format!("build the core library; as root: replace {}", place.display()));
+        plan.push(format!("build the core library; as root: write {}", place.display()));
     }
-    plan.push("remove target/thumb, which another core library made".into());
+    if missing.targets.iter().any(|target| distribution::libraries(target).exists()) {
+        plan.push("remove target/thumb, which another core library made".into());
+    }
     plan
 }
 

@@ -26,6 +26,26 @@ pub const TOOLS: [Tool; 4] = [
     Tool { package: "g++", program: "g++", why: "compiles its header as C++" },
 ];
 
+/// What a command needs of a machine.
+pub struct Needs {
+    pub targets: &'static [&'static str],
+    pub tools: &'static [Tool],
+}
+
+impl Needs {
+    /// The programs, in words.
+    pub fn words(&self) -> String {
+        let tools = self.tools.iter().map(|tool| tool.program);
+        ["Cortex-M compiler"].into_iter().chain(tools).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// What all checks need together.
+pub const CHECKS: Needs = Needs { targets: &toolchain::TARGETS, tools: &TOOLS };
+
+/// The demo flies on one emulated board, and compiles nothing in C.
+pub const DEMO: Needs = Needs { targets: &["thumbv7em-none-eabihf"], tools: TOOLS.split_at(1).0 };
+
 /// What is not there.
 pub struct Missing {
     /// Those for which neither compiler has a core library.
@@ -46,24 +66,40 @@ impl Missing {
     }
 }
 
-pub fn missing() -> Result<Missing> {
+pub fn missing(needs: &Needs) -> Result<Missing> {
     let mut targets = Vec::new();
-    for target in toolchain::TARGETS {
+    for &target in needs.targets {
         if !toolchain::has_core(target)? && !distribution::has_core(target)? {
             targets.push(target);
         }
     }
-    let tools = TOOLS.iter().filter(|tool| !shell::has(tool.program)).collect();
+    let tools = needs.tools.iter().filter(|tool| !shell::has(tool.program)).collect();
     Ok(Missing { targets, tools })
 }
 
 /// Fails if something is missing, and says what installs it.
 pub fn ensure_met() -> Result<()> {
-    let missing = missing()?;
+    let missing = missing(&CHECKS)?;
     ensure!(
         missing.is_empty(),
         "`cargo xtask setup` installs what is missing:\n  {}",
         missing.lines().join("\n  ")
     );
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::programs::boards::Board;
+
+    /// On a machine of two cores each core library takes half a minute, and the compiler for C half a gigabyte.
+    #[test]
+    fn the_demo_asks_for_the_core_that_it_flies_on_and_the_emulator_alone() {
+        assert_eq!(DEMO.targets, [Board::with("M4F").unwrap().target]);
+        let programs: Vec<&str> = DEMO.tools.iter().map(|tool| tool.program).collect();
+        assert_eq!(programs, ["qemu-system-arm"]);
+        assert!(DEMO.targets.iter().all(|target| CHECKS.targets.contains(target)));
+        assert_eq!(CHECKS.targets.len(), 4);
+    }
 }

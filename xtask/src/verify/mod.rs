@@ -42,12 +42,14 @@ type Apart = &'static [&'static [&'static str]];
 
 const PROSE: &[&str] = &[
     ".ci",
+    ".editorconfig",
     ".github",
     "ARCHITECTURE.md",
     "CHANGELOG.md",
     "CONTRIBUTING.md",
     "README.md",
     "SAFETY.md",
+    "SECURITY.md",
     "docs",
 ];
 /// What firmware does not use.
@@ -169,6 +171,8 @@ const LONG: &[Step] = &[
         "the whole program on the page of boards, compiled and linked with its HAL",
         nucleo::nucleo,
     ),
+    step("pairs", "every two features of the crate, on the host", everyday::pairs)
+        .apart(&[PROSE, HOST, LAST, REST]),
     step("beside", "slices on this machine beside another crate's", long::beside),
     step("bench-m0", "instruction counts of a Cortex-M0 against the baseline", || {
         bench::verify("M0")
