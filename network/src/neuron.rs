@@ -7,7 +7,7 @@
 use crate::error::{ParameterError, unwrap};
 use crate::integer;
 use crate::number::{self, Number};
-use crate::reset::{Reset, ToValue, ToValueLate};
+use crate::reset::{Reset, ToValue, ToValueHeld, ToValueLate};
 use crate::sealed::Sealed;
 use core::{fmt::Debug, marker::PhantomData};
 
@@ -53,9 +53,10 @@ pub struct Li<V: Number> {
     bias: V,
 }
 
-/// A neuron whose inputs are a current that decays by itself: `CubaLIF` with [`Lif`], `CubaLI` with [`Li`].
+/// A neuron whose inputs are a current that decays by itself: `CubaLIF` with [`Lif`], `CubaLI` with [`Li`]. `OLD` ones
+/// take the current of the step before.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cuba<V: Number, N> {
+pub struct Cuba<V: Number, N, const OLD: bool = false> {
     decay: V::Factor,
     bias: V,
     neuron: N,
@@ -69,7 +70,7 @@ pub type CubaLi<V> = Cuba<V, Li<V>>;
 
 impl<V: Number, R: Reset> Sealed for Lif<V, R> {}
 impl<V: Number> Sealed for Li<V> {}
-impl<V: Number, N> Sealed for Cuba<V, N> {}
+impl<V: Number, N, const OLD: bool> Sealed for Cuba<V, N, OLD> {}
 
 impl<V: Number, R: Reset> Neuron for Lif<V, R> {
     type Value = V;
@@ -124,7 +125,7 @@ impl<V: Number> Neuron for Li<V> {
     }
 }
 
-impl<V: Number, N: Neuron<Value = V, Current = ()>> Neuron for Cuba<V, N> {
+impl<V: Number, N: Neuron<Value = V, Current = ()>, const OLD: bool> Neuron for Cuba<V, N, OLD> {
     type Value = V;
     type Current = V;
     const FIRES: bool = N::FIRES;
@@ -136,8 +137,10 @@ impl<V: Number, N: Neuron<Value = V, Current = ()>> Neuron for Cuba<V, N> {
 
     #[inline(always)]
     fn step(&self, v: &mut V, current: &mut V, input: V) -> bool {
-        *current = current.scaled(self.decay).plus(input);
-        self.neuron.step(v, &mut (), current.plus(self.neuron.bias()))
+        let before = *current;
+        *current = before.scaled(self.decay).plus(input);
+        let taken = if OLD { before } else { *current };
+        self.neuron.step(v, &mut (), taken.plus(self.neuron.bias()))
     }
 
     #[inline(always)]
@@ -148,6 +151,17 @@ impl<V: Number, N: Neuron<Value = V, Current = ()>> Neuron for Cuba<V, N> {
     #[inline(always)]
     fn clamp(current: &mut V) -> u32 {
         current.clamp()
+    }
+}
+
+impl<V: Number, N> Cuba<V, N> {
+    /// Makes the potential take the current of the step before, as NIR's reference program does.
+    pub const fn from_old_current(self) -> Cuba<V, N, true>
+    where
+        N: Copy,
+    {
+        let Self { decay, bias, neuron } = self;
+        Cuba { decay, bias, neuron }
     }
 }
 
@@ -202,6 +216,18 @@ const fn whole_below(value: i32) -> i32 {
 
 /// Constructors, which are `const` and so cannot be generic over the number.
 macro_rules! constructors {
+    (@returning $number:ty, $reset:ty, $help:literal) => {
+        impl Lif<$number, $reset> {
+            #[doc = $help]
+            ///
+            /// # Panics
+            /// Panics if it is out of its range; at compile time where it initialises a constant.
+            #[must_use]
+            pub const fn with_reset(self, reset: $number) -> Self {
+                self.returning(reset)
+            }
+        }
+    };
     ($new:ident, $try_new:ident, $number:ty, $factor:ty, $share:ident, $check:ident, $below:ident, $zero:expr) => {
         impl<R: Reset> Lif<$number, R> {
             /// A neuron that fires above `threshold` and keeps the share `decay` of its potential in a step.
@@ -261,27 +287,9 @@ macro_rules! constructors {
             }
         }
 
-        impl Lif<$number, ToValue> {
-            /// Sets the potential to which it returns when it fires, 0 by default.
-            ///
-            /// # Panics
-            /// Panics if it is out of its range; at compile time where it initialises a constant.
-            #[must_use]
-            pub const fn with_reset(self, reset: $number) -> Self {
-                self.returning(reset)
-            }
-        }
-
-        impl Lif<$number, ToValueLate> {
-            /// Sets the potential to which it returns after it has fired, 0 by default.
-            ///
-            /// # Panics
-            /// Panics if it is out of its range; at compile time where it initialises a constant.
-            #[must_use]
-            pub const fn with_reset(self, reset: $number) -> Self {
-                self.returning(reset)
-            }
-        }
+        constructors!(@returning $number, ToValue, "Sets the potential to which it returns when it fires, 0 by default.");
+        constructors!(@returning $number, ToValueLate, "Sets the potential to which it returns after it has fired, 0 by default.");
+        constructors!(@returning $number, ToValueHeld, "Sets the potential at which it is held after it has fired, 0 by default.");
 
         impl Li<$number> {
             /// An integrator that keeps the share `decay` of its potential in a step.

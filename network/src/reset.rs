@@ -10,7 +10,8 @@ use core::fmt::Debug;
 /// | rule | of |
 /// |---|---|
 /// | [`ToValue`] | Norse, `SpikingJelly`, snnTorch's reader of NIR |
-/// | [`ToValueLate`] | snnTorch with `reset_mechanism="zero"` |
+/// | [`ToValueLate`] | snnTorch's `Leaky` with `reset_mechanism="zero"` |
+/// | [`ToValueHeld`] | its `RLeaky`, `Synaptic` and `RSynaptic` with that |
 /// | [`Subtract`] | Sinabs, Rockpool, `SpikingJelly` with a soft reset |
 /// | [`SubtractLate`] | snnTorch |
 /// | [`SubtractNoDelay`] | snnTorch with `reset_delay=False` |
@@ -37,6 +38,10 @@ pub struct ToValue;
 #[derive(Clone, Copy, Debug)]
 pub struct ToValueLate;
 
+/// A neuron that fires keeps its potential, and is at a value, 0 unless told, through the next step, whatever comes in.
+#[derive(Clone, Copy, Debug)]
+pub struct ToValueHeld;
+
 /// A neuron that fires subtracts its threshold, in the same step.
 #[derive(Clone, Copy, Debug)]
 pub struct Subtract;
@@ -52,6 +57,7 @@ pub struct SubtractNoDelay;
 
 impl Sealed for ToValue {}
 impl Sealed for ToValueLate {}
+impl Sealed for ToValueHeld {}
 impl Sealed for Subtract {}
 impl Sealed for SubtractLate {}
 impl Sealed for SubtractNoDelay {}
@@ -74,6 +80,16 @@ impl Reset for ToValueLate {
     #[inline(always)]
     fn fire<V: Number>(v: &mut V, integrate: impl FnOnce(V) -> V, threshold: V, reset: V) -> bool {
         *v = integrate(if *v > threshold { reset } else { *v });
+        *v > threshold
+    }
+}
+
+impl Reset for ToValueHeld {
+    const SUBTRACTS: bool = false;
+
+    #[inline(always)]
+    fn fire<V: Number>(v: &mut V, integrate: impl FnOnce(V) -> V, threshold: V, reset: V) -> bool {
+        *v = if *v > threshold { reset } else { integrate(*v) };
         *v > threshold
     }
 }

@@ -5,7 +5,7 @@
 
 use spikewire_network::{
     Cuba, CubaLif, Forward, Full, Layer, Lif, Network, Neuron, Recurrence, Reset, State, Subtract,
-    SubtractLate, SubtractNoDelay, ToValue, ToValueLate, Values, Weights,
+    SubtractLate, SubtractNoDelay, ToValue, ToValueHeld, ToValueLate, Values, Weights,
 };
 
 const INPUT: [f32; 16] =
@@ -65,6 +65,12 @@ fn spikingjelly_fires_at_its_threshold() {
 fn zero_a_step_late() {
     let expected = [3., 4.5, 0., 4., 3., 6.5, 2., 1., 0.5, 6.25, 6., -4., 0., 7., 1., 8.5];
     expect(run(lif::<ToValueLate>(), Forward, &INPUT), "0100010001100101", &expected);
+}
+
+#[test]
+fn held_through_the_next_step() {
+    let expected = [3., 4.5, 0., 4., 3., 6.5, 0., 0., 0., 6., 0., -4., 0., 7., 0., 8.];
+    expect(run(lif::<ToValueHeld>(), Forward, &INPUT), "0100010001000101", &expected);
 }
 
 #[test]
@@ -151,6 +157,8 @@ fn nirs_reference() {
     let late: Vec<f32> = [0.0].into_iter().chain(INPUT).take(16).collect();
     let expected = [0., 3., 2., 3.25, 2.75, 0.9375, 3.25, 3.015_625];
     expect(run(cuba::<Subtract>(), Forward, &late), "0010111110111011", &expected);
+    let old = cuba::<Subtract>().from_old_current();
+    expect(run(old, Forward, &INPUT), "0010111110111011", &expected);
 }
 
 /// The types are spelled out, as a module that is written by a program has to.

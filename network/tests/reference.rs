@@ -11,7 +11,7 @@
 use proptest::prelude::*;
 use spikewire_network::{
     Cuba, Full, Layer, Li, Lif, Network, Reset, State, Subtract, SubtractLate, SubtractNoDelay,
-    ToValue, ToValueLate, Weights,
+    ToValue, ToValueHeld, ToValueLate, Weights,
 };
 
 /// A generator of random bits, as arrays of thousands of weights are too much for strategies.
@@ -36,6 +36,7 @@ impl Bits {
 enum Rule {
     ToValue,
     ToValueLate,
+    ToValueHeld,
     Subtract,
     SubtractLate,
     SubtractNoDelay,
@@ -111,6 +112,10 @@ impl<K: Kind> Plain<K> {
             Rule::Subtract if self.is_above(u) => (less, true),
             Rule::ToValue | Rule::Subtract => (u, false),
             Rule::ToValueLate => (u, self.is_above(u)),
+            Rule::ToValueHeld => {
+                let v = if fired_before { self.reset } else { u };
+                (v, self.is_above(v))
+            }
             Rule::SubtractLate => {
                 let v = if fired_before { less } else { u };
                 (v, self.is_above(v))
@@ -178,7 +183,7 @@ fn floats<R: Reset, const HIDDEN: usize>(
         // Thresholds that few sums hit exactly, and some that many do.
         let threshold = (bits.float() * 4.0).round() / 4.0 + 1.0;
         let (decay, bias) = (bits.float().abs(), bits.float() / 4.0);
-        let subtracts = !matches!(rule, Rule::ToValue | Rule::ToValueLate);
+        let subtracts = !matches!(rule, Rule::ToValue | Rule::ToValueLate | Rule::ToValueHeld);
         let reset = if subtracts { threshold } else { 0.0 };
         let zero = 0.0;
         plain.push(Plain {
@@ -265,7 +270,7 @@ fn integers<R: Reset, const HIDDEN: usize>(rule: Rule, seed: u32, at_threshold: 
         let threshold = (bits.next() % 200) as i32 + (90 << shift);
         let (decay, current_decay) = (bits.next() % 65_537, bits.next() % 60_000);
         let (bias, inner_bias) = ((bits.next() % 99) as i32 - 49, (bits.next() % 99) as i32 - 49);
-        let subtracts = !matches!(rule, Rule::ToValue | Rule::ToValueLate);
+        let subtracts = !matches!(rule, Rule::ToValue | Rule::ToValueLate | Rule::ToValueHeld);
         plain.push(Plain {
             current_decay: Some(current_decay.into()),
             decay: decay.into(),
@@ -311,6 +316,7 @@ macro_rules! every_rule {
     ($run:ident, $hidden:literal, $($arguments:expr),*) => {
         $run::<ToValue, $hidden>(Rule::ToValue, $($arguments),*);
         $run::<ToValueLate, $hidden>(Rule::ToValueLate, $($arguments),*);
+        $run::<ToValueHeld, $hidden>(Rule::ToValueHeld, $($arguments),*);
         $run::<Subtract, $hidden>(Rule::Subtract, $($arguments),*);
         $run::<SubtractLate, $hidden>(Rule::SubtractLate, $($arguments),*);
         $run::<SubtractNoDelay, $hidden>(Rule::SubtractNoDelay, $($arguments),*);

@@ -20,7 +20,7 @@ mod verify;
 mod write;
 
 use anyhow::Result;
-use checks::{firmware, simulated_drone};
+use checks::{firmware, network, simulated_drone};
 use common::{Usage, progress, usage};
 use figures::{bench, demo};
 use products::{c_library, new_firmware, new_scheme, page};
@@ -40,6 +40,8 @@ cargo xtask <command>
   scheme NAME TYPE --like NAME
                         a scheme to begin from: a copy of one that there is under another name, and the lines that list it
   page [--serve]        a page to look at signals and their spikes, as one HTML file; serves it on this machine alone
+  network NETWORK.rs SPIKES.txt
+                        a network that `spikewire network` wrote, on an emulated STM32F405 and RP2040 and on the host
   loop [CODE]           flies a simulated drone on spikes and draws it; installs RotorPy from PyPI, 0.5 GB
   demo                  real flight data through encoder, emulated flight controller and decoder
   release               checks and builds all that is uploaded, stops before that, and says what the owner fills in
@@ -76,6 +78,7 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "new-firmware" => new_firmware::new_firmware(args),
         "page" => page::page(args),
         "demo" => demo::demo(args),
+        "network" => network::network(args),
         "loop" => simulated_drone::fly(args),
         "release" => release::release(),
         "verify" => verify::verify(args),

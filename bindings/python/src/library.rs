@@ -209,7 +209,10 @@ pub(crate) fn tune(
         let all = lab::tune::tune(&keywords.request(recordings)?, watch)?;
         let Some(tuned) = all.first() else { bail!("there is no signal") };
         if tuned.rows.is_empty() {
-            bail!("{name}: of the settings tried none keeps to all limits: {}", tuned.missed.join("; "));
+            bail!(
+                "{name}: of the settings tried none keeps to all limits: {}",
+                tuned.missed.join("; ")
+            );
         }
         let rows = tuned.rows.iter().map(|(scheme, row)| told(*scheme, row, name));
         Ok((rows.collect::<Result<_>>()?, tuned.missed.clone()))

@@ -3,7 +3,7 @@
 use core::hint::black_box;
 use spikewire_network::{
     Cuba, Full, Layer, Li, Lif, Network, Neuron, Number, OneToOne, Reset, Spikes, State, Subtract,
-    SubtractLate, SubtractNoDelay, ToValue, ToValueLate, Weights,
+    SubtractLate, SubtractNoDelay, ToValue, ToValueHeld, ToValueLate, Weights,
 };
 
 use crate::exercise::{event, hide, tick};
@@ -14,6 +14,7 @@ const N: usize = 19;
 pub fn link() {
     rule::<ToValue>();
     rule::<ToValueLate>();
+    rule::<ToValueHeld>();
     rule::<Subtract>();
     rule::<SubtractLate>();
     rule::<SubtractNoDelay>();
@@ -38,7 +39,9 @@ fn rule<R: Reset>() {
         if let (Ok(lif), Ok(li)) =
             (Cuba::<f32, _>::try_new(0.5, lif), Cuba::<f32, _>::try_new(0.5, li))
         {
-            network(&weights, lif, &const { Weights::<f32, 1, N>::new(&[[1.0; N]]) });
+            let own = const { Weights::<f32, 1, N>::new(&[[1.0; N]]) };
+            network(&weights, lif, &own);
+            network(&weights, lif.from_old_current(), &own);
             network(&weights, li, &const { Weights::<f32, 1, N>::new(&[[1.0; N]]) });
         }
     }

@@ -318,7 +318,7 @@ fn files_of_pypis_nir_are_read_and_what_is_wrong_is_named() {
             "cuba",
             "node `lif2`: a spike's current lasts: its time constant of 1 s is longer than a step",
         ),
-        ("odd", "node `lif2` (Threshold): no chip here has anything like it"),
+        ("odd", "node `lif2` (Threshold): nothing here has anything like it"),
         ("back", "node `lif2` leads to 2 nodes"),
         ("deep", "4 layers, of which 3 at most"),
         ("nan", "node `lif2`: neuron 1 has a weight of NaN"),

@@ -35,10 +35,12 @@ const SLOW_CRYSTAL: u64 = 250;
 
 /// What the emulator in Python needs.
 const PYTHON: [&str; 2] = ["unicorn==2.1.3", "quickjs==1.19.4"];
-const FILES: [&str; 11] = [
+const FILES: [&str; 13] = [
+    "elf.mjs",
     "package.json",
     "pico.mjs",
     "sensors.mjs",
+    "steps.mjs",
     "bench.py",
     "board.py",
     "cortex_m.py",
@@ -394,7 +396,7 @@ fn unicorn() -> Result<PathBuf> {
 }
 
 /// The emulators beside the package that the Pico's needs.
-fn installed() -> Result<PathBuf> {
+pub fn installed() -> Result<PathBuf> {
     let (from, home) =
         (paths::examples().join("boards/emulator"), paths::target().join("emulator"));
     fs::create_dir_all(&home)?;

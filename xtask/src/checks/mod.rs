@@ -9,6 +9,7 @@ pub mod interface;
 pub mod link;
 pub mod logging;
 pub mod long;
+pub mod network;
 pub mod nucleo;
 pub mod package;
 pub mod peers;

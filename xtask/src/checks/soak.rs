@@ -19,7 +19,7 @@ pub fn soak() -> Result<()> {
     let host = output(&mut host)?;
     println!("{host}");
     let boards = CORES.map(Board::with).into_iter().collect::<Result<Vec<_>>>()?;
-    let images = boards.iter().map(|board| image::build_with(PROGRAM, board, SPELLS));
+    let images = boards.iter().map(|board| image::build_with(PROGRAM, board, &[SPELLS]));
     let images = images.collect::<Result<Vec<_>>>()?;
     thread::scope(|scope| {
         let runs: Vec<_> = boards

@@ -51,7 +51,7 @@ pub fn tuned() -> Result<()> {
     ensure!(spikes.len() as u64 == scored, "{scored} spikes were scored, {} encoded", spikes.len());
 
     for board in BOARDS.iter().filter(|board| CORES.contains(&board.core)) {
-        let image = image::build_with("tuned", board, ("TUNED", &constant))?;
+        let image = image::build_with("tuned", board, &[("TUNED", &constant)])?;
         let flown = qemu::run(board, &image)?;
         let flown: Vec<&str> = flown.lines().collect();
         ensure!(flown == spikes, "{}: other spikes than the tuner scored", board.core);

@@ -42,7 +42,7 @@ fn table() -> Result<String> {
          |---|---:|---:|---:|---:|\n"
             .to_owned();
     let linked = |board: &Board, codec: &str| {
-        size::flash(&image::build_with("flash", board, ("CODEC", codec))?)
+        size::flash(&image::build_with("flash", board, &[("CODEC", codec)])?)
     };
     let mut cores = Vec::new();
     for core in CORES {

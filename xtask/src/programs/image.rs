@@ -11,14 +11,20 @@ pub fn build(program: &str, board: &Board) -> Result<PathBuf> {
     Ok(build_all(program, &[program], board)?.join(program))
 }
 
-/// Builds the program for the board with this variable in the environment, and returns the image.
+/// Builds the program for the board with these variables in the environment, and returns the image.
 pub fn build_with(
     program: &str,
     board: &Board,
-    (name, value): (&str, impl AsRef<OsStr>),
+    variables: &[(&str, impl AsRef<OsStr>)],
 ) -> Result<PathBuf> {
     let mut cargo = building("build", &format!("--package {program}"), board)?;
-    Ok(kept(cargo.env(name, value), program, &[program], board)?.join(program))
+    Ok(kept(
+        cargo.envs(variables.iter().map(|(name, value)| (name, value))),
+        program,
+        &[program],
+        board,
+    )?
+    .join(program))
 }
 
 /// Builds the package's programs for the board, and returns the directory where they are.

@@ -3,8 +3,8 @@
 mod passed;
 
 use crate::checks::{
-    everyday, fifo, firmware, fuzz, interface, link, logging, long, nucleo, package, peers,
-    rate_loop, real_boards, reckon, ros, simulated_drone, soak, storm, tuned, video,
+    everyday, fifo, firmware, fuzz, interface, link, logging, long, network, nucleo, package,
+    peers, rate_loop, real_boards, reckon, ros, simulated_drone, soak, storm, tuned, video,
 };
 use crate::common::{cpu, usage};
 use crate::figures::{bench, demo, faults, flash};
@@ -136,6 +136,12 @@ const STEPS: &[Step] = &[
         .apart(&[PROSE, LAST]),
     step("tuned", "a constant from `spikewire tune`, in QEMU, spike by spike", tuned::tuned)
         .apart(&[PROSE, LAST]),
+    step(
+        "network",
+        "a published network from its NIR file to spikes on an emulated STM32F405 and RP2040",
+        network::verify,
+    )
+    .apart(&[PROSE, LAST]),
     step("laptop", "the laptop program on a flight, and the paper's tables", everyday::laptop)
         .apart(&[LAST]),
     step("python", "the Python package: tests, hashes, README, example", python_package::python)

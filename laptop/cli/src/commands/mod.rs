@@ -11,6 +11,7 @@ pub(crate) mod frames;
 pub(crate) mod info;
 pub(crate) mod listen;
 pub(crate) mod network;
+mod network_rule;
 pub(crate) mod plot;
 pub(crate) mod score;
 pub(crate) mod signal;

@@ -1,5 +1,6 @@
-//! `spikewire network`: a trained network onto a chip, and what that costs.
+//! `spikewire network`: a trained network onto a chip or the flight controller, and what that costs.
 
+use super::network_rule::RuleOptions;
 use crate::inputs::InputOptions;
 use crate::options::{SchemeOptions, schemes, tell_each};
 use anyhow::{Context, Result, ensure};
@@ -11,8 +12,8 @@ use lab::bank::Bank;
 use lab::fit::rounding;
 use lab::input::{InputOptions as Input, above_zero};
 use lab::network::{
-    Brought, CHIPS, Chip, Figures, File, OnChip, Request, Stepped, Told, Trained, Trains, WINDOW,
-    bring,
+    Brought, CHIPS, Chip, ControllerRequest, Figures, File, Model, OnChip, Request, Stepped, Told,
+    Trained, Trains, WINDOW, bring, bring_to_controller,
 };
 use lab::output::Output;
 use lab::scheme::Scheme;
@@ -23,26 +24,31 @@ use std::fs;
 use std::io::{self, BufRead, Write, stdin};
 use std::path::{Path, PathBuf};
 
-/// Bring a trained network onto a chip: a Rust constant for `spikewire-chips`, and what quantising costs.
+/// Bring a trained network onto a chip or the flight controller itself: Rust constants for `spikewire-chips` or
+/// `spikewire-network`, and what that costs.
 ///
 /// A recording's spikes run through the network in double precision and, with the chip's weights and arithmetic, through
-/// its model, clock by clock. NETWORK is a NIR graph (an HDF5 file of snnTorch, Norse, Rockpool, Sinabs, Lava and
-/// others) that is a chain of up to three layers, each Linear or Affine and LIF, IF or `CubaLIF` (whose currents last a
-/// step), which may lead back to itself, and on `ReckOn` Linear and LI, I or `CubaLI` as outputs; or JSON: {"layers":
-/// [{"name": ..., "weights": [[...]], "recurrent": [[...]], "bias": [...], "keep": 0.9, "threshold": 1.0}], "readout":
-/// {"name": ..., "weights": [[...]], "keep": 0.95}}, with weights by neuron and then input, and the share of the
-/// potential that a step leaves.
+/// its model, clock by clock; or as the controller computes it, bit by bit. NETWORK is a NIR graph (an HDF5 file of
+/// snnTorch, Norse, Rockpool, Sinabs, Lava and others) that is a chain of up to three layers, each Linear or Affine and
+/// LIF, IF or `CubaLIF` (whose currents last a step), which may lead back to itself, and on `ReckOn` Linear and LI, I or
+/// `CubaLI` as outputs; or JSON: {"layers": [{"name": ..., "weights": [[...]], "recurrent": [[...]], "bias": [...],
+/// "keep": 0.9, "threshold": 1.0}], "readout": {"name": ..., "weights": [[...]], "keep": 0.95}}, with weights by neuron and
+/// then input, and the share of the potential that a step leaves.
+///
+/// The controller takes any number of layers, `CubaLIF` with currents of any length, and weights behind the last neurons.
+/// A NIR file does not say by which rule its neurons step: --as does, and the options behind it.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
-  spikewire network trained.nir --scheme position --neurons 20 --column gyro_x flight.csv -o src/network.rs")]
+  spikewire network trained.nir --scheme position --neurons 20 --column gyro_x flight.csv -o src/network.rs
+  spikewire network trained.nir --on controller --as snntorch --reset subtract-late spikes.txt -o src/network.rs")]
 pub(crate) struct Network {
     /// NIR graph, or network in JSON
     #[arg(value_name = "NETWORK")]
     trained: PathBuf,
-    /// The chip
-    #[arg(long, default_value = CHIPS[0].name(), value_parser = chips())]
-    chip: &'static str,
+    /// The chip, or `controller`
+    #[arg(long = "on", visible_alias = "chip", default_value = CHIPS[0].name(), value_parser = places())]
+    place: &'static str,
     /// The scheme that makes the inputs: one for each neuron of each column, of codes with a direction two, up and
     /// down. Without it INPUT holds the spikes themselves: a line for each step, with the numbers of the inputs that fire,
     /// in order
@@ -52,13 +58,15 @@ pub(crate) struct Network {
     #[arg(long, default_value_t)]
     sample: SampleType,
     /// Seconds of a step in the network's time constants, such as 1e-4 of snnTorch; a sample or sub-timestep of the
-    /// recording unless given
+    /// recording unless given, but for the controller
     #[arg(long, value_name = "SECONDS", value_parser = above_zero)]
     dt: Option<f64>,
     #[command(flatten)]
     input: InputOptions,
     #[command(flatten)]
     parameters: SchemeOptions,
+    #[command(flatten)]
+    rule: RuleOptions,
     /// Another recording, which shows what the network is worth where it was not tuned
     #[arg(long, value_name = "INPUT")]
     held_out: Option<PathBuf>,
@@ -75,11 +83,44 @@ pub(crate) struct Network {
     live: bool,
 }
 
-/// The names of the chips.
-fn chips() -> impl TypedValueParser<Value = &'static str> {
-    let name = |chip: &&dyn Chip| chip.name();
-    PossibleValuesParser::new(CHIPS.iter().map(name))
-        .map(move |asked| CHIPS.iter().map(name).find(|name| *name == asked).unwrap_or_default())
+/// The flight controller's name beside those of the chips.
+const CONTROLLER: &str = "controller";
+
+/// The names of the places where networks go.
+fn places() -> impl TypedValueParser<Value = &'static str> {
+    let names = || CHIPS.iter().map(|chip: &&dyn Chip| chip.name()).chain([CONTROLLER]);
+    PossibleValuesParser::new(names())
+        .map(move |asked| names().find(|name| *name == asked).unwrap_or_default())
+}
+
+/// A network with the numbers of its place.
+enum Placed {
+    Chip(&'static dyn Chip, Trained),
+    Controller(Model),
+}
+
+impl Placed {
+    fn read(options: &Network, seconds: Option<f64>) -> Result<Self> {
+        let Network { trained: path, place, dt, rule, .. } = options;
+        let file = File::read(path)?;
+        if *place == CONTROLLER {
+            return Ok(Self::Controller(file.on_controller(&rule.asked(*dt))?));
+        }
+        ensure!(
+            !rule.is_told(),
+            "the chips have rules and numbers of their own: --on controller takes others"
+        );
+        let chip = CHIPS.iter().find(|chip| chip.name() == *place).context("no such chip")?;
+        Ok(Self::Chip(*chip, file.in_steps(dt.or(seconds))?))
+    }
+
+    /// How many inputs it has, and the name of its first layer.
+    fn inputs(&self) -> (usize, &str) {
+        match self {
+            Self::Chip(_, trained) => (trained.inputs(), &trained.layers[0].name),
+            Self::Controller(model) => (model.inputs(), model.first()),
+        }
+    }
 }
 
 /// Runs the command.
@@ -87,9 +128,8 @@ fn chips() -> impl TypedValueParser<Value = &'static str> {
 /// # Errors
 /// The network, the recording, the parameters or the output are not good, or the network does not fit the chip.
 pub(crate) fn run(options: &Network) -> Result<()> {
-    let Network { trained: path, dt, output, .. } = options;
+    let Network { trained: path, output, .. } = options;
     let input = &options.input.to_lab();
-    let file = File::read(path)?;
     ensure!(
         !input.is_stdin(),
         "the recording calibrates scheme and chip, and is read as a whole: give a file"
@@ -100,8 +140,8 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     };
     let seconds = driven.step_us.map(|step| step * 1e-6);
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let trained = file.in_steps(dt.or(seconds)).map_err(|error| error.context(name.clone()))?;
-    driven.check(&trained, options.scheme).with_context(|| name.clone())?;
+    let placed = Placed::read(options, seconds).map_err(|error| error.context(name.clone()))?;
+    driven.check(placed.inputs(), options.scheme).with_context(|| name.clone())?;
     let held_out = options.held_out.as_ref().map(|path| {
         let input = Input { input: path.clone(), ..input.clone() };
         match options.scheme {
@@ -111,7 +151,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     });
     let held_out = held_out.transpose()?;
     if let Some(held_out) = &held_out {
-        held_out.check(&trained, options.scheme).with_context(|| name.clone())?;
+        held_out.check(placed.inputs(), options.scheme).with_context(|| name.clone())?;
     }
 
     let bar = ProgressBar::new(0).with_style(ProgressStyle::with_template(
@@ -121,14 +161,16 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
     };
-    let chip = CHIPS.iter().find(|chip| chip.name() == options.chip).context("no such chip")?;
-    let brought = bring(&Request {
-        chip: *chip,
-        trained: &trained,
-        tuned: &driven.steps,
-        held_out: held_out.as_ref().map(|held_out| &held_out.steps),
-        progress: &progress,
-    });
+    let (tuned, held_out) = (&driven.steps, held_out.as_ref().map(|held_out| &held_out.steps));
+    let (progress, numbers) = (&progress, options.rule.numbers);
+    let brought = match &placed {
+        Placed::Chip(chip, trained) => {
+            bring(&Request { chip: *chip, trained, tuned, held_out, progress })
+        }
+        Placed::Controller(model) => {
+            bring_to_controller(&ControllerRequest { model, numbers, tuned, held_out, progress })
+        }
+    };
     bar.finish_and_clear();
     let brought = brought.map_err(|error| error.context(name.clone()))?;
 
@@ -145,7 +187,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     }
     tell_each(&driven.notes);
     report(&brought);
-    if options.live { live(&*brought.network, trained.inputs()) } else { Ok(()) }
+    if options.live { live(&*brought.network, placed.inputs().0) } else { Ok(()) }
 }
 
 /// Steps in by standard input, answers out.
@@ -194,9 +236,8 @@ struct Driven {
 
 impl Driven {
     /// Returns an error unless these are the network's inputs.
-    fn check(&self, trained: &Trained, scheme: Option<Scheme>) -> Result<()> {
-        let (inputs, given) = (trained.inputs(), &self.words);
-        let layer = &trained.layers[0].name;
+    fn check(&self, (inputs, layer): (usize, &str), scheme: Option<Scheme>) -> Result<()> {
+        let given = &self.words;
         match scheme {
             Some(scheme) => ensure!(
                 inputs == self.inputs,
@@ -349,10 +390,7 @@ fn tell(figures: &Figures, network: &dyn OnChip) {
             "warning: no output fires, neither in double precision nor on the chip: there is nothing to compare"
         );
     }
-    eprintln!(
-        "a step takes the chip {:.0} clocks, {} at most",
-        figures.mean_clocks, figures.most_clocks
-    );
+    eprintln!("{}", network.effort(figures.mean_clocks, figures.most_clocks));
     if figures.lost > 0 {
         eprintln!("warning: {} spikes were lost: {}", figures.lost, network.loss());
     }

@@ -93,31 +93,61 @@ pub struct LayerFigures {
 /// Returns an error if the network does not fit, or the chip's model refuses something.
 pub fn bring(request: &Request) -> Result<Brought> {
     let Request { chip, trained, tuned, held_out, progress } = *request;
-    let original = trained.run(tuned);
-    let network = chip.quantise(trained, tuned, &original, progress)?;
-    let tuned = figures(trained, &*network, tuned, &original)?;
+    let original = Original::of(trained, tuned);
+    let network = chip.quantise(trained, tuned, &original.fired, progress)?;
+    let tuned = figures(&original, &*network, tuned)?;
     let held_out = held_out
-        .map(|held_out| figures(trained, &*network, held_out, &trained.run(held_out)))
+        .map(|held_out| figures(&Original::of(trained, held_out), &*network, held_out))
         .transpose()?;
     Ok(Brought { network, tuned, held_out })
 }
 
-fn figures(
-    trained: &Trained,
+/// A network in double precision: its layers, and what it did.
+pub(super) struct Original {
+    /// The name and number of the neurons of each layer that fires.
+    pub layers: Vec<(String, usize)>,
+    /// The same of outputs that never fire.
+    pub readout: Option<(String, usize)>,
+    pub fired: Vec<Trains>,
+    /// The outputs' potentials, by step.
+    pub potentials: Vec<Vec<f64>>,
+}
+
+impl Original {
+    fn of(trained: &Trained, inputs: &Trains) -> Self {
+        let fired = trained.run(inputs);
+        Self {
+            layers: trained
+                .layers
+                .iter()
+                .map(|layer| (layer.name.clone(), layer.neurons.len()))
+                .collect(),
+            readout: trained
+                .readout
+                .as_ref()
+                .map(|readout| (readout.name.clone(), readout.weights.len())),
+            potentials: trained.potentials(&fired),
+            fired,
+        }
+    }
+}
+
+/// Runs the quantised network beside the original.
+pub(super) fn figures(
+    original: &Original,
     network: &dyn OnChip,
     inputs: &Trains,
-    original: &[Trains],
 ) -> Result<Figures> {
     let ran = network.run(inputs)?;
     let clipped = network.clipped();
-    let layers = trained.layers.iter().zip(&clipped).zip(original.iter().zip(&ran.fired));
-    let layers = layers.map(|((layer, &clipped), (original, fired))| LayerFigures {
-        name: layer.name.clone(),
-        neurons: layer.neurons.len(),
+    let layers = original.layers.iter().zip(&clipped).zip(original.fired.iter().zip(&ran.fired));
+    let layers = layers.map(|(((name, neurons), &clipped), (original, fired))| LayerFigures {
+        name: name.clone(),
+        neurons: *neurons,
         clipped,
         spikes: original.iter().map(Vec::len).sum(),
         on_chip: fired.iter().map(Vec::len).sum(),
-        distance: distance(layer.neurons.len(), original, fired),
+        distance: distance(*neurons, original, fired),
     });
     let steps = inputs.len();
     let mut figures = Figures {
@@ -133,11 +163,11 @@ fn figures(
         lost: ran.lost,
         potentials: None,
     };
-    if let Some(readout) = &trained.readout {
-        let potentials = trained.potentials(original);
+    if let Some((name, outputs)) = &original.readout {
+        let potentials = &original.potentials;
         figures.potentials = Some(PotentialFigures {
-            name: readout.name.clone(),
-            outputs: readout.weights.len(),
+            name: name.clone(),
+            outputs: *outputs,
             clipped: clipped.last().copied().unwrap_or(0),
             size: root_mean_square(potentials.iter().flatten().copied()),
             error: root_mean_square(
@@ -149,10 +179,10 @@ fn figures(
             ),
         });
         // Of one output none is the highest.
-        if readout.weights.len() > 1 {
-            figures.compare(&highest(&potentials), &highest(&ran.potentials));
+        if *outputs > 1 {
+            figures.compare(&highest(potentials), &highest(&ran.potentials));
         }
-    } else if let (Some(original), Some(fired)) = (original.last(), ran.fired.last()) {
+    } else if let (Some(original), Some(fired)) = (original.fired.last(), ran.fired.last()) {
         figures.compare(original, fired);
     }
     Ok(figures)

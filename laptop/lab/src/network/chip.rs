@@ -69,6 +69,11 @@ pub trait OnChip {
 
     /// The reason that spikes get lost on their way into the chip.
     fn loss(&self) -> &'static str;
+
+    /// What a step takes, of the figures' clocks.
+    fn effort(&self, mean: f64, most: u64) -> String {
+        format!("a step takes the chip {mean:.0} clocks, {most} at most")
+    }
 }
 
 /// The result of a run on the chip.

@@ -2,6 +2,7 @@
 
 mod bring;
 mod chip;
+mod controller;
 mod distance;
 mod nir;
 mod plain;
@@ -11,6 +12,10 @@ mod trained;
 
 pub use bring::{Brought, Figures, LayerFigures, PotentialFigures, Request, WINDOW, bring};
 pub use chip::{CHIPS, Chip, OnChip, Ran, Stepped, Told};
+pub use controller::{
+    Asked, ControllerRequest, Current, Decay, Fires, Framework, Model, Numbers, Reset, Rule,
+    bring_to_controller,
+};
 pub use distance::Distance;
 pub use reckon::ReckOn;
 pub use tiny_odin::TinyOdin;
@@ -46,6 +51,17 @@ impl File {
             return Ok(Self::Plain(plain::read(&bytes).with_context(name)?));
         }
         bail!("{}: neither a NIR graph, which is an HDF5 file, nor a network in JSON", name())
+    }
+
+    /// The network in the form of `spikewire-network`, by the rule that is asked for.
+    ///
+    /// # Errors
+    /// The file and what is asked do not say the rule, or do not go together.
+    pub fn on_controller(self, asked: &Asked) -> Result<Model> {
+        match self {
+            Self::Plain(trained) => Model::of_plain(trained, asked),
+            Self::Nir(chain) => Model::of_nir(*chain, asked),
+        }
     }
 
     /// The network in steps of `step` seconds.

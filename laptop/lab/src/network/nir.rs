@@ -15,51 +15,56 @@ const MOST_BYTES: usize = 1 << 26;
 
 /// The layers from input to output, with time in seconds.
 pub struct Chain {
-    stages: Vec<Stage>,
+    pub(super) stages: Vec<Stage>,
     /// The last, if it never fires.
-    readout: Option<Stage>,
+    pub(super) readout: Option<Stage>,
+    /// Weights behind the last neurons.
+    pub(super) sum: Option<Weights>,
+    /// What is odd about the file, and taken all the same.
+    pub(super) notes: Vec<String>,
 }
 
-struct Stage {
-    weights: Weights,
+pub(super) struct Stage {
+    pub(super) weights: Weights,
     /// The weights from the neurons to themselves.
-    recurrent: Option<Weights>,
-    neurons: Neurons,
+    pub(super) recurrent: Option<Weights>,
+    pub(super) neurons: Neurons,
 }
 
-struct Weights {
-    rows: Vec<Vec<f64>>,
-    bias: Option<Vec<f64>>,
+pub(super) struct Weights {
+    /// By neuron, then input.
+    pub(super) rows: Vec<Vec<f64>>,
+    pub(super) bias: Option<Vec<f64>>,
 }
 
-struct Neurons {
+pub(super) struct Neurons {
     /// The node's.
     name: String,
     /// Perfect integrators have none.
-    leak: Option<Leak>,
-    resistance: Array,
+    pub(super) leak: Option<Leak>,
+    pub(super) resistance: Array,
     /// Thresholds; `None` if the neurons never fire.
-    threshold: Option<Array>,
-    reset: Option<Array>,
+    pub(super) threshold: Option<Array>,
+    pub(super) reset: Option<Array>,
     /// How long a spike's current lasts, and the weight before it, if it is no step's.
-    synapse: Option<Synapse>,
+    pub(super) synapse: Option<Synapse>,
 }
 
-struct Synapse {
-    tau: Array,
-    weight: Array,
+pub(super) struct Synapse {
+    pub(super) tau: Array,
+    pub(super) weight: Array,
 }
 
-struct Leak {
-    tau: Array,
-    rest: Array,
+pub(super) struct Leak {
+    pub(super) tau: Array,
+    pub(super) rest: Array,
 }
 
 /// Numbers, one for each neuron or one for all.
-struct Array(Vec<f64>);
+pub(super) struct Array(pub(super) Vec<f64>);
 
 impl Array {
-    fn at(&self, neuron: usize) -> f64 {
+    pub(super) fn at(&self, neuron: usize) -> f64 {
         if let [one] = self.0[..] { one } else { self.0[neuron] }
     }
 }
@@ -124,7 +129,7 @@ pub(crate) fn read(bytes: Vec<u8>) -> Result<Chain> {
                     bail!("no weights lead to it")
                 }
                 _ => bail!(
-                    "no chip here has anything like it; Linear, Affine, LIF, IF and CubaLIF are taken, and last LI, \
+                    "nothing here has anything like it; Linear, Affine, LIF, IF and CubaLIF are taken, and last LI, \
                      I and CubaLI"
                 ),
             }
@@ -132,8 +137,8 @@ pub(crate) fn read(bytes: Vec<u8>) -> Result<Chain> {
         };
         read().with_context(|| format!("node `{name}` ({kind})"))?;
     }
-    ensure!(weights.is_none(), "the last weights lead to no neurons");
-    Ok(Chain { stages, readout })
+    let notes = graph.batch(&first)?;
+    Ok(Chain { stages, readout, sum: weights, notes })
 }
 
 fn kind(node: &Group, name: &str) -> Result<String> {
@@ -182,6 +187,20 @@ impl Graph {
             }
         };
         Ok((one("Input", inputs)?, one("Output", outputs)?))
+    }
+
+    /// A note if the input keeps a batch dimension, as Norse leaves it; `nir` refuses such files.
+    fn batch(&self, input: &str) -> Result<Vec<String>> {
+        let node = &self.nodes[input];
+        let is_told = node.datasets()?.iter().any(|dataset| dataset.name() == "shape");
+        let shape = if is_told { numbers(node, "shape")?.1 } else { vec![] };
+        Ok(match shape[..] {
+            [1.0, .., inputs] => vec![format!(
+                "node `{input}`: its shape {shape:?} keeps a dimension of batches, as Norse leaves it; taken as {inputs} \
+                 inputs"
+            )],
+            _ => vec![],
+        })
     }
 
     /// Leads the edges of the graphs in it to their inputs and from their outputs.
@@ -353,6 +372,7 @@ impl Chain {
     /// # Errors
     /// A time constant is shorter than a step, or the step is needed and not known.
     pub(super) fn in_steps(self, step: Option<f64>) -> Result<Trained> {
+        ensure!(self.sum.is_none(), "the last weights lead to no neurons");
         let layers = self.stages.into_iter().map(|stage| {
             let name = stage.neurons.name();
             stage.in_steps(step).context(name)
@@ -367,7 +387,7 @@ impl Chain {
 }
 
 impl Neurons {
-    fn name(&self) -> String {
+    pub(super) fn name(&self) -> String {
         format!("node `{}`", self.name)
     }
 

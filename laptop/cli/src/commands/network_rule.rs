@@ -1,0 +1,103 @@
+//! The options that say by which rule a network's neurons step.
+
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use lab::network::{Asked, Current, Decay, Fires, Framework, Numbers, Reset};
+
+/// The rule of a network on the controller, which a NIR file does not say.
+#[derive(Args, Debug)]
+pub(crate) struct RuleOptions {
+    /// The framework whose rule the network follows: of a NIR file on the controller this, or each of the choices below
+    #[arg(long = "as", value_name = "FRAMEWORK", value_parser = of(&FRAMEWORKS))]
+    framework: Option<Framework>,
+    /// What a spike does to its neuron: to all, or of each layer that fires, with commas between
+    #[arg(long = "reset", value_delimiter = ',', value_parser = of(&RESETS))]
+    resets: Vec<Reset>,
+    /// When a neuron fires
+    #[arg(long, value_parser = of(&FIRES))]
+    fires: Option<Fires>,
+    /// How potentials and currents decay
+    #[arg(long, value_parser = of(&DECAYS))]
+    decay: Option<Decay>,
+    /// The current that a potential takes, of neurons with both
+    #[arg(long, value_parser = of(&CURRENTS))]
+    current: Option<Current>,
+    /// The controller's numbers
+    #[arg(long, default_value = "f32", value_parser = of(&NUMBERS))]
+    pub(crate) numbers: Numbers,
+}
+
+impl RuleOptions {
+    /// What is asked for, with these seconds of a step.
+    pub(crate) fn asked(&self, dt: Option<f64>) -> Asked {
+        let &Self { framework, fires, decay, current, .. } = self;
+        Asked { framework, resets: self.resets.clone(), fires, decay, current, dt }
+    }
+
+    /// Whether anything is asked for.
+    pub(crate) fn is_told(&self) -> bool {
+        let Asked { framework, resets, fires, decay, current, .. } = self.asked(None);
+        let told = [
+            framework.is_some(),
+            !resets.is_empty(),
+            fires.is_some(),
+            decay.is_some(),
+            current.is_some(),
+        ];
+        told.contains(&true) || self.numbers != Numbers::Float
+    }
+}
+
+type Choices<T> = [(&'static str, T, &'static str)];
+
+/// Reads one of these words.
+fn of<T: Copy + Send + Sync + 'static>(
+    choices: &'static Choices<T>,
+) -> impl TypedValueParser<Value = T> {
+    let values = choices.iter().map(|(name, _, help)| PossibleValue::new(*name).help(*help));
+    PossibleValuesParser::new(values.collect::<Vec<_>>()).try_map(|asked| {
+        let found = choices.iter().find(|(name, ..)| *name == asked);
+        found.map(|(_, choice, _)| *choice).ok_or("no such choice")
+    })
+}
+
+const FRAMEWORKS: [(&str, Framework, &str); 6] = [
+    (Framework::SnnTorch.name(), Framework::SnnTorch, "needs --reset; steps of 1e-4 s"),
+    (Framework::Norse.name(), Framework::Norse, "needs --dt, and --current of neurons with one"),
+    (Framework::SpikingJelly.name(), Framework::SpikingJelly, "steps of 1e-4 s"),
+    (Framework::Rockpool.name(), Framework::Rockpool, "needs --dt and --fires"),
+    (Framework::Sinabs.name(), Framework::Sinabs, "needs --dt and --fires"),
+    (Framework::Nir.name(), Framework::Nir, "NIR's own reference program; needs --dt and --reset"),
+];
+
+const RESETS: [(&str, Reset, &str); 6] = [
+    ("to-value", Reset::ToValue, "sets the potential to v_reset, or 0, at once"),
+    ("to-value-late", Reset::ToValueLate, "sets it a step late"),
+    ("to-value-held", Reset::ToValueHeld, "holds it there through the next step"),
+    ("subtract", Reset::Subtract, "subtracts the threshold at once"),
+    ("subtract-late", Reset::SubtractLate, "subtracts it a step late"),
+    ("subtract-no-delay", Reset::SubtractNoDelay, "as snnTorch with reset_delay=False"),
+];
+
+const FIRES: [(&str, Fires, &str); 2] =
+    [("above", Fires::Above, "v > threshold"), ("at", Fires::At, "v >= threshold")];
+
+const DECAYS: [(&str, Decay, &str); 2] = [
+    ("euler", Decay::Euler, "1 - dt / tau"),
+    ("exponential", Decay::Exponential, "e to the -dt / tau"),
+];
+
+const CURRENTS: [(&str, Current, &str); 3] = [
+    ("new", Current::New, "that of this step"),
+    ("old", Current::Old, "that of the step before"),
+    (
+        "whole",
+        Current::Whole,
+        "that of this step, to which a spike adds its whole weight: LIFCell of Norse",
+    ),
+];
+
+const NUMBERS: [(&str, Numbers, &str); 2] = [
+    ("f32", Numbers::Float, "for cores with a floating-point unit"),
+    ("i8", Numbers::Integer, "weights of 8 bits, for other cores and less flash"),
+];

@@ -1,0 +1,231 @@
+//! Networks on the controller: files and spikes of other programs, by each program's rule.
+//!
+//! Of `peers/nir`, `lif`, `braille` and their spikes are from the repository of NIR (BSD 3-Clause, 2023, NIR Team); `peers/
+//! frameworks.py` wrote the others.
+
+mod common;
+
+use common::{file, good, ran, refused};
+use lab::network::{Asked, Current, File, Fires, Framework, Model, Reset, Trains};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn nir(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers/nir").join(name)
+}
+
+fn text(name: &str) -> String {
+    fs::read_to_string(nir(name)).unwrap()
+}
+
+fn spikes(text: &str) -> Vec<u16> {
+    text.split_whitespace().map(|number| number.parse().unwrap()).collect()
+}
+
+fn trains(name: &str) -> Trains {
+    text(name).lines().map(spikes).collect()
+}
+
+fn model(name: &str, asked: &Asked) -> Model {
+    File::read(&nir(name)).unwrap().on_controller(asked).unwrap()
+}
+
+fn by(framework: Framework) -> Asked {
+    Asked { framework: Some(framework), ..Asked::default() }
+}
+
+/// How many of the steps times neurons differ.
+fn differing(one: &Trains, other: &Trains) -> usize {
+    let only = |a: &[u16], b: &[u16]| a.iter().filter(|neuron| !b.contains(neuron)).count();
+    assert_eq!(one.len(), other.len());
+    one.iter().zip(other).map(|(one, other)| only(one, other) + only(other, one)).sum()
+}
+
+/// Two recurrent networks that read Braille, against the spikes of their hidden layer that the authors published.
+#[test]
+fn networks_that_snntorch_trained_fire_as_was_published() {
+    let inputs = trains("braille.txt");
+    for (name, reset, other) in [
+        ("braille_bias_zero", Reset::ToValue, Reset::SubtractNoDelay),
+        ("braille_subtract", Reset::SubtractNoDelay, Reset::Subtract),
+    ] {
+        let run = |reset| {
+            let asked = Asked { resets: vec![reset], ..by(Framework::SnnTorch) };
+            let model = model(&format!("{name}.nir"), &asked);
+            (model.run_as_flown(&inputs).0, model.run(&inputs))
+        };
+        let expected = trains(&format!("{name}.spikes.txt"));
+        assert!(expected.len() == 256 && expected.iter().flatten().count() > 100);
+        let (flown, double) = run(reset);
+        assert_eq!(differing(&flown[0], &expected), 0, "{name}");
+        assert_eq!(differing(&double[0], &expected), 0, "{name}");
+        // Another rule moves spikes.
+        assert!(differing(&run(other).0[0], &expected) > 40, "{name}");
+    }
+}
+
+/// One neuron that each program stepped 1000 times, with the potentials that it wrote down.
+#[test]
+fn one_neuron_has_the_potentials_that_were_published() {
+    let table = text("lif.csv");
+    let rows = table.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
+    let rows: Vec<_> = rows.collect();
+    let inputs = rows.iter().map(|row| if row[0] == "0" { vec![] } else { vec![0] }).collect();
+    let exponential =
+        |framework| Asked { fires: Some(Fires::Above), dt: Some(1e-4), ..by(framework) };
+    for (column, asked, spikes, least) in [
+        // Norse adds in another order: v + dt / tau * (x + v_leak - v).
+        (1, Asked { dt: Some(1e-4), ..by(Framework::Norse) }, [460, 510, 710, 760], 0),
+        (
+            2,
+            Asked { resets: vec![Reset::ToValue], ..by(Framework::SnnTorch) },
+            [460, 510, 710, 760],
+            1000,
+        ),
+        (3, exponential(Framework::Rockpool), [450, 500, 710, 760], 1000),
+        (4, exponential(Framework::Sinabs), [450, 500, 710, 760], 1000),
+    ] {
+        let (fired, potentials) = model("lif.nir", &asked).run_as_flown(&inputs);
+        let fired: Vec<usize> = (0..1000).filter(|&at| !fired[0][at].is_empty()).collect();
+        assert_eq!(fired, spikes, "{asked:?}");
+        let published = rows.iter().map(|row| row[column].parse::<f32>().unwrap());
+        let pairs: Vec<_> = published.zip(&potentials).map(|(v, own)| (v, own[0])).collect();
+        let exact = pairs.iter().filter(|(v, own)| v.to_bits() == own.to_bits()).count();
+        assert!(exact >= least, "{asked:?}: {exact}");
+        assert!(pairs.iter().all(|(v, own)| (v - own).abs() < 1e-7), "{asked:?}");
+    }
+}
+
+/// Networks that three frameworks wrote, against 200 steps of themselves: every spike, and the outputs' potentials.
+#[test]
+fn networks_fire_as_their_frameworks_do() {
+    use Reset::{SubtractLate, SubtractNoDelay, ToValue, ToValueLate};
+    let torch = |reset| Asked { resets: vec![reset], ..by(Framework::SnnTorch) };
+    // RSynaptic of snnTorch 1.0.0 resets late, whatever it is told.
+    let mixed = |first, last| Asked { resets: vec![first, last], ..by(Framework::SnnTorch) };
+    let norse = Asked { dt: Some(1e-3), current: Some(Current::Whole), ..by(Framework::Norse) };
+    for (name, reset, asked) in [
+        ("snntorch", "subtract-late", torch(SubtractLate)),
+        ("snntorch", "to-value-late", torch(ToValueLate)),
+        ("snntorch", "subtract-no-delay", torch(SubtractNoDelay)),
+        ("snntorch", "to-value", torch(ToValue)),
+        ("snntorch_recurrent", "subtract-late", torch(SubtractLate)),
+        ("snntorch_recurrent", "to-value-late", torch(ToValueLate)),
+        ("snntorch_recurrent", "subtract-no-delay", mixed(SubtractLate, SubtractNoDelay)),
+        ("snntorch_recurrent", "to-value", mixed(ToValueLate, ToValue)),
+        ("spikingjelly", "to-value", by(Framework::SpikingJelly)),
+        ("spikingjelly_cuba", "to-value", by(Framework::SpikingJelly)),
+        ("norse", "to-value", norse.clone()),
+        ("norse_cell", "to-value", norse),
+    ] {
+        let steps = text(&format!("{name}.{reset}.txt"));
+        let steps: Vec<Vec<&str>> = steps.lines().map(|line| line.split(';').collect()).collect();
+        let column = |at: usize| -> Trains { steps.iter().map(|step| spikes(step[at])).collect() };
+        let (fired, potentials) = model(&format!("{name}.nir"), &asked).run_as_flown(&column(0));
+        assert!(steps.len() == 200 && column(1).iter().flatten().count() > 100, "{name}");
+        assert_eq!(differing(&fired[0], &column(1)), 0, "{name} {reset}");
+        assert_eq!(differing(&fired[1], &column(2)), 0, "{name} {reset}");
+        // SpikingJelly begins at its reset value, from which potentials are told.
+        let start = if name == "spikingjelly_cuba" { -0.25 } else { 0.0 };
+        for (step, own) in steps.iter().zip(&potentials) {
+            let expected = step[3].split(' ').map(|v| v.parse::<f32>().unwrap() - start);
+            let off = expected.zip(own).map(|(v, own)| (v - own).abs()).fold(0.0, f32::max);
+            assert!(off < 2e-5, "{name} {reset}: {off}");
+        }
+    }
+}
+
+fn network(name: &str, options: &str) -> String {
+    format!(
+        "network {} --on controller {options} {}",
+        nir(name).display(),
+        nir("braille.txt").display()
+    )
+}
+
+#[test]
+fn a_file_that_does_not_say_the_rule_is_refused_with_the_choices() {
+    for (name, options, words) in [
+        (
+            "braille_subtract.nir",
+            "",
+            &["--as snntorch|", "--reset", "--fires", "--decay", "--current", "--dt"][..],
+        ),
+        ("braille_subtract.nir", "--as snntorch", &["subtract-late (its default)"]),
+        ("braille_subtract.nir", "--as norse", &["LIFCell", "--dt SECONDS"]),
+        ("braille_subtract.nir", "--as sinabs", &["--fires above (v > threshold) or at"]),
+        (
+            "braille_subtract.nir",
+            "--as nir --dt 1e-4",
+            &["--reset to-value (NIR's definition) or subtract"],
+        ),
+        // Written with a dt of 1, and not of 0.01.
+        (
+            "norse.nir",
+            "--as norse --dt 0.1",
+            &["e-3 s is shorter than a step of 0.1 s", "--dt 0.01"],
+        ),
+        ("spikingjelly.nir", "--as spikingjelly --dt 0.1", &["shorter than a step of 0.1 s"]),
+    ] {
+        refused(&network(name, options), "", words);
+    }
+    // What the choice named leaves open is all that is asked for.
+    let told = common::spikewire(&network("braille_subtract.nir", "--as snntorch"), "").told;
+    assert!(!told.contains("--fires") && !told.contains("--dt"), "{told}");
+    let chip = network("braille_subtract.nir", "--as snntorch").replace("controller", "tinyodin");
+    refused(&chip, "", &["--on controller"]);
+}
+
+#[test]
+fn what_a_reader_would_do_with_a_file_is_told() {
+    // Norse's file, whose gain is none of snnTorch's.
+    let (_one, one) = file("one.txt", "0\n\n0\n");
+    let lif = nir("lif.nir").display().to_string();
+    let told = ran!("network {lif} --on controller --as snntorch --reset to-value {one}").told;
+    assert!(told.contains("a gain of 0.040000, where snnTorch writes 1"), "{told}");
+}
+
+/// The firmware `trained` compiles it for every core: `cargo verify network`.
+#[test]
+fn a_network_becomes_the_module_of_the_firmware() {
+    let options = "--as snntorch --reset subtract-no-delay";
+    let ran = good(&network("braille_subtract.nir", options), "");
+    let firmware =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/trained/src/braille.rs");
+    assert_eq!(ran.output, fs::read_to_string(firmware).unwrap());
+    for words in [
+        "10568 bytes of flash for weights and neurons, 592 bytes of RAM",
+        "node `lif1.lif`: 40, 0; 118, 118, 0.0",
+        "outputs agree in 100.0 % of 256 steps",
+        "a step adds 105.9 weights, 407 at most, and visits 47 neurons",
+    ] {
+        assert!(ran.told.contains(words), "{}", ran.told);
+    }
+    // In integers a quarter of the weights' bytes, and almost the same spikes; on other spikes too.
+    let held_out = format!("--held-out {}", nir("braille.txt").display());
+    let ran =
+        good(&network("braille_subtract.nir", &format!("{options} --numbers i8 {held_out}")), "");
+    assert!(ran.output.contains("Weights::packed(") && ran.output.contains("pub const UNITS"));
+    let told = ran.told.split_once("held out:\n").unwrap().1;
+    let share = told.split("outputs agree in ").nth(1).unwrap().split(' ').next().unwrap();
+    assert!(share.parse::<f64>().unwrap() > 95.0, "{}", ran.told);
+}
+
+/// JSON says its rule; potentials of outputs that never fire are read.
+#[test]
+fn json_goes_onto_the_controller_and_answers_step_by_step() {
+    let json = r#"{"layers": [{"weights": [[3, 0], [0, 5]], "threshold": 5.5}], "readout": {"weights": [[1, -2]]}}"#;
+    let (_network, network) = file("two.json", json);
+    let (_steps, steps) = file("steps.txt", "0 1\n1\n0\n0\n1\n");
+    let ran = good(&format!("network {network} --on controller {steps} --live"), "1\n1\n0 0\n");
+    // Weights added: each input onto two neurons, and each spike onto the output.
+    assert_eq!(ran.output, "2\n3\n5\n");
+    for (numbers, off) in [("f32", "0.0000"), ("i8", "0.0005")] {
+        let ran = ran!("network {network} --on controller --numbers {numbers} {steps}");
+        assert!(ran.output.contains("pub type Trained = Then<Layer1, Layer2>;"), "{}", ran.output);
+        let potentials = format!("potentials of 1.1832, on the chip {off} off");
+        assert!(ran.told.contains(&potentials), "{}", ran.told);
+    }
+    let bytes = format!("network {network} --on controller {steps} --bytes {network}.bytes");
+    refused(&bytes, "", &["compiled in"]);
+}

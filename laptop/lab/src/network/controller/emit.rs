@@ -1,0 +1,304 @@
+//! The network as Rust: constant data for `spikewire-network`.
+
+use super::super::Trains;
+use super::super::chip::{Told, list};
+use super::net::{Layer, Net, Neuron, Own};
+use super::number::Number;
+use super::rule::{Current, Fires, Rule};
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+/// Numbers as the crate's constructors take them.
+pub(super) trait Spelled: Number {
+    /// The crate's type of potentials.
+    const TYPE: &'static str;
+    /// The constructor of neurons.
+    const NEW: &'static str;
+
+    fn spell(self) -> String;
+    fn spell_factor(factor: Self::Factor) -> String;
+    /// The constructor of weights with these rows.
+    fn spell_weights(rows: &[&[Self]], shift: u32) -> String;
+}
+
+impl Spelled for f32 {
+    const TYPE: &'static str = "f32";
+    const NEW: &'static str = "new";
+
+    fn spell(self) -> String {
+        // The shortest that is read as the same number.
+        format!("{self:?}")
+    }
+
+    fn spell_factor(factor: Self) -> String {
+        factor.spell()
+    }
+
+    fn spell_weights(rows: &[&[Self]], _: u32) -> String {
+        format!("Weights::new(&[\n{}])", spell_rows(rows, |weight| weight.spell()))
+    }
+}
+
+impl Spelled for i32 {
+    const TYPE: &'static str = "i32";
+    const NEW: &'static str = "integer";
+
+    fn spell(self) -> String {
+        self.to_string()
+    }
+
+    fn spell_factor(factor: u32) -> String {
+        factor.to_string()
+    }
+
+    fn spell_weights(rows: &[&[Self]], shift: u32) -> String {
+        let rows = spell_rows(rows, |weight| (weight >> shift).to_string());
+        format!("Weights::packed(&[\n{rows}], {shift})")
+    }
+}
+
+fn spell_rows<K: Copy>(rows: &[&[K]], spell: impl Fn(K) -> String) -> String {
+    let mut text = String::new();
+    for row in rows {
+        _ = writeln!(text, "    [{}],", list(row.iter().map(|&weight| spell(weight))));
+    }
+    text
+}
+
+/// Writes a module, whose weights are shifted so by layer; `units` is what a potential of 1 stands for, of integers. The
+/// steps `check` run before arming.
+pub(super) fn emit<K: Spelled>(
+    net: &Net<K>,
+    shifts: &[u32],
+    units: &[f64],
+    check: &Trains,
+    told: &Told,
+) -> String {
+    let mut body = String::new();
+    for (number, layer) in (1..).zip(&net.layers) {
+        let shift = shifts.get(number - 1).copied().unwrap_or(0);
+        body += &statics(layer, number, shift);
+    }
+    body += &network(net);
+    if !units.is_empty() {
+        let units = list(units.iter().map(|unit| format!("{:?}", *unit as f32)));
+        let count = net.layers.last().map_or(0, |layer| layer.neurons.len());
+        _ = write!(
+            body,
+            "\n/// The value of a potential of 1, of each output.\npub const UNITS: [f32; {count}] = [{units}];\n"
+        );
+    }
+    body += &checked(net, check);
+    let Told { source, inputs, step_us } = told;
+    let every = step_us.map_or(String::new(), |step| format!(" A step: {step} µs."));
+    let words: BTreeSet<&str> = body.split(|c: char| !c.is_alphanumeric()).collect();
+    let used = list(NAMES.iter().filter(|name| words.contains(*name)));
+    format!(
+        "//! {source} for the flight controller, written by `spikewire network --on controller`.
+//!
+//! Inputs: {inputs}.{every}
+{rules}
+#![allow(clippy::all, clippy::pedantic, reason = \"written by a program\")]
+
+use spikewire_network::{{Network, State, Weights}};
+use spikewire_network::{{{used}}};
+{body}",
+        rules = net.rules().iter().map(|rule| format!("//! - {rule}\n")).collect::<String>(),
+    )
+}
+
+/// What a module may import, beside what every one does.
+const NAMES: [&str; 16] = [
+    "Cuba",
+    "Forward",
+    "Full",
+    "Layer",
+    "Li",
+    "Lif",
+    "OneToOne",
+    "Spiking",
+    "Subtract",
+    "SubtractLate",
+    "SubtractNoDelay",
+    "Then",
+    "ToValue",
+    "ToValueHeld",
+    "ToValueLate",
+    "Values",
+];
+
+/// A layer's weights, neurons and type.
+fn statics<K: Spelled>(layer: &Layer<K>, number: usize, shift: u32) -> String {
+    let Layer { name, weights, own, neurons, rule } = layer;
+    let (inputs, count, numbers) = (weights.len(), neurons.len(), K::TYPE);
+    let rows: Vec<&[K]> = weights.iter().map(Vec::as_slice).collect();
+    let kind = kind(&neurons[0], rule);
+    let mut text = format!(
+        "\n/// {name}: weights by input, then neuron.
+#[rustfmt::skip]
+static WEIGHTS_{number}: Weights<{numbers}, {inputs}, {count}> = {};
+",
+        K::spell_weights(&rows, shift)
+    );
+    let rows: Vec<&[K]> = match own {
+        Own::None => vec![],
+        Own::Full(rows) => rows.iter().map(Vec::as_slice).collect(),
+        Own::OneToOne(own) => vec![own],
+    };
+    if !rows.is_empty() {
+        _ = write!(
+            text,
+            "\n/// {name}: weights of its own spikes of the step before.
+#[rustfmt::skip]
+static OWN_{number}: Weights<{numbers}, {}, {count}> = {};
+",
+            rows.len(),
+            K::spell_weights(&rows, shift)
+        );
+    }
+    let spelled = if neurons.iter().all(|neuron| *neuron == neurons[0]) {
+        format!("[{}; {count}]", neuron(&neurons[0], rule))
+    } else {
+        let lines = neurons.iter().map(|one| format!("    {},\n", neuron(one, rule)));
+        format!("[\n{}]", lines.collect::<String>())
+    };
+    let recurrence = match own {
+        Own::None => "Forward".to_owned(),
+        Own::Full(_) => format!("Full<'static, {numbers}, {count}>"),
+        Own::OneToOne(_) => format!("OneToOne<'static, {numbers}, {count}>"),
+    };
+    _ = write!(
+        text,
+        "\n#[rustfmt::skip]
+static NEURONS_{number}: [{kind}; {count}] = {spelled};
+
+type Layer{number} = Layer<'static, {kind}, {inputs}, {count}, Spiking, {recurrence}>;
+"
+    );
+    text
+}
+
+/// The type of a neuron.
+fn kind<K: Spelled>(neuron: &Neuron<K>, rule: &Rule) -> String {
+    let (numbers, reset) = (K::TYPE, rule.reset.type_name());
+    let inner = match neuron.spike {
+        Some(_) => format!("Lif<{numbers}, {reset}>"),
+        None => format!("Li<{numbers}>"),
+    };
+    match (neuron.current, rule.current) {
+        (None, _) => inner,
+        (Some(_), Current::Old) => format!("Cuba<{numbers}, {inner}, true>"),
+        (Some(_), _) => format!("Cuba<{numbers}, {inner}>"),
+    }
+}
+
+/// The constructor of a neuron.
+fn neuron<K: Spelled>(neuron: &Neuron<K>, rule: &Rule) -> String {
+    let (numbers, new, zero) = (K::TYPE, K::NEW, K::default());
+    let decay = K::spell_factor(neuron.decay);
+    let bias = |bias: K| {
+        if bias == zero { String::new() } else { format!(".with_bias({})", bias.spell()) }
+    };
+    let mut text = match neuron.spike {
+        None => format!("Li::<{numbers}>::{new}({decay})"),
+        Some(spike) => {
+            let reset = rule.reset.type_name();
+            let threshold = spike.threshold.spell();
+            let mut text = format!("Lif::<{numbers}, {reset}>::{new}({decay}, {threshold})");
+            if !rule.reset.subtracts() && spike.reset != zero {
+                _ = write!(text, ".with_reset({})", spike.reset.spell());
+            }
+            if rule.fires == Fires::At {
+                text += ".at_threshold()";
+            }
+            text
+        }
+    };
+    if let Some(current) = neuron.current {
+        let (current, inner) = (K::spell_factor(current), bias(neuron.inner));
+        text = format!("Cuba::<{numbers}, _>::{new}({current}, {text}{inner})");
+    }
+    text += &bias(neuron.bias);
+    if neuron.current.is_some() && rule.current == Current::Old {
+        text += ".from_old_current()";
+    }
+    text
+}
+
+/// The whole network.
+fn network<K: Spelled>(net: &Net<K>) -> String {
+    let (mut kind, mut value) = (String::new(), String::new());
+    for (number, layer) in (1..).zip(&net.layers) {
+        let own = match layer.own {
+            Own::None => String::new(),
+            Own::Full(_) => format!(".recurrent(Full(&OWN_{number}))"),
+            Own::OneToOne(_) => format!(".recurrent(OneToOne(&OWN_{number}))"),
+        };
+        let one = format!("Layer::new(&WEIGHTS_{number}, &NEURONS_{number}){own}");
+        if number == 1 {
+            (kind, value) = ("Layer1".into(), one);
+        } else {
+            kind = format!("Then<{kind}, Layer{number}>");
+            _ = write!(value, "\n    .then({one})");
+        }
+    }
+    format!(
+        "\n/// The type of the network.
+pub type Trained = {kind};
+
+/// The network, in flash. Its state is `NETWORK.state()`.
+#[rustfmt::skip]
+pub static NETWORK: Trained = {value};
+"
+    )
+}
+
+/// The steps before arming, and what must come of them.
+fn checked<K: Spelled>(net: &Net<K>, inputs: &Trains) -> String {
+    let done = net.run(inputs);
+    let (steps, layers) = (inputs.len(), net.layers.len());
+    let spikes = |fired: &[u16]| format!("&[{}]", list(fired.iter()));
+    let mut rows = String::new();
+    for (step, inputs) in inputs.iter().enumerate() {
+        let fired = list(done.fired.iter().map(|layer| spikes(&layer[step])));
+        _ = writeln!(rows, "    ({}, [{fired}]),", spikes(inputs));
+    }
+    let last = list(done.potentials.last().into_iter().flatten().map(|v| v.spell()));
+    let outputs = net.layers.last().map_or(0, |layer| layer.neurons.len());
+    // `Then<Then<A, B>, C>` has the states `first.first`, `first.next` and `next`.
+    let path = |layer: usize| {
+        let firsts = ".first".repeat(layers - 1 - layer.max(1).min(layers - 1));
+        match (layers, layer) {
+            (1, _) => String::new(),
+            (_, 0) => format!("{firsts}.first"),
+            _ => format!("{firsts}.next"),
+        }
+    };
+    let names = list((1..=layers).map(|layer| format!("fired_{layer}")));
+    let compared =
+        (0..layers).map(|layer| format!("state{}.spikes() == *fired_{}", path(layer), layer + 1));
+    let compared = compared.collect::<Vec<_>>().join("\n            && ");
+    let numbers = K::TYPE;
+    format!(
+        "\n/// Steps from rest: the inputs that fire, and the neurons of each layer that must.
+#[rustfmt::skip]
+static STEPS: [(&[u16], [&[u16]; {layers}]); {steps}] = [
+{rows}];
+
+/// The outputs' potentials behind these steps.
+#[rustfmt::skip]
+static POTENTIALS: [{numbers}; {outputs}] = [{last}];
+
+/// Runs {steps} steps whose spikes and potentials are known, bit by bit. Do not arm if it returns false: the flash, the
+/// compiler or the core has made another network of it.
+pub fn is_intact() -> bool {{
+    let mut state = NETWORK.state();
+    let spikes_are = STEPS.iter().all(|(inputs, [{names}])| {{
+        NETWORK.step(&mut state, inputs);
+        {compared}
+    }});
+    spikes_are && state.values() == POTENTIALS
+}}
+"
+    )
+}

@@ -1,0 +1,296 @@
+//! From a file to the form: numbers by step, gains in the weights.
+
+use super::super::nir::{Array, Chain, Neurons, Stage, Weights};
+use super::super::trained;
+use super::net::{Layer, Net, Neuron, Own, Spike};
+use super::rule::{Current, Decay, Framework, Needs, Reset, Rule};
+use super::{Asked, Model};
+use anyhow::{Context, Result, bail, ensure};
+
+/// The largest number of the crate's in `f32`.
+const LARGEST: f64 = 1e15;
+
+/// How far rounding leaves a gain beside the 1 that is meant.
+const ROUNDING: f64 = 1e-5;
+
+impl Model {
+    /// A network in JSON.
+    ///
+    /// # Errors
+    /// A number is out of the range.
+    pub(in super::super) fn of_plain(trained: trained::Trained, asked: &Asked) -> Result<Self> {
+        let trained::Trained { layers, readout } = trained;
+        ensure!(
+            asked.resets.len() < 2,
+            "layers in JSON have one reset, and {} are asked for",
+            asked.resets.len()
+        );
+        let rule = asked.or_plain();
+        let of_layer = |layer: trained::Layer| {
+            let trained::Layer { name, weights, recurrent, bias, neurons } = layer;
+            let neurons = neurons.iter().zip(bias);
+            let neurons = neurons.map(|(&trained::Neuron { keep, threshold }, bias)| {
+                let reset = if rule.reset.subtracts() { threshold } else { 0.0 };
+                let spike = Some(Spike { threshold, reset });
+                Neuron { current: None, decay: keep, bias, inner: 0.0, spike }
+            });
+            let own = own(recurrent);
+            Layer { name, weights: turned(&weights), own, neurons: neurons.collect(), rule }
+        };
+        let mut layers: Vec<_> = layers.into_iter().map(of_layer).collect();
+        layers.extend(readout.map(|trained::Readout { name, weights, keep }| {
+            let silent =
+                |decay| Neuron { current: None, decay, bias: 0.0, inner: 0.0, spike: None };
+            let neurons = keep.into_iter().map(silent).collect();
+            Layer { name, weights: turned(&weights), own: Own::None, neurons, rule }
+        }));
+        Self::new(Net { layers }, Vec::new())
+    }
+
+    /// A NIR graph, by a rule.
+    ///
+    /// # Errors
+    /// The rule is not said as a whole, or does not go with the file.
+    pub(in super::super) fn of_nir(chain: Chain, asked: &Asked) -> Result<Self> {
+        let Chain { stages, readout, sum, mut notes } = chain;
+        let all = || stages.iter().chain(&readout);
+        let rule = asked.rule(Needs {
+            fires: !stages.is_empty(),
+            current: all().any(|stage| stage.neurons.synapse.is_some()),
+            time: all().next().is_some(),
+        })?;
+        let (firing, resets) = (stages.len(), &asked.resets);
+        ensure!(
+            resets.len() < 2 || resets.len() == firing,
+            "{} resets are asked for, and {firing} layers fire",
+            resets.len()
+        );
+        let mut layers = Vec::new();
+        for stage in stages.into_iter().chain(readout) {
+            let name = stage.neurons.name();
+            let own = if resets.len() < 2 { None } else { resets.get(layers.len()) };
+            let rule = Rule { reset: own.copied().unwrap_or(rule.reset), ..rule };
+            layers.push(of_stage(stage, rule, &mut notes).context(name)?);
+        }
+        layers.extend(sum.map(|Weights { rows, bias }| {
+            let one = |at| Neuron {
+                current: None,
+                decay: 0.0,
+                bias: bias.as_ref().map_or(0.0, |bias| bias[at]),
+                inner: 0.0,
+                spike: None,
+            };
+            let neurons = (0..rows.len()).map(one).collect();
+            Layer { name: "sums".into(), weights: turned(&rows), own: Own::None, neurons, rule }
+        }));
+        Self::new(Net { layers }, notes)
+    }
+
+    fn new(net: Net<f64>, notes: Vec<String>) -> Result<Self> {
+        ensure!(!net.layers.is_empty(), "the network has no neurons");
+        for pair in net.layers.windows(2) {
+            let (before, after) = (&pair[0], &pair[1]);
+            ensure!(
+                after.inputs() == before.neurons.len(),
+                "{}: weights for {} inputs, but {} has {} neurons",
+                after.name,
+                after.inputs(),
+                before.name,
+                before.neurons.len()
+            );
+        }
+        for layer in &net.layers {
+            layer.check().with_context(|| layer.name.clone())?;
+        }
+        Ok(Self { net, notes })
+    }
+}
+
+impl Layer<f64> {
+    fn check(&self) -> Result<()> {
+        let own: &[Vec<f64>] = if let Own::Full(own) = &self.own { own } else { &[] };
+        let one = if let Own::OneToOne(own) = &self.own { &own[..] } else { &[] };
+        let weights = self.weights.iter().chain(own).flatten().chain(one);
+        let of_neurons = self.neurons.iter().flat_map(|neuron| {
+            let Spike { threshold, reset } =
+                neuron.spike.unwrap_or(Spike { threshold: 0.0, reset: 0.0 });
+            [neuron.bias, neuron.inner, threshold, reset]
+        });
+        if let Some(odd) = weights.copied().chain(of_neurons).find(|n| !(n.abs() <= LARGEST)) {
+            bail!("a weight, bias, threshold or reset value of {odd}, where 1e15 is the most");
+        }
+        ensure!(
+            self.inputs() <= 1 << 16 && self.neurons.len() <= 1 << 16,
+            "{} inputs and {} neurons, of which 65536 are the most",
+            self.inputs(),
+            self.neurons.len()
+        );
+        Ok(())
+    }
+}
+
+/// Weights by input, from those by neuron.
+fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let inputs = rows.first().map_or(0, Vec::len);
+    (0..inputs).map(|input| rows.iter().map(|row| row[input]).collect()).collect()
+}
+
+/// Recurrent weights, given by neuron; of each to itself alone, only these.
+fn own(rows: Vec<Vec<f64>>) -> Own<f64> {
+    if rows.is_empty() {
+        return Own::None;
+    }
+    let is_diagonal = rows
+        .iter()
+        .enumerate()
+        .all(|(at, row)| row.iter().enumerate().all(|(from, &weight)| from == at || weight == 0.0));
+    if is_diagonal {
+        Own::OneToOne(rows.iter().enumerate().map(|(at, row)| row[at]).collect())
+    } else {
+        Own::Full(turned(&rows))
+    }
+}
+
+/// A layer in steps.
+fn of_stage(stage: Stage, mut rule: Rule, notes: &mut Vec<String>) -> Result<Layer<f64>> {
+    let Stage { weights: Weights { mut rows, bias }, recurrent, neurons } = stage;
+    let name = neurons.name();
+    let mut biases = bias.unwrap_or_else(|| vec![0.0; rows.len()]);
+    let (mut back, more) = recurrent.map_or((vec![], None), |own| (own.rows, own.bias));
+    biases.iter_mut().zip(more.iter().flatten()).for_each(|(bias, more)| *bias += more);
+    let mut scaled = None;
+    let mut all = Vec::new();
+    for (at, bias) in biases.into_iter().enumerate() {
+        let Stepped { mut neuron, mut gain } = stepped(&neurons, at, &rule)?;
+        if rule.framework == Some(Framework::SnnTorch)
+            && gain != 1.0
+            && let Some(spike) = &mut neuron.spike
+        {
+            // As its reader does, which has no gain.
+            scaled = Some(gain);
+            for number in [&mut spike.threshold, &mut spike.reset, &mut neuron.inner] {
+                *number /= gain;
+            }
+            gain = 1.0;
+        }
+        let own = back.get_mut(at).into_iter().flatten();
+        rows[at].iter_mut().chain(own).for_each(|weight| *weight *= gain);
+        if neuron.current.is_some() {
+            neuron.bias = bias * gain;
+        } else {
+            neuron.bias = neuron.inner + bias * gain;
+            neuron.inner = 0.0;
+        }
+        all.push(neuron);
+    }
+    if let Some(gain) = scaled {
+        notes.push(format!(
+            "{name}: a gain of {gain:.6}, where snnTorch writes 1: another program wrote the file, or with another step \
+             than {} s; as snnTorch reads it, the threshold is divided by the gain",
+            rule.dt
+        ));
+    }
+    let start = neurons.start(0, &rule);
+    if start != 0.0 {
+        notes.push(format!("{name}: potentials are told from {start}, at which its neurons begin"));
+    }
+    let ignored = neurons.reset.iter().flat_map(|reset| &reset.0).any(|&value| value != 0.0);
+    if ignored && rule.reset.subtracts() {
+        notes.push(format!("{name}: its v_reset is not used, as a spike subtracts the threshold"));
+    }
+    let is_leaky = back.is_empty() && neurons.synapse.is_none();
+    let is_late = rule.reset == Reset::ToValueLate;
+    if is_late && !is_leaky && rule.framework == Some(Framework::SnnTorch) {
+        // As all of its neurons but `Leaky` do.
+        rule.reset = Reset::ToValueHeld;
+    }
+    Ok(Layer { name, weights: turned(&rows), own: own(back), neurons: all, rule })
+}
+
+struct Stepped {
+    neuron: Neuron<f64>,
+    /// The factor of the inputs.
+    gain: f64,
+}
+
+/// A neuron's numbers by step; its bias is still to be added.
+fn stepped(neurons: &Neurons, at: usize, rule: &Rule) -> Result<Stepped> {
+    let dt = rule.dt;
+    let resistance = neurons.resistance.at(at);
+    let (decay, mut gain, leak) = match &neurons.leak {
+        None => (1.0, resistance * dt, 0.0),
+        Some(leak) => {
+            let tau = leak.tau.at(at);
+            let decay = left(tau, rule)?;
+            (decay, resistance * dt / tau, (1.0 - decay) * leak.rest.at(at))
+        }
+    };
+    let means_ones = rule.framework.is_some_and(Framework::means_ones);
+    let meant = |gain: f64| if means_ones && (gain - 1.0).abs() < ROUNDING { 1.0 } else { gain };
+    gain = meant(gain);
+    let mut current = None;
+    if let Some(synapse) = &neurons.synapse {
+        let (tau, weight) = (synapse.tau.at(at), synapse.weight.at(at));
+        current = Some(left(tau, rule)?);
+        let whole = rule.current == Current::Whole;
+        gain *= if whole { weight } else { meant(weight * dt / tau) };
+    }
+    let spike = neurons.threshold.as_ref().map(|threshold| {
+        let threshold = threshold.at(at);
+        let to = neurons.reset.as_ref().map_or(0.0, |reset| reset.at(at));
+        Spike { threshold, reset: if rule.reset.subtracts() { threshold } else { to } }
+    });
+    let neuron = Neuron { current, decay, bias: 0.0, inner: leak, spike };
+    Ok(Stepped { neuron: neuron.begun_at(neurons.start(at, rule), rule), gain })
+}
+
+impl Neurons {
+    /// The potential at which a neuron begins, which is 0 in the crate.
+    fn start(&self, at: usize, rule: &Rule) -> f64 {
+        let of = |all: Option<&Array>| all.map_or(0.0, |all| all.at(at));
+        match rule.framework {
+            _ if self.threshold.is_none() => 0.0,
+            Some(Framework::SpikingJelly) => of(self.reset.as_ref()),
+            Some(Framework::Norse) => of(self.leak.as_ref().map(|leak| &leak.rest)),
+            _ => 0.0,
+        }
+    }
+}
+
+impl Neuron<f64> {
+    /// The same neuron with potentials told from `start`, so that it begins at 0.
+    fn begun_at(mut self, start: f64, rule: &Rule) -> Self {
+        self.inner -= (1.0 - self.decay) * start;
+        if let Some(spike) = &mut self.spike {
+            spike.threshold -= start;
+            if !rule.reset.subtracts() {
+                spike.reset -= start;
+            }
+        }
+        self
+    }
+}
+
+/// The share that a step leaves of what has this time constant.
+fn left(tau: f64, rule: &Rule) -> Result<f64> {
+    let Rule { dt, framework, decay, .. } = *rule;
+    ensure!(tau > 0.0 && tau.is_finite(), "a time constant of {tau} s");
+    if decay == Decay::Exponential {
+        return Ok((-dt / tau).exp());
+    }
+    if tau < dt * (1.0 - 1e-9) && framework != Some(Framework::SnnTorch) {
+        let hint = match framework {
+            Some(Framework::Norse) => {
+                // Without the digits that a product of two decimals has at its end.
+                let meant = (dt * dt * 1e12).round() / 1e12;
+                format!(
+                    "; Norse writes time constants times the dt that it was called with (0.001 unless told): if that was \
+                     {dt} s, they are right with --dt {meant}"
+                )
+            }
+            _ => "; --dt gives the step that the network was trained with".to_owned(),
+        };
+        bail!("a time constant of {tau:e} s is shorter than a step of {dt} s{hint}");
+    }
+    Ok((1.0 - dt / tau).clamp(0.0, 1.0))
+}

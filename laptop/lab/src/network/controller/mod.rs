@@ -1,0 +1,273 @@
+//! Networks on the flight controller itself, for the crate `spikewire-network`.
+
+mod emit;
+mod form;
+mod net;
+mod number;
+mod quantise;
+mod rule;
+
+pub use rule::{Asked, Current, Decay, Fires, Framework, Reset, Rule};
+
+use super::Trains;
+use super::bring::{Brought, Original, figures};
+use super::chip::{OnChip, Ran, Stepped, Told};
+use anyhow::{Result, bail};
+use net::{Done, Net, Own, State};
+use number::Number;
+use quantise::Integers;
+
+/// A network in the crate's form, in double precision.
+pub struct Model {
+    net: Net<f64>,
+    /// What is odd about its file.
+    notes: Vec<String>,
+}
+
+/// The controller's numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Numbers {
+    /// Single precision, for cores with a floating-point unit.
+    Float,
+    /// Weights of 8 bits, potentials of 32.
+    Integer,
+}
+
+/// A network for the controller, and the recording with which it is brought there.
+pub struct ControllerRequest<'a> {
+    /// The network.
+    pub model: &'a Model,
+    /// The controller's numbers.
+    pub numbers: Numbers,
+    /// The spikes on which integers are tuned, by step.
+    pub tuned: &'a Trains,
+    /// Spikes of another recording.
+    pub held_out: Option<&'a Trains>,
+    /// Called with the neurons that are done and those in all.
+    pub progress: &'a (dyn Fn(usize, usize) + Sync),
+}
+
+/// Steps of the check before arming.
+const CHECKED: usize = 10;
+
+/// The network in the controller's numbers.
+enum Held {
+    Float(Net<f32>),
+    Integer(Integers),
+}
+
+/// A network as the controller holds it.
+struct OnController {
+    held: Held,
+    notes: Vec<String>,
+    /// The inputs of the check before arming.
+    check: Trains,
+}
+
+impl Model {
+    /// Number of inputs.
+    pub fn inputs(&self) -> usize {
+        self.net.layers.first().map_or(0, net::Layer::inputs)
+    }
+
+    /// The name of the first layer.
+    pub fn first(&self) -> &str {
+        self.net.layers.first().map_or("", |layer| &layer.name)
+    }
+
+    /// The neurons that fire, by layer and step, in double precision.
+    pub fn run(&self, inputs: &Trains) -> Vec<Trains> {
+        self.net.run(inputs).fired
+    }
+
+    /// The same in `f32`, bit for bit as the controller computes it; and the potentials of the last layer, by step.
+    pub fn run_as_flown(&self, inputs: &Trains) -> (Vec<Trains>, Vec<Vec<f32>>) {
+        let Done { fired, potentials, .. } = quantise::float(&self.net).run(inputs);
+        (fired, potentials)
+    }
+
+    fn original(&self, inputs: &Trains) -> Original {
+        let Done { fired, potentials, .. } = self.net.run(inputs);
+        let named = |layer: &net::Layer<f64>| (layer.name.clone(), layer.neurons.len());
+        let mut layers: Vec<_> = self.net.layers.iter().map(named).collect();
+        let readout = if self.is_silent() { layers.pop() } else { None };
+        Original { layers, readout, fired, potentials }
+    }
+
+    /// Whether the outputs are potentials.
+    fn is_silent(&self) -> bool {
+        let last = self.net.layers.last().and_then(|layer| layer.neurons.first());
+        last.is_some_and(|neuron| neuron.spike.is_none())
+    }
+}
+
+/// Brings a network onto the controller, and runs it there beside double precision.
+///
+/// # Errors
+/// The network has too many inputs or neurons.
+pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
+    let ControllerRequest { model, numbers, tuned, held_out, progress } = *request;
+    let original = model.original(tuned);
+    let mut notes = model.notes.clone();
+    notes.extend(model.net.rules());
+    let held = match numbers {
+        Numbers::Float => Held::Float(quantise::float(&model.net)),
+        Numbers::Integer => Held::Integer(quantise::integers(
+            &model.net,
+            tuned,
+            &original.fired,
+            &original.potentials,
+            progress,
+        )),
+    };
+    let saturated = match &held {
+        Held::Float(_) => 0,
+        Held::Integer(integers) => integers.net.run(tuned).saturated,
+    };
+    if saturated > 0 {
+        notes.push(format!("warning: {saturated} potentials or currents left their range"));
+    }
+    let check = match &held {
+        Held::Float(net) => liveliest(net, tuned),
+        Held::Integer(integers) => liveliest(&integers.net, tuned),
+    };
+    let network: Box<dyn OnChip> = Box::new(OnController { held, notes, check });
+    let held_out = held_out
+        .map(|held_out| figures(&model.original(held_out), &*network, held_out))
+        .transpose()?;
+    let tuned = figures(&original, &*network, tuned)?;
+    Ok(Brought { network, tuned, held_out })
+}
+
+/// The steps of the recording in which most neurons fire from rest on, those of the last layer before all.
+fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
+    /// Beginnings that are tried.
+    const TRIED: usize = 200;
+    let stride = inputs.len().div_ceil(TRIED).max(1);
+    let windows = inputs.windows(CHECKED.min(inputs.len())).step_by(stride);
+    let lively = |window: &&[Vec<u16>]| {
+        let spikes = |train: &Trains| train.iter().map(Vec::len).sum::<usize>();
+        let counts = net.run(&window.to_vec()).fired.iter().map(spikes).collect::<Vec<_>>();
+        (counts.last().copied().unwrap_or(0).min(1), counts.iter().sum::<usize>())
+    };
+    windows.max_by_key(lively).unwrap_or_default().to_vec()
+}
+
+impl OnController {
+    /// Bytes of flash of weights and neurons, and of RAM.
+    fn bytes_of(&self) -> (usize, usize) {
+        match &self.held {
+            Held::Float(net) => bytes(net, 4),
+            Held::Integer(integers) => bytes(&integers.net, 1),
+        }
+    }
+
+    fn follow_in<K: Number>(
+        net: &Net<K>,
+        steps: &mut dyn Iterator<Item = Result<Vec<u16>>>,
+        see: &mut dyn FnMut(Stepped) -> Result<()>,
+    ) -> Result<u32> {
+        let mut state = net.state();
+        for inputs in steps {
+            let (operations, _) = net.step(&mut state, &inputs?);
+            let fired = state.iter().map(|State { fired, .. }| fired.clone()).collect();
+            see(Stepped { fired, clocks: operations as u64 })?;
+        }
+        Ok(0)
+    }
+}
+
+/// Flash and RAM of a network whose weights take so many bytes, as the crate's types have them.
+fn bytes<K: Number>(net: &Net<K>, weight: usize) -> (usize, usize) {
+    let (mut flash, mut ram) = (0, 0);
+    for layer in &net.layers {
+        let count = layer.neurons.len();
+        let own = match layer.own {
+            Own::None => 0,
+            Own::Full(_) => count * count,
+            Own::OneToOne(_) => count,
+        };
+        let first = layer.neurons.first();
+        let has_current = first.is_some_and(|neuron| neuron.current.is_some());
+        let fires = first.is_some_and(|neuron| neuron.spike.is_some());
+        let neuron = if fires { 16 } else { 8 } + if has_current { 8 } else { 0 };
+        flash += (layer.inputs() * count + own) * weight + count * neuron;
+        let list = (2 * count).next_multiple_of(4) + 8;
+        let lists = if matches!(layer.own, Own::None) { 1 } else { 2 };
+        ram += count * if has_current { 8 } else { 4 } + lists * list + 8;
+    }
+    (flash, ram)
+}
+
+impl OnChip for OnController {
+    fn run(&self, inputs: &Trains) -> Result<Ran> {
+        let (fired, potentials, clocks) = match &self.held {
+            Held::Float(net) => {
+                let done = net.run(inputs);
+                let row = |row: &Vec<f32>| row.iter().map(|&v| v.into()).collect();
+                (done.fired, done.potentials.iter().map(row).collect(), done.operations)
+            }
+            Held::Integer(Integers { net, units, .. }) => {
+                let done = net.run(inputs);
+                let row = |row: &Vec<i32>| {
+                    row.iter().zip(units).map(|(&v, unit)| f64::from(v) * unit).collect()
+                };
+                (done.fired, done.potentials.iter().map(row).collect(), done.operations)
+            }
+        };
+        Ok(Ran { fired, potentials, clocks, lost: 0 })
+    }
+
+    fn follow(
+        &self,
+        steps: &mut dyn Iterator<Item = Result<Vec<u16>>>,
+        see: &mut dyn FnMut(Stepped) -> Result<()>,
+    ) -> Result<u32> {
+        match &self.held {
+            Held::Float(net) => Self::follow_in(net, steps, see),
+            Held::Integer(integers) => Self::follow_in(&integers.net, steps, see),
+        }
+    }
+
+    fn clipped(&self) -> Vec<usize> {
+        match &self.held {
+            Held::Float(net) => vec![0; net.layers.len()],
+            Held::Integer(integers) => integers.clipped.clone(),
+        }
+    }
+
+    fn emit(&self, told: &Told) -> String {
+        match &self.held {
+            Held::Float(net) => emit::emit(net, &[], &[], &self.check, told),
+            Held::Integer(Integers { net, shifts, units, .. }) => {
+                emit::emit(net, shifts, units, &self.check, told)
+            }
+        }
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>> {
+        bail!("a network on the controller is compiled in: there are no bytes to load")
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let (flash, ram) = self.bytes_of();
+        let size = format!("{flash} bytes of flash for weights and neurons, {ram} bytes of RAM");
+        self.notes.iter().cloned().chain([size]).collect()
+    }
+
+    fn dearest(&self) -> &'static str {
+        "the controller's numbers"
+    }
+
+    fn loss(&self) -> &'static str {
+        "the network has no such inputs"
+    }
+
+    fn effort(&self, mean: f64, most: u64) -> String {
+        let neurons: usize = match &self.held {
+            Held::Float(net) => net.layers.iter().map(|layer| layer.neurons.len()).sum(),
+            Held::Integer(all) => all.net.layers.iter().map(|layer| layer.neurons.len()).sum(),
+        };
+        format!("a step adds {mean:.1} weights, {most} at most, and visits {neurons} neurons")
+    }
+}

@@ -1,0 +1,247 @@
+//! From double precision to the controller's numbers.
+
+use super::super::{Distance, Trains};
+use super::net::{Layer, Net, Neuron, Own, Spike};
+use super::number::ONE;
+use super::rule::Rule;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Shares of the scale at which the largest weight is 127: above 1 it is clipped, for the sake of the others.
+const SCALES: [f64; 14] =
+    [1.0, 0.97, 0.94, 0.91, 0.88, 0.85, 0.8, 0.75, 0.7, 1.05, 1.1, 1.2, 1.4, 1.8];
+/// The largest weight.
+const LARGEST: f64 = 127.0;
+/// Binary places by which potentials are finer than weights, where nothing speaks against it.
+const SHIFT: u32 = 8;
+/// The largest bias, threshold and reset value.
+const MOST: f64 = (1 << 27) as f64;
+/// Steps of the recording that the search looks at.
+const STEPS: usize = 4_000;
+
+/// Each number rounded once.
+pub(super) fn float(net: &Net<f64>) -> Net<f32> {
+    let row = |row: &Vec<f64>| row.iter().map(|&weight| weight as f32).collect::<Vec<_>>();
+    let layer = |layer: &Layer<f64>| Layer {
+        name: layer.name.clone(),
+        weights: layer.weights.iter().map(row).collect(),
+        own: match &layer.own {
+            Own::None => Own::None,
+            Own::Full(rows) => Own::Full(rows.iter().map(row).collect()),
+            Own::OneToOne(own) => Own::OneToOne(row(own)),
+        },
+        neurons: layer
+            .neurons
+            .iter()
+            .map(|neuron| Neuron {
+                current: neuron.current.map(|decay| decay as f32),
+                decay: neuron.decay as f32,
+                bias: neuron.bias as f32,
+                inner: neuron.inner as f32,
+                spike: neuron.spike.map(|Spike { threshold, reset }| Spike {
+                    threshold: threshold as f32,
+                    reset: reset as f32,
+                }),
+            })
+            .collect(),
+        rule: layer.rule,
+    };
+    Net { layers: net.layers.iter().map(layer).collect() }
+}
+
+/// A network with weights of 8 bits.
+pub(super) struct Integers {
+    pub net: Net<i32>,
+    /// By layer, how weights are shifted.
+    pub shifts: Vec<u32>,
+    /// By layer, the weights that were larger than 8 bits hold.
+    pub clipped: Vec<usize>,
+    /// What a potential of 1 stands for, for each neuron of the last layer.
+    pub units: Vec<f64>,
+}
+
+/// Finds for each neuron the scale of its weights with which its spikes, or its potentials if it never fires, are nearest
+/// to the original's. `fired` and `potentials` are the original's.
+pub(super) fn integers(
+    net: &Net<f64>,
+    inputs: &Trains,
+    fired: &[Trains],
+    potentials: &[Vec<f64>],
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Integers {
+    let total = net.layers.iter().map(|layer| layer.neurons.len()).sum();
+    let done = AtomicUsize::new(0);
+    let (mut layers, mut shifts, mut clipped) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut before, mut units) = (inputs.clone(), Vec::new());
+    for (layer, fired) in net.layers.iter().zip(fired) {
+        let shift = layer.shift();
+        let one = |at: usize| {
+            let target: Vec<f64> = match layer.neurons[at].spike {
+                Some(_) => fired.iter().map(|fired| f64::from(u8::from(has(fired, at)))).collect(),
+                None => potentials.iter().map(|step| step[at]).collect(),
+            };
+            let tried = SCALES.iter().map(|share| Column::new(layer, at, *share, shift));
+            let distance =
+                |column: &Column| column.distance(layer.rule, &before, fired, &target, at);
+            let tried = tried.map(|column| (distance(&column), column));
+            // The first of equals, which clips nothing.
+            let (_, best) =
+                tried.min_by(|(a, _), (b, _)| a.total_cmp(b)).expect("there are scales");
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
+            best
+        };
+        let columns: Vec<Column> = (0..layer.neurons.len()).into_par_iter().map(one).collect();
+        clipped.push(columns.iter().map(|column| column.clipped).sum());
+        units = columns.iter().map(|column| column.unit).collect();
+        let whole = layer.of(&columns);
+        let alone = Net { layers: vec![whole] };
+        before = alone.run(&before).fired.pop().unwrap_or_default();
+        layers.extend(alone.layers);
+        shifts.push(shift);
+    }
+    Integers { net: Net { layers }, shifts, clipped, units }
+}
+
+fn has(fired: &[u16], neuron: usize) -> bool {
+    fired.binary_search(&(neuron as u16)).is_ok()
+}
+
+/// What leads to one neuron, and the neuron, in whole numbers.
+struct Column {
+    /// By input, shifted.
+    weights: Vec<i32>,
+    /// By the neuron of the layer that fired, shifted; of each to itself alone, one.
+    own: Vec<i32>,
+    neuron: Neuron<i32>,
+    clipped: usize,
+    /// What a potential of 1 stands for.
+    unit: f64,
+}
+
+impl Layer<f64> {
+    fn own_weights(&self, at: usize) -> Vec<f64> {
+        match &self.own {
+            Own::None => vec![],
+            Own::Full(rows) => rows.iter().map(|row| row[at]).collect(),
+            Own::OneToOne(own) => vec![own[at]],
+        }
+    }
+
+    /// The scale at which a neuron's largest weight is 127.
+    fn scale(&self, at: usize) -> f64 {
+        let own = self.own_weights(at);
+        let weights = self.weights.iter().map(|row| row[at]).chain(own);
+        let largest = weights.fold(0.0_f64, |most, weight| most.max(weight.abs()));
+        let number = self.neurons[at].largest();
+        match (largest > 0.0, number > 0.0) {
+            (true, _) => LARGEST / largest,
+            // It has no weights: any scale will do.
+            (false, true) => LARGEST / number,
+            (false, false) => 1.0,
+        }
+    }
+
+    /// The shift that leaves thresholds and biases in their range.
+    fn shift(&self) -> u32 {
+        let numbers = (0..self.neurons.len()).map(|at| self.neurons[at].largest() * self.scale(at));
+        let most = numbers.fold(0.0, f64::max);
+        (0..=SHIFT).rev().find(|shift| most * f64::from(1 << shift) <= MOST).unwrap_or(0)
+    }
+
+    fn of(&self, columns: &[Column]) -> Layer<i32> {
+        let rows = |count: usize, weight: &dyn Fn(&Column, usize) -> i32| {
+            (0..count)
+                .map(|row| columns.iter().map(|column| weight(column, row)).collect())
+                .collect()
+        };
+        let own = match &self.own {
+            Own::None => Own::None,
+            Own::Full(_) => Own::Full(rows(columns.len(), &|column, row| column.own[row])),
+            Own::OneToOne(_) => Own::OneToOne(columns.iter().map(|column| column.own[0]).collect()),
+        };
+        Layer {
+            name: self.name.clone(),
+            weights: rows(self.inputs(), &|column, row| column.weights[row]),
+            own,
+            neurons: columns.iter().map(|column| column.neuron).collect(),
+            rule: self.rule,
+        }
+    }
+}
+
+impl Neuron<f64> {
+    fn largest(&self) -> f64 {
+        let spike = self.spike.unwrap_or(Spike { threshold: 0.0, reset: 0.0 });
+        [self.bias, self.inner, spike.threshold, spike.reset]
+            .into_iter()
+            .fold(0.0, |most, n| most.max(n.abs()))
+    }
+}
+
+impl Column {
+    fn new(layer: &Layer<f64>, at: usize, share: f64, shift: u32) -> Self {
+        let neuron = &layer.neurons[at];
+        let finer = f64::from(1 << shift);
+        // A neuron whose threshold is far above its weights has small weights.
+        let scale = (layer.scale(at) * share).min(MOST / finer / neuron.largest().max(1e-300));
+        let mut clipped = 0;
+        let mut weight = |weight: f64| {
+            let rounded = (weight * scale).round();
+            clipped += usize::from(rounded.abs() > LARGEST);
+            (rounded.clamp(-LARGEST, LARGEST) as i32) << shift
+        };
+        let weights = layer.weights.iter().map(|row| weight(row[at])).collect();
+        let own = layer.own_weights(at).into_iter().map(&mut weight).collect();
+        let whole = |number: f64| (number * scale * finer).round() as i32;
+        let part = |decay: f64| (decay * ONE).round() as u32;
+        let neuron = Neuron {
+            current: neuron.current.map(part),
+            decay: part(neuron.decay),
+            bias: whole(neuron.bias),
+            inner: whole(neuron.inner),
+            spike: neuron.spike.map(|Spike { threshold, reset }| Spike {
+                threshold: whole(threshold),
+                reset: whole(reset),
+            }),
+        };
+        Self { weights, own, neuron, clipped, unit: 1.0 / (scale * finer) }
+    }
+
+    /// How far the neuron is from what it should do, with the layer's other spikes as the original has them.
+    fn distance(
+        &self,
+        rule: Rule,
+        inputs: &Trains,
+        own: &Trains,
+        target: &[f64],
+        at: usize,
+    ) -> f64 {
+        let (mut v, mut current) = (0, 0);
+        let (mut distance, mut squares) = (Distance::default(), 0.0);
+        let mut before: &[u16] = &[];
+        for ((inputs, own), &target) in inputs.iter().zip(own).zip(target).take(STEPS) {
+            let mut sum = self.neuron.bias;
+            for &input in inputs {
+                sum = sum.wrapping_add(self.weights[usize::from(input)]);
+            }
+            match self.own[..] {
+                [] => {}
+                // Of one neuron it is the same.
+                [one] => sum = sum.wrapping_add(if has(before, at) { one } else { 0 }),
+                _ => {
+                    for &fired in before {
+                        sum = sum.wrapping_add(self.own[usize::from(fired)]);
+                    }
+                }
+            }
+            let (fires, _) = self.neuron.step(&rule, &mut v, &mut current, sum);
+            if self.neuron.spike.is_some() {
+                distance.step(fires.into(), target as usize);
+            } else {
+                squares += (f64::from(v) * self.unit - target).powi(2);
+            }
+            before = own;
+        }
+        distance.value() + squares
+    }
+}

@@ -1,0 +1,90 @@
+//! `cargo xtask network`: a network that `spikewire network` wrote, on an emulated STM32F405 and RP2040, against the host.
+
+use super::emulator;
+use crate::common::{cargo, command, output, paths, run, usage};
+use crate::programs::boards::Board;
+use crate::programs::{host, image, qemu};
+use anyhow::{Context, Result, bail, ensure};
+use std::fs;
+use std::path::Path;
+
+const PROGRAM: &str = "trained";
+
+/// The Cortex-M0+ of a Pico, in rp2040js.
+const RP2040: Board = Board {
+    core: "M0+",
+    machine: "rp2040",
+    target: "thumbv6m-none-eabi",
+    cpu: "cortex-m0plus",
+    clock: 1_000_000_000,
+    icount: 0,
+};
+
+/// The network whose spikes its authors published: snnTorch, and two layers of neurons with a current.
+const PUBLISHED: &str = "laptop/cli/tests/peers/nir/braille_subtract.nir";
+const RULE: &str = "--on controller --as snntorch --reset subtract-no-delay";
+const SPIKES: &str = "laptop/cli/tests/peers/nir/braille.txt";
+
+/// Runs a network's module on a file of spikes, and prints what came of it.
+pub fn network(args: &[String]) -> Result<()> {
+    let [network, spikes] = args else {
+        return Err(usage("cargo xtask network NETWORK.rs SPIKES.txt".to_owned()));
+    };
+    let there = |path: &String| fs::canonicalize(path).with_context(|| path.clone());
+    print!("{}", everywhere(&there(network)?, &there(spikes)?)?);
+    Ok(())
+}
+
+/// From the published files to spikes on both boards, in single precision and in integers.
+pub fn verify() -> Result<()> {
+    let place = paths::target().join(PROGRAM);
+    fs::create_dir_all(&place)?;
+    for (numbers, kept) in [("f32", Some("src/braille.rs")), ("i8", None)] {
+        let module = place.join(format!("{numbers}.rs"));
+        let export = format!("network {PUBLISHED} {RULE} --numbers {numbers} {SPIKES} -o");
+        run(host::spikewire(&export)?.arg(&module))?;
+        if let Some(kept) = kept {
+            let kept = paths::examples().join(PROGRAM).join(kept);
+            let is_same = fs::read(&module)? == fs::read(&kept)?;
+            ensure!(is_same, "`spikewire network` writes another {}", kept.display());
+        }
+        println!("{numbers}:\n{}", everywhere(&module, &paths::root().join(SPIKES))?);
+    }
+    Ok(())
+}
+
+/// What the host and both boards print: an error if they differ.
+fn everywhere(network: &Path, spikes: &Path) -> Result<String> {
+    let variables = [("NETWORK", network), ("SPIKES", spikes)];
+    let target = paths::target();
+    let mut build = cargo("build --quiet --manifest-path examples/Cargo.toml --package");
+    build.arg(PROGRAM).env("CARGO_TARGET_DIR", &target).envs(variables);
+    run(&mut build)?;
+    let on_host = output(&mut command(target.join("debug").join(PROGRAM)))?;
+    let told = |printed: &str| -> String {
+        printed
+            .lines()
+            .filter(|line| !line.starts_with('#'))
+            .map(|line| line.to_owned() + "\n")
+            .collect()
+    };
+    let mut all = told(&on_host);
+    ensure!(all.starts_with("is intact: true\n"), "its own check fails on the host");
+
+    let stm32 = Board::with("M4F")?;
+    let mut compare = |name: &str, printed: &str| -> Result<()> {
+        if told(printed) != told(&on_host) {
+            bail!("{name} prints something else than the host:\n{printed}");
+        }
+        let costs = printed.lines().rfind(|line| line.starts_with('#')).unwrap_or_default();
+        all += &format!("{name}: the same, {}\n", costs.trim_start_matches("# "));
+        Ok(())
+    };
+    let built = image::build_with(PROGRAM, stm32, &variables)?;
+    compare("STM32F405", &qemu::run_counting(stm32, &built)?)?;
+    let built = image::build_with(PROGRAM, &RP2040, &variables)?;
+    let mut node = command("node");
+    node.arg(emulator::installed()?.join("steps.mjs")).arg(built);
+    compare("RP2040", &output(&mut node)?)?;
+    Ok(all)
+}
