@@ -1,6 +1,7 @@
 //! The plain form of a network, in JSON.
 
 use super::Trained;
+use super::controller::{Fires, Reset};
 use super::trained::{Layer, Neuron, Readout};
 use anyhow::{Context, Result, bail};
 use serde::Deserialize;
@@ -86,5 +87,7 @@ fn layer(name: &str, written: Written) -> Result<Layer> {
     let neurons = keep.into_iter().zip(thresholds);
     let neurons = neurons.map(|(keep, threshold)| Neuron { keep, threshold }).collect();
     let Written { weights, recurrent, .. } = written;
-    Ok(Layer { name: name.to_owned(), weights, recurrent, bias, neurons })
+    let name = name.to_owned();
+    let (reset, fires) = (Reset::ToValue, Fires::Above);
+    Ok(Layer { name, weights, recurrent, bias, neurons, reset, fires })
 }

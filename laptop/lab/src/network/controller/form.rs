@@ -27,7 +27,7 @@ impl Model {
         );
         let rule = asked.or_plain();
         let of_layer = |layer: trained::Layer| {
-            let trained::Layer { name, weights, recurrent, bias, neurons } = layer;
+            let trained::Layer { name, weights, recurrent, bias, neurons, .. } = layer;
             let neurons = neurons.iter().zip(bias);
             let neurons = neurons.map(|(&trained::Neuron { keep, threshold }, bias)| {
                 let reset = if rule.reset.subtracts() { threshold } else { 0.0 };

@@ -4,6 +4,7 @@ mod emit;
 mod form;
 mod net;
 mod number;
+mod on_chip;
 mod quantise;
 mod rule;
 
@@ -11,6 +12,7 @@ pub use rule::{Asked, Current, Decay, Fires, Framework, Reset, Rule};
 
 use super::Trains;
 use super::bring::{Brought, Original, figures};
+use super::costs::Cost;
 use super::chip::{OnChip, Ran, Stepped, Told};
 use anyhow::{Result, bail};
 use net::{Done, Net, Own, State};
@@ -136,7 +138,7 @@ pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
         .map(|held_out| figures(&model.original(held_out), &*network, held_out))
         .transpose()?;
     let tuned = figures(&original, &*network, tuned)?;
-    Ok(Brought { network, tuned, held_out })
+    Ok(Brought { network, tuned, held_out, costs: vec![], reading: None })
 }
 
 /// The steps of the recording in which most neurons fire from rest on, those of the last layer before all.
@@ -255,8 +257,8 @@ impl OnChip for OnController {
         self.notes.iter().cloned().chain([size]).collect()
     }
 
-    fn dearest(&self) -> &'static str {
-        "the controller's numbers"
+    fn costs(&self) -> Vec<Cost> {
+        vec![]
     }
 
     fn loss(&self) -> &'static str {

@@ -149,6 +149,11 @@ pub(super) fn quantise(
 ) -> Result<Quantised> {
     let has_bias = trained.layers.iter().any(|layer| layer.bias.iter().any(|bias| *bias != 0.0));
     let places = Places::new(trained, has_bias)?;
+    let resets_to_zero = !trained.layers.iter().any(|layer| layer.reset.subtracts());
+    ensure!(
+        resets_to_zero || trained.layers.iter().all(|layer| layer.reset.subtracts()),
+        "some layers subtract their threshold and others reset to a value: ReckOn does the same in all"
+    );
     let peaks = peaks(trained, inputs, fired);
     let pairs: Vec<Vec<Source>> = places
         .pairs()
@@ -173,7 +178,7 @@ pub(super) fn quantise(
         let candidates = SCALES.map(|part| part * scale(pair, shifts));
         let distance = |scale: f64| -> f64 {
             let of = |source: &Source| {
-                Held::new(source, keep, scale, shifts, &places).distance(
+                Held::new(source, keep, scale, (shifts, resets_to_zero), &places).distance(
                     &drives[source.layer],
                     &fired[source.layer],
                     source.neuron,
@@ -197,7 +202,7 @@ pub(super) fn quantise(
         inputs: vec![vec![0; count]; trained.inputs() + usize::from(has_bias)],
         recurrent: vec![vec![0; count]; count],
         outputs: Vec::new(),
-        shared: ReckOnShared { shifts: [shifts[0], shifts[1], 0], keep: 0, resets_to_zero: true },
+        shared: ReckOnShared { shifts: [shifts[0], shifts[1], 0], keep: 0, resets_to_zero },
         bias: has_bias.then(|| trained.inputs()),
         layers: trained.layers.iter().map(|l| (l.name.clone(), l.neurons.len())).collect(),
         unit: None,
@@ -313,11 +318,18 @@ struct Held<'a> {
     inputs: Vec<i32>,
     recurrent: Vec<i32>,
     bias: i32,
+    resets_to_zero: bool,
     places: &'a Places,
 }
 
 impl<'a> Held<'a> {
-    fn new(source: &Source, keep: u16, scale: f64, shifts: [u8; 2], places: &'a Places) -> Self {
+    fn new(
+        source: &Source,
+        keep: u16,
+        scale: f64,
+        (shifts, resets_to_zero): ([u8; 2], bool),
+        places: &'a Places,
+    ) -> Self {
         let mut change = Change::default();
         let mut held = |weight: f64, shift: u8| {
             i32::from(change.weight(weight, scale / f64::from(1 << shift))) << shift
@@ -335,6 +347,7 @@ impl<'a> Held<'a> {
             inputs,
             recurrent,
             bias,
+            resets_to_zero,
             places,
         }
     }
@@ -342,16 +355,18 @@ impl<'a> Held<'a> {
     /// How far its spikes are from the original's.
     fn distance(&self, drives: &[Drive], fired: &Trains, neuron: usize) -> f64 {
         let (mut potential, mut distance) = (0_i32, Distance::default());
+        let mut is_over = false;
         for (drive, meant) in drives.iter().zip(fired) {
             let first = drive.inputs.iter().map(|&input| self.inputs[usize::from(input)]);
             let own = drive.neurons.iter().map(|&(l, n)| self.recurrent[self.places.of(l, n)]);
             let added: i32 = first.chain(own).sum();
-            let kept = (potential * self.keep) >> 15;
+            let kept = match (is_over, self.resets_to_zero) {
+                (false, _) => (potential * self.keep) >> 15,
+                (true, true) => 0,
+                (true, false) => ((potential * self.keep) >> 15) - self.threshold,
+            };
             potential = (kept + added + self.bias).clamp(i16::MIN.into(), i16::MAX.into());
-            let is_over = potential >= self.threshold;
-            if is_over {
-                potential = 0;
-            }
+            is_over = potential >= self.threshold;
             let meant = meant.iter().filter(|fired| usize::from(**fired) == neuron).count();
             distance.step(is_over.into(), meant);
         }

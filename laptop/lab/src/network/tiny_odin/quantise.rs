@@ -1,6 +1,6 @@
 //! Quantises a network from double precision to the numbers of tinyODIN.
 
-use super::super::trained::{Layer, Neuron};
+use super::super::trained::{Layer, Neuron, fires_at};
 use super::super::{Distance, Trained, Trains};
 use anyhow::{Result, ensure};
 use rayon::prelude::*;
@@ -310,8 +310,7 @@ fn choices(layer: &Layer, at: usize, steps_a_leak: usize) -> Vec<Choice> {
     let mut choices = Vec::new();
     for most in LARGEST {
         let unit = if largest > 0.0 { largest / most } else { 1.0 };
-        // It fires at its threshold, where the original fires above; but for what rounding adds.
-        let threshold = ((threshold / unit + 1e-9).floor() + 1.0).min(MAX_THRESHOLD);
+        let threshold = fires_at(threshold / unit, layer.fires).min(MAX_THRESHOLD);
         let lost = (1.0 - keep.powi(steps_a_leak as i32)) * threshold / 2.0;
         let leaks = LEAKS.iter().map(|part| (part * lost).round().min(MAX_LEAK) as u8);
         let leaks: BTreeSet<u8> = leaks.collect();
@@ -483,6 +482,7 @@ impl Describe<TinyOdinInput> for Quantised {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::network::{Fires, Reset};
 
     /// Steps of a spike at most: of several the chip's neuron may fire at the first, and keep what the others add.
     fn some(inputs: u16, steps: u32) -> Trains {
@@ -502,6 +502,8 @@ mod tests {
             recurrent: vec![],
             bias: vec![0.0; count],
             neurons: vec![Neuron { keep, threshold }; count],
+            reset: Reset::ToValue,
+            fires: Fires::Above,
         }
     }
 
