@@ -12,7 +12,7 @@ use lab::bank::Bank;
 use lab::fit::rounding;
 use lab::input::{InputOptions as Input, above_zero};
 use lab::network::{
-    Brought, CHIPS, Chip, Compare, ControllerRequest, Cost, Figures, File, Model, Numbers, OnChip, Request, Stepped, Told,
+    Brought, CHIPS, Chip, Compare, ControllerRequest, Cost, Figures, File, HeldOut, Model, Numbers, OnChip, Request, Stepped, Told,
     Trained, Trains, WINDOW, bring, bring_to_controller,
 };
 use lab::output::Output;
@@ -77,7 +77,7 @@ pub(crate) struct Network {
     /// The outputs that fired where the network was trained, a line for each step of INPUT: the chip is compared with
     /// them, and so is how the file is read
     #[arg(long, value_name = "FILE", conflicts_with = "held_out")]
-    spikes: Option<PathBuf>,
+    trained_spikes: Option<PathBuf>,
     /// When neurons of tinyODIN compare with their thresholds: after each spike, as the chip has it, or once a step, as in
     /// training, which takes more events; what holds better unless given
     #[arg(long, value_parser = compares())]
@@ -171,19 +171,21 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         held_out.check(placed.inputs(), options.scheme).with_context(|| name.clone())?;
     }
 
-    let own = options.spikes.as_ref().map(|path| spiking(path)).transpose()?.map(|own| own.steps);
+    let own = options.trained_spikes.as_ref().map(|path| spiking(path)).transpose()?.map(|own| own.steps);
     if let Some(own) = &own {
         let (given, steps) = (own.len(), driven.steps.len());
-        ensure!(given == steps, "--spikes has {given} steps, and the recording {steps}");
+        ensure!(given == steps, "--trained-spikes has {given} steps, and the recording {steps}");
     }
     // The whole recording, or its first part and the rest.
     let steps = driven.steps.len();
     let part = if held_out.is_some() || options.no_held_out { steps } else { steps - steps / 3 };
-    let [(tuned, rest), (own, own_rest)] = [&driven.steps, own.as_ref().unwrap_or(&driven.steps)]
-        .map(|all| (all[..part].to_vec(), all[part..].to_vec()));
-    let own = options.spikes.is_some().then_some((&own, &own_rest));
-    let held_out = held_out.as_ref().map(|held_out| &held_out.steps);
-    let held_out = held_out.or_else(|| (!rest.is_empty()).then_some(&rest));
+    let tuned = driven.steps[..part].to_vec();
+    let own_tuned = own.as_ref().map(|own| own[..part].to_vec());
+    let own = own_tuned.as_ref().zip(own.as_ref());
+    let held_out = match &held_out {
+        Some(other) => Some(HeldOut { steps: &other.steps, from: 0 }),
+        None => (part < steps).then_some(HeldOut { steps: &driven.steps, from: part }),
+    };
 
     let bar = ProgressBar::new(0).with_style(ProgressStyle::with_template(
         "{bar:40} {percent:>3} %  {human_pos} of {human_len}",
@@ -200,7 +202,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
             bring(&Request { chip, trained, tuned, held_out, own, compare, progress })
         }
         Placed::Controller(model) => {
-            ensure!(own.is_none(), "--spikes is for the chips: the controller's rule is exact");
+            ensure!(own.is_none(), "--trained-spikes is for the chips: the controller's rule is exact");
             bring_to_controller(&ControllerRequest { model, numbers, tuned, held_out, progress })
         }
     };

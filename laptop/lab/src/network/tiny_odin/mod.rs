@@ -37,9 +37,8 @@ impl Chip for TinyOdin {
         }
         // What is found on the first part is judged on the rest, where it may not hold.
         let part = inputs.len() * FOUND.0 / FOUND.1;
-        let (found, judged) = inputs.split_at(part);
+        let found = inputs[..part].to_vec();
         let found_fired: Vec<Trains> = fired.iter().map(|all| all[..part].to_vec()).collect();
-        let found = found.to_vec();
         let gated = gated::quantise(trained, &found, &found_fired, progress);
         let mut all: Vec<Box<dyn OnChip>> = Vec::new();
         for gated in gated {
@@ -52,11 +51,10 @@ impl Chip for TinyOdin {
                 Err(_) => {}
             }
         }
-        let judged = judged.to_vec();
-        let original = Original::of(trained, &judged);
+        let original = Original::of(trained, inputs);
         let mut best: Option<(f64, Box<dyn OnChip>)> = None;
         for network in all {
-            let holds = figures(&original, &*network, &judged)?.holds();
+            let holds = figures(&original, &*network, inputs, part)?.holds();
             if best.as_ref().is_none_or(|(most, _)| holds > *most) {
                 best = Some((holds, network));
             }
