@@ -92,7 +92,7 @@ impl Steps<'_> {
     pub fn first_rise(&self) -> u16 {
         let sources = self.inputs.saturating_add(self.has_bias.into());
         let last = self.layers.len().saturating_sub(1);
-        let senders = self.layers.iter().enumerate().map(|(at, layer)| {
+        let senders = (0..self.layers.len()).zip(self.layers).map(|(at, layer)| {
             let groups = u16::from(at < last).saturating_add(layer.loops.into());
             groups.saturating_mul(layer.neurons)
         });
@@ -144,13 +144,11 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
         if steps.has_bias {
             step.source(0, steps.inputs)?;
         }
-        let (mut row, mut first) = (
-            steps.inputs.saturating_add(steps.has_bias.into()).saturating_mul(steps.rows),
-            0_u16,
-        );
+        let (mut row, mut first) =
+            (steps.inputs.saturating_add(steps.has_bias.into()).saturating_mul(steps.rows), 0_u16);
         let mut rise = steps.first_rise();
         let last = steps.layers.len().saturating_sub(1);
-        for (at, layer) in steps.layers.iter().enumerate() {
+        for (at, layer) in (0..steps.layers.len()).zip(steps.layers) {
             let group = layer.neurons.saturating_mul(steps.rows);
             let onward = row;
             row = row.saturating_add(if at < last { group } else { 0 });
@@ -183,7 +181,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
         }
         if step.fired != Fired::default() && steps.own_leaks.iter().any(|leaks| *leaks > 0) {
             step.row(lift, steps.lift)?;
-            for (neuron, leaks) in (0..).zip(steps.own_leaks) {
+            for (neuron, leaks) in (0..256_u16).zip(steps.own_leaks) {
                 if step.fired.contains(neuron) {
                     for _ in 0..*leaks {
                         step.send(I::probe(neuron as u8))?;

@@ -132,7 +132,13 @@ impl Net {
         }
         let rung = neuron.rung as i8;
         match at.checked_sub(self.layers.len()) {
-            None => if layer == at { rung } else { 0 },
+            None => {
+                if layer == at {
+                    rung
+                } else {
+                    0
+                }
+            }
             Some(0) => -rung,
             Some(_) => rung,
         }

@@ -12,8 +12,8 @@ use lab::bank::Bank;
 use lab::fit::rounding;
 use lab::input::{InputOptions as Input, above_zero};
 use lab::network::{
-    Brought, CHIPS, Chip, Compare, ControllerRequest, Cost, Figures, File, HeldOut, Model, Numbers, OnChip, Request, Stepped, Told,
-    Trained, Trains, WINDOW, bring, bring_to_controller,
+    Brought, CHIPS, Chip, Compare, ControllerRequest, Cost, Figures, File, HeldOut, Model, Numbers,
+    OnChip, Request, Stepped, Told, Trained, Trains, WINDOW, bring, bring_to_controller,
 };
 use lab::output::Output;
 use lab::scheme::Scheme;
@@ -171,7 +171,8 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         held_out.check(placed.inputs(), options.scheme).with_context(|| name.clone())?;
     }
 
-    let own = options.trained_spikes.as_ref().map(|path| spiking(path)).transpose()?.map(|own| own.steps);
+    let own =
+        options.trained_spikes.as_ref().map(|path| spiking(path)).transpose()?.map(|own| own.steps);
     if let Some(own) = &own {
         let (given, steps) = (own.len(), driven.steps.len());
         ensure!(given == steps, "--trained-spikes has {given} steps, and the recording {steps}");
@@ -202,7 +203,10 @@ pub(crate) fn run(options: &Network) -> Result<()> {
             bring(&Request { chip, trained, tuned, held_out, own, compare, progress })
         }
         Placed::Controller(model) => {
-            ensure!(own.is_none(), "--trained-spikes is for the chips: the controller's rule is exact");
+            ensure!(
+                own.is_none(),
+                "--trained-spikes is for the chips: the controller's rule is exact"
+            );
             bring_to_controller(&ControllerRequest { model, numbers, tuned, held_out, progress })
         }
     };
@@ -406,7 +410,10 @@ fn report(brought: &Brought) {
             if costs.is_empty() {
                 "compare the spikes of each layer".to_owned()
             } else {
-                format!("alone would leave of its steps: {}; train with the first", costs.join(", "))
+                format!(
+                    "alone would leave of its steps: {}; train with the first",
+                    costs.join(", ")
+                )
             }
         );
     }

@@ -178,7 +178,10 @@ impl Original {
             ensure!(steps == given, "spikes of {given} steps, where the recording has {steps}");
             let outputs = self.layers.last().map_or(0, |(_, neurons)| *neurons);
             let highest = own.iter().flatten().max().copied().unwrap_or(0);
-            ensure!(usize::from(highest) < outputs, "spikes of output {highest}, of {outputs} outputs");
+            ensure!(
+                usize::from(highest) < outputs,
+                "spikes of output {highest}, of {outputs} outputs"
+            );
             last.clone_from(own);
         }
         Ok(())

@@ -74,7 +74,7 @@ fn rounded(layer: &Layer, largest: f64) -> Layer {
 
 /// The amount with which a neuron's spikes are nearest to what they should be.
 fn leak(layer: &Layer, at: usize, drive: &Trains, fired: &Trains) -> f64 {
-    let Neuron { keep, threshold } = layer.neurons[at];
+    let Neuron { keep, threshold, .. } = layer.neurons[at];
     let distance = |amount: f64| {
         let mut distance = Distance::default();
         let (mut potential, mut before): (f64, &[u16]) = (0.0, &[]);
@@ -118,10 +118,10 @@ fn step(
     before: &[u16],
     potential: &mut f64,
 ) -> bool {
-    let Neuron { keep, threshold } = layer.neurons[at];
+    let threshold = layer.neurons[at].threshold;
     *potential = match leak {
         Some(amount) => potential.signum() * (potential.abs() - amount).max(0.0),
-        None => *potential * keep,
+        None => layer.neurons[at].left(*potential),
     };
     let mut fired = false;
     let mut compare = |potential: &mut f64| {

@@ -11,7 +11,9 @@ mod reckon;
 mod tiny_odin;
 mod trained;
 
-pub use bring::{Brought, Figures, HeldOut, LayerFigures, PotentialFigures, Request, WINDOW, bring};
+pub use bring::{
+    Brought, Figures, HeldOut, LayerFigures, PotentialFigures, Request, WINDOW, bring,
+};
 pub use chip::{CHIPS, Chip, Compare, OnChip, Ran, Stepped, Told};
 pub use controller::{
     Asked, ControllerRequest, Current, Decay, Fires, Framework, Model, Numbers, Reset, Rule,

@@ -100,8 +100,18 @@ pub(super) fn fires_at(threshold: f64, fires: Fires) -> f64 {
 pub struct Neuron {
     /// The share of the potential that is left after a step, 0 to 1; 1 for a perfect integrator.
     pub keep: f64,
+    /// The amount by which a step then moves the potential towards 0, as tinyODIN does, of networks trained so.
+    pub leak: f64,
     /// The potential above which it fires, or at which.
     pub threshold: f64,
+}
+
+impl Neuron {
+    /// What a step leaves of a potential.
+    pub(super) fn left(self, potential: f64) -> f64 {
+        let kept = potential * self.keep;
+        if self.leak == 0.0 { kept } else { kept.signum() * (kept.abs() - self.leak).max(0.0) }
+    }
 }
 
 impl Layer {
@@ -134,10 +144,14 @@ impl Layer {
         if let Some(weight) = recurrent.iter().flatten().find(|weight| !weight.is_finite()) {
             bail!("{name}: a recurrent weight of {weight}");
         }
-        for (neuron, Neuron { keep, threshold }) in neurons.iter().enumerate() {
+        for (neuron, Neuron { keep, threshold, leak }) in neurons.iter().enumerate() {
             ensure!(
                 *threshold > 0.0 && threshold.is_finite(),
                 "{name}: neuron {neuron} fires at {threshold} above rest, which must be above 0 and finite"
+            );
+            ensure!(
+                leak.is_finite() && *leak >= 0.0,
+                "{name}: neuron {neuron} leaks {leak} a step, which must be 0 or above"
             );
             ensure!(
                 (0.0..=1.0).contains(keep),
@@ -173,13 +187,13 @@ impl Layer {
 
     /// Takes a step of a neuron, and tells if it fires.
     fn step(&self, at: usize, driven: f64, potential: &mut f64, see: impl FnOnce(f64)) -> bool {
-        let Neuron { keep, threshold } = self.neurons[at];
+        let Neuron { threshold, .. } = self.neurons[at];
         let fires = |potential| match self.fires {
             Fires::Above => potential > threshold,
             Fires::At => potential >= threshold,
         };
         let (before, fired) = (*potential, fires(*potential));
-        let next = before * keep + driven;
+        let next = self.neurons[at].left(before) + driven;
         let less = next - threshold;
         // Before the reset, and after: those that come late are part of the step that follows.
         let (reached, reset) = match self.reset {
@@ -284,7 +298,7 @@ impl Trained {
             if layer.recurrent.is_empty() {
                 layer.recurrent = vec![vec![0.0; count]; count];
             }
-            for (at, Neuron { keep, threshold }) in layer.neurons.iter().enumerate() {
+            for (at, Neuron { keep, threshold, .. }) in layer.neurons.iter().enumerate() {
                 layer.recurrent[at][at] += (1.0 - keep) * threshold;
             }
         }
@@ -323,7 +337,7 @@ mod tests {
             weights: weights.iter().map(|row| row.to_vec()).collect(),
             recurrent: vec![],
             bias: vec![0.0; weights.len()],
-            neurons: vec![Neuron { keep, threshold }; weights.len()],
+            neurons: vec![Neuron { keep, threshold, leak: 0.0 }; weights.len()],
             reset: Reset::ToValue,
             fires: Fires::Above,
         }
@@ -343,7 +357,8 @@ mod tests {
             let layer = Layer { reset, fires, ..layer(&[&[1.0]], 0.5, 4.0) };
             let mut potential = 0.0;
             let spikes = drive.map(|x| layer.step(0, f64::from(x), &mut potential, |_| ()));
-            let spikes: String = spikes.iter().map(|fires| if *fires { '1' } else { '0' }).collect();
+            let spikes: String =
+                spikes.iter().map(|fires| if *fires { '1' } else { '0' }).collect();
             assert_eq!(spikes, expected, "{reset:?} {fires:?}");
         }
     }

@@ -12,8 +12,8 @@ pub use rule::{Asked, Current, Decay, Fires, Framework, Reset, Rule};
 
 use super::Trains;
 use super::bring::{Brought, HeldOut, Original, figures};
-use super::costs::Cost;
 use super::chip::{OnChip, Ran, Stepped, Told};
+use super::costs::Cost;
 use anyhow::{Result, bail};
 use net::{Done, Net, Own, State};
 use number::Number;

@@ -1,8 +1,8 @@
 //! A network in the crate's form as the chips take it: neurons at rest at 0, without a current.
 
 use super::super::trained::{self, Readout, Trained};
-use super::net::{Layer, Neuron, Own, Spike};
 use super::Model;
+use super::net::{Layer, Neuron, Own, Spike};
 use anyhow::{Context, Result, ensure};
 
 /// The share of a current that a step may leave of it.
@@ -15,7 +15,8 @@ impl Model {
     /// A current lasts, or outputs that never fire have a bias.
     pub(in super::super) fn on_chip(self) -> Result<Trained> {
         let mut layers = self.net.layers;
-        let is_silent = |layer: &Layer<f64>| layer.neurons.iter().all(|neuron| neuron.spike.is_none());
+        let is_silent =
+            |layer: &Layer<f64>| layer.neurons.iter().all(|neuron| neuron.spike.is_none());
         let readout = layers.pop_if(|layer| is_silent(layer)).map(|layer| {
             let name = layer.name.clone();
             readout(layer).context(name)
@@ -68,13 +69,14 @@ fn of_layer(layer: Layer<f64>) -> Result<trained::Layer> {
     for neuron in neurons {
         check_current(&neuron)?;
         let Neuron { decay: keep, bias, inner, spike, .. } = neuron;
-        let Spike { threshold, reset } = spike.context("neurons that never fire must be the last")?;
+        let Spike { threshold, reset } =
+            spike.context("neurons that never fire must be the last")?;
         // A spike returns the chip's neurons to 0: potentials are told from there.
         let zero = if rule.reset.subtracts() { 0.0 } else { reset };
         let bias = bias + inner - (1.0 - keep) * zero;
         // What rounding leaves of a rest at the reset is no bias.
         layer.bias.push(if bias.abs() < 1e-9 * threshold.abs() { 0.0 } else { bias });
-        layer.neurons.push(trained::Neuron { keep, threshold: threshold - zero });
+        layer.neurons.push(trained::Neuron { keep, threshold: threshold - zero, leak: 0.0 });
     }
     Ok(layer)
 }
@@ -85,7 +87,10 @@ fn readout(layer: Layer<f64>) -> Result<Readout> {
     for (at, neuron) in neurons.iter().enumerate() {
         check_current(neuron)?;
         let bias = neuron.bias + neuron.inner;
-        ensure!(bias == 0.0, "output {at} has a bias of {bias}: it must be 0, and be added where it is read");
+        ensure!(
+            bias == 0.0,
+            "output {at} has a bias of {bias}: it must be 0, and be added where it is read"
+        );
         keep.push(neuron.decay);
     }
     Ok(Readout { name, weights: turned(&weights), keep })

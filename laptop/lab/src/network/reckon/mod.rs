@@ -5,8 +5,8 @@ mod place;
 mod quantise;
 mod run;
 
-use super::costs::Cost;
 use super::chip::{Chip, Compare, OnChip, Ran, Told, written};
+use super::costs::Cost;
 use super::{Trained, Trains};
 use anyhow::Result;
 use quantise::{Quantised, quantise};

@@ -6,8 +6,8 @@ mod quantise;
 mod run;
 
 use super::bring::{Original, figures};
-use super::costs::Cost;
 use super::chip::{Chip, Compare, OnChip, Ran, Stepped, Told, written};
+use super::costs::Cost;
 use super::{Trained, Trains};
 use anyhow::{Context, Result, bail};
 use quantise::{Quantised, quantise};

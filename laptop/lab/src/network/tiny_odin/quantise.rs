@@ -86,8 +86,11 @@ pub(super) fn quantise(
 ) -> Result<Quantised> {
     let has_bias = trained.layers.iter().any(|layer| layer.bias.iter().any(|bias| *bias != 0.0));
     check_room(trained, has_bias)?;
-    let leaks =
-        trained.layers.iter().flat_map(|layer| &layer.neurons).any(|neuron| neuron.keep < 1.0);
+    let leaks = trained
+        .layers
+        .iter()
+        .flat_map(|layer| &layer.neurons)
+        .any(|neuron| neuron.keep < 1.0 || neuron.leak > 0.0);
     let tried = if leaks { &STEPS[..] } else { &STEPS[..1] };
     let count = |layer: &Layer| layer.neurons.len();
     // Of a layer's neurons so many, evenly spaced, tell how often the leak should come.
@@ -306,12 +309,13 @@ fn choices(layer: &Layer, at: usize, steps_a_leak: usize) -> Vec<Choice> {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).chain(&layer.bias[at..=at]);
     let largest = weights.fold(0.0_f64, |most, weight| most.max(weight.abs()));
-    let Neuron { keep, threshold } = layer.neurons[at];
+    let Neuron { keep, threshold, leak } = layer.neurons[at];
     let mut choices = Vec::new();
     for most in LARGEST {
         let unit = if largest > 0.0 { largest / most } else { 1.0 };
         let threshold = fires_at(threshold / unit, layer.fires).min(MAX_THRESHOLD);
-        let lost = (1.0 - keep.powi(steps_a_leak as i32)) * threshold / 2.0;
+        let lost = (1.0 - keep.powi(steps_a_leak as i32)) * threshold / 2.0
+            + leak / unit * steps_a_leak as f64;
         let leaks = LEAKS.iter().map(|part| (part * lost).round().min(MAX_LEAK) as u8);
         let leaks: BTreeSet<u8> = leaks.collect();
         let of_leak = |leak| Choice { unit, threshold: threshold as u16, leak };
@@ -501,7 +505,7 @@ mod tests {
             weights,
             recurrent: vec![],
             bias: vec![0.0; count],
-            neurons: vec![Neuron { keep, threshold }; count],
+            neurons: vec![Neuron { keep, threshold, leak: 0.0 }; count],
             reset: Reset::ToValue,
             fires: Fires::Above,
         }

@@ -8,14 +8,17 @@ use spikewire_chips::{Describe, Steps, StepsLayer, TinyOdinNeuron};
 pub(super) fn emit(network: &Gated, told: &Told) -> String {
     let (source, meaning) = (&told.source, &told.inputs);
     let (count, rows) = (network.neurons(), network.inputs());
-    let layers = list(network.layers.iter().map(|layer| format!("{} ({})", layer.neurons.len(), layer.name)));
+    let layers = list(
+        network.layers.iter().map(|layer| format!("{} ({})", layer.neurons.len(), layer.name)),
+    );
     let outputs = (0..count).filter(|&neuron| network.output(neuron as u8).is_some());
     let outputs: Vec<u16> = outputs.collect();
     let neurons = lines((0..count).map(|neuron| {
         let TinyOdinNeuron { threshold, leak, potential, .. } = network.neuron(neuron as u8);
         format!("TinyOdinNeuron {{ threshold: {threshold}, leak: {leak}, potential: {potential}, is_disabled: false }}")
     }));
-    let row = |row| format!("[{}]", list((0..count).map(|post| network.input_weight(row, post as u8))));
+    let row =
+        |row| format!("[{}]", list((0..count).map(|post| network.input_weight(row, post as u8))));
     let weights = lines((0..rows).map(row));
     let (told, places) = (outputs.len(), list(outputs.iter()));
     let steps = network.with_steps(steps);

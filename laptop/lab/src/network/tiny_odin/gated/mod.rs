@@ -7,8 +7,8 @@ mod run;
 mod search;
 mod shape;
 
-use super::super::costs::Cost;
 use super::super::chip::{OnChip, Ran, Stepped, Told, written};
+use super::super::costs::Cost;
 use super::super::{Trained, Trains};
 use anyhow::Result;
 use neuron::{Added, GatedNeuron};
@@ -61,8 +61,12 @@ pub(super) fn quantise(
     let drives: Vec<Drive> = (trained.layers.iter().zip(fired).zip(before()))
         .map(|((layer, fired), before)| Drive::new(before, layer, fired))
         .collect();
-    let targets: Vec<Vec<Vec<bool>>> =
-        trained.layers.iter().zip(fired).map(|(layer, fired)| targets(fired, layer.neurons.len())).collect();
+    let targets: Vec<Vec<Vec<bool>>> = trained
+        .layers
+        .iter()
+        .zip(fired)
+        .map(|(layer, fired)| targets(fired, layer.neurons.len()))
+        .collect();
     let (drive, threshold) = sizes(trained, inputs, fired);
     let shapes = shapes(trained, has_bias, drive, threshold);
     // Of a layer's neurons some tell how near a shape can bring it, driven by the original's spikes.
@@ -72,7 +76,13 @@ pub(super) fn quantise(
             let count = layer.neurons.len();
             let surveyed: Vec<usize> = (0..count).step_by(count.div_ceil(SURVEYED)).collect();
             let of = |neuron: &usize| {
-                search(layer, *neuron, &Aim { drive: &drives[at], target: &targets[at][*neuron], shape }, 0).0
+                search(
+                    layer,
+                    *neuron,
+                    &Aim { drive: &drives[at], target: &targets[at][*neuron], shape },
+                    0,
+                )
+                .0
             };
             let own: Vec<f64> = surveyed.par_iter().map(of).collect();
             sum += own.iter().sum::<f64>() * count as f64 / surveyed.len().max(1) as f64;
@@ -98,19 +108,29 @@ pub(super) fn quantise(
 /// The most that a step adds to a neuron of what is above 0, in largest weights, and the mean threshold.
 fn sizes(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> (f64, f64) {
     let (mut most, mut thresholds) = (0.0_f64, Vec::new());
-    for ((layer, own), before) in trained.layers.iter().zip(fired).zip(std::iter::once(inputs).chain(fired)) {
+    for ((layer, own), before) in
+        trained.layers.iter().zip(fired).zip(std::iter::once(inputs).chain(fired))
+    {
         for (at, neuron) in layer.neurons.iter().enumerate() {
             let back = layer.recurrent.get(at);
-            let all = layer.weights[at].iter().chain(back.into_iter().flatten()).chain(&layer.bias[at..=at]);
+            let all = layer.weights[at]
+                .iter()
+                .chain(back.into_iter().flatten())
+                .chain(&layer.bias[at..=at]);
             let largest = all.fold(0.0_f64, |most, weight| most.max(weight.abs()));
             if largest == 0.0 {
                 continue;
             }
             thresholds.push(neuron.threshold / largest);
             let of_step = |step: usize| {
-                let first: f64 = before[step].iter().map(|&from| layer.weights[at][usize::from(from)].max(0.0)).sum();
+                let first: f64 = before[step]
+                    .iter()
+                    .map(|&from| layer.weights[at][usize::from(from)].max(0.0))
+                    .sum();
                 let own: f64 = match (back, step.checked_sub(1)) {
-                    (Some(back), Some(last)) => own[last].iter().map(|&from| back[usize::from(from)].max(0.0)).sum(),
+                    (Some(back), Some(last)) => {
+                        own[last].iter().map(|&from| back[usize::from(from)].max(0.0)).sum()
+                    }
                     _ => 0.0,
                 };
                 first + own + layer.bias[at].max(0.0)
@@ -149,7 +169,8 @@ impl Gated {
         for (at, layer) in trained.layers.iter().enumerate() {
             let drive = Drive::new(&before, layer, &fired[at]);
             let of = |neuron: usize| {
-                let aim = Aim { drive: &drive, target: &targets[at][neuron], shape: &network.shape };
+                let aim =
+                    Aim { drive: &drive, target: &targets[at][neuron], shape: &network.shape };
                 search(layer, neuron, &aim, CLIMBS).1
             };
             let neurons = (0..layer.neurons.len()).into_par_iter().map(of).collect();
@@ -204,7 +225,10 @@ impl Gated {
             if own.loops
                 && let Some((from, row)) = take(own.neurons.len())
             {
-                return part(neuron.weights.get(own.inputs + from).filter(|_| layer == source), row);
+                return part(
+                    neuron.weights.get(own.inputs + from).filter(|_| layer == source),
+                    row,
+                );
             }
         }
         let rung = neuron.rung as i8;

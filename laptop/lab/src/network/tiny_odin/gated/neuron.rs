@@ -44,7 +44,13 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
 impl GatedNeuron {
     /// Takes a step, and tells if the neuron fires.
     #[inline]
-    pub(super) fn step(&self, shape: &Shape, turn: &[u16], potential: &mut i32, added: Added) -> bool {
+    pub(super) fn step(
+        &self,
+        shape: &Shape,
+        turn: &[u16],
+        potential: &mut i32,
+        added: Added,
+    ) -> bool {
         let (above, below) = (i32::from(shape.above), i32::from(shape.below));
         let (threshold, rung) = (i32::from(self.threshold), i32::from(self.rung));
         let (leak, early) = (i32::from(self.leak), threshold + (above + below) * rung);

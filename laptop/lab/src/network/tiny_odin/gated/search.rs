@@ -8,7 +8,8 @@ use super::{LARGEST_RUNG, MAX_LEAK, MAX_POTENTIAL};
 use crate::network::Reset;
 
 /// The values tried for the largest weight, with one row: above 7 it is clipped, for the sake of the others.
-const LARGEST: [f64; 8] = [7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 3.0, 12.0];
+/// With the last all weights vanish, so that the neuron stays silent.
+const LARGEST: [f64; 10] = [7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 3.0, 12.0, 1.0, 0.1];
 /// The rungs that are tried first.
 const RUNGS: [u8; 4] = [7, 5, 3, 2];
 /// The choices from which the search goes on.
@@ -89,7 +90,7 @@ fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).chain(&layer.bias[at..=at]);
     let largest = weights.fold(0.0_f64, |most, weight| most.max(weight.abs()));
-    let Neuron { keep, threshold } = layer.neurons[at];
+    let Neuron { keep, threshold, leak: amount } = layer.neurons[at];
     let mut choices: Vec<Choice> = Vec::new();
     for most in LARGEST {
         let most = most * f64::from(shape.rows);
@@ -99,8 +100,13 @@ fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
             let room = MAX_POTENTIAL - shape.above * u16::from(rung);
             let threshold = threshold.min(room.into()) as u16;
             // What a leak takes off at half the threshold, or with leaks at several heights as a share.
-            let lost = (1.0 - keep) / 2.0
-                * if shape.spacing == 0 { threshold.into() } else { f64::from(shape.spacing * u16::from(rung)) };
+            let lost = amount / unit
+                + (1.0 - keep) / 2.0
+                    * if shape.spacing == 0 {
+                        threshold.into()
+                    } else {
+                        f64::from(shape.spacing * u16::from(rung))
+                    };
             let leaks = match shape.leaks.is_empty() {
                 // Only neurons that fired get leaks.
                 true => [f64::from(MAX_LEAK); 2],
@@ -170,7 +176,8 @@ fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron 
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).map(&mut quantised).collect();
     let bias = quantised(&layer.bias[at]);
-    let own_leaks = own_leaks(layer, at, shape, choice).saturating_add(more.into()).clamp(0, 255) as u16;
+    let own_leaks =
+        own_leaks(layer, at, shape, choice).saturating_add(more.into()).clamp(0, 255) as u16;
     GatedNeuron { weights, bias, threshold, leak, rung, own_leaks, clipped }
 }
 
@@ -191,7 +198,11 @@ fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
         return (farthest / leak).ceil() as i32 + levels as i32;
     }
     // Of what it is beyond its threshold whole rungs stay; leaks have taken it for a potential far below 0.
-    let late = if layer.reset == Reset::SubtractLate { f64::from(threshold) * (1.0 / keep.max(0.1) - 1.0) } else { 0.0 };
+    let late = if layer.reset == Reset::SubtractLate {
+        f64::from(threshold) * (1.0 / keep.max(0.1) - 1.0)
+    } else {
+        0.0
+    };
     let passed = if shape.spacing > 0 { (1.0 - keep) * above } else { 0.0 };
     ((above - passed + rung / 2.0 - late) / leak).round().max(0.0) as i32
 }

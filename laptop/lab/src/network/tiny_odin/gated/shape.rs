@@ -61,7 +61,8 @@ pub(super) fn shapes(trained: &Trained, has_bias: bool, drive: f64, threshold: f
         // One of the last two must be free, to show when a layer is done.
         return vec![];
     }
-    let lost: Vec<f64> = neurons().map(|neuron| 1.0 - neuron.keep).filter(|lost| *lost > 0.0).collect();
+    let lost: Vec<f64> =
+        neurons().map(|neuron| 1.0 - neuron.keep).filter(|lost| *lost > 0.0).collect();
     let resets_to_zero = trained.layers.iter().all(|layer| !layer.reset.subtracts());
     let mut shapes = Vec::new();
     for rows in ROWS_TRIED {
@@ -77,11 +78,14 @@ pub(super) fn shapes(trained: &Trained, has_bias: bool, drive: f64, threshold: f
                 shapes.push(shape);
             }
         };
-        if lost.is_empty() {
+        if lost.is_empty() && neurons().all(|neuron| neuron.leak == 0.0) {
             add(0, raised, vec![], 0);
             continue;
         }
         add(0, raised, vec![vec![0]], 0);
+        if lost.is_empty() {
+            continue;
+        }
         let mean = lost.iter().sum::<f64>() / lost.len() as f64;
         for strength in [1.0, 2.0] {
             // So many rungs apart, leaks of this strength take a share of the potential.
@@ -91,11 +95,15 @@ pub(super) fn shapes(trained: &Trained, has_bias: bool, drive: f64, threshold: f
             let shift = spacing / 3;
             let above = levels * spacing + shift;
             let below = above.max(raised.saturating_sub(above));
-            let turns = if shift > 0 { vec![0, i32::from(shift), -i32::from(shift)] } else { vec![0] };
+            let turns =
+                if shift > 0 { vec![0, i32::from(shift), -i32::from(shift)] } else { vec![0] };
             let leaks = turns.into_iter().map(|shift| {
                 let levels = i32::from(levels);
                 let height = |level: i32| level * i32::from(spacing) + shift;
-                (-levels..=levels).rev().map(|level| (i32::from(above) - height(level)) as u16).collect()
+                (-levels..=levels)
+                    .rev()
+                    .map(|level| (i32::from(above) - height(level)) as u16)
+                    .collect()
             });
             add(above, below, leaks.collect(), spacing);
         }
