@@ -41,11 +41,6 @@ mod temporal_contrast;
 mod threshold_hough;
 mod weighted_phase;
 
-/// What the firmware program `camera` prints.
-#[allow(clippy::pedantic, dead_code, unreachable_pub)]
-#[path = "../../examples/camera/src/lib.rs"]
-mod camera;
-
 /// A check on another machine draws what it draws on this one.
 #[test]
 fn seeds_are_fixed() {
