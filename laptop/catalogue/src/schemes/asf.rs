@@ -8,6 +8,10 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it; a threshold is a part of a channel's range.
+const THRESHOLD: f64 = 0.02;
+const DOUBLINGS: u8 = 4;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "asf",
@@ -43,8 +47,8 @@ impl Entry for Scheme {
             name: "init",
             words: "`threshold`: the smallest, above 0; `doublings`: how often it doubles at most, 0 to 30.",
             arguments: &[
-                Argument::sample("threshold", Flown::Fraction(0.02)),
-                Argument::number("doublings", "u8", 4.0),
+                Argument::sample("threshold", Flown::Fraction(THRESHOLD)),
+                Argument::number("doublings", "u8", DOUBLINGS as f64),
             ],
             value: "temporal::AdaptiveStepForward::try_new(threshold, doublings)",
             flies: Some("asf"),
@@ -52,7 +56,7 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = AdaptiveStepForward::try_new(channel.fraction(0.02), 4)?;
+        let scheme = AdaptiveStepForward::try_new(channel.fraction(THRESHOLD), DOUBLINGS)?;
         visitor.visit("asf", Self::INFO.words, &scheme, AdaptiveStepForward::START)
     }
 

@@ -9,6 +9,10 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it; a threshold is a part of a channel's range.
+const THRESHOLD: f64 = 0.001;
+const DOUBLINGS: u8 = 5;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "atbr",
@@ -42,8 +46,8 @@ impl Entry for Scheme {
             name: "init",
             words: "`threshold`: the smallest, above 0; `doublings`: how often it doubles at most, 0 to 15.",
             arguments: &[
-                Argument::sample("threshold", Flown::Fraction(0.001)),
-                Argument::number("doublings", "u8", 5.0),
+                Argument::sample("threshold", Flown::Fraction(THRESHOLD)),
+                Argument::number("doublings", "u8", DOUBLINGS as f64),
             ],
             value: "temporal::AdaptiveContrast::try_new(threshold, doublings)",
             flies: Some("atbr"),
@@ -51,7 +55,7 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = AdaptiveContrast::try_new(channel.fraction(0.001), 5)?;
+        let scheme = AdaptiveContrast::try_new(channel.fraction(THRESHOLD), DOUBLINGS)?;
         visitor.visit("atbr", Self::INFO.words, &scheme, AdaptiveContrast::START)
     }
 

@@ -12,6 +12,11 @@ use spikewire::rate::Window;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it; the weight is a part of a channel's range.
+const WEIGHT: f64 = 0.14;
+const DOUBLINGS: u8 = 3;
+const POWER: u8 = 4;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "burst-weighted",
@@ -52,9 +57,9 @@ impl Entry for Scheme {
             arguments: &[
                 Argument::MIN,
                 Argument::MAX,
-                Argument::sample("weight", Flown::Fraction(0.14)),
-                Argument::number("doublings", "u8", 3.0),
-                Argument::number("power", "u8", 4.0),
+                Argument::sample("weight", Flown::Fraction(WEIGHT)),
+                Argument::number("doublings", "u8", DOUBLINGS as f64),
+                Argument::number("power", "u8", POWER as f64),
             ],
             value: "rate::WeightedBurst::try_new(min..=max, weight, doublings, rate::Average::try_new(power)?)",
             flies: Some("burst-weighted"),
@@ -62,8 +67,8 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let (range, unit) = (channel.min..=channel.max, channel.fraction(0.14));
-        let scheme = WeightedBurst::try_new(range, unit, 3, const { Average::new(4) })?;
+        let (range, unit) = (channel.min..=channel.max, channel.fraction(WEIGHT));
+        let scheme = WeightedBurst::try_new(range, unit, DOUBLINGS, const { Average::new(POWER) })?;
         let start = WeightedBurst::<V::Sample, Average>::START;
         visitor.visit("burst-weighted", Self::INFO.words, &scheme, start)
     }

@@ -13,6 +13,11 @@ use super::integrate;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it; a threshold is a part of a channel's range.
+const THRESHOLD: f64 = 0.2;
+const POWER: u8 = 3;
+const SPIKES: usize = 8;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "lif",
@@ -29,13 +34,13 @@ impl Entry for Scheme {
     const IN_C: &'static [InC] = &[InC {
         name: "leaky_integrate_and_fire",
         scheme: "rate::IntegrateAndFire<S, {0}>",
-        shapes: &[&[8]],
+        shapes: &[&[SPIKES]],
         made: &[Made {
             name: "init",
             words: "`threshold`: what samples add up to at a spike, above 0; `power`: mean and leak are over 2^power samples, 1 to 15; `reference`: the value without spikes.",
             arguments: &[
-                Argument::sample("threshold", Flown::Fraction(0.2)),
-                Argument::number("power", "u8", 3.0),
+                Argument::sample("threshold", Flown::Fraction(THRESHOLD)),
+                Argument::number("power", "u8", POWER as f64),
                 Argument::sample("reference", Flown::Number(0.0)),
             ],
             value: "Ok(rate::IntegrateAndFire::try_new(threshold, power)?.try_with_reference(reference)?.leaky())",
@@ -44,8 +49,8 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = IntegrateAndFire::<_, 8>::try_new(channel.fraction(0.2), 3)?.leaky();
-        let start = IntegrateAndFire::<V::Sample, 8>::START;
+        let scheme = IntegrateAndFire::<_, SPIKES>::try_new(channel.fraction(THRESHOLD), POWER)?.leaky();
+        let start = IntegrateAndFire::<V::Sample, SPIKES>::START;
         visitor.visit("lif", Self::INFO.words, &scheme, start)
     }
 

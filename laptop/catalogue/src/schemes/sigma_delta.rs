@@ -9,6 +9,10 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it.
+const POWER: u8 = 4;
+const WINDOW_POWER: u8 = 6;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "sigma-delta",
@@ -29,7 +33,7 @@ impl Entry for Scheme {
             made: &[Made {
                 name: "init",
                 words: "`min`, `max`: the range, which must rise. `power`: the decoder's average is over about 2^power samples, 1 to 15.",
-                arguments: &[Argument::MIN, Argument::MAX, Argument::number("power", "u8", 4.0)],
+                arguments: &[Argument::MIN, Argument::MAX, Argument::number("power", "u8", POWER as f64)],
                 value: "rate::SigmaDelta::try_new(min..=max, rate::Average::try_new(power)?)",
                 flies: Some("sigma-delta"),
             }],
@@ -41,7 +45,7 @@ impl Entry for Scheme {
             made: &[Made {
                 name: "init",
                 words: "`min`, `max`: the range, which must rise. `power`: the decoder's mean is over 2^power samples, at most 32 a word.",
-                arguments: &[Argument::MIN, Argument::MAX, Argument::number("power", "u8", 6.0)],
+                arguments: &[Argument::MIN, Argument::MAX, Argument::number("power", "u8", WINDOW_POWER as f64)],
                 value: "rate::SigmaDelta::try_new(min..=max, rate::Window::try_new(power)?)",
                 flies: Some("sigma-delta-window"),
             }],
@@ -49,11 +53,11 @@ impl Entry for Scheme {
     ];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let (range, average) = (channel.min..=channel.max, const { Average::new(4) });
+        let (range, average) = (channel.min..=channel.max, const { Average::new(POWER) });
         let scheme = SigmaDelta::try_new(range.clone(), average)?;
         let start = SigmaDelta::<V::Sample, Average>::START;
         visitor.visit("sigma-delta", Self::INFO.words, &scheme, start)?;
-        let scheme = SigmaDelta::try_new(range, const { Window::<2>::new(6) })?;
+        let scheme = SigmaDelta::try_new(range, const { Window::<2>::new(WINDOW_POWER) })?;
         let start = SigmaDelta::<V::Sample, Window<2>>::START;
         visitor.visit("sigma-delta-window", "sigma-delta over a window", &scheme, start)
     }

@@ -8,6 +8,10 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it; a threshold is a part of a channel's range.
+const THRESHOLD: f64 = 0.02;
+const SPIKES: usize = 4;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "sod",
@@ -32,24 +36,24 @@ impl Entry for Scheme {
     const IN_C: &'static [InC] = &[InC {
         name: "send_on_delta",
         scheme: "temporal::SendOnDelta<S, {0}>",
-        shapes: &[&[4]],
+        shapes: &[&[SPIKES]],
         made: &[Made {
             name: "init",
             words: "`threshold`: of a spike, above 0.",
-            arguments: &[Argument::sample("threshold", Flown::Fraction(0.02))],
+            arguments: &[Argument::sample("threshold", Flown::Fraction(THRESHOLD))],
             value: "temporal::SendOnDelta::try_new(threshold)",
             flies: Some("sod"),
         }],
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = SendOnDelta::<_, 4>::try_new(channel.fraction(0.02))?;
-        visitor.visit("sod", Self::INFO.words, &scheme, SendOnDelta::<V::Sample, 4>::START)
+        let scheme = SendOnDelta::<_, SPIKES>::try_new(channel.fraction(THRESHOLD))?;
+        visitor.visit("sod", Self::INFO.words, &scheme, SendOnDelta::<V::Sample, SPIKES>::START)
     }
 
     fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let threshold = signal.part(0.5);
-        let scheme = SendOnDelta::<_, 4>::try_new(threshold)?;
+        let scheme = SendOnDelta::<_, SPIKES>::try_new(threshold)?;
         visitor.coded(
             "sod-4",
             &scheme,
