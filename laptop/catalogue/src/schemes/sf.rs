@@ -16,7 +16,7 @@ impl Entry for Scheme {
         words: "step forward (SF)",
         good_for: "following a signal closely with few spikes, while it changes by a threshold a sample at most",
         is_signed: true,
-        steps: Steps::Held,
+        steps: StepErrors::Held,
         climbs_by: Some("threshold"),
         is_drawn: true,
         colour: [0xe9, 0xc4, 0x3a],
