@@ -1,7 +1,7 @@
 //! `cargo xtask scheme NAME TYPE --like NAME`: a scheme to begin from, which compiles as it comes.
 //!
 //! It is a copy of one that there is, under another name, in the crate and in the catalogue, with the lines that list it. The
-//! reference and its test are not copied: they would prove nothing.
+//! reference and its test begin empty: copied, they would prove nothing.
 
 use crate::common::{cargo, command, output, paths, run, usage};
 use anyhow::{Context, Result, ensure};
@@ -13,6 +13,12 @@ use std::{
 
 pub const USAGE: &str =
     "cargo xtask scheme NAME TYPE --like NAME, as in: trial TrialForward --like sf";
+
+/// Where the reference and the test go, what they are, and the files that list them.
+const BY_HAND: [(&str, &str, &str); 2] = [
+    ("host-tests/src/reference", "once more, from the paper alone and in doubles", "mod.rs"),
+    ("host-tests/tests", "against the reference", "codes.rs"),
+];
 
 /// Tables with a row for each scheme.
 const PAGES: [&str; 3] = ["src/lib.rs", "docs/schemes.md", "docs/codes.md"];
@@ -32,8 +38,8 @@ pub fn new_scheme(args: &[String]) -> Result<()> {
         println!("{file}");
     }
     println!(
-        "By hand now: the law in the first, names and parameters in the second, the rows' words; then \
-         host-tests/src/reference/{module}.rs and host-tests/tests/{module}.rs, and `cargo xtask write`.",
+        "By hand now: the law in the first, names and parameters in the second, the rows' words, and \
+         host-tests/src/reference/{module}.rs and host-tests/tests/{module}.rs, which are empty; then `cargo xtask write`.",
         module = names.new.module
     );
     Ok(())
@@ -121,6 +127,16 @@ impl Names {
             fs::write(&page, self.listed(&text, &is_row))?;
             files.push(page);
         }
+        for (room, words, list) in BY_HAND {
+            let (room, module) = (root.join(room), &new.module);
+            let file = room.join(format!("{module}.rs"));
+            fs::write(&file, format!("//! `{}` {words}.\n", new.type_name))?;
+            let list = room.join(list);
+            let text = inserted(&fs::read_to_string(&list)?, &format!("mod {module};"));
+            let text = inserted(&text, &format!("pub use {module}::*;"));
+            fs::write(&list, text)?;
+            files.extend([file, list]);
+        }
         let shown = |file: PathBuf| file.strip_prefix(root).unwrap_or(&file).display().to_string();
         Ok(files.into_iter().map(shown).collect())
     }
@@ -141,6 +157,24 @@ impl Names {
             }
         }
         lines.join("\n") + "\n"
+    }
+}
+
+/// The text with one more line among those that begin with the same word, which are sorted; unchanged where none does. The
+/// module `common` stands before the others.
+fn inserted(text: &str, line: &str) -> String {
+    let (word, _) = line.split_once(' ').unwrap_or((line, ""));
+    let is_listed = |other: &&str| other.starts_with(word) && *other != "mod common;";
+    let mut listed = text.lines().filter(is_listed);
+    let after = listed.clone().find(|other| *other > line);
+    match after.or(listed.next_back()) {
+        Some(neighbour) if after.is_some() => {
+            text.replacen(&format!("\n{neighbour}\n"), &format!("\n{line}\n{neighbour}\n"), 1)
+        }
+        Some(neighbour) => {
+            text.replacen(&format!("\n{neighbour}\n"), &format!("\n{neighbour}\n{line}\n"), 1)
+        }
+        None => text.to_owned(),
     }
 }
 
@@ -201,4 +235,21 @@ pub fn verify() -> Result<()> {
         .env("CARGO_TARGET_DIR", paths::target().join("new-scheme")))?;
     println!("A scheme to begin from compiles; {} files are written.", files.len());
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_listed_in_its_order_where_there_is_a_list() {
+        let text = "//! x\n\nmod common;\n\nmod bank;\nmod slots;\n\npub use bank::a;\nfn f() {}\n";
+        let with = inserted(text, "mod hough;");
+        assert_eq!(with, text.replace("mod slots;", "mod hough;\nmod slots;"));
+        assert_eq!(inserted(text, "mod asf;"), text.replace("mod bank;", "mod asf;\nmod bank;"));
+        assert_eq!(inserted(text, "mod tbr;"), text.replace("mod slots;", "mod slots;\nmod tbr;"));
+        let with = inserted(text, "pub use trial::*;");
+        assert_eq!(with, text.replace("pub use bank::a;", "pub use bank::a;\npub use trial::*;"));
+        assert_eq!(inserted("fn f() {}\n", "mod x;"), "fn f() {}\n");
+    }
 }
