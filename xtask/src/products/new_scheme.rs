@@ -37,6 +37,7 @@ pub fn new_scheme(args: &[String]) -> Result<()> {
     for file in names.write(&paths::root())? {
         println!("{file}");
     }
+    run(&mut cargo("fmt --package spikewire --package catalogue --package host-tests"))?;
     println!(
         "By hand now: the law in the first, names and parameters in the second, the rows' words, and \
          host-tests/src/reference/{module}.rs and host-tests/tests/{module}.rs, which are empty; then `cargo xtask write`.",
@@ -160,22 +161,15 @@ impl Names {
     }
 }
 
-/// The text with one more line among those that begin with the same word, which are sorted; unchanged where none does. The
-/// module `common` stands before the others.
+/// The text with one more line before those that begin with the same word, if there are any; rustfmt sorts them. The module
+/// `common` stands apart.
 fn inserted(text: &str, line: &str) -> String {
     let (word, _) = line.split_once(' ').unwrap_or((line, ""));
     let is_listed = |other: &&str| other.starts_with(word) && *other != "mod common;";
-    let mut listed = text.lines().filter(is_listed);
-    let after = listed.clone().find(|other| *other > line);
-    match after.or(listed.next_back()) {
-        Some(neighbour) if after.is_some() => {
-            text.replacen(&format!("\n{neighbour}\n"), &format!("\n{line}\n{neighbour}\n"), 1)
-        }
-        Some(neighbour) => {
-            text.replacen(&format!("\n{neighbour}\n"), &format!("\n{neighbour}\n{line}\n"), 1)
-        }
-        None => text.to_owned(),
-    }
+    text.lines().find(is_listed).map_or_else(
+        || text.to_owned(),
+        |first| text.replacen(&format!("\n{first}\n"), &format!("\n{line}\n{first}\n"), 1),
+    )
 }
 
 /// The text with another beginning of words: `StepForward` in `StepForwardState` and not in `AdaptiveStepForward`.
@@ -242,14 +236,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_is_listed_in_its_order_where_there_is_a_list() {
-        let text = "//! x\n\nmod common;\n\nmod bank;\nmod slots;\n\npub use bank::a;\nfn f() {}\n";
-        let with = inserted(text, "mod hough;");
-        assert_eq!(with, text.replace("mod slots;", "mod hough;\nmod slots;"));
-        assert_eq!(inserted(text, "mod asf;"), text.replace("mod bank;", "mod asf;\nmod bank;"));
-        assert_eq!(inserted(text, "mod tbr;"), text.replace("mod slots;", "mod slots;\nmod tbr;"));
-        let with = inserted(text, "pub use trial::*;");
-        assert_eq!(with, text.replace("pub use bank::a;", "pub use bank::a;\npub use trial::*;"));
+    fn a_line_is_listed_where_there_is_a_list() {
+        let text = "//! x\n\nmod common;\n\nmod bank;\nmod slots;\n\npub use bank::{\n    a,\n};\n";
+        let with = text.replace("mod bank;", "mod hough;\nmod bank;");
+        assert_eq!(inserted(text, "mod hough;"), with);
+        let with = text.replace("pub use bank", "pub use trial::*;\npub use bank");
+        assert_eq!(inserted(text, "pub use trial::*;"), with);
         assert_eq!(inserted("fn f() {}\n", "mod x;"), "fn f() {}\n");
     }
 }
