@@ -204,8 +204,8 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         Spike::None
     }
 
-    /// The baseline and the pace stay in registers, and while at rest also the band. A core with vectors predicts the
-    /// branches of [`follow`](Self::follow), and loses by one more.
+    /// The baseline and the pace stay in registers, and while at rest also the band, but on a core with vectors, which
+    /// predicts the branches of single samples.
     #[inline]
     fn encode_slice(
         &self,
