@@ -5,7 +5,7 @@ use core::hint::black_box;
 
 use super::cursor::Cursor;
 use super::filtered::Filtered;
-use crate::num::{HAS_VECTORS, Residual, Tally};
+use crate::num::{Residual, Tally};
 use crate::{Destination, Sample, Spike};
 
 /// A rate code's rule for when a sample spikes.
@@ -112,7 +112,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         let length = samples.len().min(spikes.len());
         if !R::IN_ORDER {
             for (spike, &sample) in spikes.iter_mut().zip(samples) {
-                spike.write(if S::Residual::IS_EXACT && !HAS_VECTORS {
+                spike.write(if S::Residual::IS_EXACT && !crate::num::HAS_VECTORS {
                     self.encode_called(rule, sample)
                 } else {
                     self.encode(rule, sample)
