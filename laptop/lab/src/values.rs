@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use catalogue::for_sample_type;
 use catalogue::run::{SampleType, Settings, Visit};
 use spikewire::link::{Received, Receiver};
-use spikewire::{Recovery, Sample, SampleKind, Scheme, Spike, Tick};
+use spikewire::{Fingerprint, Recovery, Sample, SampleKind, Scheme, Spike, Tick};
 use std::any::Any;
 
 /// The most channels of a code of one neuron.
@@ -145,6 +145,10 @@ impl<P: Scheme> Scheme for Started<P> {
 
     const LATENCY: usize = P::LATENCY;
     const RECOVERY: Recovery = P::RECOVERY;
+
+    fn fingerprint(&self) -> Fingerprint {
+        self.scheme.fingerprint()
+    }
 
     fn encode(&self, state: &mut P::EncoderState, sample: P::Sample) -> P::Output {
         self.scheme.encode(state, sample)
