@@ -28,7 +28,7 @@ const EVENTS: usize = 256;
 /// Microseconds from sample to sample.
 const PERIOD: u32 = 2_500;
 /// Samples from one keyframe or heartbeat to the next.
-const BEAT: u32 = 100;
+const BEAT: u32 = 20;
 /// Samples from one turn of main to the next.
 const TURN: u32 = 4;
 /// A reader takes an earlier session back after this many of its frames, each at least a keyframe.
@@ -86,7 +86,7 @@ const FAULTS: [(Fault, &str, &str); 22] = [
     (ReceiverOut, "restarts", "brown-out of the receiver"),
     (TickWrap, "wraps", "ticks wrap at 2^32 us"),
     (NumberWrap, "wraps", "numbers of frames wrap at 2^16, 2^32 and 2^48"),
-    (Jitter, "samples", "samples early or late by a quarter of a period or sub-timestep"),
+    (Jitter, "samples", "samples early or late by an eighth of a period or sub-timestep"),
     (Drift, "samples", "a clock 100 ppm fast or slow"),
     (Stuck, "samples", "the sensor is stuck"),
     (Floating, "samples", "the sensor floats: noise of full scale"),
@@ -342,15 +342,17 @@ where
         let slot_ticks = if has_slots { PERIOD / scheme.slots() as u32 } else { 0 };
         let addresses = (CHANNELS * scheme.neurons()) as u16;
         let coding = Coding::for_channels(addresses, PERIOD as u16);
-        let transmitter = Transmitter::new(coding, first);
+
+        let bank = Bank::with_states(scheme, [(); CHANNELS].map(|()| again(start)))
+            .with_slot_ticks(slot_ticks);
+        let transmitter = Transmitter::new(coding, first).with_fingerprint(bank.fingerprint());
         let recorded = Recorded { transmitter, session, line: line.clone(), framed: 0, last: None };
         Self {
             scheme,
             start,
             slot_ticks,
             queue,
-            bank: Bank::with_states(scheme, [(); CHANNELS].map(|()| again(start)))
-                .with_slot_ticks(slot_ticks),
+            bank,
             sink: SerialSink::new(Port(line.clone()), recorded),
             session,
             now: micros * 1_000,
@@ -573,7 +575,7 @@ where
         self.tally.injected += u64::from(is_odd || is_wrong);
         let slot_ticks = self.senders[0].slot_ticks;
         let least = if slot_ticks > 0 { slot_ticks } else { PERIOD };
-        let most = i64::from((least - 1) / 4);
+        let most = i64::from((least - 1) / 8);
         let jitter = match self.fault() {
             Some(Jitter) => self.draw(2 * most as u64 + 1).cast_signed() - most,
             _ => 0,

@@ -34,6 +34,13 @@ fn any_event() -> impl Strategy<Value = Event> {
     (tick, address, any::<bool>()).prop_map(|(tick, address, is_up)| event(tick, address, is_up))
 }
 
+/// Events as a sender has them, whose time does not go back far.
+fn steady_event() -> impl Strategy<Value = Event> {
+    let (tick, address) =
+        (prop_oneof![0_u32..10, 0_u32..60_000], prop_oneof![0_u16..6, any::<u16>()]);
+    (tick, address, any::<bool>()).prop_map(|(tick, address, is_up)| event(tick, address, is_up))
+}
+
 fn any_coding() -> impl Strategy<Value = Coding> {
     (1_u16.., any::<u8>(), any::<u8>()).prop_map(|(period, address_bits, jitter_bits)| Coding {
         period: NonZeroU16::new(period).unwrap(),
@@ -297,7 +304,7 @@ proptest! {
 
     #[test]
     fn a_stream_cut_anywhere_loses_nothing(
-        events in prop::collection::vec(any_event(), 1..300),
+        events in prop::collection::vec(steady_event(), 1..300),
         cuts in prop::collection::vec(1..90_usize, 1..60),
     ) {
         let stream: Vec<u8> = frames(Coding::for_channels(6, 1_000), &events, 100)
@@ -319,7 +326,7 @@ proptest! {
 
     #[test]
     fn frames_before_and_after_a_damaged_one_arrive(
-        events in prop::collection::vec(any_event(), 60..200),
+        events in prop::collection::vec(steady_event(), 60..200),
         damage in any::<prop::sample::Index>(),
         flips in prop::collection::vec((any::<prop::sample::Index>(), 1_u8..), 1..8),
         junk in prop::collection::vec(any::<u8>(), 0..50),
@@ -363,7 +370,7 @@ proptest! {
 
     #[test]
     fn after_a_silence_no_frame_waits_for_the_end_of_another(
-        events in prop::collection::vec(any_event(), 60..200),
+        events in prop::collection::vec(steady_event(), 60..200),
         cut in any::<prop::sample::Index>(),
         at in any::<prop::sample::Index>(),
     ) {
@@ -389,7 +396,7 @@ proptest! {
         prop_assert_eq!(numbers, whole);
         // Nothing is left that would wait.
         prop_assert!(reader.next_after_silence().is_none());
-        let mut last = &frames[0].0[..];
+        let mut last = &frames[usize::from(cut == 0)].0[..];
         prop_assert!(reader.next_frame(&mut last).is_none() && last.is_empty());
         prop_assert_eq!(reader.late() + reader.repeated(), 1);
     }
@@ -555,16 +562,9 @@ fn frames_sent_twice_or_late_are_delivered_once() {
     let (read, reader) = read(order.map(|number| &frames[number]));
     let told: Vec<_> =
         read.iter().map(|&(_, place, lost, is_start)| (place, lost, is_start)).collect();
-    let expected = [
-        (0, 0, true),
-        (1, 0, false),
-        (3, 1, false),
-        (4, 0, false),
-        (300, 295, false),
-        (44, 0, true),
-    ];
-    assert_eq!(told, expected, "one of more than 256 back is another start");
-    assert_eq!((reader.repeated(), reader.late()), (2 + 1, 4 + 2));
+    let expected = [(0, 0, true), (1, 0, false), (3, 1, false), (4, 0, false), (300, 295, false)];
+    assert_eq!(told, expected, "one of more than 256 back is late, too");
+    assert_eq!((reader.repeated(), reader.late()), (2 + 1, 3 + 4));
 }
 
 #[test]

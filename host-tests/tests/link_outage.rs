@@ -9,9 +9,10 @@ use catalogue::{Channel, Flight, State};
 use host_tests::flight;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
-use spikewire::link::{Coding, MAX_FRAME, Reader, Receiver, Session, Transmitter};
+use spikewire::link::{CLOCK_TOLERANCE, Coding, MAX_FRAME, Reader, Receiver, Session, Transmitter};
 use spikewire::{
-    Bank, Code, ConfigError, FromItems, Item, Output, Put, Recovery, Sample, Scheme, Tick,
+    Bank, Code, ConfigError, Fingerprint, FromItems, Item, Output, Put, Recovery, Sample, Scheme,
+    Tick,
 };
 
 const CHANNELS: usize = 2;
@@ -57,6 +58,8 @@ struct World<'a, P: Scheme> {
     slot_ticks: u32,
     /// The most that a tick is early or late.
     jitter: u32,
+    /// The clock tolerance that the receiver is told of, in millionths.
+    tolerance: u32,
     /// Samples from one keyframe or heartbeat to the next.
     beat: u32,
     session: u32,
@@ -101,7 +104,9 @@ where
         let has_slots = scheme.slots() > 1 && P::RECOVERY != Recovery::Keyframe;
         let slot_ticks = if has_slots { period / scheme.slots() as u32 } else { 0 };
         let least = if has_slots { slot_ticks } else { period };
-        let jitter = [0, (least - 1) / 4][random.next_u32() as usize % 2];
+        let jitter = [0, (least - 1) / 8][random.next_u32() as usize % 2];
+        // A clock of which the receiver knows little takes more heartbeats.
+        let (tolerance, beats) = [(0, 60), (CLOCK_TOLERANCE, 8)][random.next_u32() as usize % 2];
         let is_counted = random.next_u32().is_multiple_of(2);
         let session = random.next_u32();
         let mut world = Self {
@@ -110,14 +115,15 @@ where
             period,
             slot_ticks,
             jitter,
-            beat: 5 + random.next_u32() % 60,
+            tolerance,
+            beat: 5 + random.next_u32() % beats,
             session,
             is_counted,
             now: 0,
             taken: 0,
             at: random.next_u32() as usize % samples.len(),
             bank: bank(scheme, &start, slot_ticks),
-            transmitter: transmitter(period, Session::counted(session)),
+            transmitter: transmitter(period, Session::counted(session), Fingerprint::from_bits(0)),
             items: Items::default(),
             encoders: [(); CHANNELS].map(|()| again(&start)),
             decoders: [(); CHANNELS].map(|()| scheme.decoder_state()),
@@ -126,7 +132,9 @@ where
             unsent: None,
             claimed: [0; CHANNELS],
             reader: Reader::new(),
-            receiver: Receiver::new(scheme).with_slot_ticks(slot_ticks),
+            receiver: Receiver::new(scheme)
+                .with_slot_ticks(slot_ticks)
+                .with_clock_tolerance(tolerance),
             values: Vec::new(),
             claims: Claims::default(),
             start,
@@ -165,7 +173,6 @@ where
         } else {
             Session::random(self.random.next_u64())
         };
-        self.transmitter = transmitter(self.period, session);
         self.now = match self.draw(4) {
             0 => self.draw(100_000),
             1 => (self.draw(50) << 31) + self.draw(4_000_000),
@@ -173,6 +180,7 @@ where
         } + u64::from(self.period);
         self.items.0.clear();
         self.bank = bank(self.scheme, &self.start, self.slot_ticks);
+        self.transmitter = transmitter(self.period, session, self.bank.fingerprint());
         self.encoders = [(); CHANNELS].map(|()| again(&self.start));
         self.decoders = [(); CHANNELS].map(|()| self.scheme.decoder_state());
         self.truth.clear();
@@ -295,6 +303,28 @@ where
                     self.claimed[channel] = truth.time;
                     self.claims.right += 1;
                 } else {
+                    if std::env::var("DBG").is_ok() {
+                        let near: Vec<_> = self
+                            .truth
+                            .range(from..)
+                            .filter(is_near)
+                            .map(|t| (t.time, t.values[channel]))
+                            .collect();
+                        eprintln!(
+                            "wrong ch {channel} tick {tick:?} told {told:?} near {near:?} period {} jitter {} tol {} now {} beat {} receiver {:?}",
+                            self.period,
+                            self.jitter,
+                            self.tolerance,
+                            self.now,
+                            self.beat,
+                            self.truth
+                                .iter()
+                                .rev()
+                                .take(4)
+                                .map(|t| (t.time as u32, t.values[channel]))
+                                .collect::<Vec<_>>()
+                        );
+                    }
                     self.claims.wrong += 1;
                 }
             }
@@ -417,7 +447,9 @@ where
                 0 => self.restart(),
                 1 => {
                     self.reader = Reader::new();
-                    self.receiver = Receiver::new(self.scheme).with_slot_ticks(self.slot_ticks);
+                    self.receiver = Receiver::new(self.scheme)
+                        .with_slot_ticks(self.slot_ticks)
+                        .with_clock_tolerance(self.tolerance);
                 }
                 2 | 3 => self.rest(loss),
                 _ => self.outage(),
@@ -439,8 +471,9 @@ impl Claims {
     }
 }
 
-fn transmitter(period: u32, session: Session) -> Transmitter {
-    Transmitter::new(Coding::for_channels(CHANNELS as u16, period as u16), session)
+fn transmitter(period: u32, session: Session, fingerprint: Fingerprint) -> Transmitter {
+    let coding = Coding::for_channels(CHANNELS as u16, period as u16);
+    Transmitter::new(coding, session).with_fingerprint(fingerprint)
 }
 
 fn bank<'a, P>(scheme: &'a P, start: &[u8], slot_ticks: u32) -> Bank<&'a P, CHANNELS>

@@ -72,6 +72,7 @@ impl<F: Filter, P: Scheme<Sample = F::Sample>> Scheme for Filtered<F, P> {
 
     const LATENCY: usize = P::LATENCY;
     const RECOVERY: Recovery = P::RECOVERY;
+    const HOLDS_KEYFRAMES: bool = P::HOLDS_KEYFRAMES;
 
     fn fingerprint(&self) -> Fingerprint {
         self.filter.fingerprint().and(self.scheme.fingerprint())

@@ -34,6 +34,10 @@ pub trait Scheme: Sized {
     /// that of the longest filter; [`recovery`](Self::recovery) gives that of this filter.
     const RECOVERY: Recovery;
 
+    /// Whether a keyframe has the bits of the value that a decoder holds already which lost nothing, so that another value
+    /// shows that sender and receiver have other schemes.
+    const HOLDS_KEYFRAMES: bool = false;
+
     /// The fingerprint of the scheme's name and of all its parameters, by which a link's receiver knows whether it has the
     /// sender's; see its [specification](Fingerprint#specification). For set-up, not for the hot path.
     fn fingerprint(&self) -> Fingerprint;

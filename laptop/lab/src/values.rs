@@ -145,6 +145,7 @@ impl<P: Scheme> Scheme for Started<P> {
 
     const LATENCY: usize = P::LATENCY;
     const RECOVERY: Recovery = P::RECOVERY;
+    const HOLDS_KEYFRAMES: bool = P::HOLDS_KEYFRAMES;
 
     fn fingerprint(&self) -> Fingerprint {
         self.scheme.fingerprint()

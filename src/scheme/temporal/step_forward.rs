@@ -105,6 +105,7 @@ impl<S: Sample> Scheme for StepForward<S> {
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Keyframe;
+    const HOLDS_KEYFRAMES: bool = true;
 
     fn fingerprint(&self) -> Fingerprint {
         Fingerprint::new("StepForward").sample(self.threshold)
