@@ -89,11 +89,19 @@ impl Pace {
             return self.forget();
         }
         if self.samples >= LEARNED {
-            (self.samples, self.span) = (self.samples / 2, self.span / 2);
+            let half = self.samples / 2;
+            self.span = self.time_of_learned(half);
+            self.samples = half;
             self.pieces = self.pieces / 2 + 1;
         }
         self.samples = self.samples.wrapping_add(samples);
         self.span = self.span.saturating_add(since);
+    }
+
+    /// The µs from one sample to that so many later, by what was learned.
+    fn time_of_learned(&self, samples: u32) -> u32 {
+        let product = u64::from(self.span).wrapping_mul(samples.into());
+        product.checked_div(self.samples.into()).unwrap_or(0) as u32
     }
 
     /// The pace as so many µs in so many samples.
@@ -153,6 +161,13 @@ impl Pace {
         }
     }
 
+    /// How far a tick may lie from its sample or sub-timestep: at most three eighths of a unit, so that one that is half a
+    /// unit early or late is always noticed.
+    fn most_away(&self, quarter: u64, doubt: u64) -> u64 {
+        let most = u64::from(self.unit).wrapping_mul(3).div_ceil(8);
+        quarter.wrapping_add(doubt).min(most)
+    }
+
     /// The sample of a tick so long after the last known sample, of a code without sub-timesteps. From `settled` silent
     /// samples on, it does not matter how many there were.
     pub(super) fn elapsed(&self, since: i64, settled: u32) -> Elapsed {
@@ -169,7 +184,7 @@ impl Pace {
             let is_settled = least > u64::from(settled);
             return if is_settled { Elapsed::Settled { samples } } else { Elapsed::Unknown };
         }
-        let is_near = self.time_of(samples).abs_diff(since) <= quarter.wrapping_add(doubt);
+        let is_near = self.time_of(samples).abs_diff(since) <= self.most_away(quarter, doubt);
         if samples > 0 && is_near { Elapsed::Samples { samples, slot: 0 } } else { Elapsed::Misfit }
     }
 
@@ -189,7 +204,7 @@ impl Pace {
         }
         let away = slot.wrapping_mul(self.unit.into()).wrapping_add(half).abs_diff(rest);
         // The events of one sample have its tick, to the microsecond.
-        let most = if samples == 0 { 0 } else { quarter.wrapping_add(doubt) };
+        let most = if samples == 0 { 0 } else { self.most_away(quarter, doubt) };
         match u32::try_from(slot) {
             Ok(slot) if slot < slots && away <= most => Elapsed::Samples { samples, slot },
             _ => Elapsed::Misfit,

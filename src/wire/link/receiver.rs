@@ -446,6 +446,12 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         if self.is_blind() || self.has_slots() && !self.sample.is_timed() {
             return;
         }
+        let last = self.sample.events.get(self.sample.count.wrapping_sub(1));
+        let is_behind = last.is_some_and(|last| event.address < last.address);
+        if is_behind && !self.has_slots() && self.sample.time == Some(time) {
+            // Another sample of the same tick: events of a sample come by rising address.
+            self.lose_time(true, on_value);
+        }
         let slot = match self.place(time, on_value) {
             Some(slot) => slot,
             None if self.has_slots() => return,
