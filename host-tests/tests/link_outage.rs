@@ -74,8 +74,9 @@ struct World<'a, P: Scheme> {
     drift: i64,
     remainder: i64,
     // The sender.
-    /// The number of the first frame of the session.
+    /// The numbers of the first frame of the session, and of the last one sent.
     first: u64,
+    last: u64,
     now: u64,
     /// When the last sample was taken.
     taken: u64,
@@ -144,6 +145,7 @@ where
             drift,
             remainder: 0,
             first: 0,
+            last: 0,
             now: 0,
             taken: 0,
             at: random.next_u32() as usize % samples.len(),
@@ -191,14 +193,15 @@ where
         near - near % u64::from(self.period)
     }
 
-    /// A session near the one before, or that one again.
+    /// A session near the one before, or that one again. One whose first frame is lost lies ahead of all that was sent:
+    /// among numbers that were sent, nothing tells it from the one before.
     fn near_session(&mut self, is_heard: bool) -> Session {
         let ahead = 1_u64 << self.draw(33);
-        let ahead = self.draw(ahead) + u64::from(!is_heard);
+        let ahead = self.draw(ahead);
         let first = match self.draw(3) {
             0 if is_heard => self.first,
             1 if is_heard => self.first.wrapping_sub(ahead),
-            _ => self.first.wrapping_add(self.draw(300)).wrapping_add(ahead),
+            _ => self.last.wrapping_add(1 + ahead),
         };
         self.first = first & ((1 << 48) - 1);
         // The bits that `Session` spreads to this number.
@@ -233,6 +236,7 @@ where
         let beat = Item::Heartbeat { tick: Tick::from(0), address: 0 };
         let bytes = first.next_frame(FromItems([beat].into_iter()), &mut frame).unwrap();
         self.first = FrameView::new(bytes.unwrap()).unwrap().0.number();
+        self.last = self.first;
         self.silent = [0; CHANNELS];
         self.unsent = None;
         self.claimed = [0; CHANNELS];
@@ -327,6 +331,7 @@ where
         let mut is_last_here = false;
         let unsent = self.unsent.take().unwrap_or(self.number);
         while let Some(mut bytes) = self.transmitter.next_frame(&mut source, &mut buffer).unwrap() {
+            self.last = FrameView::new(bytes).unwrap().0.number();
             is_last_here = f64::from(self.random.next_u32()) >= loss * f64::from(u32::MAX);
             if !is_last_here {
                 continue;

@@ -69,6 +69,8 @@ pub struct Receiver<T: Schemes<N>, const N: usize, const EVENTS: usize = 32> {
     trust: Trust,
     outside: u32,
     misfits: u32,
+    compared: u32,
+    contradicted: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -147,7 +149,18 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         });
         let addresses = Addresses { first: 0, slot_ticks: 0 };
         let (sample, trust) = (Sampled::NONE, Trust::NONE);
-        Self { channels, addresses, slots, settled, sample, trust, outside: 0, misfits: 0 }
+        Self {
+            channels,
+            addresses,
+            slots,
+            settled,
+            sample,
+            trust,
+            outside: 0,
+            misfits: 0,
+            compared: 0,
+            contradicted: 0,
+        }
     }
 
     /// Sets the first address, 0 by default; events of addresses without a channel are counted as
@@ -343,6 +356,18 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         self.misfits
     }
 
+    /// Number of keyframes of codes whose decoders [hold](Scheme::HOLDS_KEYFRAMES) what a keyframe says, after a value
+    /// without a loss.
+    pub const fn compared(&self) -> u32 {
+        self.compared
+    }
+
+    /// Number of [those](Self::compared) that had another value: the sender has other schemes or parameters, or lost items
+    /// without telling.
+    pub const fn contradicted(&self) -> u32 {
+        self.contradicted
+    }
+
     /// How many neurons a channel has.
     #[inline]
     fn neurons(&self) -> usize {
@@ -383,9 +408,12 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         };
         match keyframe.value::<SampleOf<T, N>>() {
             Some(value) if Self::HAS_KEYFRAMES => {
-                let is_other = value.to_bits32() != known.value.to_bits32();
-                if T::Scheme::HOLDS_KEYFRAMES && known.is_exact && is_other {
-                    self.trust.contradict();
+                if T::Scheme::HOLDS_KEYFRAMES && known.is_exact {
+                    self.compared = self.compared.saturating_add(1);
+                    if value.to_bits32() != known.value.to_bits32() {
+                        self.contradicted = self.contradicted.saturating_add(1);
+                        self.trust.contradict();
+                    }
                 }
                 scheme.resync(&mut known.state, value);
                 known.value = value;
