@@ -959,9 +959,6 @@ impl<S: Sample> Flight for Soak<'_, S> {
         let queues = [&*one, &*other];
         let world = World::new(scheme, &start, &self.samples, queues, self.faults, self.seed);
         let tally = world.fly(self.spells);
-        if std::env::var("DBG").is_ok() && tally.noticed.contains_key("misfits") {
-            eprintln!("{name} {:?} {:?}", self.faults, tally.noticed);
-        }
         assert_eq!(tally.wrong, 0, "{name} in {:?}, {:?}", S::KIND, self.faults);
         assert!(tally.exact > 0 || matches!(P::RECOVERY, Recovery::Fading(_)), "{name}");
         self.tally.add(&tally);
@@ -1017,9 +1014,6 @@ fn whatever_goes_wrong_nothing_is_wrong_that_is_called_exact() {
         let tally =
             if is_float { soak::<f32>(1.0, faults, 1) } else { soak::<i16>(1000.0, faults, 1) };
         check_noticed(faults, &tally);
-        if std::env::var("DBG").is_ok() {
-            eprintln!("{faults:?} {tally:?}");
-        }
         assert!(tally.injected > 0 && tally.exact > 10_000);
     }
 }

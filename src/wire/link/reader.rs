@@ -274,6 +274,7 @@ impl<const N: usize> Reader<N> {
     }
 
     fn standing(&self, frame: &FrameView<'_>, checksum: u32) -> Standing {
+        const BEFORE: i64 = -LATE;
         let [present, earlier @ ..] = &self.sessions;
         let ahead = present.ahead(frame);
         if frame.is_first() {
@@ -286,13 +287,13 @@ impl<const N: usize> Reader<N> {
             match ahead {
                 -1 if checksum == self.checksum => return Standing::Repeated,
                 -1 => return Standing::First,
-                _ if -LATE <= ahead && ahead < 0 => {
+                BEFORE..0 => {
                     let is_late = since <= DISORDER && self.strays < USED_AGAIN - 1;
                     return if is_late { Standing::Late } else { Standing::First };
                 }
                 // After so many late frames the next one may be of another start.
                 0 if self.strays >= RETURN => return Standing::First,
-                _ if 0 <= ahead && ahead < LONGEST_GAP => {
+                0..LONGEST_GAP => {
                     let is_later = since >= -DISORDER;
                     return if is_later { Standing::After(ahead as u32) } else { Standing::First };
                 }

@@ -16,7 +16,7 @@ use crate::wire::Batch;
 ///   into any frame 0.52 s or more after the last one that had it: a byte a frame on average at most, or 8 bytes a second
 ///   where there are fewer than 8 frames a second. A [`Receiver`](super::Receiver) with other schemes then calls no value
 ///   exact.
-/// - **Memory:** 64 bytes on a 32-bit part.
+/// - **Memory:** 56 bytes on a 32-bit part.
 ///
 /// ```
 /// use spikewire::{Bank, Event, FromEvents, Polarity, Tick, temporal::StepForward};
