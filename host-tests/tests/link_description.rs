@@ -177,7 +177,7 @@ fn no_code_believes_another() {
     assert!(own >= codes && own < codes * codes / 20, "{own} of {codes}");
 }
 
-fn far<'a, P: Scheme, const N: usize>(schemes: [&'a P; N]) -> Receiver<[&'a P; N], N, EVENTS> {
+fn far<P: Scheme, const N: usize>(schemes: [&P; N]) -> Receiver<[&P; N], N, EVENTS> {
     Receiver::per_channel(schemes)
 }
 
@@ -297,7 +297,10 @@ fn the_fingerprint_comes_soon_and_costs_a_byte_a_frame() {
                 silent = silent.max(tick.since(before));
             }
         }
-        assert!(silent <= 1 << 19 | pause as i32, "{pause}: {silent} µs without a fingerprint");
+        assert!(
+            silent <= (1 << 19) + pause.cast_signed(),
+            "{pause}: {silent} µs without a fingerprint"
+        );
         let is_frequent = pause <= 125_000;
         assert!(4 * told <= frames + 4 || !is_frequent, "{told} in {frames} frames");
     }

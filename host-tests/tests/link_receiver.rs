@@ -561,9 +561,9 @@ fn fly<P: Start<Sample = f32>>(
         truth.push((tick, value));
         let (mut consumer, mut buffer) = (queue.consumer().unwrap(), [0; MAX_FRAME]);
         while let Some(mut bytes) = link.next_frame(&mut consumer, &mut buffer).unwrap() {
-            let received = reader.next_frame(&mut bytes).unwrap();
+            let frame = reader.next_frame(&mut bytes).unwrap();
             let mut last = None;
-            receiver.apply(&received, |_, tick, value| last = Some((tick, value)));
+            receiver.apply(&frame, |_, tick, value| last = Some((tick, value)));
             if let (Some(told), Some(exact)) = (last, receiver.exact(0)) {
                 assert_eq!(told.1, exact);
                 // Where the clock steps, a sample without events is told of where it was due.

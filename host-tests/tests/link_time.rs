@@ -81,11 +81,3 @@ fn time_steps_go_over_the_wrap() {
     assert_eq!(bins.add(up(500, 0)), Ok(()), "the first tick of a step is in it");
     assert_eq!((bins.late(), bins.take()), (1, [1]));
 }
-#[test]
-fn sizes_tmp() {
-    use spikewire::link::*;
-    use spikewire::temporal::StepForward;
-    static S: StepForward<f32> = StepForward::new(0.1);
-    let r = Receiver::<_, 6, 0>::new(&S);
-    println!("SIZES reader {} transmitter {} receiver6 {}", size_of::<Reader<277>>() - 277, size_of::<Transmitter>(), size_of_val(&r));
-}
