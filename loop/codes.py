@@ -78,7 +78,7 @@ class Coded:
 
     def __init__(self, schemes: list[sw.Scheme], keyframe_every: int = KEYFRAME_EVERY):
         self.sender = sw.Sender(schemes, PERIOD, keyframe_every)
-        self.receiver = sw.Receiver(schemes, PERIOD)
+        self.receiver = sw.Receiver(schemes, PERIOD, clock_tolerance=0)
         self.samples = self.spikes = self.bytes = self.whole = 0
         self.fired: list[tuple[int, bool]] = []
 

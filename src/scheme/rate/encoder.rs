@@ -6,7 +6,7 @@ use core::hint::black_box;
 use super::cursor::Cursor;
 use super::filtered::Filtered;
 use crate::num::{Residual, Tally};
-use crate::{Destination, Sample, Spike};
+use crate::{Destination, Fingerprint, Sample, Spike};
 
 /// A rate code's rule for when a sample spikes.
 pub(super) trait Rule<S: Sample, const F: usize> {
@@ -16,6 +16,9 @@ pub(super) trait Rule<S: Sample, const F: usize> {
 
     /// Whether the rule keeps a sum in a register from tap to tap.
     const KEEPS_A_SUM: bool;
+
+    /// The name of the rule and its own parameters.
+    fn fingerprint(&self) -> Fingerprint;
 
     /// The filter and the shift.
     fn filtered(&self) -> &Filtered<S, F>;
@@ -281,6 +284,11 @@ macro_rules! rate_scheme {
 
             const LATENCY: usize = F - 1;
             const RECOVERY: Recovery = Recovery::Samples(F);
+
+            fn fingerprint(&self) -> Fingerprint {
+                let Filtered { taps, shift } = &self.filtered;
+                Rule::fingerprint(self).samples(taps.as_array()).sample(*shift)
+            }
 
             #[inline]
             fn encode(&self, state: &mut RateState<S, F>, sample: S) -> Option<Spike> {
