@@ -45,11 +45,14 @@ pub fn write_tables() -> Result<()> {
     put(&output(program(&environment()?, "table.py").arg("--print"))?)
 }
 
-fn put(tables: &str) -> Result<()> {
-    for (marker, table) in TABLES.iter().zip(tables.split("\n\n")) {
-        markdown::write(PAGE, marker, &format!("\n{}\n\n", table.trim_end()))?;
-    }
-    Ok(())
+fn put(printed: &str) -> Result<()> {
+    tables(printed).try_for_each(|(marker, table)| markdown::write(PAGE, marker, &table))
+}
+
+/// The tables, which an empty line divides, with their places in the page.
+fn tables(printed: &str) -> impl Iterator<Item = (&'static str, String)> {
+    let each = printed.split("\n\n").map(|table| format!("\n{}\n\n", table.trim_end()));
+    TABLES.into_iter().zip(each)
 }
 
 /// The control is steady, links carry what codecs make, the same seeds give the page's picture and one of its rows.
@@ -59,6 +62,10 @@ pub fn verify() -> Result<()> {
     run(&mut program(&python, "steps.py"))?;
     drawing::ensure_kept(&draw(&python, "picture.py")?, PICTURE, "cargo xtask write loop")?;
     drawing::ensure_kept(&draw(&python, "crash.py")?, CRASH, "cargo xtask write loop")?;
+    let printed = output(program(&python, "table.py").arg("--print"))?;
+    for (marker, table) in tables(&printed) {
+        markdown::ensure_written(PAGE, marker, &table, "cargo xtask write verdicts")?;
+    }
     let table = output(program(&python, "table.py").args(["--filters", AGAIN]))?;
     let page = fs::read_to_string(paths::root().join(PAGE))?;
     let row = table.lines().last().unwrap_or_default();
@@ -110,7 +117,7 @@ fn program(python: &Path, name: &str) -> Command {
 
 /// `RotorPy`, and the package of this repository, compiled as its tests are.
 fn environment() -> Result<PathBuf> {
-    println!("Installs in target/loop, from PyPI: what loop/requirements.txt names, 0.5 GB.");
+    println!("Installs in target/loop, from PyPI: what loop/requirements.txt names, 1.1 GB.");
     let python = python::environment("loop")?;
     python::install(&python, &["--requirement", "loop/requirements.txt"])?;
     python::package(&python, "dev")?;
