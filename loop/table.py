@@ -125,7 +125,7 @@ def share(own: dict) -> str:
 
 
 FLOWN = """\
-| code | flies? | low-pass, Hz | keyframes, ms | error, ° | lost, % | spikes/s | bytes/s | saved, % | beside none, everywhere | lost everywhere, % | 10 % of frames: error | lost, % | still: error | bytes/s | late by, ms |
+| code | flies? | low-pass, Hz | keyframes, ms | error, ° | lost, % | spikes/s | bytes/s | saved, % | everywhere: beside none | lost, % | 10 % of frames: error, ° | lost, % | still: bytes/s | late by, ms | instructions |
 |---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|
 """
 FILTERED = """\
@@ -156,9 +156,9 @@ def flown_row(name: str, own: dict, control: dict) -> tuple:
         number(100 * lost, 1),
         number(tenth["error"], 1),
         share(tenth),
-        number(still["error"], 1),
         number(still["bytes"]),
         number(late, 1),
+        number(own["instructions"]) if is_code else "0",
     ]
     return (is_code, lost > 0, lost, here["bytes"]), "| " + " | ".join(columns) + " |\n"
 
