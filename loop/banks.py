@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 import spikewire as sw
 
-from codes import CHANCE, GROUPS, KEPT, SHARED, Coded, is_shared, lesson
+from codes import CHANCE, GROUPS, KEPT, Coded
 from control import Control
 from controllers import Betaflight
 from flight import Registers, fly
@@ -28,7 +28,7 @@ from manoeuvres import LESSON, Manoeuvre, at_random, circle
 KEPT_BANKS = Path(__file__).with_name("banks.json")
 #: The link's loss and the vibration's level.
 LOSS, LEVEL = 0.01, 1.0
-#: How much farther than without a code a drone may stray.
+#: The largest error that a bank may have, over that without a code.
 WITHIN = 1.1
 CIRCLE = Manoeuvre("circle", 4, path=circle)
 #: Manoeuvre, controller, seed and rate of what is flown.
@@ -37,17 +37,15 @@ COURSE = [
     (at_random(101), Betaflight, 5001, 250),
     (CIRCLE, Betaflight, 5003, 500),
 ]
-#: A bank of this ending is found on the cascade alone.
+#: The ending of banks that are found on the cascade alone.
 CASCADE = "/cascade"
 LOW_PASSES = [None, 80, 60, 40, 30]
 #: Milliseconds from keyframe to keyframe.
 KEYFRAMES = [20, 40, 100, 200, 400]
-#: What is scaled: thresholds, or else how wide a range is.
+#: Parameters that the search scales; codes without them have the width of their range scaled.
 THRESHOLDS = ("threshold", "step")
-#: So many banks are flown for a code.
+#: Banks flown for a code.
 FLOWN = 50
-#: Codes whose filter makes them late are first tuned anew, to be at most so many samples late.
-LATE, LATEST = ("bsa", "hsa", "t-hsa"), 7
 
 
 @dataclass(frozen=True)
@@ -90,7 +88,7 @@ class Bank:
             values = LOW_PASSES if part == "low_pass" else KEYFRAMES
             at = values.index(getattr(self, part)) + way
             return replace(self, **{part: values[at]}) if 0 <= at < len(values) else self
-        return self if self.name in LATE else self.scaled(int(part), factor**way)
+        return self.scaled(int(part), factor**way)
 
 
 def banks() -> dict[str, Bank]:
@@ -116,7 +114,7 @@ def course(make, alone: bool = False) -> tuple[float, np.ndarray, float]:
 
 
 def worth(bank: Bank, free: np.ndarray, alone: bool) -> tuple:
-    """What is to be small: what was not flown, then the error beyond the aim, then the bytes."""
+    """The search's goal, smallest first: the parts of flights not flown, the error beyond `WITHIN`, the bytes a second."""
     try:
         missing, errors, size = course(bank.path, alone)
     except ValueError:  # no bank, or out of a parameter's range
@@ -124,28 +122,10 @@ def worth(bank: Bank, free: np.ndarray, alone: bool) -> tuple:
     return missing, max(0.0, float(np.mean(errors / free)) - WITHIN), size
 
 
-def start(name: str) -> Bank:
-    """Where the search starts: as tuned on its error."""
-    bank = unfiltered(name)
-    if name in LATE:
-        flight, groups, shared = lesson(vibration=LEVEL), [], {}
-        flight = np.array([sw.Filter.low_pass(40, 500).filter(own) for own in flight])
-        takes = [own["name"] for own in sw.schemes[name]._info["parameters"] if is_shared(own) or own["name"] in SHARED]
-        for channels, _ in GROUPS:
-            signals = [flight[channel] for channel in channels]
-            common = {"rate": 500, "hold_out": 0, "evaluations": 150, "seed": 1, "max_latency": LATEST}
-            best = sw.tune(signals, name, min_efficiency=-100_000, **common, **shared).scheme.parameters
-            groups.append({key: np.asarray(own).tolist() if key == "filter" else own for key, own in best.items()})
-            shared = {key: best[key] for key in takes if key in best}
-        bank = replace(bank, groups=tuple(groups))
-    return replace(bank, low_pass=40)
-
-
 def climbed(bank: Bank, alone: bool) -> Bank:
     """The best that is found by single changes, large ones first, from the best of some places."""
     free = course(lambda rate: Registers(), alone)[1]
-    sizes = (1.0,) if bank.name in LATE else (1.0, 2.0, 4.0)
-    places = [replace(bank.scaled(0, size), low_pass=corner) for size in sizes for corner in (40, 80)]
+    places = [replace(bank.scaled(0, size), low_pass=corner) for size in (1.0, 2.0, 4.0) for corner in (40, 80)]
     best, _, bank = min((worth(own, free, alone), at, own) for at, own in enumerate(places))
     flown, changes = len(places), [(part, way) for part in ("0", "1", "2", "keyframe_ms", "low_pass") for way in (1, -1)]
     for factor in (2.0, 1.4):
@@ -167,7 +147,7 @@ def climbed(bank: Bank, alone: bool) -> Bank:
 def main() -> None:
     kept = banks()
     for name in sys.argv[1:] or kept:
-        kept[name] = climbed(start(name.removesuffix(CASCADE)), name.endswith(CASCADE))
+        kept[name] = climbed(unfiltered(name.removesuffix(CASCADE)), name.endswith(CASCADE))
         print(name, kept[name], flush=True)
         ordered = {name: kept[name] for one in sw.schemes for name in (one, one + CASCADE) if name in kept}
         lines = []

@@ -34,7 +34,7 @@ class Lqr(Control):
 
     @classmethod
     def _gains(cls, dt: float, lag: float, asked: float) -> list[float]:
-        """What is asked for by each part of the state: angle, integral, rate, acceleration."""
+        """The gains on angle, integral, rate and acceleration."""
         stay = exp(-dt / lag)
         a = np.array([[1, 0, -dt, 0], [dt, 1, 0, 0], [0, 0, 1, dt], [0, 0, 0, stay]])
         b = np.array([[0.0], [0], [0], [1 - stay]])
@@ -76,7 +76,7 @@ class Betaflight(Control):
     SLIDER, DAMPING = 0.4, 1.75
     #: Roll, pitch, yaw: P, I, D, F of Betaflight 4.5.
     GAINS = ((45, 80, 30, 120), (47, 84, 34, 125), (45, 80, 0, 120))
-    #: What a gain of 1 is, for degrees a second.
+    #: The firmware's scales of P, I, D and F, for degrees a second.
     SCALES = (0.032029, 0.244381, 0.000529, 0.013754 / 100)
     #: The integral stops here.
     MOST = 400.0

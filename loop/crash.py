@@ -13,7 +13,7 @@ from flight import Flight, fly
 from manoeuvres import ALL, eight
 from picture import DECODED, DOWN, SIGNAL, UP
 
-#: What crashes, as tuned on its error and with no keyframe after the first, and what flies, by its bank.
+#: The code that crashes, as tuned on its error and with no keyframe after the first; and the one that flies, by its bank.
 CRASHES, FLIES = "tbr", "sod"
 WIDTH, HEIGHT, PANEL = 900, 435, 430
 #: Pixels a metre, and the middle of a panel's trajectory.
@@ -23,7 +23,7 @@ SLOW = 2
 
 
 def seen(place) -> tuple[float, float]:
-    """Where a place in the world is in a panel: from above and from behind."""
+    """Projects a place in the world onto a panel, seen from above and behind."""
     x, y, z = place
     return ACROSS + SCALE * (x + 0.25 * y), DOWNWARDS - SCALE * (0.45 * y + 0.9 * z)
 

@@ -25,14 +25,14 @@ from world import World
 
 VERDICTS = Path(__file__).with_name("verdicts.json")
 CONTROL = "without a code"
-#: Where a code must hold: controllers, worlds, samples a second.
+#: Worlds, and rates in samples a second, in which a code must hold.
 WORLDS = {"RotorPy": World, "drone-models": Brushless}
 RATES = (250, 500, 1000)
 EVERYWHERE = [(world, control, rate) for world in WORLDS for control in CONTROLLERS for rate in RATES]
 HERE = ("RotorPy", "cascade", 500)
-#: What is flown everywhere, and of the second table.
+#: The manoeuvres of the flights everywhere, and of the second table.
 SHORT = [own for own in ALL if own.name in ("hover", "steps of 30°", "eight", "motor 10 % weak", "flip")]
-#: How far a drone may stray beside one without a code, on the mean of everywhere: within this it flies, and beyond it loosely.
+#: The largest mean error over that without a code at which a code flies; beyond it, it flies loosely.
 WITHIN = 1.2
 
 
@@ -98,7 +98,7 @@ def flown(name: str, bank: Bank | None) -> dict:
 
 
 def verdict(own: dict, control: dict) -> str:
-    """Whether a code flies everywhere, and else where it does not."""
+    """The verdict on a code: yes, loosely, or the places where it loses flights."""
     cells = own["everywhere"]
     lost = [where for where, cell in cells.items() if cell["lost"]]
     if not lost and not own["here"]["lost"]:
@@ -109,7 +109,7 @@ def verdict(own: dict, control: dict) -> str:
 
 
 def far(own: dict, control: dict) -> float:
-    """How far it strays beside a drone without a code, on the mean of everywhere that it was not wholly lost."""
+    """The error over that without a code: the mean over all places where a flight was not lost."""
     pairs = [(cell["error"], control["everywhere"][where]["error"]) for where, cell in own["everywhere"].items()]
     return float(np.mean([one / other for one, other in pairs if one is not None]))
 

@@ -3,6 +3,7 @@
 import brushless
 import numpy as np
 import spikewire as sw
+from banks import banks
 from brushless import Brushless
 from codes import Coded, schemes
 from controllers import CONTROLLERS
@@ -72,6 +73,16 @@ def test_frames_carry_what_encoders_and_decoders_alone_have():
             codes = scheme[channel].encoder().encode(sent[channel])
             decoder = scheme[channel].decoder(first=sent[channel][0])
             assert np.array_equal(decoder.decode(codes)[50:], heard[channel][50:]), (name, channel)
+
+
+def test_the_bank_that_the_page_takes_holds_the_flip():
+    bank, flip = banks()["sod"], ALL[-1]
+    for world in (World, Brushless):
+        for name, controller in CONTROLLERS.items():
+            control = controller(500, world.drone)
+            flight = fly(flip, bank.path(500), 7, 0.01, control=control, world=world, vibration=1.0)
+            assert not flight.lost and flight.errors.mean() < 9, (world.__name__, name, flight.errors.mean())
+            assert flight.bytes < 17_000
 
 
 def test_a_lost_frame_is_noticed():

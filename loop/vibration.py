@@ -1,4 +1,4 @@
-"""What rotors shake into an inertial sensor: lines that follow each rotor's speed, and broad noise.
+"""Vibration that rotors add to an inertial sensor: lines that follow each rotor's speed, and broad noise.
 
 Each rotor has a line at its speed, at twice and three times it. A line is as strong as the square of the speed, as an
 imbalance's force is, and is sampled as it is: what lies above half of the rate comes back below it. The noise is as strong
@@ -23,17 +23,17 @@ from numba import njit
 
 #: The lines of all rotors together in hover, rms: rates in rad/s, then forces in m/s².
 LINES = np.array([0.10, 0.10, 0.05, 1.0, 1.0, 0.6])
-#: How strong a rotor's harmonics are beside each other.
+#: The harmonics' strengths, relative to each other.
 HARMONICS = np.array([1.0, 0.35, 0.35])
 #: The density of the noise in hover, a unit per √Hz: between 10 and 60 Hz the hexarotor has 0.010, 0.006, 0.002 and
 #: 0.04 to 0.07, the 5-inch quadrotor 0.013 to 0.037.
 NOISE = np.array([0.006, 0.006, 0.004, 0.05, 0.05, 0.06])
-#: What a sensor of this kind lets through, Hz.
+#: The sensor's bandwidth, Hz.
 BAND = 230
 
 
 class Vibration:
-    """What is added to the six channels, a sample at a time, drawn from a generator. `level` is a factor on all of it."""
+    """The vibration of the six channels, a sample at a time, drawn from a generator. `level` is a factor on all of it."""
 
     def __init__(self, random: np.random.Generator, rate: int, samples: int, hover: float, level: float = 1.0):
         self.dt, self.hover = 1 / rate, hover

@@ -24,11 +24,11 @@ GRAVITY = 9.81
 
 @dataclass(frozen=True)
 class Drone:
-    """What a controller knows of its drone."""
+    """The constants of a drone that its controller knows."""
 
     mass: float
     inertia: tuple[float, float, float]
-    #: Where each rotor stands, and which way it turns.
+    #: Each rotor's place and sense of rotation.
     arm: list[tuple[float, float, float]]
     turns: list[int]
     #: Thrust and yaw moment of a rotor at a command of 1; both grow as its square.
@@ -36,7 +36,7 @@ class Drone:
     k_m: float
     #: The largest command.
     fastest: float
-    #: How long a rotor takes to 63 % of a new speed, s.
+    #: The rotors' time constant, s.
     lag: float
     #: A rotor's speed in hover, rad/s.
     hover: float
