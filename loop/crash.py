@@ -47,7 +47,7 @@ def panel(left: float, flight: Flight, seconds: float, title: str, end: str) -> 
         f'<g transform="translate({left} 0)"><text x="10" y="26" font-size="17">{title}</text>',
         line(wanted, "#ccc", 5),
         line(flown, DECODED, 1.8),
-        f'<circle r="7" fill="{UP}"><animateTransform attributeName="transform" type="translate" dur="{SLOW * seconds}s" '
+        f'<circle r="7" fill="{UP}" transform="translate({last[0]:.0f} {last[1]:.0f})"><animateTransform attributeName="transform" type="translate" dur="{SLOW * seconds}s" '
         f'repeatCount="indefinite" values="{held}"/></circle>',
     ]
     if flight.lost:
