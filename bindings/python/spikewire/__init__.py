@@ -15,7 +15,7 @@ True
 from . import _native
 from ._bank import EVENTS, Bank
 from ._files import Log, read, read_events, read_ulog, write_events
-from ._filters import low_pass
+from ._filters import Filter, low_pass
 from ._laptop import Advice, Picture, Tuned, advise, plot, score, tune
 from ._link import Receiver, Sender
 from ._scheme import Scheme
@@ -34,6 +34,7 @@ __all__ = [
     "Bank",
     "Decoder",
     "Encoder",
+    "Filter",
     "Log",
     "Picture",
     "Receiver",

@@ -6,6 +6,7 @@ mod array;
 mod channel;
 mod coder;
 mod error;
+mod filter;
 mod fingerprint;
 mod library;
 mod link;
@@ -22,6 +23,8 @@ mod _native {
     use super::array::cut;
     #[pymodule_export]
     use super::coder::{Coder, Fitted};
+    #[pymodule_export]
+    use super::filter::Filter;
     #[pymodule_export]
     use super::fingerprint::fingerprint;
     #[pymodule_export]

@@ -15,6 +15,7 @@ use spikewire::{
 
 use crate::coder::Coder;
 use crate::error::value;
+use crate::filter::{Chain, Filter};
 
 /// The channels of an inertial sensor.
 const CHANNELS: usize = 6;
@@ -47,13 +48,18 @@ trait Far: Send {
 }
 
 struct NearEnd<P: Scheme + 'static> {
+    filters: [Chain<P::Sample>; CHANNELS],
     bank: Bank<[&'static P; CHANNELS], CHANNELS>,
     one: f64,
 }
 
 impl<P: Scheme<EncoderState: Send> + Sync> Near for NearEnd<P> {
     fn encode(&mut self, tick: Tick, samples: [f64; CHANNELS], items: &mut Vec<Item>) {
-        let samples = samples.map(|sample| P::Sample::from_f64(sample * self.one));
+        let mut filters = self.filters.iter_mut();
+        let samples = samples.map(|sample| {
+            let sample = P::Sample::from_f64(sample * self.one);
+            filters.next().map_or(sample, |filter| filter.next(sample))
+        });
         self.bank.encode(tick, samples, |event| items.push(event.into()));
     }
 
@@ -111,6 +117,7 @@ struct Ends {
 struct Build<'a> {
     scheme: &'static dyn RunTime,
     settings: &'a [Settings; CHANNELS],
+    filters: &'a [Option<Filter>],
     sample: SampleType,
     period: u16,
     /// In millionths.
@@ -139,7 +146,7 @@ impl<S: Sample> Visit<S> for Build<'_> {
 
 impl Build<'_> {
     fn ends<S: Sample, P: Runs<S>, const EVENTS: usize>(self) -> Result<Ends> {
-        let Self { scheme, settings, sample, period, clock_tolerance } = self;
+        let Self { scheme, settings, filters, sample, period, clock_tolerance } = self;
         let mut channels = Vec::new();
         for own in settings {
             let built = catalogue::visit::<S, _>(scheme.info().name, own, Boxed)?;
@@ -169,6 +176,9 @@ impl Build<'_> {
         let jitter = if is_slotted { slot_ticks.ilog2() as u8 + 2 } else { 0 };
         let coding = Coding::for_channels((CHANNELS * neurons) as u16, period);
         let one = sample.one();
+        let built = |own: &Option<Filter>| own.as_ref().map_or(Ok(Chain::none()), Filter::build);
+        let filters = filters.iter().map(built).collect::<Result<Vec<_>>>()?;
+        let filters = filters.try_into().map_err(|_| anyhow!("there are {CHANNELS} channels"))?;
         let bank = Bank::per_channel_with_states(channels).with_slot_ticks(slot_ticks);
         let fingerprints = schemes.map(Scheme::fingerprint);
         let fingerprint = Fingerprint::of_bank(kind(sample), 0, slot_ticks, &fingerprints);
@@ -177,7 +187,7 @@ impl Build<'_> {
             .with_fingerprint(fingerprint)
             .with_clock_tolerance(clock_tolerance);
         Ok(Ends {
-            near: Box::new(NearEnd { bank, one }),
+            near: Box::new(NearEnd { filters, bank, one }),
             far: Box::new(FarEnd { receiver, one }),
             coding: coding.with_jitter_bits(jitter),
             fingerprint,
@@ -205,8 +215,13 @@ impl<S: Sample> Visit<S> for Boxed {
     }
 }
 
-/// Both ends of a link whose channels have these schemes, which are of one kind.
-fn ends(coders: &[Coder], period: u16, clock_tolerance: u32) -> Result<Ends> {
+/// Both ends of a link whose channels have these schemes, which are of one kind, and filters before them.
+fn ends(
+    coders: &[Coder],
+    filters: &[Option<Filter>],
+    period: u16,
+    clock_tolerance: u32,
+) -> Result<Ends> {
     let [first, ..] = coders else { bail!("a bank has {CHANNELS} channels, not 0") };
     if coders.len() != CHANNELS {
         bail!("a bank has {CHANNELS} channels, not {}", coders.len());
@@ -227,7 +242,7 @@ fn ends(coders: &[Coder], period: u16, clock_tolerance: u32) -> Result<Ends> {
     }
     let settings = &settings.try_into().map_err(|_| anyhow!("there are {CHANNELS} channels"))?;
     let (scheme, sample) = (first.scheme, first.sample);
-    let build = Build { scheme, settings, sample, period, clock_tolerance };
+    let build = Build { scheme, settings, filters, sample, period, clock_tolerance };
     for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.info().name, &settings[0], build))
 }
 
@@ -250,9 +265,15 @@ struct Sending {
 #[pymethods]
 impl Sender {
     #[new]
-    fn new(coders: Vec<Coder>, period: u16, keyframe_every: u64, session: u32) -> PyResult<Self> {
+    fn new(
+        coders: Vec<Coder>,
+        filters: Vec<Option<Filter>>,
+        period: u16,
+        keyframe_every: u64,
+        session: u32,
+    ) -> PyResult<Self> {
         let Ends { near, coding, fingerprint, .. } =
-            ends(&coders, period, 0).map_err(|error| value(&error))?;
+            ends(&coders, &filters, period, 0).map_err(|error| value(&error))?;
         let session = Session::counted(session);
         let transmitter = Transmitter::new(coding, session).with_fingerprint(fingerprint);
         Ok(Self(Mutex::new(Sending {
@@ -312,7 +333,9 @@ impl Hearer {
             return Err(value(&anyhow!("clock_tolerance {clock_tolerance} must lie in 0..=0.1")));
         }
         let millionths = (clock_tolerance * 1e6).ceil() as u32;
-        let Ends { far, .. } = ends(&coders, period, millionths).map_err(|error| value(&error))?;
+        let unfiltered = vec![None; CHANNELS];
+        let Ends { far, .. } =
+            ends(&coders, &unfiltered, period, millionths).map_err(|error| value(&error))?;
         Ok(Self(Mutex::new(Hearing { far, reader: Reader::new() })))
     }
 
