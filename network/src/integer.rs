@@ -1,7 +1,8 @@
 //! Potentials in whole numbers, with weights of 8 bits.
 
-use crate::number::{Number, OUTSIDE, block};
+use crate::number::{IS_SMALL, Number, OUTSIDE, block};
 use crate::sealed::Sealed;
+use core::hint::black_box;
 
 /// The largest bias, threshold and value to reset to.
 pub(crate) const LARGEST: i32 = 1 << 27;
@@ -48,19 +49,17 @@ impl<const OUT: usize> Packed<OUT> {
 /// others. A function of its own, so that nothing else takes the registers in which they are kept.
 #[inline(never)]
 fn lanes<const W: usize, const OUT: usize>(
-    rows: &[Packed<OUT>],
-    spikes: &[u16],
+    rows: &[&Packed<OUT>],
     first: usize,
 ) -> ([u32; W], [u32; W]) {
     let (mut all, mut odd) = ([0_u32; W], [0_u32; W]);
-    for &spike in spikes {
-        // An input that does not exist has weights of 0: its spikes are part of the offset.
-        let row = rows.get(usize::from(spike)).unwrap_or(const { &Packed::new(&[0; OUT]) });
+    for row in rows {
         let Some(words) = block::<_, W>(&row.0, first) else { continue };
         for ((all, odd), bytes) in all.iter_mut().zip(&mut odd).zip(words) {
             let word = u32::from_le_bytes(*bytes);
             *all = all.wrapping_add(word);
             *odd = odd.wrapping_add((word >> 8) & 0x00ff_00ff);
+            black_box(()); // one word after the other, as there are registers for two only
         }
     }
     (all, odd)
@@ -73,11 +72,15 @@ impl Number for i32 {
     type Value = i16;
     type Row<const OUT: usize> = Packed<OUT>;
     type Shift = u32;
+    const BLOCK: usize = if IS_SMALL { 2 } else { 3 };
     const MOST_SPIKES: usize = 4096;
 
-    /// The product divided by 65 536 and rounded down, exactly, without a product of 64 bits.
+    /// The product divided by 65 536 and rounded down, exactly: without a product of 64 bits where the core has none.
     #[inline(always)]
     fn scaled(self, factor: u32) -> Self {
+        if !IS_SMALL {
+            return (i64::from(self).wrapping_mul(factor.cast_signed().into()) >> 16) as Self;
+        }
         let low = (self.cast_unsigned() & 0xffff).wrapping_mul(factor) >> 16;
         (self >> 16).wrapping_mul(factor.cast_signed()).wrapping_add(low.cast_signed())
     }
@@ -108,38 +111,36 @@ impl Number for i32 {
     }
 
     #[inline(always)]
-    fn add_spikes<const W: usize, const OUT: usize>(
-        rows: &[Packed<OUT>],
+    fn add_rows<const W: usize, const OUT: usize>(
+        rows: &[&Packed<OUT>],
         shift: u32,
-        spikes: &[u16],
         first: usize,
         sums: &mut [[Self; 4]; W],
     ) {
-        for spikes in spikes.chunks(IN_16_BITS) {
-            let (all, odd) = lanes::<W, OUT>(rows, spikes, first);
-            let offset = (spikes.len() as i32).wrapping_mul(128);
+        for rows in rows.chunks(IN_16_BITS) {
+            let (all, odd) = lanes::<W, OUT>(rows, first);
+            let scale = black_box(1_i32.wrapping_shl(shift));
+            let offset = (rows.len() as i32).wrapping_mul(scale << 7);
             for ((all, odd), sums) in all.iter().zip(&odd).zip(&mut *sums) {
                 let even = all.wrapping_sub(odd << 8);
                 let each = [even & 0xffff, odd & 0xffff, even >> 16, odd >> 16];
                 for (sum, each) in sums.iter_mut().zip(each) {
-                    let added = each.cast_signed().wrapping_sub(offset);
-                    *sum = sum.wrapping_add(added.wrapping_shl(shift));
+                    let added = each.cast_signed().wrapping_mul(scale);
+                    *sum = sum.wrapping_add(added).wrapping_sub(offset);
                 }
             }
         }
     }
 
     #[inline(always)]
-    fn add_spikes_to_one<const OUT: usize>(
-        rows: &[Packed<OUT>],
+    fn add_rows_to_one<const OUT: usize>(
+        rows: &[&Packed<OUT>],
         shift: u32,
-        spikes: &[u16],
         neuron: usize,
         sum: &mut Self,
     ) {
-        for &spike in spikes {
-            let weight = rows.get(usize::from(spike)).map_or(0, |row| row.one(neuron));
-            *sum = sum.wrapping_add(weight.wrapping_shl(shift));
+        for row in rows {
+            *sum = sum.wrapping_add(row.one(neuron).wrapping_shl(shift));
         }
     }
 

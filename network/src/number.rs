@@ -1,7 +1,7 @@
 //! The numbers in which potentials and currents are kept.
 
 use crate::sealed::Sealed;
-use core::fmt::Debug;
+use core::{fmt::Debug, hint::black_box};
 
 /// The type of potentials, currents, thresholds and biases: `f32`, or `i32` with weights of 8 bits.
 ///
@@ -18,10 +18,14 @@ pub trait Number: Copy + Default + PartialOrd + Debug + Sealed + 'static {
     /// The type of an input's value.
     type Value: Copy + Default + Debug;
     /// The weights of one input onto `OUT` neurons.
-    type Row<const OUT: usize>: Copy + Debug;
+    type Row<const OUT: usize>: Copy + Debug + 'static;
     /// The number of binary places by which sums of weights are shifted.
     type Shift: Copy + Debug;
 
+    /// Fours of neurons that are summed at once over all spikes of a step, as many as the core has registers for. No bit
+    /// depends on it.
+    #[doc(hidden)]
+    const BLOCK: usize;
     /// The most spikes that a step takes from outside.
     #[doc(hidden)]
     const MOST_SPIKES: usize;
@@ -44,22 +48,20 @@ pub trait Number: Copy + Default + PartialOrd + Debug + Sealed + 'static {
     /// The value, unless it is not finite or out of range.
     #[doc(hidden)]
     fn accept(value: Self::Value) -> Option<Self::Value>;
-    /// Adds to `sums`, of the `W` times 4 neurons from the `first` four on, the weights of the inputs that fired, in the order of
-    /// the list.
+    /// Adds to `sums`, of the `W` times 4 neurons from the `first` four on, the weights of the inputs that fired, in the
+    /// order of the list.
     #[doc(hidden)]
-    fn add_spikes<const W: usize, const OUT: usize>(
-        rows: &[Self::Row<OUT>],
+    fn add_rows<const W: usize, const OUT: usize>(
+        rows: &[&Self::Row<OUT>],
         shift: Self::Shift,
-        spikes: &[u16],
         first: usize,
         sums: &mut [[Self; 4]; W],
     );
     /// The same for one neuron.
     #[doc(hidden)]
-    fn add_spikes_to_one<const OUT: usize>(
-        rows: &[Self::Row<OUT>],
+    fn add_rows_to_one<const OUT: usize>(
+        rows: &[&Self::Row<OUT>],
         shift: Self::Shift,
-        spikes: &[u16],
         neuron: usize,
         sum: &mut Self,
     );
@@ -83,6 +85,10 @@ pub trait Number: Copy + Default + PartialOrd + Debug + Sealed + 'static {
     );
 }
 
+/// A Cortex-M0, with few registers and without long products; it is known by its lack of a compare-and-swap. No bit
+/// depends on it.
+pub(crate) const IS_SMALL: bool = !cfg!(target_has_atomic = "ptr");
+
 /// The largest result of [`Number::outside`] for a number in its range.
 pub(crate) const OUTSIDE: u32 = (1 << 30) - 1;
 
@@ -97,6 +103,7 @@ impl Number for f32 {
     type Value = Self;
     type Row<const OUT: usize> = [Self; OUT];
     type Shift = ();
+    const BLOCK: usize = if IS_SMALL { 2 } else { 4 };
     const MOST_SPIKES: usize = usize::MAX;
 
     #[inline(always)]
@@ -130,34 +137,32 @@ impl Number for f32 {
     }
 
     #[inline(always)]
-    fn add_spikes<const W: usize, const OUT: usize>(
-        rows: &[[Self; OUT]],
+    fn add_rows<const W: usize, const OUT: usize>(
+        rows: &[&[Self; OUT]],
         (): (),
-        spikes: &[u16],
         first: usize,
         sums: &mut [[Self; 4]; W],
     ) {
         let mut own = *sums;
-        for &spike in spikes {
-            let Some(row) = rows.get(usize::from(spike)) else { continue };
-            let Some(weights) = block::<_, W>(row, first) else { continue };
+        for row in rows {
+            let Some(weights) = block::<_, W>(*row, first) else { continue };
             for (sum, weight) in own.as_flattened_mut().iter_mut().zip(weights.as_flattened()) {
                 *sum += weight;
             }
+            black_box(()); // keeps the compiler from unrolling the loop
         }
         *sums = own;
     }
 
     #[inline(always)]
-    fn add_spikes_to_one<const OUT: usize>(
-        rows: &[[Self; OUT]],
+    fn add_rows_to_one<const OUT: usize>(
+        rows: &[&[Self; OUT]],
         (): (),
-        spikes: &[u16],
         neuron: usize,
         sum: &mut Self,
     ) {
-        for &spike in spikes {
-            *sum += rows.get(usize::from(spike)).and_then(|row| row.get(neuron)).unwrap_or(&0.0);
+        for row in rows {
+            *sum += row.get(neuron).unwrap_or(&0.0);
         }
     }
 

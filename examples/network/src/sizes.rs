@@ -55,9 +55,11 @@ macro_rules! networks {
             let output = Layer::new(&A_OUT, &OUTPUTS);
             let mut state = Layer::new(&A_IN, &[NEURON; 100]).then(output).state();
             let bytes = size_of_val(&state);
-            measure(out, concat!("A,", $name), 12, bytes, |fires, input| {
-                let neurons =
-                    fires.map(|fires| NEURON.with_bias(if fires { $bias } else { -$bias }));
+            let mut neurons = [NEURON; 100];
+            measure(out, concat!("A,", $name), 12, bytes, |fires: &[bool; 100], input| {
+                for (neuron, &fires) in neurons.iter_mut().zip(fires) {
+                    *neuron = NEURON.with_bias(if fires { $bias } else { -$bias });
+                }
                 let network = Layer::new(&A_IN, &neurons).then(output);
                 let count = instructions(|| step(&network, &mut state, input));
                 (count, state.first.spikes().len())
@@ -66,15 +68,15 @@ macro_rules! networks {
 
         pub fn d(out: &mut impl fmt::Write) -> fmt::Result {
             use spikewire_network::Cuba;
-            const NEURONS: [spikewire_network::CubaLif<$number, ToValue>; 256] =
-                [Cuba::<$number, _>::$new($share, NEURON); 256];
+            let mut neurons = [Cuba::<$number, _>::$new($share, NEURON); 256];
             let output = Layer::new(&D_OUT, &OUTPUTS);
-            let hidden = Layer::new(&D_IN, &NEURONS).recurrent(Full(&D_BACK));
+            let hidden = Layer::new(&D_IN, &neurons).recurrent(Full(&D_BACK));
             let mut state = hidden.then(output).state();
             let bytes = size_of_val(&state);
-            measure(out, concat!("D,", $name), 16, bytes, |fires, input| {
-                let bias = |fires| if fires { $bias } else { -$bias };
-                let neurons = fires.map(|fires| NEURONS[0].with_bias(bias(fires)));
+            measure(out, concat!("D,", $name), 16, bytes, |fires: &[bool; 256], input| {
+                for (neuron, &fires) in neurons.iter_mut().zip(fires) {
+                    *neuron = neuron.with_bias(if fires { $bias } else { -$bias });
+                }
                 let hidden = Layer::new(&D_IN, &neurons).recurrent(Full(&D_BACK));
                 let network = hidden.then(output);
                 let count = instructions(|| step(&network, &mut state, input));
