@@ -3,7 +3,7 @@
 use crate::number::Number;
 use crate::sealed::Sealed;
 use crate::weights::Weights;
-use core::{fmt::Debug, hint::black_box, slice};
+use core::{fmt::Debug, hint::black_box};
 use heapless::Vec;
 
 /// What a layer takes in a step.
@@ -22,20 +22,19 @@ pub trait Input<V: Number>: Copy + Debug + Sealed + 'static {
         rejected: &mut u32,
     );
 
+    /// The rows of inputs that fired, and further spikes, which are added behind them.
     #[doc(hidden)]
-    fn add<const W: usize, const IN: usize, const OUT: usize>(
+    fn fired<'c, const IN: usize, const OUT: usize>(
+        checked: &'c Self::Checked<'_, IN, OUT>,
+    ) -> (&'c [&'c V::Row<OUT>], &'c [u16]);
+
+    /// Adds the weights times the values to the sums of neurons from `first` on.
+    #[doc(hidden)]
+    fn add_values<const IN: usize, const OUT: usize>(
         weights: &Weights<V, IN, OUT>,
         checked: &Self::Checked<'_, IN, OUT>,
         first: usize,
-        sums: &mut [[V; 4]; W],
-    );
-
-    #[doc(hidden)]
-    fn add_to_one<const IN: usize, const OUT: usize>(
-        weights: &Weights<V, IN, OUT>,
-        checked: &Self::Checked<'_, IN, OUT>,
-        neuron: usize,
-        sum: &mut V,
+        sums: &mut [V],
     );
 }
 
@@ -78,37 +77,8 @@ impl<'a, V: Number, const IN: usize, const OUT: usize> Fired<'a, V, IN, OUT> {
     }
 
     #[inline(always)]
-    pub(crate) fn add<const W: usize>(
-        &self,
-        weights: &Weights<V, IN, OUT>,
-        first: usize,
-        sums: &mut [[V; 4]; W],
-    ) {
-        V::add_rows(&self.rows, weights.shift, first, sums);
-        if !self.rest.is_empty() {
-            // A copy, so that the sums have no address and stay in registers.
-            let mut copy = *sums;
-            self.add_rest(weights, first.wrapping_mul(4), copy.as_flattened_mut());
-            *sums = copy;
-        }
-    }
-
-    #[inline(always)]
-    pub(crate) fn add_to_one(&self, weights: &Weights<V, IN, OUT>, neuron: usize, sum: &mut V) {
-        V::add_rows_to_one(&self.rows, weights.shift, neuron, sum);
-        if !self.rest.is_empty() {
-            self.add_rest(weights, neuron, slice::from_mut(sum));
-        }
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn add_rest(&self, weights: &Weights<V, IN, OUT>, first: usize, sums: &mut [V]) {
-        for row in self.rest.iter().filter_map(|&spike| weights.rows.get(usize::from(spike))) {
-            for (sum, neuron) in sums.iter_mut().zip(first..) {
-                V::add_rows_to_one(&[row], weights.shift, neuron, sum);
-            }
-        }
+    pub(crate) fn rows(&self) -> &[&'a V::Row<OUT>] {
+        &self.rows
     }
 }
 
@@ -139,23 +109,19 @@ impl<V: Number> Input<V> for Spiking {
     }
 
     #[inline(always)]
-    fn add<const W: usize, const IN: usize, const OUT: usize>(
-        weights: &Weights<V, IN, OUT>,
-        checked: &Fired<'_, V, IN, OUT>,
-        first: usize,
-        sums: &mut [[V; 4]; W],
-    ) {
-        checked.add(weights, first, sums);
+    fn fired<'c, const IN: usize, const OUT: usize>(
+        checked: &'c Fired<'_, V, IN, OUT>,
+    ) -> (&'c [&'c V::Row<OUT>], &'c [u16]) {
+        (&checked.rows, checked.rest)
     }
 
     #[inline(always)]
-    fn add_to_one<const IN: usize, const OUT: usize>(
-        weights: &Weights<V, IN, OUT>,
-        checked: &Fired<'_, V, IN, OUT>,
-        neuron: usize,
-        sum: &mut V,
+    fn add_values<const IN: usize, const OUT: usize>(
+        _weights: &Weights<V, IN, OUT>,
+        _checked: &Fired<'_, V, IN, OUT>,
+        _first: usize,
+        _sums: &mut [V],
     ) {
-        checked.add_to_one(weights, neuron, sum);
     }
 }
 
@@ -190,11 +156,18 @@ impl<V: Number> Input<V> for Values {
     }
 
     #[inline(always)]
-    fn add<const W: usize, const IN: usize, const OUT: usize>(
+    fn fired<'c, const IN: usize, const OUT: usize>(
+        _checked: &'c Accepted<V::Value, IN>,
+    ) -> (&'c [&'c V::Row<OUT>], &'c [u16]) {
+        (&[], &[])
+    }
+
+    #[inline(always)]
+    fn add_values<const IN: usize, const OUT: usize>(
         weights: &Weights<V, IN, OUT>,
         Accepted(values): &Accepted<V::Value, IN>,
         first: usize,
-        sums: &mut [[V; 4]; W],
+        sums: &mut [V],
     ) {
         const {
             assert!(
@@ -202,16 +175,6 @@ impl<V: Number> Input<V> for Values {
                 "a layer takes 128 values at most, so that sums of them fit 32 bits"
             );
         };
-        V::add_values(&weights.rows, weights.shift, values, first, sums);
-    }
-
-    #[inline(always)]
-    fn add_to_one<const IN: usize, const OUT: usize>(
-        weights: &Weights<V, IN, OUT>,
-        Accepted(values): &Accepted<V::Value, IN>,
-        neuron: usize,
-        sum: &mut V,
-    ) {
-        V::add_values_to_one(&weights.rows, weights.shift, values, neuron, sum);
+        V::add_values(&weights.rows, weights.scale, values, first, sums);
     }
 }

@@ -3,11 +3,11 @@
 use crate::chain::{Network, State, Then};
 use crate::input::{Input, Spiking, Values};
 use crate::neuron::Neuron;
-use crate::number::{Number, OUTSIDE};
+use crate::number::{IS_SMALL, Number, OUTSIDE};
 use crate::recurrence::{Forward, Recurrence};
 use crate::spikes::Spikes;
 use crate::weights::Weights;
-use core::fmt::Debug;
+use core::{fmt::Debug, hint::black_box, slice};
 
 /// `OUT` neurons and the weights that lead to them from `IN` inputs: references to data in flash.
 ///
@@ -98,6 +98,7 @@ where
 
         let all = (&mut potentials[..], &mut currents[..], &self.neurons[..]);
         let rest = match N::Value::BLOCK {
+            1 => all,
             2 => step.blocks::<2>(all),
             3 => step.blocks::<3>(all),
             _ => step.blocks::<4>(all),
@@ -145,28 +146,58 @@ where
         let potentials = potentials.as_chunks_mut::<4>().0.as_chunks_mut::<W>().0;
         let currents = currents.as_chunks_mut::<4>().0.as_chunks_mut::<W>().0;
         let neurons = neurons.as_chunks::<4>().0.as_chunks::<W>().0;
+        let Layer { weights, recurrence, .. } = self.layer;
+        let ((rows, rest), (own, own_scale)) =
+            (I::fired(self.checked), recurrence.fired(self.before));
+        let scale = if rows.is_empty() { own_scale } else { weights.scale };
+        let is_alike = own.is_empty() || scale == own_scale;
+        let is_few = rows.len().wrapping_add(own.len()) <= N::Value::MOST_ROWS;
+        let is_plain = is_alike && is_few && rest.is_empty();
         for ((potentials, currents), neurons) in potentials.iter_mut().zip(currents).zip(neurons) {
             let first = self.done;
-            let mut sums = [[N::Value::default(); 4]; W];
-            for (sum, neuron) in sums.as_flattened_mut().iter_mut().zip(neurons.as_flattened()) {
-                *sum = neuron.bias();
+            let neuron = first.wrapping_mul(4);
+            let start = || {
+                let mut sums = [[N::Value::default(); 4]; W];
+                let each = sums.as_flattened_mut().iter_mut().zip(neurons.as_flattened());
+                each.for_each(|(sum, neuron)| *sum = neuron.bias());
+                I::add_values(weights, self.checked, neuron, sums.as_flattened_mut());
+                sums
+            };
+            let mut sums = if is_plain {
+                N::Value::sums(start, [rows, own], scale, first)
+            } else {
+                self.sums_of_many(start(), first)
+            };
+            if R::HAS_OWN {
+                for (sum, neuron) in sums.as_flattened_mut().iter_mut().zip(neuron..) {
+                    recurrence.add_own(self.before, neuron, sum);
+                }
             }
-            I::add(self.layer.weights, self.checked, first, &mut sums);
-            self.layer.recurrence.add(self.before, first, &mut sums);
 
+            let mut append = |number: u32| {
+                self.spikes.append(neuron.wrapping_add(number as usize) as u16);
+            };
             let (mut outside, mut fired, mut bit) = (0, 0_u32, 1_u32);
             let fours = potentials.iter_mut().zip(currents.iter_mut()).zip(neurons).zip(&sums);
             for (((potentials, currents), neurons), sums) in fours {
                 let each = potentials.iter_mut().zip(currents).zip(neurons).zip(sums);
                 for (((v, current), neuron), sum) in each {
-                    fired |= if neuron.step(v, current, *sum) && N::FIRES { bit } else { 0 };
+                    if neuron.step(v, current, *sum) && N::FIRES {
+                        if IS_SMALL {
+                            append(bit.trailing_zeros());
+                        } else {
+                            fired |= bit;
+                        }
+                    }
                     outside |= v.outside() | N::outside(current);
                     bit <<= 1;
+                    if IS_SMALL {
+                        black_box(()); // one neuron after the other, as there are few registers
+                    }
                 }
             }
             while fired != 0 {
-                let number = first.wrapping_mul(4).wrapping_add(fired.trailing_zeros() as usize);
-                self.spikes.append(number as u16);
+                append(fired.trailing_zeros());
                 fired &= fired.wrapping_sub(1);
             }
             if outside > OUTSIDE {
@@ -178,12 +209,52 @@ where
         (last_potentials, last_currents, last_neurons)
     }
 
+    /// Adds to sums what is too much at once: inputs that fired several times, and many of them, or scaled otherwise than
+    /// what leads back.
+    #[cold]
+    #[inline(never)]
+    fn sums_of_many<const W: usize>(
+        &self,
+        mut sums: [[N::Value; 4]; W],
+        first: usize,
+    ) -> [[N::Value; 4]; W] {
+        let Layer { weights, recurrence, .. } = self.layer;
+        let (rows, rest) = I::fired(self.checked);
+        let (own, own_scale) = recurrence.fired(self.before);
+        let mut rest = rest.iter().filter_map(|&spike| weights.rows.get(usize::from(spike)));
+        let mut several = rows.chunks(N::Value::MOST_ROWS);
+        let mut one;
+        loop {
+            let list = if let Some(list) = several.next() {
+                list
+            } else if let Some(row) = rest.next() {
+                one = [row];
+                &one
+            } else {
+                break;
+            };
+            sums = N::Value::sums(|| sums, [list, &[]], weights.scale, first);
+        }
+        for list in own.chunks(N::Value::MOST_ROWS) {
+            sums = N::Value::sums(|| sums, [list, &[]], own_scale, first);
+        }
+        sums
+    }
+
     /// Steps one neuron.
     #[inline(always)]
     fn one(&mut self, number: usize, v: &mut N::Value, current: &mut N::Current, neuron: &N) {
         let mut sum = neuron.bias();
-        I::add_to_one(self.layer.weights, self.checked, number, &mut sum);
-        self.layer.recurrence.add_to_one(self.before, number, &mut sum);
+        let Layer { weights, recurrence, .. } = self.layer;
+        I::add_values(weights, self.checked, number, slice::from_mut(&mut sum));
+        let (rows, rest) = I::fired(self.checked);
+        N::Value::add_rows_to_one(rows, weights.scale, number, &mut sum);
+        for row in rest.iter().filter_map(|&spike| weights.rows.get(usize::from(spike))) {
+            N::Value::add_rows_to_one(&[row], weights.scale, number, &mut sum);
+        }
+        let (rows, scale) = recurrence.fired(self.before);
+        N::Value::add_rows_to_one(rows, scale, number, &mut sum);
+        recurrence.add_own(self.before, number, &mut sum);
         if neuron.step(v, current, sum) && N::FIRES {
             self.spikes.append(number as u16);
         }

@@ -18,16 +18,18 @@ pub trait Recurrence<V: Number, const OUT: usize>: Copy + Debug + Sealed {
     #[doc(hidden)]
     fn begin<'a>(&'a self, fired: &Spikes<OUT>, before: &mut Self::Before<'a>);
 
+    /// The rows of weights of the neurons that fired.
     #[doc(hidden)]
-    fn add<const W: usize>(
-        &self,
-        before: &Self::Before<'_>,
-        first: usize,
-        sums: &mut [[V; 4]; W],
-    );
+    fn fired<'c>(&'c self, before: &'c Self::Before<'_>) -> (&'c [&'c V::Row<OUT>], V::Scale);
 
+    /// Adds to the sum of a neuron what it leads back to itself.
     #[doc(hidden)]
-    fn add_to_one(&self, before: &Self::Before<'_>, neuron: usize, sum: &mut V);
+    #[inline(always)]
+    fn add_own(&self, _before: &Self::Before<'_>, _neuron: usize, _sum: &mut V) {}
+
+    /// Whether `add_own` does anything.
+    #[doc(hidden)]
+    const HAS_OWN: bool = false;
 }
 
 /// Nothing leads back.
@@ -53,10 +55,9 @@ impl<V: Number, const OUT: usize> Recurrence<V, OUT> for Forward {
     fn begin(&self, _fired: &Spikes<OUT>, (): &mut ()) {}
 
     #[inline(always)]
-    fn add<const W: usize>(&self, (): &(), _first: usize, _sums: &mut [[V; 4]; W]) {}
-
-    #[inline(always)]
-    fn add_to_one(&self, (): &(), _neuron: usize, _sum: &mut V) {}
+    fn fired<'c>(&'c self, (): &'c ()) -> (&'c [&'c V::Row<OUT>], V::Scale) {
+        (&[], V::Scale::default())
+    }
 }
 
 impl<V: Number, const OUT: usize> Recurrence<V, OUT> for Full<'_, V, OUT> {
@@ -73,22 +74,16 @@ impl<V: Number, const OUT: usize> Recurrence<V, OUT> for Full<'_, V, OUT> {
     }
 
     #[inline(always)]
-    fn add<const W: usize>(
-        &self,
-        before: &Fired<'_, V, OUT, OUT>,
-        first: usize,
-        sums: &mut [[V; 4]; W],
-    ) {
-        before.add(self.0, first, sums);
-    }
-
-    #[inline(always)]
-    fn add_to_one(&self, before: &Fired<'_, V, OUT, OUT>, neuron: usize, sum: &mut V) {
-        before.add_to_one(self.0, neuron, sum);
+    fn fired<'c>(
+        &'c self,
+        before: &'c Fired<'_, V, OUT, OUT>,
+    ) -> (&'c [&'c V::Row<OUT>], V::Scale) {
+        (before.rows(), self.0.scale)
     }
 }
 
 impl<V: Number, const OUT: usize> Recurrence<V, OUT> for OneToOne<'_, V, OUT> {
+    const HAS_OWN: bool = true;
     type Before<'a>
         = Spikes<OUT>
     where
@@ -102,17 +97,15 @@ impl<V: Number, const OUT: usize> Recurrence<V, OUT> for OneToOne<'_, V, OUT> {
     }
 
     #[inline(always)]
-    fn add<const W: usize>(&self, before: &Spikes<OUT>, first: usize, sums: &mut [[V; 4]; W]) {
-        for (sum, neuron) in sums.as_flattened_mut().iter_mut().zip(first.wrapping_mul(4)..) {
-            self.add_to_one(before, neuron, sum);
-        }
+    fn fired<'c>(&'c self, _before: &'c Spikes<OUT>) -> (&'c [&'c V::Row<OUT>], V::Scale) {
+        (&[], self.0.scale)
     }
 
     #[inline(always)]
-    fn add_to_one(&self, before: &Spikes<OUT>, neuron: usize, sum: &mut V) {
-        let Weights { rows: [row], shift } = self.0;
+    fn add_own(&self, before: &Spikes<OUT>, neuron: usize, sum: &mut V) {
+        let Weights { rows: [row], scale } = self.0;
         if before.as_slice().binary_search(&(neuron as u16)).is_ok() {
-            V::add_rows_to_one(&[row], *shift, neuron, sum);
+            V::add_rows_to_one(&[row], *scale, neuron, sum);
         }
     }
 }

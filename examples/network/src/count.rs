@@ -3,6 +3,8 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
+#[cfg(feature = "plain-c")]
+mod plain;
 mod sizes;
 mod weights;
 
@@ -15,10 +17,14 @@ fn run(out: &mut impl fmt::Write) -> fmt::Result {
     )?;
     sizes::integer::a(out)?;
     sizes::integer::d(out)?;
+    #[cfg(feature = "plain-c")]
+    plain::integer(out)?;
     // A core without FPU has no use for these, and the weights of D leave no room in 256 KiB.
     if cfg!(any(not(target_os = "none"), target_abi = "eabihf")) {
         sizes::float::a(out)?;
         sizes::float::d(out)?;
+        #[cfg(feature = "plain-c")]
+        plain::float(out)?;
     }
     Ok(())
 }

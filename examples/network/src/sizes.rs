@@ -15,7 +15,7 @@ fn step<N: Network<Input = [u16]>>(network: &N, state: &mut N::State, input: &[u
 
 /// Measures a network of `inputs` and `hidden` neurons at three shares. `network` makes it of the neurons' biases, of which
 /// the large ones fire and the others do not, and takes a step.
-fn measure<const HIDDEN: usize>(
+pub fn measure<const HIDDEN: usize>(
     out: &mut impl fmt::Write,
     name: &str,
     inputs: usize,
@@ -45,9 +45,9 @@ macro_rules! networks {
 
         static A_IN: Weights<$number, 12, 100> = $weights!(1);
         static A_OUT: Weights<$number, 100, 4> = $weights!(2);
-        static D_IN: Weights<$number, 16, 256> = $weights!(3);
-        static D_BACK: Weights<$number, 256, 256> = $weights!(4);
-        static D_OUT: Weights<$number, 256, 4> = $weights!(5);
+        pub static D_IN: Weights<$number, 16, 256> = $weights!(3);
+        pub static D_BACK: Weights<$number, 256, 256> = $weights!(4);
+        pub static D_OUT: Weights<$number, 256, 4> = $weights!(5);
         static OUTPUTS: [Li<$number>; 4] = [Li::$new($share); 4];
         const NEURON: Lif<$number, ToValue> = Lif::$new($share, $threshold);
 
