@@ -1,4 +1,4 @@
-//! The linker script, and with the feature `plain-c` the network in C.
+//! The linker script, and with `PLAIN_C` in the environment D in C, by `arm-none-eabi-gcc`.
 
 use std::{env, path::Path, process::Command};
 
@@ -9,9 +9,11 @@ fn main() {
         return;
     }
     println!("cargo:rustc-link-arg-bins=-Tlink.x");
-    if env::var_os("CARGO_FEATURE_PLAIN_C").is_none() {
+    println!("cargo:rerun-if-env-changed=PLAIN_C");
+    if env::var_os("PLAIN_C").is_none() {
         return;
     }
+    println!("cargo:rustc-cfg=plain_c");
     let core = if env::var("TARGET").unwrap() == "thumbv6m-none-eabi" {
         "-mcpu=cortex-m0"
     } else {

@@ -9,6 +9,7 @@ mod error;
 mod fingerprint;
 mod library;
 mod link;
+mod network;
 mod stream;
 mod values;
 mod work;
@@ -32,6 +33,8 @@ mod _native {
     };
     #[pymodule_export]
     use super::link::{Hearer, Sender};
+    #[pymodule_export]
+    use super::network::Network;
     #[pymodule_export]
     use super::stream::{Decoder, Encoder};
     use pyo3::prelude::*;
