@@ -10,19 +10,15 @@
 
 from __future__ import annotations
 
-import sys
 from math import exp, pi, sin
-from pathlib import Path
 
 import numpy as np
 
 import flight
 from flight import Registers
 from manoeuvres import DEGREE, Manoeuvre, flip
-from network_pilot import SIGNALS, THRESHOLD, Networked
+from network_pilot import NETWORK, SIGNALS, THRESHOLD, Networked
 
-#: What is written.
-NETWORK = Path(__file__).with_name("network.nir")
 DT = 1 / flight.RATE
 #: Neurons that hold a turn that is left, and those that hold a rate, by axis.
 TURNS, RATES = (24, 24, 12), (24, 24, 12)

@@ -8,9 +8,15 @@ loop knows an attitude: the mixer takes three angular accelerations, and the thr
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
 from control import Control, F
+
+#: What `network_imitate.py` has written, and by which rule its neurons step, which a NIR file does not say.
+NETWORK = Path(__file__).with_name("network.nir")
+RULE = {"reset": "subtract", "fires": "above", "decay": "euler", "current": "new", "dt": 0.002}
 
 #: Signals: three rates (rad/s), three forces (m/s²), three turns of the attitude that is wanted (rad a sample, in the
 #: drone's axes), the rate at which roll is to turn (rad/s).

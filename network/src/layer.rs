@@ -14,8 +14,10 @@ use core::{fmt::Debug, hint::black_box, slice};
 /// - **Order of additions:** a neuron's bias, then the weights of the inputs in the order of the list (or of values in
 ///   the order of the inputs), then those of the neurons of the layer that fired in the step before, by rising number. Each
 ///   addition and product is rounded by itself.
-/// - **Work:** a step adds a row for each spike, 16 neurons at a time, and visits each neuron once.
-/// - **Memory:** potentials, currents, and two bytes a neuron for a list of spikes; twice that if spikes lead back.
+/// - **Work:** a step adds a row for each spike, up to 16 neurons at a time, and visits each neuron once. Spikes beyond as
+///   many as there are inputs, of which some fire several times, take about twice as long.
+/// - **Memory:** potentials, currents, and two bytes a neuron for a list of spikes; on the stack four bytes an input, and
+///   four a neuron if spikes lead back.
 #[derive(Clone, Copy, Debug)]
 pub struct Layer<'a, N: Neuron, const IN: usize, const OUT: usize, I = Spiking, R = Forward> {
     weights: &'a Weights<N::Value, IN, OUT>,
@@ -87,6 +89,7 @@ where
         }
     }
 
+    #[inline(never)] // so that the lists of two layers take the same stack
     fn step<'s>(&self, state: &'s mut Self::State, input: &I::Of<IN>) -> &'s [u16] {
         let LayerState { potentials, currents, spikes, rejected, saturated } = state;
         let (mut checked, mut before) = (I::Checked::default(), R::Before::default());

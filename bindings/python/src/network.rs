@@ -60,7 +60,10 @@ impl Network {
         let [framework, fires, decay, current] = said;
         let asked = Asked {
             framework: framework.map(|own| choice("framework", &FRAMEWORKS, own)).transpose()?,
-            resets: resets.iter().map(|own| choice("reset", &RESETS, own)).collect::<PyResult<_>>()?,
+            resets: resets
+                .iter()
+                .map(|own| choice("reset", &RESETS, own))
+                .collect::<PyResult<_>>()?,
             fires: fires.map(|own| choice("fires", &FIRES, own)).transpose()?,
             decay: decay.map(|own| choice("decay", &DECAYS, own)).transpose()?,
             current: current.map(|own| choice("current", &CURRENTS, own)).transpose()?,

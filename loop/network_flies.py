@@ -1,0 +1,70 @@
+"""Flies all manoeuvres on the network of `network.nir`, five times each, and prints a table: `network_flies.py`.
+
+The network is the controller's, bit for bit: `spikewire.Network`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import spikewire as sw
+
+import flight
+from control import Control
+from flight import Registers
+from manoeuvres import ALL, Manoeuvre, eight, still
+from network_pilot import NETWORK, RULE, Networked, inputs
+
+SEEDS = range(100, 105)
+#: Flown once.
+LONG = [Manoeuvre("hover, 60 s", 60, path=still), Manoeuvre("eight, 60 s", 60, path=eight)]
+
+
+class Flown:
+    """The network at rest, as :class:`Networked` takes it; counts what comes in and fires."""
+
+    heard, fired = [], []
+
+    def __init__(self):
+        self.network = sw.Network.from_nir(NETWORK, **RULE)
+
+    def step(self, counts: np.ndarray) -> np.ndarray:
+        numbers = inputs(counts)
+        potentials = self.network.step(numbers)
+        self.heard.append(len(numbers))
+        self.fired.append(len(self.network.fired[0]))
+        return potentials
+
+
+def flown(manoeuvre: Manoeuvre, make) -> list[flight.Flight]:
+    """The manoeuvre with each seed, or a long one with the first."""
+    seeds = SEEDS if manoeuvre in ALL else SEEDS[:1]
+    return [flight.fly(manoeuvre, Registers(), seed, control=make()) for seed in seeds]
+
+
+def mean(flights: list[flight.Flight]) -> float:
+    return float(np.mean([own.errors.mean() for own in flights if not own.lost]))
+
+
+def main() -> None:
+    print("| mean error, ° | cascade | the network | worst | lost |\n|---|---:|---:|---:|---:|")
+    means, lost = [], 0
+    for manoeuvre in ALL + LONG:
+        cascade = flown(manoeuvre, lambda: Control(flight.RATE))
+        network = flown(manoeuvre, lambda: Networked(flight.RATE, Flown()))
+        row, own_lost = (mean(cascade), mean(network)), sum(own.lost for own in network)
+        worst = max(own.errors.max() for own in network)
+        print(f"| {manoeuvre.name} | {row[0]:.1f} | {row[1]:.1f} | {worst:.0f} | {own_lost} of {len(network)} |", flush=True)
+        if manoeuvre in ALL:
+            means.append(row)
+            lost += own_lost
+    (cascade, network), flights = np.mean(means, axis=0), len(ALL) * len(SEEDS)
+    print(f"| **the ten** | {cascade:.1f} | {network:.1f} | | {lost} of {flights} |\n")
+    (hidden, neurons), *_ = sw.Network.from_nir(NETWORK, **RULE).layers.items()
+    print(
+        f"{neurons} neurons fly with {network / cascade:.2f} of the cascade's error. In a sample {np.mean(Flown.heard):.1f} spikes come in, "
+        f"{max(Flown.heard)} at most, and {100 * np.mean(Flown.fired) / neurons:.0f} % of the neurons fire."
+    )
+
+
+if __name__ == "__main__":
+    main()
