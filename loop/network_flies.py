@@ -59,7 +59,7 @@ def main() -> None:
             lost += own_lost
     (cascade, network), flights = np.mean(means, axis=0), len(ALL) * len(SEEDS)
     print(f"| **the ten** | {cascade:.1f} | {network:.1f} | | {lost} of {flights} |\n")
-    (hidden, neurons), *_ = sw.Network.from_nir(NETWORK, **RULE).layers.items()
+    neurons, _ = sw.Network.from_nir(NETWORK, **RULE).layers
     print(
         f"{neurons} neurons fly with {network / cascade:.2f} of the cascade's error. In a sample {np.mean(Flown.heard):.1f} spikes come in, "
         f"{max(Flown.heard)} at most, and {100 * np.mean(Flown.fired) / neurons:.0f} % of the neurons fire."

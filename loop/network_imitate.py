@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from math import exp, pi, sin
 
+import nir
 import numpy as np
 
 import flight
@@ -22,15 +23,18 @@ from network_pilot import NETWORK, SIGNALS, THRESHOLD, Networked
 DT = 1 / flight.RATE
 #: Neurons that hold a turn that is left, and those that hold a rate, by axis.
 TURNS, RATES = (24, 24, 12), (24, 24, 12)
-#: Time constants, s: how long a turn is held, as long as the cascade's filter; low passes of rates; potentials; what
-#: the outputs add up, for the fast and the slow ones.
-HELD, QUICK, MEMBRANE, FAST, SLOW = 5.0, (0.006, 0.02), 0.04, 0.01, 1.0
+#: How long a turn is held, s, by axis: roll and pitch as in the cascade's filter, yaw longer, which no force corrects.
+HELD = (5.0, 5.0, 100.0)
+#: Other time constants, s: low passes of rates; potentials; what the outputs add up, for the fast and the slow ones.
+QUICK, MEMBRANE, FAST, SLOW = (0.003, 0.03), 0.02, 0.01, 1.0
+#: How much less the slow outputs may weigh.
+SLOWLY = 0.05
 #: Where a turn and a rate end, rad and rad/s.
-FARTHEST, QUICKEST = 0.7, 8.0
+FARTHEST, QUICKEST = 1.1, 8.0
 #: Wishes are compared through a low pass of so many samples, as motors have one.
 LAG = 5
 #: Flights of a round, rounds, and the weight of the squares of what is learnt.
-FLIGHTS, ROUNDS, RIDGE = 24, 4, 3e-3
+FLIGHTS, ROUNDS, RIDGE = 24, 5, 3e-3
 
 
 class Layout:
@@ -48,14 +52,11 @@ class Layout:
             rate[axis] = -THRESHOLD[axis]
             if axis == 0:
                 rate[9] = THRESHOLD[9]
-            for count, signal, end, taus in [
-                (turns[axis], turn, FARTHEST, (HELD,)),
-                (rates[axis], rate, QUICKEST, QUICK),
-            ]:
+            kinds = [(turns[axis], turn, FARTHEST, (HELD[axis],)), (rates[axis], rate, QUICKEST, QUICK)]
+            for count, signal, end, taus in kinds:
                 for number in range(count):
-                    way, tau = (1, -1)[number % 2], taus[number // 2 % len(taus)]
-                    decay = exp(-DT / tau)
-                    gain = 1 if tau == HELD else 1 - decay
+                    way, decay = (1, -1)[number % 2], exp(-DT / taus[number // 2 % len(taus)])
+                    gain = 1 if signal is turn else 1 - decay
                     place = (number // 2 + 0.5) / (count // 2)
                     start = end * (np.sinh(3 * place) / np.sinh(3) * 0.7 - 0.02 - 0.1 * random.random() * place)
                     slope = 0.5 / (end - start) * random.uniform(0.7, 1.4) * (3 if place < 0.5 else 1)
@@ -128,9 +129,8 @@ def learn(layout: Layout, flights: list) -> np.ndarray:
     for counts, wishes in flights:
         network = Plain(layout)
         fired = np.array([network.hidden(own) for own in counts], float)
-        features = np.concatenate(
-            [lagged(fired, 1 - DT / FAST) * FAST / DT, lagged(fired, 1 - DT / SLOW) * SLOW / DT * 0.05], axis=1
-        )
+        fast, slow = (lagged(fired, 1 - DT / tau) * tau / DT for tau in (FAST, SLOW))
+        features = np.concatenate([fast, slow * SLOWLY], axis=1)
         features, wishes = lagged(features), lagged(wishes)
         square += features.T @ features
         product += features.T @ wishes
@@ -139,7 +139,7 @@ def learn(layout: Layout, flights: list) -> np.ndarray:
     worth = np.linalg.solve(square, product)
     errors = np.concatenate([wishes - features @ worth for features, wishes in wrong])
     print("  wishes", np.concatenate([w for _, w in wrong]).std(0).round(1), "off", errors.std(0).round(2), flush=True)
-    return np.concatenate([worth[:count], worth[count:] * 0.05], axis=1)
+    return np.concatenate([worth[:count], worth[count:] * SLOWLY], axis=1)
 
 
 def watched(make, seeds) -> list[tuple]:
@@ -167,8 +167,6 @@ def train(layout: Layout) -> np.ndarray:
 
 def write(layout: Layout, worth: np.ndarray) -> None:
     """The network as a graph, whose currents decay by Euler's step as the controller's do."""
-    import nir
-
     count, one = len(layout.decays), np.ones
     neurons = nir.CubaLIF(
         tau_syn=DT / (1 - layout.decays),
@@ -193,16 +191,7 @@ def write(layout: Layout, worth: np.ndarray) -> None:
 
 def main() -> None:
     layout = Layout(np.random.default_rng(1))
-    worth = train(layout)
-    np.savez("/tmp/network/worth.npz", worth=worth)
-    from manoeuvres import ALL
-
-    for manoeuvre in ALL:
-        for control in (Networked(flight.RATE), Networked(flight.RATE, Plain(layout, worth))):
-            own = flight.fly(manoeuvre, Registers(), 100, control=control)
-            print(manoeuvre.name, "lost" if own.lost else round(own.errors.mean(), 2), end="   ")
-        print(flush=True)
-    write(layout, worth)
+    write(layout, train(layout))
 
 
 if __name__ == "__main__":

@@ -59,9 +59,9 @@ class Network:
         return self._native.inputs()
 
     @property
-    def layers(self) -> dict[str, int]:
-        """The layers by the names in their file, and how many neurons each has."""
-        return dict(self._native.layers())
+    def layers(self) -> list[int]:
+        """How many neurons each layer has."""
+        return self._native.layers()
 
     def run(self, spikes: ArrayLike | Sequence[Sequence[int]]) -> Ran:
         """Runs the network from rest. `spikes` is an array (steps, inputs) of how often each input fires, whose spikes come by
@@ -85,8 +85,7 @@ class Network:
         self._native.reset()
 
     def __repr__(self) -> str:
-        layers = ", ".join(f"{name}: {count}" for name, count in self.layers.items())
-        return f"Network of {self.inputs} inputs, {layers}"
+        return f"Network of {self.inputs} inputs and layers of {', '.join(map(str, self.layers))} neurons"
 
 
 def _numbers(step: ArrayLike | Sequence[int], inputs: int) -> list[int]:

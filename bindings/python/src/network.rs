@@ -44,29 +44,28 @@ fn choice<T: Copy>(keyword: &str, choices: &[(&str, T)], asked: &str) -> PyResul
 }
 
 /// A network and its state.
-#[pyclass(module = "spikewire._native", skip_from_py_object)]
-#[derive(Clone)]
+#[pyclass(module = "spikewire._native")]
 pub(crate) struct Network {
     flown: Flown,
 }
 
-/// The choices that a file leaves open, as keywords.
-type Said<'a> = [Option<&'a str>; 4];
+/// The framework, when a neuron fires, how it decays and which current it takes, as far as they are said.
+type Said = [Option<String>; 4];
 
 #[pymethods]
 impl Network {
     #[new]
-    fn new(path: PathBuf, said: Said<'_>, resets: Vec<String>, dt: Option<f64>) -> PyResult<Self> {
+    fn new(path: PathBuf, said: Said, resets: Vec<String>, dt: Option<f64>) -> PyResult<Self> {
         let [framework, fires, decay, current] = said;
         let asked = Asked {
-            framework: framework.map(|own| choice("framework", &FRAMEWORKS, own)).transpose()?,
+            framework: framework.map(|own| choice("framework", &FRAMEWORKS, &own)).transpose()?,
             resets: resets
                 .iter()
                 .map(|own| choice("reset", &RESETS, own))
                 .collect::<PyResult<_>>()?,
-            fires: fires.map(|own| choice("fires", &FIRES, own)).transpose()?,
-            decay: decay.map(|own| choice("decay", &DECAYS, own)).transpose()?,
-            current: current.map(|own| choice("current", &CURRENTS, own)).transpose()?,
+            fires: fires.map(|own| choice("fires", &FIRES, &own)).transpose()?,
+            decay: decay.map(|own| choice("decay", &DECAYS, &own)).transpose()?,
+            current: current.map(|own| choice("current", &CURRENTS, &own)).transpose()?,
             dt,
         };
         let model = File::read(&path).and_then(|file| file.on_controller(&asked));
@@ -74,8 +73,8 @@ impl Network {
         Ok(Self { flown: model.as_flown() })
     }
 
-    fn layers(&self) -> Vec<(String, usize)> {
-        self.flown.layers().map(|(name, count)| (name.to_owned(), count)).collect()
+    fn layers(&self) -> Vec<usize> {
+        self.flown.layers().collect()
     }
 
     fn inputs(&self) -> usize {

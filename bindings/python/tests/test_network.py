@@ -44,7 +44,7 @@ def test_what_a_file_leaves_open_is_asked_for():
     path = PEERS / "braille_subtract.nir"
     with pytest.raises(ValueError, match="subtract-late"):
         sw.Network.from_nir(path, "snntorch")
-    with pytest.raises(ValueError, match="framework 'torch' must be one of snntorch"):
+    with pytest.raises(ValueError, match="framework \"torch\" must be one of snntorch"):
         sw.Network.from_nir(path, "torch")
     network = sw.Network.from_nir(path, "snntorch", reset="subtract-late")
     with pytest.raises(ValueError, match="input 12: the network has inputs 0 to 11"):

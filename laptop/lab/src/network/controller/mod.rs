@@ -115,9 +115,9 @@ pub struct Flown {
 }
 
 impl Flown {
-    /// The names and sizes of its layers.
-    pub fn layers(&self) -> impl Iterator<Item = (&str, usize)> {
-        self.net.layers.iter().map(|layer| (layer.name.as_str(), layer.neurons.len()))
+    /// How many neurons each layer has.
+    pub fn layers(&self) -> impl Iterator<Item = usize> {
+        self.net.layers.iter().map(|layer| layer.neurons.len())
     }
 
     /// Number of inputs.
