@@ -21,6 +21,8 @@ RULE = {"reset": "subtract", "fires": "above", "decay": "euler", "current": "new
 #: Signals: three rates (rad/s), three forces (m/s²), three turns of the attitude that is wanted (rad a sample, in the
 #: drone's axes), the rate at which roll is to turn (rad/s).
 SIGNALS = 10
+#: What the network has of an attitude fades by so much a sample; of one that is wanted it hears as much again.
+FADES = 0.2 * 0.002
 #: What a spike is worth, in the signal's unit times a sample. Powers of two, so that single precision rounds nothing.
 THRESHOLD = np.array([1, 1, 1, 8, 8, 8, 2**-7, 2**-7, 2**-7, 1], np.float32)
 #: The value without spikes, and the most spikes a sample.
@@ -37,7 +39,11 @@ class Encoder:
 
     def counts(self, sample, wanted, feed: float) -> np.ndarray:
         """Spikes of a sample: how many of each signal, negative for down."""
-        self.signals[:6], self.signals[6:9], self.signals[9] = sample, turn(self.before, wanted), feed
+        w, x, y, z = wanted
+        roll, pitch, yaw = turn(self.before, wanted)
+        lean = 2 * (y * z + w * x), 2 * (w * y - x * z)
+        self.signals[:6], self.signals[8:] = sample, (yaw, feed)
+        self.signals[6:8] = roll + FADES * lean[0], pitch + FADES * lean[1]
         self.before = wanted
         self.potential += self.signals - REFERENCE
         counts = np.clip(np.trunc(self.potential / THRESHOLD), -MOST, MOST)

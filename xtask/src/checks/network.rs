@@ -54,6 +54,40 @@ pub fn verify() -> Result<()> {
     counts("M0", &[("A,i8", 4778), ("D,i8", 31_985)])
 }
 
+/// The same network as a library for C: the same outputs, and the potentials' bits.
+fn in_c(network: &Path, spikes: &Path, on_host: &str) -> Result<()> {
+    let target = paths::target();
+    let mut build = cargo("build --quiet --manifest-path examples/Cargo.toml --package network-c");
+    run(build.env("CARGO_TARGET_DIR", &target).env("NETWORK", network))?;
+    let place = target.join(PROGRAM);
+    fs::create_dir_all(&place)?;
+    let program = place.join("steps");
+    let own = paths::examples().join("network-c/steps.c");
+    let library = target.join("debug/libnetwork.a");
+    run(command("cc")
+        .args(["-Wall", "-Wextra", "-Werror", "-o"])
+        .arg(&program)
+        .arg(own)
+        .arg(library))?;
+    let printed = output(command(program).stdin(fs::File::open(spikes)?))?;
+    // The host's first line tells of the check; behind the steps are the potentials, and what was left out.
+    let mut expected: Vec<String> =
+        on_host.lines().skip(1).map(|line| line.trim_end().to_owned()).collect();
+    let count = printed.lines().count();
+    expected.truncate(count);
+    let potentials = expected.pop().unwrap_or_default();
+    let bits = |value: &str| -> Result<String> {
+        let bits = value.parse::<i32>().map(i32::cast_unsigned);
+        let bits = bits.or_else(|_| value.parse::<f32>().map(f32::to_bits))?;
+        Ok(format!("{bits:08x}"))
+    };
+    let potentials = potentials.trim_matches(['[', ']']).split(", ").map(bits);
+    expected.push(potentials.collect::<Result<Vec<_>>>()?.join(" "));
+    let in_c: Vec<&str> = printed.lines().map(str::trim_end).collect();
+    ensure!(count > 1 && in_c == expected, "C has other spikes or potentials than the host");
+    Ok(())
+}
+
 /// Counts the steps of `examples/network` at 10 % of the neurons firing: an error if one takes 5 % more instructions than
 /// it did, or 10 % more than the C beside it.
 fn counts(core: &str, known: &[(&str, u32)]) -> Result<()> {
@@ -104,6 +138,7 @@ fn everywhere(network: &Path, spikes: &Path) -> Result<String> {
     let mut all = told(&on_host);
     ensure!(all.starts_with("is intact: true\n"), "its own check fails on the host");
 
+    in_c(network, spikes, &on_host)?;
     let stm32 = Board::with("M4F")?;
     let mut compare = |name: &str, printed: &str| -> Result<()> {
         if told(printed) != told(&on_host) {
