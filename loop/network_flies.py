@@ -1,9 +1,12 @@
-"""Flies all manoeuvres on the network of `network.nir`, five times each, and prints a table: `network_flies.py`.
+"""Flies all manoeuvres on the network of `network.nir`, five times each, and prints a table: `network_flies.py SPIKES`.
 
-The network is the controller's, bit for bit: `spikewire.Network`.
+The network is the controller's, bit for bit: `spikewire.Network`. What it hears of a flip goes into the file, a line a sample.
 """
 
 from __future__ import annotations
+
+import sys
+from pathlib import Path
 
 import numpy as np
 import spikewire as sw
@@ -22,7 +25,8 @@ LONG = [Manoeuvre("hover, 60 s", 60, path=still), Manoeuvre("eight, 60 s", 60, p
 class Flown:
     """The network at rest, as :class:`Networked` takes it; counts what comes in and fires."""
 
-    heard, fired = [], []
+    heard: list[list[int]] = []
+    fired: list[int] = []
 
     def __init__(self):
         self.network = sw.Network.from_nir(NETWORK, **RULE)
@@ -30,7 +34,7 @@ class Flown:
     def step(self, counts: np.ndarray) -> np.ndarray:
         numbers = inputs(counts)
         potentials = self.network.step(numbers)
-        self.heard.append(len(numbers))
+        self.heard.append(numbers)
         self.fired.append(len(self.network.fired[0]))
         return potentials
 
@@ -45,26 +49,29 @@ def mean(flights: list[flight.Flight]) -> float:
     return float(np.mean([own.errors.mean() for own in flights if not own.lost]))
 
 
-def main() -> None:
+def main(spikes: str) -> None:
     print("| mean error, ° | cascade | the network | worst | lost |\n|---|---:|---:|---:|---:|")
     means, lost = [], 0
     for manoeuvre in ALL + LONG:
-        cascade = flown(manoeuvre, lambda: Control(flight.RATE))
+        cascade, before = flown(manoeuvre, lambda: Control(flight.RATE)), len(Flown.heard)
         network = flown(manoeuvre, lambda: Networked(flight.RATE, Flown()))
         row, own_lost = (mean(cascade), mean(network)), sum(own.lost for own in network)
         worst = max(own.errors.max() for own in network)
         print(f"| {manoeuvre.name} | {row[0]:.1f} | {row[1]:.1f} | {worst:.0f} | {own_lost} of {len(network)} |", flush=True)
+        if manoeuvre.name == "flip":
+            lines = [" ".join(map(str, heard)) for heard in Flown.heard[before:][: round(manoeuvre.seconds * flight.RATE)]]
+            Path(spikes).write_text("\n".join(lines) + "\n")
         if manoeuvre in ALL:
             means.append(row)
             lost += own_lost
     (cascade, network), flights = np.mean(means, axis=0), len(ALL) * len(SEEDS)
     print(f"| **the ten** | {cascade:.1f} | {network:.1f} | | {lost} of {flights} |\n")
-    neurons, _ = sw.Network.from_nir(NETWORK, **RULE).layers
+    (neurons, _), heard = sw.Network.from_nir(NETWORK, **RULE).layers, [len(own) for own in Flown.heard]
     print(
-        f"{neurons} neurons fly with {network / cascade:.2f} of the cascade's error. In a sample {np.mean(Flown.heard):.1f} spikes come in, "
-        f"{max(Flown.heard)} at most, and {100 * np.mean(Flown.fired) / neurons:.0f} % of the neurons fire."
+        f"{neurons} neurons fly with {network / cascade:.2f} of the cascade's error. In a sample {np.mean(heard):.1f} spikes come in, "
+        f"{max(heard)} at most, and {np.mean(Flown.fired):.1f} neurons fire."
     )
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1])

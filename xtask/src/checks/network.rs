@@ -121,7 +121,7 @@ fn counts(core: &str, known: &[(&str, u32)]) -> Result<()> {
 }
 
 /// What the host and both boards print: an error if they differ.
-fn everywhere(network: &Path, spikes: &Path) -> Result<String> {
+pub(super) fn everywhere(network: &Path, spikes: &Path) -> Result<String> {
     let variables = [("NETWORK", network), ("SPIKES", spikes)];
     let target = paths::target();
     let mut build = cargo("build --quiet --manifest-path examples/Cargo.toml --package");
