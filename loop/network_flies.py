@@ -15,7 +15,7 @@ import flight
 from control import Control
 from flight import Registers
 from manoeuvres import ALL, Manoeuvre, eight, still
-from network_pilot import NETWORK, RULE, Networked, inputs
+from network_pilot import MOST, NETWORK, REFERENCE, RULE, SIGNALS, THRESHOLD, Encoder, Networked, inputs
 
 SEEDS = range(100, 105)
 #: Flown once.
@@ -39,6 +39,18 @@ class Flown:
         return potentials
 
 
+def check() -> None:
+    """The encoders of `network_pilot.py` are the crate's, spike by spike."""
+    signals = np.random.default_rng(1).normal(size=(500, SIGNALS)).astype(np.float32) * 3 * THRESHOLD + REFERENCE
+    encoder, counts = Encoder(), []
+    for encoder.signals in signals:
+        counts.append(encoder.fire())
+    for own, signal, threshold, reference in zip(np.transpose(counts), signals.T, THRESHOLD, REFERENCE):
+        code = sw.IntegrateAndFire(threshold=float(threshold), reference=float(reference), power=8, spikes=MOST)
+        if not np.array_equal(code.encode(signal).array.sum(axis=(1, 2)), own):
+            raise SystemExit("the encoders are not the crate's")
+
+
 def flown(manoeuvre: Manoeuvre, make) -> list[flight.Flight]:
     """The manoeuvre with each seed, or a long one with the first."""
     seeds = SEEDS if manoeuvre in ALL else SEEDS[:1]
@@ -50,6 +62,7 @@ def mean(flights: list[flight.Flight]) -> float:
 
 
 def main(spikes: str) -> None:
+    check()
     print("| mean error, ° | cascade | the network | worst | lost |\n|---|---:|---:|---:|---:|")
     means, lost = [], 0
     for manoeuvre in ALL + LONG:

@@ -45,6 +45,10 @@ class Encoder:
         self.signals[:6], self.signals[8:] = sample, (yaw, feed)
         self.signals[6:8] = roll + FADES * lean[0], pitch + FADES * lean[1]
         self.before = wanted
+        return self.fire()
+
+    def fire(self) -> np.ndarray:
+        """Spikes of `signals`: those of the crate's integrate-and-fire, which `check` compares."""
         self.potential += self.signals - REFERENCE
         counts = np.clip(np.trunc(self.potential / THRESHOLD), -MOST, MOST)
         self.potential -= counts * THRESHOLD

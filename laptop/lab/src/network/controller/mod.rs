@@ -238,8 +238,7 @@ fn bytes<K: Number>(net: &Net<K>, weight: usize) -> (usize, usize) {
         let neuron = if fires { 16 } else { 8 } + if has_current { 8 } else { 0 };
         flash += (layer.inputs() * count + own) * weight + count * neuron;
         let list = (2 * count).next_multiple_of(4) + 8;
-        let lists = if matches!(layer.own, Own::None) { 1 } else { 2 };
-        ram += count * if has_current { 8 } else { 4 } + lists * list + 8;
+        ram += count * if has_current { 8 } else { 4 } + list + 8;
     }
     (flash, ram)
 }
