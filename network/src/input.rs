@@ -156,9 +156,9 @@ impl<V: Number> Input<V> for Values {
     }
 
     #[inline(always)]
-    fn fired<'c, const IN: usize, const OUT: usize>(
-        _checked: &'c Accepted<V::Value, IN>,
-    ) -> (&'c [&'c V::Row<OUT>], &'c [u16]) {
+    fn fired<const IN: usize, const OUT: usize>(
+        _checked: &Accepted<V::Value, IN>,
+    ) -> (&[&V::Row<OUT>], &[u16]) {
         (&[], &[])
     }
 

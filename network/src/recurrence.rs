@@ -90,7 +90,7 @@ impl<V: Number, const OUT: usize> Recurrence<V, OUT> for OneToOne<'_, V, OUT> {
         Self: 'a;
 
     #[inline(always)]
-    fn begin<'a>(&'a self, fired: &Spikes<OUT>, before: &mut Spikes<OUT>) {
+    fn begin(&self, fired: &Spikes<OUT>, before: &mut Spikes<OUT>) {
         for &neuron in fired.as_slice() {
             before.append(neuron);
         }

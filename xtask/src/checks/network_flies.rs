@@ -31,9 +31,12 @@ fn flown() -> Result<String> {
     let table = output(program(&environment()?, "network_flies.py").arg(&spikes))?;
     run(host::spikewire(EXPORT)?.arg(&spikes).arg("-o").arg(&module))?;
     let told = everywhere(&module, &spikes)?;
-    let costs: Vec<&str> = told.lines().filter(|line| line.contains(": the same, ")).collect();
-    let text =
-        format!("\n{table}\nThe spikes of a flip on emulated boards: {}.\n", costs.join("; "));
+    let costs: Vec<String> = told
+        .lines()
+        .filter_map(|line| line.split_once(": the same, "))
+        .map(|(board, costs)| format!("{board}, {costs}"))
+        .collect();
+    let text = format!("\n{table}\nThe spikes of a flip, mean and most: {}.\n\n", costs.join("; "));
     println!("{text}");
     Ok(text)
 }
