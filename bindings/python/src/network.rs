@@ -49,6 +49,9 @@ pub(crate) struct Network {
     flown: Flown,
 }
 
+/// Spikes and potentials, a row for each step.
+type Rows<'py> = (Bound<'py, PyArray2<bool>>, Bound<'py, PyArray2<f32>>);
+
 /// The framework, when a neuron fires, how it decays and which current it takes, as far as they are said.
 type Said = [Option<String>; 4];
 
@@ -106,11 +109,7 @@ impl Network {
     }
 
     /// Takes many steps: the last layer's spikes and potentials, by step.
-    fn steps<'py>(
-        &mut self,
-        py: Python<'py>,
-        inputs: Vec<Vec<u16>>,
-    ) -> PyResult<(Bound<'py, PyArray2<bool>>, Bound<'py, PyArray2<f32>>)> {
+    fn steps<'py>(&mut self, py: Python<'py>, inputs: Vec<Vec<u16>>) -> PyResult<Rows<'py>> {
         let outputs = self.flown.potentials().len();
         let (mut spikes, mut potentials) = (Vec::new(), Vec::new());
         for inputs in inputs {
@@ -122,7 +121,6 @@ impl Network {
             spikes.push(fired);
             potentials.push(self.flown.potentials().to_vec());
         }
-        let rows = (PyArray2::from_vec2(py, &spikes)?, PyArray2::from_vec2(py, &potentials)?);
-        Ok(rows)
+        Ok((PyArray2::from_vec2(py, &spikes)?, PyArray2::from_vec2(py, &potentials)?))
     }
 }

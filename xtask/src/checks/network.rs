@@ -1,14 +1,17 @@
-//! `cargo xtask network`: a network that `spikewire network` wrote, on an emulated STM32F405 and RP2040, against the host.
+//! `cargo xtask network`: a network that `spikewire network` wrote, on five emulated cores and an RP2040, against the host.
 
 use super::emulator;
 use crate::common::{cargo, command, output, paths, run, usage};
-use crate::programs::boards::Board;
+use crate::programs::boards::{BOARDS, Board};
 use crate::programs::{host, image, qemu};
 use anyhow::{Context, Result, bail, ensure};
 use std::fs;
 use std::path::Path;
 
 const PROGRAM: &str = "trained";
+
+/// The Cortex-M4F among the emulated boards.
+const STM32: &str = "STM32F405";
 
 /// The Cortex-M0+ of a Pico, in rp2040js.
 const RP2040: Board = Board {
@@ -120,7 +123,7 @@ fn counts(core: &str, known: &[(&str, u32)]) -> Result<()> {
     Ok(())
 }
 
-/// What the host and both boards print: an error if they differ.
+/// What the host, the five emulated cores and an RP2040 print: an error if they differ.
 pub(super) fn everywhere(network: &Path, spikes: &Path) -> Result<String> {
     let variables = [("NETWORK", network), ("SPIKES", spikes)];
     let target = paths::target();
@@ -139,17 +142,22 @@ pub(super) fn everywhere(network: &Path, spikes: &Path) -> Result<String> {
     ensure!(all.starts_with("is intact: true\n"), "its own check fails on the host");
 
     in_c(network, spikes, &on_host)?;
-    let stm32 = Board::with("M4F")?;
     let mut compare = |name: &str, printed: &str| -> Result<()> {
         if told(printed) != told(&on_host) {
             bail!("{name} prints something else than the host:\n{printed}");
         }
         let costs = printed.lines().rfind(|line| line.starts_with('#')).unwrap_or_default();
-        all += &format!("{name}: the same, {}\n", costs.trim_start_matches("# "));
+        all += &match name {
+            STM32 | "RP2040" => format!("{name}: the same, {}\n", costs.trim_start_matches("# ")),
+            _ => format!("{name}: the same\n"),
+        };
         Ok(())
     };
-    let built = image::build_with(PROGRAM, stm32, &variables)?;
-    compare("STM32F405", &qemu::run_counting(stm32, &built)?)?;
+    for board in &BOARDS {
+        let built = image::build_with(PROGRAM, board, &variables)?;
+        let name = if board.core == "M4F" { STM32 } else { board.core };
+        compare(name, &qemu::run_counting(board, &built)?)?;
+    }
     let built = image::build_with(PROGRAM, &RP2040, &variables)?;
     let mut node = command("node");
     node.arg(emulator::installed()?.join("steps.mjs")).arg(built);
