@@ -22,7 +22,7 @@ pub fn measure<const HIDDEN: usize>(
     bytes: usize,
     mut take: impl FnMut(&[bool; HIDDEN], &[u16]) -> (u32, usize),
 ) -> fmt::Result {
-    for percent in [5, 10, 30] {
+    for percent in [5, 10, 30, 100] {
         let (mut seed, mut total, mut most) = (2022, 0, 0);
         let of = |count: usize| (count * percent + 50) / 100;
         for _ in 0..STEPS {
@@ -100,6 +100,64 @@ macro_rules! of_bytes {
 
 pub mod float {
     networks!("f32", of_floats, f32, new, 0.25, 1.0, 10_000.0);
+
+    use spikewire_network::{Cuba, CubaLif};
+
+    static B_IN: Weights<f32, 6, 150> = of_floats!(6);
+    static B_NEXT: Weights<f32, 150, 150> = of_floats!(7);
+    static B_BACK: Weights<f32, 150, 150> = of_floats!(8);
+    static B_OUT: Weights<f32, 150, 2> = of_floats!(9);
+    static C_IN: Weights<f32, 8, 130> = of_floats!(10);
+    static C_BACK: Weights<f32, 130, 130> = of_floats!(11);
+    static C_OUT: Weights<f32, 130, 3> = of_floats!(12);
+    const CUBA: CubaLif<f32, ToValue> = Cuba::<f32, _>::new(0.25, NEURON);
+    const SUM: Li<f32> = Li::<f32>::new(0.0);
+
+    /// The same of a network that takes values.
+    #[inline(never)]
+    fn step_values<N: Network>(network: &N, state: &mut N::State, input: &N::Input) {
+        keep(network.step(state, input));
+    }
+
+    fn choose<const COUNT: usize>(neurons: &mut [CubaLif<f32, ToValue>; COUNT], fires: &[bool]) {
+        for (neuron, &fires) in neurons.iter_mut().zip(fires) {
+            *neuron = CUBA.with_bias(if fires { 10_000.0 } else { -10_000.0 });
+        }
+    }
+
+    /// The estimator of Stroobants et al. (2025): both layers fire alike.
+    pub fn b(out: &mut impl fmt::Write) -> fmt::Result {
+        let mut neurons = [CUBA; 150];
+        let last = Layer::new(&B_OUT, &[SUM; 2]);
+        let next = Layer::new(&B_NEXT, &neurons).recurrent(Full(&B_BACK));
+        let mut state = Layer::new(&B_IN, &neurons).of_values().then(next).then(last).state();
+        let bytes = size_of_val(&state);
+        measure(out, "B,f32", 6, bytes, |fires: &[bool; 150], _| {
+            choose(&mut neurons, fires);
+            let next = Layer::new(&B_NEXT, &neurons).recurrent(Full(&B_BACK));
+            let network = Layer::new(&B_IN, &neurons).of_values().then(next).then(last);
+            let values = black_box([0.5; 6]);
+            let count = instructions(|| step_values(&network, &mut state, &values));
+            (count, state.first.next.spikes().len())
+        })
+    }
+
+    /// Its controller.
+    pub fn c(out: &mut impl fmt::Write) -> fmt::Result {
+        let mut neurons = [CUBA; 130];
+        let last = Layer::new(&C_OUT, &[SUM; 3]);
+        let first = Layer::new(&C_IN, &neurons).of_values().recurrent(Full(&C_BACK));
+        let mut state = first.then(last).state();
+        let bytes = size_of_val(&state);
+        measure(out, "C,f32", 8, bytes, |fires: &[bool; 130], _| {
+            choose(&mut neurons, fires);
+            let first = Layer::new(&C_IN, &neurons).of_values().recurrent(Full(&C_BACK));
+            let network = first.then(last);
+            let values = black_box([0.5; 8]);
+            let count = instructions(|| step_values(&network, &mut state, &values));
+            (count, state.first.spikes().len())
+        })
+    }
 }
 
 pub mod integer {
