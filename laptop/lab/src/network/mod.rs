@@ -16,7 +16,7 @@ pub use bring::{
 };
 pub use chip::{CHIPS, Chip, Compare, OnChip, Ran, Stepped, Told};
 pub use controller::{
-    Asked, ControllerRequest, Current, Decay, Fires, Framework, Model, Numbers, Reset, Rule,
+    Asked, ControllerRequest, Current, Decay, Fires, Flown, Framework, Model, Numbers, Reset, Rule,
     bring_to_controller,
 };
 pub use costs::Cost;
