@@ -13,6 +13,62 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 /// towards the one that lies at 0 just then, so that leaks at several heights together move it by a share, as in
 /// training. What a neuron that fired has got beyond 0 by then, leaks of its own take away.
 ///
+/// ```
+/// use embedded_hal::{delay::DelayNs, spi::SpiDevice};
+/// use spikewire::{Bank, Polarity, Readout, Tick, population::Position, temporal::StepForward};
+/// use spikewire_chips::{
+///     AerPort, ChipError, Describe, Inputs, Spikes, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinNetwork,
+///     TinyOdinNeuron, neurons_from,
+/// };
+///
+/// // As `spikewire network` writes them: rises and falls of one rate lead to three neurons, by rungs of 7.
+/// static STEPS: Steps = Steps {
+///     inputs: 2,
+///     has_bias: false,
+///     rows: 1,
+///     layers: &[StepsLayer { neurons: 3, loops: false }],
+///     rungs: 2,
+///     leaks: &[&[0]],
+///     lift: 2,
+///     own_leaks: &[7, 7, 7],
+/// };
+/// const NEURON: TinyOdinNeuron = TinyOdinNeuron { threshold: 9, leak: 1, potential: -14, is_disabled: false };
+/// static NETWORK: TinyOdinNetwork<5, 3, 3> = TinyOdinNetwork {
+///     neurons: [NEURON; 3],
+///     inputs: Inputs::Rows([[-5, 1, 5], [5, 1, -5], [7, 7, 7], [-7, -7, -7], [7, 7, 7]]),
+///     recurrent: &[],
+///     outputs: neurons_from::<0, 3>(),
+/// };
+/// static RATE: StepForward<f32> = StepForward::new(0.05);
+/// static TURN: Position<f32, 3> = Position::new([-1.0, 0.0, 1.0]);
+///
+/// fn fly<D: SpiDevice, P: AerPort>(
+///     chip: &mut TinyOdin<D, P>,
+///     delay: &mut impl DelayNs,
+///     rates: impl Iterator<Item = (Tick, f32)>,
+///     mut command: impl FnMut(f32),
+/// ) -> Result<(), ChipError<D::Error, P::Error>> {
+///     let mut gated = chip.reset(delay)?;
+///     gated.load(&NETWORK, |_| ())?;
+///     let mut chip = gated.run(&NETWORK.registers())?;
+///     let mut state = StepsState::REST;
+///     let mut bank = Bank::<_, 1>::new(&RATE);
+///     let mut readout = Readout::<_, 1>::new(&TURN);
+///     for (now, rate) in rates {
+///         let mut events = Spikes::<1>::new();
+///         bank.encode(now, [rate], |event| events.push(event));
+///         let inputs = events.as_slice().iter().map(|event| {
+///             event.address * 2 + u16::from(event.polarity == Polarity::Down)
+///         });
+///         let mut spikes = Spikes::<3>::new();
+///         chip.step(&STEPS, &mut state, inputs, NETWORK.answers(now, |event| spikes.push(event)))?;
+///         let [value] = readout.decode(now, spikes.as_slice());
+///         command(value);
+///     }
+///     Ok(())
+/// }
+/// ```
+///
 /// Rows of the network, each group of inputs or neurons in order: the inputs, the bias if there is one; for each layer
 /// the neurons onto the next layer, if there is one, then the neurons onto themselves, if it loops; a row that raises for
 /// each layer; the row that lets all fall; the row that lifts all, if [`lift`](Self::lift) is not 0. Neurons begin lower

@@ -7,6 +7,8 @@ use super::{LARGEST_RUNG, NEURONS, ROWS};
 const LEVELS: u16 = 6;
 /// Rows of a weight that are tried.
 const ROWS_TRIED: [u16; 4] = [1, 2, 4, 8];
+/// Rungs for other recordings, which may bring more at once.
+const SPARE: f64 = 1.5;
 /// Rungs from one leak to the next, at most.
 const WIDEST: f64 = 12.0;
 
@@ -70,7 +72,7 @@ pub(super) fn shapes(trained: &Trained, has_bias: bool, drive: f64, threshold: f
             break;
         }
         let unit = LARGEST_RUNG * f64::from(rows);
-        let raised = (drive * unit / LARGEST_RUNG).ceil().clamp(1.0, 200.0) as u16;
+        let raised = (SPARE * drive * unit / LARGEST_RUNG).ceil().clamp(1.0, 200.0) as u16;
         let mut add = |above: u16, below: u16, leaks: Vec<Vec<u16>>, spacing: u16| {
             let lift = if resets_to_zero { below } else { 0 };
             let shape = Shape { rows, above, below, leaks, lift, spacing };
