@@ -1,0 +1,132 @@
+//! Both ends of a flight in Rust.
+
+use crate::{Flight, FlightError, FlightErrorKind};
+use catalogue::run::{Constant, Rust};
+use std::fmt::Write;
+
+/// Writes the module `flight` of a flight in Rust, for `include!`. It needs the crate `spikewire` with the feature `link`,
+/// and the crate `fixed` if its samples are fixed point.
+///
+/// | item | |
+/// |---|---|
+/// | `CHANNELS`, `NAMES`, `COUNTS` | number of channels, their names, their counts a unit |
+/// | `Code`, `SCHEMES` | the type of their schemes, and the schemes, in flash |
+/// | `Bank`, `BANK` | the encoders before the first sample |
+/// | `PERIOD`, `KEYFRAME_EVERY` | µs from sample to sample; samples from one keyframe to the next |
+/// | `CODING`, `transmitter(session)` | the sender's half of the link |
+/// | `Receiver`, `receiver()` | the receiver's half |
+///
+/// # Errors
+/// Returns an error if the scheme has no constant: those by chance take a generator of the user's.
+pub fn rust(flight: &Flight) -> Result<String, FlightError> {
+    let scheme = flight.run_time();
+    // Channels with the same parameters share them.
+    let mut statics: Vec<(Constant, Vec<&str>)> = Vec::new();
+    let mut schemes = Vec::new();
+    for (settings, channel) in flight.settings().iter().zip(&flight.channels) {
+        let constant = scheme
+            .constant(settings)
+            .map_err(|_| FlightError::new("scheme", FlightErrorKind::NoConstant))?;
+        let constant = filtered(flight, constant);
+        let place = statics.iter().position(|(known, _)| *known == constant);
+        let place = place.unwrap_or_else(|| {
+            statics.push((constant, Vec::new()));
+            statics.len() - 1
+        });
+        statics[place].1.push(&channel.name);
+        schemes.push(format!("&SCHEME_{place}"));
+    }
+    let Some((Constant { scheme: code, .. }, _)) = statics.first() else {
+        return Err(FlightError::new("channel", FlightErrorKind::Missing));
+    };
+    let (channels, coding) = (flight.channels.len(), flight.coding());
+    let names: Vec<String> = flight.channels.iter().map(|own| format!("{:?}", own.name)).collect();
+    let counts: Vec<String> =
+        flight.channels.iter().map(|own| format!("{:?}", own.counts)).collect();
+    let slots = match flight.slot_ticks() {
+        0 => String::new(),
+        ticks => format!(".with_slot_ticks({ticks})"),
+    };
+    let jitter = match coding.jitter_bits {
+        0 => String::new(),
+        bits => format!(".with_jitter_bits({bits})"),
+    };
+    let mut items = String::new();
+    let mut item = |words: &str, code: String| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(items, "\n/// {words}\n{code}");
+    };
+    item("Number of channels.", format!("pub const CHANNELS: usize = {channels};"));
+    item(
+        "Names of the channels, in the order of a sample.",
+        format!("pub const NAMES: [&str; CHANNELS] = [{}];", names.join(", ")),
+    );
+    item(
+        "Counts for one unit of each channel.",
+        format!("pub const COUNTS: [f64; CHANNELS] = [{}];", counts.join(", ")),
+    );
+    item("The code of every channel.", format!("pub type Code = {code};"));
+    for (place, (Constant { value, .. }, of)) in statics.iter().enumerate() {
+        let words = format!("Parameters of {}.", of.join(", ").replace(['\n', '\r'], " "));
+        item(&words, format!("static SCHEME_{place}: Code = {value};"));
+    }
+    item(
+        "The scheme of each channel.",
+        format!("pub const SCHEMES: [&Code; CHANNELS] = [{}];", schemes.join(", ")),
+    );
+    item(
+        "The type of the bank.",
+        "pub type Bank = spikewire::Bank<[&'static Code; CHANNELS], CHANNELS>;".to_owned(),
+    );
+    item(
+        "The encoders, before the first sample.",
+        format!("pub const BANK: Bank = spikewire::Bank::per_channel(SCHEMES){slots};"),
+    );
+    item("µs from sample to sample.", format!("pub const PERIOD: u16 = {};", flight.period));
+    item(
+        "Samples from one keyframe or heartbeat to the next.",
+        format!("pub const KEYFRAME_EVERY: u32 = {};", flight.keyframe_every),
+    );
+    item(
+        "The bits that the parts of an event take on the link.",
+        format!(
+            "pub const CODING: spikewire::link::Coding = spikewire::link::Coding::for_channels({}, PERIOD){jitter};",
+            channels * flight.neurons()
+        ),
+    );
+    item(
+        "The sender's half of the link, before the first frame of this session.",
+        "pub const fn transmitter(session: spikewire::link::Session) -> spikewire::link::Transmitter {\n    \
+             spikewire::link::Transmitter::new(CODING, session)\n}"
+            .to_owned(),
+    );
+    item(
+        "The type of the receiver.",
+        format!(
+            "pub type Receiver = spikewire::link::Receiver<[&'static Code; CHANNELS], CHANNELS, {}>;",
+            flight.events()
+        ),
+    );
+    item(
+        "The receiver's half of the link, before the first frame.",
+        format!(
+            "#[must_use]\npub fn receiver() -> Receiver {{\n    Receiver::per_channel(SCHEMES){slots}\n}}"
+        ),
+    );
+    let lines = items
+        .lines()
+        .map(|line| if line.is_empty() { "\n".to_owned() } else { format!("    {line}\n") });
+    Ok(format!(
+        "/// Both ends of a flight, written from its file.\n#[allow(dead_code, unreachable_pub, clippy::all, clippy::pedantic)]\npub mod flight {{\n{}}}\n",
+        lines.skip(1).collect::<String>()
+    ))
+}
+
+/// A constant behind the flight's filter.
+fn filtered(flight: &Flight, constant: Constant) -> Constant {
+    let Some(filter) = flight.filter else { return constant };
+    let Constant { scheme, value } = constant;
+    let sample = Rust::new(flight.sample).sample();
+    let [scheme, value] = filter.constant(&sample, flight.rate() as f32, [scheme, value]);
+    Constant { scheme, value }
+}
