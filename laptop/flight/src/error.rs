@@ -1,6 +1,6 @@
 //! Errors, as values that a program can act on.
 
-use std::path::PathBuf;
+use std::path::Path;
 use std::{error, fmt, io};
 
 /// The error of a flight that cannot be read, or whose parts do not fit together.
@@ -18,7 +18,7 @@ pub struct FlightError {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
     /// The file, if the flight was read from one.
-    pub file: Option<PathBuf>,
+    pub file: Option<Box<Path>>,
     /// The channel, from 0, if one of them is at fault.
     pub channel: Option<usize>,
     /// The line, from 1, where there is one.
@@ -62,7 +62,7 @@ pub enum FlightErrorKind {
     NoStart,
     /// Two channels have this name.
     Twice,
-    /// The channels differ in more than numbers: in filter lengths, neurons, slots or spikes, so that no bank holds them.
+    /// The channels differ in more than numbers: in words, filters or counts, so that no bank holds them.
     NotOneBank,
     /// The scheme has no constant in Rust, as it takes the user's generator.
     NoConstant,
@@ -92,7 +92,7 @@ impl FlightError {
         self
     }
 
-    pub(crate) fn in_file(mut self, file: impl Into<PathBuf>) -> Self {
+    pub(crate) fn in_file(mut self, file: &Path) -> Self {
         self.place.file = Some(file.into());
         self
     }

@@ -15,7 +15,7 @@
 //! Parameters are in samples: in counts where a channel has `counts`. Frames are those of the link, version 3.
 
 use crate::{Channel, Filter, Flight, FlightError, FlightErrorKind, Parts};
-use catalogue::run::{Asked, SET, Value};
+use catalogue::run::{Asked, SET, SampleType, Value};
 use catalogue::{Info, Parameter};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -99,7 +99,7 @@ impl Flight {
         let scheme = scheme(file.scheme.get_ref())
             .map_err(|error| error.at(line(file.scheme.span().start)))?;
         let sample = match &file.sample {
-            None => Ok(Default::default()),
+            None => Ok(SampleType::default()),
             Some(name) => name
                 .get_ref()
                 .parse()
@@ -246,7 +246,7 @@ fn inline(asked: &Asked) -> String {
         let value = match value {
             value if *value == SET => true.into(),
             Value::Number(value) => number(*value),
-            Value::Count(count) => toml::Value::from(*count as i64),
+            Value::Count(count) => toml::Value::from(count.cast_signed()),
             Value::Word(word) => word.as_ref().into(),
             Value::Numbers(all) => all.iter().map(|own| number(*own)).collect::<Vec<_>>().into(),
         };

@@ -34,7 +34,7 @@ pub type Filtering = Box<dyn FnMut(f64) -> f64 + Send>;
 
 impl Filter {
     /// Starts the filter on samples of this type and rate, in Hz: a function from sample to sample, whose results have
-    /// the bits of a firmware's.
+    /// the bits of a firmware's. What is not finite passes as it is.
     ///
     /// # Errors
     /// Returns an error if the corner, the centre or `q` is out of its range at this rate.
@@ -82,6 +82,9 @@ where
 {
     let mut state = F::START;
     Box::new(move |sample| {
+        if !sample.is_finite() {
+            return sample;
+        }
         let sample = F::Sample::from_f64(sample * one);
         filter.filter(&mut state, sample).to_f64() / one
     })

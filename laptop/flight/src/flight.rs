@@ -1,7 +1,7 @@
 //! A flight: what the vehicle codes and the far end decodes, checked.
 
-use crate::{Filter, FlightError, FlightErrorKind};
-use catalogue::run::{Asked, Constant, Known, RunTime, SampleType, Settings};
+use crate::{Filter, Filtering, FlightError, FlightErrorKind};
+use catalogue::run::{Asked, Known, RunTime, SampleType, Settings, Value};
 use catalogue::{Info, Kind, Parameter};
 use spikewire::link::Coding;
 use std::collections::BTreeSet;
@@ -47,8 +47,8 @@ pub struct Parts {
 
 /// A flight whose parts fit together: what the vehicle codes, and what its far end decodes.
 ///
-/// Its channels have one scheme, whose numbers may differ from channel to channel; lengths, neurons, slots and spikes
-/// are shared, as they are in a [`Bank`](spikewire::Bank).
+/// Its channels have one scheme. Numbers, such as a threshold or a range, may differ from channel to channel; words,
+/// filters and counts, such as neurons, slots and spikes, are shared, as a [`Bank`](spikewire::Bank) shares a type.
 ///
 /// ```
 /// use spikewire_flight::Flight;
@@ -120,7 +120,7 @@ impl Flight {
         let rate = rate(&parts);
         if let Some(filter) = parts.filter {
             let started = filter.start(parts.sample, rate as f32);
-            drop(started.map_err(|error| FlightError::refused("filter", error))?);
+            started.map(drop).map_err(|error| FlightError::refused("filter", error))?;
         }
         let mut settings = Vec::new();
         for (place, channel) in parts.channels.iter().enumerate() {
@@ -134,24 +134,14 @@ impl Flight {
 
     /// Refuses channels that no bank holds, and sub-timesteps that do not fit into a sample.
     fn check_bank(&self) -> Result<(), FlightError> {
-        let kind = |settings| self.run_time().constant(settings).map(|own: Constant| own.scheme);
-        // A code by chance has no constant. On the laptop all lengths are one type, so that counts are compared.
-        let shape = |settings: &Settings| -> Vec<(&str, String)> {
-            let parameters = self.scheme.parameters.iter().filter(|own| is_shape(own));
-            parameters
-                .filter_map(|own| Some((own.name, settings.get(own.key())?.to_string())))
-                .collect()
+        let shape = |settings: &Settings| -> Vec<String> {
+            let parameters = self.scheme.parameters.iter().filter(|own| own.kind != Kind::Number);
+            parameters.filter_map(|own| Some(settings.get(own.key())?.to_string())).collect()
         };
-        let first = &self.settings[0];
-        for (place, settings) in self.settings.iter().enumerate() {
-            let differs = match (kind(first), kind(settings)) {
-                (Ok(first), Ok(own)) => first != own,
-                _ => shape(first) != shape(settings),
-            };
-            if differs {
-                let error = FlightError::new("parameters", FlightErrorKind::NotOneBank);
-                return Err(error.of_channel(place));
-            }
+        let first = shape(&self.settings[0]);
+        if let Some(place) = self.settings.iter().position(|settings| shape(settings) != first) {
+            let error = FlightError::new("parameters", FlightErrorKind::NotOneBank);
+            return Err(error.of_channel(place));
         }
         let (slots, period) = (self.slots(), f64::from(self.period.get()));
         if self.is_slotted() && slots as f64 > period {
@@ -171,9 +161,40 @@ impl Flight {
         &self.settings
     }
 
+    /// The parameters of all channels: a number that differs from channel to channel is a list of one each.
+    pub fn asked_of_all(&self) -> Asked {
+        let each: Vec<Asked> = self.channels.iter().map(|own| self.asked(own)).collect();
+        let mut all = each.first().cloned().unwrap_or_default();
+        for parameter in self.scheme.parameters.iter().filter(|own| own.kind == Kind::Number) {
+            let name = parameter.name;
+            if each.iter().all(|own| own.get(name) == each[0].get(name)) {
+                continue;
+            }
+            // One that is not given everywhere has its default elsewhere.
+            let numbers = self.settings.iter().map(|own| own.get(name).and_then(Value::number));
+            if let Some(numbers) = numbers.collect::<Option<Vec<f64>>>() {
+                all.set(name, numbers);
+            }
+        }
+        all
+    }
+
     /// The parameters of a channel: its own, and those that all share.
     pub fn asked(&self, channel: &Channel) -> Asked {
         channel.asked.or(&self.shared)
+    }
+
+    /// Starts the filter of each channel; none if the flight has no filter.
+    ///
+    /// # Errors
+    /// Returns no error: that the filter fits the rate was checked.
+    pub fn filters(&self) -> Result<Vec<Filtering>, FlightError> {
+        let Some(filter) = self.filter else { return Ok(Vec::new()) };
+        let start = |_: &Channel| {
+            let started = filter.start(self.sample, self.rate() as f32);
+            started.map_err(|error| FlightError::refused("filter", error))
+        };
+        self.channels.iter().map(start).collect()
     }
 
     /// Samples a second.
@@ -241,11 +262,6 @@ fn rate(parts: &Parts) -> f64 {
 fn run_time(info: &'static Info) -> &'static dyn RunTime {
     let own = catalogue::ALL.iter().find(|own| own.info().name == info.name);
     *own.unwrap_or(&catalogue::ALL[0]) // descriptions come from the catalogue alone
-}
-
-/// Whether a parameter is a length of the scheme's type, which a bank's channels share.
-fn is_shape(parameter: &Parameter) -> bool {
-    parameter.kind == Kind::Count && parameter.name != "seed"
 }
 
 /// The settings of a channel as it flies: where its signal begins is no parameter.

@@ -9,9 +9,8 @@
 //! `build.rs`, with this crate among the build dependencies:
 //!
 //! ```no_run
-//! fn main() {
-//!     spikewire_flight::build("flight.toml").unwrap();
-//! }
+//! # // In `main`:
+//! spikewire_flight::build("flight.toml").unwrap();
 //! ```
 //!
 //! `src/main.rs`, into which [`rust`] puts the module `flight`:

@@ -19,21 +19,17 @@ use std::fmt::Write;
 /// # Errors
 /// Returns an error if the scheme has no constant: those by chance take a generator of the user's.
 pub fn rust(flight: &Flight) -> Result<String, FlightError> {
-    let scheme = flight.run_time();
     // Channels with the same parameters share them.
     let mut statics: Vec<(Constant, Vec<&str>)> = Vec::new();
     let mut schemes = Vec::new();
-    for (settings, channel) in flight.settings().iter().zip(&flight.channels) {
-        let constant = scheme
-            .constant(settings)
-            .map_err(|_| FlightError::new("scheme", FlightErrorKind::NoConstant))?;
-        let constant = filtered(flight, constant);
+    for (channel, own) in flight.channels.iter().enumerate() {
+        let constant = flight.constant(channel)?;
         let place = statics.iter().position(|(known, _)| *known == constant);
         let place = place.unwrap_or_else(|| {
             statics.push((constant, Vec::new()));
             statics.len() - 1
         });
-        statics[place].1.push(&channel.name);
+        statics[place].1.push(&own.name);
         schemes.push(format!("&SCHEME_{place}"));
     }
     let Some((Constant { scheme: code, .. }, _)) = statics.first() else {
@@ -122,11 +118,21 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     ))
 }
 
-/// A constant behind the flight's filter.
-fn filtered(flight: &Flight, constant: Constant) -> Constant {
-    let Some(filter) = flight.filter else { return constant };
-    let Constant { scheme, value } = constant;
-    let sample = Rust::new(flight.sample).sample();
-    let [scheme, value] = filter.constant(&sample, flight.rate() as f32, [scheme, value]);
-    Constant { scheme, value }
+impl Flight {
+    /// The scheme of a channel, behind the flight's filter, as a constant in Rust.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such channel, or the scheme has no constant.
+    pub fn constant(&self, channel: usize) -> Result<Constant, FlightError> {
+        let error = |name, kind| FlightError::new(name, kind).of_channel(channel);
+        let settings = self.settings().get(channel);
+        let settings = settings.ok_or_else(|| error("channel", FlightErrorKind::Missing))?;
+        let constant = self.run_time().constant(settings);
+        let constant = constant.map_err(|_| error("scheme", FlightErrorKind::NoConstant))?;
+        let Some(filter) = self.filter else { return Ok(constant) };
+        let sample = Rust::new(self.sample).sample();
+        let own = [constant.scheme, constant.value];
+        let [scheme, value] = filter.constant(&sample, self.rate() as f32, own);
+        Ok(Constant { scheme, value })
+    }
 }

@@ -1,6 +1,9 @@
 //! Sources for firmware: a constant in Rust, a file of parameters, a crate that makes the library for C.
 
+use crate::c_bank::CBank;
 use crate::coding::Coding;
+use crate::flight::Flight;
+use crate::scheme::Scheme;
 use crate::tune::emit;
 use anyhow::{Context, Result, bail};
 use catalogue::run::{Constant, Known, Settings};
@@ -61,6 +64,25 @@ pub fn c_crate(codecs: &[Codec], directory: &Path, spikewire: Option<&Path>) -> 
         .with_context(|| format!("{}: cannot be written", directory.display()))
 }
 
+/// Writes a crate that makes the library for C of a flight's codecs, as [`c_crate`] does, and `flight_bank.h` with its bank
+/// and its writer.
+///
+/// # Errors
+/// Returns an error if the library has no such scheme or sample type, or the directory is there.
+pub fn c_flight(flight: &Flight, directory: &Path, spikewire: Option<&Path>) -> Result<()> {
+    let bank = CBank::new(flight)?;
+    let scheme = Scheme::from(flight.run_time());
+    let declared = bank.codecs().iter();
+    let declared: Vec<String> =
+        declared.map(|(name, own, constant)| declaration(name, scheme, own, constant)).collect();
+    write(directory, &declared, spikewire)
+        .and_then(|()| {
+            fs::create_dir_all(directory.join("include"))?;
+            Ok(fs::write(directory.join("include/flight_bank.h"), bank.header(directory))?)
+        })
+        .with_context(|| format!("{}: cannot be written", directory.display()))
+}
+
 /// The declaration of a codec.
 fn declared(Codec { name, coding }: &Codec) -> Result<String> {
     let Coding { scheme, sample, asked } = coding;
@@ -76,14 +98,18 @@ fn declared(Codec { name, coding }: &Codec) -> Result<String> {
     let known = Known { calibrated: None, first: &[0.0], can_calibrate: false };
     let settings = scheme.resolve(*sample, asked, &known)?;
     scheme.codec(&settings)?; // what makes no sense is told here, not by the compiler
-    let Constant { scheme: kind, value } = scheme.constant(&settings)?;
-    let text = Coding::of_settings(*scheme, &settings).to_toml(&[]);
+    Ok(declaration(name, *scheme, &settings, &scheme.constant(&settings)?))
+}
+
+/// The declaration of a codec of this name and constant.
+fn declaration(name: &str, scheme: Scheme, settings: &Settings, constant: &Constant) -> String {
+    let Constant { scheme: kind, value } = constant;
+    let text = Coding::of_settings(scheme, settings).to_toml(&[]);
     let lines: Vec<String> = text.lines().map(|line| format!("    /// {line}\n")).collect();
-    let text = lines.concat();
-    Ok(format!(
-        "    /// {}, in {sample}.\n    ///\n{text}    {name}: {kind} {{\n        constant {value};\n    }}\n",
-        info.words
-    ))
+    let (text, words, sample) = (lines.concat(), scheme.info().words, settings.sample);
+    format!(
+        "    /// {words}, in {sample}.\n    ///\n{text}    {name}: {kind} {{\n        constant {value};\n    }}\n"
+    )
 }
 
 fn write(directory: &Path, declared: &[String], spikewire: Option<&Path>) -> Result<()> {

@@ -1,0 +1,117 @@
+//! A flight's file on the laptop: its channels out of a recording, and the values of its frames.
+
+use crate::coding::Coding;
+use crate::events::{Item, LinkTally, Values};
+use crate::input::{Chunk, InputOptions, Source};
+use crate::scheme::Scheme;
+use crate::values;
+use anyhow::Result;
+use spikewire::link::Received;
+use spikewire_flight::{Filtering, FlightError};
+
+pub use spikewire_flight::{Channel, Filter, Flight, Parts, rust};
+
+impl Coding {
+    /// The scheme of a flight, with the parameters of all its channels.
+    pub fn of_flight(flight: &Flight) -> Self {
+        let scheme = Scheme::from(flight.run_time());
+        Self { scheme, sample: flight.sample, asked: flight.asked_of_all() }
+    }
+}
+
+/// The recording of these options, of which a flight's channels are read.
+pub fn input(flight: &Flight, options: &InputOptions) -> InputOptions {
+    let mut own = options.clone();
+    own.channel.columns = flight.channels.iter().map(|own| own.source.clone()).collect();
+    own
+}
+
+/// A recording as a flight's sender has it: in counts, and filtered.
+pub(crate) struct Sampled<'a> {
+    flight: &'a Flight,
+    source: Box<dyn Source>,
+    filters: Vec<Filtering>,
+}
+
+impl<'a> Sampled<'a> {
+    pub(crate) fn new(flight: &'a Flight, source: Box<dyn Source>) -> Result<Self, FlightError> {
+        Ok(Self { flight, source, filters: flight.filters()? })
+    }
+}
+
+impl Source for Sampled<'_> {
+    fn next(&mut self, chunk: &mut Chunk) -> Result<()> {
+        self.source.next(chunk)?;
+        for (column, channel) in chunk.columns.iter_mut().zip(&self.flight.channels) {
+            column.iter_mut().for_each(|value| *value *= channel.counts);
+        }
+        for (column, filter) in chunk.columns.iter_mut().zip(&mut self.filters) {
+            column.iter_mut().for_each(|value| *value = filter(*value));
+        }
+        Ok(())
+    }
+
+    fn names(&self) -> Vec<&str> {
+        self.source.names()
+    }
+
+    fn origin(&self) -> &[(&'static str, String)] {
+        self.source.origin()
+    }
+
+    fn notes(&self) -> &[String] {
+        self.source.notes()
+    }
+}
+
+/// Makes the receiver of a flight, whose values are in the channels' units, and passes it to `then`.
+///
+/// # Errors
+/// Returns an error of `then`.
+pub fn with_receiver<'a>(
+    flight: &'a Flight,
+    then: impl FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a,
+) -> Result<()> {
+    let slot_ticks = Some(flight.slot_ticks()).filter(|ticks| *ticks > 0);
+    let scheme = Scheme::from(flight.run_time());
+    values::with_receiver(scheme, flight.sample, flight.settings(), slot_ticks, move |values| {
+        then(Box::new(InUnits { flight, values }))
+    })
+}
+
+/// Values in the channels' units, from those in counts.
+struct InUnits<'a, 'b> {
+    flight: &'a Flight,
+    values: Box<dyn Values + 'b>,
+}
+
+impl InUnits<'_, '_> {
+    fn divide(&self, items: &mut [Item]) {
+        let neurons = self.flight.neurons();
+        for item in items {
+            if let Item::Value { address, value, .. } = item
+                && let Some(channel) = self.flight.channels.get(usize::from(*address) / neurons)
+            {
+                *value /= channel.counts;
+            }
+        }
+    }
+}
+
+impl Values for InUnits<'_, '_> {
+    fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>) {
+        let known = items.len();
+        self.values.apply(received, items);
+        self.divide(&mut items[known..]);
+    }
+
+    fn finish(&mut self, items: &mut Vec<Item>) {
+        let known = items.len();
+        self.values.finish(items);
+        self.divide(&mut items[known..]);
+    }
+
+    fn count(&self, tally: &mut LinkTally) {
+        self.values.count(tally);
+    }
+}
