@@ -1,5 +1,10 @@
 //! Advice on a recording: the character of each channel, and the scheme that suits it.
 
+mod bank;
+mod flown;
+
+pub use bank::BankAdvice;
+
 use crate::brief::{brief, short};
 use crate::events::{Format, Item};
 use crate::look::{Look, Verdict, known_unit};
@@ -48,6 +53,9 @@ pub struct AdviseRequest {
     /// The frequency up to which the control loop acts that is to fly on the code, in Hz, a quarter of the rate at most. Codes that are too late for it, or
     /// that fall behind the signal, are not advised.
     pub loop_bandwidth: Option<f64>,
+    /// Percent of the frames that the link loses, 0 to 10. With a loop, codes are not advised that a simulated drone did
+    /// not fly on well at this loss.
+    pub frame_loss: f64,
     /// Core of the measured table that tells instructions.
     pub core: String,
     /// Number of settings of each scheme and channel to score, 1 or more.
@@ -62,6 +70,9 @@ impl AdviseRequest {
     /// Settings of each scheme and channel to score unless said otherwise.
     pub const EVALUATIONS: usize = 300;
 
+    /// Percent of the frames that are lost unless said otherwise.
+    pub const FRAME_LOSS: f64 = 1.0;
+
     /// Asks for advice on recordings, in `f32`, for a fifth of the deviation.
     pub fn new(recordings: Vec<Recording>) -> Self {
         Self {
@@ -70,6 +81,7 @@ impl AdviseRequest {
             max_rmse: None,
             max_latency: None,
             loop_bandwidth: None,
+            frame_loss: Self::FRAME_LOSS,
             core: "M4F".to_owned(),
             evaluations: Self::EVALUATIONS,
             seconds: None,
@@ -99,6 +111,17 @@ pub struct Advice {
     sample: SampleType,
     #[serde(skip)]
     core: String,
+    /// Whether other channels are to share its scheme.
+    #[serde(skip)]
+    is_one_of_many: bool,
+}
+
+/// What a search of one scheme on one channel came to.
+enum Tuning {
+    /// Settings within the error.
+    Reached(Candidate),
+    /// The reason that there are none, behind the scheme's name.
+    Missed(String),
 }
 
 #[derive(Debug, Serialize)]
@@ -117,6 +140,13 @@ struct Candidate {
 pub fn advise(request: &AdviseRequest, watch: &Watch) -> Result<Vec<Advice>> {
     if request.evaluations == 0 {
         bail!("`evaluations` 0 must be above 0");
+    }
+    let most = flown::LOSSES[flown::LOSSES.len() - 1];
+    if !(0.0..=most).contains(&request.frame_loss) {
+        bail!(
+            "`frame_loss` {} must be 0 to {most} percent: more was not flown",
+            request.frame_loss
+        );
     }
     costs::core(&request.core)?;
     let end = request.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
@@ -185,13 +215,14 @@ impl Advice {
             others: Vec::new(),
             is_cut_short: false,
             raw_bytes_per_second: recording.rate.map(|rate| rate * bytes),
+            is_one_of_many: request.recordings.len() > 1,
             sample: request.sample,
             core: costs::core(&request.core).unwrap_or_default(),
             look,
         })
     }
 
-    /// Tunes a scheme for a moment.
+    /// Tunes a scheme for a moment, unless it is known not to fly.
     fn consider(
         &mut self,
         request: &AdviseRequest,
@@ -199,6 +230,31 @@ impl Advice {
         recording: &Recording,
         budget: &Budget,
     ) -> Result<()> {
+        let flown = flown::flown(scheme.name()).filter(|_| self.loop_latency.is_some());
+        let objection = flown.and_then(|own| own.objection(request.frame_loss));
+        let tuning = match objection {
+            Some(words) => Tuning::Missed(words),
+            None => self.tuned(request, scheme, recording, &Asked::default(), budget)?,
+        };
+        match tuning {
+            Tuning::Reached(candidate) => {
+                self.is_cut_short |= candidate.row.is_cut_short;
+                self.reaching.push(candidate);
+            }
+            Tuning::Missed(words) => self.others.push(format!("{} {words}", scheme.name())),
+        }
+        Ok(())
+    }
+
+    /// Tunes a scheme for a moment, with these parameters fixed.
+    fn tuned(
+        &self,
+        request: &AdviseRequest,
+        scheme: Scheme,
+        recording: &Recording,
+        fixed: &Asked,
+        budget: &Budget,
+    ) -> Result<Tuning> {
         /// A chance difference between blocks is no failure.
         const MARGIN: f64 = 1.25;
         let (train, held_out) = cut(recording, HoldOut { blocks: 10, part: 0.3 })?;
@@ -207,16 +263,13 @@ impl Advice {
         let latencies = [request.max_latency, self.loop_latency].into_iter().flatten();
         let limits = Limits { latency: latencies.reduce(f64::min), ..Limits::default() };
         let goal = Goal::MostEfficient(self.max_rmse);
-        let core = self.core.clone();
-        let known = (goal, &limits, core.as_str());
-        let problem = Problem::new(scheme, request.sample, &Asked::default(), &cut.train, known);
+        let known = (goal, &limits, self.core.as_str());
+        let problem = Problem::new(scheme, request.sample, fixed, &cut.train, known);
         let method = Method { seed: request.seed, free_taps: false };
         let found = search(&problem, method, budget);
-        self.is_cut_short |= found.is_cut_short;
-        let Some(best) = &found.best else {
-            self.others.push(format!("{} cannot be built", scheme.name()));
-            return Ok(());
-        };
+        let cut_short = if found.is_cut_short { ", its search cut short" } else { "" };
+        let missed = |words: String| Ok(Tuning::Missed(words + cut_short));
+        let Some(best) = &found.best else { return missed("cannot be built".to_owned()) };
         if !best.is_allowed() {
             let what = match best.excess.first() {
                 Some(excess) if excess.limit == Limit::Latency => {
@@ -229,23 +282,18 @@ impl Advice {
                 ),
             };
             let ends = found.ends.iter().map(|end| format!(" ({})", end.words()));
-            let what = what + &ends.collect::<String>();
-            self.others.push(format!("{} {what}", scheme.name()));
-            return Ok(());
+            return missed(what + &ends.collect::<String>());
         }
         let row = Row::new(&problem, &cut, &found, best, None)?;
         if let Some(held_out) = row.held_out.filter(|own| own.rmse > MARGIN * self.max_rmse) {
-            self.others.push(format!(
-                "{} reaches it where it is tuned only: {} on held-out blocks",
-                scheme.name(),
+            return missed(format!(
+                "reaches it where it is tuned only: {} on held-out blocks",
                 short(held_out.rmse)
             ));
-            return Ok(());
         }
         let steep = Steep::new(scheme, recording, &row.settings).filter(|own| own.part() > STEEP);
         if let Some(steep) = steep.filter(|_| self.loop_latency.is_some()) {
-            self.others.push(format!("in a loop {}", steep.words()));
-            return Ok(());
+            return missed(format!("falls behind in a loop: {}", steep.words()));
         }
         let options = row.settings.to_asked(scheme.info());
         let trial = Trial::new(scheme, &options, problem.sample, recording)?;
@@ -253,8 +301,13 @@ impl Advice {
             Some(rate) => Some(link_bytes(&trial, rate)? * rate / recording.values.len() as f64),
             None => None,
         };
-        self.reaching.push(Candidate { link_bytes_per_second, row, scheme: Some(scheme) });
-        Ok(())
+        Ok(Tuning::Reached(Candidate { link_bytes_per_second, row, scheme: Some(scheme) }))
+    }
+
+    /// The settings of a scheme that reach the error, if some do.
+    fn row(&self, scheme: Scheme) -> Option<&Row> {
+        let own = self.reaching.iter().find(|own| own.scheme == Some(scheme));
+        own.map(|own| &own.row)
     }
 
     /// The fewest bytes first, or events where no rate is known.
@@ -344,8 +397,9 @@ impl Advice {
         } else {
             format!("next: {}", next.join(", "))
         };
+        let take = if self.is_one_of_many { "alone" } else { "take" };
         let mut reasons = vec![
-            format!("  take {} in {sample}: {}", row.scheme, brief(row.settings.entries())),
+            format!("  {take} {} in {sample}: {}", row.scheme, brief(row.settings.entries())),
             format!(
                 "    RMSE {}{held_out}, {:.1} % of the samples without a spike, {} events a second",
                 short(row.tuned_on.rmse),
