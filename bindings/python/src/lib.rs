@@ -7,6 +7,7 @@ mod channel;
 mod coder;
 mod error;
 mod fingerprint;
+mod flight;
 mod library;
 mod link;
 mod stream;
@@ -24,6 +25,8 @@ mod _native {
     use super::coder::{Coder, Fitted};
     #[pymodule_export]
     use super::fingerprint::fingerprint;
+    #[pymodule_export]
+    use super::flight::flight;
     #[pymodule_export]
     use super::info::schemes;
     #[pymodule_export]

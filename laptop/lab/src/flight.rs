@@ -3,11 +3,15 @@
 use crate::coding::Coding;
 use crate::events::{Item, LinkTally, Values};
 use crate::input::{Chunk, InputOptions, Source};
+use crate::look::known_unit;
 use crate::scheme::Scheme;
+use crate::tune::report::Row;
 use crate::values;
-use anyhow::Result;
+use anyhow::{Context, Result, bail};
+use catalogue::run::{Asked, SampleType};
 use spikewire::link::Received;
 use spikewire_flight::{Filtering, FlightError};
+use std::num::NonZeroU16;
 
 pub use spikewire_flight::{Channel, Filter, Flight, Parts, rust};
 
@@ -17,6 +21,49 @@ impl Coding {
         let scheme = Scheme::from(flight.run_time());
         Self { scheme, sample: flight.sample, asked: flight.asked_of_all() }
     }
+}
+
+/// The flight of tuned channels: their name, scheme and settings, in samples of this type and rate. A keyframe comes 20
+/// times a second.
+///
+/// # Errors
+/// Returns an error if there are no channels, they have several schemes or differ in more than numbers, or the rate has
+/// no period in µs.
+pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> Result<Flight> {
+    const KEYFRAMES: f64 = 20.0;
+    let (_, scheme, _) = rows.first().context("there are no channels")?;
+    if rows.iter().any(|(_, own, _)| own != scheme) {
+        bail!("a flight has one scheme for all channels: `scheme` names it");
+    }
+    let channels = rows.iter().map(|(name, scheme, row)| Channel {
+        name: (*name).to_owned(),
+        source: (*name).to_owned(),
+        unit: known_unit(name).unwrap_or_default().to_owned(),
+        counts: 1.0,
+        asked: row.settings.to_asked(scheme.info()),
+    });
+    Ok(Flight::new(Parts {
+        scheme: scheme.info(),
+        sample,
+        period: period(rate)?,
+        keyframe_every: (rate / KEYFRAMES).round().max(1.0) as u32,
+        clock_ppm: CLOCK_PPM,
+        filter: None,
+        shared: Asked::default(),
+        channels: channels.collect(),
+    })?)
+}
+
+/// The largest error of a sender's clock unless somebody knows better, in millionths: more than a crystal's.
+pub(crate) const CLOCK_PPM: u32 = 100;
+
+/// The time from sample to sample, in µs.
+///
+/// # Errors
+/// Returns an error if the link has no such period.
+pub(crate) fn period(rate: f64) -> Result<NonZeroU16> {
+    let period = NonZeroU16::new((1e6 / rate).round().clamp(0.0, 65_535.0) as u16);
+    period.with_context(|| format!("rate {rate} has no period of 1 µs to 65 535 µs"))
 }
 
 /// The recording of these options, of which a flight's channels are read.

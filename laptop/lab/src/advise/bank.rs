@@ -3,7 +3,7 @@
 use super::flown::{self, Lossy, flown};
 use super::{Advice, AdviseRequest, Candidate, Tuning};
 use crate::brief::{brief, short};
-use crate::flight::{Channel, Flight, Parts};
+use crate::flight::{CLOCK_PPM, Channel, Flight, Parts, period};
 use crate::look::known_unit;
 use crate::scheme::Scheme;
 use crate::trial::{Recording, Trial};
@@ -16,7 +16,6 @@ use catalogue::{Kind, Parameter};
 use serde::Serialize;
 use spikewire::link::{MAX_FRAME, Session, Transmitter};
 use spikewire::{Event, FromItems, Item, Keyframe, Tick};
-use std::num::NonZeroU16;
 
 /// The time from keyframe to keyframe where no frame is lost, in seconds: a receiver that joins late waits so long.
 const ALONE: f64 = 1.0;
@@ -153,13 +152,12 @@ impl BankAdvice {
                 asked,
             });
         }
-        let period = NonZeroU16::new((1e6 / rate).round().clamp(0.0, 65_535.0) as u16);
         let flight = Flight::new(Parts {
             scheme: scheme.info(),
             sample: request.sample,
-            period: period.context("a link has periods of 1 µs to 65 535 µs")?,
+            period: period(rate)?,
             keyframe_every: self.keyframe_every,
-            clock_ppm: 100,
+            clock_ppm: CLOCK_PPM,
             filter: None,
             shared,
             channels: parts,
@@ -222,11 +220,10 @@ impl BankAdvice {
                 "{:.0} events and {:.0} bytes a second, with a keyframe every {} samples",
                 best.events_per_second, best.bytes_per_second, self.keyframe_every
             ));
-            if let Some(error) = best.flown_error {
+            if let Some((error, plain)) = best.flown_error.zip(flown::without_a_code()) {
                 lines.push(format!(
-                    "a simulated drone flies on it with {error}° of error (5.5° without a code) with up to {} % of the \
-                     frames lost",
-                    self.frame_loss
+                    "on {} a simulated drone strayed by {error}° with {} % of its frames lost, without a code by {plain}°",
+                    best.scheme, self.frame_loss
                 ));
             }
             let next = self.banks.iter().skip(1).take(3);

@@ -38,12 +38,20 @@ pub(crate) struct Lossy {
 
 static FLOWN: LazyLock<BTreeMap<&str, Flown>> = LazyLock::new(|| table(PAGE));
 
+/// The name of the flights without a code.
+const CONTROL: &str = "without a code";
+
 /// Percents of lost frames that were flown, from the lowest.
 pub(crate) const LOSSES: [f64; 3] = [0.0, 1.0, 10.0];
 
 /// How the scheme of this name flew; `None` if it was not flown.
 pub(crate) fn flown(scheme: &str) -> Option<&'static Flown> {
     FLOWN.get(scheme)
+}
+
+/// The mean error of the same drone without a code, in degrees.
+pub(crate) fn without_a_code() -> Option<f64> {
+    flown(CONTROL)?.at(0.0)?.error
 }
 
 impl Flown {
@@ -93,7 +101,7 @@ fn table(page: &'static str) -> BTreeMap<&'static str, Flown> {
     let column = |name: &str| head.iter().position(|own| *own == name);
     let lossy = ["keyframes: error, °", "1 %: error", "10 %: error"].map(column);
     let row = |cells: Vec<&'static str>| -> Option<(&'static str, Flown)> {
-        let name = cells.get(1)?.strip_prefix('`')?.strip_suffix('`')?;
+        let name = cells.get(1)?.trim_matches('`');
         let verdict = (*cells.get(column("flies?")?)?).to_owned();
         let number = |place: usize| cells.get(place)?.parse::<f64>().ok();
         let lossy = LOSSES.into_iter().zip(lossy).map(|(frames, error)| {
@@ -107,13 +115,14 @@ fn table(page: &'static str) -> BTreeMap<&'static str, Flown> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Flown, LOSSES, Lossy, flown};
+    use super::{Flown, LOSSES, Lossy, flown, without_a_code};
     use crate::scheme::Scheme;
 
     #[test]
     fn every_scheme_has_flown() {
         for scheme in Scheme::all() {
             let own = flown(scheme.name()).unwrap_or_else(|| panic!("{}", scheme.name()));
+            assert!(without_a_code().is_some_and(|error| error > 1.0));
             assert_eq!(own.lossy.iter().map(|own| own.frames).collect::<Vec<_>>(), LOSSES);
         }
     }
