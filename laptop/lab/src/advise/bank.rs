@@ -27,7 +27,7 @@ pub struct BankAdvice {
     banks: Vec<Bank>,
     /// The schemes that no bank is made of, each with the reason.
     others: Vec<String>,
-    /// The channels that say nothing, each with the reason.
+    /// The names of the channels that nothing is tuned on; their pages say why.
     left_out: Vec<String>,
     /// What neither the log nor the simulator tells.
     unknown: Vec<String>,
@@ -68,7 +68,8 @@ impl BankAdvice {
         let pairs = || advice.iter().zip(&request.recordings);
         let heard: Vec<(&Advice, &Recording)> =
             pairs().filter(|(own, _)| own.objection.is_none()).collect();
-        let left_out = advice.iter().filter_map(|own| own.objection.clone()).collect();
+        let objected = advice.iter().filter(|own| own.objection.is_some());
+        let left_out = objected.map(|own| own.look.name.clone()).collect();
         let mut all = Self {
             banks: Vec::new(),
             others: Vec::new(),
@@ -233,12 +234,14 @@ impl BankAdvice {
                 lines.push(format!("next: {next}"));
             }
         } else {
-            lines.push("no scheme suits all channels".to_owned());
+            lines.push("none: no scheme suits all channels".to_owned());
         }
         if !self.others.is_empty() {
             lines.push(format!("not: {}", self.others.join("; ")));
         }
-        lines.extend(self.left_out.iter().map(|words| format!("left out: {words}")));
+        if !self.left_out.is_empty() {
+            lines.push(format!("left out, as their pages say: {}", self.left_out.join(", ")));
+        }
         lines.extend(self.unknown.iter().map(|words| format!("not known: {words}")));
         lines.into_iter()
     }
