@@ -226,6 +226,14 @@ impl Flight {
         if self.is_slotted() { u32::from(self.period.get()) / self.slots() as u32 } else { 0 }
     }
 
+    /// What a scheme's parameters do not say: the period, and each channel's name, unit and counts, in one text. Two flights
+    /// with the same schemes and another label mean other things by the same spikes.
+    pub fn label(&self) -> String {
+        let channel = |own: &Channel| format!("; {} [{}] {}", own.name, own.unit, own.counts);
+        let channels: String = self.channels.iter().map(channel).collect();
+        format!("{} us{channels}", self.period)
+    }
+
     /// The number of bits that the parts of an event take on the link, and the period.
     pub fn coding(&self) -> Coding {
         let addresses = self.channels.len() * self.neurons();

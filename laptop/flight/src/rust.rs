@@ -12,6 +12,7 @@ use std::fmt::Write;
 /// | `CHANNELS`, `NAMES`, `COUNTS` | number of channels, their names, their counts a unit |
 /// | `Code`, `SCHEMES` | the type of their schemes, and the schemes, in flash |
 /// | `Bank`, `BANK` | the encoders before the first sample |
+/// | `LABEL` | what the schemes do not say of the flight, in a text |
 /// | `PERIOD`, `KEYFRAME_EVERY` | µs from sample to sample; samples from one keyframe to the next |
 /// | `CODING`, `transmitter(session)` | the sender's half of the link |
 /// | `Receiver`, `receiver()` | the receiver's half |
@@ -78,6 +79,10 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
         "The encoders, before the first sample.",
         format!("pub const BANK: Bank = spikewire::Bank::per_channel(SCHEMES){slots};"),
     );
+    item(
+        "What the schemes do not say of the flight: period, names, units, counts.",
+        format!("pub const LABEL: &str = {:?};", flight.label()),
+    );
     item("µs from sample to sample.", format!("pub const PERIOD: u16 = {};", flight.period));
     item(
         "Samples from one keyframe or heartbeat to the next.",
@@ -92,7 +97,7 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     );
     item(
         "The sender's half of the link, before the first frame of this session.",
-        "pub const fn transmitter(session: spikewire::link::Session) -> spikewire::link::Transmitter {\n    \
+        "#[must_use]\npub fn transmitter(session: spikewire::link::Session) -> spikewire::link::Transmitter {\n    \
              spikewire::link::Transmitter::new(CODING, session)\n}"
             .to_owned(),
     );

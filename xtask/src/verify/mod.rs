@@ -58,7 +58,7 @@ const HOST: &[&str] = &["flight-logs", "host-tests", "laptop/cli", "laptop/lab"]
 const LAST: &[&str] =
     &["bindings/c", "bindings/python", "bindings/ros", "fuzz", "laptop/page", "loop"];
 /// What the crate does not use.
-const REST: &[&str] = &["data", "examples", "laptop/catalogue", "memory.x"];
+const REST: &[&str] = &["data", "examples", "laptop/catalogue", "laptop/flight", "memory.x"];
 /// For checks of emulated boards.
 const BOARDS: Apart = &[PROSE, HOST, LAST];
 

@@ -28,6 +28,9 @@ pub mod flight {
     /// The encoders, before the first sample.
     pub const BANK: Bank = spikewire::Bank::per_channel(SCHEMES).with_slot_ticks(500);
 
+    /// What the schemes do not say of the flight: period, names, units, counts.
+    pub const LABEL: &str = "4000 us; gyro_x [rad/s] 939; gyro_y [rad/s] 939; gyro_z [rad/s] 939; accel_x [m/s²] 204; accel_y [m/s²] 204; accel_z [m/s²] 204";
+
     /// µs from sample to sample.
     pub const PERIOD: u16 = 4000;
 
@@ -38,7 +41,8 @@ pub mod flight {
     pub const CODING: spikewire::link::Coding = spikewire::link::Coding::for_channels(54, PERIOD).with_jitter_bits(10);
 
     /// The sender's half of the link, before the first frame of this session.
-    pub const fn transmitter(session: spikewire::link::Session) -> spikewire::link::Transmitter {
+    #[must_use]
+    pub fn transmitter(session: spikewire::link::Session) -> spikewire::link::Transmitter {
         spikewire::link::Transmitter::new(CODING, session)
     }
 
