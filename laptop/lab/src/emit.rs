@@ -132,7 +132,7 @@ fn write(directory: &Path, declared: &[String], spikewire: Option<&Path>) -> Res
     let manifest = MANIFEST
         .replace("@NAME@", &name)
         .replace("@SPIKEWIRE@", &place("")?)
-        .replace("@C@", &place("c")?);
+        .replace("@C@", &place("bindings/c")?);
     let codecs = CODECS.replace("@CODECS@", &declared.concat());
     for (path, text) in [
         ("Cargo.toml", manifest.as_str()),
