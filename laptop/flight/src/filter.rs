@@ -42,6 +42,19 @@ impl Filter {
         for_sample_type!(sample, S => self.started::<S>(sample.one(), rate))
     }
 
+    /// By how many samples of this rate, in Hz, a slow signal comes late.
+    ///
+    /// # Errors
+    /// Returns an error if the corner, the centre or `q` is out of its range at this rate.
+    pub fn delay(self, rate: f32) -> Result<f32, ConfigError> {
+        use spikewire::filter::Filter as _;
+        Ok(match self {
+            Self::FirstOrder { corner } => FirstOrder::<f32>::try_low_pass(corner, rate)?.delay(),
+            Self::LowPass { corner } => Biquad::<f32>::try_low_pass(corner, rate)?.delay(),
+            Self::Notch { centre, q } => Biquad::<f32>::try_notch(centre, rate, q)?.delay(),
+        })
+    }
+
     fn started<S: Sample>(self, one: f64, rate: f32) -> Result<Filtering, ConfigError>
     where
         Biquad<S>: Send + 'static,

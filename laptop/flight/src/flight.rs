@@ -218,7 +218,7 @@ impl Flight {
 
     /// Whether the sub-timestep of a spike carries a value. The spikes of a temporal code are all alike.
     fn is_slotted(&self) -> bool {
-        !self.scheme.has_first_value && self.slots() > 1
+        !self.scheme.has_first_value() && self.slots() > 1
     }
 
     /// The length of a sub-timestep in µs; 0 for codes without.
@@ -244,7 +244,7 @@ impl Flight {
     /// The most events of one sample over all channels, as a receiver keeps them; 0 for codes whose receiver keeps none.
     pub fn events(&self) -> usize {
         let Parts { scheme, channels, .. } = &self.parts;
-        if scheme.has_first_value && !is_timed(scheme) {
+        if scheme.has_first_value() && !is_timed(scheme) {
             return 0;
         }
         let settings = &self.settings[0];

@@ -171,7 +171,7 @@ fn no_sample_has_more_events_than_are_kept() {
         let most = events.chunk_by(|a, b| a.sample == b.sample).map(<[_]>::len).max();
         let most = most.unwrap_or_else(|| panic!("{}: no events", info.name));
         if flight.events() == 0 {
-            assert!(info.has_first_value, "{}", info.name);
+            assert!(info.has_first_value(), "{}", info.name);
         } else {
             assert!(most <= flight.events(), "{}: {most} of {}", info.name, flight.events());
         }

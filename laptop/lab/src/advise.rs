@@ -7,6 +7,7 @@ pub use bank::BankAdvice;
 
 use crate::brief::{brief, short};
 use crate::events::{Format, Item};
+use crate::flight::{Filter, Filtering};
 use crate::look::{Look, Verdict, known_unit};
 use crate::scheme::Scheme;
 use crate::steep::Steep;
@@ -114,6 +115,31 @@ pub struct Advice {
     /// Whether other channels are to share its scheme.
     #[serde(skip)]
     is_one_of_many: bool,
+}
+
+/// A filter that fits the rate of a recording.
+#[derive(Clone, Copy)]
+struct Filtered {
+    filter: Filter,
+    sample: SampleType,
+    rate: f32,
+    /// By how many samples a slow signal comes late.
+    delay: f64,
+}
+
+impl Filtered {
+    /// `None` if its corner does not fit the rate.
+    fn new(filter: Filter, sample: SampleType, rate: f64) -> Option<Self> {
+        let rate = rate as f32;
+        drop(filter.start(sample, rate).ok()?);
+        let delay = filter.delay(rate).ok()?;
+        Some(Self { filter, sample, rate, delay: delay.into() })
+    }
+
+    fn start(&self) -> Filtering {
+        // That it fits was tried.
+        self.filter.start(self.sample, self.rate).unwrap_or_else(|_| Box::new(|sample| sample))
+    }
 }
 
 /// What a search of one scheme on one channel came to.
@@ -230,8 +256,10 @@ impl Advice {
         recording: &Recording,
         budget: &Budget,
     ) -> Result<()> {
-        let flown = flown::flown(scheme.name()).filter(|_| self.loop_latency.is_some());
-        let objection = flown.and_then(|own| own.objection(request.frame_loss));
+        let objection = match self.loop_latency {
+            Some(_) => flown::objection(scheme.name(), request.frame_loss),
+            None => None,
+        };
         let tuning = match objection {
             Some(words) => Tuning::Missed(words),
             None => self.tuned(request, scheme, recording, &Asked::default(), budget)?,
@@ -257,10 +285,21 @@ impl Advice {
     ) -> Result<Tuning> {
         /// A chance difference between blocks is no failure.
         const MARGIN: f64 = 1.25;
+        let filtered = self.filter(scheme, request.sample);
+        let own;
+        let recording = match &filtered {
+            Some(filter) => {
+                own = recording.filtered(|| filter.start());
+                &own
+            }
+            None => recording,
+        };
         let (train, held_out) = cut(recording, HoldOut { blocks: 10, part: 0.3 })?;
         let whole = Stretch::whole(recording);
         let cut = Cut { name: recording.name.clone(), train, held_out, whole };
-        let latencies = [request.max_latency, self.loop_latency].into_iter().flatten();
+        let delay = filtered.map_or(0.0, |own| own.delay);
+        let borne = self.loop_latency.map(|borne| borne - delay);
+        let latencies = [request.max_latency, borne].into_iter().flatten();
         let limits = Limits { latency: latencies.reduce(f64::min), ..Limits::default() };
         let goal = Goal::MostEfficient(self.max_rmse);
         let known = (goal, &limits, self.core.as_str());
@@ -302,6 +341,13 @@ impl Advice {
             None => None,
         };
         Ok(Tuning::Reached(Candidate { link_bytes_per_second, row, scheme: Some(scheme) }))
+    }
+
+    /// The filter before a scheme in a loop: that with which it flew, if it fits the rate.
+    fn filter(&self, scheme: Scheme, sample: SampleType) -> Option<Filtered> {
+        self.loop_latency?;
+        let filter = flown::flown(scheme.name())?.filter()?;
+        Filtered::new(filter, sample, self.look.rate?)
     }
 
     /// The settings of a scheme that reach the error, if some do.

@@ -98,7 +98,7 @@ impl<'a> CBank<'a> {
             )
         });
         // A heartbeat stands for all channels.
-        let has_keyframes = flight.scheme.has_first_value;
+        let has_keyframes = flight.scheme.has_first_value();
         let keyframes = each(&|place, Run { name, channels }, first| {
             if place > 0 && !has_keyframes {
                 return String::new();

@@ -10,10 +10,10 @@ use crate::values;
 use anyhow::{Context, Result, bail};
 use catalogue::run::{Asked, SampleType};
 use spikewire::link::Received;
-use spikewire_flight::{Filtering, FlightError};
+use spikewire_flight::FlightError;
 use std::num::NonZeroU16;
 
-pub use spikewire_flight::{Channel, Filter, Flight, Parts, rust};
+pub use spikewire_flight::{Channel, Filter, Filtering, Flight, Parts, rust};
 
 impl Coding {
     /// The scheme of a flight, with the parameters of all its channels.

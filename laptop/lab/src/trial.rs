@@ -86,6 +86,27 @@ impl Recording {
             .collect()
     }
 
+    /// This recording with a function of each sample in its place, which starts anew in each segment.
+    pub fn filtered<F: FnMut(f64) -> f64>(&self, mut start: impl FnMut() -> F) -> Self {
+        let mut values = self.values.clone();
+        for segment in &self.segments {
+            let mut filter = start();
+            for value in values.get_mut(segment.clone()).into_iter().flatten() {
+                *value = filter(*value);
+            }
+        }
+        Self {
+            values,
+            times: self.times.clone(),
+            segments: self.segments.clone(),
+            rate: self.rate,
+            name: self.name.clone(),
+            rejected: self.rejected,
+            clock: self.clock.clone(),
+            notes: self.notes.clone(),
+        }
+    }
+
     /// Notes for the user on the recording, a line each.
     pub fn notes(&self) -> String {
         let mut notes = self.notes.clone();

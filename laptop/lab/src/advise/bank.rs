@@ -1,9 +1,9 @@
 //! Advice on a whole bank: one scheme for all channels, ranked by what its link takes in flight.
 
-use super::flown::{self, Lossy, flown};
+use super::flown::{Error, Flown, flown};
 use super::{Advice, AdviseRequest, Candidate, Tuning};
 use crate::brief::{brief, short};
-use crate::flight::{CLOCK_PPM, Channel, Flight, Parts, period};
+use crate::flight::{CLOCK_PPM, Channel, Filter, Flight, Parts, period};
 use crate::look::known_unit;
 use crate::scheme::Scheme;
 use crate::trial::{Recording, Trial};
@@ -16,6 +16,9 @@ use catalogue::{Kind, Parameter};
 use serde::Serialize;
 use spikewire::link::{MAX_FRAME, Session, Transmitter};
 use spikewire::{Event, FromItems, Item, Keyframe, Tick};
+
+/// Samples a second of the slowest loop that was flown.
+const SLOWEST: f64 = 250.0;
 
 /// The time from keyframe to keyframe where no frame is lost, in seconds: a receiver that joins late waits so long.
 const ALONE: f64 = 1.0;
@@ -31,8 +34,6 @@ pub struct BankAdvice {
     left_out: Vec<String>,
     /// What neither the log nor the simulator tells.
     unknown: Vec<String>,
-    /// Samples from one keyframe to the next.
-    keyframe_every: u32,
     /// Percent of the frames that are lost.
     frame_loss: f64,
 }
@@ -45,8 +46,10 @@ struct Bank {
     bytes_per_second: f64,
     /// Events a second, over all channels.
     events_per_second: f64,
-    /// The mean error of the simulated drone at that loss, in degrees.
-    flown_error: Option<f64>,
+    /// Samples from one keyframe to the next.
+    keyframe_every: u32,
+    /// How a simulated drone strayed at that loss.
+    flown: Option<Error>,
     channels: Vec<BankChannel>,
     #[serde(skip)]
     flight: Flight,
@@ -75,17 +78,10 @@ impl BankAdvice {
             others: Vec::new(),
             left_out,
             unknown: Vec::new(),
-            keyframe_every: 1,
             frame_loss: request.frame_loss,
         };
         let Some((_, first)) = heard.first() else { return Ok(all) };
         let rate = first.rate.context("a bank needs the rate of its channels")?;
-        let apart = if request.loop_bandwidth.is_some() && request.frame_loss > 0.0 {
-            flown::KEYFRAMES
-        } else {
-            ALONE
-        };
-        all.keyframe_every = (rate * apart).round().max(1.0) as u32;
         all.unknown = unknown(request, rate);
         let schemes: Vec<Scheme> = Scheme::all().collect();
         for (done, scheme) in schemes.iter().enumerate() {
@@ -113,6 +109,9 @@ impl BankAdvice {
         rate: f64,
         watch: &Watch,
     ) -> Result<Result<Bank, String>> {
+        let in_loop = request.loop_bandwidth.is_some();
+        let flown = flown(scheme.name()).filter(|_| in_loop);
+        let apart = flown.and_then(Flown::keyframes).unwrap_or(ALONE);
         let shared = shared(scheme, rows);
         let mut channels = Vec::new();
         let mut parts = Vec::new();
@@ -157,9 +156,9 @@ impl BankAdvice {
             scheme: scheme.info(),
             sample: request.sample,
             period: period(rate)?,
-            keyframe_every: self.keyframe_every,
+            keyframe_every: (rate * apart).round().max(1.0) as u32,
             clock_ppm: CLOCK_PPM,
-            filter: None,
+            filter: heard[0].0.filter(scheme, request.sample).map(|own| own.filter),
             shared,
             channels: parts,
         });
@@ -167,14 +166,14 @@ impl BankAdvice {
             Ok(flight) => flight,
             Err(error) => return Ok(Err(format!("makes no bank: {error}"))),
         };
-        let (events, bytes) = sent(&flight, scheme, heard, request.loop_bandwidth.is_some())?;
+        let (events, bytes) = sent(&flight, scheme, heard, in_loop)?;
         let seconds = heard[0].1.values.len() as f64 / rate;
-        let flown = flown(scheme.name()).and_then(|own| own.at(request.frame_loss));
         Ok(Ok(Bank {
             scheme: scheme.name(),
             bytes_per_second: bytes as f64 / seconds,
             events_per_second: events as f64 / seconds,
-            flown_error: flown.and_then(Lossy::error),
+            keyframe_every: flight.keyframe_every,
+            flown: flown.and_then(|own| own.error(request.frame_loss)),
             channels,
             flight,
         }))
@@ -219,12 +218,18 @@ impl BankAdvice {
             }
             lines.push(format!(
                 "{:.0} events and {:.0} bytes a second, with a keyframe every {} samples",
-                best.events_per_second, best.bytes_per_second, self.keyframe_every
+                best.events_per_second, best.bytes_per_second, best.keyframe_every
             ));
-            if let Some((error, plain)) = best.flown_error.zip(flown::without_a_code()) {
+            if let Some(filter) = best.flight.filter {
+                lines.push(format!("{} before the code: vibration takes spikes", words(filter)));
+            }
+            if let Some(Error { coded, plain }) = best.flown {
                 lines.push(format!(
-                    "on {} a simulated drone strayed by {error}° with {} % of its frames lost, without a code by {plain}°",
-                    best.scheme, self.frame_loss
+                    "on {} a simulated drone strayed by {}°, without a code by {}°, with {} % of its frames lost",
+                    best.scheme,
+                    short(coded),
+                    short(plain),
+                    self.frame_loss
                 ));
             }
             let next = self.banks.iter().skip(1).take(3);
@@ -256,21 +261,26 @@ fn unknown(request: &AdviseRequest, rate: f64) -> Vec<String> {
                 .to_owned(),
         );
     } else {
-        all.push(format!(
-            "how your drone flies on it: another one flew, in a simulator, {} times a second and without vibration",
-            flown::RATE
-        ));
-        if rate < flown::RATE {
+        all.push("how your drone flies on it: others flew, in a simulator".to_owned());
+        if rate < SLOWEST {
             all.push(format!(
-                "how a loop of {} samples a second flies: the log has no more, and none slower than {} was flown",
-                short(rate.round()),
-                flown::RATE
+                "how a loop of {} samples a second flies: none slower than {SLOWEST} was flown",
+                short(rate.round())
             ));
         }
     }
     all.push("what this log did not do: faster turns, a harder landing, other rotors".to_owned());
     all.push("the sensor's counts: samples are in the log's unit, until `counts` and `sample` say otherwise".to_owned());
     all
+}
+
+/// A filter in words.
+fn words(filter: Filter) -> String {
+    match filter {
+        Filter::FirstOrder { corner } => format!("a low-pass of first order at {corner} Hz"),
+        Filter::LowPass { corner } => format!("a low-pass at {corner} Hz"),
+        Filter::Notch { centre, q } => format!("a notch at {centre} Hz with q {q}"),
+    }
 }
 
 /// The parameters that all channels of a bank share, from what suits each: of counts the largest, of words and filters the
@@ -300,7 +310,12 @@ fn sent(
     heard: &[(&Advice, &Recording)],
     in_loop: bool,
 ) -> Result<(usize, usize)> {
-    let trials = heard.iter().zip(&flight.channels).map(|((_, recording), channel)| {
+    let trials = heard.iter().zip(&flight.channels).map(|((advice, recording), channel)| {
+        let filter = advice.filter(scheme, flight.sample);
+        let recording = match &filter {
+            Some(filter) => &recording.filtered(|| filter.start()),
+            None => *recording,
+        };
         Trial::new(scheme, &flight.asked(channel), flight.sample, recording)
     });
     let trials: Vec<Trial> = trials.collect::<Result<_>>()?;
@@ -325,7 +340,7 @@ fn sent(
             Item::Event(Event { tick, address: own.neuron, polarity: own.polarity })
         }));
         if sample.is_multiple_of(flight.keyframe_every.into()) {
-            if scheme.info().has_first_value {
+            if scheme.info().has_first_value() {
                 items.extend((0..).zip(&trials).map(|(channel, trial)| {
                     let value = trial.decoded.get(sample as usize).copied().unwrap_or_default();
                     Item::Keyframe(Keyframe::new(tick, channel * neurons, value as f32))

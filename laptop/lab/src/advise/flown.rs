@@ -1,162 +1,164 @@
-//! How codes flew in a simulated drone: the table of `docs/loop.md`, which `cargo xtask write loop` measures.
+//! How codes flew on simulated drones whose rotors shake the sensor: the flights of `docs/loop.md`, which
+//! `cargo xtask write loop` measures.
 
-use serde::Serialize;
+use crate::flight::Filter;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// The page with the table; a link, so that source packages have it.
-const PAGE: &str = include_str!("loop.md");
+/// The figures; a link, so that source packages have them.
+const FIGURES: &str = include_str!("verdicts.json");
 
-/// The mean error in degrees from which a code flies loosely.
-const LOOSE: f64 = 8.0;
-
-/// The time from keyframe to keyframe in the flights with lost frames, in seconds.
-pub(crate) const KEYFRAMES: f64 = 0.02;
-
-/// Samples a second in those flights.
-pub(crate) const RATE: f64 = 500.0;
-
-/// How a code flew.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Flown {
-    /// The verdict on its flights by itself, in the table's words.
-    verdict: String,
-    /// Its flights with keyframes, by the percent of frames lost.
-    lossy: Vec<Lossy>,
-}
-
-/// The flights of a code with keyframes, and with so many frames lost.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct Lossy {
-    /// Percent of the frames that were lost.
-    frames: f64,
-    /// The mean error in degrees, unless all flights were lost.
-    error: Option<f64>,
-    /// Percent of the flights that were lost.
-    flights: f64,
-}
-
-static FLOWN: LazyLock<BTreeMap<&str, Flown>> = LazyLock::new(|| table(PAGE));
-
-/// The name of the flights without a code.
-const CONTROL: &str = "without a code";
+/// A code flies if its error is within so many times that without a code.
+const WITHIN: f64 = 1.2;
 
 /// Percents of lost frames that were flown, from the lowest.
-pub(crate) const LOSSES: [f64; 3] = [0.0, 1.0, 10.0];
+pub(crate) const LOSSES: [f64; 2] = [1.0, 10.0];
 
-/// How the scheme of this name flew; `None` if it was not flown.
-pub(crate) fn flown(scheme: &str) -> Option<&'static Flown> {
-    FLOWN.get(scheme)
+#[derive(Deserialize)]
+struct Figures {
+    banks: BTreeMap<String, Flown>,
 }
 
-/// The mean error of the same drone without a code, in degrees.
-pub(crate) fn without_a_code() -> Option<f64> {
-    flown(CONTROL)?.at(0.0)?.error
+/// A code's flights in the bank that was found for it by flying.
+#[derive(Deserialize)]
+pub(crate) struct Flown {
+    /// The corner of the low-pass before it, in Hz.
+    low_pass: Option<f32>,
+    /// The time from keyframe to keyframe, in ms.
+    keyframe_ms: Option<f64>,
+    /// One drone and controller, with 1 % of the frames lost.
+    here: Flights,
+    #[serde(rename = "every tenth frame lost")]
+    tenth: Flights,
+    /// Several drones, controllers and rates.
+    everywhere: BTreeMap<String, Flights>,
+}
+
+#[derive(Deserialize)]
+struct Flights {
+    /// The manoeuvres that were lost, one entry a flight.
+    lost: Vec<String>,
+    flights: usize,
+    /// The mean error in degrees, unless all were lost.
+    error: Option<f64>,
+}
+
+/// The mean errors of a simulated drone, in degrees.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Error {
+    /// On the code.
+    pub(crate) coded: f64,
+    /// Without a code.
+    pub(crate) plain: f64,
+}
+
+static BANKS: LazyLock<BTreeMap<String, Flown>> = LazyLock::new(|| {
+    serde_json::from_str::<Figures>(FIGURES).map(|figures| figures.banks).unwrap_or_default()
+});
+
+fn without_a_code() -> Option<&'static Flown> {
+    BANKS.get("without a code")
+}
+
+/// How the scheme of this name flew, if it did.
+pub(crate) fn flown(scheme: &str) -> Option<&'static Flown> {
+    BANKS.get(scheme)
+}
+
+/// Says why the scheme of this name is not to fly with this percent of its frames lost, if so.
+pub(crate) fn objection(scheme: &str, loss: f64) -> Option<String> {
+    let Some(own) = flown(scheme) else {
+        return Some("was not flown with rotors that shake the sensor".to_owned());
+    };
+    let lost = |cells: &[&Flights]| {
+        let lost: usize = cells.iter().map(|own| own.lost.len()).sum();
+        (lost > 0).then(|| (lost, cells.iter().map(|own| own.flights).sum::<usize>()))
+    };
+    let all: Vec<&Flights> = own.everywhere.values().chain([&own.here]).collect();
+    if let Some((lost, of)) = lost(&all) {
+        return Some(format!(
+            "lost {lost} of {of} flights with {} % of its frames lost",
+            LOSSES[0]
+        ));
+    }
+    if loss > LOSSES[0]
+        && let Some((lost, of)) = lost(&[&own.tenth])
+    {
+        return Some(format!(
+            "lost {lost} of {of} flights with {} % of its frames lost",
+            LOSSES[1]
+        ));
+    }
+    let far = own.beside(without_a_code()?)?;
+    (far > WITHIN)
+        .then(|| format!("flew loosely: it strayed {far:.2} times as far as without a code"))
 }
 
 impl Flown {
-    /// Says why it does not fly well at this percent of lost frames, if so.
-    pub(crate) fn objection(&self, loss: f64) -> Option<String> {
-        if self.verdict != "yes" {
-            return Some(match self.verdict.trim_matches('*') {
-                "no" => "does not fly".to_owned(),
-                "loosely" => "flies loosely".to_owned(),
-                "on keyframes" => "flies on its keyframes alone".to_owned(),
-                not => not
-                    .strip_prefix("not: ")
-                    .map_or(format!("flies {not}"), |what| format!("loses {what}")),
-            });
-        }
-        let Lossy { frames, error, flights } = *self.at(loss)?;
-        if flights > 0.0 {
-            return Some(format!(
-                "loses {flights} % of its flights if {frames} % of the frames are lost"
-            ));
-        }
-        error.filter(|error| *error >= LOOSE).map(|error| {
-            format!("flies loosely, with {error}° of error, if {frames} % of the frames are lost")
-        })
+    /// The filter before its code.
+    pub(crate) fn filter(&self) -> Option<Filter> {
+        self.low_pass.map(|corner| Filter::LowPass { corner })
     }
 
-    /// The flights with at least so many percent of the frames lost.
-    pub(crate) fn at(&self, loss: f64) -> Option<&Lossy> {
-        self.lossy.iter().find(|own| own.frames >= loss)
+    /// The time from keyframe to keyframe, in seconds.
+    pub(crate) fn keyframes(&self) -> Option<f64> {
+        self.keyframe_ms.map(|own| own * 1e-3)
     }
-}
 
-impl Lossy {
-    /// The mean error in degrees, unless all flights were lost.
-    pub(crate) fn error(&self) -> Option<f64> {
-        self.error
+    /// The errors with this percent of the frames lost.
+    pub(crate) fn error(&self, loss: f64) -> Option<Error> {
+        let at = |own: &Self| {
+            if loss > LOSSES[0] { own.tenth.error } else { own.here.error }
+        };
+        Some(Error { coded: at(self)?, plain: at(without_a_code()?)? })
     }
-}
 
-/// The rows of a page's table of codes.
-fn table(page: &'static str) -> BTreeMap<&'static str, Flown> {
-    let cells = |line: &'static str| line.split('|').map(str::trim).collect::<Vec<_>>();
-    let mut lines = page.lines().filter(|line| line.starts_with("| "));
-    let Some(head) = lines.by_ref().map(cells).find(|head| head.get(1) == Some(&"code")) else {
-        return BTreeMap::new();
-    };
-    let column = |name: &str| head.iter().position(|own| *own == name);
-    let lossy = ["keyframes: error, °", "1 %: error", "10 %: error"].map(column);
-    let row = |cells: Vec<&'static str>| -> Option<(&'static str, Flown)> {
-        let name = cells.get(1)?.trim_matches('`');
-        let verdict = (*cells.get(column("flies?")?)?).to_owned();
-        let number = |place: usize| cells.get(place)?.parse::<f64>().ok();
-        let lossy = LOSSES.into_iter().zip(lossy).map(|(frames, error)| {
-            let error = error?;
-            Some(Lossy { frames, error: number(error), flights: number(error + 1)? })
-        });
-        Some((name, Flown { verdict, lossy: lossy.collect::<Option<_>>()? }))
-    };
-    lines.map(cells).filter_map(row).collect()
+    /// The mean of the errors over those of another, wherever both flew.
+    fn beside(&self, other: &Self) -> Option<f64> {
+        let ratios = self
+            .everywhere
+            .iter()
+            .filter_map(|(place, own)| Some(own.error? / other.everywhere.get(place)?.error?));
+        let ratios: Vec<f64> = ratios.collect();
+        (!ratios.is_empty()).then(|| ratios.iter().sum::<f64>() / ratios.len() as f64)
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Flown, LOSSES, Lossy, flown, without_a_code};
+    use super::{BANKS, LOSSES, flown, objection, without_a_code};
     use crate::scheme::Scheme;
 
     #[test]
-    fn every_scheme_has_flown() {
-        for scheme in Scheme::all() {
-            let own = flown(scheme.name()).unwrap_or_else(|| panic!("{}", scheme.name()));
-            assert!(without_a_code().is_some_and(|error| error > 1.0));
-            assert_eq!(own.lossy.iter().map(|own| own.frames).collect::<Vec<_>>(), LOSSES);
+    fn what_flew_is_a_scheme_with_figures() {
+        assert!(without_a_code().is_some());
+        let flies = Scheme::all().filter(|own| objection(own.name(), LOSSES[0]).is_none());
+        let mut count = 0;
+        for scheme in flies {
+            let own = flown(scheme.name()).unwrap();
+            let error = own.error(LOSSES[1]).unwrap();
+            assert!(
+                error.plain > 1.0 && error.coded < 3.0 * error.plain,
+                "{} {error:?}",
+                scheme.name()
+            );
+            assert!(own.keyframes().is_some_and(|own| (0.001..2.0).contains(&own)));
+            count += 1;
         }
+        assert!(count > 0 && count < BANKS.len(), "{count} of {}", BANKS.len());
     }
 
     #[test]
-    fn what_does_not_fly_is_told() {
-        let row = |verdict: &str, flown: [(Option<f64>, f64); 3]| Flown {
-            verdict: verdict.to_owned(),
-            lossy: LOSSES
-                .into_iter()
-                .zip(flown)
-                .map(|(frames, (error, flights))| Lossy { frames, error, flights })
-                .collect(),
-        };
-        let good = (Some(5.5), 0.0);
-        for (own, loss, words) in [
-            (row("yes", [good; 3]), 10.0, None),
-            (row("loosely", [good; 3]), 0.0, Some("flies loosely")),
-            (row("**no**", [good; 3]), 0.0, Some("does not fly")),
-            (row("on keyframes", [good; 3]), 0.0, Some("flies on its keyframes alone")),
-            (row("not: steps of 30°", [good; 3]), 0.0, Some("loses steps of 30°")),
-            (row("yes", [good, good, (Some(6.0), 10.0)]), 1.0, None),
-            (
-                row("yes", [good, good, (Some(6.0), 10.0)]),
-                2.0,
-                Some("loses 10 % of its flights if 10 % of the frames are lost"),
-            ),
-            (
-                row("yes", [good, (Some(11.5), 0.0), (None, 100.0)]),
-                1.0,
-                Some("flies loosely, with 11.5° of error, if 1 % of the frames are lost"),
-            ),
-        ] {
-            assert_eq!(own.objection(loss).as_deref(), words, "{own:?}");
+    fn what_was_not_flown_or_was_lost_is_told() {
+        let told = objection("bernoulli", 1.0).unwrap();
+        assert!(told.contains("not flown") || told.contains("lost "), "{told}");
+        for (name, own) in BANKS.iter().filter(|(_, own)| !own.here.lost.is_empty()) {
+            assert!(
+                objection(name, 1.0).unwrap().starts_with("lost "),
+                "{name} {:?}",
+                own.here.lost
+            );
         }
     }
 }
