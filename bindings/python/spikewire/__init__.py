@@ -15,7 +15,7 @@ True
 from . import _native
 from ._bank import EVENTS, Bank
 from ._files import Log, read, read_events, read_ulog, write_events
-from ._filters import low_pass
+from ._filters import Filter, low_pass
 from ._flight import Flight
 from ._laptop import Advice, Picture, Tuned, advise, plot, score, tune
 from ._link import Receiver, Sender
@@ -36,6 +36,7 @@ __all__ = [
     "Decoder",
     "Encoder",
     "Flight",
+    "Filter",
     "Log",
     "Picture",
     "Receiver",

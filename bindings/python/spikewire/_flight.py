@@ -7,6 +7,7 @@ import os
 import numpy as np
 
 from . import _native
+from ._filters import Filter
 from ._link import Receiver, Sender
 
 
@@ -51,12 +52,12 @@ class Flight:
         self.period: int = period
         #: Samples from one keyframe or heartbeat to the next.
         self.keyframe_every: int = keyframe_every
-        #: The filter before every code: its kind, its corner or centre in Hz, and a notch's `q`; ``None`` without.
-        self.filter: tuple[str, float, float | None] | None = filtered
+        #: The filter before every code; ``None`` without.
+        self.filter: Filter | None = _filter(filtered, 1e6 / period)
 
     def sender(self, session: int = 0) -> Sender:
         """The bank and the frames of its events, for six channels; `session` differs at each start."""
-        return Sender(self.schemes, self.period, self.keyframe_every, session)
+        return Sender(self.schemes, self.period, self.keyframe_every, session, self.filter)
 
     def receiver(self) -> Receiver:
         """The decoders, for six channels."""
@@ -64,3 +65,10 @@ class Flight:
 
     def __repr__(self) -> str:
         return f"Flight of {self.scheme}: {', '.join(self.names)}, one sample in {self.period} µs"
+
+
+def _filter(told: tuple[str, float, float | None] | None, rate: float) -> Filter | None:
+    if told is None:
+        return None
+    kind, corner, q = told
+    return Filter.notch(corner, rate, q) if kind == "notch" else getattr(Filter, kind)(corner, rate)

@@ -6,6 +6,7 @@ mod array;
 mod channel;
 mod coder;
 mod error;
+mod filter;
 mod fingerprint;
 mod flight;
 mod library;
@@ -23,6 +24,8 @@ mod _native {
     use super::array::cut;
     #[pymodule_export]
     use super::coder::{Coder, Fitted};
+    #[pymodule_export]
+    use super::filter::Filter;
     #[pymodule_export]
     use super::fingerprint::fingerprint;
     #[pymodule_export]

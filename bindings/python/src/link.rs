@@ -13,6 +13,7 @@ use spikewire::{Bank, FromItems, Item, Recovery, Sample, Scheme, Spike, Tick};
 
 use crate::coder::Coder;
 use crate::error::value;
+use crate::filter::{Chain, Filter};
 
 /// The channels of an inertial sensor.
 const CHANNELS: usize = 6;
@@ -42,13 +43,18 @@ trait Far: Send {
 }
 
 struct NearEnd<P: Scheme + 'static> {
+    filters: [Chain<P::Sample>; CHANNELS],
     bank: Bank<[&'static P; CHANNELS], CHANNELS>,
     one: f64,
 }
 
 impl<P: Scheme<EncoderState: Send> + Sync> Near for NearEnd<P> {
     fn encode(&mut self, tick: Tick, samples: [f64; CHANNELS], items: &mut Vec<Item>) {
-        let samples = samples.map(|sample| P::Sample::from_f64(sample * self.one));
+        let mut filters = self.filters.iter_mut();
+        let samples = samples.map(|sample| {
+            let sample = P::Sample::from_f64(sample * self.one);
+            filters.next().map_or(sample, |filter| filter.next(sample))
+        });
         self.bank.encode(tick, samples, |event| items.push(event.into()));
     }
 
@@ -99,6 +105,7 @@ struct Ends {
 struct Build<'a> {
     scheme: &'static dyn RunTime,
     settings: &'a [Settings; CHANNELS],
+    filters: &'a [Option<Filter>],
     sample: SampleType,
     period: u16,
 }
@@ -125,7 +132,7 @@ impl<S: Sample> Visit<S> for Build<'_> {
 
 impl Build<'_> {
     fn ends<S: Sample, P: Runs<S>, const EVENTS: usize>(self) -> Result<Ends> {
-        let Self { scheme, settings, sample, period } = self;
+        let Self { scheme, settings, filters, sample, period } = self;
         let mut channels = Vec::new();
         for own in settings {
             let built = catalogue::visit::<S, _>(scheme.info().name, own, Boxed)?;
@@ -155,10 +162,13 @@ impl Build<'_> {
         let jitter = if is_slotted { slot_ticks.ilog2() as u8 + 2 } else { 0 };
         let coding = Coding::for_channels((CHANNELS * neurons) as u16, period);
         let one = sample.one();
+        let built = |own: &Option<Filter>| own.as_ref().map_or(Ok(Chain::none()), Filter::build);
+        let filters = filters.iter().map(built).collect::<Result<Vec<_>>>()?;
+        let filters = filters.try_into().map_err(|_| anyhow!("there are {CHANNELS} channels"))?;
         let bank = Bank::per_channel_with_states(channels).with_slot_ticks(slot_ticks);
         let receiver = Receiver::<_, CHANNELS, EVENTS>::per_channel(schemes);
         Ok(Ends {
-            near: Box::new(NearEnd { bank, one }),
+            near: Box::new(NearEnd { filters, bank, one }),
             far: Box::new(FarEnd { receiver: receiver.with_slot_ticks(slot_ticks), one }),
             coding: coding.with_jitter_bits(jitter),
         })
@@ -176,8 +186,8 @@ impl<S: Sample> Visit<S> for Boxed {
     }
 }
 
-/// Both ends of a link whose channels have these schemes, which are of one kind.
-fn ends(coders: &[Coder], period: u16) -> Result<Ends> {
+/// Both ends of a link whose channels have these schemes, which are of one kind, and filters before them.
+fn ends(coders: &[Coder], filters: &[Option<Filter>], period: u16) -> Result<Ends> {
     let [first, ..] = coders else { bail!("a bank has {CHANNELS} channels, not 0") };
     if coders.len() != CHANNELS {
         bail!("a bank has {CHANNELS} channels, not {}", coders.len());
@@ -198,7 +208,7 @@ fn ends(coders: &[Coder], period: u16) -> Result<Ends> {
     }
     let settings = &settings.try_into().map_err(|_| anyhow!("there are {CHANNELS} channels"))?;
     let (scheme, sample) = (first.scheme, first.sample);
-    let build = Build { scheme, settings, sample, period };
+    let build = Build { scheme, settings, filters, sample, period };
     for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.info().name, &settings[0], build))
 }
 
@@ -221,8 +231,15 @@ struct Sending {
 #[pymethods]
 impl Sender {
     #[new]
-    fn new(coders: Vec<Coder>, period: u16, keyframe_every: u64, session: u32) -> PyResult<Self> {
-        let Ends { near, coding, .. } = ends(&coders, period).map_err(|error| value(&error))?;
+    fn new(
+        coders: Vec<Coder>,
+        filters: Vec<Option<Filter>>,
+        period: u16,
+        keyframe_every: u64,
+        session: u32,
+    ) -> PyResult<Self> {
+        let Ends { near, coding, .. } =
+            ends(&coders, &filters, period).map_err(|error| value(&error))?;
         let transmitter = Transmitter::new(coding, Session::counted(session));
         Ok(Self(Mutex::new(Sending {
             near,
@@ -277,7 +294,8 @@ struct Hearing {
 impl Hearer {
     #[new]
     fn new(coders: Vec<Coder>, period: u16) -> PyResult<Self> {
-        let Ends { far, .. } = ends(&coders, period).map_err(|error| value(&error))?;
+        let unfiltered = vec![None; CHANNELS];
+        let Ends { far, .. } = ends(&coders, &unfiltered, period).map_err(|error| value(&error))?;
         Ok(Self(Mutex::new(Hearing { far, reader: Reader::new() })))
     }
 
