@@ -110,7 +110,9 @@ fn a_recording_is_coded_as_the_vehicle_does() {
         })
         .collect();
     // A row's index counts sub-timesteps.
-    coded.iter_mut().for_each(|(index, _)| *index /= 8);
+    for (index, _) in &mut coded {
+        *index /= 8;
+    }
     coded.sort_unstable();
     expected.sort_unstable();
     assert!(coded == expected, "{} events, {} on the vehicle", coded.len(), expected.len());

@@ -145,7 +145,7 @@ impl Filtered {
 /// What a search of one scheme on one channel came to.
 enum Tuning {
     /// Settings within the error.
-    Reached(Candidate),
+    Reached(Box<Candidate>),
     /// The reason that there are none, behind the scheme's name.
     Missed(String),
 }
@@ -267,7 +267,7 @@ impl Advice {
         match tuning {
             Tuning::Reached(candidate) => {
                 self.is_cut_short |= candidate.row.is_cut_short;
-                self.reaching.push(candidate);
+                self.reaching.push(*candidate);
             }
             Tuning::Missed(words) => self.others.push(format!("{} {words}", scheme.name())),
         }
@@ -340,7 +340,8 @@ impl Advice {
             Some(rate) => Some(link_bytes(&trial, rate)? * rate / recording.values.len() as f64),
             None => None,
         };
-        Ok(Tuning::Reached(Candidate { link_bytes_per_second, row, scheme: Some(scheme) }))
+        let scheme = Some(scheme);
+        Ok(Tuning::Reached(Box::new(Candidate { link_bytes_per_second, row, scheme })))
     }
 
     /// The filter before a scheme in a loop: that with which it flew, if it fits the rate.

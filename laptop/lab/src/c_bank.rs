@@ -87,7 +87,7 @@ impl<'a> CBank<'a> {
                      status = sw_{name}_encoder_start(&bank->run_{place}[i], &sw_{name}_codec);\n    }}\n"
             )
         });
-        let codes = each(&|place, Run { name, channels }, _| {
+        let rooms = each(&|place, Run { name, channels }, _| {
             format!("    sw_{name}_code codes_{place}[{channels}];\n")
         });
         let encodes = each(&|place, Run { name, channels }, first| {
@@ -134,7 +134,7 @@ impl<'a> CBank<'a> {
                  sw_status status = SW_OK;\n    size_t i;\n\n{starts}    return status;\n}}\n\n\
              /* Encodes a sample of each channel, taken at this time in microseconds, in the context that encodes. */\n\
              static inline sw_status flight_bank_encode(flight_bank *bank, uint32_t now, const {sample} *samples, sw_queue *queue)\n{{\n    \
-                 sw_status status = SW_OK;\n{codes}{stamp}{encodes}    return status;\n}}\n\n\
+                 sw_status status = SW_OK;\n{rooms}{stamp}{encodes}    return status;\n}}\n\n\
              /* Puts keyframes, or a heartbeat, after the sample of this time: every FLIGHT_KEYFRAME_EVERY samples. */\n\
              static inline sw_status flight_bank_keyframes(flight_bank *bank, uint32_t now, sw_queue *queue)\n{{\n    \
                  sw_status status = SW_OK;\n{stamp}{keyframes}    return status;\n}}\n\n\

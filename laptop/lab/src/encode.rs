@@ -41,7 +41,8 @@ pub fn encode(
     format: Option<Format>,
     output: impl FnOnce() -> Result<Output>,
 ) -> Result<(Output, Vec<String>)> {
-    encode_from(&|| Ok(input.open()?), input, (scheme, sample, parameters), format, output)
+    let open = || input.open().map(|own| -> Box<dyn Source> { own });
+    encode_from(&open, input, (scheme, sample, parameters), format, output)
 }
 
 /// Opens a recording at its start.

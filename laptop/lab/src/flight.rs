@@ -90,10 +90,14 @@ impl Source for Sampled<'_> {
     fn next(&mut self, chunk: &mut Chunk) -> Result<()> {
         self.source.next(chunk)?;
         for (column, channel) in chunk.columns.iter_mut().zip(&self.flight.channels) {
-            column.iter_mut().for_each(|value| *value *= channel.counts);
+            for value in column {
+                *value *= channel.counts;
+            }
         }
         for (column, filter) in chunk.columns.iter_mut().zip(&mut self.filters) {
-            column.iter_mut().for_each(|value| *value = filter(*value));
+            for value in column {
+                *value = filter(*value);
+            }
         }
         Ok(())
     }

@@ -87,6 +87,7 @@ impl Recording {
     }
 
     /// This recording with a function of each sample in its place, which starts anew in each segment.
+    #[must_use]
     pub fn filtered<F: FnMut(f64) -> f64>(&self, mut start: impl FnMut() -> F) -> Self {
         let mut values = self.values.clone();
         for segment in &self.segments {

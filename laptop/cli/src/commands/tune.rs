@@ -270,10 +270,10 @@ impl Tune {
     fn emitted(&self, scheme: Scheme, cut: &Cut, row: &Row) -> Result<String> {
         let comments = row.comments(&cut.name);
         match self.emit {
-            None => Ok(String::new()),
+            // A flight's file is of all channels together.
+            None | Some(Emit::Flight) => Ok(String::new()),
             Some(Emit::Rust) => emit::rust(&comments, &cut.name, scheme, &row.settings),
             Some(Emit::Toml) => Ok(emit::toml(&comments, scheme, &row.settings)),
-            Some(Emit::Flight) => Ok(String::new()), // of all channels together
         }
     }
 

@@ -1,7 +1,7 @@
 //! Advice on a whole bank: one scheme for all channels, ranked by what its link takes in flight.
 
 use super::flown::{Error, Flown, flown};
-use super::{Advice, AdviseRequest, Candidate, Tuning};
+use super::{Advice, AdviseRequest, Tuning};
 use crate::brief::{brief, short};
 use crate::flight::{CLOCK_PPM, Channel, Filter, Flight, Parts, period};
 use crate::look::known_unit;
@@ -90,93 +90,13 @@ impl BankAdvice {
             let rows: Option<Vec<&Row>> = heard.iter().map(|(own, _)| own.row(*scheme)).collect();
             // The channel that no setting suits says why, on its own page.
             let Some(rows) = rows else { continue };
-            match all.bank(request, *scheme, &heard, &rows, rate, watch)? {
+            match bank(request, *scheme, &heard, &rows, rate, watch)? {
                 Ok(bank) => all.banks.push(bank),
                 Err(words) => all.others.push(format!("{} {words}", scheme.name())),
             }
         }
         all.banks.sort_by(|a, b| a.bytes_per_second.total_cmp(&b.bytes_per_second));
         Ok(all)
-    }
-
-    /// The bank of a scheme, or the reason that there is none.
-    fn bank(
-        &self,
-        request: &AdviseRequest,
-        scheme: Scheme,
-        heard: &[(&Advice, &Recording)],
-        rows: &[&Row],
-        rate: f64,
-        watch: &Watch,
-    ) -> Result<Result<Bank, String>> {
-        let in_loop = request.loop_bandwidth.is_some();
-        let flown = flown(scheme.name()).filter(|_| in_loop);
-        let apart = flown.and_then(Flown::keyframes).unwrap_or(ALONE);
-        let shared = shared(scheme, rows);
-        let mut channels = Vec::new();
-        let mut parts = Vec::new();
-        for ((advice, recording), row) in heard.iter().zip(rows) {
-            let own = row.settings.to_asked(scheme.info());
-            let has_shared = shared.iter().all(|(name, value)| own.get(name) == Some(value));
-            let mut asked = own;
-            let mut rmse = row.tuned_on.rmse;
-            if !has_shared {
-                let budget = Budget {
-                    evaluations: request.evaluations,
-                    deadline: None,
-                    is_stopped: watch.is_stopped,
-                    tick: &|_, _| (),
-                };
-                match advice.tuned(request, scheme, recording, &shared, &budget)? {
-                    Tuning::Reached(Candidate { row, .. }) => {
-                        asked = row.settings.to_asked(scheme.info());
-                        rmse = row.tuned_on.rmse;
-                    }
-                    Tuning::Missed(words) => {
-                        let name = &recording.name;
-                        return Ok(Err(format!(
-                            "cannot be shared by all channels: {name} {words}"
-                        )));
-                    }
-                }
-            }
-            shared.iter().for_each(|(name, _)| asked.unset(name));
-            let parameters =
-                brief(&asked.iter().map(|(name, value)| (name, value.clone())).collect::<Vec<_>>());
-            channels.push(BankChannel { name: recording.name.clone(), parameters, rmse });
-            parts.push(Channel {
-                name: recording.name.clone(),
-                source: recording.name.clone(),
-                unit: known_unit(&recording.name).unwrap_or_default().to_owned(),
-                counts: 1.0,
-                asked,
-            });
-        }
-        let flight = Flight::new(Parts {
-            scheme: scheme.info(),
-            sample: request.sample,
-            period: period(rate)?,
-            keyframe_every: (rate * apart).round().max(1.0) as u32,
-            clock_ppm: CLOCK_PPM,
-            filter: heard[0].0.filter(scheme, request.sample).map(|own| own.filter),
-            shared,
-            channels: parts,
-        });
-        let flight = match flight {
-            Ok(flight) => flight,
-            Err(error) => return Ok(Err(format!("makes no bank: {error}"))),
-        };
-        let (events, bytes) = sent(&flight, scheme, heard, in_loop)?;
-        let seconds = heard[0].1.values.len() as f64 / rate;
-        Ok(Ok(Bank {
-            scheme: scheme.name(),
-            bytes_per_second: bytes as f64 / seconds,
-            events_per_second: events as f64 / seconds,
-            keyframe_every: flight.keyframe_every,
-            flown: flown.and_then(|own| own.error(request.frame_loss)),
-            channels,
-            flight,
-        }))
     }
 
     /// The flight advised, if there is one.
@@ -198,7 +118,7 @@ impl BankAdvice {
     pub fn page(&self) -> String {
         let mut text = "the bank\n".to_owned();
         for line in self.lines() {
-            text += &format!("  {line}\n");
+            text = text + "  " + &line + "\n";
         }
         text + "\n"
     }
@@ -250,6 +170,83 @@ impl BankAdvice {
         lines.extend(self.unknown.iter().map(|words| format!("not known: {words}")));
         lines.into_iter()
     }
+}
+
+/// The bank of a scheme, or the reason that there is none.
+fn bank(
+    request: &AdviseRequest,
+    scheme: Scheme,
+    heard: &[(&Advice, &Recording)],
+    rows: &[&Row],
+    rate: f64,
+    watch: &Watch,
+) -> Result<Result<Bank, String>> {
+    let in_loop = request.loop_bandwidth.is_some();
+    let flown = flown(scheme.name()).filter(|_| in_loop);
+    let apart = flown.and_then(Flown::keyframes).unwrap_or(ALONE);
+    let shared = shared(scheme, rows);
+    let mut channels = Vec::new();
+    let mut parts = Vec::new();
+    for ((advice, recording), row) in heard.iter().zip(rows) {
+        let own = row.settings.to_asked(scheme.info());
+        let has_shared = shared.iter().all(|(name, value)| own.get(name) == Some(value));
+        let mut asked = own;
+        let mut rmse = row.tuned_on.rmse;
+        if !has_shared {
+            let budget = Budget {
+                evaluations: request.evaluations,
+                deadline: None,
+                is_stopped: watch.is_stopped,
+                tick: &|_, _| (),
+            };
+            match advice.tuned(request, scheme, recording, &shared, &budget)? {
+                Tuning::Reached(own) => {
+                    asked = own.row.settings.to_asked(scheme.info());
+                    rmse = own.row.tuned_on.rmse;
+                }
+                Tuning::Missed(words) => {
+                    let name = &recording.name;
+                    return Ok(Err(format!("cannot be shared by all channels: {name} {words}")));
+                }
+            }
+        }
+        shared.iter().for_each(|(name, _)| asked.unset(name));
+        let parameters =
+            brief(&asked.iter().map(|(name, value)| (name, value.clone())).collect::<Vec<_>>());
+        channels.push(BankChannel { name: recording.name.clone(), parameters, rmse });
+        parts.push(Channel {
+            name: recording.name.clone(),
+            source: recording.name.clone(),
+            unit: known_unit(&recording.name).unwrap_or_default().to_owned(),
+            counts: 1.0,
+            asked,
+        });
+    }
+    let flight = Flight::new(Parts {
+        scheme: scheme.info(),
+        sample: request.sample,
+        period: period(rate)?,
+        keyframe_every: (rate * apart).round().max(1.0) as u32,
+        clock_ppm: CLOCK_PPM,
+        filter: heard[0].0.filter(scheme, request.sample).map(|own| own.filter),
+        shared,
+        channels: parts,
+    });
+    let flight = match flight {
+        Ok(flight) => flight,
+        Err(error) => return Ok(Err(format!("makes no bank: {error}"))),
+    };
+    let (events, bytes) = sent(&flight, scheme, heard, in_loop)?;
+    let seconds = heard[0].1.values.len() as f64 / rate;
+    Ok(Ok(Bank {
+        scheme: scheme.name(),
+        bytes_per_second: bytes as f64 / seconds,
+        events_per_second: events as f64 / seconds,
+        keyframe_every: flight.keyframe_every,
+        flown: flown.and_then(|own| own.error(request.frame_loss)),
+        channels,
+        flight,
+    }))
 }
 
 /// What neither a log nor the simulator tells.

@@ -39,7 +39,8 @@ pub(crate) struct Flown {
 struct Flights {
     /// The manoeuvres that were lost, one entry a flight.
     lost: Vec<String>,
-    flights: usize,
+    #[serde(rename = "flights")]
+    count: usize,
     /// The mean error in degrees, unless all were lost.
     error: Option<f64>,
 }
@@ -71,22 +72,22 @@ pub(crate) fn objection(scheme: &str, loss: f64) -> Option<String> {
     let Some(own) = flown(scheme) else {
         return Some("was not flown with rotors that shake the sensor".to_owned());
     };
-    let lost = |cells: &[&Flights]| {
-        let lost: usize = cells.iter().map(|own| own.lost.len()).sum();
-        (lost > 0).then(|| (lost, cells.iter().map(|own| own.flights).sum::<usize>()))
+    let missing = |cells: &[&Flights]| {
+        let crashed: usize = cells.iter().map(|own| own.lost.len()).sum();
+        (crashed > 0).then(|| (crashed, cells.iter().map(|own| own.count).sum::<usize>()))
     };
     let all: Vec<&Flights> = own.everywhere.values().chain([&own.here]).collect();
-    if let Some((lost, of)) = lost(&all) {
+    if let Some((crashed, of)) = missing(&all) {
         return Some(format!(
-            "lost {lost} of {of} flights with {} % of its frames lost",
+            "lost {crashed} of {of} flights with {} % of its frames lost",
             LOSSES[0]
         ));
     }
     if loss > LOSSES[0]
-        && let Some((lost, of)) = lost(&[&own.tenth])
+        && let Some((crashed, of)) = missing(&[&own.tenth])
     {
         return Some(format!(
-            "lost {lost} of {of} flights with {} % of its frames lost",
+            "lost {crashed} of {of} flights with {} % of its frames lost",
             LOSSES[1]
         ));
     }
