@@ -5,7 +5,7 @@ use core::hint::black_box;
 
 use super::cursor::Cursor;
 use super::filtered::Filtered;
-use crate::num::{Residual, Tally};
+use crate::num::{HAS_VECTORS, Residual, Tally};
 use crate::{Destination, Sample, Spike};
 
 /// A rate code's rule for when a sample spikes.
@@ -96,7 +96,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
     }
 
     /// [`encode`](Self::encode) as a call. In fixed point each criterion of BSA has its own loop over taps, for each
-    /// of which the compiler would repeat the loop over samples.
+    /// of which the compiler would repeat the loop over samples: flash that only a laptop can spare.
     #[inline(never)]
     fn encode_called(&mut self, rule: &impl Rule<S, F>, sample: S) -> Option<Spike> {
         self.encode(rule, sample)
@@ -112,7 +112,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         let length = samples.len().min(spikes.len());
         if !R::IN_ORDER {
             for (spike, &sample) in spikes.iter_mut().zip(samples) {
-                spike.write(if S::Residual::IS_EXACT {
+                spike.write(if S::Residual::IS_EXACT && !HAS_VECTORS {
                     self.encode_called(rule, sample)
                 } else {
                     self.encode(rule, sample)

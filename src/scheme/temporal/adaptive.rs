@@ -3,7 +3,7 @@
 use super::band::Band;
 use super::doublings;
 use crate::error::{unwrap, within};
-use crate::num::Tally;
+use crate::num::{HAS_VECTORS, Tally};
 use crate::scheme::codec::{Until, decode_copied, encode_each};
 use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
 
@@ -204,7 +204,8 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         Spike::None
     }
 
-    /// The baseline and the pace stay in registers, and while at rest also the band.
+    /// The baseline and the pace stay in registers, and while at rest also the band. A core with vectors predicts the
+    /// branches of [`follow`](Self::follow), and loses by one more.
     #[inline]
     fn encode_slice(
         &self,
@@ -223,7 +224,7 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         let AdaptiveState { mut base, mut pace, .. } = *state;
         let mut band = Band::around(base, self.threshold);
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
-            if pace == Pace::REST && band.holds(sample) {
+            if !HAS_VECTORS && pace == Pace::REST && band.holds(sample) {
                 spike.write(Spike::None);
                 continue;
             }
