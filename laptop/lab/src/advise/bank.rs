@@ -48,6 +48,8 @@ struct Bank {
     events_per_second: f64,
     /// Samples from one keyframe to the next.
     keyframe_every: u32,
+    /// Whether it flew behind a filter that does not fit the rate.
+    lacks_filter: bool,
     /// How a simulated drone strayed at that loss.
     flown: Option<Error>,
     channels: Vec<BankChannel>,
@@ -142,6 +144,12 @@ impl BankAdvice {
             ));
             if let Some(filter) = best.flight.filter {
                 lines.push(format!("{} before the code: vibration takes spikes", words(filter)));
+            }
+            if best.lacks_filter {
+                lines.push(format!(
+                    "not known: how it flies without the low-pass that {} flew with, which does not fit the rate",
+                    best.scheme
+                ));
             }
             if let Some(Error { coded, plain }) = best.flown {
                 lines.push(format!(
@@ -243,6 +251,7 @@ fn bank(
         bytes_per_second: bytes as f64 / seconds,
         events_per_second: events as f64 / seconds,
         keyframe_every: flight.keyframe_every,
+        lacks_filter: flown.is_some_and(|own| own.filter().is_some()) && flight.filter.is_none(),
         flown: flown.and_then(|own| own.error(request.frame_loss)),
         channels,
         flight,
