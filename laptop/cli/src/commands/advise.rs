@@ -1,7 +1,7 @@
 //! `spikewire advise`: what a log is like, and which scheme suits each of its channels.
 
 use crate::inputs::InputOptions;
-use crate::options::{answer, spelled, tell, whole};
+use crate::options::{answer, tell, whole};
 use crate::stop::Stop;
 use anyhow::{Result, bail};
 use catalogue::run::SampleType;
@@ -117,8 +117,7 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
         let told = serde_json::json!({ "channels": all, "bank": bank });
         answer(serde_json::to_string_pretty(&told)? + "\n")?;
     } else {
-        let pages =
-            all.iter().map(Advice::page).chain(bank.as_ref().map(|bank| spelled(&bank.page())));
+        let pages = all.iter().map(Advice::page).chain(bank.as_ref().map(BankAdvice::page));
         answer(pages.collect::<String>())?;
     }
     if let (Some(path), [advice], [recording]) =
@@ -137,8 +136,7 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
             bail!("no scheme suits all channels: no flight is written")
         };
         let mut output = Output::open(Some(path), &options.input.input)?;
-        let comments: Vec<String> = bank.comments().iter().map(|own| spelled(own)).collect();
-        output.write_all(flight.to_toml(&comments).as_bytes())?;
+        output.write_all(flight.to_toml(&bank.comments()).as_bytes())?;
         output.finish()?;
     }
     Ok(())

@@ -263,7 +263,7 @@ fn unknown(request: &AdviseRequest, rate: f64) -> Vec<String> {
     let mut all = Vec::new();
     if request.loop_bandwidth.is_none() {
         all.push(
-            "whether a control loop flies on it: `loop_bandwidth` leaves out what does not"
+            "whether a control loop flies on it: given its bandwidth, codes that do not fly are left out"
                 .to_owned(),
         );
     } else {
@@ -276,7 +276,7 @@ fn unknown(request: &AdviseRequest, rate: f64) -> Vec<String> {
         }
     }
     all.push("what this log did not do: faster turns, a harder landing, other rotors".to_owned());
-    all.push("the sensor's counts: samples are in the log's unit, until `counts` and `sample` say otherwise".to_owned());
+    all.push("the sensor's counts: samples are in the log's unit, until `counts` and `sample` in the file say otherwise".to_owned());
     all
 }
 
