@@ -149,11 +149,5 @@ impl fmt::Display for FlightErrorKind {
     }
 }
 
-impl error::Error for FlightError {
-    fn source(&self) -> Option<&(dyn error::Error + 'static)> {
-        match &self.kind {
-            FlightErrorKind::File(error) => Some(error),
-            _ => None,
-        }
-    }
-}
+/// Its text says all that led to it.
+impl error::Error for FlightError {}
