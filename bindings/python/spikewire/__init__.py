@@ -19,6 +19,7 @@ from ._filters import Filter, low_pass
 from ._flight import Flight
 from ._laptop import Advice, Picture, Tuned, advise, plot, score, tune
 from ._link import Receiver, Sender
+from ._network import Network, Ran
 from ._scheme import Scheme
 from ._schemes import *  # noqa: F403: the classes, by the catalogue
 from ._schemes import NAMES, schemes
@@ -38,7 +39,9 @@ __all__ = [
     "Filter",
     "Flight",
     "Log",
+    "Network",
     "Picture",
+    "Ran",
     "Receiver",
     "Scheme",
     "Sender",

@@ -59,12 +59,11 @@ impl Filter {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let sample: SampleType = sample.parse().map_err(|error| value(&error))?;
         let samples = samples.as_array();
-        let filtered: Result<Vec<f64>> =
-            for_sample_type!(sample, S => self.build::<S>().map(|mut chain| {
-                let one = sample.one();
-                let next = |&x: &f64| chain.next(S::from_f64(x * one)).to_f64() / one;
-                samples.iter().map(next).collect()
-            }));
+        let filtered: Result<Vec<f64>> = for_sample_type!(sample, S => self.build::<S>().map(|mut chain| {
+            let one = sample.one();
+            let next = |&x: &f64| chain.next(S::from_f64(x * one)).to_f64() / one;
+            samples.iter().map(next).collect()
+        }));
         Ok(PyArray1::from_vec(py, filtered.map_err(|error| value(&error))?))
     }
 }

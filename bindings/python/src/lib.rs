@@ -11,6 +11,7 @@ mod fingerprint;
 mod flight;
 mod library;
 mod link;
+mod network;
 mod stream;
 mod values;
 mod work;
@@ -38,6 +39,8 @@ mod _native {
     };
     #[pymodule_export]
     use super::link::{Hearer, Sender};
+    #[pymodule_export]
+    use super::network::Network;
     #[pymodule_export]
     use super::stream::{Decoder, Encoder};
     use pyo3::prelude::*;
