@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{file, good, ran, refused};
+use common::{file, good, ran, refused, spikewire};
 use spikewire::link::{MAX_FRAME, Session};
 use spikewire::{FromItems, Item, Put, Tick};
 use std::fs;
@@ -80,6 +80,46 @@ fn what_a_flight_sends_is_heard_by_its_file() {
         "",
         &["--flight needs --from link"],
     );
+}
+
+/// A filter is part of what both ends must have in common.
+mod shaken {
+    include!("../../flight/tests/flights/sf.rs");
+}
+
+#[test]
+fn a_filtered_flight_is_heard_and_no_other_flight_is_exact() {
+    use fixed::types::I8F8;
+    use shaken::flight;
+    let (mut bank, mut transmitter) = (flight::BANK, flight::transmitter(Session::counted(3)));
+    let (mut bytes, mut items, mut buffer) = (Vec::new(), Vec::new(), [0; MAX_FRAME]);
+    for place in 0..SAMPLES {
+        let tick = Tick::from_micros(place as u64 * u64::from(flight::PERIOD));
+        let sample = I8F8::from_num((place as f64 * 0.02).sin());
+        bank.encode_into(tick, [sample; flight::CHANNELS], Items(&mut items));
+        if place % flight::KEYFRAME_EVERY as usize == 0 {
+            bank.keyframe_into(tick, Items(&mut items));
+        }
+        let mut source = FromItems(items.drain(..));
+        while let Some(frame) = transmitter.next_frame(&mut source, &mut buffer).unwrap() {
+            bytes.extend_from_slice(frame);
+        }
+    }
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("captured.bytes");
+    fs::write(&path, bytes).unwrap();
+    let exact = |file: &str| {
+        let heard = spikewire(&format!("listen {} --flight {file}", path.display()), "");
+        heard.output.lines().filter(|line| line.ends_with(",exact")).count()
+    };
+    let own = "../flight/tests/flights/sf.toml";
+    assert!(exact(own) > 100, "{}", exact(own));
+    let text = fs::read_to_string(own).unwrap();
+    for (from, to) in [("80.0", "70.0"), ("0.1 }", "0.2 }"), ("q8.8", "q7.9")] {
+        let other = directory.path().join("other.toml");
+        fs::write(&other, text.replace(from, to)).unwrap();
+        assert_eq!(exact(&other.display().to_string()), 0, "{to}");
+    }
 }
 
 /// A table in the channels' units is coded in counts, as the vehicle does.

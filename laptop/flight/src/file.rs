@@ -7,7 +7,7 @@
 //! | `sample` | `f32`, `i16`, `i32` or fixed point such as `q8.8` | `f32` |
 //! | `period` | µs from sample to sample, 1 to 65 535 | required |
 //! | `keyframe_every` | samples from one keyframe or heartbeat to the next | as many as 50 ms hold |
-//! | `clock_ppm` | the largest error of the sender's clock, in millionths | 100 |
+//! | `clock_ppm` | by how many millionths the time from sample to sample may differ from `period`, 0 to 100 000 | 20 000, a sensor's own oscillator |
 //! | `parameters` | those that all channels share | none |
 //! | `filter` | `kind` (`low-pass`, `first-order`, `notch`), `corner` or `centre` in Hz, a notch's `q` | none |
 //! | `[[channel]]` | `name`; `source`, the column or `topic.field`; `unit`; `counts` a unit; `parameters` of its own | `source`: the name; `counts`: 1 |
@@ -30,6 +30,9 @@ const VERSION: u32 = 1;
 
 /// The time between keyframes unless given, in µs.
 const KEYFRAMES: u32 = 50_000;
+
+/// The error of a clock unless given, in millionths: that of a sensor's own oscillator.
+const CLOCK_PPM: u32 = 20_000;
 
 /// Parameters by name, each with its place.
 type Given = BTreeMap<Spanned<String>, Spanned<toml::Value>>;
@@ -146,7 +149,7 @@ impl Flight {
             sample,
             period,
             keyframe_every: file.keyframe_every.map_or(usual, Spanned::into_inner),
-            clock_ppm: file.clock_ppm.map_or(100, Spanned::into_inner),
+            clock_ppm: file.clock_ppm.map_or(CLOCK_PPM, Spanned::into_inner),
             filter: file.filter.map(Spanned::into_inner),
             shared,
             channels,

@@ -4,7 +4,7 @@ use catalogue::for_sample_type;
 use catalogue::run::SampleType;
 use serde::{Deserialize, Serialize};
 use spikewire::filter::{Biquad, FirstOrder};
-use spikewire::{ConfigError, Sample};
+use spikewire::{ConfigError, Fingerprint, Sample};
 
 /// A filter before the code of every channel, by its corner or centre in Hz.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,6 +40,19 @@ impl Filter {
     /// Returns an error if the corner, the centre or `q` is out of its range at this rate.
     pub fn start(self, sample: SampleType, rate: f32) -> Result<Filtering, ConfigError> {
         for_sample_type!(sample, S => self.started::<S>(sample.one(), rate))
+    }
+
+    /// The fingerprint of the filter before samples of this type and rate, in Hz, which a link's is made from.
+    ///
+    /// # Errors
+    /// Returns an error if the corner, the centre or `q` is out of its range at this rate.
+    pub fn fingerprint(self, sample: SampleType, rate: f32) -> Result<Fingerprint, ConfigError> {
+        use spikewire::filter::Filter as _;
+        for_sample_type!(sample, S => Ok(match self {
+            Self::FirstOrder { corner } => FirstOrder::<S>::try_low_pass(corner, rate)?.fingerprint(),
+            Self::LowPass { corner } => Biquad::<S>::try_low_pass(corner, rate)?.fingerprint(),
+            Self::Notch { centre, q } => Biquad::<S>::try_notch(centre, rate, q)?.fingerprint(),
+        }))
     }
 
     /// By how many samples of this rate, in Hz, a slow signal comes late.

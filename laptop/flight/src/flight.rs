@@ -35,7 +35,7 @@ pub struct Parts {
     pub period: NonZeroU16,
     /// The number of samples from one keyframe, or heartbeat, to the next; 1 or more.
     pub keyframe_every: u32,
-    /// The largest error of the sender's clock, in millionths.
+    /// By how many millionths the time from sample to sample may differ from the period, in the sender's ticks.
     pub clock_ppm: u32,
     /// The filter before every channel's code.
     pub filter: Option<Filter>,

@@ -80,7 +80,7 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
         format!("pub const BANK: Bank = spikewire::Bank::per_channel(SCHEMES){slots};"),
     );
     item(
-        "What the schemes do not say of the flight: period, names, units, counts.",
+        "What the schemes do not say of the flight: period, names, units, counts; for `with_label` at both ends.",
         format!("pub const LABEL: &str = {:?};", flight.label()),
     );
     item("µs from sample to sample.", format!("pub const PERIOD: u16 = {};", flight.period));
@@ -96,9 +96,9 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
         ),
     );
     item(
-        "The sender's half of the link, before the first frame of this session.",
+        "The sender's half of the link, before the first frame of this session. Its frames carry the bank's fingerprint.",
         "#[must_use]\npub fn transmitter(session: spikewire::link::Session) -> spikewire::link::Transmitter {\n    \
-             spikewire::link::Transmitter::new(CODING, session)\n}"
+             spikewire::link::Transmitter::new(CODING, session).with_fingerprint(BANK.fingerprint())\n}"
             .to_owned(),
     );
     item(
@@ -111,7 +111,8 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     item(
         "The receiver's half of the link, before the first frame.",
         format!(
-            "#[must_use]\npub fn receiver() -> Receiver {{\n    Receiver::per_channel(SCHEMES){slots}\n}}"
+            "#[must_use]\npub fn receiver() -> Receiver {{\n    Receiver::per_channel(SCHEMES){slots}.with_clock_tolerance({})\n}}",
+            flight.clock_ppm
         ),
     );
     let lines = items

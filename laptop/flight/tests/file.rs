@@ -10,7 +10,7 @@ const CHANNEL: &str = "[[channel]]\nname = \"roll\"\nparameters = { threshold = 
 fn a_short_file_has_its_defaults() {
     let flight = Flight::parse(&format!("{HEAD}{CHANNEL}")).unwrap();
     assert_eq!(flight.sample.to_string(), "f32");
-    assert_eq!((flight.keyframe_every, flight.clock_ppm, flight.filter), (25, 100, None));
+    assert_eq!((flight.keyframe_every, flight.clock_ppm, flight.filter), (25, 20_000, None));
     let [channel] = &flight.channels[..] else { panic!("{:?}", flight.channels) };
     assert_eq!((channel.source.as_str(), channel.unit.as_str(), channel.counts), ("roll", "", 1.0));
     assert!((flight.rate() - 500.0).abs() < 1e-9);

@@ -54,8 +54,9 @@ pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> 
     })?)
 }
 
-/// The largest error of a sender's clock unless somebody knows better, in millionths: more than a crystal's.
-pub(crate) const CLOCK_PPM: u32 = 100;
+/// By how many millionths the time from sample to sample may differ from the period unless somebody knows better: as much as
+/// a sensor's own oscillator.
+pub(crate) const CLOCK_PPM: u32 = 20_000;
 
 /// The time from sample to sample, in µs.
 ///
@@ -125,7 +126,10 @@ pub fn with_receiver<'a>(
 ) -> Result<()> {
     let slot_ticks = Some(flight.slot_ticks()).filter(|ticks| *ticks > 0);
     let scheme = Scheme::from(flight.run_time());
-    values::with_receiver(scheme, flight.sample, flight.settings(), slot_ticks, move |values| {
+    let filter = flight.filter.map(|own| own.fingerprint(flight.sample, flight.rate() as f32));
+    let filter = filter.transpose()?;
+    let link = values::Link { slot_ticks, filter };
+    values::with_receiver(scheme, flight.sample, flight.settings(), link, move |values| {
         then(Box::new(InUnits { flight, values }))
     })
 }

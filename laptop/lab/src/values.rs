@@ -21,6 +21,21 @@ const EVENTS: usize = 1 << 14;
 /// A function that uses a receiver.
 type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 
+/// What a sender has beside its schemes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Link {
+    /// The length of its sub-timesteps in µs, if it has some.
+    pub slot_ticks: Option<u32>,
+    /// The fingerprint of the filter before its schemes, if there is one.
+    pub filter: Option<Fingerprint>,
+}
+
+impl From<Option<u32>> for Link {
+    fn from(slot_ticks: Option<u32>) -> Self {
+        Self { slot_ticks, filter: None }
+    }
+}
+
 /// Makes a receiver with these settings, one for each channel, or one for all, and passes it to `then`.
 ///
 /// # Errors
@@ -29,11 +44,12 @@ pub fn with_receiver<'a>(
     scheme: Chosen,
     sample: SampleType,
     settings: &'a [Settings],
-    slot_ticks: Option<u32>,
+    link: impl Into<Link>,
     then: impl FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a,
 ) -> Result<()> {
     let first = settings.first().context("a receiver has at least one channel")?;
-    let visitor = Receive { scheme, sample, settings, slot_ticks, then: Box::new(then) };
+    let link = link.into();
+    let visitor = Receive { scheme, sample, settings, link, then: Box::new(then) };
     for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.name(), first, visitor))
 }
 
@@ -41,7 +57,7 @@ struct Receive<'a> {
     scheme: Chosen,
     sample: SampleType,
     settings: &'a [Settings],
-    slot_ticks: Option<u32>,
+    link: Link,
     then: Then<'a>,
 }
 
@@ -64,7 +80,7 @@ impl<S: Sample> Visit<S> for Receive<'_> {
 impl Receive<'_> {
     /// Makes a receiver of `N` channels for this scheme.
     fn receive<P: Scheme + 'static, const N: usize, const EVENTS: usize>(self) -> Result<()> {
-        let Self { scheme, sample, settings, slot_ticks, then } = self;
+        let Self { scheme, sample, settings, link: Link { slot_ticks, filter }, then } = self;
         if settings.len() > N {
             bail!(
                 "{} channels are too many: {} has 1 to {N} channels",
@@ -99,7 +115,10 @@ impl Receive<'_> {
             kind: kind(sample),
             outside: 0,
             slot_ticks: slot_ticks.unwrap_or(0),
-            schemes: started.iter().map(Scheme::fingerprint).collect(),
+            schemes: started
+                .iter()
+                .map(|own| filter.map_or(own.fingerprint(), |filter| filter.and(own.fingerprint())))
+                .collect(),
             has_exact: false,
             decoded: Vec::new(),
         }))
