@@ -1,13 +1,15 @@
 //! A recording to a file of spikes, in constant memory.
 
+use crate::Result;
 use crate::bank::Bank;
 use crate::fit::{Fit, explained, rounding};
+use crate::input::TableKind;
 use crate::input::{Chunk, Clock, InputOptions, Source};
 use crate::output::Output;
 use crate::scheme::Scheme;
 use crate::spikes::{Format, Header, Record, Recorder, Summary, Writer, unrecorded};
-use anyhow::{Result, bail};
-use catalogue::run::{Asked, Calibrated, Event, Known, SET, SampleType, Settings};
+use crate::tune::RequestKind;
+use catalogue::run::{Asked, Calibrated, Event, Known, SET, SampleType, Settings, Words};
 
 /// Encodes channels of a recording into an output, which is opened once all else is known to be good. Without a format
 /// it is a table. Returns the output, to be finished, and what a user should know, a line each.
@@ -21,17 +23,16 @@ pub fn encode(
     parameters: &Asked,
     format: Option<Format>,
     output: impl FnOnce() -> Result<Output>,
-) -> Result<(Output, Vec<String>)> {
+) -> Result<(Output, Vec<Words>)> {
     parameters.check(scheme.info())?;
     if format.is_some() && input.is_stdin() {
-        bail!("messages tell the signal's range, which standard input gives only at its end");
+        return Err(RequestKind::RangeAtEnd.into());
     }
     let calibrated = match scheme.needs_signal(parameters) {
         None => None,
-        Some(what) if input.is_stdin() => bail!(
-            "{} calibrates over the whole signal, which standard input gives only once; give {what}",
-            scheme.name()
-        ),
+        Some(needs) if input.is_stdin() => {
+            return Err(RequestKind::ReadOnce { scheme: scheme.name(), needs }.into());
+        }
         Some(_) => Some(calibrate(input, sample)?),
     };
 
@@ -41,7 +42,7 @@ pub fn encode(
     let rows = chunk.finite_rows();
     let (count, firsts) = (rows.len(), chunk.kept(&rows));
     if firsts.first().is_none_or(Vec::is_empty) {
-        bail!("{}: none of the {count} samples is finite", input.name());
+        return Err(TableKind::NoneFinite { samples: count }.at(input.name()));
     }
     let mut told = Vec::new();
     let mut channels: Vec<Settings> = Vec::new();
@@ -50,7 +51,7 @@ pub fn encode(
         let known = Known { calibrated, first, can_calibrate: !input.is_stdin() };
         let own = parameters.channel(scheme.info(), channel, firsts.len())?;
         let settings = scheme.resolve(sample, &own, &known);
-        let settings = settings.map_err(|error| explained(error, sample, first))?;
+        let settings = settings.map_err(|error| explained(error.into(), sample, first))?;
         told.extend(rounding(&settings).filter(|rounding| !told.contains(rounding)));
         channels.push(settings);
     }
@@ -100,14 +101,14 @@ pub fn encode(
     count(&events);
     let (output, summary) = writer.finish(&mut events)?;
     let mut notes = source.notes().to_vec();
-    notes.append(&mut told);
-    notes.extend(report(&summary, &clock, header.channels.len()));
+    let lines = report(&summary, &clock, header.channels.len());
+    notes.extend(told.into_iter().chain(lines).map(Words::from));
     for (((fit, settings), spikes), name) in
         fits.iter().zip(&header.channels).zip(spikes).zip(source.names())
     {
         let of = if fits.len() > 1 { format!("{name}: ") } else { String::new() };
         for note in fit.notes(settings, spikes).lines() {
-            notes.push(format!("{of}{note}"));
+            notes.push(format!("{of}{note}").into());
         }
     }
     Ok((output, notes))

@@ -9,6 +9,7 @@ pub mod brief;
 pub mod coding;
 pub mod emit;
 pub mod encode;
+mod error;
 pub mod events;
 pub mod fit;
 #[cfg(feature = "frames")]
@@ -34,3 +35,5 @@ pub mod trial;
 pub mod tune;
 pub mod values;
 pub mod watch;
+
+pub use error::{Error, ErrorKind, Place, Result, Spot};

@@ -1,7 +1,8 @@
 //! The cost of settings on a flight controller, from the measured counts.
 
+use super::RequestKind;
+use crate::Result;
 use crate::scheme::Scheme;
-use anyhow::{Result, bail};
 use catalogue::run::{SampleType, Settings};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -86,7 +87,10 @@ pub fn core(name: &str) -> Result<String> {
     let known = cores();
     match known.iter().find(|core| core.eq_ignore_ascii_case(name)) {
         Some(core) => Ok((*core).to_owned()),
-        None => bail!("no measured core `{name}`; there are {}", known.join(", ")),
+        None => {
+            let (name, cores) = (name.to_owned(), known.join(", "));
+            Err(RequestKind::NoCore { name, cores }.into())
+        }
     }
 }
 
