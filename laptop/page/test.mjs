@@ -155,6 +155,7 @@ const steps = {
       await page.fill("#parameter-threshold", given);
       await settled(page);
       assert.match(await page.textContent("#error"), words);
+      assert.equal(await page.getAttribute("#parameter-threshold", "aria-invalid"), "true");
     }
     await page.click("#reset");
     await settled(page);

@@ -16,6 +16,7 @@ from . import _native
 from ._bank import EVENTS, Bank
 from ._files import Log, read, read_events, read_ulog, write_events
 from ._filters import low_pass
+from ._native import Error
 from ._laptop import Advice, Picture, Tuned, advise, plot, score, tune
 from ._link import Receiver, Sender
 from ._scheme import Scheme
@@ -34,6 +35,7 @@ __all__ = [
     "Bank",
     "Decoder",
     "Encoder",
+    "Error",
     "Log",
     "Picture",
     "Receiver",

@@ -23,6 +23,8 @@ mod _native {
     #[pymodule_export]
     use super::coder::{Coder, Fitted};
     #[pymodule_export]
+    use super::error::Error;
+    #[pymodule_export]
     use super::fingerprint::fingerprint;
     #[pymodule_export]
     use super::info::schemes;

@@ -104,22 +104,26 @@ struct Build<'a> {
 }
 
 impl<S: Sample> Visit<S> for Build<'_> {
-    type Output = Ends;
+    type Output = Result<Ends>;
 
-    fn visit<P: Runs<S>>(self, _: P, _: P::EncoderState) -> Result<Ends> {
-        self.ends::<S, P, EVENTS>()
+    fn visit<P: Runs<S>>(
+        self,
+        _: P,
+        _: P::EncoderState,
+    ) -> catalogue::run::Result<Result<Ends>> {
+        Ok(self.ends::<S, P, EVENTS>())
     }
 
     fn visit_steps<P: Runs<S> + Scheme<Code = Spike>>(
         self,
         _: P,
         _: P::EncoderState,
-    ) -> Result<Ends> {
-        if P::RECOVERY == Recovery::Keyframe {
+    ) -> catalogue::run::Result<Result<Ends>> {
+        Ok(if P::RECOVERY == Recovery::Keyframe {
             self.ends::<S, P, 0>()
         } else {
             self.ends::<S, P, CHANNELS>()
-        }
+        })
     }
 }
 
@@ -171,7 +175,11 @@ struct Boxed;
 impl<S: Sample> Visit<S> for Boxed {
     type Output = Box<dyn Any>;
 
-    fn visit<P: Runs<S>>(self, scheme: P, start: P::EncoderState) -> Result<Box<dyn Any>> {
+    fn visit<P: Runs<S>>(
+        self,
+        scheme: P,
+        start: P::EncoderState,
+    ) -> catalogue::run::Result<Box<dyn Any>> {
         Ok(Box::new((scheme, start)))
     }
 }
@@ -199,7 +207,7 @@ fn ends(coders: &[Coder], period: u16) -> Result<Ends> {
     let settings = &settings.try_into().map_err(|_| anyhow!("there are {CHANNELS} channels"))?;
     let (scheme, sample) = (first.scheme, first.sample);
     let build = Build { scheme, settings, sample, period };
-    for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.info().name, &settings[0], build))
+    for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.info().name, &settings[0], build))?
 }
 
 /// The frames of a sample, and for each of its events the address and whether it went up.
@@ -222,7 +230,7 @@ struct Sending {
 impl Sender {
     #[new]
     fn new(coders: Vec<Coder>, period: u16, keyframe_every: u64, session: u32) -> PyResult<Self> {
-        let Ends { near, coding, .. } = ends(&coders, period).map_err(|error| value(&error))?;
+        let Ends { near, coding, .. } = ends(&coders, period).map_err(value)?;
         let transmitter = Transmitter::new(coding, Session::counted(session));
         Ok(Self(Mutex::new(Sending {
             near,
@@ -277,7 +285,7 @@ struct Hearing {
 impl Hearer {
     #[new]
     fn new(coders: Vec<Coder>, period: u16) -> PyResult<Self> {
-        let Ends { far, .. } = ends(&coders, period).map_err(|error| value(&error))?;
+        let Ends { far, .. } = ends(&coders, period).map_err(value)?;
         Ok(Self(Mutex::new(Hearing { far, reader: Reader::new() })))
     }
 

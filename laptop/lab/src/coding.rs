@@ -3,7 +3,7 @@
 use crate::error::At;
 use crate::scheme::Scheme;
 use crate::tune::RequestKind;
-use crate::{Error, Place, Result};
+use crate::{Error, Place, Result, Spot};
 use catalogue::Parameter;
 use catalogue::run::{Asked, Given, Known, SET, SampleType, Settings, Value};
 use std::fs;
@@ -47,7 +47,7 @@ impl Coding {
         let mut table = table.into_inner();
         let place = |at: usize| {
             let before = text.bytes().take(at).filter(|byte| *byte == b'\n').count();
-            Place::line(file, 1 + before as u64)
+            Place::spot(file, Spot::Entry(1 + before as u64))
         };
         let mut word = |name: &str| match table.remove(name) {
             None => Ok(None),
@@ -217,7 +217,7 @@ mod tests {
             ("scheme = \"sf\"\n\nwindow = 5", "own.toml:3: sf takes no `window`"),
             (
                 "scheme = \"sf\"\n# half\nthreshold = \"abc\"",
-                "own.toml:3: threshold = \"abc\": is not a number",
+                "own.toml:3: threshold = \"abc\" is not a number",
             ),
             (
                 "scheme = \"sf\"\nthreshold = [\"a\"]",

@@ -41,6 +41,8 @@ pub struct Place {
 pub enum Spot {
     /// In a line, counted from 1.
     Line(u64),
+    /// At an entry of a file of settings, by its line.
+    Entry(u64),
     /// In a column of a line, counted from 1.
     Column(u64, String),
     /// At a byte.
@@ -146,6 +148,12 @@ impl Error {
         self
     }
 
+    /// The error about a setting.
+    #[must_use]
+    pub fn about(self, parameter: Given) -> Self {
+        Self { parameter: Some(parameter), ..self }
+    }
+
     /// The error of a file that cannot be opened.
     pub(crate) fn open(file: impl Into<String>, error: io::Error) -> Self {
         Self { parameter: None, place: Place::of(file), kind: ErrorKind::Open(error) }
@@ -160,6 +168,14 @@ impl Error {
     #[must_use]
     pub fn without_subject(self) -> Self {
         Self { parameter: None, ..self }
+    }
+
+    /// The file that it is about, by the name that it was given.
+    pub fn file(&self) -> Option<&str> {
+        match &self.kind {
+            ErrorKind::Log(LogKind::Damaged { error }) => Some(&error.file),
+            _ => self.place.file.as_deref(),
+        }
     }
 
     /// The setting that would go on over it, if there is one.
@@ -261,10 +277,12 @@ impl From<Spot> for Place {
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(file) = &self.file {
-            write!(f, "{file}: ")?;
+            f.write_str(file)?;
+            f.write_str(if matches!(self.spot, Some(Spot::Entry(_))) { ":" } else { ": " })?;
         }
         match &self.spot {
             None => Ok(()),
+            Some(Spot::Entry(line)) => write!(f, "{line}: "),
             Some(Spot::Line(line)) => write!(f, "line {line}: "),
             Some(Spot::Column(line, column)) => write!(f, "line {line}, column {column}: "),
             Some(Spot::Byte(byte)) => write!(f, "byte {byte}: "),

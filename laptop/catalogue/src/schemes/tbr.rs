@@ -33,7 +33,7 @@ impl Entry for Scheme {
                 "factor",
                 Kind::Number,
                 Unit::None,
-                "in the place of `threshold`: the differences' mean and this many of their standard deviations",
+                "in the place of a threshold: the differences' mean and this many of their standard deviations",
             )
             .with_paper(Paper::Text("0.5"))
             .with_example("0.5")
@@ -42,7 +42,7 @@ impl Entry for Scheme {
                 "magnitudes",
                 Kind::Flag,
                 Unit::None,
-                "with `factor`: mean and deviation of the differences' magnitudes",
+                "with a factor: mean and deviation of the differences' magnitudes",
             )
             .unrecorded(),
             Parameter::new(

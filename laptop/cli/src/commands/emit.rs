@@ -50,7 +50,7 @@ pub(crate) fn run(options: &Emit) -> Result<()> {
     let codecs = params.iter().map(|path| {
         Ok(Codec { name: codec_name(path)?, coding: Coding::read(&path.to_string_lossy())? })
     });
-    c_crate(&codecs.collect::<Result<Vec<_>>>()?, output, spikewire.as_deref())
+    Ok(c_crate(&codecs.collect::<Result<Vec<_>>>()?, output, spikewire.as_deref())?)
 }
 
 /// The file's name without its ending, as C takes it: `gyro-x.toml` gives `gyro_x`.

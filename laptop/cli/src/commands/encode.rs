@@ -1,7 +1,8 @@
 //! `spikewire encode`: a recording to spikes, in constant memory.
 
 use crate::inputs::InputOptions;
-use crate::options::{Coding, tell_each};
+use crate::options::Coding;
+use crate::words::tell;
 use anyhow::Result;
 use clap::Args;
 use lab::encode::encode;
@@ -42,6 +43,6 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
     let open = || Output::open(output.as_deref(), &input.input);
     let (output, notes) = encode(&input.to_lab(), scheme, sample, &parameters, format, open)?;
     output.finish()?;
-    tell_each(&notes);
+    tell(&notes);
     Ok(())
 }

@@ -115,7 +115,7 @@ impl FromStr for Delimiter {
             ("tab" | "\\t", _) => Ok(Self(b'\t')),
             ("space", _) => Ok(Self(b' ')),
             (_, &[byte]) if byte.is_ascii() && !byte.is_ascii_alphanumeric() => Ok(Self(byte)),
-            _ => Err(TableKind::Delimiter.of(Given::new("delimiter", text))),
+            _ => Err(TableKind::Delimiter.into()),
         }
     }
 }

@@ -2,7 +2,6 @@
 
 use super::TableKind;
 use crate::Error;
-use catalogue::run::Given;
 use speedate::{DateTime, Duration};
 use std::fmt;
 use std::str::FromStr;
@@ -58,7 +57,7 @@ impl FromStr for TimeUnit {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self, Error> {
-        Self::of_word(text).ok_or_else(|| TableKind::TimeUnit.of(Given::new("time_unit", text)))
+        Self::of_word(text).ok_or_else(|| TableKind::TimeUnit.into())
     }
 }
 

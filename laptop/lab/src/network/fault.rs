@@ -11,6 +11,9 @@ kinds! {
     pub enum NetworkKind by spell of subject {
         Fault { what: String } => ("{what}"),
         NoNetwork => ("neither a NIR graph, which is an HDF5 file, nor a network in JSON"),
+        NotAnInput { word: String } => ("`{word}` is not the number of an input"),
+        NoInputs { inputs: usize, step: Vec<u16> } =>
+            ("the network has {inputs} inputs, and not those of {step:?}"),
         NoStep => (
             "its time constants are in seconds, and neither {} nor the recording's times say how long a step is",
             spell("dt")
