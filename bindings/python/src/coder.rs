@@ -42,7 +42,7 @@ impl Coder {
             bail!("{} needs {what} before it has seen a signal; fit(x) finds it", self.name());
         }
         let known = Known { calibrated, first, can_calibrate: calibrated.is_some() };
-        self.scheme.resolve(self.sample, &self.asked, &known)
+        Ok(self.scheme.resolve(self.sample, &self.asked, &known)?)
     }
 
     /// The same for one channel of so many, which may have values of its own.
@@ -193,8 +193,7 @@ impl Coder {
     fn fit(&self, py: Python, samples: Samples, is_shared: bool) -> PyResult<Fitted> {
         let lanes = samples.lanes();
         let is_wide = is_wide(lanes.len(), lanes.iter().map(Lane::len).sum());
-        work::detached(py, is_wide, || self.fitted(&lanes, is_shared))?
-            .map_err(value)
+        work::detached(py, is_wide, || self.fitted(&lanes, is_shared))?.map_err(value)
     }
 
     /// It with draws that start from this seed.
@@ -231,7 +230,7 @@ impl Coder {
         let channels = first.iter().enumerate().map(|(place, own)| {
             let past = vec![own.unwrap_or_default(); self.looks_back()];
             let settings = self.channel(place, first.len())?.settle(&past, None)?;
-            self.scheme.codec_from(&settings, settings.first_value().or(*own))
+            Ok(self.scheme.codec_from(&settings, settings.first_value().or(*own))?)
         });
         let channels = channels.collect::<Result<Vec<_>>>();
         Ok(Decoder::new(channels.map_err(value)?, self.sample))
@@ -256,7 +255,7 @@ impl Fitted {
 
     fn start(&self, channel: usize) -> Result<Codec> {
         let settings = self.settings(channel)?.with_stream(channel as u64);
-        self.scheme.codec_from(&settings, settings.first_value())
+        Ok(self.scheme.codec_from(&settings, settings.first_value())?)
     }
 
     /// How many cells a row has.
@@ -295,7 +294,7 @@ pub(crate) fn is_wide(channels: usize, numbers: usize) -> bool {
 impl Fitted {
     /// How many neurons and sub-timesteps a channel has.
     fn shape(&self) -> PyResult<(usize, usize)> {
-        let shape = self.settings(0).and_then(|settings| self.scheme.shape(settings));
+        let shape = self.settings(0).and_then(|settings| Ok(self.scheme.shape(settings)?));
         shape.map(|shape| (shape.neurons, shape.slots)).map_err(value)
     }
 

@@ -27,8 +27,8 @@ use spikewire::{Event, Polarity, Tick};
 use crate::coder::Coder;
 use crate::error::value;
 use crate::values::{self, Given as Keyword, keywords};
-use catalogue::run::Given;
 use crate::work;
+use catalogue::run::Given;
 
 /// A tuned scheme: its name, its keywords, its figures as JSON, and what a file says of it.
 type Told = (&'static str, Vec<(&'static str, Keyword)>, String, Vec<String>);
@@ -90,7 +90,9 @@ pub(crate) fn score(
     rate: Option<f64>,
 ) -> PyResult<String> {
     let recording = recording("x", &values, rate)?;
-    let scored = || Ok(serde_json::to_string(&Figures::of(&recording, &coder.trial(&recording)?))?);
+    let scored = || -> Result<_> {
+        Ok(serde_json::to_string(&Figures::of(&recording, &coder.trial(&recording)?))?)
+    };
     work::detached(py, true, scored)?.map_err(value)
 }
 
@@ -116,7 +118,7 @@ pub(crate) fn plot<'py>(
         let text = format!("samples {start}..{end}: two samples at least, within 0..{samples}");
         return Err(PyValueError::new_err(text));
     }
-    let drawn = || {
+    let drawn = || -> Result<_> {
         let trials = coders.iter().map(|coder| coder.trial(&recording));
         let trials = trials.collect::<Result<Vec<_>>>()?;
         let unit = unit.as_deref().or_else(|| known_unit(&recording.name));
@@ -378,8 +380,7 @@ pub(crate) fn read_events<'py>(
     bytes: &[u8],
     format: &str,
 ) -> PyResult<Events<'py>> {
-    let read =
-        py.detach(|| lab::events::read_events(bytes, format)).map_err(value)?;
+    let read = py.detach(|| lab::events::read_events(bytes, format)).map_err(value)?;
     let ticks: Vec<u32> = read.events.iter().map(|event| event.tick.micros()).collect();
     let addresses: Vec<u16> = read.events.iter().map(|event| event.address).collect();
     let are_up: Vec<bool> =

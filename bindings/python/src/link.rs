@@ -106,11 +106,7 @@ struct Build<'a> {
 impl<S: Sample> Visit<S> for Build<'_> {
     type Output = Result<Ends>;
 
-    fn visit<P: Runs<S>>(
-        self,
-        _: P,
-        _: P::EncoderState,
-    ) -> catalogue::run::Result<Result<Ends>> {
+    fn visit<P: Runs<S>>(self, _: P, _: P::EncoderState) -> catalogue::run::Result<Result<Ends>> {
         Ok(self.ends::<S, P, EVENTS>())
     }
 
@@ -264,7 +260,7 @@ impl Sender {
         let mut buffer = [0; MAX_FRAME];
         while let Some(frame) = transmitter
             .next_frame(&mut source, &mut buffer)
-            .map_err(|error| value(&anyhow!("{error}")))?
+            .map_err(|error| value(anyhow!("{error}")))?
         {
             frames.append(PyBytes::new(py, frame))?;
         }

@@ -20,7 +20,7 @@ use crate::work;
 type Pickled = (String, Vec<Vec<f64>>, Vec<Vec<u8>>);
 
 fn pickled(waiting: &[Vec<f64>], running: &[Codec]) -> Result<Pickled> {
-    let states = running.iter().map(Codec::state).collect::<Result<_>>()?;
+    let states = running.iter().map(Codec::state).collect::<Result<_, _>>()?;
     Ok((env!("CARGO_PKG_VERSION").to_owned(), waiting.to_vec(), states))
 }
 
@@ -236,7 +236,7 @@ fn decode_all<T: Copy + Default>(
     rows: usize,
     as_values: impl Fn(&mut [T]) -> Values<'_>,
 ) -> Result<Vec<T>> {
-    let before = channels.iter().map(Codec::state).collect::<Result<Vec<_>>>()?;
+    let before = channels.iter().map(Codec::state).collect::<Result<Vec<_>, _>>()?;
     let own = (cells.len() / channels.len().max(1)).max(1);
     let mut values = vec![T::default(); rows * channels.len()];
     let mut rooms = values.chunks_mut(rows.max(1));
