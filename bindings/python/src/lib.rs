@@ -61,7 +61,7 @@ mod info {
             own.set_item("words", info.words)?;
             own.set_item("good_for", info.good_for)?;
             own.set_item("is_signed", info.is_signed)?;
-            own.set_item("has_first_value", info.has_first_value)?;
+            own.set_item("has_first_value", info.has_first_value())?;
             let parameters = info.parameters.iter().map(|own| parameter(py, own));
             own.set_item("parameters", parameters.collect::<PyResult<Vec<_>>>()?)?;
             all.append(own)?;

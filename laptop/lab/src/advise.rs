@@ -372,7 +372,7 @@ impl Advice {
                 short(self.max_rmse)
             ),
         ];
-        if best.scheme.is_some_and(|scheme| scheme.info().drifts) {
+        if best.scheme.is_some_and(|scheme| scheme.info().drifts()) {
             reasons.push(format!("    ! {DRIFTS}"));
         }
         reasons
@@ -391,7 +391,7 @@ pub fn link_bytes(trial: &Trial, rate: f64) -> Result<f64> {
     let tick = |sample: u64| Tick::from_micros((sample as f64 * period) as u64);
     let (mut next, every) = (0, rate.round().max(1.0) as u64);
     for event in &trial.events {
-        while trial.scheme.info().has_first_value && event.sample >= next {
+        while trial.scheme.info().has_first_value() && event.sample >= next {
             let value = trial.decoded.get(next as usize).copied().unwrap_or_default();
             writer
                 .write(&Item::Keyframe(Keyframe::new(tick(next), 0, value as f32)), &mut bytes)?;

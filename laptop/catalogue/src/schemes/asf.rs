@@ -16,7 +16,7 @@ impl Entry for Scheme {
         words: "adaptive step forward",
         good_for: "following a signal that jumps, with one spike a sample at most",
         is_signed: true,
-        has_first_value: true,
+        steps: Steps::Held,
         colour: [0x5b, 0x8c, 0x3a],
         parameters: &[
             Parameter::threshold(

@@ -17,8 +17,7 @@ impl Entry for Scheme {
         words: "adaptive temporal contrast",
         good_for: "changes whose size differs much between rest and flight; drifts",
         is_signed: true,
-        has_first_value: true,
-        drifts: true,
+        steps: Steps::Drifting,
         colour: [0x6c, 0x8f, 0xc9],
         parameters: &[
             Parameter::threshold(

@@ -16,8 +16,7 @@ impl Entry for Scheme {
         words: "moving window (MW)",
         good_for: "changes against a short past; drifts",
         is_signed: true,
-        has_first_value: true,
-        drifts: true,
+        steps: Steps::Drifting,
         is_drawn: true,
         colour: [0xe0, 0x85, 0x3a],
         parameters: &[

@@ -16,8 +16,7 @@ impl Entry for Scheme {
         words: "temporal contrast (TBR)",
         good_for: "changes, as an event camera sees them; drifts",
         is_signed: true,
-        has_first_value: true,
-        drifts: true,
+        steps: Steps::Drifting,
         is_drawn: true,
         colour: [0x3b, 0x6f, 0xb6],
         parameters: &[

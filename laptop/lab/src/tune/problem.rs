@@ -238,7 +238,7 @@ impl<'a> Problem<'a> {
         let mut latency = 0;
         let mut settings = self.settings(options, sample, first)?;
         // Only the first samples of a stretch can change them.
-        let is_shared = !self.scheme.info().has_first_value;
+        let is_shared = !self.scheme.info().has_first_value();
         for (place, stretch) in stretches.iter().enumerate() {
             if place > 0 && !is_shared {
                 settings = self.settings(options, sample, stretch)?;

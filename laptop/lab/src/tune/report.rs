@@ -142,7 +142,7 @@ impl Row {
                 found.evaluated
             ));
         }
-        if problem.scheme.info().drifts {
+        if problem.scheme.info().drifts() {
             flags.push(DRIFTS.to_owned());
         }
         flags.extend(found.ends.iter().map(End::words));
