@@ -30,7 +30,7 @@ pub(crate) fn of(error: &Error) -> String {
 
 /// An error of the library, with the command that helps.
 pub(crate) fn of_lab(error: &lab::Error) -> String {
-    let help = match error.kind {
+    let help = match *error.kind {
         ErrorKind::Log(LogKind::NeedsChannel) => "; `spikewire info` lists them",
         ErrorKind::Setting(catalogue::run::ErrorKind::NeedsSignal { .. }) => {
             "; `spikewire tune` writes it"

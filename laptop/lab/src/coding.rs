@@ -51,13 +51,14 @@ impl Coding {
         };
         let mut word = |name: &str| match table.remove(name) {
             None => Ok(None),
-            Some(value) => match value.get_ref() {
-                DeValue::String(word) => Ok(Some((word.to_string(), value.span().start))),
-                _ => {
-                    let given = Given::listed(name, None::<&str>);
-                    Err(RequestKind::NotAText.of(given).at(place(value.span().start)))
+            Some(value) => {
+                let at = value.span().start;
+                if let DeValue::String(word) = value.get_ref() {
+                    return Ok(Some((word.to_string(), at)));
                 }
-            },
+                let given = Given::listed(name, None::<&str>);
+                Err(RequestKind::NotAText.of(given).at(place(at)))
+            }
         };
         let Some((name, at)) = word("scheme")? else {
             return Err(RequestKind::NoSchemeNamed.at(file));

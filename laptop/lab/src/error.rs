@@ -24,7 +24,7 @@ pub struct Error {
     /// Where it was found.
     pub place: Place,
     /// The reason.
-    pub kind: ErrorKind,
+    pub kind: Box<ErrorKind>,
 }
 
 /// The place of an error: a file by the name that it was given, and where in it.
@@ -99,7 +99,7 @@ macro_rules! room {
                 Self {
                     parameter: None,
                     place: $crate::Place::default(),
-                    kind: $crate::ErrorKind::$variant(kind),
+                    kind: Box::new($crate::ErrorKind::$variant(kind)),
                 }
             }
         }
@@ -156,12 +156,16 @@ impl Error {
 
     /// The error of a file that cannot be opened.
     pub(crate) fn open(file: impl Into<String>, error: io::Error) -> Self {
-        Self { parameter: None, place: Place::of(file), kind: ErrorKind::Open(error) }
+        Self { parameter: None, place: Place::of(file), kind: Box::new(ErrorKind::Open(error)) }
     }
 
     /// The error of a library.
     pub(crate) fn other(error: impl Into<Box<dyn error::Error + Send + Sync>>) -> Self {
-        Self { parameter: None, place: Place::default(), kind: ErrorKind::Other(error.into()) }
+        Self {
+            parameter: None,
+            place: Place::default(),
+            kind: Box::new(ErrorKind::Other(error.into())),
+        }
     }
 
     /// The reason alone, for a front that has named the setting and its value already.
@@ -172,7 +176,7 @@ impl Error {
 
     /// The file that it is about, by the name that it was given.
     pub fn file(&self) -> Option<&str> {
-        match &self.kind {
+        match &*self.kind {
             ErrorKind::Log(LogKind::Damaged { error }) => Some(&error.file),
             _ => self.place.file.as_deref(),
         }
@@ -180,7 +184,7 @@ impl Error {
 
     /// The setting that would go on over it, if there is one.
     pub fn remedy(&self) -> Option<&'static str> {
-        match &self.kind {
+        match &*self.kind {
             ErrorKind::Table(TableKind::Missing { .. } | TableKind::NotFinite { .. })
             | ErrorKind::Log(LogKind::NotFinite { .. }) => Some("skip_non_finite"),
             ErrorKind::Log(LogKind::Damaged { error }) => error.kind.rest().map(|_| "accept_cut"),
@@ -196,7 +200,7 @@ impl Error {
 
     /// Whether what is written to has been closed by who reads it.
     pub fn is_closed_pipe(&self) -> bool {
-        matches!(&self.kind, ErrorKind::Io(error) if error.kind() == io::ErrorKind::BrokenPipe)
+        matches!(&*self.kind, ErrorKind::Io(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
 }
 
@@ -296,7 +300,7 @@ impl Worded for Error {
     fn word(&self, f: &mut fmt::Formatter<'_>, spell: Spell) -> fmt::Result {
         write!(f, "{}", self.place)?;
         let about = self.parameter.as_ref();
-        match &self.kind {
+        match &*self.kind {
             ErrorKind::Setting(kind) => kind.word_about(f, spell, about),
             ErrorKind::Request(kind) => kind.word_about(f, spell, about),
             ErrorKind::Table(kind) => kind.word_about(f, spell, about),
@@ -327,7 +331,7 @@ impl fmt::Display for Error {
 
 impl error::Error for Error {
     fn source(&self) -> Option<&(dyn error::Error + 'static)> {
-        match &self.kind {
+        match &*self.kind {
             ErrorKind::Open(error) | ErrorKind::Io(error) => Some(error),
             ErrorKind::Other(error) => Some(&**error),
             ErrorKind::Log(LogKind::Damaged { error }) => Some(error),
@@ -339,7 +343,7 @@ impl error::Error for Error {
 impl From<catalogue::run::Error> for Error {
     fn from(error: catalogue::run::Error) -> Self {
         let catalogue::run::Error { parameter, kind } = error;
-        Self { parameter, place: Place::default(), kind: ErrorKind::Setting(kind) }
+        Self { parameter, place: Place::default(), kind: Box::new(ErrorKind::Setting(kind)) }
     }
 }
 
@@ -357,7 +361,7 @@ impl From<flight_logs::Error> for Error {
 
 impl From<io::Error> for Error {
     fn from(error: io::Error) -> Self {
-        Self { parameter: None, place: Place::default(), kind: ErrorKind::Io(error) }
+        Self { parameter: None, place: Place::default(), kind: Box::new(ErrorKind::Io(error)) }
     }
 }
 

@@ -43,7 +43,7 @@ pub(crate) fn of(error: &Error) -> Value {
 
 /// An error of the library; the page holds out what it does, and no box changes that.
 fn of_lab(error: &lab::Error) -> String {
-    match error.kind {
+    match *error.kind {
         ErrorKind::Request(RequestKind::TooShort { samples, enough }) => format!(
             "{}{samples} samples are too few to tune on some and hold out others; {enough} would do",
             error.place

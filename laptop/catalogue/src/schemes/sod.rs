@@ -16,7 +16,7 @@ impl Entry for Scheme {
         words: "send-on-delta",
         good_for: "following a signal that jumps by several thresholds a sample",
         is_signed: true,
-        steps: Steps::Held,
+        steps: crate::Steps::Held,
         colour: [0xb8, 0x6b, 0x2f],
         parameters: &[
             Parameter::threshold(

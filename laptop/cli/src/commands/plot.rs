@@ -61,7 +61,7 @@ pub(crate) fn run(options: &Plot) -> Result<()> {
         match Trial::new(scheme, &parameters, sample, &recording) {
             Ok(trial) => trials.push(trial),
             Err(error) if options.all => {
-                refused.push(format!("{}: {}", scheme.name(), of_lab(&error)))
+                refused.push(format!("{}: {}", scheme.name(), of_lab(&error)));
             }
             Err(error) => return Err(error.into()),
         }

@@ -49,12 +49,11 @@ impl FromStr for Rate {
 
     /// `25`, `29.97` or `30000/1001`.
     fn from_str(text: &str) -> Result<Self> {
-        let rate = match text.split_once('/') {
-            Some((frames, seconds)) => frames.parse().ok().zip(seconds.parse().ok()),
-            None => {
-                let micro = |rate: f64| (rate * 1e6).clamp(0.0, 1e15) as u64;
-                text.parse().ok().map(|rate| (micro(rate), 1_000_000))
-            }
+        let rate = if let Some((frames, seconds)) = text.split_once('/') {
+            frames.parse().ok().zip(seconds.parse().ok())
+        } else {
+            let micro = |rate: f64| (rate * 1e6).clamp(0.0, 1e15) as u64;
+            text.parse().ok().map(|rate| (micro(rate), 1_000_000))
         };
         rate.and_then(|(frames, seconds)| Self::new(frames, seconds))
             .ok_or_else(|| FramesKind::Rate { text: text.to_owned() }.into())

@@ -43,7 +43,8 @@ pub(super) use bail;
 /// Returns the error that something does not fit, unless a condition holds.
 macro_rules! ensure {
     ($condition:expr, $($words:tt)+) => {
-        if !$condition {
+        let holds: bool = $condition;
+        if !holds {
             $crate::network::fault::bail!($($words)+);
         }
     };

@@ -138,7 +138,7 @@ mod tests {
         let (output, captured) = run(&[b"one ", b"", b"two"], 99);
         assert_eq!((output.as_slice(), captured.bytes), (b"one two".as_slice(), 7));
         let error = captured.end.unwrap_err();
-        assert!(matches!(error.kind, ErrorKind::Capture(CaptureKind::Unread { .. })), "{error:?}");
+        assert!(matches!(*error.kind, ErrorKind::Capture(CaptureKind::Unread { .. })), "{error:?}");
         assert_eq!(error.to_string(), "the channel cannot be read any more: it is gone");
     }
 

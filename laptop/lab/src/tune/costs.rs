@@ -85,13 +85,11 @@ fn cores() -> Vec<&'static str> {
 /// Returns an error if no instructions were counted on such a core.
 pub fn core(name: &str) -> Result<String> {
     let known = cores();
-    match known.iter().find(|core| core.eq_ignore_ascii_case(name)) {
-        Some(core) => Ok((*core).to_owned()),
-        None => {
-            let (name, cores) = (name.to_owned(), known.join(", "));
-            Err(RequestKind::NoCore { name, cores }.into())
-        }
-    }
+    let Some(core) = known.iter().find(|core| core.eq_ignore_ascii_case(name)) else {
+        let (name, cores) = (name.to_owned(), known.join(", "));
+        return Err(RequestKind::NoCore { name, cores }.into());
+    };
+    Ok((*core).to_owned())
 }
 
 #[cfg(test)]
