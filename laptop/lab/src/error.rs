@@ -393,3 +393,61 @@ foreign! {
     #[cfg(feature = "networks")]
     spikewire_chips::FormatError,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{At, Error, Place, Result, Spot};
+    use crate::input::TableKind;
+    use crate::spikes::SpikesKind;
+    use catalogue::run::{Given, Worded};
+
+    fn option(name: &str) -> String {
+        format!("--{}", name.replace('_', "-"))
+    }
+
+    #[test]
+    fn a_front_words_place_setting_and_kind() {
+        let column = Place::spot("a.csv", Spot::Column(3, "`rate`".to_owned()));
+        let missing = TableKind::Missing { value: "NA".to_owned() };
+        for (error, words, remedy) in [
+            (
+                missing.at(column),
+                "a.csv: line 3, column `rate`: value `NA` is missing; --skip-non-finite goes on over such values",
+                Some("skip_non_finite"),
+            ),
+            (
+                TableKind::TakesNo { what: "a log" }.of(Given::named("rate")).at("a.ulg"),
+                "a.ulg: a log takes no --rate",
+                None,
+            ),
+            (
+                TableKind::NotAboveZero.of(Given::listed("rate", Some("x"))).at(Spot::Entry(2)),
+                "2: rate x must be a number above 0 and finite",
+                None,
+            ),
+            (TableKind::NotAboveZero.into(), "must be a number above 0 and finite", None),
+            (
+                SpikesKind::Untimed.into(),
+                "messages have times, and these samples none; --rate says how many there are a second",
+                Some("rate"),
+            ),
+        ] {
+            assert_eq!(error.spelled(option).to_string(), words);
+            assert_eq!(error.remedy(), remedy, "{words}");
+        }
+    }
+
+    #[test]
+    fn the_closest_place_stays() {
+        let error = |place| -> Result<()> { Err(TableKind::NoSamples.at(place)) };
+        let part = |name: &str| Place::from(Spot::Part(name.to_owned()));
+        for (inner, outer, place) in [
+            (Place::line("a", 2), Place::of("b"), Place::line("a", 2)),
+            (Place::from(Spot::Line(2)), Place::of("b"), Place::line("b", 2)),
+            (part("inner"), part("outer"), part("outer: inner")),
+        ] {
+            let found: Error = error(inner).at(|| outer).unwrap_err();
+            assert_eq!(found.place, place);
+        }
+    }
+}
