@@ -94,8 +94,8 @@ def test_counts_are_coded_as_they_are():
     "call, words",
     [
         (lambda: sw.StepForward(threshold=0), "threshold 0 must be above 0 and finite"),
-        (lambda: sw.StepForward(threshold=float("nan")), "threshold=NaN: must be finite"),
-        (lambda: sw.StepForward(threshold="high"), "threshold=high: is not a number"),
+        (lambda: sw.StepForward(threshold=float("nan")), "`threshold` NaN must be finite"),
+        (lambda: sw.StepForward(threshold="high"), "`threshold` high is not a number"),
         (lambda: sw.StepForward(threshold=[0.1, 0.2]).encode([1, 2]), "`threshold` has 2 values, one a channel, for 1 channel"),
         (lambda: sw.StepForward(), "sf needs `threshold`"),
         (lambda: sw.MovingWindow(threshold=1, window=-1), "`window` -1 must be a whole number, 0 or more"),

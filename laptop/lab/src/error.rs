@@ -177,7 +177,7 @@ impl Error {
     /// The file that it is about, by the name that it was given.
     pub fn file(&self) -> Option<&str> {
         match &*self.kind {
-            ErrorKind::Log(LogKind::Damaged { error }) => Some(&error.file),
+            ErrorKind::Log(LogKind::Unread { error }) => Some(&error.file),
             _ => self.place.file.as_deref(),
         }
     }
@@ -187,7 +187,7 @@ impl Error {
         match &*self.kind {
             ErrorKind::Table(TableKind::Missing { .. } | TableKind::NotFinite { .. })
             | ErrorKind::Log(LogKind::NotFinite { .. }) => Some("skip_non_finite"),
-            ErrorKind::Log(LogKind::Damaged { error }) => error.kind.rest().map(|_| "accept_cut"),
+            ErrorKind::Log(LogKind::Unread { error }) => error.kind.rest().map(|_| "accept_cut"),
             ErrorKind::Events(EventsKind::NoWord { .. } | EventsKind::NoDirection { .. }) => {
                 Some("drop")
             }
@@ -334,7 +334,7 @@ impl error::Error for Error {
         match &*self.kind {
             ErrorKind::Open(error) | ErrorKind::Io(error) => Some(error),
             ErrorKind::Other(error) => Some(&**error),
-            ErrorKind::Log(LogKind::Damaged { error }) => Some(error),
+            ErrorKind::Log(LogKind::Unread { error }) => Some(error),
             _ => None,
         }
     }
@@ -355,7 +355,11 @@ impl From<ConfigError> for Error {
 
 impl From<flight_logs::Error> for Error {
     fn from(error: flight_logs::Error) -> Self {
-        LogKind::Damaged { error }.into()
+        let flight_logs::Error { file, kind } = error;
+        match kind {
+            flight_logs::ErrorKind::Open(error) => Self::open(file, error),
+            kind => LogKind::Unread { error: flight_logs::Error { file, kind } }.into(),
+        }
     }
 }
 

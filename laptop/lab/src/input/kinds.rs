@@ -46,8 +46,8 @@ room!(TableKind, Table);
 kinds! {
     /// The reason that a channel of a flight log cannot be read.
     pub enum LogKind by spell of subject {
-        Damaged { error: flight_logs::Error } => ("{error}{}", match error.kind.rest() {
-            None => String::new(),
+        Unread { error: flight_logs::Error } => ("{error}{}", match error.kind.rest() {
+            None => std::error::Error::source(error).map_or(String::new(), |why| format!(": {why}")),
             Some(Rest::Behind) => format!("; {} goes on behind it", spell("accept_cut")),
             Some(Rest::From(next)) => format!("; {} goes on at byte {next}", spell("accept_cut")),
             Some(Rest::Before) => format!("; {} takes what is before", spell("accept_cut")),

@@ -69,7 +69,7 @@ pub fn with_channel(
 }
 
 /// An error with all that caused it, in the words of probe-rs.
-fn chain(error: &dyn std::error::Error) -> String {
+fn chain(error: &(dyn std::error::Error + 'static)) -> String {
     let causes = std::iter::successors(Some(error), |error| error.source());
     causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
 }
