@@ -26,6 +26,8 @@ mod _native {
     #[pymodule_export]
     use super::coder::{Coder, Fitted};
     #[pymodule_export]
+    use super::error::Error;
+    #[pymodule_export]
     use super::filter::Filter;
     #[pymodule_export]
     use super::fingerprint::fingerprint;

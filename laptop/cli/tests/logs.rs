@@ -121,7 +121,7 @@ fn the_files_of_a_directory_are_read_one_after_the_other() {
     std::fs::remove_file(directory.path().join("b.db3")).unwrap();
     refused(&format!("info {path}"), "", &["b.db3: cannot be opened"]);
     let empty = tempfile::tempdir().unwrap();
-    refused(&format!("info {}", empty.path().display()), "", &["metadata.yaml: cannot be read"]);
+    refused(&format!("info {}", empty.path().display()), "", &["which has a file metadata.yaml"]);
 }
 
 /// Steps of 100 follow the rate, which changes by less from frame to frame.

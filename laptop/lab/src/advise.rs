@@ -5,6 +5,7 @@ mod flown;
 
 pub use bank::BankAdvice;
 
+use crate::Result;
 use crate::brief::{brief, short};
 use crate::events::{Format, Item};
 use crate::flight::{Filter, Filtering};
@@ -12,14 +13,14 @@ use crate::look::{Look, Verdict, known_unit};
 use crate::scheme::Scheme;
 use crate::steep::Steep;
 use crate::trial::{Recording, Trial};
+use crate::tune::RequestKind;
 use crate::tune::problem::Limit;
 use crate::tune::report::{Cut, DRIFTS, Row};
 use crate::tune::search::{Budget, Method, search, share};
 use crate::tune::stretch::{HoldOut, cut};
 use crate::tune::{Goal, Limits, Problem, Stretch, costs};
 use crate::watch::{Progress, Watch};
-use anyhow::{Result, bail};
-use catalogue::run::{Asked, SampleType};
+use catalogue::run::{Asked, Given, SampleType};
 use serde::Serialize;
 use spikewire::{Event, Keyframe, Tick};
 use std::time::{Duration, Instant};
@@ -165,14 +166,11 @@ struct Candidate {
 /// A recording is too short to hold something out, or there is no setting to score.
 pub fn advise(request: &AdviseRequest, watch: &Watch) -> Result<Vec<Advice>> {
     if request.evaluations == 0 {
-        bail!("`evaluations` 0 must be above 0");
+        return Err(RequestKind::NotAboveZero.of(Given::new("evaluations", 0)));
     }
     let most = flown::LOSSES[flown::LOSSES.len() - 1];
     if !(0.0..=most).contains(&request.frame_loss) {
-        bail!(
-            "`frame_loss` {} must be 0 to {most} percent: more was not flown",
-            request.frame_loss
-        );
+        return Err(RequestKind::NotFlown { most }.of(Given::new("frame_loss", request.frame_loss)));
     }
     costs::core(&request.core)?;
     let end = request.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
@@ -222,16 +220,23 @@ impl Advice {
         let bytes = if matches!(request.sample, SampleType::Fixed16 { .. }) { 2.0 } else { 4.0 };
         let loop_latency = match (request.loop_bandwidth, recording.rate) {
             (None, _) => None,
-            (Some(bandwidth), Some(rate)) if bandwidth * FEWEST > rate => bail!(
-                "`loop_bandwidth` {bandwidth} must be {} or less: {} has {} samples a second, and a loop acts on {FEWEST} \
-                 or more in a period of its bandwidth",
-                short(rate / FEWEST),
-                recording.name,
-                short(rate)
-            ),
+            (Some(bandwidth), Some(rate)) if bandwidth * FEWEST > rate => {
+                let kind = RequestKind::TooFast {
+                    most: short(rate / FEWEST),
+                    recording: recording.name.clone(),
+                    rate: short(rate),
+                    fewest: FEWEST,
+                };
+                return Err(kind.of(Given::new("loop_bandwidth", bandwidth)));
+            }
             (Some(bandwidth), Some(rate)) if bandwidth > 0.0 => Some(borne(bandwidth, rate)),
-            (Some(_), None) => bail!("`loop_bandwidth` needs the rate of {}", recording.name),
-            (Some(bandwidth), _) => bail!("`loop_bandwidth` {bandwidth} must be above 0"),
+            (Some(_), None) => {
+                let kind = RequestKind::NeedsRate { recording: recording.name.clone() };
+                return Err(kind.of(Given::named("loop_bandwidth")));
+            }
+            (Some(bandwidth), _) => {
+                return Err(RequestKind::NotAboveZero.of(Given::new("loop_bandwidth", bandwidth)));
+            }
         };
         Ok(Self {
             objection,

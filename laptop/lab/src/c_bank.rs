@@ -1,7 +1,8 @@
 //! A flight's bank and its writer in C: a header beside those of its codecs.
 
+use crate::Result;
 use crate::flight::Flight;
-use anyhow::{Result, bail};
+use crate::tune::RequestKind;
 use catalogue::run::{Constant, SampleType, Settings};
 use std::fmt::Write;
 use std::path::Path;
@@ -29,14 +30,14 @@ impl<'a> CBank<'a> {
         let is_in_c =
             catalogue::IN_C.iter().any(|(own, all)| own.name == info.name && !all.is_empty());
         if !is_in_c {
-            bail!("{} draws from a generator, which the library for C has not", info.name);
+            return Err(RequestKind::Draws { scheme: info.name }.into());
         }
         let sample = match flight.sample {
             SampleType::F32 => "float",
             SampleType::Fixed16 { fraction: 0 } => "int16_t",
             SampleType::Fixed16 { fraction: 8 } => "sw_q8_8",
             SampleType::Fixed32 { fraction: 16 } => "sw_q16_16",
-            other => bail!("the library for C has f32, i16, q8.8 and q16.16, not {other}"),
+            sample => return Err(RequestKind::NotInC { sample }.into()),
         };
         let (mut codecs, mut runs): (Vec<(String, _, Constant)>, Vec<Run>) =
             (Vec::new(), Vec::new());

@@ -1,15 +1,17 @@
 //! A recording to a file of spikes, in constant memory.
 
+use crate::Result;
 use crate::bank::Bank;
 use crate::coding::Coding;
 use crate::fit::{Fit, explained, rounding};
 use crate::flight::{self, Flight, Sampled};
+use crate::input::TableKind;
 use crate::input::{Chunk, Clock, InputOptions, Source};
 use crate::output::Output;
 use crate::scheme::Scheme;
 use crate::spikes::{Format, Header, Record, Recorder, Summary, Writer, unrecorded};
-use anyhow::{Result, bail};
-use catalogue::run::{Asked, Calibrated, Event, Known, SET, SampleType, Settings};
+use crate::tune::RequestKind;
+use catalogue::run::{Asked, Calibrated, Event, Known, SET, SampleType, Settings, Words};
 
 /// Encodes the channels of a flight out of a recording, as its sender does; see [`encode`].
 ///
@@ -20,7 +22,7 @@ pub fn encode_flight(
     input: &InputOptions,
     format: Option<Format>,
     output: impl FnOnce() -> Result<Output>,
-) -> Result<(Output, Vec<String>)> {
+) -> Result<(Output, Vec<Words>)> {
     let Coding { scheme, sample, asked } = Coding::of_flight(flight);
     let input = flight::input(flight, input);
     let open =
@@ -40,7 +42,7 @@ pub fn encode(
     parameters: &Asked,
     format: Option<Format>,
     output: impl FnOnce() -> Result<Output>,
-) -> Result<(Output, Vec<String>)> {
+) -> Result<(Output, Vec<Words>)> {
     let open = || input.open().map(|own| -> Box<dyn Source> { own });
     encode_from(&open, input, (scheme, sample, parameters), format, output)
 }
@@ -54,17 +56,16 @@ fn encode_from(
     (scheme, sample, parameters): (Scheme, SampleType, &Asked),
     format: Option<Format>,
     output: impl FnOnce() -> Result<Output>,
-) -> Result<(Output, Vec<String>)> {
+) -> Result<(Output, Vec<Words>)> {
     parameters.check(scheme.info())?;
     if format.is_some() && input.is_stdin() {
-        bail!("messages tell the signal's range, which standard input gives only at its end");
+        return Err(RequestKind::RangeAtEnd.into());
     }
     let calibrated = match scheme.needs_signal(parameters) {
         None => None,
-        Some(what) if input.is_stdin() => bail!(
-            "{} calibrates over the whole signal, which standard input gives only once; give {what}",
-            scheme.name()
-        ),
+        Some(needs) if input.is_stdin() => {
+            return Err(RequestKind::ReadOnce { scheme: scheme.name(), needs }.into());
+        }
         Some(_) => Some(calibrate(open, sample)?),
     };
 
@@ -74,7 +75,7 @@ fn encode_from(
     let rows = chunk.finite_rows();
     let (count, firsts) = (rows.len(), chunk.kept(&rows));
     if firsts.first().is_none_or(Vec::is_empty) {
-        bail!("{}: none of the {count} samples is finite", input.name());
+        return Err(TableKind::NoneFinite { samples: count }.at(input.name()));
     }
     let mut told = Vec::new();
     let mut channels: Vec<Settings> = Vec::new();
@@ -83,7 +84,7 @@ fn encode_from(
         let known = Known { calibrated, first, can_calibrate: !input.is_stdin() };
         let own = parameters.channel(scheme.info(), channel, firsts.len())?;
         let settings = scheme.resolve(sample, &own, &known);
-        let settings = settings.map_err(|error| explained(error, sample, first))?;
+        let settings = settings.map_err(|error| explained(error.into(), sample, first))?;
         told.extend(rounding(&settings).filter(|rounding| !told.contains(rounding)));
         channels.push(settings);
     }
@@ -133,14 +134,14 @@ fn encode_from(
     count(&events);
     let (output, summary) = writer.finish(&mut events)?;
     let mut notes = source.notes().to_vec();
-    notes.append(&mut told);
-    notes.extend(report(&summary, &clock, header.channels.len()));
+    let lines = report(&summary, &clock, header.channels.len());
+    notes.extend(told.into_iter().chain(lines).map(Words::from));
     for (((fit, settings), spikes), name) in
         fits.iter().zip(&header.channels).zip(spikes).zip(source.names())
     {
         let of = if fits.len() > 1 { format!("{name}: ") } else { String::new() };
         for note in fit.notes(settings, spikes).lines() {
-            notes.push(format!("{of}{note}"));
+            notes.push(format!("{of}{note}").into());
         }
     }
     Ok((output, notes))

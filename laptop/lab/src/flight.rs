@@ -1,19 +1,26 @@
 //! A flight's file on the laptop: its channels out of a recording, and the values of its frames.
 
+use crate::Result;
 use crate::coding::Coding;
 use crate::events::{Item, LinkTally, Values};
 use crate::input::{Chunk, InputOptions, Source};
 use crate::look::known_unit;
 use crate::scheme::Scheme;
+use crate::tune::RequestKind;
 use crate::tune::report::Row;
 use crate::values;
-use anyhow::{Context, Result, bail};
-use catalogue::run::{Asked, SampleType};
+use catalogue::run::{Asked, Given, SampleType, Words};
 use spikewire::link::Received;
 use spikewire_flight::FlightError;
 use std::num::NonZeroU16;
 
 pub use spikewire_flight::{Channel, Filter, Filtering, Flight, Parts, rust};
+
+impl From<FlightError> for crate::Error {
+    fn from(error: FlightError) -> Self {
+        Self::other(error)
+    }
+}
 
 impl Coding {
     /// The scheme of a flight, with the parameters of all its channels.
@@ -31,9 +38,9 @@ impl Coding {
 /// no period in µs.
 pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> Result<Flight> {
     const KEYFRAMES: f64 = 20.0;
-    let (_, scheme, _) = rows.first().context("there are no channels")?;
+    let (_, scheme, _) = rows.first().ok_or(RequestKind::NoRecording)?;
     if rows.iter().any(|(_, own, _)| own != scheme) {
-        bail!("a flight has one scheme for all channels: `scheme` names it");
+        return Err(RequestKind::SeveralSchemes.into());
     }
     let channels = rows.iter().map(|(name, scheme, row)| Channel {
         name: (*name).to_owned(),
@@ -64,7 +71,7 @@ pub(crate) const CLOCK_PPM: u32 = 20_000;
 /// Returns an error if the link has no such period.
 pub(crate) fn period(rate: f64) -> Result<NonZeroU16> {
     let period = NonZeroU16::new((1e6 / rate).round().clamp(0.0, 65_535.0) as u16);
-    period.with_context(|| format!("rate {rate} has no period of 1 µs to 65 535 µs"))
+    period.ok_or_else(|| RequestKind::NoPeriod.of(Given::new("rate", rate)))
 }
 
 /// The recording of these options, of which a flight's channels are read.
@@ -111,7 +118,7 @@ impl Source for Sampled<'_> {
         self.source.origin()
     }
 
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Words] {
         self.source.notes()
     }
 }

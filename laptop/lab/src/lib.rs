@@ -10,6 +10,7 @@ mod c_bank;
 pub mod coding;
 pub mod emit;
 pub mod encode;
+mod error;
 pub mod events;
 pub mod fit;
 pub mod flight;
@@ -36,3 +37,5 @@ pub mod trial;
 pub mod tune;
 pub mod values;
 pub mod watch;
+
+pub use error::{Error, ErrorKind, Place, Result, Spot};

@@ -1,8 +1,9 @@
 //! Decodes frames to values, with the receiver that runs on boards, in any sample type.
 
+use crate::Result;
 use crate::events::{Held, Item, Known, LinkTally, Values};
 use crate::scheme::Scheme as Chosen;
-use anyhow::{Context, Result, bail};
+use crate::tune::RequestKind;
 use catalogue::for_sample_type;
 use catalogue::run::{SampleType, Settings, Visit};
 use spikewire::link::{Received, Receiver};
@@ -47,10 +48,10 @@ pub fn with_receiver<'a>(
     link: impl Into<Link>,
     then: impl FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a,
 ) -> Result<()> {
-    let first = settings.first().context("a receiver has at least one channel")?;
+    let first = settings.first().ok_or(RequestKind::NoChannel)?;
     let link = link.into();
     let visitor = Receive { scheme, sample, settings, link, then: Box::new(then) };
-    for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.name(), first, visitor))
+    for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.name(), first, visitor))?
 }
 
 struct Receive<'a> {
@@ -62,18 +63,22 @@ struct Receive<'a> {
 }
 
 impl<S: Sample> Visit<S> for Receive<'_> {
-    type Output = ();
+    type Output = Result<()>;
 
-    fn visit<P: Scheme<Sample = S> + 'static>(self, _: P, _: P::EncoderState) -> Result<()> {
-        self.receive::<P, FEWER, EVENTS>()
+    fn visit<P: Scheme<Sample = S> + 'static>(
+        self,
+        _: P,
+        _: P::EncoderState,
+    ) -> catalogue::run::Result<Result<()>> {
+        Ok(self.receive::<P, FEWER, EVENTS>())
     }
 
     fn visit_steps<P: Scheme<Sample = S, Code = Spike> + 'static>(
         self,
         _: P,
         _: P::EncoderState,
-    ) -> Result<()> {
-        self.receive::<P, MOST, 0>()
+    ) -> catalogue::run::Result<Result<()>> {
+        Ok(self.receive::<P, MOST, 0>())
     }
 }
 
@@ -82,22 +87,19 @@ impl Receive<'_> {
     fn receive<P: Scheme + 'static, const N: usize, const EVENTS: usize>(self) -> Result<()> {
         let Self { scheme, sample, settings, link: Link { slot_ticks, filter }, then } = self;
         if settings.len() > N {
-            bail!(
-                "{} channels are too many: {} has 1 to {N} channels",
-                settings.len(),
-                scheme.name()
-            );
+            let (channels, scheme) = (settings.len(), scheme.name());
+            return Err(RequestKind::Channels { channels, scheme, most: N }.into());
         }
         let mut started = Vec::new();
         for own in settings {
             let built = catalogue::visit::<P::Sample, _>(scheme.name(), own, Boxed)?;
             let start = own.first_value().map(|start| P::Sample::from_f64(start * sample.one()));
             let Ok(scheme) = built.downcast::<P>() else {
-                bail!("channels of one scheme differ in more than numbers")
+                return Err(RequestKind::Differ.into());
             };
             started.push(Started { scheme: *scheme, start });
         }
-        let first = started.first().context("a receiver has at least one channel")?;
+        let first = started.first().ok_or(RequestKind::NoChannel)?;
         let channels = if started.len() == 1 { N } else { started.len() };
         let schemes = std::array::from_fn(|channel| started.get(channel).unwrap_or(first));
         let mut receiver = Receiver::<_, N, EVENTS>::per_channel(schemes);
@@ -135,7 +137,7 @@ impl<S: Sample> Visit<S> for Boxed {
         self,
         scheme: P,
         _: P::EncoderState,
-    ) -> Result<Box<dyn Any>> {
+    ) -> catalogue::run::Result<Box<dyn Any>> {
         Ok(Box::new(scheme))
     }
 }

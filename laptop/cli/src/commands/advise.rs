@@ -1,8 +1,9 @@
 //! `spikewire advise`: what a log is like, and which scheme suits each of its channels.
 
 use crate::inputs::InputOptions;
-use crate::options::{answer, tell, whole};
+use crate::options::{answer, whole};
 use crate::stop::Stop;
+use crate::words::tell;
 use anyhow::{Result, bail};
 use catalogue::run::SampleType;
 use clap::Args;
@@ -81,7 +82,7 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
         bail!("--picture draws one channel; --channel says which");
     }
     if let Some(first) = recordings.first() {
-        tell(first.notes());
+        tell(&first.notes());
     }
     let request = AdviseRequest {
         recordings,
@@ -154,5 +155,6 @@ fn draw_advised(
     let trials = [Trial::new(scheme, &parameters, options.sample, recording)?];
     let unit = known_unit(&recording.name);
     let shown = 0..recording.values.len();
-    draw(path, &options.input.input, &Picture { recording, trials: &trials, unit, shown })
+    let picture = Picture { recording, trials: &trials, unit, shown };
+    Ok(draw(path, &options.input.input, &picture)?)
 }

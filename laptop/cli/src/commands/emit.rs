@@ -73,17 +73,17 @@ pub(crate) fn run(options: &Emit) -> Result<()> {
             let text = rust(&Flight::read(flight)?)?;
             let mut output = Output::open(output.as_deref(), flight)?;
             output.write_all(text.as_bytes())?;
-            return output.finish();
+            return Ok(output.finish()?);
         }
         What::C(c) => c,
     };
     if let Some(flight) = flight {
-        return c_flight(&Flight::read(flight)?, output, spikewire.as_deref());
+        return Ok(c_flight(&Flight::read(flight)?, output, spikewire.as_deref())?);
     }
     let codecs = params.iter().map(|path| {
         Ok(Codec { name: codec_name(path)?, coding: Coding::read(&path.to_string_lossy())? })
     });
-    c_crate(&codecs.collect::<Result<Vec<_>>>()?, output, spikewire.as_deref())
+    Ok(c_crate(&codecs.collect::<Result<Vec<_>>>()?, output, spikewire.as_deref())?)
 }
 
 /// The file's name without its ending, as C takes it: `gyro-x.toml` gives `gyro_x`.

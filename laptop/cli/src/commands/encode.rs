@@ -1,7 +1,8 @@
 //! `spikewire encode`: a recording to spikes, in constant memory.
 
 use crate::inputs::InputOptions;
-use crate::options::{Coding, tell_each};
+use crate::options::Coding;
+use crate::words::tell;
 use anyhow::{Result, bail};
 use clap::Args;
 use lab::encode::{encode, encode_flight};
@@ -54,6 +55,6 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
         encode(&input.to_lab(), scheme, sample, &parameters, format, open)?
     };
     output.finish()?;
-    tell_each(&notes);
+    tell(&notes);
     Ok(())
 }

@@ -2,11 +2,12 @@
 
 use crate::inputs::StreamOptions;
 use crate::live::Live;
-use crate::options::{agreed, augment, given, option_group, schemes, tell};
+use crate::options::{agreed, augment, given, option_group, schemes};
 use crate::stop::Stop;
+use crate::words::{of_lab, option};
 use anyhow::{Result, bail};
 use catalogue::Parameter;
-use catalogue::run::{Asked, Known, SampleType, Settings};
+use catalogue::run::{Asked, Known, SampleType, Settings, Worded};
 use clap::{Args, value_parser};
 use lab::coding::Coding;
 use lab::events::{EventReader, Format, LinkReader, Stream, Values, values_writer};
@@ -100,9 +101,12 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
         }
         options.check_formats("--flight")?;
         let flight = Flight::read(path)?;
-        return flight::with_receiver(&flight, |values| {
-            listen(options, Some((values, flight.sample)))
-        });
+        let mut heard = Ok(());
+        flight::with_receiver(&flight, |values| {
+            heard = listen(options, Some((values, flight.sample)));
+            Ok(())
+        })?;
+        return heard;
     }
     let sample = options.params.as_ref().map(|params| params.sample);
     let sample = options.sample.or(sample).unwrap_or_default();
@@ -114,9 +118,12 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
     };
     let settings = options.settings(scheme, sample)?;
     let slot_ticks = options.slot_ticks(scheme, &settings)?;
+    let mut heard = Ok(());
     with_receiver(scheme, sample, &settings, slot_ticks, |values| {
-        listen(options, Some((values, sample)))
-    })
+        heard = listen(options, Some((values, sample)));
+        Ok(())
+    })?;
+    heard
 }
 
 fn listen(options: &Listen, values: Option<(Box<dyn Values + '_>, SampleType)>) -> Result<()> {
@@ -152,14 +159,14 @@ fn listen(options: &Listen, values: Option<(Box<dyn Values + '_>, SampleType)>) 
     // What came before a port failed is kept.
     stream.finish(&mut output)?;
     live.clear();
-    tell(&stream);
+    eprint!("{}", stream.spelled(option));
     match stream.check_format(options.from, port.name()) {
         // It may yet speak, or at another speed.
-        Err(error) if options.baud.is_some() => tell(format_args!("{error}\n")),
+        Err(error) if options.baud.is_some() => eprintln!("{}", of_lab(&error)),
         checked => checked?,
     }
     output.finish()?;
-    heard
+    Ok(heard?)
 }
 
 impl Listen {
@@ -219,6 +226,7 @@ impl Listen {
             }
         }
         if let Some(missing) = scheme.needs_signal(&asked) {
+            let missing = missing.spelled(option);
             bail!("{} needs {missing}, as the sender has it", scheme.name());
         }
         let known = Known { calibrated: None, first: &[0.0], can_calibrate: false };
@@ -228,7 +236,7 @@ impl Listen {
             let own = asked.channel(scheme.info(), channel, channels)?;
             let settings = scheme.resolve(sample, &own, &known)?;
             if let Some(rounding) = rounding(&settings) {
-                tell(format_args!("{rounding}\n"));
+                eprintln!("{rounding}");
             }
             all.push(settings);
         }

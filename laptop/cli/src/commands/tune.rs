@@ -1,11 +1,12 @@
 //! `spikewire tune`: the parameters of a scheme, from flight logs.
 
 use crate::inputs::ChannelOptions;
-use crate::options::{FREE, answer, augment, given, option_group, spelled, tell, whole};
+use crate::options::{FREE, answer, augment, given, option_group, whole};
 use crate::stop::Stop;
+use crate::words::{option, tell};
 use anyhow::{Context, Result, bail};
 use catalogue::Parameter;
-use catalogue::run::{Asked, SampleType};
+use catalogue::run::{Asked, SampleType, Worded};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::flight::of_rows;
@@ -126,7 +127,7 @@ fn which(name: &str) -> Result<Which> {
 }
 
 /// `40Hz`, `40 Hz` or `40`.
-fn hertz(text: &str) -> Result<f64, String> {
+fn hertz(text: &str) -> lab::Result<f64> {
     let number = text.trim_end_matches("Hz").trim_end();
     lab::input::above_zero(number)
 }
@@ -179,7 +180,7 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
             eprintln!("{words}");
         }
         for words in missed {
-            eprintln!("{}: {}", channel.name, spelled(&words));
+            eprintln!("{}: {}", channel.name, words.spelled(option));
         }
         if rows.is_empty() && curves.is_empty() {
             bail!("{}: of the settings tried none keeps to all limits", channel.name);
@@ -257,7 +258,7 @@ impl Tune {
         for input in &self.inputs {
             let recordings = Recording::read_all(&self.channel.of(input))?;
             if let Some(first) = recordings.first() {
-                tell(first.notes());
+                tell(&first.notes());
             }
             logs.push(recordings);
         }
@@ -272,7 +273,7 @@ impl Tune {
         match self.emit {
             // A flight's file is of all channels together.
             None | Some(Emit::Flight) => Ok(String::new()),
-            Some(Emit::Rust) => emit::rust(&comments, &cut.name, scheme, &row.settings),
+            Some(Emit::Rust) => Ok(emit::rust(&comments, &cut.name, scheme, &row.settings)?),
             Some(Emit::Toml) => Ok(emit::toml(&comments, scheme, &row.settings)),
         }
     }

@@ -2,15 +2,16 @@
 
 use super::flown::{Error, Flown, flown};
 use super::{Advice, AdviseRequest, Tuning};
+use crate::Result;
 use crate::brief::{brief, short};
 use crate::flight::{CLOCK_PPM, Channel, Filter, Flight, Parts, period};
 use crate::look::known_unit;
 use crate::scheme::Scheme;
 use crate::trial::{Recording, Trial};
+use crate::tune::RequestKind;
 use crate::tune::report::Row;
 use crate::tune::search::Budget;
 use crate::watch::{Progress, Watch};
-use anyhow::{Context, Result};
 use catalogue::run::{Asked, Event as Fired, Value};
 use catalogue::{Kind, Parameter};
 use serde::Serialize;
@@ -83,7 +84,7 @@ impl BankAdvice {
             frame_loss: request.frame_loss,
         };
         let Some((_, first)) = heard.first() else { return Ok(all) };
-        let rate = first.rate.context("a bank needs the rate of its channels")?;
+        let rate = first.rate.ok_or(RequestKind::BankNeedsRate)?;
         all.unknown = unknown(request, rate);
         let schemes: Vec<Scheme> = Scheme::all().collect();
         for (done, scheme) in schemes.iter().enumerate() {

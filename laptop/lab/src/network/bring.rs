@@ -1,7 +1,7 @@
 //! A trained network onto a chip: what is asked for, and what came of it.
 
 use super::{Chip, Distance, OnChip, Trained, Trains};
-use anyhow::Result;
+use crate::Result;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The steps over which outputs are counted.

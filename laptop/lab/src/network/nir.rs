@@ -4,7 +4,8 @@
 
 use super::Trained;
 use super::trained::{Layer, Neuron, Readout};
-use anyhow::{Context, Result, anyhow, bail, ensure};
+use crate::network::NetworkKind;
+use crate::network::fault::{Context, Result, bail, ensure, fault};
 use hdf5_reader::group::Group;
 use hdf5_reader::messages::datatype::Datatype;
 use hdf5_reader::{Dataset, H5Type, Hdf5File, OpenOptions};
@@ -346,7 +347,7 @@ fn read_neurons(node: &Group, name: &str, kind: &str, count: usize) -> Result<Ne
 
 /// An array's shape and numbers, whatever their type.
 fn numbers(node: &Group, name: &str) -> Result<(Vec<usize>, Vec<f64>)> {
-    let dataset = node.dataset(name).map_err(|_| anyhow!("no `{name}`"))?;
+    let dataset = node.dataset(name).map_err(|_| fault(format!("no `{name}`")))?;
     let shape = dataset.shape().iter().map(|&length| length as usize).collect();
     let numbers = match *dataset.dtype() {
         Datatype::FloatingPoint { size: 4, .. } => read_as(&dataset, |n: f32| n.into()),
@@ -395,9 +396,7 @@ impl Neurons {
     fn in_steps(&self, at: usize, step: Option<f64>) -> Result<(f64, f64, f64)> {
         let resistance = self.resistance.at(at);
         let Some(Leak { tau, rest }) = &self.leak else { return Ok((1.0, resistance, 0.0)) };
-        let step = step.context(
-            "its time constants are in seconds, and neither `dt` nor the recording's times say how long a step is",
-        )?;
+        let step = step.ok_or(NetworkKind::NoStep)?;
         let mut gain = resistance;
         if let Some(Synapse { tau, weight }) = &self.synapse {
             let tau = tau.at(at);
@@ -410,11 +409,9 @@ impl Neurons {
             gain *= weight.at(at);
         }
         let tau = tau.at(at);
-        ensure!(
-            tau >= step * (1.0 - 1e-9),
-            "a time constant of {tau} s is shorter than a step of {step} s; `dt` gives the step that its framework \
-             counts with (snnTorch: 1e-4)"
-        );
+        if tau < step * (1.0 - 1e-9) {
+            return Err(NetworkKind::ShorterThanStep { tau, step }.into());
+        }
         let part = step / tau;
         Ok(((1.0 - part).max(0.0), part * gain, rest.at(at)))
     }

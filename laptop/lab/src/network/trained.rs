@@ -1,6 +1,6 @@
 //! A trained network, and what it does in double precision.
 
-use anyhow::{Result, bail, ensure};
+use crate::network::fault::{Result, bail, ensure};
 
 /// Layers that a network may have.
 const LAYERS: usize = 3;

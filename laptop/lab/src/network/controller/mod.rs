@@ -12,7 +12,7 @@ pub use rule::{Asked, Current, Decay, Fires, Framework, Reset, Rule};
 use super::Trains;
 use super::bring::{Brought, Original, figures};
 use super::chip::{OnChip, Ran, Stepped, Told};
-use anyhow::{Result, bail};
+use crate::network::fault::{Result, bail};
 use net::{Done, Net, Own, State};
 use number::Number;
 use quantise::Integers;

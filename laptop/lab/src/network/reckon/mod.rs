@@ -7,7 +7,7 @@ mod run;
 
 use super::chip::{Chip, OnChip, Ran, Told, written};
 use super::{Trained, Trains};
-use anyhow::Result;
+use crate::Result;
 use quantise::{Quantised, quantise};
 use spikewire_chips::{DescribeReckOn, ReckOnBytes};
 

@@ -3,7 +3,7 @@
 use super::super::trained::{Layer, Neuron, Readout};
 use super::super::{Distance, Trained, Trains};
 use super::place::Places;
-use anyhow::{Result, ensure};
+use crate::network::fault::{Result, ensure};
 use rayon::prelude::*;
 use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
 use std::sync::atomic::{AtomicUsize, Ordering};

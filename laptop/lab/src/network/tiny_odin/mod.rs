@@ -6,7 +6,7 @@ mod run;
 
 use super::chip::{Chip, OnChip, Ran, Stepped, Told, written};
 use super::{Trained, Trains};
-use anyhow::{Result, bail};
+use crate::network::fault::{Result, bail};
 use quantise::{Quantised, quantise};
 use spikewire_chips::NetworkBytes;
 
