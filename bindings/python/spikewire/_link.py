@@ -59,10 +59,16 @@ class Sender:
 
 
 class Receiver:
-    """The decoders of a :class:`Sender`, which know whether their values are exact."""
+    """The decoders of a :class:`Sender`, which know whether their values are exact.
 
-    def __init__(self, schemes: Scheme | Sequence[Scheme], period: int):
-        self._native = _native.Hearer(_six(schemes), period)
+    `schemes` are those of the sender, whose frames carry their fingerprint: from other schemes no value is exact.
+    `clock_tolerance` is by how much the time from sample to sample may differ from `period`, as a fraction. A bank whose
+    samples are taken by a timer of the clock that its ticks come from has 0. Codes with sub-timesteps need to know it, or
+    heartbeats less than half a period over the tolerance apart.
+    """
+
+    def __init__(self, schemes: Scheme | Sequence[Scheme], period: int, clock_tolerance: float = 0.02):
+        self._native = _native.Hearer(_six(schemes), period, clock_tolerance)
 
     def hear(self, data: bytes) -> None:
         """Takes the next bytes of the link, cut anywhere: frames that were lost are noticed."""
@@ -81,6 +87,11 @@ class Receiver:
     def exact(self) -> NDArray[np.bool_]:
         """Whether each value has the bits of a decoder that lost no event."""
         return np.array(self._native.values()[1])
+
+    @property
+    def withheld(self) -> list[str | None]:
+        """Why each channel has no exact value; ``None`` where it has one."""
+        return self._native.withheld()
 
     @property
     def lost(self) -> int:

@@ -10,6 +10,7 @@ mod filter;
 mod fingerprint;
 mod library;
 mod link;
+mod network;
 mod stream;
 mod values;
 mod work;
@@ -35,6 +36,8 @@ mod _native {
     };
     #[pymodule_export]
     use super::link::{Hearer, Sender};
+    #[pymodule_export]
+    use super::network::Network;
     #[pymodule_export]
     use super::stream::{Decoder, Encoder};
     use pyo3::prelude::*;

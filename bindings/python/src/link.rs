@@ -9,7 +9,9 @@ use catalogue::run::{RunTime, Runs, SampleType, Settings, Visit};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
 use spikewire::link::{Coding, MAX_FRAME, Reader, Received, Receiver, Session, Transmitter};
-use spikewire::{Bank, FromItems, Item, Recovery, Sample, Scheme, Spike, Tick};
+use spikewire::{
+    Bank, Fingerprint, FromItems, Item, Recovery, Sample, SampleKind, Scheme, Spike, Tick,
+};
 
 use crate::coder::Coder;
 use crate::error::value;
@@ -40,6 +42,9 @@ trait Far: Send {
 
     /// The value of each channel, and whether it is exact.
     fn values(&self) -> [(f64, bool); CHANNELS];
+
+    /// Why a channel has no exact value, in words.
+    fn withheld(&self) -> [Option<String>; CHANNELS];
 }
 
 struct NearEnd<P: Scheme + 'static> {
@@ -92,6 +97,12 @@ impl<P: Scheme<DecoderState: Send> + Sync, const EVENTS: usize> Far for FarEnd<P
             (value, self.receiver.exact(channel as u16).is_some())
         })
     }
+
+    fn withheld(&self) -> [Option<String>; CHANNELS] {
+        std::array::from_fn(|channel| {
+            self.receiver.withheld(channel as u16).map(|why| why.to_string())
+        })
+    }
 }
 
 /// Both ends of a link, of which a caller keeps the one it wants.
@@ -99,6 +110,7 @@ struct Ends {
     near: Box<dyn Near>,
     far: Box<dyn Far>,
     coding: Coding,
+    fingerprint: Fingerprint,
 }
 
 /// Builds both ends from the settings of each channel.
@@ -108,6 +120,8 @@ struct Build<'a> {
     filters: &'a [Option<Filter>],
     sample: SampleType,
     period: u16,
+    /// In millionths.
+    clock_tolerance: u32,
 }
 
 impl<S: Sample> Visit<S> for Build<'_> {
@@ -132,7 +146,7 @@ impl<S: Sample> Visit<S> for Build<'_> {
 
 impl Build<'_> {
     fn ends<S: Sample, P: Runs<S>, const EVENTS: usize>(self) -> Result<Ends> {
-        let Self { scheme, settings, filters, sample, period } = self;
+        let Self { scheme, settings, filters, sample, period, clock_tolerance } = self;
         let mut channels = Vec::new();
         for own in settings {
             let built = catalogue::visit::<S, _>(scheme.info().name, own, Boxed)?;
@@ -166,12 +180,27 @@ impl Build<'_> {
         let filters = filters.iter().map(built).collect::<Result<Vec<_>>>()?;
         let filters = filters.try_into().map_err(|_| anyhow!("there are {CHANNELS} channels"))?;
         let bank = Bank::per_channel_with_states(channels).with_slot_ticks(slot_ticks);
-        let receiver = Receiver::<_, CHANNELS, EVENTS>::per_channel(schemes);
+        let fingerprints = schemes.map(Scheme::fingerprint);
+        let fingerprint = Fingerprint::of_bank(kind(sample), 0, slot_ticks, &fingerprints);
+        let receiver = Receiver::<_, CHANNELS, EVENTS>::per_channel(schemes)
+            .with_slot_ticks(slot_ticks)
+            .with_fingerprint(fingerprint)
+            .with_clock_tolerance(clock_tolerance);
         Ok(Ends {
             near: Box::new(NearEnd { filters, bank, one }),
-            far: Box::new(FarEnd { receiver: receiver.with_slot_ticks(slot_ticks), one }),
+            far: Box::new(FarEnd { receiver, one }),
             coding: coding.with_jitter_bits(jitter),
+            fingerprint,
         })
+    }
+}
+
+/// The sample type on a link.
+fn kind(sample: SampleType) -> SampleKind {
+    match sample {
+        SampleType::F32 => SampleKind::F32,
+        SampleType::Fixed16 { fraction } => SampleKind::Fixed16 { fraction },
+        SampleType::Fixed32 { fraction } => SampleKind::Fixed32 { fraction },
     }
 }
 
@@ -187,7 +216,12 @@ impl<S: Sample> Visit<S> for Boxed {
 }
 
 /// Both ends of a link whose channels have these schemes, which are of one kind, and filters before them.
-fn ends(coders: &[Coder], filters: &[Option<Filter>], period: u16) -> Result<Ends> {
+fn ends(
+    coders: &[Coder],
+    filters: &[Option<Filter>],
+    period: u16,
+    clock_tolerance: u32,
+) -> Result<Ends> {
     let [first, ..] = coders else { bail!("a bank has {CHANNELS} channels, not 0") };
     if coders.len() != CHANNELS {
         bail!("a bank has {CHANNELS} channels, not {}", coders.len());
@@ -208,7 +242,7 @@ fn ends(coders: &[Coder], filters: &[Option<Filter>], period: u16) -> Result<End
     }
     let settings = &settings.try_into().map_err(|_| anyhow!("there are {CHANNELS} channels"))?;
     let (scheme, sample) = (first.scheme, first.sample);
-    let build = Build { scheme, settings, filters, sample, period };
+    let build = Build { scheme, settings, filters, sample, period, clock_tolerance };
     for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.info().name, &settings[0], build))
 }
 
@@ -238,9 +272,10 @@ impl Sender {
         keyframe_every: u64,
         session: u32,
     ) -> PyResult<Self> {
-        let Ends { near, coding, .. } =
-            ends(&coders, &filters, period).map_err(|error| value(&error))?;
-        let transmitter = Transmitter::new(coding, Session::counted(session));
+        let Ends { near, coding, fingerprint, .. } =
+            ends(&coders, &filters, period, 0).map_err(|error| value(&error))?;
+        let session = Session::counted(session);
+        let transmitter = Transmitter::new(coding, session).with_fingerprint(fingerprint);
         Ok(Self(Mutex::new(Sending {
             near,
             transmitter,
@@ -293,9 +328,14 @@ struct Hearing {
 #[pymethods]
 impl Hearer {
     #[new]
-    fn new(coders: Vec<Coder>, period: u16) -> PyResult<Self> {
+    fn new(coders: Vec<Coder>, period: u16, clock_tolerance: f64) -> PyResult<Self> {
+        if !(0.0..=0.1).contains(&clock_tolerance) {
+            return Err(value(&anyhow!("clock_tolerance {clock_tolerance} must lie in 0..=0.1")));
+        }
+        let millionths = (clock_tolerance * 1e6).ceil() as u32;
         let unfiltered = vec![None; CHANNELS];
-        let Ends { far, .. } = ends(&coders, &unfiltered, period).map_err(|error| value(&error))?;
+        let Ends { far, .. } =
+            ends(&coders, &unfiltered, period, millionths).map_err(|error| value(&error))?;
         Ok(Self(Mutex::new(Hearing { far, reader: Reader::new() })))
     }
 
@@ -312,6 +352,12 @@ impl Hearer {
     fn advance(&self, now: u64) {
         let mut own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         own.far.advance(Tick::from_micros(now));
+    }
+
+    /// Why a channel has no exact value, in words.
+    fn withheld(&self) -> [Option<String>; CHANNELS] {
+        let own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        own.far.withheld()
     }
 
     /// The values of the channels, and whether each is exact.

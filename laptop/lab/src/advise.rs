@@ -18,8 +18,8 @@ use serde::Serialize;
 use spikewire::{Event, Keyframe, Tick};
 use std::time::{Duration, Instant};
 
-/// What a code's latency may take of a control loop's phase at the loop's bandwidth, in degrees: a third of a phase margin
-/// of 60°. In the flights of `docs/loop.md` codes that take 18° stray, and those that take 80° lose the drone.
+/// The most phase that a code's latency may take from a control loop at its bandwidth, in degrees: a third of a margin of
+/// 60°. In the flights of `docs/loop.md` codes that take 18° stray, and those that take 80° lose the drone.
 const PHASE: f64 = 20.0;
 
 /// The part of a log's samples at which step forward may fall behind. In those flights a threshold that does so at 0.9 %

@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use catalogue::for_sample_type;
 use catalogue::run::{SampleType, Settings, Visit};
 use spikewire::link::{Received, Receiver};
-use spikewire::{Recovery, Sample, SampleKind, Scheme, Spike, Tick};
+use spikewire::{Fingerprint, Recovery, Sample, SampleKind, Scheme, Spike, Tick};
 use std::any::Any;
 
 /// The most channels of a code of one neuron.
@@ -98,8 +98,8 @@ impl Receive<'_> {
             one: sample.one(),
             kind: kind(sample),
             outside: 0,
-            are_held: scheme.info().climbs_by.is_some(),
-            held: Held::default(),
+            slot_ticks: slot_ticks.unwrap_or(0),
+            schemes: started.iter().map(Scheme::fingerprint).collect(),
             has_exact: false,
             decoded: Vec::new(),
         }))
@@ -145,6 +145,11 @@ impl<P: Scheme> Scheme for Started<P> {
 
     const LATENCY: usize = P::LATENCY;
     const RECOVERY: Recovery = P::RECOVERY;
+    const HOLDS_KEYFRAMES: bool = P::HOLDS_KEYFRAMES;
+
+    fn fingerprint(&self) -> Fingerprint {
+        self.scheme.fingerprint()
+    }
 
     fn encode(&self, state: &mut P::EncoderState, sample: P::Sample) -> P::Output {
         self.scheme.encode(state, sample)
@@ -204,9 +209,10 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     kind: SampleKind,
     /// Number of events outside, beside those that the receiver counts.
     outside: u64,
-    /// Whether keyframes are what a decoder holds already.
-    are_held: bool,
-    held: Held,
+    /// The length of a sub-timestep in µs, or 0.
+    slot_ticks: u32,
+    /// The fingerprint of each channel's scheme, or of the one of all channels, however many the sender has.
+    schemes: Vec<Fingerprint>,
     /// Whether a value was exact.
     has_exact: bool,
     decoded: Vec<(u16, Tick, P::Sample)>,
@@ -270,20 +276,16 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// Compares keyframes with what their channels hold before them, where that is exact.
-    fn compare(&mut self, received: &Received<'_>) {
-        if received.is_after_break() {
-            return;
-        }
-        for keyframe in received.frame.keyframes() {
-            let known = self.receiver.exact(keyframe.address); // of a code of one neuron
-            let told = keyframe.value::<P::Sample>();
-            if let (Some(value), Some(told)) = (known, told)
-                && usize::from(keyframe.address) < self.channels
-            {
-                self.held.compared += 1;
-                self.held.contradicted += u64::from(value.to_bits32() != told.to_bits32());
+    /// The fingerprint that a sender of these channels has, in its own sample type: that of as many channels as make it
+    /// the sender's where one scheme is given for all.
+    fn fingerprint(&self, sender: Fingerprint) -> Fingerprint {
+        let of = |schemes: &[_]| Fingerprint::of_bank(self.kind, 0, self.slot_ticks, schemes);
+        match *self.schemes {
+            [scheme] => {
+                let mut any = (1..=N).map(|channels| of(&vec![scheme; channels]));
+                any.find(|own| *own == sender).unwrap_or_else(|| of(&[scheme]))
             }
+            _ => of(&self.schemes),
         }
     }
 }
@@ -291,8 +293,11 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
 impl<P: Scheme, const N: usize, const EVENTS: usize> Values for Receiving<'_, P, N, EVENTS> {
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>) {
         let received = &self.in_our_type(received);
-        if self.are_held {
-            self.compare(received);
+        if let Some(sender) = received.frame.fingerprint() {
+            let own = self.fingerprint(sender);
+            if own != self.receiver.fingerprint() {
+                self.receiver = self.receiver.clone().with_fingerprint(own);
+            }
         }
         let keyframes = received.frame.keyframes().filter(|keyframe| {
             usize::from(keyframe.address) < N * self.neurons
@@ -327,7 +332,8 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Values for Receiving<'_, P,
         tally.outside = self.outside + u64::from(self.receiver.outside());
         tally.misfits = u64::from(self.receiver.misfits()).saturating_sub(self.unused_keyframes);
         tally.unused_keyframes = self.unused_keyframes;
-        tally.held = self.held;
+        let (compared, contradicted) = (self.receiver.compared(), self.receiver.contradicted());
+        tally.held = Held { compared: compared.into(), contradicted: contradicted.into() };
         let heard = self.has_fired.iter().position(|has_fired| *has_fired).unwrap_or(0);
         let is_heard = tally.frames > 0 && !self.has_exact;
         tally.withheld = self.receiver.withheld(heard as u16).filter(|_| is_heard);

@@ -5,7 +5,7 @@ use super::doublings;
 use crate::error::{unwrap, within};
 use crate::num::{HAS_VECTORS, Tally};
 use crate::scheme::codec::{Until, decode_copied, encode_each};
-use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// Adaptive step forward: the baseline follows the signal by one step a spike, and the step grows while the signal
 /// runs away.
@@ -192,6 +192,15 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
     const LATENCY: usize = 0;
     /// Each silent sample halves the step: after as many as there are doublings it is the smallest.
     const RECOVERY: Recovery = Recovery::TimedKeyframe(MOST_DOUBLINGS as usize);
+    const HOLDS_KEYFRAMES: bool = true;
+
+    fn fingerprint(&self) -> Fingerprint {
+        let Self { threshold, doublings, run } = *self;
+        Fingerprint::new("AdaptiveStepForward")
+            .sample(threshold)
+            .number(doublings.into())
+            .number(run.into())
+    }
 
     #[inline]
     fn encode(&self, state: &mut AdaptiveState<S>, sample: S) -> Spike {
@@ -204,8 +213,8 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         Spike::None
     }
 
-    /// The baseline and the pace stay in registers, and while at rest also the band. A core with vectors predicts the
-    /// branches of [`follow`](Self::follow), and loses by one more.
+    /// The baseline and the pace stay in registers, and while at rest also the band, but on a core with vectors, which
+    /// predicts the branches of single samples.
     #[inline]
     fn encode_slice(
         &self,

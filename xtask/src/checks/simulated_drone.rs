@@ -109,14 +109,14 @@ fn draw(python: &Path, name: &str) -> Result<PathBuf> {
 }
 
 /// A program of `loop`, with this Python.
-fn program(python: &Path, name: &str) -> Command {
+pub(super) fn program(python: &Path, name: &str) -> Command {
     let mut program = command(python);
     program.arg(paths::root().join("loop").join(name));
     program
 }
 
 /// `RotorPy`, and the package of this repository, compiled as its tests are.
-fn environment() -> Result<PathBuf> {
+pub(super) fn environment() -> Result<PathBuf> {
     println!("Installs in target/loop, from PyPI: what loop/requirements.txt names, 1.1 GB.");
     let python = python::environment("loop")?;
     python::install(&python, &["--requirement", "loop/requirements.txt"])?;

@@ -93,7 +93,7 @@ fn places() -> impl TypedValueParser<Value = &'static str> {
         .map(move |asked| names().find(|name| *name == asked).unwrap_or_default())
 }
 
-/// A network, in the form that a chip or the flight controller takes.
+/// A network with the numbers of its place.
 enum Placed {
     Chip(&'static dyn Chip, Trained),
     Controller(Model),
@@ -114,7 +114,7 @@ impl Placed {
         Ok(Self::Chip(*chip, file.in_steps(dt.or(seconds))?))
     }
 
-    /// The number of the network's inputs, and the name of its first layer.
+    /// How many inputs it has, and the name of its first layer.
     fn inputs(&self) -> (usize, &str) {
         match self {
             Self::Chip(_, trained) => (trained.inputs(), &trained.layers[0].name),
@@ -190,7 +190,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     if options.live { live(&*brought.network, placed.inputs().0) } else { Ok(()) }
 }
 
-/// Runs the network on the chip's model: a step for each line of standard input, which a line answers.
+/// Steps in by standard input, answers out.
 fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
     let (mut answers, mut line) = (Output::to(None)?, String::new());
     let step = |line: io::Result<String>| {
@@ -211,7 +211,7 @@ fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
     Ok(())
 }
 
-/// The inputs that fire in a step, from a line with their numbers.
+/// A line of spikes.
 fn spikes(line: &str) -> Result<Vec<u16>> {
     let of_word = |word: &str| {
         word.parse().with_context(|| format!("`{word}` is not the number of an input"))
@@ -219,15 +219,15 @@ fn spikes(line: &str) -> Result<Vec<u16>> {
     line.split_whitespace().map(of_word).collect()
 }
 
-/// Spikes for the network's inputs, from a recording or a file.
+/// The input of the network.
 struct Driven {
     /// The input spikes, by step.
     steps: Trains,
-    /// The number of inputs; from a file of spikes, the highest number in it and one.
+    /// How many there are; of spikes as they are the highest is known.
     inputs: usize,
-    /// The inputs in words, for errors.
+    /// What the inputs are.
     words: String,
-    /// The length of a step in µs, if it is known.
+    /// How long a step is, if that is known.
     step_us: Option<f64>,
     /// The settings of the columns.
     settings: Vec<Settings>,
@@ -235,7 +235,7 @@ struct Driven {
 }
 
 impl Driven {
-    /// Returns an error if the network has other inputs.
+    /// Returns an error unless these are the network's inputs.
     fn check(&self, (inputs, layer): (usize, &str), scheme: Option<Scheme>) -> Result<()> {
         let given = &self.words;
         match scheme {

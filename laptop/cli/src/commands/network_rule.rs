@@ -28,13 +28,13 @@ pub(crate) struct RuleOptions {
 }
 
 impl RuleOptions {
-    /// The rule asked for, with steps of `dt` seconds.
+    /// What is asked for, with these seconds of a step.
     pub(crate) fn asked(&self, dt: Option<f64>) -> Asked {
         let &Self { framework, fires, decay, current, .. } = self;
         Asked { framework, resets: self.resets.clone(), fires, decay, current, dt }
     }
 
-    /// Whether any option of the rule was given.
+    /// Whether anything is asked for.
     pub(crate) fn is_told(&self) -> bool {
         let Asked { framework, resets, fires, decay, current, .. } = self.asked(None);
         let told = [
@@ -50,7 +50,7 @@ impl RuleOptions {
 
 type Choices<T> = [(&'static str, T, &'static str)];
 
-/// A parser that takes the names of these choices.
+/// Reads one of these words.
 fn of<T: Copy + Send + Sync + 'static>(
     choices: &'static Choices<T>,
 ) -> impl TypedValueParser<Value = T> {
