@@ -229,7 +229,7 @@ const LONG: &[Step] = &[
     ),
     step("flown", "the same, on an emulated board: bit for bit", simulated_drone::board),
     step("chip-flies", "the same, on a network on tinyODIN's model", simulated_drone::chip),
-    step("network-flies", "the same, on a network in place of the cascade", network_flies::verify),
+    step("net-flies", "the same, on a network in place of the cascade", network_flies::verify),
     step("reckon", "the model of ReckOn against the chip's own code", reckon::reckon),
     step("cores", "instruction counts on all five cores, and the log of the smallest", long::cores),
     step(
