@@ -130,9 +130,10 @@ impl Kind {
             return Ok(Some(Self::Directory));
         }
         if files::is_dir(path) {
-            return match files::is_file(&path.join(rosbag2::METADATA)) {
-                true => Ok(Some(Self::Directory)),
-                false => Err(Error::not_a_log(path.display().to_string(), NO_BAG)),
+            return if files::is_file(&path.join(rosbag2::METADATA)) {
+                Ok(Some(Self::Directory))
+            } else {
+                Err(Error::not_a_log(path.display().to_string(), NO_BAG))
             };
         }
         // What can be read only once is no log.

@@ -222,6 +222,13 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         T::each_mut(&mut self.channels).for_each(|(_, state)| *state = T::Scheme::START);
     }
 
+    /// How many addresses the channels take, up to 65 535.
+    #[cfg(feature = "link")]
+    pub(crate) fn addresses(&self) -> u16 {
+        let neurons = T::each(&self.channels).map(|(scheme, _)| scheme.neurons());
+        u16::try_from(neurons.sum::<usize>()).unwrap_or(u16::MAX)
+    }
+
     /// The fingerprint of the channels' schemes, the sample type, the addresses and the sub-timesteps, for
     /// [`Transmitter::for_bank`](crate::link::Transmitter::for_bank). For set-up.
     pub fn fingerprint(&self) -> Fingerprint {

@@ -172,6 +172,10 @@ impl<F: Filter, P: Scheme<Sample = F::Sample>> Scheme for Filtered<F, P> {
         self.scheme.fits_decoder(state)
     }
 
+    fn holds_keyframes(&self) -> bool {
+        self.scheme.holds_keyframes()
+    }
+
     fn neurons(&self) -> usize {
         self.scheme.neurons()
     }

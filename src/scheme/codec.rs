@@ -136,6 +136,12 @@ pub trait Scheme: Sized {
         true
     }
 
+    /// Whether a keyframe has the bits of the value that a decoder holds already which lost nothing, so that another value
+    /// shows that sender and receiver have other schemes.
+    fn holds_keyframes(&self) -> bool {
+        false
+    }
+
     /// How many neurons a channel has. Channels of one bank, readout or receiver have the same number.
     fn neurons(&self) -> usize {
         Self::Code::NEURONS

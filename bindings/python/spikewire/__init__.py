@@ -15,9 +15,10 @@ True
 from . import _native
 from ._bank import EVENTS, Bank
 from ._files import Log, read, read_events, read_ulog, write_events
-from ._filters import low_pass
+from ._filters import Filter, low_pass
 from ._laptop import Advice, Picture, Tuned, advise, plot, score, tune
 from ._link import Receiver, Sender
+from ._network import Network, Ran
 from ._scheme import Scheme
 from ._schemes import *  # noqa: F403: the classes, by the catalogue
 from ._schemes import NAMES, schemes
@@ -34,8 +35,11 @@ __all__ = [
     "Bank",
     "Decoder",
     "Encoder",
+    "Filter",
     "Log",
+    "Network",
     "Picture",
+    "Ran",
     "Receiver",
     "Scheme",
     "Sender",

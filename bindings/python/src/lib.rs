@@ -6,9 +6,11 @@ mod array;
 mod channel;
 mod coder;
 mod error;
+mod filter;
 mod fingerprint;
 mod library;
 mod link;
+mod network;
 mod stream;
 mod values;
 mod work;
@@ -23,6 +25,8 @@ mod _native {
     #[pymodule_export]
     use super::coder::{Coder, Fitted};
     #[pymodule_export]
+    use super::filter::Filter;
+    #[pymodule_export]
     use super::fingerprint::fingerprint;
     #[pymodule_export]
     use super::info::schemes;
@@ -32,6 +36,8 @@ mod _native {
     };
     #[pymodule_export]
     use super::link::{Hearer, Sender};
+    #[pymodule_export]
+    use super::network::Network;
     #[pymodule_export]
     use super::stream::{Decoder, Encoder};
     use pyo3::prelude::*;
@@ -59,7 +65,7 @@ mod info {
             own.set_item("words", info.words)?;
             own.set_item("good_for", info.good_for)?;
             own.set_item("is_signed", info.is_signed)?;
-            own.set_item("has_first_value", info.has_first_value)?;
+            own.set_item("has_first_value", info.has_first_value())?;
             let parameters = info.parameters.iter().map(|own| parameter(py, own));
             own.set_item("parameters", parameters.collect::<PyResult<Vec<_>>>()?)?;
             all.append(own)?;

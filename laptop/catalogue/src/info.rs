@@ -16,12 +16,9 @@ pub struct Info {
     pub good_for: &'static str,
     /// Whether its spikes have a direction.
     pub is_signed: bool,
-    /// Whether its decoder adds up steps from a first value.
-    pub has_first_value: bool,
-    /// Whether errors of its steps add up in its decoder until a keyframe comes, though every spike arrives.
-    pub drifts: bool,
-    /// Whether its keyframes are what its decoder holds already, and by which parameter it climbs a sample at
-    /// most.
+    /// The errors of its steps, if its decoder adds up steps from a first value.
+    pub steps: StepErrors,
+    /// The parameter that limits how far the decoded value can move in one sample, if one does.
     pub climbs_by: Option<&'static str>,
     /// Whether it is in the paper's first figure.
     pub is_drawn: bool,
@@ -40,18 +37,38 @@ impl Info {
         words: "",
         good_for: "",
         is_signed: false,
-        has_first_value: false,
-        drifts: false,
+        steps: StepErrors::None,
         climbs_by: None,
         is_drawn: false,
         colour: [0; 3],
         parameters: &[],
     };
 
+    /// Returns whether its decoder adds up steps from a first value.
+    pub const fn has_first_value(&self) -> bool {
+        !matches!(self.steps, StepErrors::None)
+    }
+
+    /// Returns whether the errors of its steps add up in its decoder until a keyframe comes, though every spike arrives.
+    pub const fn drifts(&self) -> bool {
+        matches!(self.steps, StepErrors::Drifting)
+    }
+
     /// The parameter of this name.
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|own| own.name == name)
     }
+}
+
+/// The errors of a code's steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepErrors {
+    /// The code has no steps: its decoder has no first value.
+    None,
+    /// The encoder holds what the decoder holds, so that the errors of steps do not add up.
+    Held,
+    /// The errors of all steps add up in the decoder until a keyframe comes.
+    Drifting,
 }
 
 /// A parameter of a scheme.

@@ -87,7 +87,7 @@ fn parameters_say_what_they_take() {
             assert!(is_shown || matches!(parameter.kind, Kind::Flag | Kind::Choice(_)), "{what}");
         }
         assert_eq!(
-            info.has_first_value,
+            info.has_first_value(),
             info.parameters.iter().any(|parameter| parameter.found == Some(Found::First)),
             "{}",
             info.name
@@ -247,7 +247,7 @@ fn centres_at_the_quantiles_of_the_signal() {
 
 #[test]
 fn the_spike_of_the_first_sample_changes_nothing() {
-    for scheme in ALL.iter().filter(|scheme| scheme.info().has_first_value) {
+    for scheme in ALL.iter().filter(|scheme| scheme.info().has_first_value()) {
         for sample in SAMPLES {
             let sample: SampleType = sample.parse().unwrap();
             let settings = resolve(*scheme, &paper(), sample).unwrap();

@@ -18,8 +18,8 @@ use serde::Serialize;
 use spikewire::{Event, Keyframe, Tick};
 use std::time::{Duration, Instant};
 
-/// What a code's latency may take of a control loop's phase at the loop's bandwidth, in degrees: a third of a phase margin
-/// of 60°. In the flights of `docs/loop.md` codes that take 18° stray, and those that take 80° lose the drone.
+/// The most phase that a code's latency may take from a control loop at its bandwidth, in degrees: a third of a margin of
+/// 60°. In the flights of `docs/loop.md` codes that take 18° stray, and those that take 80° lose the drone.
 const PHASE: f64 = 20.0;
 
 /// The part of a log's samples at which step forward may fall behind. In those flights a threshold that does so at 0.9 %
@@ -364,7 +364,7 @@ impl Advice {
                 short(self.max_rmse)
             ),
         ];
-        if best.scheme.is_some_and(|scheme| scheme.info().drifts) {
+        if best.scheme.is_some_and(|scheme| scheme.info().drifts()) {
             reasons.push(format!("    ! {DRIFTS}"));
         }
         reasons
@@ -383,7 +383,7 @@ pub fn link_bytes(trial: &Trial, rate: f64) -> Result<f64> {
     let tick = |sample: u64| Tick::from_micros((sample as f64 * period) as u64);
     let (mut next, every) = (0, rate.round().max(1.0) as u64);
     for event in &trial.events {
-        while trial.scheme.info().has_first_value && event.sample >= next {
+        while trial.scheme.info().has_first_value() && event.sample >= next {
             let value = trial.decoded.get(next as usize).copied().unwrap_or_default();
             writer
                 .write(&Item::Keyframe(Keyframe::new(tick(next), 0, value as f32)), &mut bytes)?;

@@ -37,9 +37,9 @@ fn settings(coding: &Coding) -> Result<Settings> {
 /// A codec of the library for C.
 #[derive(Clone, Debug)]
 pub struct Codec {
-    /// Its name in C: `roll` gives `sw_roll_encode`.
+    /// The codec's name in C: `roll` gives `sw_roll_encode`.
     pub name: String,
-    /// Its scheme, sample type and parameters.
+    /// The scheme, the sample type and the parameters.
     pub coding: Coding,
 }
 

@@ -113,7 +113,7 @@ pub fn encode(
     Ok((output, notes))
 }
 
-/// The first samples: at least so many finite ones, or all there are.
+/// The first samples: `enough` finite ones or more, or all if there are fewer.
 fn first(source: &mut dyn Source, enough: usize) -> Result<Chunk> {
     let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
     let mut finite = 0;

@@ -109,7 +109,7 @@ impl Fit {
 
 /// The threshold of a code that spikes on changes.
 fn threshold(scheme: Scheme, settings: &Settings) -> Option<f64> {
-    settings.number("threshold").ok().filter(|_| scheme.info().has_first_value)
+    settings.number("threshold").ok().filter(|_| scheme.info().has_first_value())
 }
 
 /// A sentence on how many samples the sample type could not hold, if any.

@@ -10,7 +10,7 @@ use std::ops::Range;
 
 /// A recording in memory.
 pub struct Recording {
-    /// Its finite samples.
+    /// The finite samples.
     pub values: Vec<f64>,
     /// Their times in µs, if recorded. Where the clock started anew, a segment follows the one before it after a usual step.
     pub times: Vec<i64>,

@@ -55,7 +55,7 @@ pub(crate) fn listen(options: &Listen) -> Result<Value> {
         settings.push(scheme.resolve(sample, &asked.channel(info, channel, channels)?, &known)?);
     }
     let first = settings.first().context("a receiver has at least one channel")?;
-    let has_slots = !info.has_first_value && scheme.shape(first)?.slots > 1;
+    let has_slots = !info.has_first_value() && scheme.shape(first)?.slots > 1;
     if has_slots && options.slot_ticks.is_none() {
         bail!("{} needs the length of the sender's sub-timesteps", scheme.name());
     }

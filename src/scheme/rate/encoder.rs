@@ -99,7 +99,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
     }
 
     /// [`encode`](Self::encode) as a call. In fixed point each criterion of BSA has its own loop over taps, for each
-    /// of which the compiler would repeat the loop over samples.
+    /// of which the compiler would repeat the loop over samples: flash that only a laptop can spare.
     #[inline(never)]
     fn encode_called(&mut self, rule: &impl Rule<S, F>, sample: S) -> Option<Spike> {
         self.encode(rule, sample)
@@ -115,7 +115,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         let length = samples.len().min(spikes.len());
         if !R::IN_ORDER {
             for (spike, &sample) in spikes.iter_mut().zip(samples) {
-                spike.write(if S::Residual::IS_EXACT {
+                spike.write(if S::Residual::IS_EXACT && !crate::num::HAS_VECTORS {
                     self.encode_called(rule, sample)
                 } else {
                     self.encode(rule, sample)

@@ -213,6 +213,10 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Keyframe;
 
+    fn holds_keyframes(&self) -> bool {
+        true
+    }
+
     fn fingerprint(&self) -> Fingerprint {
         let most = u32::from(self.most.unsigned_abs());
         Fingerprint::new("SendOnDelta").sample(self.threshold).number(most)

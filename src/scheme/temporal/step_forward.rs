@@ -106,6 +106,10 @@ impl<S: Sample> Scheme for StepForward<S> {
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Keyframe;
 
+    fn holds_keyframes(&self) -> bool {
+        true
+    }
+
     fn fingerprint(&self) -> Fingerprint {
         Fingerprint::new("StepForward").sample(self.threshold)
     }

@@ -333,7 +333,7 @@ impl<T: Build + Sync> RunTime for T {
         let resolve = Resolve::new(&T::INFO, asked, known)?;
         let mut settings = T::resolve(&resolve)?;
         resolve.check_range(&settings)?;
-        if T::INFO.has_first_value {
+        if T::INFO.has_first_value() {
             settings.first = resolve.first_window(T::looks_back(asked))?;
         }
         if sample == SampleType::F32 { Ok(settings) } else { rounded::<T>(sample, &settings) }
@@ -380,7 +380,7 @@ impl<T: Build + Sync> RunTime for T {
     }
 
     fn codec(&self, settings: &Settings) -> Result<Codec> {
-        if !T::INFO.has_first_value {
+        if !T::INFO.has_first_value() {
             return self.codec_from(settings, None);
         }
         let Some(name) = settings.first_key() else {

@@ -157,7 +157,7 @@ impl Listen {
     /// The sub-timesteps of the sender, of a scheme that has them.
     fn slot_ticks(&self, scheme: Scheme, settings: &[Settings]) -> Result<Option<u32>> {
         // The spikes of a temporal code are all alike, whatever their sub-timestep.
-        let has_slots = !scheme.info().has_first_value
+        let has_slots = !scheme.info().has_first_value()
             && settings
                 .first()
                 .map(|own| scheme.shape(own))

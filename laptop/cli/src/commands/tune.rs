@@ -144,7 +144,7 @@ struct Kept(Asked);
 
 option_group!(Kept, |command| augment(command, is_kept), |matches| given(matches, is_kept));
 
-/// The search has a seed of its own.
+/// Whether a parameter stays as it is given: all do but the seed, as the search has one of its own.
 fn is_kept(parameter: &Parameter) -> bool {
     parameter.name != "seed"
 }
@@ -202,7 +202,7 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
 }
 
 impl Tune {
-    /// The request, but for the logs.
+    /// The request to the library, without the logs.
     fn request(&self) -> Result<TuneRequest> {
         let schemes = match self.scheme {
             Which::One(scheme) => vec![scheme],

@@ -52,7 +52,7 @@ pub struct Row {
     pub evaluated: usize,
     /// Outcomes compared in exact arithmetic.
     pub listed: usize,
-    /// Whether those are all that there are.
+    /// Whether all outcomes were compared.
     pub is_complete: bool,
     /// Whether the search ended before its budget of settings.
     pub is_cut_short: bool,
@@ -141,7 +141,7 @@ impl Row {
                 found.evaluated
             ));
         }
-        if problem.scheme.info().drifts {
+        if problem.scheme.info().drifts() {
             flags.push(DRIFTS.to_owned());
         }
         flags.extend(found.ends.iter().map(End::words));

@@ -92,7 +92,7 @@ pub fn cut(recording: &Recording, hold_out: HoldOut) -> Result<(Vec<Stretch>, Ve
     }
     let before_it = |block: usize| (block as f64 * part + OFFSET).floor();
     let is_held_out = |block: usize| before_it(block + 1) > before_it(block);
-    let (mut kept, mut held_out) = (Vec::new(), Vec::new());
+    let (mut tuned_on, mut checked) = (Vec::new(), Vec::new());
     for segment in &recording.segments {
         let mut ranges: [Vec<Range<usize>>; 2] = Default::default();
         for block in 0..blocks {
@@ -108,7 +108,7 @@ pub fn cut(recording: &Recording, hold_out: HoldOut) -> Result<(Vec<Stretch>, Ve
             }
         }
         let [to_tune_on, scored] = ranges;
-        kept.extend(to_tune_on.iter().map(|own| {
+        tuned_on.extend(to_tune_on.iter().map(|own| {
             let scored = std::iter::once(0..own.len()).collect();
             Stretch::scored(recording, own, scored)
         }));
@@ -116,13 +116,13 @@ pub fn cut(recording: &Recording, hold_out: HoldOut) -> Result<(Vec<Stretch>, Ve
             let from_start =
                 |own: &Range<usize>| own.start - segment.start..own.end - segment.start;
             let scored = scored.iter().map(from_start).collect();
-            held_out.push(Stretch::scored(recording, segment, scored));
+            checked.push(Stretch::scored(recording, segment, scored));
         }
     }
-    if kept.is_empty() || held_out.is_empty() {
+    if tuned_on.is_empty() || checked.is_empty() {
         bail!("`hold_out` {part} of {blocks} blocks leaves none to tune on or none to check on");
     }
-    Ok((kept, held_out))
+    Ok((tuned_on, checked))
 }
 
 #[cfg(test)]
