@@ -91,17 +91,20 @@ impl Receive<'_> {
             return Err(RequestKind::Channels { channels, scheme, most: N }.into());
         }
         let mut started = Vec::new();
-        for own in settings {
+        // The last one stands beyond the channels that were given.
+        let beyond = settings.first().filter(|_| settings.len() > 1);
+        for (place, own) in settings.iter().chain(beyond).enumerate() {
             let built = catalogue::visit::<P::Sample, _>(scheme.name(), own, Boxed)?;
             let start = own.first_value().map(|start| P::Sample::from_f64(start * sample.one()));
             let Ok(scheme) = built.downcast::<P>() else {
                 return Err(RequestKind::Differ.into());
             };
-            started.push(Started { scheme: *scheme, start });
+            started.push(Started { scheme: *scheme, is_given: place < settings.len(), start });
         }
-        let first = started.first().ok_or(RequestKind::NoChannel)?;
-        let channels = if started.len() == 1 { N } else { started.len() };
-        let schemes = std::array::from_fn(|channel| started.get(channel).unwrap_or(first));
+        let last = started.last().ok_or(RequestKind::NoChannel)?;
+        let given = started.get(..settings.len()).unwrap_or_default();
+        let channels = if given.len() == 1 { N } else { given.len() };
+        let schemes = std::array::from_fn(|channel| given.get(channel).unwrap_or(last));
         let mut receiver = Receiver::<_, N, EVENTS>::per_channel(schemes);
         if let Some(length) = slot_ticks {
             receiver = receiver.with_slot_ticks(length);
@@ -109,7 +112,7 @@ impl Receive<'_> {
         then(Box::new(Receiving {
             receiver,
             channels,
-            neurons: first.neurons(),
+            neurons: last.neurons(),
             has_fired: [P::RECOVERY == Recovery::Keyframe; N],
             end: None,
             unused_keyframes: 0,
@@ -117,7 +120,7 @@ impl Receive<'_> {
             kind: kind(sample),
             outside: 0,
             slot_ticks: slot_ticks.unwrap_or(0),
-            schemes: started
+            schemes: given
                 .iter()
                 .map(|own| filter.map_or(own.fingerprint(), |filter| filter.and(own.fingerprint())))
                 .collect(),
@@ -154,6 +157,8 @@ fn kind(sample: SampleType) -> SampleKind {
 /// A scheme whose decoders start from a given value. Only the decoding half is of use.
 struct Started<P: Scheme> {
     scheme: P,
+    /// Whether there is such a channel; false for what stands in its place beyond the last one.
+    is_given: bool,
     start: Option<P::Sample>,
 }
 
@@ -166,10 +171,13 @@ impl<P: Scheme> Scheme for Started<P> {
 
     const LATENCY: usize = P::LATENCY;
     const RECOVERY: Recovery = P::RECOVERY;
-    const HOLDS_KEYFRAMES: bool = P::HOLDS_KEYFRAMES;
 
     fn fingerprint(&self) -> Fingerprint {
         self.scheme.fingerprint()
+    }
+
+    fn holds_keyframes(&self) -> bool {
+        self.is_given && self.scheme.holds_keyframes()
     }
 
     fn encode(&self, state: &mut P::EncoderState, sample: P::Sample) -> P::Output {
