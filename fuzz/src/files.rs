@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 use flight_logs::{Damage, Kind, Reading};
 use lab::coding::Coding;
 use lab::events::{Format, read_events};
+use lab::flight::Flight;
 use lab::frames;
 use lab::input::messages::overview;
 use lab::input::{ChannelOptions, Chunk, InputOptions};
@@ -143,9 +144,13 @@ pub fn events(bytes: &[u8]) {
     }
 }
 
-/// Files of parameters.
+/// Files of parameters, and of flights.
 pub fn toml(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
+    if let Ok(flight) = Flight::parse(text) {
+        let again = Flight::parse(&flight.to_toml(&[])).expect("what is written is read");
+        assert_eq!(again.to_toml(&[]), flight.to_toml(&[]));
+    }
     let Ok(coding) = Coding::parse("the input", text) else { return };
     let again = Coding::parse("written", &coding.to_toml(&[])).expect("what is written is read");
     assert_eq!(again.to_toml(&[]), coding.to_toml(&[]));

@@ -2,9 +2,10 @@
 
 use super::network_rule::RuleOptions;
 use crate::inputs::InputOptions;
-use crate::options::{SchemeOptions, schemes, tell_each};
+use crate::options::{SchemeOptions, schemes};
+use crate::words;
 use anyhow::{Context, Result, ensure};
-use catalogue::run::{Calibrated, Known, SampleType, Settings};
+use catalogue::run::{Calibrated, Known, SampleType, Settings, Words};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -12,8 +13,9 @@ use lab::bank::Bank;
 use lab::fit::rounding;
 use lab::input::{InputOptions as Input, above_zero};
 use lab::network::{
-    Brought, CHIPS, Chip, Compare, ControllerRequest, Cost, Figures, File, HeldOut, Model, Numbers,
-    OnChip, Request, Stepped, Told, Trained, Trains, WINDOW, bring, bring_to_controller,
+    Brought, CHIPS, Chip, Compare, ControllerRequest, Cost, Figures, File, HeldOut, Model,
+    NetworkKind, Numbers, OnChip, Request, Stepped, Told, Trained, Trains, WINDOW, bring,
+    bring_to_controller,
 };
 use lab::output::Output;
 use lab::scheme::Scheme;
@@ -211,7 +213,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         }
     };
     bar.finish_and_clear();
-    let brought = brought.map_err(|error| error.context(name.clone()))?;
+    let brought = brought.map_err(|error| error.at(&name))?;
 
     let told = Told { source: name, inputs: driven.words, step_us: driven.step_us };
     if output.is_some() || !options.live {
@@ -224,7 +226,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         output.write_all(&brought.network.bytes()?)?;
         output.finish()?;
     }
-    tell_each(&driven.notes);
+    words::tell(&driven.notes);
     report(&brought);
     if options.live { live(&*brought.network, placed.inputs().0) } else { Ok(()) }
 }
@@ -232,11 +234,10 @@ pub(crate) fn run(options: &Network) -> Result<()> {
 /// Steps in by standard input, answers out.
 fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
     let (mut answers, mut line) = (Output::to(None)?, String::new());
-    let step = |line: io::Result<String>| {
+    let step = |line: io::Result<String>| -> lab::Result<_> {
         let step = spikes(&line?)?;
         let is_known = step.iter().all(|input| usize::from(*input) < inputs);
-        ensure!(is_known, "the network has {inputs} inputs, and not those of {step:?}");
-        Ok(step)
+        if is_known { Ok(step) } else { Err(NetworkKind::NoInputs { inputs, step }.into()) }
     };
     let mut steps = stdin().lock().lines().map(step);
     network.follow(&mut steps, &mut |Stepped { fired, clocks }| {
@@ -251,9 +252,9 @@ fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
 }
 
 /// A line of spikes.
-fn spikes(line: &str) -> Result<Vec<u16>> {
+fn spikes(line: &str) -> lab::Result<Vec<u16>> {
     let of_word = |word: &str| {
-        word.parse().with_context(|| format!("`{word}` is not the number of an input"))
+        word.parse().map_err(|_| NetworkKind::NotAnInput { word: word.to_owned() }.into())
     };
     line.split_whitespace().map(of_word).collect()
 }
@@ -270,7 +271,7 @@ struct Driven {
     step_us: Option<f64>,
     /// The settings of the columns.
     settings: Vec<Settings>,
-    notes: Vec<String>,
+    notes: Vec<Words>,
 }
 
 impl Driven {
@@ -301,7 +302,7 @@ fn driven(
     let recordings = Recording::read_all(input)?;
     let first = recordings.first().context("there is no channel")?;
     let (samples, rate) = (first.values.len(), first.rate);
-    let mut notes: Vec<String> = first.notes().lines().map(str::to_owned).collect();
+    let mut notes = first.notes();
     let columns: Vec<Vec<f64>> = recordings.into_iter().map(|own| own.values).collect();
 
     let mut settings = known.unwrap_or_default().to_vec();
@@ -311,7 +312,7 @@ fn driven(
         let known = Known { calibrated: Some(&calibrated), first: column, can_calibrate: true };
         let asked = parameters.channel(scheme.info(), channel, columns.len())?;
         let own = scheme.resolve(*sample, &asked, &known)?;
-        notes.extend(rounding(&own));
+        notes.extend(rounding(&own).map(Words::from));
         settings.push(own);
     }
     ensure!(

@@ -1,7 +1,8 @@
 //! A trained network onto a chip: what is asked for, and what came of it.
 
 use super::{Chip, Compare, Cost, Distance, OnChip, Trained, Trains};
-use anyhow::{Result, ensure};
+use crate::Result;
+use crate::network::fault::ensure;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The steps over which outputs are counted.

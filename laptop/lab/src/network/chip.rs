@@ -2,7 +2,7 @@
 
 use super::costs::Cost;
 use super::{ReckOn, TinyOdin, Trained, Trains};
-use anyhow::{Result, anyhow, bail};
+use crate::network::fault::{Result, bail, fault};
 use spikewire_chips::ChipError;
 use std::fmt::{Debug, Display};
 
@@ -147,6 +147,6 @@ pub(super) fn list(numbers: impl Iterator<Item = impl Display>) -> String {
 }
 
 /// The error of a driver on the model.
-pub(super) fn refused<B: Debug, P: Debug>(error: &ChipError<B, P>) -> anyhow::Error {
-    anyhow!("the chip's model: {error}")
+pub(super) fn refused<B: Debug, P: Debug>(error: &ChipError<B, P>) -> crate::Error {
+    fault(format!("the chip's model: {error}"))
 }

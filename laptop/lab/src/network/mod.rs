@@ -5,6 +5,7 @@ mod chip;
 mod controller;
 mod costs;
 mod distance;
+mod fault;
 mod nir;
 mod plain;
 mod reckon;
@@ -21,11 +22,13 @@ pub use controller::{
 };
 pub use costs::Cost;
 pub use distance::Distance;
+pub use fault::NetworkKind;
 pub use reckon::ReckOn;
 pub use tiny_odin::TinyOdin;
 pub use trained::{Trained, Trains};
 
-use anyhow::{Context, Result, bail};
+use crate::error::At;
+use crate::{Error, Result};
 use std::fs;
 use std::path::Path;
 
@@ -46,15 +49,15 @@ impl File {
     /// # Errors
     /// Returns an error if the file cannot be read, or is neither.
     pub fn read(path: &Path) -> Result<Self> {
-        let name = || path.display().to_string();
-        let bytes = fs::read(path).with_context(|| format!("{}: cannot be opened", name()))?;
+        let unread = |error| Error::open(path.display().to_string(), error);
+        let bytes = fs::read(path).map_err(unread)?;
         if bytes.starts_with(HDF5) {
-            return Ok(Self::Nir(Box::new(nir::read(bytes).with_context(name)?)));
+            return Ok(Self::Nir(Box::new(nir::read(bytes).at(|| path)?)));
         }
         if bytes.trim_ascii_start().starts_with(b"{") {
-            return Ok(Self::Plain(plain::read(&bytes).with_context(name)?));
+            return Ok(Self::Plain(plain::read(&bytes).at(|| path)?));
         }
-        bail!("{}: neither a NIR graph, which is an HDF5 file, nor a network in JSON", name())
+        Err(NetworkKind::NoNetwork.at(path))
     }
 
     /// The network in the form of `spikewire-network`, by the rule that is asked for.

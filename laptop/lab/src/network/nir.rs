@@ -2,7 +2,7 @@
 //!
 //! Source: J. E. Pedersen et al., *Neuromorphic intermediate representation*, Nature Communications 15 (2024), table 1.
 
-use anyhow::{Context, Result, anyhow, bail, ensure};
+use crate::network::fault::{Context, Result, bail, ensure, fault};
 use hdf5_reader::group::Group;
 use hdf5_reader::messages::datatype::Datatype;
 use hdf5_reader::{Dataset, H5Type, Hdf5File, OpenOptions};
@@ -344,7 +344,7 @@ fn read_neurons(node: &Group, name: &str, kind: &str, count: usize) -> Result<Ne
 
 /// An array's shape and numbers, whatever their type.
 fn numbers(node: &Group, name: &str) -> Result<(Vec<usize>, Vec<f64>)> {
-    let dataset = node.dataset(name).map_err(|_| anyhow!("no `{name}`"))?;
+    let dataset = node.dataset(name).map_err(|_| fault(format!("no `{name}`")))?;
     let shape = dataset.shape().iter().map(|&length| length as usize).collect();
     let numbers = match *dataset.dtype() {
         Datatype::FloatingPoint { size: 4, .. } => read_as(&dataset, |n: f32| n.into()),

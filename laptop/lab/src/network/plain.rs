@@ -3,7 +3,7 @@
 use super::Trained;
 use super::controller::{Fires, Reset};
 use super::trained::{Layer, Neuron, Readout};
-use anyhow::{Context, Result, bail};
+use crate::network::fault::{Context, Result, bail};
 use serde::Deserialize;
 
 #[derive(Deserialize)]

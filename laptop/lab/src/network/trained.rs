@@ -1,7 +1,7 @@
 //! A trained network, and what it does in double precision.
 
 use super::controller::{Asked, Fires, Reset};
-use anyhow::{Result, bail, ensure};
+use crate::network::fault::{Result, bail, ensure};
 
 /// Layers that a network may have.
 const LAYERS: usize = 3;

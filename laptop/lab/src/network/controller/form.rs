@@ -5,7 +5,7 @@ use super::super::trained;
 use super::net::{Layer, Net, Neuron, Own, Spike};
 use super::rule::{Current, Decay, Framework, Needs, Reset, Rule};
 use super::{Asked, Model};
-use anyhow::{Context, Result, bail, ensure};
+use crate::network::fault::{Context, Result, bail, ensure};
 
 /// The largest number of the crate's in `f32`.
 const LARGEST: f64 = 1e15;

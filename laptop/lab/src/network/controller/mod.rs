@@ -14,7 +14,7 @@ use super::Trains;
 use super::bring::{Brought, HeldOut, Original, figures};
 use super::chip::{OnChip, Ran, Stepped, Told};
 use super::costs::Cost;
-use anyhow::{Result, bail};
+use crate::network::fault::{Result, bail};
 use net::{Done, Net, Own, State};
 use number::Number;
 use quantise::Integers;

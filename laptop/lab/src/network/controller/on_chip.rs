@@ -3,7 +3,7 @@
 use super::super::trained::{self, Readout, Trained};
 use super::Model;
 use super::net::{Layer, Neuron, Own, Spike};
-use anyhow::{Context, Result, ensure};
+use crate::network::fault::{Context, Result, ensure};
 
 /// The share of a current that a step may leave of it.
 const CURRENT: f64 = 1e-3;

@@ -1,6 +1,6 @@
 //! The rule by which neurons step, which a NIR file does not say.
 
-use anyhow::{Result, bail};
+use crate::network::fault::{Result, bail};
 use std::fmt::{self, Display, Write as _};
 
 /// The framework whose rule a network follows.

@@ -8,7 +8,7 @@ mod run;
 use super::chip::{Chip, Compare, OnChip, Ran, Told, written};
 use super::costs::Cost;
 use super::{Trained, Trains};
-use anyhow::Result;
+use crate::Result;
 use quantise::{Quantised, quantise};
 use spikewire_chips::{DescribeReckOn, ReckOnBytes};
 

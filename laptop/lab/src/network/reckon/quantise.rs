@@ -4,7 +4,7 @@ use super::super::trained::{Layer, Neuron, Readout, fires_at};
 use super::super::{Distance, Trained, Trains};
 use super::place::Places;
 use crate::network::Fires;
-use anyhow::{Result, ensure};
+use crate::network::fault::{Result, ensure};
 use rayon::prelude::*;
 use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
 use std::sync::atomic::{AtomicUsize, Ordering};

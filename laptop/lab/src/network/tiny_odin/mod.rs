@@ -9,7 +9,7 @@ use super::bring::{Original, figures};
 use super::chip::{Chip, Compare, OnChip, Ran, Stepped, Told, written};
 use super::costs::Cost;
 use super::{Trained, Trains};
-use anyhow::{Context, Result, bail};
+use crate::network::fault::{Context, Result, bail};
 use quantise::{Quantised, quantise};
 use spikewire_chips::NetworkBytes;
 

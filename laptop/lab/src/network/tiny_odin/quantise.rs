@@ -2,7 +2,7 @@
 
 use super::super::trained::{Layer, Neuron, fires_at};
 use super::super::{Distance, Trained, Trains};
-use anyhow::{Result, ensure};
+use crate::network::fault::{Result, ensure};
 use rayon::prelude::*;
 use spikewire_chips::{Describe, Input, TinyOdinInput, TinyOdinNeuron};
 use std::collections::{BTreeSet, VecDeque};

@@ -3,7 +3,7 @@
 use super::super::Trains;
 use super::super::chip::{Ran, Stepped, refused};
 use super::Quantised;
-use anyhow::Result;
+use crate::Result;
 use silicon::Board;
 use spikewire_chips::{Describe, Input, TinyOdin, TinyOdinInput};
 
