@@ -181,7 +181,10 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     }
     // The whole recording, or its first part and the rest.
     let steps = driven.steps.len();
-    let part = if held_out.is_some() || options.no_held_out { steps } else { steps - steps / 3 };
+    // The controller's arithmetic is exact, or nearly so.
+    let on_controller = matches!(placed, Placed::Controller(_));
+    let holds_out = held_out.is_none() && !options.no_held_out && !on_controller;
+    let part = if holds_out { steps - steps / 3 } else { steps };
     let tuned = driven.steps[..part].to_vec();
     let own_tuned = own.as_ref().map(|own| own[..part].to_vec());
     let own = own_tuned.as_ref().zip(own.as_ref());

@@ -330,7 +330,7 @@ impl Figures {
     /// How well the network holds, by steps and by windows: 0 to 1.
     pub(super) fn holds(&self) -> f64 {
         let windows = self.windows_agreeing as f64 / self.windows.max(1) as f64;
-        (self.agreement().unwrap_or(0.0) + windows) / 2.0
+        f64::midpoint(self.agreement().unwrap_or(0.0), windows)
     }
 
     /// The share of the steps with an output in which the outputs are the same; `None` if none ever fires.

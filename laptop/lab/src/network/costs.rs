@@ -67,7 +67,9 @@ fn rounded(layer: &Layer, largest: f64) -> Layer {
         let mut all: Vec<&mut f64> = all.collect();
         let most = all.iter().fold(0.0_f64, |most, weight| most.max(weight.abs()));
         let unit = if most > 0.0 { most / largest } else { 1.0 };
-        all.iter_mut().for_each(|weight| **weight = (**weight / unit).round() * unit);
+        for weight in &mut all {
+            **weight = (**weight / unit).round() * unit;
+        }
     }
     layer
 }
@@ -79,9 +81,9 @@ fn leak(layer: &Layer, at: usize, drive: &Trains, fired: &Trains) -> f64 {
         let mut distance = Distance::default();
         let (mut potential, mut before): (f64, &[u16]) = (0.0, &[]);
         for (inputs, fired) in drive.iter().zip(fired) {
-            let fires = step(layer, at, Some(amount), false, inputs, before, &mut potential);
+            let does = step(layer, at, Some(amount), false, inputs, before, &mut potential);
             let meant = fired.iter().filter(|own| usize::from(**own) == at).count();
-            distance.step(fires.into(), meant);
+            distance.step(does.into(), meant);
             before = fired;
         }
         distance.value()
@@ -125,11 +127,11 @@ fn step(
     };
     let mut fired = false;
     let mut compare = |potential: &mut f64| {
-        let fires = match layer.fires {
+        let is_over = match layer.fires {
             Fires::Above => *potential > threshold,
             Fires::At => *potential >= threshold,
         };
-        if fires {
+        if is_over {
             *potential = if layer.reset.subtracts() { *potential - threshold } else { 0.0 };
             fired = true;
         }

@@ -89,7 +89,7 @@ fn layer(name: &str, written: Written) -> Result<Layer> {
     let thresholds = written.threshold.each(count, "threshold")?;
     let neurons = keep.into_iter().zip(thresholds).zip(leaks);
     let neurons =
-        neurons.map(|((keep, threshold), leak)| Neuron { keep, threshold, leak }).collect();
+        neurons.map(|((keep, threshold), leak)| Neuron { keep, leak, threshold }).collect();
     let Written { weights, recurrent, .. } = written;
     let name = name.to_owned();
     let (reset, fires) = (Reset::ToValue, Fires::Above);

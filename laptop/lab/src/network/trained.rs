@@ -192,7 +192,7 @@ impl Layer {
             Fires::Above => potential > threshold,
             Fires::At => potential >= threshold,
         };
-        let (before, fired) = (*potential, fires(*potential));
+        let (before, was_over) = (*potential, fires(*potential));
         let next = self.neurons[at].left(before) + driven;
         let less = next - threshold;
         // Before the reset, and after: those that come late are part of the step that follows.
@@ -200,19 +200,19 @@ impl Layer {
             Reset::ToValue => (next, 0.0),
             Reset::Subtract => (next, less),
             Reset::ToValueLate => {
-                let next = if fired { driven } else { next };
+                let next = if was_over { driven } else { next };
                 (next, next)
             }
             Reset::ToValueHeld => {
-                let next = if fired { 0.0 } else { next };
+                let next = if was_over { 0.0 } else { next };
                 (next, next)
             }
             Reset::SubtractLate => {
-                let next = if fired { less } else { next };
+                let next = if was_over { less } else { next };
                 (next, next)
             }
             Reset::SubtractNoDelay => {
-                let reached = if fired { less } else { next };
+                let reached = if was_over { less } else { next };
                 see(reached);
                 *potential = if fires(reached) { less } else { next };
                 return fires(reached);

@@ -160,7 +160,7 @@ pub(super) fn quantise(
         neurons.all(|neuron| neuron.leak == 0.0),
         "a leak by an amount is tinyODIN's: ReckOn's neurons keep a share"
     );
-    let fires = trained.layers.first().map_or(Fires::Above, |layer| layer.fires);
+    let at = trained.layers.first().map_or(Fires::Above, |layer| layer.fires);
     let peaks = peaks(trained, inputs, fired);
     let pairs: Vec<Vec<Source>> = places
         .pairs()
@@ -185,14 +185,25 @@ pub(super) fn quantise(
         let candidates = SCALES.map(|part| part * scale(pair, shifts));
         let distance = |scale: f64| -> f64 {
             let of = |source: &Source| {
-                Held::new(source, keep, scale, shifts, Firing { resets_to_zero, fires }, &places)
-                    .distance(&drives[source.layer], &fired[source.layer], source.neuron)
+                Held::new(
+                    source,
+                    keep,
+                    scale,
+                    shifts,
+                    Firing { resets_to_zero, fires: at },
+                    &places,
+                )
+                .distance(
+                    &drives[source.layer],
+                    &fired[source.layer],
+                    source.neuron,
+                )
             };
             pair.iter().map(of).sum()
         };
         let tried = candidates
             .into_iter()
-            .filter(|scale| fires_at(*scale, fires) <= f64::from(i16::MAX))
+            .filter(|scale| fires_at(*scale, at) <= f64::from(i16::MAX))
             .map(|scale| (scale, distance(scale)));
         let best = tried.min_by(|(_, one), (_, other)| one.total_cmp(other));
         progress(done.fetch_add(pair.len(), Ordering::Relaxed) + pair.len(), total);
@@ -219,7 +230,7 @@ pub(super) fn quantise(
         places,
     };
     for (pair, &(keep, scale)) in pairs.iter().zip(&chosen) {
-        network.pairs.push(ReckOnPair { keep, threshold: fires_at(scale, fires) as i16 });
+        network.pairs.push(ReckOnPair { keep, threshold: fires_at(scale, at) as i16 });
         for source in pair {
             network.put(source, scale, shifts);
             network.tell_keep(source.keep, f64::from(keep) / KEEP, 1e-4);

@@ -197,6 +197,11 @@ impl Gated {
         None
     }
 
+    /// The rows of inputs and neurons, and all rows.
+    fn rows(&self) -> (u16, u16) {
+        self.with_steps(|steps| (steps.first_rise(), steps.all_rows()))
+    }
+
     /// The weight of a row onto a neuron: see `spikewire_chips::Steps` for their order.
     fn row(&self, row: usize, post: usize) -> i8 {
         let Some((layer, _, neuron)) = self.at(post) else { return 0 };
@@ -250,7 +255,9 @@ impl GatedLayer {
             for ((number, neuron), potential) in (0..).zip(&self.neurons).zip(&mut potentials) {
                 let mut added = Added::default();
                 added.add(neuron.bias);
-                inputs.iter().for_each(|&from| added.add(neuron.weights[usize::from(from)]));
+                for &from in inputs {
+                    added.add(neuron.weights[usize::from(from)]);
+                }
                 for &own in before.iter().filter(|_| self.loops) {
                     added.add(neuron.weights[self.inputs + usize::from(own)]);
                 }
@@ -277,7 +284,7 @@ impl Describe<TinyOdinInput> for Gated {
     }
 
     fn inputs(&self) -> u16 {
-        self.with_steps(|steps| steps.all_rows())
+        self.rows().1
     }
 
     fn virtual_input(&self, _: u16) -> Option<(u8, i8)> {
@@ -331,13 +338,14 @@ impl OnChip for Gated {
     fn notes(&self) -> Vec<String> {
         let Shape { rows, leaks, .. } = &self.shape;
         let leaks = leaks.iter().map(Vec::len).max().unwrap_or(0);
+        let (sources, all) = self.rows();
         let each = if *rows == 1 { "a row".to_owned() } else { format!("{rows} rows") };
         vec![format!(
             "{} of the chip's 256 neurons, {} of its 256 rows: {each} a weight, and {} to compare once a step; {} events \
              a step beside its spikes, {leaks} of them leaks",
             self.count(),
-            self.inputs(),
-            self.inputs() - self.with_steps(|steps| steps.first_rise()),
+            all,
+            all - sources,
             self.shape.events(self.layers.len()),
         )]
     }

@@ -58,7 +58,9 @@ pub(super) fn follow(
                 running.poll(|_| ()).map_err(|error| refused(&error))?;
             }
             // In order of their number, as in double precision.
-            fired.iter_mut().for_each(|layer| layer.sort_unstable());
+            for layer in &mut fired {
+                layer.sort_unstable();
+            }
             see(Stepped { fired, clocks: board.pins().chip.clocks - before })?;
         }
         Ok(board.pins().chip.overflows)

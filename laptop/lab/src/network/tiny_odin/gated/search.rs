@@ -107,10 +107,11 @@ fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
                     } else {
                         f64::from(shape.spacing * u16::from(rung))
                     };
-            let leaks = match shape.leaks.is_empty() {
-                // Only neurons that fired get leaks.
-                true => [f64::from(MAX_LEAK); 2],
-                false => [lost.floor(), lost.ceil()].map(|leak| leak.min(MAX_LEAK.into())),
+            // Without leaks of all, only neurons that fired get some.
+            let leaks = if shape.leaks.is_empty() {
+                [f64::from(MAX_LEAK); 2]
+            } else {
+                [lost.floor(), lost.ceil()].map(|leak| leak.min(MAX_LEAK.into()))
             };
             for leak in leaks.map(|leak| leak as u8) {
                 let choice = Choice { unit, threshold, leak, rung, more: 0 };
