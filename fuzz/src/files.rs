@@ -159,9 +159,12 @@ pub fn toml(bytes: &[u8]) {
 /// Trained networks: NIR graphs and the plain form.
 pub fn network(bytes: &[u8]) {
     let path = file("network", bytes);
-    for step in [None, Some(0.001)] {
+    for (framework, dt) in
+        [(network::Framework::SpikingJelly, None), (network::Framework::Norse, Some(0.001))]
+    {
+        let asked = network::Asked { framework: Some(framework), dt, ..Default::default() };
         if let Ok(file) = network::File::read(&path)
-            && let Ok(trained) = file.in_steps(step)
+            && let Ok(trained) = file.on_chip(&asked, None)
         {
             let inputs = trained.inputs();
             assert!(inputs > 0, "a network without inputs");

@@ -13,8 +13,8 @@ use lab::bank::Bank;
 use lab::fit::rounding;
 use lab::input::{InputOptions as Input, above_zero};
 use lab::network::{
-    Brought, CHIPS, Chip, ControllerRequest, Figures, File, Model, NetworkKind, OnChip, Request,
-    Stepped, Told, Trained, Trains, WINDOW, bring, bring_to_controller,
+    Brought, CHIPS, Chip, Compare, ControllerRequest, Cost, Figures, File, HeldOut, Model, NetworkKind,
+    Numbers, OnChip, Request, Stepped, Told, Trained, Trains, WINDOW, bring, bring_to_controller,
 };
 use lab::output::Output;
 use lab::scheme::Scheme;
@@ -68,9 +68,21 @@ pub(crate) struct Network {
     parameters: SchemeOptions,
     #[command(flatten)]
     rule: RuleOptions,
-    /// Another recording, which shows what the network is worth where it was not tuned
+    /// Another recording, which shows what the network is worth where it was not tuned; the last third of INPUT unless
+    /// given
     #[arg(long, value_name = "INPUT")]
     held_out: Option<PathBuf>,
+    /// Tune on the whole recording, and hold nothing out
+    #[arg(long, conflicts_with = "held_out")]
+    no_held_out: bool,
+    /// The outputs that fired where the network was trained, a line for each step of INPUT: the chip is compared with
+    /// them, and so is how the file is read
+    #[arg(long, value_name = "FILE", conflicts_with = "held_out")]
+    trained_spikes: Option<PathBuf>,
+    /// When neurons of tinyODIN compare with their thresholds: after each spike, as the chip has it, or once a step, as in
+    /// training, which takes more events; what holds better unless given
+    #[arg(long, value_parser = compares())]
+    compare: Option<Compare>,
     /// File of Rust; standard output unless given
     #[arg(short, long)]
     output: Option<PathBuf>,
@@ -94,6 +106,11 @@ fn places() -> impl TypedValueParser<Value = &'static str> {
         .map(move |asked| names().find(|name| *name == asked).unwrap_or_default())
 }
 
+fn compares() -> impl TypedValueParser<Value = Compare> {
+    PossibleValuesParser::new(["spike", "step"])
+        .map(|asked| if asked == "spike" { Compare::Spike } else { Compare::Step })
+}
+
 /// A network with the numbers of its place.
 enum Placed {
     Chip(&'static dyn Chip, Trained),
@@ -108,11 +125,11 @@ impl Placed {
             return Ok(Self::Controller(file.on_controller(&rule.asked(*dt))?));
         }
         ensure!(
-            !rule.is_told(),
-            "the chips have rules and numbers of their own: --on controller takes others"
+            rule.numbers == Numbers::Float,
+            "the chips have numbers of their own: --on controller takes others"
         );
         let chip = CHIPS.iter().find(|chip| chip.name() == *place).context("no such chip")?;
-        Ok(Self::Chip(*chip, file.in_steps(dt.or(seconds))?))
+        Ok(Self::Chip(*chip, file.on_chip(&rule.asked(*dt), seconds)?))
     }
 
     /// How many inputs it has, and the name of its first layer.
@@ -155,20 +172,42 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         held_out.check(placed.inputs(), options.scheme).with_context(|| name.clone())?;
     }
 
+    let own =
+        options.trained_spikes.as_ref().map(|path| spiking(path)).transpose()?.map(|own| own.steps);
+    if let Some(own) = &own {
+        let (given, steps) = (own.len(), driven.steps.len());
+        ensure!(given == steps, "--trained-spikes has {given} steps, and the recording {steps}");
+    }
+    // The whole recording, or its first part and the rest.
+    let steps = driven.steps.len();
+    let part = if held_out.is_some() || options.no_held_out { steps } else { steps - steps / 3 };
+    let tuned = driven.steps[..part].to_vec();
+    let own_tuned = own.as_ref().map(|own| own[..part].to_vec());
+    let own = own_tuned.as_ref().zip(own.as_ref());
+    let held_out = match &held_out {
+        Some(other) => Some(HeldOut { steps: &other.steps, from: 0 }),
+        None => (part < steps).then_some(HeldOut { steps: &driven.steps, from: part }),
+    };
+
     let bar = ProgressBar::new(0).with_style(ProgressStyle::with_template(
-        "{bar:40} {percent:>3} %  {human_pos} of {human_len} neurons",
+        "{bar:40} {percent:>3} %  {human_pos} of {human_len}",
     )?);
     let progress = |done: usize, total: usize| {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
     };
-    let (tuned, held_out) = (&driven.steps, held_out.as_ref().map(|held_out| &held_out.steps));
+    let (tuned, compare) = (&tuned, options.compare);
     let (progress, numbers) = (&progress, options.rule.numbers);
     let brought = match &placed {
         Placed::Chip(chip, trained) => {
-            bring(&Request { chip: *chip, trained, tuned, held_out, progress })
+            let chip = *chip;
+            bring(&Request { chip, trained, tuned, held_out, own, compare, progress })
         }
         Placed::Controller(model) => {
+            ensure!(
+                own.is_none(),
+                "--trained-spikes is for the chips: the controller's rule is exact"
+            );
             bring_to_controller(&ControllerRequest { model, numbers, tuned, held_out, progress })
         }
     };
@@ -334,21 +373,49 @@ fn spiking(path: &Path) -> Result<Driven> {
 
 /// The share of agreeing steps below which a warning says so.
 const LOW: f64 = 0.5;
+/// The share below which the file may be read by another rule than it was trained by.
+const READ: f64 = 0.95;
 
 /// Prints the cost of quantising on standard error.
 fn report(brought: &Brought) {
-    let Brought { network, tuned, held_out } = brought;
+    let Brought { network, tuned, held_out, costs, reading } = brought;
     network.notes().iter().for_each(|note| eprintln!("{note}"));
+    if let Some(reading) = reading {
+        eprintln!(
+            "in double precision, as the file and the options say, outputs fire as they did in training in {:.1} % of the \
+             steps in which any fires{}",
+            100.0 * reading,
+            if *reading < READ { ": --as, --reset or --dt may be others" } else { "" }
+        );
+    }
     eprintln!("layer: neurons, weights clipped; spikes, on the chip, distance");
     tell(tuned, &**network);
     match held_out {
         Some(held_out) => {
-            eprintln!("the recording that was held out:");
+            eprintln!("held out:");
             tell(held_out, &**network);
         }
         None => eprintln!(
             "the figures are those of the recording that the network is tuned on: --held-out shows another"
         ),
+    }
+    let shown = held_out.as_ref().unwrap_or(tuned).agreement();
+    if shown.is_some_and(|agreement| agreement < LOW) {
+        let alone = |(cost, left): &(Cost, f64)| format!("{cost} {:.1} %", 100.0 * left);
+        let mut costs = costs.clone();
+        costs.sort_by(|(_, one), (_, other)| one.total_cmp(other));
+        let costs: Vec<String> = costs.iter().map(alone).collect();
+        eprintln!(
+            "warning: step by step the chip is another network than the trained one; {}",
+            if costs.is_empty() {
+                "compare the spikes of each layer".to_owned()
+            } else {
+                format!(
+                    "alone would leave of its steps: {}; train with the first",
+                    costs.join(", ")
+                )
+            }
+        );
     }
 }
 
@@ -378,13 +445,6 @@ fn tell(figures: &Figures, network: &dyn OnChip) {
             if figures.potentials.is_some() { "is highest most often" } else { "fires most" },
             100.0 * windows_agreeing as f64 / windows as f64
         );
-        if agreement < LOW {
-            eprintln!(
-                "warning: step by step the chip is another network than the trained one; compare the spikes of each \
-                 layer, and train with what costs most: {}",
-                network.dearest()
-            );
-        }
     } else if figures.potentials.is_none() {
         eprintln!(
             "warning: no output fires, neither in double precision nor on the chip: there is nothing to compare"

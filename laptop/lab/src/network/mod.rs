@@ -3,6 +3,7 @@
 mod bring;
 mod chip;
 mod controller;
+mod costs;
 mod distance;
 mod fault;
 mod nir;
@@ -11,12 +12,15 @@ mod reckon;
 mod tiny_odin;
 mod trained;
 
-pub use bring::{Brought, Figures, LayerFigures, PotentialFigures, Request, WINDOW, bring};
-pub use chip::{CHIPS, Chip, OnChip, Ran, Stepped, Told};
+pub use bring::{
+    Brought, Figures, HeldOut, LayerFigures, PotentialFigures, Request, WINDOW, bring,
+};
+pub use chip::{CHIPS, Chip, Compare, OnChip, Ran, Stepped, Told};
 pub use controller::{
     Asked, ControllerRequest, Current, Decay, Fires, Flown, Framework, Model, Numbers, Reset, Rule,
     bring_to_controller,
 };
+pub use costs::Cost;
 pub use distance::Distance;
 pub use fault::NetworkKind;
 pub use reckon::ReckOn;
@@ -67,14 +71,15 @@ impl File {
         }
     }
 
-    /// The network in steps of `step` seconds.
+    /// The network as the chips take it, by the rule that is asked for, in steps of a recording's `seconds` unless another
+    /// time is.
     ///
     /// # Errors
-    /// A time constant is shorter than a step, or the step is needed and not known.
-    pub fn in_steps(self, step: Option<f64>) -> Result<Trained> {
+    /// The file and what is asked do not say the rule, or the chips have no such neurons.
+    pub fn on_chip(self, asked: &Asked, seconds: Option<f64>) -> Result<Trained> {
         match self {
-            Self::Plain(trained) => Ok(trained),
-            Self::Nir(chain) => chain.in_steps(step),
+            Self::Plain(trained) => trained.reset_by(asked),
+            Self::Nir(chain) => Model::of_nir(*chain, &asked.on_chip(seconds))?.on_chip(),
         }
     }
 }

@@ -25,11 +25,15 @@ impl Model {
             "layers in JSON have one reset, and {} are asked for",
             asked.resets.len()
         );
+        ensure!(
+            layers.iter().flat_map(|layer| &layer.neurons).all(|neuron| neuron.leak == 0.0),
+            "a leak by an amount is tinyODIN's: the controller's neurons keep a share"
+        );
         let rule = asked.or_plain();
         let of_layer = |layer: trained::Layer| {
-            let trained::Layer { name, weights, recurrent, bias, neurons } = layer;
+            let trained::Layer { name, weights, recurrent, bias, neurons, .. } = layer;
             let neurons = neurons.iter().zip(bias);
-            let neurons = neurons.map(|(&trained::Neuron { keep, threshold }, bias)| {
+            let neurons = neurons.map(|(&trained::Neuron { keep, threshold, .. }, bias)| {
                 let reset = if rule.reset.subtracts() { threshold } else { 0.0 };
                 let spike = Some(Spike { threshold, reset });
                 Neuron { current: None, decay: keep, bias, inner: 0.0, spike }
