@@ -12,7 +12,6 @@ from flight import RATE, Registers, fly
 from manoeuvres import LESSON
 from sensor import UNIT
 
-PERIOD = 1_000_000 // RATE
 #: Samples from keyframe to keyframe, or heartbeat: 20 ms.
 KEYFRAME_EVERY = RATE // 50
 #: No keyframe but the first.
@@ -30,9 +29,9 @@ KEPT = Path(__file__).with_name("codes.json")
 EVALUATIONS = 150
 
 
-def lesson() -> np.ndarray:
+def lesson(vibration: float = 0.0) -> np.ndarray:
     """The six channels of the flight that all codes are tuned on, flown without a code: (channels, samples)."""
-    flight = fly(LESSON, Registers(), seed=1000, trace=True)
+    flight = fly(LESSON, Registers(), seed=1000, trace=True, vibration=vibration)
     return np.array([shown[2] for shown in flight.trace], dtype=np.float64).T
 
 
@@ -74,11 +73,19 @@ def instructions(name: str) -> float | None:
 
 
 class Coded:
-    """The way of a sample by spikes: six encoders, frames that may be lost, six decoders."""
+    """The way of a sample by spikes: perhaps a low-pass, six encoders, frames that may be lost, six decoders."""
 
-    def __init__(self, schemes: list[sw.Scheme], keyframe_every: int = KEYFRAME_EVERY):
-        self.sender = sw.Sender(schemes, PERIOD, keyframe_every)
-        self.receiver = sw.Receiver(schemes, PERIOD)
+    def __init__(
+        self,
+        schemes: list[sw.Scheme],
+        keyframe_every: int = KEYFRAME_EVERY,
+        low_pass: float | None = None,
+        rate: int = RATE,
+    ):
+        self.period = 1_000_000 // rate
+        before = low_pass and sw.Filter.low_pass(low_pass, rate)
+        self.sender = sw.Sender(schemes, self.period, keyframe_every, filter=before)
+        self.receiver = sw.Receiver(schemes, self.period, clock_tolerance=0)
         self.samples = self.spikes = self.bytes = self.whole = 0
         self.fired: list[tuple[int, bool]] = []
 
@@ -89,7 +96,7 @@ class Coded:
             if not is_lost():
                 self.receiver.hear(frame)
         self.samples += 1
-        self.receiver.advance(self.samples * PERIOD)
+        self.receiver.advance(self.samples * self.period)
         self.fired = self.sender.fired
         self.spikes += len(self.fired)
         self.whole += int(self.receiver.exact.sum())

@@ -7,8 +7,9 @@ sum is left to a library. It decides nothing by a code's name; what it hears is 
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 
-from world import ARM, FASTEST, GRAVITY, INERTIA, K_ETA, K_M, TURNS
+from world import CRAZYFLIE, Drone
 
 F = np.float32
 ZERO, HALF, ONE, TWO = F(0), F(0.5), F(1), F(2)
@@ -29,20 +30,22 @@ MOST = F(60)
 
 
 class Control:
-    """From a sample of six channels to the speeds of four rotors."""
+    """From a sample of six channels to the commands of a drone's four rotors."""
 
-    def __init__(self, rate: int):
+    def __init__(self, rate: int, drone: Drone = CRAZYFLIE):
         self.dt = F(1) / F(rate)
-        self.q = [ONE, ZERO, ZERO, ZERO]  # w, x, y, z
-        self.offset = [ZERO] * 3
+        self.q = np.array([ONE, ZERO, ZERO, ZERO])  # w, x, y, z
+        self.offset = np.zeros(3, F)
         self.integral = [ZERO] * 3
         self.last = None
         self.slope = [ZERO] * 3
-        self.inertia = [F(own) for own in INERTIA]
-        self.most = F(FASTEST * FASTEST)
-        lever = 4 * abs(ARM[0][0])
-        self.parts = [F(1 / (4 * K_ETA)), F(1 / (lever * K_ETA)), F(1 / (lever * K_ETA)), F(1 / (4 * K_M))]
-        self.signs = [(ONE if y > 0 else -ONE, -ONE if x > 0 else ONE, F(way)) for (x, y, _), way in zip(ARM, TURNS)]
+        self.inertia = [F(own) for own in drone.inertia]
+        self.most = F(drone.fastest * drone.fastest)
+        lever = 4 * abs(drone.arm[0][0])
+        k_eta, k_m = drone.k_eta, drone.k_m
+        self.parts = np.array([1 / (4 * k_eta), 1 / (lever * k_eta), 1 / (lever * k_eta), 1 / (4 * k_m)], F)
+        rotors = zip(drone.arm, drone.turns)
+        self.signs = np.array([(1 if y > 0 else -1, -1 if x > 0 else 1, way) for (x, y, _), way in rotors], F)
 
     def step(self, sample, wanted, thrust: float, feed=(0.0, 0.0, 0.0)) -> list[float]:
         """The speeds for a `wanted` attitude (w, x, y, z), a thrust in N and the rate at which what is wanted turns."""
@@ -54,28 +57,7 @@ class Control:
 
     def _estimate(self, gx, gy, gz, ax, ay, az):
         """Mahony's filter; the rates without the offset that it has learnt."""
-        w, x, y, z = self.q
-        length = ax * ax + ay * ay + az * az
-        rates = [gx + self.offset[0], gy + self.offset[1], gz + self.offset[2]]
-        turned = rates
-        if length > ZERO:
-            scale = ONE / np.sqrt(length)
-            ax, ay, az = ax * scale, ay * scale, az * scale
-            ux, uy, uz = TWO * (x * z - w * y), TWO * (y * z + w * x), ONE - TWO * (x * x + y * y)
-            error = [ay * uz - az * uy, az * ux - ax * uz, ax * uy - ay * ux]
-            for axis in range(3):
-                self.offset[axis] = self.offset[axis] + LEARN * error[axis] * self.dt
-            turned = [rates[axis] + TRUST * error[axis] for axis in range(3)]
-        p, q, r = (HALF * self.dt * own for own in turned)
-        w, x, y, z = (
-            w - x * p - y * q - z * r,
-            x + w * p + y * r - z * q,
-            y + w * q - x * r + z * p,
-            z + w * r + x * q - y * p,
-        )
-        scale = ONE / np.sqrt(w * w + x * x + y * y + z * z)
-        self.q = [w * scale, x * scale, y * scale, z * scale]
-        return rates
+        return list(estimate(self.q, self.offset, np.array([gx, gy, gz, ax, ay, az]), self.dt))
 
     def _turns(self, wanted, feed):
         """Attitude: the rates that turn the drone to where it is wanted."""
@@ -109,22 +91,50 @@ class Control:
 
     def _mix(self, thrust, moments) -> list[float]:
         """Thrust and moments as the squares of rotor speeds; roll and pitch come before thrust, and yaw last."""
-        base = thrust * self.parts[0]
-        squares = []
-        for roll, pitch, yaw in self.signs:
-            tilt = roll * moments[0] * self.parts[1] + pitch * moments[1] * self.parts[2]
-            squares.append((tilt, yaw * moments[2] * self.parts[3]))
-        highest, lowest = max(own[0] for own in squares), min(own[0] for own in squares)
-        base = min(max(base, -lowest), max(self.most - highest, -lowest))
-        room = min(min(base + tilt, self.most - base - tilt) for tilt, _ in squares)
-        room = max(room, ZERO)
-        speeds = []
-        for tilt, yaw in squares:
-            square = base + tilt + min(max(yaw, -room), room)
-            speeds.append(np.sqrt(min(max(square, ZERO), self.most)))
-        return [float(own) for own in speeds]
+        return list(mix(thrust, np.array(moments), self.parts, self.signs, self.most))
 
 
-def level_thrust(mass: float) -> float:
-    """The thrust that carries this mass."""
-    return mass * GRAVITY
+@njit(cache=True)
+def estimate(attitude, offset, sample, dt):
+    """A sample of Mahony's filter, which changes attitude and offset; the rates without the offset that it had."""
+    w, x, y, z = attitude
+    ax, ay, az = sample[3:]
+    length = ax * ax + ay * ay + az * az
+    rates = sample[:3] + offset
+    p, q, r = rates
+    if length > ZERO:
+        scale = ONE / np.sqrt(length)
+        ax, ay, az = ax * scale, ay * scale, az * scale
+        ux, uy, uz = TWO * (x * z - w * y), TWO * (y * z + w * x), ONE - TWO * (x * x + y * y)
+        ex, ey, ez = ay * uz - az * uy, az * ux - ax * uz, ax * uy - ay * ux
+        offset[0] += LEARN * ex * dt
+        offset[1] += LEARN * ey * dt
+        offset[2] += LEARN * ez * dt
+        p, q, r = p + TRUST * ex, q + TRUST * ey, r + TRUST * ez
+    p, q, r = HALF * dt * p, HALF * dt * q, HALF * dt * r
+    w, x, y, z = w - x * p - y * q - z * r, x + w * p + y * r - z * q, y + w * q - x * r + z * p, z + w * r + x * q - y * p
+    scale = ONE / np.sqrt(w * w + x * x + y * y + z * z)
+    attitude[0], attitude[1], attitude[2], attitude[3] = w * scale, x * scale, y * scale, z * scale
+    return rates
+
+
+@njit(cache=True)
+def mix(thrust, moments, parts, signs, most):
+    """The commands of four rotors."""
+    base = thrust * parts[0]
+    tilts, yaws = np.empty(4, np.float32), np.empty(4, np.float32)
+    for rotor in range(4):
+        roll, pitch, yaw = signs[rotor]
+        tilts[rotor] = roll * moments[0] * parts[1] + pitch * moments[1] * parts[2]
+        yaws[rotor] = yaw * moments[2] * parts[3]
+    highest, lowest = max(tilts), min(tilts)
+    base = min(max(base, -lowest), max(most - highest, -lowest))
+    room = most
+    for tilt in tilts:
+        room = min(room, min(base + tilt, most - base - tilt))
+    room = max(room, ZERO)
+    speeds = np.empty(4, np.float32)
+    for rotor in range(4):
+        square = base + tilts[rotor] + min(max(yaws[rotor], -room), room)
+        speeds[rotor] = np.sqrt(min(max(square, ZERO), most))
+    return speeds

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from math import acos, pi
+from math import acos, cos, pi, sin, sqrt
 
 import numpy as np
 
 from control import Control
 from manoeuvres import Manoeuvre, Pilot
 from sensor import Sensor, physical
+from vibration import Vibration
 from world import World
 
 #: Samples a second.
@@ -20,17 +21,41 @@ RATE = int(os.environ.get("RATE", "500"))
 TILT, FALL = 80, 4
 
 
+class LowPass:
+    """A low-pass of second order before the registers of six channels, Butterworth's: what `spikewire.Filter` is to codes."""
+
+    def __init__(self, corner: float, rate: int):
+        sine, cosine = sin(pi * corner / rate), cos(pi * corner / rate)
+        alpha = sine * cosine * sqrt(2)
+        self.gain, self.damping = 4 * sine * sine / (1 + alpha), 2 * alpha / (1 + alpha)
+        self.level = self.slope = None
+
+    def next(self, sample: np.ndarray) -> np.ndarray:
+        """The next sample, filtered."""
+        if self.level is None:
+            self.level, self.slope = sample.astype(float), np.zeros(6)
+        error = sample - self.level
+        change = self.gain * error - self.damping * self.slope
+        output = self.level + change / 4
+        self.slope = self.slope + change
+        self.level = self.level + self.slope
+        return output.astype(np.float32)
+
+
 class Registers:
     """The control: no code. A sample's twelve bytes go in a frame of 22 more; if it is lost, the last one stays."""
 
-    def __init__(self):
+    def __init__(self, low_pass: LowPass | None = None):
         self.spikes, self.bytes, self.exact = 0, 0, 1.0
         self.fired: list[tuple[int, bool]] = []
         self.values = np.zeros(6, np.float32)
+        self.low_pass = low_pass
 
     def carry(self, sample: np.ndarray, is_lost) -> np.ndarray:
         """What the cascade hears of a sample."""
         self.bytes += 34
+        if self.low_pass:
+            sample = self.low_pass.next(sample)
         if not is_lost():
             self.values = sample
         return self.values
@@ -51,33 +76,45 @@ class Flight:
 
 
 def fly(
-    manoeuvre: Manoeuvre, path, seed: int, loss: float = 0.0, trace: bool = False, control: Control | None = None
+    manoeuvre: Manoeuvre,
+    path,
+    seed: int,
+    loss: float = 0.0,
+    trace: bool = False,
+    control: Control | None = None,
+    world: type[World] = World,
+    vibration: float = 0.0,
+    rate: int = RATE,
 ) -> Flight:
-    """Flies a manoeuvre, the sensor heard by way of `path`; the same seed gives the same flight."""
+    """Flies a manoeuvre, the sensor heard by way of `path`; the same seed gives the same flight.
+
+    `vibration` is its level, as `vibration.py` has it; 0 is a drone whose rotors do not shake it."""
     random = np.random.default_rng(seed)
-    samples = round(manoeuvre.seconds * RATE)
-    world, pilot, control = World(**manoeuvre.world), Pilot(manoeuvre, RATE), control or Control(RATE)
-    sensor = Sensor(random, RATE, samples)
+    samples = round(manoeuvre.seconds * rate)
+    air, pilot, control = world(**manoeuvre.world), Pilot(manoeuvre, rate), control or Control(rate, world.drone)
+    sensor = Sensor(random, rate, samples)
     dice = np.random.default_rng([seed, 1])
     is_lost = (lambda: bool(dice.random() < loss)) if loss else (lambda: False)
+    shaken = Vibration(np.random.default_rng([seed, 2]), rate, samples, air.drone.hover, vibration) if vibration else None
     errors, shown, lost = [], [], False
     for number in range(samples):
-        time = number / RATE
-        world.wind = manoeuvre.wind(time)
-        counts = sensor.read(world.feel())
+        time = number / rate
+        air.wind = manoeuvre.wind(time)
+        felt = air.feel()
+        counts = sensor.read(felt if shaken is None else felt + shaken.next(air.rotors()))
         truth = physical(counts)
         heard = path.carry(truth, is_lost)
-        attitude, thrust, turn = pilot.wanted(time, world)
+        attitude, thrust, turn = pilot.wanted(time, air)
         speeds = control.step(heard, attitude, thrust, turn)
-        errors.append(between(attitude, world))
+        errors.append(between(attitude, air))
         if trace:
-            shown.append((time, counts, truth, np.array(heard), attitude, list(world.state), list(path.fired), speeds))
-        world.step(speeds, 1 / RATE)
-        astray = world.state[2:3] if manoeuvre.attitude else world.state[:3]
-        if errors[-1] > TILT or max(abs(own) for own in astray) > FALL:
+            shown.append((time, counts, truth, np.array(heard), attitude, list(air.state), list(path.fired), speeds))
+        air.step(speeds, 1 / rate)
+        astray = air.state[2:3] if manoeuvre.attitude else air.state[:3]
+        if errors[-1] > TILT or max(abs(own) for own in astray.tolist()) > FALL:
             lost = True
             break
-    seconds = len(errors) / RATE
+    seconds = len(errors) / rate
     return Flight(lost, seconds, np.array(errors), path.spikes / seconds, path.bytes / seconds, path.exact, shown)
 
 

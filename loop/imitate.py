@@ -10,15 +10,13 @@
 
 from __future__ import annotations
 
-from math import pi, sin
-
 import nir
 import numpy as np
 
 import flight
 from chip import AXES, CENTRES, INPUTS, NETWORK, NEURONS, POSITION, WORTH, Chipped, Plain
 from codes import Coded, schemes
-from manoeuvres import DEGREE, Manoeuvre, flip
+from manoeuvres import at_random
 
 #: A neuron fires here.
 THRESHOLD = 16
@@ -34,22 +32,6 @@ STRETCH, BATCH = 150, 96
 FLIGHTS, ROUNDS, STEPS = 16, 3, 150
 #: How fast is learnt, and how much of its neighbours' weights an input takes on a step.
 LEARN, SMOOTH = 0.5, 0.005
-
-
-def at_random(seed: int) -> Manoeuvre:
-    """Steps or sines of any size up to 40° in roll and pitch, or a flip."""
-    random = np.random.default_rng([seed, 7])
-    if seed % 4 == 0:
-        return Manoeuvre("flip", 3, flip)
-    sizes = random.uniform(-1, 1, (20, 2)) * random.choice([5, 15, 40]) * DEGREE
-    rates, share = random.uniform(0.5, 4, 2), random.uniform(0, 0.5)
-
-    def attitude(time: float):
-        roll, pitch = sizes[int(time / 0.25)]
-        waves = [share * sin(2 * pi * rate * time) * 0.5 for rate in rates]
-        return roll * (1 - share) + waves[0], pitch * (1 - share) + waves[1], 0.0, 1.0
-
-    return Manoeuvre("at random", 4, attitude)
 
 
 def watched(network, seeds) -> list[np.ndarray]:

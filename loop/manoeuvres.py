@@ -10,9 +10,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import cos, pi, sin, sqrt
 
-from world import GRAVITY, World, quad_params
+import numpy as np
 
-MASS = float(quad_params["mass"])
+from world import GRAVITY, World
+
 DEGREE = pi / 180
 #: Roll and pitch in rad, the rate at which roll is to turn, and a factor on the thrust, at a time.
 Attitude = Callable[[float], tuple[float, float, float, float]]
@@ -46,7 +47,7 @@ class Pilot:
             roll, pitch, turn, share = self.manoeuvre.attitude(time)
             rise = GRAVITY - 6 * x[2] - 4 * v[2]
             lean = max(cos(roll) * cos(pitch), 0.5)
-            thrust = MASS * (rise / lean if share == 1 else share * GRAVITY)
+            thrust = world.drone.mass * (rise / lean if share == 1 else share * GRAVITY)
             r, p = roll / 2, pitch / 2
             attitude = (cos(r) * cos(p), sin(r) * cos(p), cos(r) * sin(p), -sin(r) * sin(p))
             return attitude, max(thrust, 0.0), (turn, 0.0, 0.0)
@@ -68,7 +69,7 @@ def toward(push: list[float], world: World) -> tuple[tuple, float, tuple]:
     w = sqrt((1 + up / norm) / 2)
     attitude = (w, -ay / norm / (2 * w), ax / norm / (2 * w), 0.0)
     ux, uy, uz = world.up()
-    return attitude, max(MASS * (ax * ux + ay * uy + up * uz), 0.0), (0.0, 0.0, 0.0)
+    return attitude, max(world.drone.mass * (ax * ux + ay * uy + up * uz), 0.0), (0.0, 0.0, 0.0)
 
 
 def steps(size: float) -> Attitude:
@@ -118,6 +119,12 @@ def eight(time: float) -> tuple[tuple, tuple]:
     return place, (0.8 * a * cos(along), 0.8 * a * cos(2 * along), 0.0)
 
 
+def circle(time: float) -> tuple[tuple, tuple]:
+    """A circle of 0.5 m, once in 3 s, begun from rest within a second."""
+    a, along = 2 * pi / 3 * min(time, 1.0), 2 * pi / 3 * (time * time / 2 if time < 1 else time - 0.5)
+    return (0.5 * sin(along), 0.5 * (1 - cos(along)), 0.0), (0.5 * a * cos(along), 0.5 * a * sin(along), 0.0)
+
+
 def gust(time: float) -> tuple[float, float, float]:
     """6 m/s from the side for a second, rising and falling as a cosine."""
     since = time - 1
@@ -151,3 +158,19 @@ def lesson(time: float) -> tuple[float, float, float, float]:
 
 
 LESSON = Manoeuvre("lesson", 13, lesson)
+
+
+def at_random(seed: int) -> Manoeuvre:
+    """Steps or sines of any size up to 40° in roll and pitch, or a flip."""
+    random = np.random.default_rng([seed, 7])
+    if seed % 4 == 0:
+        return Manoeuvre("flip", 3, flip)
+    sizes = random.uniform(-1, 1, (20, 2)) * random.choice([5, 15, 40]) * DEGREE
+    rates, share = random.uniform(0.5, 4, 2), random.uniform(0, 0.5)
+
+    def attitude(time: float):
+        roll, pitch = sizes[int(time / 0.25)]
+        waves = [share * sin(2 * pi * rate * time) * 0.5 for rate in rates]
+        return roll * (1 - share) + waves[0], pitch * (1 - share) + waves[1], 0.0, 1.0
+
+    return Manoeuvre("at random", 4, attitude)

@@ -1,4 +1,4 @@
-"""Flies a flip on spikes and draws it: an SVG that moves. `picture.py FILE [CODE]`."""
+"""Flies a flip on spikes, by a code's bank or as it is tuned on its error, and draws it: an SVG that moves. `picture.py FILE [CODE]`."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from codes import NEVER, Coded, schemes
-from flight import fly
+from banks import LEVEL, LOSS, banks, unfiltered
+from flight import RATE, fly
 from manoeuvres import ALL
 
 #: Okabe and Ito's colours, which colour-blind people tell apart.
@@ -23,8 +23,8 @@ SLOW = 2
 def draw(code: str = "sod") -> str:
     """The picture of a flip."""
     manoeuvre = next(own for own in ALL if own.name == "flip")
-    path = Coded(schemes(code), NEVER)
-    flight = fly(manoeuvre, path, seed=100 + ALL.index(manoeuvre), trace=True)
+    bank = banks()[code] if code in banks() else unfiltered(code)
+    flight = fly(manoeuvre, bank.path(RATE), 100 + ALL.index(manoeuvre), LOSS, trace=True, vibration=LEVEL)
     times = np.array([shown[0] for shown in flight.trace])
     truth = np.array([shown[2] for shown in flight.trace])
     heard = np.array([shown[3] for shown in flight.trace])
@@ -51,7 +51,7 @@ def draw(code: str = "sod") -> str:
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif" font-size="14">',
         f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>',
-        f'<text x="20" y="28" font-size="18">A flip on spikes: {code}, {flight.spikes:.0f} spikes and {flight.bytes:.0f} bytes a second, '
+        f'<text x="20" y="28" font-size="18">A flip on spikes: {code}{f" behind {bank.low_pass} Hz" if bank.low_pass else ""}, {flight.spikes:.0f} spikes and {flight.bytes:.0f} bytes a second, '
         f"at half its speed</text>",
     ]
     # The drone from behind, and the attitude that is wanted of it.
@@ -78,7 +78,7 @@ def draw(code: str = "sod") -> str:
     parts.append(f'<rect x="{LEFT}" y="{top}" width="{RIGHT - LEFT}" height="120" fill="none" stroke="#ddd"/><g clip-path="url(#past)">')
     parts.append(curve(truth[:, 0], top, 120, low, high, SIGNAL, 4))
     parts.append(curve(heard[:, 0], top, 120, low, high, DECODED, 1.8))
-    neurons = schemes(code)[0].neurons
+    neurons = bank.schemes()[0].neurons
     rows = top + 150
     for channel in range(6):
         base = rows + 36 * channel

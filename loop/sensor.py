@@ -1,7 +1,8 @@
 """A BMI088, as the Crazyflie has it: what the drone feels, as its registers say it.
 
 The figures are those of its data sheet: ±2000 °/s and ±24 g, noise of 0.014 °/s and 175 µg (z: 190 µg) per √Hz, an
-offset of 20 mg. The gyroscope's offset is what remains after a calibration on the ground: 0.1 °/s. There is no vibration.
+offset of 20 mg. The gyroscope's offset is what remains after a calibration on the ground: 0.1 °/s. What rotors add is in
+`vibration.py`.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ class Sensor:
     def read(self, felt: list[float]) -> np.ndarray:
         """The registers, in counts."""
         counts = np.rint((felt + next(self._added)) / UNIT)
-        return np.clip(counts, -32768, 32767).astype(np.int16)
+        return np.minimum(np.maximum(counts, -32768), 32767).astype(np.int16)
 
 
 def physical(counts: np.ndarray) -> np.ndarray:

@@ -1,121 +1,224 @@
-"""The table: every code flown through every manoeuvre, with its seeds, by itself and with keyframes and lost frames.
+"""The tables of `docs/loop.md`, and `verdicts.json`, which they are printed from.
 
-`table.py [CODE]...` prints the rows of these codes, or the whole table.
+`table.py` flies everything and prints both tables; `table.py CODE...` flies these codes anew and prints both;
+`table.py --print` prints what `verdicts.json` holds; `table.py --filters CODE` flies and prints a row of the second table.
+`--no-vibration` flies and prints these codes on a drone whose rotors do not shake it, and keeps nothing.
 """
 
 from __future__ import annotations
 
+import json
 import sys
-from dataclasses import dataclass
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import spikewire as sw
 
-from codes import KEYFRAME_EVERY, NEVER, Coded, instructions, schemes
-from flight import Registers, fly
+from banks import CASCADE, LEVEL, LOSS, Bank, banks, unfiltered
+from brushless import Brushless
+from codes import instructions
+from controllers import CONTROLLERS
+from flight import LowPass, Registers, fly
 from manoeuvres import ALL
+from world import World
 
-#: How a code is flown: samples from keyframe to keyframe, the share of lost frames, and the seeds. First by itself.
-WAYS = [(NEVER, 0.0, (1, 2)), (KEYFRAME_EVERY, 0.0, (1,)), (KEYFRAME_EVERY, 0.01, (1,)), (KEYFRAME_EVERY, 0.1, (1,))]
-#: A drone that strays so far on average, in degrees, flies loosely; without a code it is 5.5.
-LOOSE = 8
+VERDICTS = Path(__file__).with_name("verdicts.json")
 CONTROL = "without a code"
-HEADER = """\
-| code | flies? | error, ° | worst, ° | lost, % | keyframes: error, ° | lost, % | 1 %: error | lost | 10 %: error | lost | spikes/s | bytes/s | instructions | latency |
-|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|
-"""
+#: Worlds, and rates in samples a second, in which a code must hold.
+WORLDS = {"RotorPy": World, "drone-models": Brushless}
+RATES = (250, 500, 1000)
+EVERYWHERE = [(world, control, rate) for world in WORLDS for control in CONTROLLERS for rate in RATES]
+HERE = ("RotorPy", "cascade", 500)
+#: The manoeuvres of the flights everywhere, and of the second table.
+SHORT = [own for own in ALL if own.name in ("hover", "steps of 30°", "eight", "motor 10 % weak", "flip")]
+#: The largest mean error over that without a code at which a code flies; beyond it, it flies loosely.
+WITHIN = 1.2
 
 
-@dataclass
-class Cell:
-    """A code's flights, flown in one way."""
-
-    #: The manoeuvres that were lost, one entry a flight.
-    lost: list[str]
-    #: The mean error over all manoeuvres that were not lost, for each seed.
-    means: list[float]
-    flights: int
-    worst: float
-    spikes: float
-    bytes: float
-
-    def share(self) -> float:
-        """The share of flights lost, in percent."""
-        return 100 * len(self.lost) / self.flights
-
-    def mean(self) -> float | None:
-        """The mean error, unless all flights were lost."""
-        means = [own for own in self.means if own == own]
-        return float(np.mean(means)) if means else None
-
-
-def cell(name: str, keyframe_every: int, loss: float, seeds: tuple[int, ...]) -> Cell:
-    """Flies a code in one way."""
-    own = None if name == CONTROL else schemes(name)
-    lost, means, worst, spikes, size = [], [], 0.0, [], []
+def cell(make, where=HERE, loss: float = LOSS, level: float = LEVEL, seeds: tuple[int, ...] = (1,), flights=ALL) -> dict:
+    """Flies manoeuvres in one way: what was lost, and means over all flights."""
+    world, controller, rate = WORLDS[where[0]], CONTROLLERS[where[1]], where[2]
+    lost, errors, flown = [], [], []
     for seed in seeds:
-        errors = []
-        for place, manoeuvre in enumerate(ALL):
-            path = Registers() if own is None else Coded(own, keyframe_every)
-            flight = fly(manoeuvre, path, seed * 100 + place, loss)
-            if flight.lost:
+        for manoeuvre in flights:
+            control = controller(rate, world.drone)
+            drawn = seed * 100 + ALL.index(manoeuvre)
+            own = fly(manoeuvre, make(rate), drawn, loss, False, control, world, level, rate)
+            flown.append(own)
+            if own.lost:
                 lost.append(manoeuvre.name)
             else:
-                errors.append(float(flight.errors.mean()))
-                worst = max(worst, float(flight.errors.max()))
-            spikes.append(flight.spikes)
-            size.append(flight.bytes)
-        means.append(float(np.mean(errors)) if errors else float("nan"))
-    return Cell(lost, means, len(spikes), worst, float(np.mean(spikes)), float(np.mean(size)))
+                errors.append(float(own.errors.mean()))
+    return {
+        "lost": lost,
+        "flights": len(flown),
+        "error": float(np.mean(errors)) if errors else None,
+        "spikes": float(np.mean([own.spikes for own in flown])),
+        "bytes": float(np.mean([own.bytes for own in flown])),
+    }
 
 
-def verdict(alone: Cell, anchored: Cell) -> str:
-    """Whether it flies by itself, and else whether keyframes help."""
-    if not alone.lost:
-        return "yes" if alone.mean() < LOOSE else "loosely"
-    names = [own.name for own in ALL]
-    shown = sorted(set(alone.lost), key=names.index)
-    if len(shown) <= 3:
-        return "not: " + ", ".join(shown)
-    return "on keyframes" if not anchored.lost else "**no**"
+def registers(low_pass: float | None):
+    """A way without a code."""
+    return lambda rate: Registers(low_pass and LowPass(low_pass, rate))
 
 
-def number(value: float | None, digits: int = 1) -> str:
+def filtered(name: str) -> dict:
+    """A code as tuned on its error: on a still drone, and on one that vibrates behind each filter."""
+    cells = {}
+    for key, low_pass, level in (("still", None, 0.0), ("none", None, LEVEL), ("80", 80, LEVEL), ("40", 40, LEVEL)):
+        if name == CONTROL:
+            make = registers(low_pass)
+        else:
+            make = replace(unfiltered(name), low_pass=low_pass).path
+        cells[key] = cell(make, level=level, flights=SHORT)
+    return cells
+
+
+def flown(name: str, bank: Bank | None) -> dict:
+    """A code, or none, with its bank: here, with every tenth frame lost, on a still drone, and everywhere."""
+    make = bank.path if bank else registers(None)
+    own: dict = {"low_pass": bank and bank.low_pass, "keyframe_ms": bank and bank.keyframe_ms}
+    if bank:
+        delay = 1000 * sw.Filter.low_pass(bank.low_pass, 500).delay / 500 if bank.low_pass else 0.0
+        schemes = bank.schemes()
+        late = max(scheme._coder.latency() for scheme in schemes)
+        own |= {"filter_delay_ms": round(delay, 1), "latency_samples": late, "instructions": instructions(bank.name)}
+        if bank.name == "sf":
+            # A threshold a sample is the most that it climbs: rad/s² at 500 samples a second.
+            own["slope_at_500_hz"] = 500 * bank.groups[0]["threshold"]
+    own["here"] = cell(make, seeds=(1, 2))
+    own["every tenth frame lost"] = cell(make, loss=0.1)
+    own["still"] = cell(make, level=0.0)
+    own["everywhere"] = {}
+    for where in EVERYWHERE:
+        own["everywhere"][" ".join(map(str, where))] = cell(make, where, flights=SHORT)
+    return own
+
+
+def verdict(own: dict, control: dict) -> str:
+    """The verdict on a code: yes, loosely, or the places where it loses flights."""
+    cells = own["everywhere"]
+    lost = [where for where, cell in cells.items() if cell["lost"]]
+    if not lost and not own["here"]["lost"]:
+        return "**yes**" if far(own, control) <= WITHIN else "loosely"
+    if not own["here"]["lost"] and all("Betaflight" in where for where in lost):
+        return "not on Betaflight's loop"
+    return f"not in {len(lost)} of {len(cells)}" if len(lost) < len(cells) else "**no**"
+
+
+def far(own: dict, control: dict) -> float:
+    """The error over that without a code: the mean over all places where a flight was not lost."""
+    pairs = [(cell["error"], control["everywhere"][where]["error"]) for where, cell in own["everywhere"].items()]
+    return float(np.mean([one / other for one, other in pairs if one is not None]))
+
+
+def number(value: float | None, digits: int = 0) -> str:
     """A figure, or a dash where there is none."""
     return "–" if value is None else f"{value:,.{digits}f}".replace(",", " ")
 
 
-def row(name: str) -> tuple[tuple, str]:
-    """The row of a code, and what rows are sorted by."""
-    cells = [cell(name, *way) for way in WAYS]
-    whole = cells[0]
-    known = [own for own in whole.means if own == own]
-    spread = f" ± {max(known) - min(known):.1f}" if len(known) == len(whole.means) else ""
-    own = None if name == CONTROL else schemes(name)
-    latency = 0 if own is None else max(scheme._coder.latency() for scheme in own)
+def share(own: dict) -> str:
+    """The share of flights lost, in percent."""
+    return number(100 * len(own["lost"]) / own["flights"])
+
+
+FLOWN = """\
+| code | flies? | low-pass, Hz | keyframes, ms | error, ° | lost, % | spikes/s | bytes/s | saved, % | everywhere: beside none | lost, % | 10 % of frames: error, ° | lost, % | still: bytes/s | late by, ms | instructions |
+|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|
+"""
+FILTERED = """\
+| code | still: error, lost | bytes/s | vibration: error, lost | bytes/s | behind 80 Hz: error, lost | bytes/s | behind 40 Hz: error, lost | bytes/s |
+|---|---:|---:|---:|---:|---:|---:|---:|---:|
+"""
+
+
+def flown_row(name: str, own: dict, control: dict) -> tuple:
+    """A row of the first table, and what rows are sorted by."""
+    here, tenth, still = own["here"], own["every tenth frame lost"], own["still"]
+    everywhere = own["everywhere"].values()
+    lost = sum(len(cell["lost"]) for cell in everywhere) / sum(cell["flights"] for cell in everywhere)
+    is_code = name != CONTROL
+    beside = far(own, control) if any(cell["error"] is not None for cell in everywhere) else None
+    late = own["filter_delay_ms"] + 2 * own["latency_samples"] if is_code else 0.0
     columns = [
-        CONTROL if own is None else f"`{name}`",
-        verdict(whole, cells[1]),
-        number(whole.mean()) + spread,
-        number(whole.worst or None, 0),
-        number(whole.share(), 0),
-        *[text for each in cells[1:] for text in (number(each.mean()), number(each.share(), 0))],
-        number(whole.spikes, 0),
-        number(whole.bytes, 0),
-        "0" if own is None else number(instructions(name), 0),
-        str(latency),
+        f"`{name.removesuffix(CASCADE)}`" + (", for the cascade" if name.endswith(CASCADE) else "") if is_code else name,
+        verdict(own, control),
+        number(own["low_pass"]) if is_code else "–",
+        number(own["keyframe_ms"]) if is_code else "–",
+        number(here["error"], 1),
+        share(here),
+        number(here["spikes"]),
+        number(here["bytes"]),
+        number(100 * (1 - here["bytes"] / control["here"]["bytes"])) if is_code else "–",
+        number(beside, 2),
+        number(100 * lost, 1),
+        number(tenth["error"], 1),
+        share(tenth),
+        number(still["bytes"]),
+        number(late, 1),
+        number(own["instructions"]) if is_code else "0",
     ]
-    key = (own is not None, whole.share(), whole.mean() if whole.mean() is not None else 1e9)
-    return key, "| " + " | ".join(columns) + " |\n"
+    return (is_code, lost > 0, lost, here["bytes"]), "| " + " | ".join(columns) + " |\n"
 
 
-def main() -> None:
-    rows = []
-    for name in sys.argv[1:] or [CONTROL, *sw.schemes]:
-        rows.append(row(name))
-        print(rows[-1][1], end="", file=sys.stderr, flush=True)
-    print(HEADER + "".join(text for _, text in sorted(rows)), end="")
+def filtered_row(name: str, own: dict) -> str:
+    """A row of the second table."""
+    columns = [f"`{name}`" if name != CONTROL else name]
+    for key in ("still", "none", "80", "40"):
+        columns += [f"{number(own[key]['error'], 1)}, {len(own[key]['lost'])}", number(own[key]["bytes"])]
+    return "| " + " | ".join(columns) + " |\n"
+
+
+def rounded(own):
+    """Figures as they are kept."""
+    if isinstance(own, dict):
+        return {key: rounded(value) for key, value in own.items()}
+    return round(own, 3) if isinstance(own, float) else own
+
+
+def keep(kept: dict) -> None:
+    """Writes what was flown, a code a line."""
+    parts = []
+    for kind, rows in kept.items():
+        lines = ",\n".join(f'  "{name}": {json.dumps(rounded(own))}' for name, own in rows.items())
+        parts.append(f'"{kind}": {{\n{lines}\n}}')
+    VERDICTS.write_text("{\n" + ",\n".join(parts) + "\n}\n")
+
+
+def printed(kept: dict) -> str:
+    """Both tables, with a line between them."""
+    control = kept["banks"][CONTROL]
+    rows = sorted(flown_row(name, own, control) for name, own in kept["banks"].items())
+    order = [CONTROL, *sw.schemes]
+    others = [filtered_row(name, kept["filters"][name]) for name in order if name in kept["filters"]]
+    return FLOWN + "".join(text for _, text in rows) + "\n" + FILTERED + "".join(others)
+
+
+def main(arguments: list[str]) -> None:
+    options = {own for own in arguments if own.startswith("--")}
+    names = [own for own in arguments if own not in options]
+    if "--filters" in options:
+        for name in names:
+            print(filtered_row(name, rounded(filtered(name))), end="")
+        return
+    all_banks = banks()
+    if "--no-vibration" in options:
+        for name in names or all_banks:
+            print(name, json.dumps(rounded(cell(all_banks[name].path, level=0.0))), flush=True)
+        return
+    kept = json.loads(VERDICTS.read_text()) if VERDICTS.exists() else {"banks": {}, "filters": {}}
+    whole = [CONTROL, *all_banks, *(name for name in sw.schemes if name not in all_banks)]
+    for name in [] if "--print" in options else names or whole:
+        if name == CONTROL or name in all_banks:
+            kept["banks"][name] = flown(name, all_banks.get(name))
+        if not name.endswith(CASCADE):
+            kept["filters"][name] = filtered(name)
+        keep(kept)
+        print(name, "flown", file=sys.stderr, flush=True)
+    print(printed(json.loads(VERDICTS.read_text())), end="")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

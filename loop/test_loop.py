@@ -1,17 +1,50 @@
 """What must hold before any figure of the table means anything. Run by `cargo verify flies`."""
 
+import brushless
 import numpy as np
-
+import spikewire as sw
+from banks import banks
+from brushless import Brushless
 from codes import Coded, schemes
-from flight import Registers, fly
+from controllers import CONTROLLERS
+from flight import LowPass, Registers, fly
 from manoeuvres import ALL
-from world import check
+from vibration import BAND, LINES, NOISE, Vibration
+from world import World, check
 
 HOVER, STEPS = ALL[0], ALL[2]
 
 
 def test_the_world_is_rotorpys():
     assert check() < 1e-12
+
+
+def test_the_second_world_is_that_of_drone_models():
+    assert brushless.check() < 1e-12
+
+
+def test_every_controller_holds_every_shaken_drone():
+    for world in (World, Brushless):
+        for name, controller in CONTROLLERS.items():
+            for rate in (250, 1000):
+                control = controller(rate, world.drone)
+                flight = fly(HOVER, Registers(), 7, control=control, world=world, vibration=1.0, rate=rate)
+                assert flight.errors.mean() < 3, (world.__name__, name, rate)
+
+
+def test_vibration_in_hover_is_as_strong_as_it_says():
+    for rate in (250, 1000):
+        shaken = Vibration(np.random.default_rng(1), rate, 10 * rate, hover=1789.0)
+        rms = np.std([shaken.next(np.array([0.97, 0.99, 1.01, 1.03])) for _ in range(10 * rate)], axis=0)
+        expected = np.sqrt(LINES**2 + NOISE**2 * BAND * np.pi / 2)
+        assert np.allclose(rms, expected, rtol=0.1), (rate, rms, expected)
+
+
+def test_registers_are_filtered_as_codes_are():
+    samples = np.random.default_rng(1).normal(size=(400, 6)).astype(np.float32)
+    own = LowPass(40, 500)
+    filtered = np.array([own.next(sample) for sample in samples])
+    assert np.allclose(filtered.T, sw.Filter.low_pass(40, 500).filter(samples.T), atol=1e-4)
 
 
 def test_without_a_code_the_drone_is_steady():
@@ -40,6 +73,16 @@ def test_frames_carry_what_encoders_and_decoders_alone_have():
             codes = scheme[channel].encoder().encode(sent[channel])
             decoder = scheme[channel].decoder(first=sent[channel][0])
             assert np.array_equal(decoder.decode(codes)[50:], heard[channel][50:]), (name, channel)
+
+
+def test_the_bank_that_the_page_takes_holds_the_flip():
+    bank, flip = banks()["sod"], ALL[-1]
+    for world in (World, Brushless):
+        for name, controller in CONTROLLERS.items():
+            control = controller(500, world.drone)
+            flight = fly(flip, bank.path(500), 7, 0.01, control=control, world=world, vibration=1.0)
+            assert not flight.lost and flight.errors.mean() < 9, (world.__name__, name, flight.errors.mean())
+            assert flight.bytes < 17_000
 
 
 def test_a_lost_frame_is_noticed():

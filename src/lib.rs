@@ -111,9 +111,9 @@ pub use num::{Sample, SampleKind};
 #[cfg(feature = "alloc")]
 pub use scheme::dynamic;
 pub use scheme::{
-    Calibration, Code, Conditions, Decoder, Destination, Differences, Encoder, Fit, Histogram,
-    Moments, NeuronSpike, Output, Polarity, Recovery, Scheme, Spike, Start, Survey, Unfit,
-    population, rate, temporal, timing,
+    Calibration, Code, Conditions, Decoder, Destination, Differences, Encoder, Fingerprint, Fit,
+    Histogram, Moments, NeuronSpike, Output, Polarity, Recovery, Scheme, Spike, Start, Survey,
+    Unfit, population, rate, temporal, timing,
 };
 pub use wire::format;
 #[cfg(feature = "link")]

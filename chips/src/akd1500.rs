@@ -121,7 +121,7 @@ impl<D: SpiDevice> Akd1500<D> {
         Ok(())
     }
 
-    /// The device, for other uses.
+    /// Gives the device back.
     pub fn release(self) -> D {
         self.device
     }

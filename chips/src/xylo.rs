@@ -58,7 +58,7 @@ pub struct XyloMap {
     pub input: u16,
     /// The register that triggers a time step; write-only.
     pub control: u16,
-    /// The only value to write there; bit 0 would be the reset.
+    /// The only value to write to `control`; bit 0 would be the reset.
     pub trigger: u32,
     /// The register that shows whether the time step is done.
     pub status: u16,
@@ -155,7 +155,7 @@ impl<R: Registers> Xylo<R> {
         self.registers.write(first.wrapping_add(1), high).map_err(ChipError::Bus)
     }
 
-    /// Reads which bank of counts the next time step reads; `None` if the map does not tell where that stands.
+    /// Reads from the chip which bank of counts the next time step reads; `None` if the map has no register for it.
     ///
     /// # Errors
     /// Returns an error if the bus failed, and [`Unfinished`](ChipError::Unfinished) if a step is under way.
@@ -168,7 +168,7 @@ impl<R: Registers> Xylo<R> {
         Ok(Some(if is_second { InputBank::Second } else { InputBank::First }))
     }
 
-    /// Sets the counts that the next time step reads: in its bank, or in both if the map does not tell which that is.
+    /// Sets the counts that the next time step reads: in the bank that it reads, or in both if the map does not tell which.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
@@ -211,7 +211,7 @@ impl<R: Registers> Xylo<R> {
         Err(ChipError::Unfinished)
     }
 
-    /// The registers, for other uses.
+    /// Gives the registers back.
     pub fn release(self) -> R {
         self.registers
     }

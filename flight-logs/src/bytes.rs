@@ -1,4 +1,4 @@
-//! The bytes of a log from its start to its end, and where one is among them.
+//! The bytes of a log from its start to its end, and the position among them.
 
 use crate::files::File;
 use crate::zstd::{Frames, ZSTD};
@@ -33,7 +33,7 @@ impl Bytes {
         io::copy(&mut self.input, output)
     }
 
-    /// How many bytes were taken.
+    /// The number of bytes taken so far.
     pub(crate) fn at(&self) -> u64 {
         self.at
     }
@@ -50,7 +50,7 @@ impl Bytes {
         Ok(taken as u64 == count)
     }
 
-    /// Passes over so many bytes; whether they were there.
+    /// Skips `count` bytes, and returns whether the file had as many.
     ///
     /// # Errors
     /// Returns an error if the bytes cannot be read or unpacked.

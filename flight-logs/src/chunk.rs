@@ -12,14 +12,14 @@ use std::path::Path;
 pub(crate) struct Chunk {
     bytes: Vec<u8>,
     taken: usize,
-    /// Its place in the file.
+    /// The chunk's place in the file.
     at: u64,
-    /// Whether it ends too early, which was reported.
+    /// Whether the chunk ends too early, which is counted already.
     is_cut: bool,
 }
 
 impl Chunk {
-    /// Begins a chunk, with what is wrong with it; whether its file ends within it was told.
+    /// Begins a chunk of `bytes`, and counts its fault unless the file ends within it, which is counted elsewhere.
     ///
     /// # Errors
     /// Returns an error if the chunk is damaged and that is not accepted.
@@ -34,7 +34,7 @@ impl Chunk {
         fault.filter(|_| !is_last).map_or(Ok(()), |what| faults.skip(at, what))
     }
 
-    /// All of it.
+    /// The bytes of the whole chunk.
     pub(crate) fn bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -44,12 +44,12 @@ impl Chunk {
         &self.bytes[self.taken..]
     }
 
-    /// How far it was read.
+    /// The number of bytes read so far.
     pub(crate) fn taken(&self) -> usize {
         self.taken
     }
 
-    /// Its place in the file.
+    /// The place of the chunk in the file.
     pub(crate) fn at(&self) -> u64 {
         self.at
     }
@@ -59,7 +59,7 @@ impl Chunk {
         self.taken = end;
     }
 
-    /// Leaves the rest, which is no record.
+    /// Gives up the bytes that are left, which make no record, and counts them as damage.
     ///
     /// # Errors
     /// Damage was not accepted.
@@ -70,7 +70,7 @@ impl Chunk {
     }
 }
 
-/// How far a log of chunks was read.
+/// A position in a log of chunks.
 pub(crate) struct Walk {
     pub bytes: Bytes,
     pub faults: Faults,
@@ -111,10 +111,10 @@ pub(crate) trait Chunked {
     /// A record outside of chunks, once it is read.
     type Record;
 
-    /// How far it was read.
+    /// The position in the log.
     fn walk(&self) -> &Walk;
 
-    /// How far it was read, to be changed.
+    /// The position in the log, to be changed.
     fn walk_mut(&mut self) -> &mut Walk;
 
     /// Takes the next record of the chunk; gives the entry of a message.

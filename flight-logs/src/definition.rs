@@ -39,7 +39,7 @@ pub enum Kind {
     Text,
     /// A character of a text that has a length.
     Character,
-    /// Text of two or four bytes a character, by the writer's taste.
+    /// Text of two or four bytes a character; the definition does not say which.
     WideText,
     /// Another message, by its place in the definition.
     Nested(usize),
@@ -89,7 +89,7 @@ impl Number {
 pub enum Shape {
     /// One value.
     One,
-    /// An array of so many.
+    /// An array of this length.
     Fixed(usize),
     /// An array whose length is in the message.
     Counted,
@@ -124,7 +124,7 @@ pub enum Step {
 pub enum NoNumber {
     /// There is no field of this name.
     Missing,
-    /// It is text.
+    /// A text, not a number.
     Text,
     /// A message or an array of numbers, not one number.
     Several,
@@ -139,9 +139,9 @@ pub struct Stamp {
     pub nanoseconds: Path,
 }
 
-/// Deeper nesting has no use, and may have no end.
+/// The deepest nesting that is read: a definition that contains itself has no end.
 const DEEPEST: usize = 16;
-/// Longer arrays of a fixed length do not fit a message.
+/// The longest array of a fixed length that is believed.
 const LONGEST: usize = 1 << 28;
 /// The field with the time at which PX4 logged a message.
 const TIME: &str = "timestamp";
@@ -341,7 +341,7 @@ impl<'a> Parser<'a> {
         Ok(Definition { structs: parser.structs })
     }
 
-    /// The place of a message, which is read now unless it was before.
+    /// The place of a message, whose definition is read unless it was read before.
     fn add(&mut self, name: &str, depth: usize) -> Result<usize, String> {
         if depth > DEEPEST {
             return Err(format!("{name} is nested too deeply, perhaps within itself"));
@@ -431,7 +431,7 @@ impl<'a> Parser<'a> {
     }
 }
 
-/// The type and name of a line that declares a field, none of a constant or a comment.
+/// The type and name of a line that declares a field; `None` for a constant or a comment.
 pub(crate) fn declared(line: &str) -> Option<(&str, &str)> {
     let line = line.split('#').next().unwrap_or(line).trim();
     let (kind, rest) = line.split_once(char::is_whitespace)?;

@@ -39,9 +39,9 @@ pub enum ErrorKind {
     Fault {
         /// The place in the file, in bytes.
         at: u64,
-        /// What is wrong there.
+        /// The fault, in words.
         what: String,
-        /// What can still be read.
+        /// The part of the log that can still be read.
         rest: Rest,
     },
     /// A stretch of bytes makes no sense.
@@ -76,11 +76,11 @@ pub enum ErrorKind {
 /// The part of a damaged log that can still be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rest {
-    /// What comes before the damage, and what comes after it.
+    /// The messages before the damage and after it.
     Behind,
-    /// What comes before the damage, and what comes from this byte on.
+    /// The messages before the damage, and those from this byte on.
     From(u64),
-    /// What comes before the damage.
+    /// The messages before the damage alone.
     Before,
 }
 
@@ -88,11 +88,11 @@ pub enum Rest {
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum MessageFault {
-    /// Its definition cannot be understood. The text says what is wrong with it.
+    /// The message's definition cannot be understood. The text says why.
     Undefined(String),
-    /// It has no number of this name.
+    /// The message has no number of this name.
     NoNumber(String),
-    /// Its bytes are not as its definition says.
+    /// The message's bytes do not fit its definition.
     Bytes(wire::Fault),
 }
 

@@ -3,7 +3,7 @@
 
 use std::io::Write;
 
-/// A log in the making, of one topic `/imu` with a counted header, an array and a text.
+/// The kind of a log to make: one topic `/imu` with a counted header, an array and a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Bag,
@@ -13,7 +13,7 @@ pub enum Kind {
 
 pub const KINDS: [Kind; 3] = [Kind::Bag, Kind::Mcap, Kind::Db3];
 
-/// Those of chunks.
+/// The kinds whose messages lie in chunks.
 pub const CHUNKED: [Kind; 2] = [Kind::Bag, Kind::Mcap];
 
 const ROS1: &str = "Header header\nfloat64 rate\nfloat32[] few\n\
@@ -22,7 +22,7 @@ const ROS2: &str = "std_msgs/Header header\nfloat64 rate\nfloat32[] few\n\
     ====\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n\
     ====\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
 
-/// Samples of a wave, 5 ms apart; the value of a sample.
+/// The value of a sample of the wave; samples are 5 ms apart.
 pub fn wave(sample: u32) -> f64 {
     (f64::from(sample) * 0.1).sin()
 }

@@ -29,7 +29,7 @@ mod op {
     pub(crate) const DATA_END: u8 = 15;
 }
 
-/// Messages of ROS 2 are packed one by one where a recorder was told so; unpacked none is larger.
+/// The largest message, in bytes. A recorder of ROS 2 may pack messages one by one; none unpacks to more.
 pub(crate) const LARGEST_MESSAGE: u64 = 1 << 30;
 
 /// A file that is read from its start to its end.
@@ -73,7 +73,7 @@ impl Mcap {
         self.walk.chunk.begin(at, (chunk, fault), self.walk.is_over, &mut self.walk.faults)
     }
 
-    /// The entry of a message, and how long its content is; `None` if it has no known channel.
+    /// The entry of a message, and the length of its content; `None` if its channel is unknown.
     fn entry(&self, mut record: &[u8], at: u64) -> Option<(Entry, usize)> {
         let channel = u16_from(&mut record)?;
         let sequence = u32_from(&mut record)?;
@@ -235,7 +235,7 @@ impl Chunked for Mcap {
     }
 }
 
-/// Takes a message, which may be packed by itself: no message of ROS 2 starts like this.
+/// Takes a message, unpacked if it starts with the bytes of Zstandard, with which no message of ROS 2 starts.
 fn take_content(content: &[u8], message: &mut Vec<u8>) {
     if content.starts_with(&ZSTD) {
         *message = unpack("zstd", content, LARGEST_MESSAGE).0;

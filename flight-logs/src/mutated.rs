@@ -16,7 +16,7 @@ impl Random {
 
     /// Changes, cuts out or sets some bytes, or cuts the end off.
     fn damage(&mut self, log: &mut Vec<u8>) {
-        /// About so long is what comes before the messages.
+        /// About the number of bytes before the first message.
         const HEAD: usize = 700;
         for _ in 0..=self.below(4) {
             let within = if self.below(2) == 0 { log.len().min(HEAD) } else { log.len() };

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// The file that a bag's directory holds.
 pub(crate) const METADATA: &str = "metadata.yaml";
 
-/// The reason that messages that are not common cannot be read.
+/// The reason that messages without a known definition cannot be read.
 const UNDEFINED: &str = "the bag has no definition of its messages, as those written before ROS 2 Iron; \
     `ros2 bag convert` to MCAP adds it";
 
@@ -136,14 +136,14 @@ impl Log for Sqlite {
 pub(crate) struct Directory {
     files: VecDeque<PathBuf>,
     current: Option<Box<dyn Log>>,
-    /// The places of its topics among all.
+    /// For each topic of the present file, its index among the topics of all files.
     places: Vec<usize>,
     topics: Vec<Topic>,
     faults: Faults,
 }
 
 impl Directory {
-    /// A directory, or the file in it that lists others.
+    /// Opens a directory, or the file `metadata.yaml` in it.
     pub(crate) fn open(path: &Path, faults: Faults) -> Result<Self> {
         let metadata = if files::is_dir(path) { path.join(METADATA) } else { path.to_owned() };
         let text = files::read_to_string(&metadata)

@@ -13,10 +13,10 @@ pub(crate) const START: &[u8] = b"SQLite format 3\0";
 /// A file that is open.
 pub(crate) struct Database {
     file: File,
-    /// Bytes of a page, and how many of them are used.
+    /// The bytes of a page; `used` leaves out those that are reserved.
     page: u64,
     used: u64,
-    /// All pages that there are.
+    /// The number of pages in the file.
     pages: u64,
 }
 
@@ -32,7 +32,7 @@ pub(crate) struct Table {
 pub(crate) struct Rows {
     /// The pages from the root down to a leaf, and the next cell of each.
     stack: Vec<(Page, usize)>,
-    /// Pages that were visited, of which none is twice in a table.
+    /// The number of pages visited: more than the file has means that they go in circles.
     visited: u64,
     root: Option<u64>,
 }
@@ -56,7 +56,7 @@ pub(crate) enum Value {
     Null,
     Integer(i64),
     Real(f64),
-    /// Or a text.
+    /// Bytes, or the bytes of a text.
     Blob(Vec<u8>),
 }
 
@@ -118,7 +118,7 @@ impl Database {
         Ok(Page { number, bytes })
     }
 
-    /// The content of a cell: what is in it, and what is on further pages.
+    /// The content of a cell, with the part that lies on further pages.
     fn payload(&mut self, cell: &[u8], length: u64) -> Result<Vec<u8>, String> {
         if length > self.pages * self.page {
             return Err(format!("a row of {length} bytes is larger than the file"));
@@ -240,7 +240,7 @@ enum Cell {
 }
 
 impl Page {
-    /// A cell of a page of a table; those of an inner page are other pages.
+    /// A cell of a table's page: a row, or on an inner page the number of another page.
     fn cell(&self, place: usize) -> Result<Cell, &'static str> {
         const SHORT: &str = "a cell is outside of it";
         // The first page has the head of the file before it.
@@ -297,7 +297,7 @@ impl Row {
     }
 }
 
-/// The values of a row; a column that is the row's number has none of its own.
+/// The values of a row. A column that stands for the row's number is not stored, and gets `id`.
 fn values(content: &[u8], id: i64) -> Option<Vec<Value>> {
     let mut head = content;
     let length = usize::try_from(varint(&mut head)?).ok()?;

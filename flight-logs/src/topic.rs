@@ -1,9 +1,9 @@
-//! Topics of a log, and how their messages are read.
+//! Topics of a log, and numbers and texts out of their messages.
 
 use super::definition::{Definition, Dialect, Path, Stamp};
 use super::wire::{self, Fault, Wire};
 
-/// A topic, and how its messages are read.
+/// A topic: its name, and the definition by which its messages are read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Topic {
     /// Its name, as in the log.
@@ -32,7 +32,7 @@ impl Topic {
         Self { name, kind, wire: Wire::Ros1, definition: Err(why) }
     }
 
-    /// The index of the topic among others, to which it is added if it is new.
+    /// The index of the topic in `topics`, to which it is added if it is new.
     pub(crate) fn place_in(self, topics: &mut Vec<Self>) -> usize {
         let known = topics.iter().position(|own| *own == self);
         known.unwrap_or_else(|| {

@@ -6,9 +6,9 @@ use std::fmt;
 /// The encoding of messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire {
-    /// One field after the other.
+    /// ROS 1: one field after the other, without gaps.
     Ros1,
-    /// Four bytes that say the order of bytes, then fields that are aligned.
+    /// CDR of ROS 2: four bytes that tell the byte order, then aligned fields.
     Cdr,
 }
 
@@ -19,7 +19,7 @@ pub enum Fault {
     Short,
     /// The message is not plain CDR.
     Encapsulation(u16),
-    /// How long that is depends on the writer.
+    /// Wide text comes before the field: its length depends on the writer.
     WideText,
 }
 
@@ -33,7 +33,7 @@ impl fmt::Display for Fault {
     }
 }
 
-/// The number at a place, none where an array is shorter than that.
+/// The number at a place; `None` if an array is too short to hold it.
 pub(crate) fn number(
     wire: Wire,
     definition: &Definition,
@@ -47,13 +47,13 @@ pub(crate) fn number(
     }
 }
 
-/// Whether a message goes on behind its definition; CDR may fill up to four bytes.
+/// Whether a message is longer than its definition; CDR may pad it by up to three bytes.
 pub(crate) fn is_longer(wire: Wire, definition: &Definition, message: &[u8]) -> bool {
     let filling = if wire == Wire::Cdr { 3 } else { 0 };
     length(wire, definition, message).is_ok_and(|length| length + filling < message.len())
 }
 
-/// How long a message is by its definition.
+/// The length of a message by its definition.
 pub(crate) fn length(wire: Wire, definition: &Definition, message: &[u8]) -> Result<usize, Fault> {
     let mut input = Input::new(wire, message)?;
     input.skip_struct(definition, definition.root())?;
@@ -99,7 +99,7 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Goes to a place, and says what is there; nothing where an array is shorter.
+    /// Goes to a place, and returns the kind of field there; `None` if an array is too short.
     fn go(&mut self, definition: &Definition, path: &Path) -> Result<Option<Kind>, Fault> {
         let mut within = definition.root();
         let mut steps = path.0.iter().peekable();

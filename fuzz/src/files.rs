@@ -8,10 +8,11 @@ use std::sync::OnceLock;
 use flight_logs::{Damage, Kind, Reading};
 use lab::coding::Coding;
 use lab::events::{Format, read_events};
+use lab::flight::Flight;
 use lab::frames;
 use lab::input::messages::overview;
 use lab::input::{ChannelOptions, Chunk, InputOptions};
-use lab::network;
+use lab::network::{self, Asked, Current, Decay, Fires, Reset};
 use lab::spikes::{self, Item, Spikes};
 
 use crate::script::Script;
@@ -143,9 +144,13 @@ pub fn events(bytes: &[u8]) {
     }
 }
 
-/// Files of parameters.
+/// Files of parameters, and of flights.
 pub fn toml(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
+    if let Ok(flight) = Flight::parse(text) {
+        let again = Flight::parse(&flight.to_toml(&[])).expect("what is written is read");
+        assert_eq!(again.to_toml(&[]), flight.to_toml(&[]));
+    }
     let Ok(coding) = Coding::parse("the input", text) else { return };
     let again = Coding::parse("written", &coding.to_toml(&[])).expect("what is written is read");
     assert_eq!(again.to_toml(&[]), coding.to_toml(&[]));
@@ -160,6 +165,30 @@ pub fn network(bytes: &[u8]) {
         {
             let inputs = trained.inputs();
             assert!(inputs > 0, "a network without inputs");
+        }
+    }
+    // On the controller, by rules that leave nothing open.
+    for (reset, current) in [(Reset::ToValue, Current::New), (Reset::SubtractLate, Current::Old)] {
+        let asked = Asked {
+            framework: None,
+            resets: vec![reset],
+            fires: Some(Fires::At),
+            decay: Some(Decay::Euler),
+            current: Some(current),
+            dt: Some(1e-4),
+        };
+        if let Ok(file) = network::File::read(&path)
+            && let Ok(model) = file.on_controller(&asked)
+        {
+            let mut flown = model.as_flown();
+            let last = flown.inputs().saturating_sub(1).min(65_535) as u16;
+            for step in [&[0, last, 0][..], &[], &[last]] {
+                flown.step(step);
+                assert!(
+                    flown.potentials().iter().all(|v| v.is_finite()),
+                    "a potential without bounds"
+                );
+            }
         }
     }
 }

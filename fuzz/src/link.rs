@@ -3,9 +3,7 @@
 use std::collections::HashMap;
 use std::fmt::Debug;
 
-use spikewire::link::{
-    Coding, FrameView, MAX_FRAME, MIN_FRAME, Reader, Receiver, Session, Transmitter,
-};
+use spikewire::link::{FrameView, MAX_FRAME, MIN_FRAME, Reader, Receiver, Session, Transmitter};
 use spikewire::population::{Position, Slots};
 use spikewire::rate::{Hough, Taps};
 use spikewire::temporal::{AdaptiveStepForward, MovingWindow, StepForward, TemporalContrast};
@@ -65,14 +63,12 @@ where
     P::Sample: Debug,
 {
     fn new(scheme: &'static P, queue: &'q EventQueue<48>, session: usize, now: u64) -> Self {
-        let addresses = (CHANNELS * scheme.neurons()) as u16;
+        let bank = Bank::new(scheme);
+        let transmitter = Transmitter::for_bank(&bank, PERIOD, Session::counted(session as u32));
         Self {
             queue,
-            bank: Bank::new(scheme),
-            transmitter: Transmitter::new(
-                Coding::for_channels(addresses, PERIOD),
-                Session::counted(session as u32),
-            ),
+            bank,
+            transmitter,
             encoders: [(); CHANNELS].map(|()| scheme.encoder()),
             decoders: [(); CHANNELS].map(|()| scheme.decoder()),
             now,
@@ -291,7 +287,7 @@ pub fn bytes(bytes: &[u8]) {
 fn dressed(script: &mut Script) -> Vec<u8> {
     let mut stream = Vec::new();
     while !script.is_over() {
-        let mut frame = vec![0xA5, 0x30 | script.byte() & 7];
+        let mut frame = vec![0xA5, 0x30 | script.byte() & 0x8F];
         frame.extend((0..15).map(|_| script.byte()));
         let length = script.below(64);
         frame.push(length as u8);

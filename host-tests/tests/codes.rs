@@ -2,7 +2,10 @@
 
 mod common;
 
+mod adaptive_contrast;
+mod adaptive_step_forward;
 mod bank;
+mod bernoulli;
 mod bsa;
 mod bsa_toolbox;
 mod built;
@@ -19,8 +22,10 @@ mod frames;
 mod gaussian;
 mod histogram;
 mod hough;
+mod integrate;
 mod latency_phase;
 mod laws;
+mod lif;
 mod moments;
 mod moving_window;
 mod nonlinear;
@@ -30,7 +35,9 @@ mod probabilistic;
 mod rank_order;
 mod rate_decoder;
 mod samples;
+mod send_on_delta;
 mod serde;
+mod sigma_delta;
 mod slots;
 mod states;
 mod statics;
@@ -39,12 +46,8 @@ mod survey;
 mod taps;
 mod temporal_contrast;
 mod threshold_hough;
+mod weighted_burst;
 mod weighted_phase;
-
-/// What the firmware program `camera` prints.
-#[allow(clippy::pedantic, dead_code, unreachable_pub)]
-#[path = "../../examples/camera/src/lib.rs"]
-mod camera;
 
 /// A check on another machine draws what it draws on this one.
 #[test]

@@ -4,7 +4,9 @@ use fixed::types::{I8F8, I16F16};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 use spikewire::rate::{Criterion, Scale, Shape, Taps};
-use spikewire::{Code, Output, Sample, Scheme, Start, dynamic, population, rate, temporal};
+use spikewire::{
+    Code, Fingerprint, Output, Sample, Scheme, Start, dynamic, population, rate, temporal,
+};
 
 /// With room for any number of neurons.
 type AnyPosition<S> = dynamic::Position<S>;
@@ -38,6 +40,7 @@ fn signal<S: Sample>(seed: u64, reach: f64) -> Vec<S> {
 /// Everything that a scheme says of a signal: events of each code, the tail, the values decoded.
 #[derive(Debug, PartialEq)]
 struct Said {
+    fingerprint: Fingerprint,
     latency: usize,
     codes: Vec<Option<Vec<(u16, u16, bool)>>>,
     keyframes: Vec<Option<u32>>,
@@ -79,7 +82,8 @@ fn said<P: Scheme>(
     let held = [last, scheme.held(&decoder).map(Sample::to_bits32)];
     let (neurons, slots) = (scheme.neurons(), scheme.slots());
     let (latency, rejected) = (scheme.latency(), P::rejected(&state));
-    Said { latency, codes, keyframes, values, rejected, neurons, slots, held }
+    let fingerprint = scheme.fingerprint();
+    Said { fingerprint, latency, codes, keyframes, values, rejected, neurons, slots, held }
 }
 
 /// Compares both on signals with and without a past, and says how many samples fired.

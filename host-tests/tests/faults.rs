@@ -28,9 +28,11 @@ const EVENTS: usize = 256;
 /// Microseconds from sample to sample.
 const PERIOD: u32 = 2_500;
 /// Samples from one keyframe or heartbeat to the next.
-const BEAT: u32 = 100;
+const BEAT: u32 = 20;
 /// Samples from one turn of main to the next.
 const TURN: u32 = 4;
+/// Samples until a receiver that joins late has the fingerprint: 2¹⁹ µs, and the next frame.
+const FINGERPRINT: u32 = (1 << 19) / PERIOD + BEAT;
 /// A reader takes an earlier session back after this many of its frames, each at least a keyframe.
 const STRAYS: u32 = 16;
 /// Samples in which the least talkative code brings the 277 bytes that a reader may wait for after a frame whose length is
@@ -45,6 +47,7 @@ enum Fault {
     Lost,
     Doubled,
     Late,
+    FarLate,
     Cut,
     CutThenIdle,
     Spliced,
@@ -55,11 +58,15 @@ enum Fault {
     Busy,
     QueueFull,
     SenderOut,
+    SessionAgain,
     ReceiverOut,
     TickWrap,
     NumberWrap,
     Jitter,
+    LateSamples,
+    ClockBack,
     Drift,
+    FarDrift,
     Stuck,
     Floating,
     NotFinite,
@@ -69,10 +76,11 @@ enum Fault {
 use Fault::*;
 
 /// Each fault, what one of it is, and what the line of the table says of it.
-const FAULTS: [(Fault, &str, &str); 22] = [
+const FAULTS: [(Fault, &str, &str); 27] = [
     (Lost, "frames", "a third of the frames lost"),
     (Doubled, "frames", "a third of the frames sent twice"),
     (Late, "frames", "a third of the frames overtaken by up to 20 later ones"),
+    (FarLate, "frames", "a third of the frames overtaken by 300 later ones"),
     (Cut, "frames", "a third of the frames cut off"),
     (CutThenIdle, "frames", "the same, and the reader is told when the line is idle"),
     (Spliced, "frames", "two senders on one line, halves of their frames joined"),
@@ -83,11 +91,23 @@ const FAULTS: [(Fault, &str, &str); 22] = [
     (Busy, "writes", "the port takes nothing for 1 s"),
     (QueueFull, "samples", "main hangs, the queue overflows"),
     (SenderOut, "restarts", "brown-out of the sender, whose clock starts anywhere"),
+    (SessionAgain, "restarts", "the same, and its start was not counted: the same session"),
     (ReceiverOut, "restarts", "brown-out of the receiver"),
     (TickWrap, "wraps", "ticks wrap at 2^32 us"),
     (NumberWrap, "wraps", "numbers of frames wrap at 2^16, 2^32 and 2^48"),
-    (Jitter, "samples", "samples early or late by a quarter of a period or sub-timestep"),
+    (Jitter, "samples", "samples early or late by an eighth of a period or sub-timestep"),
+    (
+        LateSamples,
+        "samples",
+        "samples late by half a period to all of it (codes that count samples: to 5/8 of it)",
+    ),
+    (
+        ClockBack,
+        "steps",
+        "the clock steps back by up to ten periods (codes that count samples: and a break tells)",
+    ),
     (Drift, "samples", "a clock 100 ppm fast or slow"),
+    (FarDrift, "samples", "a clock 50 to 10 000 ppm fast or slow"),
     (Stuck, "samples", "the sensor is stuck"),
     (Floating, "samples", "the sensor floats: noise of full scale"),
     (NotFinite, "samples", "bursts of NaN and infinities (f32)"),
@@ -131,13 +151,14 @@ impl Line {
         let mut frame = frame.to_vec();
         let hits = self.random.next_u32().is_multiple_of(3);
         self.injected += u64::from(
-            hits && matches!(self.fault, Some(Lost | Doubled | Late | Cut | CutThenIdle)),
+            hits && matches!(self.fault, Some(Lost | Doubled | Late | FarLate | Cut | CutThenIdle)),
         );
         match self.fault {
             Some(Lost) if hits => frame.clear(),
             Some(Doubled) if hits => frame.extend(frame.clone()),
-            Some(Late) if hits => {
-                let turns = 1 + self.random.next_u32() as usize % 20;
+            Some(late @ (Late | FarLate)) if hits => {
+                let up_to_20 = 1 + self.random.next_u32() as usize % 20;
+                let turns = if late == Late { up_to_20 } else { 300 };
                 self.delayed.push((turns, std::mem::take(&mut frame)));
             }
             Some(Cut | CutThenIdle) if hits => {
@@ -305,6 +326,7 @@ struct Sender<'a, P: Scheme> {
     bank: Bank<&'a P, CHANNELS>,
     sink: SerialSink<Port, Recorded, MAX_FRAME>,
     session: u32,
+    first: Session,
     /// The time in nanoseconds: a period of a clock that drifts is not a whole number of ticks.
     now: u64,
     /// When the last sample was taken, in ticks.
@@ -342,17 +364,20 @@ where
         let slot_ticks = if has_slots { PERIOD / scheme.slots() as u32 } else { 0 };
         let addresses = (CHANNELS * scheme.neurons()) as u16;
         let coding = Coding::for_channels(addresses, PERIOD as u16);
-        let transmitter = Transmitter::new(coding, first);
+
+        let bank = Bank::with_states(scheme, [(); CHANNELS].map(|()| again(start)))
+            .with_slot_ticks(slot_ticks);
+        let transmitter = Transmitter::new(coding, first).with_fingerprint(bank.fingerprint());
         let recorded = Recorded { transmitter, session, line: line.clone(), framed: 0, last: None };
         Self {
             scheme,
             start,
             slot_ticks,
             queue,
-            bank: Bank::with_states(scheme, [(); CHANNELS].map(|()| again(start)))
-                .with_slot_ticks(slot_ticks),
+            bank,
             sink: SerialSink::new(Port(line.clone()), recorded),
             session,
+            first,
             now: micros * 1_000,
             taken: micros,
             encoders: [(); CHANNELS].map(|()| again(start)),
@@ -569,19 +594,42 @@ where
         }
         let samples = self.next_samples();
         let is_wrong = samples.iter().any(|sample| !sample.to_f64().is_finite());
-        let is_odd = matches!(self.fault(), Some(Stuck | Floating | Jitter | Drift | QueueFull));
+        let is_odd =
+            matches!(self.fault(), Some(Stuck | Floating | Jitter | Drift | FarDrift | QueueFull));
         self.tally.injected += u64::from(is_odd || is_wrong);
         let slot_ticks = self.senders[0].slot_ticks;
         let least = if slot_ticks > 0 { slot_ticks } else { PERIOD };
-        let most = i64::from((least - 1) / 4);
+        let most = i64::from((least - 1) / 8);
         let jitter = match self.fault() {
             Some(Jitter) => self.draw(2 * most as u64 + 1).cast_signed() - most,
+            // A sub-timestep later or earlier looks like any other: no receiver can tell.
+            Some(LateSamples) if slot_ticks == 0 && self.draw(5) == 0 => {
+                self.tally.injected += 1;
+                let half = u64::from(PERIOD / 2);
+                let most = if self.counts() { 5 * u64::from(PERIOD) / 8 - 1 } else { 2 * half - 1 };
+                (half + 1 + self.draw(most - half)).cast_signed()
+            }
             _ => 0,
         };
-        let drift = period / 10_000;
+        if self.fault() == Some(ClockBack) && slot_ticks == 0 && self.draw(20) == 0 {
+            self.tally.injected += 1;
+            let back = 1_000 * (1 + self.draw(10 * u64::from(PERIOD)));
+            let counts = self.counts();
+            let sender = &mut self.senders[0];
+            sender.now -= back.min(sender.now);
+            if counts {
+                // Back among silent samples, time looks like fewer of them.
+                let tick = Tick::from_micros(sender.now / 1_000);
+                Offered(sender.queue, &mut sender.offered).put(Item::Break(tick));
+            }
+        }
+        let drift = match self.fault() {
+            Some(FarDrift) => period * (50 + 9_950 * (self.tally.spells / 2 % 8) / 7) / 1_000_000,
+            _ => period / 10_000,
+        };
         let period = match self.fault() {
-            Some(Drift) if self.tally.spells.is_multiple_of(2) => period + drift,
-            Some(Drift) => period - drift,
+            Some(Drift | FarDrift) if self.tally.spells.is_multiple_of(2) => period + drift,
+            Some(Drift | FarDrift) => period - drift,
             _ => period,
         };
         self.senders[0].sample(samples, period, jitter);
@@ -605,6 +653,11 @@ where
             let micros = [0, self.draw(1 << 33)][self.draw(2) as usize];
             self.restart_sender(micros, None);
         }
+        if self.fault() == Some(SessionAgain) && self.draw(100) == 0 {
+            let micros = [0, self.draw(1 << 33)][self.draw(2) as usize];
+            let first = self.senders[0].first;
+            self.restart_sender(micros, Some(first));
+        }
         self.senders[0].send();
         if self.fault() == Some(Spliced) {
             self.senders[1].send();
@@ -616,6 +669,11 @@ where
     fn restart_sender(&mut self, micros: u64, session: Option<Session>) {
         self.senders[0].restart(micros, session);
         self.tally.injected += 1;
+    }
+
+    /// Whether the code counts samples.
+    fn counts(&self) -> bool {
+        !matches!(self.scheme.recovery(), Recovery::Keyframe | Recovery::Spike)
     }
 
     fn restart_receiver(&mut self) {
@@ -685,7 +743,9 @@ where
             }
             delivered => {
                 assert!(received.is_start && gap == 0);
-                assert_ne!(delivered.map(|last| last.0), Some(sent.session));
+                let may_begin_again = self.faults.iter().any(|fault| matches!(fault, FarLate));
+                let is_other = delivered.map(|last| last.0) != Some(sent.session);
+                assert!(is_other || may_begin_again);
                 self.tally.notice("starts", u64::from(self.tally.spells > 0));
             }
         }
@@ -704,7 +764,8 @@ where
     ) {
         let are_all_told = matches!(P::RECOVERY, Recovery::Samples(_) | Recovery::Spike);
         let slot_ticks = self.senders[0].slot_ticks;
-        let near = if slot_ticks > 0 { slot_ticks } else { PERIOD / 2 };
+        // A sample without events may be late, too, but its value is told where it was due.
+        let near = if slot_ticks > 0 { slot_ticks } else { 5 * PERIOD / 8 };
         let truth = self.senders.each_ref().map(|sender| &sender.truth);
         for channel in 0..CHANNELS {
             let Some(value) = after[channel] else { continue };
@@ -716,10 +777,15 @@ where
                 assert_eq!(last.2.to_bits32(), value.to_bits32());
             }
             for &&(_, tick, told) in &own[first..] {
-                let own = truth.iter().flat_map(|truth| truth.iter().rev()).find(|truth| {
-                    let away = tick.since(Tick::from_micros(truth.time)).unsigned_abs();
-                    truth.session == session && away <= near
-                });
+                let away =
+                    |truth: &Truth<_>| tick.since(Tick::from_micros(truth.time)).unsigned_abs();
+                let all = truth.iter().flat_map(|truth| truth.iter().rev());
+                let same = all.filter(|truth| truth.session == session && away(truth) <= near);
+                // Between two samples, where one that was late was the first to be heard, it may be either.
+                let is_told = |truth: &Truth<P::Sample>| {
+                    truth.values[channel].to_bits32() == told.to_bits32()
+                };
+                let own = same.min_by_key(|truth| (!is_told(truth), away(truth)));
                 self.tally.claim(told, own.map(|truth| truth.values[channel]));
             }
         }
@@ -749,9 +815,9 @@ where
         let is_damaged = matches!(self.fault, Cut | Spliced | Flipped1000 | Flipped100);
         let held_back = if is_damaged { HELD_BACK } else { 0 };
         let strays = if self.fault == Spliced { STRAYS * BEAT } else { 0 };
-        let least = 2 * BEAT + needed;
+        let least = 10 * BEAT + needed;
         let mut recovered = None;
-        for sample in 1..=least + BEAT + strays + held_back {
+        for sample in 1..=least + BEAT + FINGERPRINT + strays + held_back {
             self.sample();
             if recovered.is_none() && (0..CHANNELS).all(|channel| self.is_exact(channel)) {
                 recovered = Some(sample);
@@ -767,7 +833,7 @@ where
         let recovered = recovered.unwrap_or(0);
         if P::RECOVERY == Recovery::Keyframe {
             // A queue that is full has room for the keyframe after main's turn.
-            let most = BEAT + TURN + strays + held_back;
+            let most = BEAT + TURN + FINGERPRINT + strays + held_back;
             assert!(recovered <= most, "right again by the next keyframe");
         }
         let longest = &mut self.tally.recovery[usize::from(P::RECOVERY != Recovery::Keyframe)];
@@ -816,6 +882,7 @@ where
             ("repeated", reader.repeated()),
             ("late", reader.late()),
             ("bytes skipped", reader.skipped()),
+            ("misfits", self.receiver.misfits()),
         ] {
             self.tally.notice(what, count.into());
         }
@@ -932,9 +999,14 @@ fn check_noticed(faults: &[Fault], tally: &Tally) {
         [Lost] => assert_eq!(noticed("frames lost"), tally.injected),
         [Doubled] => assert_eq!(noticed("repeated"), tally.injected),
         [Late] => assert_eq!(noticed("late"), noticed("frames lost")),
-        [SenderOut | ReceiverOut | TickWrap | NumberWrap] => assert!(noticed("starts") > 0),
+        [FarLate] => assert!(noticed("late") > 0),
+        [SenderOut | SessionAgain | ReceiverOut | TickWrap | NumberWrap] => {
+            assert!(noticed("starts") > 0);
+        }
+        [LateSamples] => assert!(noticed("misfits") > 0),
+        [ClockBack] => assert!(noticed("frames after a loss") > 0),
         [Busy | BusError] => assert_eq!(noticed("write errors"), tally.injected),
-        [Short | Jitter | Drift | Stuck | Floating] => assert!(tally.noticed.is_empty()),
+        [Short | Jitter | Drift | FarDrift | Stuck | Floating] => assert!(tally.noticed.is_empty()),
         _ => assert!(!tally.noticed.is_empty() || tally.injected == 0),
     }
 }

@@ -56,6 +56,19 @@ fn one(mut format: impl EventFormat, event: Event) -> Vec<u8> {
     bytes[..length].to_vec()
 }
 
+/// A size of more than 32 bits is that of no event, and of none that a shorter one looks like.
+#[test]
+fn a_size_beyond_32_bits_is_longer_than_any_stream() {
+    // 3 and 2³⁵; 3 and 2³²; 0 and 2³³: the low bit says that the size goes on.
+    for size in [[7, 1, 1, 1, 1, 2].as_slice(), &[7, 1, 1, 1, 32], &[1, 1, 1, 1, 64]] {
+        let event = [9, 6, 1, 0, 1];
+        let stream = [EventStream::HEADER.as_slice(), &[5], size, &event.repeat(20)].concat();
+        let mut decoder = EventStream::decoder();
+        assert_eq!(decoder.decode(&stream).count(), 0, "{size:?}");
+        assert_eq!(decoder.skipped(), 100);
+    }
+}
+
 #[test]
 fn edvs_bytes_are_golden() {
     let at = |tick| event(tick, 0x45 << 7 | 0x23, true);

@@ -2,8 +2,8 @@
 
 use core::num::NonZeroU8;
 
-use crate::camera::{self, FRAMES, Line, PERIOD, SIZE};
 use crate::common::cases;
+use camera_frames::{FRAMES, Line, PERIOD, SIZE};
 use host_tests::reference::{
     FrameLaw, FrameOutcome, frame_events, frame_intensity, frame_interpolated, frame_log,
     frame_value, v2e_events,
@@ -546,7 +546,7 @@ fn the_firmware_prints_what_the_reference_makes() {
         ),
     ];
     let frames: Vec<Vec<u8>> =
-        (0..FRAMES).map(|index| camera::frame(index).as_flattened().to_vec()).collect();
+        (0..FRAMES).map(|index| camera_frames::frame(index).as_flattened().to_vec()).collect();
     let mut expected = String::new();
     for (name, law, is_interpolated) in table {
         let mut line = Line::default();
@@ -572,7 +572,7 @@ fn the_firmware_prints_what_the_reference_makes() {
         line.write(&mut expected, name).unwrap();
     }
     let mut printed = String::new();
-    camera::run(&mut printed).unwrap();
+    camera_frames::run(&mut printed).unwrap();
     assert_eq!(printed, expected);
 }
 

@@ -1,5 +1,6 @@
 //! A link that is down for a second or for years, senders that rest and that start again, clocks with jitter, receivers
-//! that join late: what a receiver calls exact is what a decoder beside the encoder holds, bit for bit.
+//! that join late: what a receiver calls exact is what a decoder beside the encoder holds, bit for bit. An attack adds
+//! sessions near each other and used again, samples half a period late, clocks that step and drift, and NaN in one channel.
 //!
 //! The truth is kept by time in 64 bits and by decoders that get every code. It knows nothing of frames.
 
@@ -9,9 +10,12 @@ use catalogue::{Channel, Flight, State};
 use host_tests::flight;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
-use spikewire::link::{Coding, MAX_FRAME, Reader, Receiver, Session, Transmitter};
+use spikewire::link::{
+    CLOCK_TOLERANCE, Coding, FrameView, MAX_FRAME, Reader, Receiver, Session, Transmitter,
+};
 use spikewire::{
-    Bank, Code, ConfigError, FromItems, Item, Output, Put, Recovery, Sample, Scheme, Tick,
+    Bank, Code, ConfigError, Fingerprint, FromItems, Item, Output, Put, Recovery, Sample, Scheme,
+    Tick,
 };
 
 const CHANNELS: usize = 2;
@@ -43,6 +47,8 @@ struct Claims {
 
 /// A sample of the truth.
 struct Truth<S> {
+    /// Samples since the test began.
+    number: u64,
     time: u64,
     values: [S; CHANNELS],
 }
@@ -57,11 +63,22 @@ struct World<'a, P: Scheme> {
     slot_ticks: u32,
     /// The most that a tick is early or late.
     jitter: u32,
+    /// The clock tolerance that the receiver is told of, in millionths.
+    tolerance: u32,
     /// Samples from one keyframe or heartbeat to the next.
     beat: u32,
     session: u32,
     is_counted: bool,
+    is_attack: bool,
+    /// In millionths, to which the remainder of a tick adds up.
+    drift: i64,
+    remainder: i64,
     // The sender.
+    /// The numbers of the first frame of the session, and of the last one sent.
+    first: u64,
+    last: u64,
+    /// Whether the reader has heard that first frame.
+    is_first_heard: bool,
     now: u64,
     /// When the last sample was taken.
     taken: u64,
@@ -75,9 +92,10 @@ struct World<'a, P: Scheme> {
     truth: VecDeque<Truth<P::Sample>>,
     /// Samples since a channel had a spike.
     silent: [u32; CHANNELS],
-    /// The first sample that main has not sent.
+    /// The number of the next sample, and of the first one that main has not sent.
+    number: u64,
     unsent: Option<u64>,
-    /// The time of the sample that a channel's next claim can be about at the earliest: ticks alone come again.
+    /// The number of the sample that a channel's next claim can be about at the earliest: ticks alone come again.
     claimed: [u64; CHANNELS],
     // The receiver.
     reader: Reader<MAX_FRAME>,
@@ -94,14 +112,25 @@ impl<'a, P> World<'a, P>
 where
     P: Scheme<EncoderState: State, DecoderState: State>,
 {
-    fn new(scheme: &'a P, start: &P::EncoderState, samples: &'a [P::Sample], seed: u64) -> Self {
+    fn new(
+        scheme: &'a P,
+        start: &P::EncoderState,
+        samples: &'a [P::Sample],
+        (seed, is_attack): (u64, bool),
+    ) -> Self {
         let mut random = Pcg32::seed_from_u64(seed);
         let start = postcard::to_allocvec(start).unwrap();
         let period = [1_000, 2_500, 4_999][random.next_u32() as usize % 3];
         let has_slots = scheme.slots() > 1 && P::RECOVERY != Recovery::Keyframe;
         let slot_ticks = if has_slots { period / scheme.slots() as u32 } else { 0 };
         let least = if has_slots { slot_ticks } else { period };
-        let jitter = [0, (least - 1) / 4][random.next_u32() as usize % 2];
+        let jitter = [0, (least - 1) / 8][random.next_u32() as usize % 2];
+        // A clock of which the receiver knows little takes more heartbeats.
+        let (tolerance, beats) = [(0, 60), (CLOCK_TOLERANCE, 8)][random.next_u32() as usize % 2];
+        // Ticks are whole, which takes a part of what jitter a sub-timestep allows.
+        let drifts = is_attack && tolerance > 0 && (!has_slots || slot_ticks >= 16);
+        let drift = if drifts { i64::from(random.next_u32() % 39_000) - 19_500 } else { 0 };
+        let jitter = if drift == 0 { jitter } else { 0 };
         let is_counted = random.next_u32().is_multiple_of(2);
         let session = random.next_u32();
         let mut world = Self {
@@ -110,29 +139,39 @@ where
             period,
             slot_ticks,
             jitter,
-            beat: 5 + random.next_u32() % 60,
+            tolerance,
+            beat: 5 + random.next_u32() % beats,
             session,
             is_counted,
+            is_attack,
+            drift,
+            remainder: 0,
+            first: 0,
+            last: 0,
+            is_first_heard: false,
             now: 0,
             taken: 0,
             at: random.next_u32() as usize % samples.len(),
             bank: bank(scheme, &start, slot_ticks),
-            transmitter: transmitter(period, Session::counted(session)),
+            transmitter: transmitter(period, Session::counted(session), Fingerprint::from_bits(0)),
             items: Items::default(),
             encoders: [(); CHANNELS].map(|()| again(&start)),
             decoders: [(); CHANNELS].map(|()| scheme.decoder_state()),
             truth: VecDeque::new(),
             silent: [0; CHANNELS],
+            number: 0,
             unsent: None,
             claimed: [0; CHANNELS],
             reader: Reader::new(),
-            receiver: Receiver::new(scheme).with_slot_ticks(slot_ticks),
+            receiver: Receiver::new(scheme)
+                .with_slot_ticks(slot_ticks)
+                .with_clock_tolerance(tolerance),
             values: Vec::new(),
             claims: Claims::default(),
             start,
             random,
         };
-        world.restart();
+        world.restart(false);
         world
     }
 
@@ -157,25 +196,50 @@ where
         near - near % u64::from(self.period)
     }
 
-    /// The sender starts again, after any time of which nobody knows.
-    fn restart(&mut self) {
+    /// A session near the one before, or that one again if the first frames of both are heard. One whose first frame is
+    /// lost lies ahead of all that was sent: among numbers that were sent, nothing tells it from the one before.
+    fn near_session(&mut self, is_heard: bool) -> Session {
+        let ahead = 1_u64 << self.draw(33);
+        let ahead = self.draw(ahead);
+        let first = match self.draw(3) {
+            0 if is_heard && self.is_first_heard => self.first,
+            1 if is_heard && self.is_first_heard => self.first.wrapping_sub(ahead),
+            _ => self.last.wrapping_add(1 + ahead),
+        };
+        self.first = first & ((1 << 48) - 1);
+        // The bits that `Session` spreads to this number.
+        Session::random((self.first << 16).wrapping_mul(inverse(0x9E37_79B9_7F4A_7C15)))
+    }
+
+    /// The sender starts again, after any time of which nobody knows; `is_heard` if its first frame arrives.
+    fn restart(&mut self, is_heard: bool) {
         self.session = self.session.wrapping_add(1);
-        let session = if self.is_counted {
+        let session = if self.is_attack && self.draw(2) == 0 {
+            self.near_session(is_heard)
+        } else if self.is_counted {
             Session::counted(self.session)
         } else {
             Session::random(self.random.next_u64())
         };
-        self.transmitter = transmitter(self.period, session);
         self.now = match self.draw(4) {
             0 => self.draw(100_000),
             1 => (self.draw(50) << 31) + self.draw(4_000_000),
+            // As long after its start as before.
+            2 if self.is_attack => self.now & 0xFFFF_FFFF,
             _ => self.draw(10 * YEAR),
         } + u64::from(self.period);
         self.items.0.clear();
         self.bank = bank(self.scheme, &self.start, self.slot_ticks);
+        self.transmitter = transmitter(self.period, session, self.bank.fingerprint());
         self.encoders = [(); CHANNELS].map(|()| again(&self.start));
         self.decoders = [(); CHANNELS].map(|()| self.scheme.decoder_state());
         self.truth.clear();
+        let mut frame = [0; 64];
+        let mut first = self.transmitter; // a copy
+        let beat = Item::Heartbeat { tick: Tick::from(0), address: 0 };
+        let bytes = first.next_frame(FromItems([beat].into_iter()), &mut frame).unwrap();
+        self.first = FrameView::new(bytes.unwrap()).unwrap().0.number();
+        (self.last, self.is_first_heard) = (self.first, false);
         self.silent = [0; CHANNELS];
         self.unsent = None;
         self.claimed = [0; CHANNELS];
@@ -183,9 +247,15 @@ where
 
     /// Takes a sample, in the sender's interrupt.
     fn sample(&mut self, samples: [P::Sample; CHANNELS]) {
-        self.now += u64::from(self.period);
+        if self.is_attack {
+            self.step();
+        }
+        self.remainder += i64::from(self.period) * self.drift;
+        let whole = self.remainder / 1_000_000;
+        self.remainder -= whole * 1_000_000;
+        self.now = self.now.wrapping_add_signed(i64::from(self.period) + whole);
         let early = u64::from(self.jitter);
-        self.taken = self.now + self.draw(2 * early + 1) - early;
+        self.taken = self.now + self.draw(2 * early + 1) - early + self.lateness();
         self.bank.encode_into(Tick::from_micros(self.taken), samples, &mut self.items);
         let mut values =
             self.truth.back().map_or([P::Sample::default(); CHANNELS], |last| last.values);
@@ -200,13 +270,48 @@ where
         if self.truth.len() == REMEMBERED {
             self.truth.pop_front();
         }
-        self.truth.push_back(Truth { time: self.taken, values });
-        self.unsent.get_or_insert(self.taken);
+        self.truth.push_back(Truth { number: self.number, time: self.taken, values });
+        self.unsent.get_or_insert(self.number);
+        self.number += 1;
+    }
+
+    /// Whether the code counts samples.
+    fn counts(&self) -> bool {
+        !matches!(self.scheme.recovery(), Recovery::Keyframe | Recovery::Spike)
+    }
+
+    /// How late a sample is: half a period or more, which codes that count samples notice up to five eighths.
+    fn lateness(&mut self) -> u64 {
+        let is_able = self.is_attack && self.slot_ticks == 0 && self.jitter == 0 && self.drift == 0;
+        if !is_able || self.draw(30) > 0 {
+            return 0;
+        }
+        let period = u64::from(self.period);
+        let most = if self.counts() { 5 * period / 8 } else { period };
+        period / 2 + 1 + self.draw(most - period / 2 - 1)
+    }
+
+    /// The clock steps. A break tells of it where samples are counted: among silent ones a step is a number of them.
+    fn step(&mut self) {
+        if self.draw(400) > 0 {
+            return;
+        }
+        let far = 1 << self.draw(26);
+        let step = self.draw(far).cast_signed();
+        let back = step.min(self.now.cast_signed() - i64::from(2 * self.period)).max(0);
+        self.now = self.now.wrapping_add_signed(if self.draw(2) == 0 { step } else { -back });
+        if self.counts() || self.slot_ticks > 0 {
+            (&mut self.items).put(Item::Break(Tick::from_micros(self.now)));
+        }
     }
 
     fn next_samples(&mut self) -> [P::Sample; CHANNELS] {
         self.at = (self.at + 1) % self.samples.len();
-        [self.samples[self.at], self.samples[self.samples.len() - 1 - self.at]]
+        let mut samples = [self.samples[self.at], self.samples[self.samples.len() - 1 - self.at]];
+        if self.is_attack && P::Sample::KIND == f32::KIND && self.draw(200) == 0 {
+            samples[self.draw(2) as usize] = P::Sample::from_bits32(f32::NAN.to_bits());
+        }
+        samples
     }
 
     /// A keyframe of each channel that has one, or a heartbeat, after the last sample.
@@ -227,8 +332,9 @@ where
         let mut source = FromItems(items.into_iter());
         let mut buffer = [0; MAX_FRAME];
         let mut is_last_here = false;
-        let unsent = self.unsent.take().unwrap_or(self.taken);
+        let unsent = self.unsent.take().unwrap_or(self.number);
         while let Some(mut bytes) = self.transmitter.next_frame(&mut source, &mut buffer).unwrap() {
+            self.last = FrameView::new(bytes).unwrap().0.number();
             is_last_here = f64::from(self.random.next_u32()) >= loss * f64::from(u32::MAX);
             if !is_last_here {
                 continue;
@@ -243,6 +349,7 @@ where
                 } else {
                     exact(&self.receiver)
                 };
+                self.is_first_heard |= received.is_start && received.frame.is_first();
                 let values = &mut self.values;
                 values.clear();
                 let on_value = |channel, tick, value| values.push((channel, tick, value));
@@ -272,7 +379,11 @@ where
     ) {
         let are_all_told = matches!(P::RECOVERY, Recovery::Samples(_) | Recovery::Spike);
         // Slots lie on a grid, which 2³² µs shift by more than this: a sample so long ago is not taken for the present one.
-        let near = if self.slot_ticks > 0 { 2 * self.jitter } else { self.period / 2 };
+        let near = match self.slot_ticks {
+            0 if self.is_attack => 5 * self.period / 8,
+            0 => self.period / 2,
+            _ => 2 * self.jitter + self.slot_ticks / 4 * u32::from(self.drift != 0),
+        };
         for channel in 0..CHANNELS {
             let Some(value) = after[channel] else { continue };
             let was_exact = before[channel].is_some();
@@ -283,7 +394,7 @@ where
                 assert_eq!(last.2.to_bits32(), value.to_bits32());
             }
             for &&(_, tick, told) in &own[first..] {
-                let from = self.truth.partition_point(|truth| truth.time < self.claimed[channel]);
+                let from = self.truth.partition_point(|truth| truth.number < self.claimed[channel]);
                 // Ticks come again after 2³² µs: of samples with such a tick one has the value.
                 let is_near = |truth: &&Truth<P::Sample>| {
                     tick.since(Tick::from_micros(truth.time)).unsigned_abs() <= near
@@ -292,7 +403,7 @@ where
                     truth.values[channel].to_bits32() == told.to_bits32()
                 };
                 if let Some(truth) = self.truth.range(from..).filter(is_near).find(is_told) {
-                    self.claimed[channel] = truth.time;
+                    self.claimed[channel] = truth.number;
                     self.claims.right += 1;
                 } else {
                     self.claims.wrong += 1;
@@ -344,7 +455,7 @@ where
             self.send(1.0);
         }
         for _ in 0..[0, 0, 0, 1, 2, 5][self.draw(6) as usize] {
-            self.restart();
+            self.restart(false);
             let samples = self.draw(60) as u32;
             self.fly(samples, 1.0);
         }
@@ -379,8 +490,10 @@ where
 
     /// The link is whole again for as long as the code needs: then all is known.
     fn whole(&mut self) {
-        let samples = 2 * self.beat + self.recovery() as u32 + 5;
+        // A sender whose first frame was lost tells its fingerprint with every fourth frame at the latest.
+        let samples = 6 * self.beat + self.recovery() as u32 + 5;
         let from = self.truth.len();
+        let is_attack = std::mem::take(&mut self.is_attack);
         for sample in 1..=samples {
             let next = self.next_samples();
             self.sample(next);
@@ -389,6 +502,7 @@ where
                 self.send(0.0);
             }
         }
+        self.is_attack = is_attack;
         for channel in 0..CHANNELS {
             let is_due = match P::RECOVERY {
                 Recovery::Keyframe => true,
@@ -414,10 +528,19 @@ where
             let samples = 20 + self.draw(600) as u32;
             self.fly(samples, loss);
             match self.draw(8) {
-                0 => self.restart(),
+                0 => {
+                    self.restart(true);
+                    let next = self.next_samples();
+                    self.sample(next);
+                    self.beat();
+                    self.send(0.0);
+                }
                 1 => {
                     self.reader = Reader::new();
-                    self.receiver = Receiver::new(self.scheme).with_slot_ticks(self.slot_ticks);
+                    self.is_first_heard = false;
+                    self.receiver = Receiver::new(self.scheme)
+                        .with_slot_ticks(self.slot_ticks)
+                        .with_clock_tolerance(self.tolerance);
                 }
                 2 | 3 => self.rest(loss),
                 _ => self.outage(),
@@ -439,8 +562,15 @@ impl Claims {
     }
 }
 
-fn transmitter(period: u32, session: Session) -> Transmitter {
-    Transmitter::new(Coding::for_channels(CHANNELS as u16, period as u16), session)
+/// The inverse of an odd number modulo 2⁶⁴.
+fn inverse(odd: u64) -> u64 {
+    (0..6)
+        .fold(odd, |inverse, _| inverse.wrapping_mul(2_u64.wrapping_sub(odd.wrapping_mul(inverse))))
+}
+
+fn transmitter(period: u32, session: Session, fingerprint: Fingerprint) -> Transmitter {
+    let coding = Coding::for_channels(CHANNELS as u16, period as u16);
+    Transmitter::new(coding, session).with_fingerprint(fingerprint)
 }
 
 fn bank<'a, P>(scheme: &'a P, start: &[u8], slot_ticks: u32) -> Bank<&'a P, CHANNELS>
@@ -456,6 +586,7 @@ struct Outages<S> {
     samples: Vec<S>,
     seeds: std::ops::Range<u64>,
     turns: u32,
+    is_attack: bool,
     claims: u64,
     schemes: usize,
 }
@@ -476,7 +607,7 @@ impl<S: Sample> Flight for Outages<S> {
     {
         let mut sum = 0;
         for seed in self.seeds.clone() {
-            let mut world = World::new(scheme, &start, &self.samples, seed);
+            let mut world = World::new(scheme, &start, &self.samples, (seed, self.is_attack));
             world.run(self.turns);
             let claims = world.claims;
             assert_eq!(claims.wrong, 0, "{name}, seed {seed}: {claims:?}");
@@ -492,10 +623,10 @@ impl<S: Sample> Flight for Outages<S> {
 }
 
 /// How many values were called exact, in every scheme. All of them were.
-fn claims<S: Sample>(unit: f64, seeds: std::ops::Range<u64>, turns: u32) -> u64 {
+fn claims<S: Sample>(unit: f64, seeds: std::ops::Range<u64>, turns: u32, is_attack: bool) -> u64 {
     let samples = flight::flown::<S>(0, unit);
     let channel = Channel::new(0, flight::calibrated(&samples));
-    let mut visitor = Outages { samples, seeds, turns, claims: 0, schemes: 0 };
+    let mut visitor = Outages { samples, seeds, turns, is_attack, claims: 0, schemes: 0 };
     catalogue::fly(&channel, &mut visitor).unwrap();
     assert!(visitor.schemes >= catalogue::INFO.len());
     visitor.claims
@@ -503,8 +634,8 @@ fn claims<S: Sample>(unit: f64, seeds: std::ops::Range<u64>, turns: u32) -> u64 
 
 #[test]
 fn what_is_called_exact_is_so_after_any_outage() {
-    assert!(claims::<f32>(1.0, 0..1, 8) > 20_000);
-    assert!(claims::<i16>(1000.0, 1..2, 8) > 20_000);
+    assert!(claims::<f32>(1.0, 0..1, 8, false) > 20_000);
+    assert!(claims::<i16>(1000.0, 1..2, 8, false) > 20_000);
 }
 
 /// The same for 10⁸ claims.
@@ -513,10 +644,31 @@ fn what_is_called_exact_is_so_after_any_outage() {
 fn what_is_called_exact_is_so_after_a_hundred_million() {
     let mut sum = 0;
     for round in (1_000..).step_by(20) {
-        sum += claims::<f32>(1.0, round..round + 10, 60);
-        sum += claims::<i16>(1000.0, round + 10..round + 20, 60);
+        sum += claims::<f32>(1.0, round..round + 10, 60, false);
+        sum += claims::<i16>(1000.0, round + 10..round + 20, 60, false);
         println!("{sum} claims");
         if sum > 100_000_000 {
+            break;
+        }
+    }
+}
+
+#[test]
+fn an_attack_makes_nothing_wrong_exact() {
+    assert!(claims::<f32>(1.0, 0..1, 12, true) > 20_000);
+    assert!(claims::<i16>(1000.0, 1..2, 12, true) > 20_000);
+}
+
+/// The same for 2 · 10⁷ claims.
+#[test]
+#[ignore = "minutes"]
+fn an_attack_of_twenty_million_makes_nothing_wrong_exact() {
+    let mut sum = 0;
+    for round in (5_000..).step_by(20) {
+        sum += claims::<f32>(1.0, round..round + 10, 60, true);
+        sum += claims::<i16>(1000.0, round + 10..round + 20, 60, true);
+        println!("{sum} claims");
+        if sum > 20_000_000 {
             break;
         }
     }

@@ -8,7 +8,7 @@ use host_tests::compare::{
 };
 use host_tests::reference::{step_decode_within, step_forward};
 use proptest::prelude::*;
-use spikewire::temporal::StepForward;
+use spikewire::temporal::{AdaptiveStepForward, StepForward};
 use spikewire::{ConfigError, Scheme, Spike};
 
 /// Encoder and decoder against the reference, unprimed and primed.
@@ -164,6 +164,38 @@ fn all_pairs_of_8_bits() {
                     assert_eq!(saturated::<I8F8>(&left), left);
                 }
             }
+        }
+    }
+}
+
+/// A sample that is not finite is a silent one, after which the step is the smallest again, as it is for a decoder; and
+/// slices count it as samples do.
+#[test]
+fn adaptive_step_forward_takes_what_is_not_finite_as_silence() {
+    use spikewire::Spike::{None as Silent, Up};
+    static ADAPTIVE: AdaptiveStepForward<f32> = AdaptiveStepForward::new(1.0, 4);
+    let spikes = |samples: &[f32]| {
+        let mut encoder = ADAPTIVE.encoder();
+        let one_by_one: Vec<Spike> = samples.iter().map(|&sample| encoder.encode(sample)).collect();
+        let mut slices = ADAPTIVE.encoder();
+        let mut together = vec![Silent; samples.len()];
+        slices.encode_slice(samples, &mut together);
+        assert_eq!((&together, slices.rejected()), (&one_by_one, encoder.rejected()));
+        (one_by_one, encoder.rejected(), encoder.keyframe())
+    };
+    let far = 1_000.0;
+    let (told, rejected, _) = spikes(&[0.0, far, far, f32::NAN, far, far, far]);
+    assert_eq!((told, rejected), (vec![Silent, Up, Up, Silent, Up, Up, Up], 1));
+    for at in 1..12 {
+        for bad in [f32::NAN, f32::INFINITY] {
+            let mut samples = vec![0.0];
+            samples.extend([20.0; 12]);
+            samples[at] = bad;
+            samples.extend([20.0; 40]);
+            let (told, rejected, held) = spikes(&samples);
+            let mut decoder = ADAPTIVE.decoder();
+            let last = told.iter().map(|&spike| decoder.decode(spike)).last();
+            assert_eq!((last, rejected), (held, 1), "{at}");
         }
     }
 }

@@ -9,6 +9,7 @@ mod formats_peers;
 mod formats_pixels;
 mod heapless;
 mod interleaving;
+mod link_description;
 mod link_drift;
 mod link_frames;
 mod link_loss;

@@ -2,38 +2,39 @@
 
 use crate::number::Number;
 use crate::sealed::Sealed;
-use core::fmt::Debug;
+use crate::weights::Weights;
+use core::{fmt::Debug, hint::black_box};
+use heapless::Vec;
 
 /// What a layer takes in a step.
 pub trait Input<V: Number>: Copy + Debug + Sealed + 'static {
     /// The input of a step.
     type Of<const IN: usize>: ?Sized;
-    /// The same, checked.
+    /// The same, checked: by default nothing, to be filled in place.
     #[doc(hidden)]
-    type Checked<'a, const IN: usize>: Copy;
+    type Checked<'a, const IN: usize, const OUT: usize>: Default;
 
     #[doc(hidden)]
-    fn check<'a, const IN: usize>(
+    fn check<'a, const IN: usize, const OUT: usize>(
+        weights: &'a Weights<V, IN, OUT>,
         input: &'a Self::Of<IN>,
+        checked: &mut Self::Checked<'a, IN, OUT>,
         rejected: &mut u32,
-    ) -> Self::Checked<'a, IN>;
-
-    #[doc(hidden)]
-    fn add<const W: usize, const IN: usize, const OUT: usize>(
-        rows: &[V::Row<OUT>; IN],
-        shift: V::Shift,
-        input: Self::Checked<'_, IN>,
-        first: usize,
-        sums: &mut [[V; 4]; W],
     );
 
+    /// The rows of inputs that fired, and further spikes, which are added behind them.
     #[doc(hidden)]
-    fn add_to_one<const IN: usize, const OUT: usize>(
-        rows: &[V::Row<OUT>; IN],
-        shift: V::Shift,
-        input: Self::Checked<'_, IN>,
-        neuron: usize,
-        sum: &mut V,
+    fn fired<'c, const IN: usize, const OUT: usize>(
+        checked: &'c Self::Checked<'_, IN, OUT>,
+    ) -> (&'c [&'c V::Row<OUT>], &'c [u16]);
+
+    /// Adds the weights times the values to the sums of neurons from `first` on.
+    #[doc(hidden)]
+    fn add_values<const IN: usize, const OUT: usize>(
+        weights: &Weights<V, IN, OUT>,
+        checked: &Self::Checked<'_, IN, OUT>,
+        first: usize,
+        sums: &mut [V],
     );
 }
 
@@ -48,64 +49,125 @@ pub struct Values;
 impl Sealed for Spiking {}
 impl Sealed for Values {}
 
+/// The rows of weights of the inputs that fired: looked up once a step, and not once for each block of neurons.
+#[derive(Debug)]
+pub struct Fired<'a, V: Number, const IN: usize, const OUT: usize> {
+    rows: Vec<&'a V::Row<OUT>, IN>,
+    /// Spikes beyond as many as there are inputs, some of which are named several times.
+    rest: &'a [u16],
+}
+
+impl<V: Number, const IN: usize, const OUT: usize> Default for Fired<'_, V, IN, OUT> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self { rows: Vec::new(), rest: &[] }
+    }
+}
+
+impl<'a, V: Number, const IN: usize, const OUT: usize> Fired<'a, V, IN, OUT> {
+    /// Looks up the row of an input, and returns 1 if it has none.
+    #[inline(always)]
+    pub(crate) fn push(&mut self, weights: &'a Weights<V, IN, OUT>, spike: u16) -> u32 {
+        let row = weights.rows.get(usize::from(spike));
+        if let Some(row) = row {
+            _ = self.rows.push(row);
+        }
+        black_box(()); // keeps the compiler from unrolling loops of this
+        row.is_none().into()
+    }
+
+    #[inline(always)]
+    pub(crate) fn rows(&self) -> &[&'a V::Row<OUT>] {
+        &self.rows
+    }
+}
+
 impl<V: Number> Input<V> for Spiking {
     type Of<const IN: usize> = [u16];
-    type Checked<'a, const IN: usize> = &'a [u16];
+    type Checked<'a, const IN: usize, const OUT: usize> = Fired<'a, V, IN, OUT>;
 
     #[inline(always)]
-    fn check<'a, const IN: usize>(input: &'a [u16], rejected: &mut u32) -> &'a [u16] {
+    fn check<'a, const IN: usize, const OUT: usize>(
+        weights: &'a Weights<V, IN, OUT>,
+        input: &'a [u16],
+        checked: &mut Fired<'a, V, IN, OUT>,
+        rejected: &mut u32,
+    ) {
         let taken = input.get(..V::MOST_SPIKES).unwrap_or(input);
+        let (first, rest) = taken.split_at_checked(IN).unwrap_or((taken, &[]));
         // Not `count`, which panics where overflow is checked.
-        let unknown = |sum: u32, &spike: &u16| sum.wrapping_add((usize::from(spike) >= IN).into());
-        let beyond = input.len().saturating_sub(taken.len()) as u32;
-        *rejected = rejected.saturating_add(taken.iter().fold(beyond, unknown));
-        taken
+        let mut unknown = input.len().saturating_sub(taken.len()) as u32;
+        for &spike in first {
+            unknown = unknown.wrapping_add(checked.push(weights, spike));
+        }
+        for &spike in rest {
+            unknown = unknown.wrapping_add((usize::from(spike) >= IN).into());
+            black_box(());
+        }
+        checked.rest = rest;
+        *rejected = rejected.saturating_add(unknown);
     }
 
     #[inline(always)]
-    fn add<const W: usize, const IN: usize, const OUT: usize>(
-        rows: &[V::Row<OUT>; IN],
-        shift: V::Shift,
-        input: &[u16],
-        first: usize,
-        sums: &mut [[V; 4]; W],
-    ) {
-        V::add_spikes(rows, shift, input, first, sums);
+    fn fired<'c, const IN: usize, const OUT: usize>(
+        checked: &'c Fired<'_, V, IN, OUT>,
+    ) -> (&'c [&'c V::Row<OUT>], &'c [u16]) {
+        (&checked.rows, checked.rest)
     }
 
     #[inline(always)]
-    fn add_to_one<const IN: usize, const OUT: usize>(
-        rows: &[V::Row<OUT>; IN],
-        shift: V::Shift,
-        input: &[u16],
-        neuron: usize,
-        sum: &mut V,
+    fn add_values<const IN: usize, const OUT: usize>(
+        _weights: &Weights<V, IN, OUT>,
+        _checked: &Fired<'_, V, IN, OUT>,
+        _first: usize,
+        _sums: &mut [V],
     ) {
-        V::add_spikes_to_one(rows, shift, input, neuron, sum);
+    }
+}
+
+/// Values of which those that are not accepted are 0.
+#[derive(Debug)]
+pub struct Accepted<T, const IN: usize>([T; IN]);
+
+impl<T: Copy + Default, const IN: usize> Default for Accepted<T, IN> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self([T::default(); IN])
     }
 }
 
 impl<V: Number> Input<V> for Values {
     type Of<const IN: usize> = [V::Value; IN];
-    type Checked<'a, const IN: usize> = [V::Value; IN];
+    type Checked<'a, const IN: usize, const OUT: usize> = Accepted<V::Value, IN>;
 
     #[inline(always)]
-    fn check<const IN: usize>(input: &[V::Value; IN], rejected: &mut u32) -> [V::Value; IN] {
-        input.map(|value| {
-            V::accept(value).unwrap_or_else(|| {
-                *rejected = rejected.saturating_add(1);
-                V::Value::default()
-            })
-        })
+    fn check<'a, const IN: usize, const OUT: usize>(
+        _weights: &'a Weights<V, IN, OUT>,
+        input: &'a [V::Value; IN],
+        Accepted(accepted): &mut Accepted<V::Value, IN>,
+        rejected: &mut u32,
+    ) {
+        for (accepted, &value) in accepted.iter_mut().zip(input) {
+            match V::accept(value) {
+                Some(value) => *accepted = value,
+                None => *rejected = rejected.saturating_add(1),
+            }
+        }
     }
 
     #[inline(always)]
-    fn add<const W: usize, const IN: usize, const OUT: usize>(
-        rows: &[V::Row<OUT>; IN],
-        shift: V::Shift,
-        input: [V::Value; IN],
+    fn fired<const IN: usize, const OUT: usize>(
+        _checked: &Accepted<V::Value, IN>,
+    ) -> (&[&V::Row<OUT>], &[u16]) {
+        (&[], &[])
+    }
+
+    #[inline(always)]
+    fn add_values<const IN: usize, const OUT: usize>(
+        weights: &Weights<V, IN, OUT>,
+        Accepted(values): &Accepted<V::Value, IN>,
         first: usize,
-        sums: &mut [[V; 4]; W],
+        sums: &mut [V],
     ) {
         const {
             assert!(
@@ -113,17 +175,6 @@ impl<V: Number> Input<V> for Values {
                 "a layer takes 128 values at most, so that sums of them fit 32 bits"
             );
         };
-        V::add_values(rows, shift, &input, first, sums);
-    }
-
-    #[inline(always)]
-    fn add_to_one<const IN: usize, const OUT: usize>(
-        rows: &[V::Row<OUT>; IN],
-        shift: V::Shift,
-        input: [V::Value; IN],
-        neuron: usize,
-        sum: &mut V,
-    ) {
-        V::add_values_to_one(rows, shift, &input, neuron, sum);
+        V::add_values(&weights.rows, weights.scale, values, first, sums);
     }
 }

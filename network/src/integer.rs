@@ -1,7 +1,8 @@
 //! Potentials in whole numbers, with weights of 8 bits.
 
-use crate::number::{Number, OUTSIDE, block};
+use crate::number::{IS_SMALL, Number, OUTSIDE, block};
 use crate::sealed::Sealed;
+use core::hint::black_box;
 
 /// The largest bias, threshold and value to reset to.
 pub(crate) const LARGEST: i32 = 1 << 27;
@@ -15,9 +16,6 @@ pub(crate) const MOST_SHIFT: u32 = 10;
 /// A potential or current lies in `-RANGE..RANGE`. A step's sum stays below 2³¹ from there: the potential and the
 /// current, both scaled by 1 at most, 4096 spikes of 128 shifted by 10 and, up to 2²⁷ each, two biases and a threshold.
 const RANGE: i32 = 1 << 29;
-
-/// Spikes whose weights, as unsigned bytes, fit in 16 bits together.
-const IN_16_BITS: usize = 257;
 
 /// Weights of one input, as bytes that begin at a word: a weight `w` is stored as `w + 128`, so that four of them are
 /// added in two registers.
@@ -44,23 +42,23 @@ impl<const OUT: usize> Packed<OUT> {
     }
 }
 
-/// Sums of bytes, of four of them each: `odd` has the second and fourth in 16 bits, and `all` these times 256 and the
-/// others. A function of its own, so that nothing else takes the registers in which they are kept.
-#[inline(never)]
+/// Sums of bytes over two lists of rows, of four of them each: `odd` has the second and fourth in 16 bits, and `all` these
+/// times 256 and the others. A function of its own, so that nothing else takes the registers in which they are kept.
+#[inline(always)]
 fn lanes<const W: usize, const OUT: usize>(
-    rows: &[Packed<OUT>],
-    spikes: &[u16],
+    lists: [&[&Packed<OUT>]; 2],
     first: usize,
 ) -> ([u32; W], [u32; W]) {
     let (mut all, mut odd) = ([0_u32; W], [0_u32; W]);
-    for &spike in spikes {
-        // An input that does not exist has weights of 0: its spikes are part of the offset.
-        let row = rows.get(usize::from(spike)).unwrap_or(const { &Packed::new(&[0; OUT]) });
-        let Some(words) = block::<_, W>(&row.0, first) else { continue };
-        for ((all, odd), bytes) in all.iter_mut().zip(&mut odd).zip(words) {
-            let word = u32::from_le_bytes(*bytes);
-            *all = all.wrapping_add(word);
-            *odd = odd.wrapping_add((word >> 8) & 0x00ff_00ff);
+    for rows in lists {
+        for row in rows {
+            let Some(words) = block::<_, W>(&row.0, first) else { continue };
+            for ((all, odd), bytes) in all.iter_mut().zip(&mut odd).zip(words) {
+                let word = u32::from_le_bytes(*bytes);
+                *all = all.wrapping_add(word);
+                *odd = odd.wrapping_add((word >> 8) & 0x00ff_00ff);
+                black_box(()); // one word after the other, as there are registers for two only
+            }
         }
     }
     (all, odd)
@@ -72,12 +70,18 @@ impl Number for i32 {
     type Factor = u32;
     type Value = i16;
     type Row<const OUT: usize> = Packed<OUT>;
-    type Shift = u32;
+    type Scale = i32;
+    const BLOCK: usize = if IS_SMALL { 1 } else { 2 };
+    /// The weights of so many, as unsigned bytes, fit in 16 bits together.
+    const MOST_ROWS: usize = 257;
     const MOST_SPIKES: usize = 4096;
 
-    /// The product divided by 65 536 and rounded down, exactly, without a product of 64 bits.
+    /// The product divided by 65 536 and rounded down, exactly: without a product of 64 bits where the core has none.
     #[inline(always)]
     fn scaled(self, factor: u32) -> Self {
+        if !IS_SMALL {
+            return (i64::from(self).wrapping_mul(factor.cast_signed().into()) >> 16) as Self;
+        }
         let low = (self.cast_unsigned() & 0xffff).wrapping_mul(factor) >> 16;
         (self >> 16).wrapping_mul(factor.cast_signed()).wrapping_add(low.cast_signed())
     }
@@ -108,68 +112,53 @@ impl Number for i32 {
     }
 
     #[inline(always)]
-    fn add_spikes<const W: usize, const OUT: usize>(
-        rows: &[Packed<OUT>],
-        shift: u32,
-        spikes: &[u16],
+    fn sums<const W: usize, const OUT: usize>(
+        start: impl FnOnce() -> [[Self; 4]; W],
+        lists: [&[&Packed<OUT>]; 2],
+        scale: i32,
         first: usize,
-        sums: &mut [[Self; 4]; W],
-    ) {
-        for spikes in spikes.chunks(IN_16_BITS) {
-            let (all, odd) = lanes::<W, OUT>(rows, spikes, first);
-            let offset = (spikes.len() as i32).wrapping_mul(128);
-            for ((all, odd), sums) in all.iter().zip(&odd).zip(&mut *sums) {
-                let even = all.wrapping_sub(odd << 8);
-                let each = [even & 0xffff, odd & 0xffff, even >> 16, odd >> 16];
-                for (sum, each) in sums.iter_mut().zip(each) {
-                    let added = each.cast_signed().wrapping_sub(offset);
-                    *sum = sum.wrapping_add(added.wrapping_shl(shift));
-                }
+    ) -> [[Self; 4]; W] {
+        let (all, odd) = lanes::<W, OUT>(lists, first);
+        let [one, other] = lists.map(<[_]>::len);
+        let offset = (one.wrapping_add(other) as i32).wrapping_mul(scale << 7);
+        let mut sums = start();
+        for ((all, odd), sums) in all.iter().zip(&odd).zip(&mut sums) {
+            let even = all.wrapping_sub(odd << 8);
+            let each = [even & 0xffff, odd & 0xffff, even >> 16, odd >> 16];
+            for (sum, each) in sums.iter_mut().zip(each) {
+                let added = each.cast_signed().wrapping_mul(scale);
+                *sum = sum.wrapping_sub(offset).wrapping_add(added);
             }
         }
+        sums
     }
 
     #[inline(always)]
-    fn add_spikes_to_one<const OUT: usize>(
-        rows: &[Packed<OUT>],
-        shift: u32,
-        spikes: &[u16],
+    fn add_rows_to_one<const OUT: usize>(
+        rows: &[&Packed<OUT>],
+        scale: i32,
         neuron: usize,
         sum: &mut Self,
     ) {
-        for &spike in spikes {
-            let weight = rows.get(usize::from(spike)).map_or(0, |row| row.one(neuron));
-            *sum = sum.wrapping_add(weight.wrapping_shl(shift));
+        for row in rows {
+            *sum = sum.wrapping_add(row.one(neuron).wrapping_mul(scale));
         }
     }
 
     #[inline(always)]
-    fn add_values<const W: usize, const OUT: usize>(
+    fn add_values<const OUT: usize>(
         rows: &[Packed<OUT>],
-        shift: u32,
+        scale: i32,
         values: &[i16],
         first: usize,
-        sums: &mut [[Self; 4]; W],
+        sums: &mut [Self],
     ) {
-        let mut neuron = first.wrapping_mul(4);
-        for sum in sums.as_flattened_mut() {
-            Self::add_values_to_one(rows, shift, values, neuron, sum);
-            neuron = neuron.wrapping_add(1);
+        for (sum, neuron) in sums.iter_mut().zip(first..) {
+            let mut own = 0_i32;
+            for (row, &value) in rows.iter().zip(values) {
+                own = own.wrapping_add(row.one(neuron).wrapping_mul(value.into()));
+            }
+            *sum = sum.wrapping_add(own.wrapping_shr(scale.trailing_zeros()));
         }
-    }
-
-    #[inline(always)]
-    fn add_values_to_one<const OUT: usize>(
-        rows: &[Packed<OUT>],
-        shift: u32,
-        values: &[i16],
-        neuron: usize,
-        sum: &mut Self,
-    ) {
-        let mut own = 0_i32;
-        for (row, &value) in rows.iter().zip(values) {
-            own = own.wrapping_add(row.one(neuron).wrapping_mul(value.into()));
-        }
-        *sum = sum.wrapping_add(own.wrapping_shr(shift));
     }
 }

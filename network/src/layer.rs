@@ -3,19 +3,21 @@
 use crate::chain::{Network, State, Then};
 use crate::input::{Input, Spiking, Values};
 use crate::neuron::Neuron;
-use crate::number::{Number, OUTSIDE};
+use crate::number::{IS_SMALL, Number, OUTSIDE};
 use crate::recurrence::{Forward, Recurrence};
 use crate::spikes::Spikes;
 use crate::weights::Weights;
-use core::fmt::Debug;
+use core::{fmt::Debug, hint::black_box, slice};
 
 /// `OUT` neurons and the weights that lead to them from `IN` inputs: references to data in flash.
 ///
 /// - **Order of additions:** a neuron's bias, then the weights of the inputs in the order of the list (or of values in
 ///   the order of the inputs), then those of the neurons of the layer that fired in the step before, by rising number. Each
 ///   addition and product is rounded by itself.
-/// - **Work:** a step adds a row for each spike, 16 neurons at a time, and visits each neuron once.
-/// - **Memory:** potentials, currents, and two bytes a neuron for a list of spikes; twice that if spikes lead back.
+/// - **Work:** a step adds a row for each spike, up to 16 neurons at a time, and visits each neuron once. Spikes beyond as
+///   many as there are inputs, of which some fire several times, take about twice as long.
+/// - **Memory:** potentials, currents, and two bytes a neuron for a list of spikes; on the stack four bytes an input, and
+///   four a neuron if spikes lead back.
 #[derive(Clone, Copy, Debug)]
 pub struct Layer<'a, N: Neuron, const IN: usize, const OUT: usize, I = Spiking, R = Forward> {
     weights: &'a Weights<N::Value, IN, OUT>,
@@ -26,11 +28,10 @@ pub struct Layer<'a, N: Neuron, const IN: usize, const OUT: usize, I = Spiking, 
 
 /// The state of a layer: what it keeps from step to step.
 #[derive(Clone, Copy, Debug)]
-pub struct LayerState<V, C, B, const OUT: usize> {
+pub struct LayerState<V, C, const OUT: usize> {
     potentials: [V; OUT],
     currents: [C; OUT],
     spikes: Spikes<OUT>,
-    before: B,
     rejected: u32,
     saturated: u32,
 }
@@ -74,7 +75,7 @@ where
     R: Recurrence<N::Value, OUT>,
 {
     type Input = I::Of<IN>;
-    type State = LayerState<N::Value, N::Current, R::Before, OUT>;
+    type State = LayerState<N::Value, N::Current, OUT>;
     const INPUTS: usize = IN;
     const OUTPUTS: usize = OUT;
 
@@ -83,105 +84,180 @@ where
             potentials: [N::Value::default(); OUT],
             currents: [N::Current::default(); OUT],
             spikes: Spikes::new(),
-            before: R::START,
             rejected: 0,
             saturated: 0,
         }
     }
 
+    #[inline(never)] // so that the lists of two layers take the same stack
     fn step<'s>(&self, state: &'s mut Self::State, input: &I::Of<IN>) -> &'s [u16] {
-        let LayerState { potentials, currents, spikes, before, rejected, saturated } = state;
-        let input = I::check(input, rejected);
-        R::begin(before, spikes.as_slice());
+        let LayerState { potentials, currents, spikes, rejected, saturated } = state;
+        let (mut checked, mut before) = (I::Checked::default(), R::Before::default());
+        I::check(self.weights, input, &mut checked, rejected);
+        self.recurrence.begin(spikes, &mut before);
         spikes.clear();
-        let mut step = Step { layer: self, input, before, spikes, saturated };
+        let (checked, before) = (&checked, &before);
+        let mut step = Step { layer: self, checked, before, spikes, saturated, done: 0 };
 
-        let (potentials, last_potentials) = potentials.as_chunks_mut();
-        let (currents, last_currents) = currents.as_chunks_mut();
-        let (neurons, last_neurons) = self.neurons.as_chunks();
-        let (blocks, fours) = potentials.as_chunks_mut();
-        let (current_blocks, current_fours) = currents.as_chunks_mut();
-        let (neuron_blocks, neuron_fours) = neurons.as_chunks();
-        step.blocks::<BLOCK>(0, blocks, current_blocks, neuron_blocks);
-        let first = OUT / (4 * BLOCK) * BLOCK;
-        let ((fours, _), (current_fours, _), (neuron_fours, _)) =
-            (fours.as_chunks_mut(), current_fours.as_chunks_mut(), neuron_fours.as_chunks());
-        step.blocks::<1>(first, fours, current_fours, neuron_fours);
-        let ones = last_potentials.iter_mut().zip(last_currents).zip(last_neurons);
-        let mut number = OUT / 4 * 4;
-        for ((v, current), neuron) in ones {
+        let all = (&mut potentials[..], &mut currents[..], &self.neurons[..]);
+        let rest = match N::Value::BLOCK {
+            1 => all,
+            2 => step.blocks::<2>(all),
+            3 => step.blocks::<3>(all),
+            _ => step.blocks::<4>(all),
+        };
+        let (potentials, currents, neurons) = step.blocks::<1>(rest);
+        let each = potentials.iter_mut().zip(currents).zip(neurons);
+        for (((v, current), neuron), number) in each.zip(OUT / 4 * 4..) {
             step.one(number, v, current, neuron);
-            // Not `enumerate`, which panics where overflow is checked.
-            number = number.wrapping_add(1);
         }
         spikes.as_slice()
     }
 }
 
-/// Fours of neurons that are summed at once over all spikes of a step. A Cortex-M0 has few registers; it is known by its
-/// lack of a compare-and-swap. No bit depends on it.
-const BLOCK: usize = if cfg!(target_has_atomic = "ptr") { 4 } else { 2 };
+/// Potentials, currents and neurons.
+type Parts<'p, N> = (&'p mut [<N as Neuron>::Value], &'p mut [<N as Neuron>::Current], &'p [N]);
 
 /// A step of a layer.
 struct Step<'s, L, I, B, const OUT: usize> {
     layer: L,
-    input: I,
+    checked: &'s I,
     before: &'s B,
     spikes: &'s mut Spikes<OUT>,
     saturated: &'s mut u32,
+    /// Fours of neurons that are done.
+    done: usize,
 }
 
 impl<N, I, R, const IN: usize, const OUT: usize>
-    Step<'_, &Layer<'_, N, IN, OUT, I, R>, I::Checked<'_, IN>, R::Before, OUT>
+    Step<'_, &Layer<'_, N, IN, OUT, I, R>, I::Checked<'_, IN, OUT>, R::Before<'_>, OUT>
 where
     N: Neuron,
     I: Input<N::Value>,
     R: Recurrence<N::Value, OUT>,
 {
-    /// Steps blocks of `W` fours of neurons, the first of them being the `first` four.
+    /// Steps as many blocks of `W` fours of neurons as there are, and returns the neurons that are left.
     #[inline(always)]
-    fn blocks<const W: usize>(
+    fn blocks<'p, const W: usize>(
         &mut self,
-        mut first: usize,
-        potentials: &mut [[[N::Value; 4]; W]],
-        currents: &mut [[[N::Current; 4]; W]],
-        neurons: &[[[N; 4]; W]],
-    ) {
-        let blocks = potentials.iter_mut().zip(currents).zip(neurons);
-        for ((potentials, currents), neurons) in blocks {
-            let Weights { rows, shift } = self.layer.weights;
-            let mut sums = [[N::Value::default(); 4]; W];
-            for (sum, neuron) in sums.as_flattened_mut().iter_mut().zip(neurons.as_flattened()) {
-                *sum = neuron.bias();
-            }
-            I::add(rows, *shift, self.input, first, &mut sums);
-            self.layer.recurrence.add(self.before, first, &mut sums);
-
-            let (mut outside, mut number) = (0, first.wrapping_mul(4) as u16);
-            let all = potentials.as_flattened_mut().iter_mut().zip(currents.as_flattened_mut());
-            let all = all.zip(neurons.as_flattened()).zip(sums.as_flattened());
-            for (((v, current), neuron), sum) in all {
-                if neuron.step(v, current, *sum) && N::FIRES {
-                    self.spikes.append(number);
+        (potentials, currents, neurons): Parts<'p, N>,
+    ) -> Parts<'p, N> {
+        let whole = potentials.len() / (4 * W) * (4 * W);
+        let (potentials, last_potentials) = potentials.split_at_mut(whole);
+        let (currents, last_currents) = currents.split_at_mut(whole);
+        let (neurons, last_neurons) = neurons.split_at(whole);
+        let potentials = potentials.as_chunks_mut::<4>().0.as_chunks_mut::<W>().0;
+        let currents = currents.as_chunks_mut::<4>().0.as_chunks_mut::<W>().0;
+        let neurons = neurons.as_chunks::<4>().0.as_chunks::<W>().0;
+        let Layer { weights, recurrence, .. } = self.layer;
+        let ((rows, rest), (own, own_scale)) =
+            (I::fired(self.checked), recurrence.fired(self.before));
+        let scale = if rows.is_empty() { own_scale } else { weights.scale };
+        let is_alike = own.is_empty() || scale == own_scale;
+        let is_few = rows.len().wrapping_add(own.len()) <= N::Value::MOST_ROWS;
+        let is_plain = is_alike && is_few && rest.is_empty();
+        for ((potentials, currents), neurons) in potentials.iter_mut().zip(currents).zip(neurons) {
+            let first = self.done;
+            let neuron = first.wrapping_mul(4);
+            let start = || {
+                let mut sums = [[N::Value::default(); 4]; W];
+                let each = sums.as_flattened_mut().iter_mut().zip(neurons.as_flattened());
+                each.for_each(|(sum, neuron)| *sum = neuron.bias());
+                I::add_values(weights, self.checked, neuron, sums.as_flattened_mut());
+                sums
+            };
+            let mut sums = if is_plain {
+                N::Value::sums(start, [rows, own], scale, first)
+            } else {
+                self.sums_of_many(start(), first)
+            };
+            if R::HAS_OWN {
+                for (sum, neuron) in sums.as_flattened_mut().iter_mut().zip(neuron..) {
+                    recurrence.add_own(self.before, neuron, sum);
                 }
-                outside |= v.outside() | N::outside(current);
-                number = number.wrapping_add(1);
+            }
+
+            let mut append = |number: u32| {
+                self.spikes.append(neuron.wrapping_add(number as usize) as u16);
+            };
+            let (mut outside, mut fired, mut bit) = (0, 0_u32, 1_u32);
+            let fours = potentials.iter_mut().zip(currents.iter_mut()).zip(neurons).zip(&sums);
+            for (((potentials, currents), neurons), sums) in fours {
+                let each = potentials.iter_mut().zip(currents).zip(neurons).zip(sums);
+                for (((v, current), neuron), sum) in each {
+                    if neuron.step(v, current, *sum) && N::FIRES {
+                        if IS_SMALL {
+                            append(bit.trailing_zeros());
+                        } else {
+                            fired |= bit;
+                        }
+                    }
+                    outside |= v.outside() | N::outside(current);
+                    bit <<= 1;
+                    if IS_SMALL {
+                        black_box(()); // one neuron after the other, as there are few registers
+                    }
+                }
+            }
+            while fired != 0 {
+                append(fired.trailing_zeros());
+                fired &= fired.wrapping_sub(1);
             }
             if outside > OUTSIDE {
                 let count = clamp::<N>(potentials.as_flattened_mut(), currents.as_flattened_mut());
                 *self.saturated = self.saturated.saturating_add(count);
             }
-            first = first.wrapping_add(W);
+            self.done = first.wrapping_add(W);
         }
+        (last_potentials, last_currents, last_neurons)
+    }
+
+    /// Adds to sums what is too much at once: inputs that fired several times, and many of them, or scaled otherwise than
+    /// what leads back.
+    #[cold]
+    #[inline(never)]
+    fn sums_of_many<const W: usize>(
+        &self,
+        mut sums: [[N::Value; 4]; W],
+        first: usize,
+    ) -> [[N::Value; 4]; W] {
+        let Layer { weights, recurrence, .. } = self.layer;
+        let (rows, rest) = I::fired(self.checked);
+        let (own, own_scale) = recurrence.fired(self.before);
+        let mut rest = rest.iter().filter_map(|&spike| weights.rows.get(usize::from(spike)));
+        let mut several = rows.chunks(N::Value::MOST_ROWS);
+        let mut one;
+        loop {
+            let list = if let Some(list) = several.next() {
+                list
+            } else if let Some(row) = rest.next() {
+                one = [row];
+                &one
+            } else {
+                break;
+            };
+            sums = N::Value::sums(|| sums, [list, &[]], weights.scale, first);
+        }
+        for list in own.chunks(N::Value::MOST_ROWS) {
+            sums = N::Value::sums(|| sums, [list, &[]], own_scale, first);
+        }
+        sums
     }
 
     /// Steps one neuron.
     #[inline(always)]
     fn one(&mut self, number: usize, v: &mut N::Value, current: &mut N::Current, neuron: &N) {
-        let Weights { rows, shift } = self.layer.weights;
         let mut sum = neuron.bias();
-        I::add_to_one(rows, *shift, self.input, number, &mut sum);
-        self.layer.recurrence.add_to_one(self.before, number, &mut sum);
+        let Layer { weights, recurrence, .. } = self.layer;
+        I::add_values(weights, self.checked, number, slice::from_mut(&mut sum));
+        let (rows, rest) = I::fired(self.checked);
+        N::Value::add_rows_to_one(rows, weights.scale, number, &mut sum);
+        for row in rest.iter().filter_map(|&spike| weights.rows.get(usize::from(spike))) {
+            N::Value::add_rows_to_one(&[row], weights.scale, number, &mut sum);
+        }
+        let (rows, scale) = recurrence.fired(self.before);
+        N::Value::add_rows_to_one(rows, scale, number, &mut sum);
+        recurrence.add_own(self.before, number, &mut sum);
         if neuron.step(v, current, sum) && N::FIRES {
             self.spikes.append(number as u16);
         }
@@ -197,9 +273,7 @@ fn clamp<N: Neuron>(potentials: &mut [N::Value], currents: &mut [N::Current]) ->
     potentials.chain(currents.iter_mut().map(N::clamp)).fold(0, u32::saturating_add)
 }
 
-impl<V: Number, C: Copy + Debug, B: Copy + Debug, const OUT: usize> State
-    for LayerState<V, C, B, OUT>
-{
+impl<V: Number, C: Copy + Debug, const OUT: usize> State for LayerState<V, C, OUT> {
     type Value = V;
 
     fn spikes(&self) -> &[u16] {
@@ -219,7 +293,7 @@ impl<V: Number, C: Copy + Debug, B: Copy + Debug, const OUT: usize> State
     }
 }
 
-impl<V, C, B, const OUT: usize> LayerState<V, C, B, OUT> {
+impl<V, C, const OUT: usize> LayerState<V, C, OUT> {
     /// Returns the neurons' currents; of neurons without, nothing.
     pub fn currents(&self) -> &[C; OUT] {
         &self.currents

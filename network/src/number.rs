@@ -1,7 +1,7 @@
 //! The numbers in which potentials and currents are kept.
 
 use crate::sealed::Sealed;
-use core::fmt::Debug;
+use core::{fmt::Debug, hint::black_box};
 
 /// The type of potentials, currents, thresholds and biases: `f32`, or `i32` with weights of 8 bits.
 ///
@@ -18,10 +18,17 @@ pub trait Number: Copy + Default + PartialOrd + Debug + Sealed + 'static {
     /// The type of an input's value.
     type Value: Copy + Default + Debug;
     /// The weights of one input onto `OUT` neurons.
-    type Row<const OUT: usize>: Copy + Debug;
-    /// The number of binary places by which sums of weights are shifted.
-    type Shift: Copy + Debug;
+    type Row<const OUT: usize>: Copy + Debug + 'static;
+    /// What sums of weights are multiplied by: a power of two, or nothing.
+    type Scale: Copy + Debug + Default + PartialEq;
 
+    /// Fours of neurons that are summed at once over all spikes of a step, as many as the core has registers for. No bit
+    /// depends on it.
+    #[doc(hidden)]
+    const BLOCK: usize;
+    /// The most rows that are added at once.
+    #[doc(hidden)]
+    const MOST_ROWS: usize;
     /// The most spikes that a step takes from outside.
     #[doc(hidden)]
     const MOST_SPIKES: usize;
@@ -44,44 +51,37 @@ pub trait Number: Copy + Default + PartialOrd + Debug + Sealed + 'static {
     /// The value, unless it is not finite or out of range.
     #[doc(hidden)]
     fn accept(value: Self::Value) -> Option<Self::Value>;
-    /// Adds to `sums`, of the `W` times 4 neurons from the `first` four on, the weights of the inputs that fired, in the order of
-    /// the list.
+    /// Adds the weights of two lists of rows, in the order of the lists, to what the sums of the `W` times 4 neurons from the
+    /// `first` four on start from. Both are scaled alike, and have [`MOST_ROWS`](Self::MOST_ROWS) together at most.
     #[doc(hidden)]
-    fn add_spikes<const W: usize, const OUT: usize>(
-        rows: &[Self::Row<OUT>],
-        shift: Self::Shift,
-        spikes: &[u16],
+    fn sums<const W: usize, const OUT: usize>(
+        start: impl FnOnce() -> [[Self; 4]; W],
+        lists: [&[&Self::Row<OUT>]; 2],
+        scale: Self::Scale,
         first: usize,
-        sums: &mut [[Self; 4]; W],
-    );
-    /// The same for one neuron.
+    ) -> [[Self; 4]; W];
+    /// The same for a list and one neuron.
     #[doc(hidden)]
-    fn add_spikes_to_one<const OUT: usize>(
-        rows: &[Self::Row<OUT>],
-        shift: Self::Shift,
-        spikes: &[u16],
+    fn add_rows_to_one<const OUT: usize>(
+        rows: &[&Self::Row<OUT>],
+        scale: Self::Scale,
         neuron: usize,
         sum: &mut Self,
     );
-    /// Adds the weight of every input times its value, in the order of the inputs.
+    /// Adds to the sums of the neurons from `first` on the weight of every input times its value, in the order of the inputs.
     #[doc(hidden)]
-    fn add_values<const W: usize, const OUT: usize>(
+    fn add_values<const OUT: usize>(
         rows: &[Self::Row<OUT>],
-        shift: Self::Shift,
+        scale: Self::Scale,
         values: &[Self::Value],
         first: usize,
-        sums: &mut [[Self; 4]; W],
-    );
-    /// The same for one neuron.
-    #[doc(hidden)]
-    fn add_values_to_one<const OUT: usize>(
-        rows: &[Self::Row<OUT>],
-        shift: Self::Shift,
-        values: &[Self::Value],
-        neuron: usize,
-        sum: &mut Self,
+        sums: &mut [Self],
     );
 }
+
+/// A Cortex-M0, with few registers and without long products; it is known by its lack of a compare-and-swap. No bit
+/// depends on it.
+pub(crate) const IS_SMALL: bool = !cfg!(target_has_atomic = "ptr");
 
 /// The largest result of [`Number::outside`] for a number in its range.
 pub(crate) const OUTSIDE: u32 = (1 << 30) - 1;
@@ -96,7 +96,9 @@ impl Number for f32 {
     type Factor = Self;
     type Value = Self;
     type Row<const OUT: usize> = [Self; OUT];
-    type Shift = ();
+    type Scale = ();
+    const BLOCK: usize = if IS_SMALL { 2 } else { 4 };
+    const MOST_ROWS: usize = usize::MAX;
     const MOST_SPIKES: usize = usize::MAX;
 
     #[inline(always)]
@@ -130,65 +132,50 @@ impl Number for f32 {
     }
 
     #[inline(always)]
-    fn add_spikes<const W: usize, const OUT: usize>(
-        rows: &[[Self; OUT]],
+    fn sums<const W: usize, const OUT: usize>(
+        start: impl FnOnce() -> [[Self; 4]; W],
+        lists: [&[&[Self; OUT]]; 2],
         (): (),
-        spikes: &[u16],
         first: usize,
-        sums: &mut [[Self; 4]; W],
-    ) {
-        let mut own = *sums;
-        for &spike in spikes {
-            let Some(row) = rows.get(usize::from(spike)) else { continue };
-            let Some(weights) = block::<_, W>(row, first) else { continue };
-            for (sum, weight) in own.as_flattened_mut().iter_mut().zip(weights.as_flattened()) {
-                *sum += weight;
+    ) -> [[Self; 4]; W] {
+        let mut sums = start();
+        for rows in lists {
+            for row in rows {
+                let Some(weights) = block::<_, W>(*row, first) else { continue };
+                let each = sums.as_flattened_mut().iter_mut().zip(weights.as_flattened());
+                for (sum, weight) in each {
+                    *sum += weight;
+                }
+                black_box(()); // keeps the compiler from unrolling the loop
             }
         }
-        *sums = own;
+        sums
     }
 
     #[inline(always)]
-    fn add_spikes_to_one<const OUT: usize>(
-        rows: &[[Self; OUT]],
+    fn add_rows_to_one<const OUT: usize>(
+        rows: &[&[Self; OUT]],
         (): (),
-        spikes: &[u16],
         neuron: usize,
         sum: &mut Self,
     ) {
-        for &spike in spikes {
-            *sum += rows.get(usize::from(spike)).and_then(|row| row.get(neuron)).unwrap_or(&0.0);
+        for row in rows {
+            *sum += row.get(neuron).unwrap_or(&0.0);
         }
     }
 
     #[inline(always)]
-    fn add_values<const W: usize, const OUT: usize>(
+    fn add_values<const OUT: usize>(
         rows: &[[Self; OUT]],
         (): (),
         values: &[Self],
         first: usize,
-        sums: &mut [[Self; 4]; W],
+        sums: &mut [Self],
     ) {
-        let mut own = *sums;
         for (row, value) in rows.iter().zip(values) {
-            let Some(weights) = block::<_, W>(row, first) else { continue };
-            for (sum, weight) in own.as_flattened_mut().iter_mut().zip(weights.as_flattened()) {
+            for (sum, weight) in sums.iter_mut().zip(row.get(first..).unwrap_or_default()) {
                 *sum += weight * value;
             }
-        }
-        *sums = own;
-    }
-
-    #[inline(always)]
-    fn add_values_to_one<const OUT: usize>(
-        rows: &[[Self; OUT]],
-        (): (),
-        values: &[Self],
-        neuron: usize,
-        sum: &mut Self,
-    ) {
-        for (row, value) in rows.iter().zip(values) {
-            *sum += row.get(neuron).unwrap_or(&0.0) * value;
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What leads a layer's spikes back to it, a step later.
 
+use crate::input::Fired;
 use crate::number::Number;
 use crate::sealed::Sealed;
 use crate::spikes::Spikes;
@@ -8,20 +9,27 @@ use core::fmt::Debug;
 
 /// What a layer's spikes of the step before add to its neurons.
 pub trait Recurrence<V: Number, const OUT: usize>: Copy + Debug + Sealed {
-    /// What is known of the step before.
+    /// What is known of the step before: by default nothing, to be filled in place.
     #[doc(hidden)]
-    type Before: Copy + Debug;
-    #[doc(hidden)]
-    const START: Self::Before;
+    type Before<'a>: Default
+    where
+        Self: 'a;
 
     #[doc(hidden)]
-    fn begin(before: &mut Self::Before, fired: &[u16]);
+    fn begin<'a>(&'a self, fired: &Spikes<OUT>, before: &mut Self::Before<'a>);
 
+    /// The rows of weights of the neurons that fired.
     #[doc(hidden)]
-    fn add<const W: usize>(&self, before: &Self::Before, first: usize, sums: &mut [[V; 4]; W]);
+    fn fired<'c>(&'c self, before: &'c Self::Before<'_>) -> (&'c [&'c V::Row<OUT>], V::Scale);
 
+    /// Adds to the sum of a neuron what it leads back to itself.
     #[doc(hidden)]
-    fn add_to_one(&self, before: &Self::Before, neuron: usize, sum: &mut V);
+    #[inline(always)]
+    fn add_own(&self, _before: &Self::Before<'_>, _neuron: usize, _sum: &mut V) {}
+
+    /// Whether `add_own` does anything.
+    #[doc(hidden)]
+    const HAS_OWN: bool = false;
 }
 
 /// Nothing leads back.
@@ -41,69 +49,63 @@ impl<V: Number, const OUT: usize> Sealed for Full<'_, V, OUT> {}
 impl<V: Number, const OUT: usize> Sealed for OneToOne<'_, V, OUT> {}
 
 impl<V: Number, const OUT: usize> Recurrence<V, OUT> for Forward {
-    type Before = ();
-    const START: () = ();
+    type Before<'a> = ();
 
     #[inline(always)]
-    fn begin((): &mut (), _fired: &[u16]) {}
+    fn begin(&self, _fired: &Spikes<OUT>, (): &mut ()) {}
 
     #[inline(always)]
-    fn add<const W: usize>(&self, (): &(), _first: usize, _sums: &mut [[V; 4]; W]) {}
-
-    #[inline(always)]
-    fn add_to_one(&self, (): &(), _neuron: usize, _sum: &mut V) {}
+    fn fired<'c>(&'c self, (): &'c ()) -> (&'c [&'c V::Row<OUT>], V::Scale) {
+        (&[], V::Scale::default())
+    }
 }
 
 impl<V: Number, const OUT: usize> Recurrence<V, OUT> for Full<'_, V, OUT> {
-    type Before = Spikes<OUT>;
-    const START: Spikes<OUT> = Spikes::new();
+    type Before<'a>
+        = Fired<'a, V, OUT, OUT>
+    where
+        Self: 'a;
 
     #[inline(always)]
-    fn begin(before: &mut Spikes<OUT>, fired: &[u16]) {
-        copy(before, fired);
+    fn begin<'a>(&'a self, fired: &Spikes<OUT>, before: &mut Fired<'a, V, OUT, OUT>) {
+        for &neuron in fired.as_slice() {
+            before.push(self.0, neuron);
+        }
     }
 
     #[inline(always)]
-    fn add<const W: usize>(&self, before: &Spikes<OUT>, first: usize, sums: &mut [[V; 4]; W]) {
-        V::add_spikes(&self.0.rows, self.0.shift, before.as_slice(), first, sums);
-    }
-
-    #[inline(always)]
-    fn add_to_one(&self, before: &Spikes<OUT>, neuron: usize, sum: &mut V) {
-        V::add_spikes_to_one(&self.0.rows, self.0.shift, before.as_slice(), neuron, sum);
+    fn fired<'c>(
+        &'c self,
+        before: &'c Fired<'_, V, OUT, OUT>,
+    ) -> (&'c [&'c V::Row<OUT>], V::Scale) {
+        (before.rows(), self.0.scale)
     }
 }
 
 impl<V: Number, const OUT: usize> Recurrence<V, OUT> for OneToOne<'_, V, OUT> {
-    type Before = Spikes<OUT>;
-    const START: Spikes<OUT> = Spikes::new();
+    const HAS_OWN: bool = true;
+    type Before<'a>
+        = Spikes<OUT>
+    where
+        Self: 'a;
 
     #[inline(always)]
-    fn begin(before: &mut Spikes<OUT>, fired: &[u16]) {
-        copy(before, fired);
-    }
-
-    #[inline(always)]
-    fn add<const W: usize>(&self, before: &Spikes<OUT>, first: usize, sums: &mut [[V; 4]; W]) {
-        let mut neuron = first.wrapping_mul(4);
-        for sum in sums.as_flattened_mut() {
-            self.add_to_one(before, neuron, sum);
-            neuron = neuron.wrapping_add(1);
+    fn begin(&self, fired: &Spikes<OUT>, before: &mut Spikes<OUT>) {
+        for &neuron in fired.as_slice() {
+            before.append(neuron);
         }
     }
 
     #[inline(always)]
-    fn add_to_one(&self, before: &Spikes<OUT>, neuron: usize, sum: &mut V) {
+    fn fired<'c>(&'c self, _before: &'c Spikes<OUT>) -> (&'c [&'c V::Row<OUT>], V::Scale) {
+        (&[], self.0.scale)
+    }
+
+    #[inline(always)]
+    fn add_own(&self, before: &Spikes<OUT>, neuron: usize, sum: &mut V) {
+        let Weights { rows: [row], scale } = self.0;
         if before.as_slice().binary_search(&(neuron as u16)).is_ok() {
-            V::add_spikes_to_one(&self.0.rows, self.0.shift, &[0], neuron, sum);
+            V::add_rows_to_one(&[row], *scale, neuron, sum);
         }
-    }
-}
-
-#[inline(always)]
-fn copy<const OUT: usize>(before: &mut Spikes<OUT>, fired: &[u16]) {
-    before.clear();
-    for &neuron in fired {
-        before.append(neuron);
     }
 }

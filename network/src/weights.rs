@@ -10,7 +10,7 @@ use crate::number::{LARGEST, Number};
 #[derive(Clone, Copy, Debug)]
 pub struct Weights<V: Number, const IN: usize, const OUT: usize> {
     pub(crate) rows: [V::Row<OUT>; IN],
-    pub(crate) shift: V::Shift,
+    pub(crate) scale: V::Scale,
 }
 
 impl<const IN: usize, const OUT: usize> Weights<f32, IN, OUT> {
@@ -42,7 +42,7 @@ impl<const IN: usize, const OUT: usize> Weights<f32, IN, OUT> {
             }
             row += 1;
         }
-        Ok(Self { rows: *rows, shift: () })
+        Ok(Self { rows: *rows, scale: () })
     }
 }
 
@@ -61,6 +61,6 @@ impl<const IN: usize, const OUT: usize> Weights<i32, IN, OUT> {
             packed[row] = Packed::new(&rows[row]);
             row += 1;
         }
-        Self { rows: packed, shift }
+        Self { rows: packed, scale: 1 << shift }
     }
 }

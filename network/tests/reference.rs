@@ -288,11 +288,13 @@ fn integers<R: Reset, const HIDDEN: usize>(rule: Rule, seed: u32, at_threshold: 
         rows.iter().map(|row| row.clone().try_into().unwrap()).collect()
     };
     let w_in = Weights::<i32, IN, HIDDEN>::packed(&array(&w).try_into().unwrap(), shift);
-    let back = Weights::<i32, HIDDEN, HIDDEN>::packed(&array(&own).try_into().unwrap(), shift);
-    let wide = |rows: &[Vec<i8>]| -> Vec<Vec<i64>> {
+    // The layer's own are shifted as the inputs' or otherwise.
+    let own_shift = if seed.is_multiple_of(2) { shift } else { 4 - shift };
+    let back = Weights::<i32, HIDDEN, HIDDEN>::packed(&array(&own).try_into().unwrap(), own_shift);
+    let wide = |rows: &[Vec<i8>], shift: u32| -> Vec<Vec<i64>> {
         rows.iter().map(|row| row.iter().map(|&w| i64::from(w) << shift).collect()).collect()
     };
-    let (w, own) = (wide(&w), wide(&own));
+    let (w, own) = (wide(&w, shift), wide(&own, own_shift));
     let network = Layer::new(&w_in, &hidden).recurrent(Full(&back));
     let (mut state, mut plain_state) = (network.state(), vec![(0_i64, 0_i64, false); HIDDEN]);
     for step in 0..STEPS {

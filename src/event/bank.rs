@@ -5,7 +5,7 @@ use core::fmt;
 use super::schemes::{CodeOf, EncoderStateOf, SampleOf, States};
 use super::{Event, Item, Keyframe, Put, Schemes, Tick};
 use crate::num::Arithmetic;
-use crate::{Code, ConfigError, NeuronSpike, Output, Scheme, Start, error};
+use crate::{Code, ConfigError, Fingerprint, NeuronSpike, Output, Sample, Scheme, Start, error};
 
 /// The encoders of `N` channels, such as the six of an inertial sensor: one scheme for all channels or one for each,
 /// and a state for each.
@@ -222,6 +222,20 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         T::each_mut(&mut self.channels).for_each(|(_, state)| *state = T::Scheme::START);
     }
 
+    /// How many addresses the channels take, up to 65 535.
+    #[cfg(feature = "link")]
+    pub(crate) fn addresses(&self) -> u16 {
+        let neurons = T::each(&self.channels).map(|(scheme, _)| scheme.neurons());
+        u16::try_from(neurons.sum::<usize>()).unwrap_or(u16::MAX)
+    }
+
+    /// The fingerprint of the channels' schemes, the sample type, the addresses and the sub-timesteps, for
+    /// [`Transmitter::for_bank`](crate::link::Transmitter::for_bank). For set-up.
+    pub fn fingerprint(&self) -> Fingerprint {
+        let schemes = T::each(&self.channels).map(|(scheme, _)| scheme);
+        bank_fingerprint(schemes, self.first_address, self.slot_ticks)
+    }
+
     /// The value that a channel's decoder should hold now; `None` before the first sample, for codes without
     /// keyframes, and for a channel that does not exist.
     pub fn keyframe(&self, channel: usize) -> Option<SampleOf<T, N>> {
@@ -261,4 +275,25 @@ where
 fn event(tick: Tick, first_address: u16, firing: NeuronSpike) -> Event {
     let NeuronSpike { neuron, polarity, .. } = firing;
     Event { tick, address: first_address.wrapping_add(neuron), polarity }
+}
+
+/// The fingerprint of a bank whose channels have these schemes.
+pub(crate) fn bank_fingerprint<'s, P: Scheme + 's>(
+    schemes: impl Iterator<Item = &'s P>,
+    first_address: u16,
+    slot_ticks: u32,
+) -> Fingerprint {
+    let mut bank = Fingerprint::bank(P::Sample::KIND, first_address, slot_ticks);
+    let (mut count, mut last) = (0_u32, None);
+    for scheme in schemes {
+        // A scheme that channels share is described once.
+        let own = match last {
+            Some((same, own)) if core::ptr::eq(same, scheme) => own,
+            _ => scheme.fingerprint(),
+        };
+        last = Some((scheme, own));
+        bank = bank.and(own);
+        count = count.wrapping_add(1);
+    }
+    bank.number(count)
 }

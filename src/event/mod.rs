@@ -18,6 +18,8 @@ mod tick;
 
 pub use address::Event;
 pub use bank::Bank;
+#[cfg(feature = "link")]
+pub(crate) use bank::bank_fingerprint;
 pub use bins::{Bins, StepOver};
 #[cfg(feature = "heapless")]
 pub use counted::{Container, Counted, Element};

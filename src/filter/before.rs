@@ -2,10 +2,11 @@
 
 use super::Filter;
 use crate::num::Arithmetic;
-use crate::{Destination, Recovery, Scheme, Start};
+use crate::{Destination, Fingerprint, Recovery, Scheme, Start};
 
-/// A filter before a scheme: a [`Scheme`] that encodes the filtered samples. Its decoder is the scheme's own, so that a
-/// far end may also take [`scheme`](Self::scheme) alone.
+/// A filter before a scheme: a [`Scheme`] that encodes the filtered samples. Its decoder is the scheme's own. A link's
+/// receiver takes the same constant as its sender all the same, since the filter is part of the
+/// [fingerprint](Scheme::fingerprint).
 ///
 /// The encoder's [`latency`](Scheme::latency) counts the samples that the scheme waits for, and none of the filter's
 /// [`delay`](Filter::delay).
@@ -71,6 +72,10 @@ impl<F: Filter, P: Scheme<Sample = F::Sample>> Scheme for Filtered<F, P> {
 
     const LATENCY: usize = P::LATENCY;
     const RECOVERY: Recovery = P::RECOVERY;
+
+    fn fingerprint(&self) -> Fingerprint {
+        self.filter.fingerprint().and(self.scheme.fingerprint())
+    }
 
     #[inline]
     fn encode(&self, state: &mut Self::EncoderState, sample: P::Sample) -> P::Output {
@@ -165,6 +170,10 @@ impl<F: Filter, P: Scheme<Sample = F::Sample>> Scheme for Filtered<F, P> {
 
     fn fits_decoder(&self, state: &P::DecoderState) -> bool {
         self.scheme.fits_decoder(state)
+    }
+
+    fn holds_keyframes(&self) -> bool {
+        self.scheme.holds_keyframes()
     }
 
     fn neurons(&self) -> usize {

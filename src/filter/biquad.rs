@@ -4,7 +4,7 @@ use super::design::{BUTTERWORTH, Numerator, check, check_q, section};
 use super::{Filter, Filtered};
 use crate::error::unwrap;
 use crate::num::{Recursive, Section};
-use crate::{ConfigError, Sample, Scheme};
+use crate::{ConfigError, Fingerprint, Sample, Scheme};
 
 /// A low-pass or a notch of second order.
 ///
@@ -176,6 +176,11 @@ impl<S: Sample> Filter for Biquad<S> {
     type State = BiquadState<S>;
 
     const START: BiquadState<S> = BiquadState(<S as Recursive>::SECOND);
+
+    fn fingerprint(&self) -> Fingerprint {
+        let Section { gain, damping, tap } = self.values();
+        Fingerprint::new("Biquad").double(gain).double(damping).double(tap)
+    }
 
     #[inline]
     fn filter(&self, state: &mut BiquadState<S>, sample: S) -> S {

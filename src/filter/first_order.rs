@@ -4,7 +4,7 @@ use super::design::{check, first_order};
 use super::{Filter, Filtered};
 use crate::error::unwrap;
 use crate::num::Recursive;
-use crate::{ConfigError, Sample, Scheme};
+use crate::{ConfigError, Fingerprint, Sample, Scheme};
 
 /// A low-pass of first order: the output follows the samples by a part of what it lacks.
 ///
@@ -87,6 +87,10 @@ impl<S: Sample> Filter for FirstOrder<S> {
     type State = FirstOrderState<S>;
 
     const START: FirstOrderState<S> = FirstOrderState(<S as Recursive>::FIRST);
+
+    fn fingerprint(&self) -> Fingerprint {
+        Fingerprint::new("FirstOrder").double(S::value(self.gain))
+    }
 
     #[inline]
     fn filter(&self, state: &mut FirstOrderState<S>, sample: S) -> S {

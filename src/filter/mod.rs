@@ -42,7 +42,7 @@ pub use first_order::{FirstOrder, FirstOrderState};
 
 use core::fmt::Debug;
 
-use crate::Sample;
+use crate::{Fingerprint, Sample};
 
 /// A filter of samples: checked parameters as plain data, in a `const` or a `static`, and a small state for each channel.
 ///
@@ -56,6 +56,9 @@ pub trait Filter {
 
     /// The state before the first sample.
     const START: Self::State;
+
+    /// The fingerprint of the filter's name and of all its parameters, as [`Scheme::fingerprint`](crate::Scheme::fingerprint).
+    fn fingerprint(&self) -> Fingerprint;
 
     /// Filters one sample.
     fn filter(&self, state: &mut Self::State, sample: Self::Sample) -> Self::Sample;

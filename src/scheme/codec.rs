@@ -3,7 +3,7 @@
 use core::fmt::Debug;
 
 use super::code::{Code, Destination, Output};
-use crate::Sample;
+use crate::{Fingerprint, Sample};
 
 /// A coding scheme: checked parameters as plain data, in a `const` or a `static`.
 ///
@@ -33,6 +33,10 @@ pub trait Scheme: Sized {
     /// How a decoder becomes exact again after codes were lost. Where the filter length is chosen at run time it is
     /// that of the longest filter; [`recovery`](Self::recovery) gives that of this filter.
     const RECOVERY: Recovery;
+
+    /// The fingerprint of the scheme's name and of all its parameters, by which a link's receiver knows whether it has the
+    /// sender's; see its [specification](Fingerprint#specification). For set-up, not for the hot path.
+    fn fingerprint(&self) -> Fingerprint;
 
     /// Encodes one sample.
     fn encode(&self, state: &mut Self::EncoderState, sample: Self::Sample) -> Self::Output;
@@ -130,6 +134,12 @@ pub trait Scheme: Sized {
     /// [`fits`](Self::fits) for a decoder's state.
     fn fits_decoder(&self, _state: &Self::DecoderState) -> bool {
         true
+    }
+
+    /// Whether a keyframe has the bits of the value that a decoder holds already which lost nothing, so that another value
+    /// shows that sender and receiver have other schemes.
+    fn holds_keyframes(&self) -> bool {
+        false
     }
 
     /// How many neurons a channel has. Channels of one bank, readout or receiver have the same number.

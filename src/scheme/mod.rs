@@ -6,6 +6,7 @@ mod code;
 mod codec;
 #[cfg(feature = "alloc")]
 pub mod dynamic;
+mod fingerprint;
 mod held;
 mod histogram;
 mod moments;
@@ -18,6 +19,7 @@ pub mod timing;
 pub use calibrate::{Calibration, Differences};
 pub use code::{Code, Destination, NeuronSpike, Output, Polarity, Spike};
 pub use codec::{Decoder, Encoder, Recovery, Scheme, Start};
+pub use fingerprint::Fingerprint;
 pub use histogram::Histogram;
 pub use moments::Moments;
 pub use survey::{Conditions, Fit, Survey, Unfit};

@@ -1,6 +1,6 @@
 //! `cargo xtask write`: all that is generated, written again.
 
-use crate::checks::{firmware, interface, ros, simulated_drone, video};
+use crate::checks::{firmware, interface, network_flies, ros, simulated_drone, video};
 use crate::common::usage;
 use crate::figures::{bench, demo, faults, flash, jumps, schemes};
 use crate::products::{c_library, page, python_package};
@@ -20,15 +20,25 @@ const fn part(name: &'static str, files: &'static str, write: fn() -> Result<()>
 }
 
 /// From the catalogue first, then what measures or draws.
-const PARTS: [Part; 17] = [
+const PARTS: [Part; 19] = [
     part("interface", "interface.txt of each published crate", interface::write),
     part("c", "bindings/c/src/codecs.rs, bindings/c/src/sizes.rs", c_library::write),
     part("python", "bindings/python/spikewire/_schemes.pyi", python_package::write_stub),
     part("schemes", "docs/schemes.md: the table", schemes::write),
     part("jumps", "docs/jumps.svg", jumps::write),
     part("flight", "docs/flight.svg", demo::write),
-    part("loop", "docs/loop.md: the table; docs/loop.svg; some 15 minutes", simulated_drone::write),
+    part(
+        "loop",
+        "docs/loop.md: its tables, docs/loop.svg and docs/crash.svg; some 40 minutes",
+        simulated_drone::write,
+    ),
+    part(
+        "verdicts",
+        "docs/loop.md: its tables from loop/verdicts.json",
+        simulated_drone::write_tables,
+    ),
     part("chip", "docs/loop.md: the chip's flights", simulated_drone::write_chip),
+    part("network-flies", "docs/loop.md: the network's flights", network_flies::write),
     part("frames", "docs/frames.png", video::write),
     part("page", "docs/page.png", page::write),
     part("ros", "docs/ros.svg", ros::write),

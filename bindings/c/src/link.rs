@@ -3,7 +3,7 @@
 use core::ffi::c_void;
 
 use spikewire::link::{Coding, MAX_FRAME, Reader, Session, Transmitter};
-use spikewire::{Item, Taken};
+use spikewire::{Fingerprint, Item, Taken};
 
 use crate::event::CItem;
 use crate::kept::Kept;
@@ -23,6 +23,21 @@ unsafe extern "C" fn sw_writer_init(
     let coding = Coding::for_channels(channels, period);
     // SAFETY: C's promise.
     unsafe { Kept::keep(writer, Transmitter::new(coding, Session::random(session))) }.into()
+}
+
+/// Sends the fingerprint of a description.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn sw_writer_describe(
+    writer: *mut Kept<Transmitter>,
+    fingerprint: u32,
+) -> Status {
+    let describe = || {
+        // SAFETY: C's promise.
+        let writer = unsafe { Kept::exclusive(writer)? };
+        *writer = writer.with_fingerprint(Fingerprint::from_bits(fingerprint));
+        Ok(Status::OK)
+    };
+    describe().into()
 }
 
 /// Tells a writer the time.

@@ -15,10 +15,12 @@ True
 from . import _native
 from ._bank import EVENTS, Bank
 from ._files import Log, read, read_events, read_ulog, write_events
-from ._filters import low_pass
+from ._filters import Filter, low_pass
+from ._flight import Flight
 from ._native import Error
 from ._laptop import Advice, Picture, Tuned, advise, plot, score, tune
 from ._link import Receiver, Sender
+from ._network import Network, Ran
 from ._scheme import Scheme
 from ._schemes import *  # noqa: F403: the classes, by the catalogue
 from ._schemes import NAMES, schemes
@@ -36,8 +38,12 @@ __all__ = [
     "Decoder",
     "Encoder",
     "Error",
+    "Filter",
+    "Flight",
     "Log",
+    "Network",
     "Picture",
+    "Ran",
     "Receiver",
     "Scheme",
     "Sender",

@@ -12,6 +12,7 @@ from . import _native
 from ._arrays import tell_cut
 
 if TYPE_CHECKING:
+    from ._filters import Filter
     from ._scheme import Scheme
 
 
@@ -20,7 +21,8 @@ class Sender:
 
     `schemes` are one scheme for all channels, or one for each, of one kind and with as many neurons. A sample is taken
     every `period` µs. After the first and every `keyframe_every` samples comes a keyframe, or a heartbeat of codes without.
-    The bytes are those of a firmware with the same schemes, `period` and `session`.
+    `filter` is one before the code of all channels, or one for each, or None. The bytes are those of a firmware with the
+    same schemes, filters, `period` and `session`.
 
     >>> import spikewire as sw
     >>> scheme = sw.StepForward(threshold=0.1)
@@ -33,8 +35,17 @@ class Sender:
     ([0.1, 0.0, 0.0, 0.0, 0.0, 9.8], True)
     """
 
-    def __init__(self, schemes: Scheme | Sequence[Scheme], period: int, keyframe_every: int = 25, session: int = 0):
-        self._native = _native.Sender(_six(schemes), period, keyframe_every, session)
+    def __init__(
+        self,
+        schemes: Scheme | Sequence[Scheme],
+        period: int,
+        keyframe_every: int = 25,
+        session: int = 0,
+        filter: Filter | Sequence[Filter | None] | None = None,
+    ):
+        filters = list(filter) if isinstance(filter, Sequence) else [filter] * 6
+        filters = [own and own._native for own in filters]
+        self._native = _native.Sender(_six(schemes), filters, period, keyframe_every, session)
         self._sample = schemes[0].sample if isinstance(schemes, Sequence) else schemes.sample
         #: The address of each event of the last sample, and whether it went up.
         self.fired: list[tuple[int, bool]] = []
@@ -48,10 +59,16 @@ class Sender:
 
 
 class Receiver:
-    """The decoders of a :class:`Sender`, which know whether their values are exact."""
+    """The decoders of a :class:`Sender`, which know whether their values are exact.
 
-    def __init__(self, schemes: Scheme | Sequence[Scheme], period: int):
-        self._native = _native.Hearer(_six(schemes), period)
+    `schemes` are those of the sender, whose frames carry their fingerprint: from other schemes no value is exact.
+    `clock_tolerance` is by how much the time from sample to sample may differ from `period`, as a fraction. A bank whose
+    samples are taken by a timer of the clock that its ticks come from has 0. Codes with sub-timesteps need to know it, or
+    heartbeats less than half a period over the tolerance apart.
+    """
+
+    def __init__(self, schemes: Scheme | Sequence[Scheme], period: int, clock_tolerance: float = 0.02):
+        self._native = _native.Hearer(_six(schemes), period, clock_tolerance)
 
     def hear(self, data: bytes) -> None:
         """Takes the next bytes of the link, cut anywhere: frames that were lost are noticed."""
@@ -70,6 +87,11 @@ class Receiver:
     def exact(self) -> NDArray[np.bool_]:
         """Whether each value has the bits of a decoder that lost no event."""
         return np.array(self._native.values()[1])
+
+    @property
+    def withheld(self) -> list[str | None]:
+        """Why each channel has no exact value; ``None`` where it has one."""
+        return self._native.withheld()
 
     @property
     def lost(self) -> int:

@@ -6,9 +6,12 @@ mod array;
 mod channel;
 mod coder;
 mod error;
+mod filter;
 mod fingerprint;
+mod flight;
 mod library;
 mod link;
+mod network;
 mod stream;
 mod values;
 mod work;
@@ -25,7 +28,11 @@ mod _native {
     #[pymodule_export]
     use super::error::Error;
     #[pymodule_export]
+    use super::filter::Filter;
+    #[pymodule_export]
     use super::fingerprint::fingerprint;
+    #[pymodule_export]
+    use super::flight::flight;
     #[pymodule_export]
     use super::info::schemes;
     #[pymodule_export]
@@ -34,6 +41,8 @@ mod _native {
     };
     #[pymodule_export]
     use super::link::{Hearer, Sender};
+    #[pymodule_export]
+    use super::network::Network;
     #[pymodule_export]
     use super::stream::{Decoder, Encoder};
     use pyo3::prelude::*;

@@ -9,10 +9,13 @@ use catalogue::run::{RunTime, Runs, SampleType, Settings, Visit};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
 use spikewire::link::{Coding, MAX_FRAME, Reader, Received, Receiver, Session, Transmitter};
-use spikewire::{Bank, FromItems, Item, Recovery, Sample, Scheme, Spike, Tick};
+use spikewire::{
+    Bank, Fingerprint, FromItems, Item, Recovery, Sample, SampleKind, Scheme, Spike, Tick,
+};
 
 use crate::coder::Coder;
 use crate::error::value;
+use crate::filter::{Chain, Filter};
 
 /// The channels of an inertial sensor.
 const CHANNELS: usize = 6;
@@ -39,16 +42,24 @@ trait Far: Send {
 
     /// The value of each channel, and whether it is exact.
     fn values(&self) -> [(f64, bool); CHANNELS];
+
+    /// Why a channel has no exact value, in words.
+    fn withheld(&self) -> [Option<String>; CHANNELS];
 }
 
 struct NearEnd<P: Scheme + 'static> {
+    filters: [Chain<P::Sample>; CHANNELS],
     bank: Bank<[&'static P; CHANNELS], CHANNELS>,
     one: f64,
 }
 
 impl<P: Scheme<EncoderState: Send> + Sync> Near for NearEnd<P> {
     fn encode(&mut self, tick: Tick, samples: [f64; CHANNELS], items: &mut Vec<Item>) {
-        let samples = samples.map(|sample| P::Sample::from_f64(sample * self.one));
+        let mut filters = self.filters.iter_mut();
+        let samples = samples.map(|sample| {
+            let sample = P::Sample::from_f64(sample * self.one);
+            filters.next().map_or(sample, |filter| filter.next(sample))
+        });
         self.bank.encode(tick, samples, |event| items.push(event.into()));
     }
 
@@ -86,6 +97,12 @@ impl<P: Scheme<DecoderState: Send> + Sync, const EVENTS: usize> Far for FarEnd<P
             (value, self.receiver.exact(channel as u16).is_some())
         })
     }
+
+    fn withheld(&self) -> [Option<String>; CHANNELS] {
+        std::array::from_fn(|channel| {
+            self.receiver.withheld(channel as u16).map(|why| why.to_string())
+        })
+    }
 }
 
 /// Both ends of a link, of which a caller keeps the one it wants.
@@ -93,14 +110,18 @@ struct Ends {
     near: Box<dyn Near>,
     far: Box<dyn Far>,
     coding: Coding,
+    fingerprint: Fingerprint,
 }
 
 /// Builds both ends from the settings of each channel.
 struct Build<'a> {
     scheme: &'static dyn RunTime,
     settings: &'a [Settings; CHANNELS],
+    filters: &'a [Option<Filter>],
     sample: SampleType,
     period: u16,
+    /// In millionths.
+    clock_tolerance: u32,
 }
 
 impl<S: Sample> Visit<S> for Build<'_> {
@@ -125,7 +146,7 @@ impl<S: Sample> Visit<S> for Build<'_> {
 
 impl Build<'_> {
     fn ends<S: Sample, P: Runs<S>, const EVENTS: usize>(self) -> Result<Ends> {
-        let Self { scheme, settings, sample, period } = self;
+        let Self { scheme, settings, filters, sample, period, clock_tolerance } = self;
         let mut channels = Vec::new();
         for own in settings {
             let built = catalogue::visit::<S, _>(scheme.info().name, own, Boxed)?;
@@ -155,13 +176,31 @@ impl Build<'_> {
         let jitter = if is_slotted { slot_ticks.ilog2() as u8 + 2 } else { 0 };
         let coding = Coding::for_channels((CHANNELS * neurons) as u16, period);
         let one = sample.one();
+        let built = |own: &Option<Filter>| own.as_ref().map_or(Ok(Chain::none()), Filter::build);
+        let filters = filters.iter().map(built).collect::<Result<Vec<_>>>()?;
+        let filters = filters.try_into().map_err(|_| anyhow!("there are {CHANNELS} channels"))?;
         let bank = Bank::per_channel_with_states(channels).with_slot_ticks(slot_ticks);
-        let receiver = Receiver::<_, CHANNELS, EVENTS>::per_channel(schemes);
+        let fingerprints = schemes.map(Scheme::fingerprint);
+        let fingerprint = Fingerprint::of_bank(kind(sample), 0, slot_ticks, &fingerprints);
+        let receiver = Receiver::<_, CHANNELS, EVENTS>::per_channel(schemes)
+            .with_slot_ticks(slot_ticks)
+            .with_fingerprint(fingerprint)
+            .with_clock_tolerance(clock_tolerance);
         Ok(Ends {
-            near: Box::new(NearEnd { bank, one }),
-            far: Box::new(FarEnd { receiver: receiver.with_slot_ticks(slot_ticks), one }),
+            near: Box::new(NearEnd { filters, bank, one }),
+            far: Box::new(FarEnd { receiver, one }),
             coding: coding.with_jitter_bits(jitter),
+            fingerprint,
         })
+    }
+}
+
+/// The sample type on a link.
+fn kind(sample: SampleType) -> SampleKind {
+    match sample {
+        SampleType::F32 => SampleKind::F32,
+        SampleType::Fixed16 { fraction } => SampleKind::Fixed16 { fraction },
+        SampleType::Fixed32 { fraction } => SampleKind::Fixed32 { fraction },
     }
 }
 
@@ -180,8 +219,13 @@ impl<S: Sample> Visit<S> for Boxed {
     }
 }
 
-/// Both ends of a link whose channels have these schemes, which are of one kind.
-fn ends(coders: &[Coder], period: u16) -> Result<Ends> {
+/// Both ends of a link whose channels have these schemes, which are of one kind, and filters before them.
+fn ends(
+    coders: &[Coder],
+    filters: &[Option<Filter>],
+    period: u16,
+    clock_tolerance: u32,
+) -> Result<Ends> {
     let [first, ..] = coders else { bail!("a bank has {CHANNELS} channels, not 0") };
     if coders.len() != CHANNELS {
         bail!("a bank has {CHANNELS} channels, not {}", coders.len());
@@ -202,7 +246,7 @@ fn ends(coders: &[Coder], period: u16) -> Result<Ends> {
     }
     let settings = &settings.try_into().map_err(|_| anyhow!("there are {CHANNELS} channels"))?;
     let (scheme, sample) = (first.scheme, first.sample);
-    let build = Build { scheme, settings, sample, period };
+    let build = Build { scheme, settings, filters, sample, period, clock_tolerance };
     for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.info().name, &settings[0], build))?
 }
 
@@ -225,9 +269,17 @@ struct Sending {
 #[pymethods]
 impl Sender {
     #[new]
-    fn new(coders: Vec<Coder>, period: u16, keyframe_every: u64, session: u32) -> PyResult<Self> {
-        let Ends { near, coding, .. } = ends(&coders, period).map_err(value)?;
-        let transmitter = Transmitter::new(coding, Session::counted(session));
+    fn new(
+        coders: Vec<Coder>,
+        filters: Vec<Option<Filter>>,
+        period: u16,
+        keyframe_every: u64,
+        session: u32,
+    ) -> PyResult<Self> {
+        let Ends { near, coding, fingerprint, .. } =
+            ends(&coders, &filters, period, 0).map_err(value)?;
+        let session = Session::counted(session);
+        let transmitter = Transmitter::new(coding, session).with_fingerprint(fingerprint);
         Ok(Self(Mutex::new(Sending {
             near,
             transmitter,
@@ -280,8 +332,13 @@ struct Hearing {
 #[pymethods]
 impl Hearer {
     #[new]
-    fn new(coders: Vec<Coder>, period: u16) -> PyResult<Self> {
-        let Ends { far, .. } = ends(&coders, period).map_err(value)?;
+    fn new(coders: Vec<Coder>, period: u16, clock_tolerance: f64) -> PyResult<Self> {
+        if !(0.0..=0.1).contains(&clock_tolerance) {
+            return Err(value(anyhow!("clock_tolerance {clock_tolerance} must lie in 0..=0.1")));
+        }
+        let millionths = (clock_tolerance * 1e6).ceil() as u32;
+        let unfiltered = vec![None; CHANNELS];
+        let Ends { far, .. } = ends(&coders, &unfiltered, period, millionths).map_err(value)?;
         Ok(Self(Mutex::new(Hearing { far, reader: Reader::new() })))
     }
 
@@ -298,6 +355,12 @@ impl Hearer {
     fn advance(&self, now: u64) {
         let mut own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         own.far.advance(Tick::from_micros(now));
+    }
+
+    /// Why a channel has no exact value, in words.
+    fn withheld(&self) -> [Option<String>; CHANNELS] {
+        let own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        own.far.withheld()
     }
 
     /// The values of the channels, and whether each is exact.

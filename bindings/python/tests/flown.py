@@ -7,6 +7,7 @@ channel's range, in the sample type.
 import numpy as np
 
 import spikewire as sw
+from flown_settings import settings
 
 SAMPLES = ("f32", "q8.8", "q16.16", "i16")
 
@@ -30,51 +31,18 @@ class Channel:
         if sample == "i16":
             self.x = self.x.astype(np.int16)
         self.min, self.max = float(self.x.min()), float(self.x.max())
-        self.ends = {"min": self.min, "max": self.max}
 
     def part(self, part):
         return float(self.round((self.max - self.min) * part))
 
     def schemes(self):
-        """The scheme of each line that the firmware prints."""
-        part, ends, shift = self.part, self.ends, {"shift": self.min}
-        peak = {"filter": f"triang:15,peak={part(0.1)!r}", **shift}
-        hann = lambda of: {"filter": f"hann:24,sum={part(of)!r}", **shift}
-        window = {"mean": "window", "power": 6}
-        companded = {"companding": 5, **ends}
-        fires = {"threshold": part(0.2), "power": 3, "spikes": 8}
+        """The scheme of each line that the firmware prints, and its keywords."""
+        of_samples = {"tbr": {"factor": 0.5, "magnitudes": True}, "mw": {"start": float(self.x[0])}}
+        flown = settings(self.part, self.min, self.max).items()
         return {
-            "tbr": (sw.TemporalContrast, {"factor": 0.5, "magnitudes": True}),
-            "atbr": (sw.AdaptiveContrast, {"threshold": part(0.001), "doublings": 5}),
-            "mw": (sw.MovingWindow, {"threshold": part(0.02), "window": 5, "start": float(self.x[0])}),
-            "sf": (sw.StepForward, {"threshold": part(0.02)}),
-            "sod": (sw.SendOnDelta, {"threshold": part(0.02), "spikes": 4}),
-            "asf": (sw.AdaptiveStepForward, {"threshold": part(0.02), "doublings": 4}),
-            "bsa": (sw.Bsa, {"threshold": part(0.955), **hann(1.0)}),
-            "bsa-mul": (sw.Bsa, {"criterion": "mul", "threshold": 0.92, **hann(2.0)}),
-            "bsa-toolbox": (
-                sw.Bsa,
-                {"form": "toolbox", "threshold": 1.15, "filter": f"triang:9,peak={part(0.2)!r}", **shift},
-            ),
-            "hsa": (sw.Hough, peak),
-            "t-hsa": (sw.ThresholdHough, {"threshold": part(0.085), **peak}),
-            "if": (sw.IntegrateAndFire, fires),
-            "lif": (sw.LeakyIntegrateAndFire, fires),
-            "sigma-delta": (sw.SigmaDelta, ends),
-            "sigma-delta-window": (sw.SigmaDelta, {**window, **ends}),
-            "burst-weighted": (sw.WeightedBurst, {"weight": part(0.14), **ends}),
-            "position": (sw.Position, {"neurons": 20, **ends}),
-            "position-gauss": (sw.Position, {"centres": "gaussian", "neurons": 20, **ends}),
-            "grf": (sw.Gaussian, {"neurons": 20, **ends}),
-            "grf-slots": (sw.Slots, {"neurons": 15, "slots": 10, **ends}),
-            "grf-nonlinear": (sw.NonLinearGaussian, {"neurons": 20, **companded}),
-            "grf-nonlinear-slots": (sw.NonLinearSlots, {"neurons": 15, "slots": 10, **companded}),
-            "rank-order": (sw.RankOrder, {"neurons": 15, "spikes": 3, **ends}),
-            "ttfs": (sw.FirstSpike, ends),
-            "ttfs-log": (sw.FirstSpike, {"edges": "log", **ends}),
-            "latency-phase": (sw.LatencyPhase, ends),
-            "weighted-phase": (sw.WeightedPhase, ends),
-            "burst": (sw.Burst, ends),
+            name: (sw.schemes[scheme], {**keywords, **of_samples.get(name, {})})
+            for name, (scheme, keywords) in flown
+            if name not in DRAWN
         }
 
 

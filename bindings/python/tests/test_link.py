@@ -70,6 +70,21 @@ def test_a_loss_is_known_until_the_next_keyframe():
     assert np.array_equal(values[111:], whole[111:]) and not np.array_equal(values[107], whole[107])
 
 
+@pytest.mark.parametrize("sample", ["f32", "q8.8"])
+def test_a_filter_before_a_bank_is_the_filter_and_then_the_bank(sample):
+    x = signal()
+    scheme = sw.StepForward(threshold=0.0625, sample=sample)
+    quiet = sw.Filter.notch(60, rate=500, q=2).then(sw.Filter.low_pass(40, rate=500))
+    filters = [quiet] * 3 + [None, sw.Filter.first_order(20, rate=500), None]
+    whole, apart = sw.Sender(scheme, PERIOD, filter=filters), sw.Sender(scheme, PERIOD)
+    filtered = np.array([lane if own is None else own.filter(lane, sample) for lane, own in zip(x.T, filters)]).T
+    assert [whole.encode(own) for own in x] == [apart.encode(own) for own in filtered]
+    with pytest.raises(ValueError, match="6 channels"):
+        sw.Sender(scheme, PERIOD, filter=[quiet] * 3)
+    with pytest.raises(ValueError, match="corner 300 must lie in"):
+        sw.Filter.low_pass(300, rate=500)
+
+
 def test_what_makes_no_bank_is_refused():
     sf, sod = sw.StepForward(threshold=0.1), sw.SendOnDelta(threshold=0.1, spikes=4)
     for schemes, words in [

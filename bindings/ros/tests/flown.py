@@ -5,10 +5,12 @@ constant, in `f32`, without the catalogue's options and without Python. `cargo v
 """
 
 import csv
+import importlib.util
 import struct
 import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from spikewire_ros.schemes import of_catalogue
@@ -43,6 +45,26 @@ def flight(table: Path) -> tuple[list[int], list[float]]:
     return [time for time, _ in read], [rate for _, rate in read]
 
 
+def _settings() -> ModuleType:
+    """Those of the Python package's checks."""
+    path = Path(__file__).parents[2] / "python/tests/flown_settings.py"
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+# The names that the toolbox's nodes have for some.
+OF_TOOLBOX = {
+    "tbr": "temporal_contrast",
+    "mw": "moving_window",
+    "sf": "step_forward",
+    "t-hsa": "threshold_hsa",
+    "grf": "gaussian_fields",
+}
+
+
 def schemes(rates: list[float], contrast: float) -> dict[str, dict[str, Any]]:
     """The nodes' parameters by the names that the firmware has: parts of the signal's range, as its constants are.
 
@@ -53,61 +75,11 @@ def schemes(rates: list[float], contrast: float) -> dict[str, dict[str, Any]]:
     def part(of_range: float) -> float:
         return f32((high - low) * of_range)
 
-    def ranged(scheme: str, **more: Any) -> dict[str, Any]:
-        return {"encoding_scheme": scheme, "min": low, "max": high, **more}
-
-    def triangle(taps: int, peak: float) -> str:
-        return f"triang:{taps},peak={part(peak)!r}"
-
-    shift = {"shift": low}
+    flown = _settings().settings(part, low, high)
+    flown["tbr"][1]["threshold"] = contrast
     return {
-        "tbr": {"encoding_scheme": "temporal_contrast", "threshold": contrast},
-        "atbr": {"encoding_scheme": "atbr", "threshold": part(0.001), "doublings": 5},
-        "mw": {"encoding_scheme": "moving_window", "threshold": part(0.02), "window": 5},
-        "sf": {"encoding_scheme": "step_forward", "threshold": part(0.02)},
-        "sod": {"encoding_scheme": "sod", "threshold": part(0.02), "spikes": 4},
-        "asf": {"encoding_scheme": "asf", "threshold": part(0.02), "doublings": 4},
-        "bsa": {"encoding_scheme": "bsa", "filter": f"hann:24,sum={part(1.0)!r}", "threshold": part(0.955), **shift},
-        "bsa-mul": {
-            "encoding_scheme": "bsa",
-            "filter": f"hann:24,sum={part(2.0)!r}",
-            "criterion": "mul",
-            "threshold": 0.92,
-            **shift,
-        },
-        "bsa-toolbox": {
-            "encoding_scheme": "bsa",
-            "form": "toolbox",
-            "filter": triangle(9, 0.2),
-            "threshold": 1.15,
-            **shift,
-        },
-        "hsa": {"encoding_scheme": "hsa", "filter": triangle(15, 0.1), **shift},
-        "t-hsa": {
-            "encoding_scheme": "threshold_hsa",
-            "filter": triangle(15, 0.1),
-            "threshold": part(0.085),
-            **shift,
-        },
-        "if": {"encoding_scheme": "if", "threshold": part(0.2), "spikes": 8, "power": 3},
-        "lif": {"encoding_scheme": "lif", "threshold": part(0.2), "spikes": 8, "power": 3},
-        "sigma-delta": ranged("sigma-delta"),
-        "sigma-delta-window": ranged("sigma-delta", mean="window", power=6),
-        "bernoulli": ranged("bernoulli", seed=1),
-        "burst-weighted": ranged("burst-weighted", weight=part(0.14)),
-        "position": ranged("position", neurons=20),
-        "position-gauss": ranged("position", neurons=20, centres="gaussian"),
-        "grf": ranged("gaussian_fields", neurons=20),
-        "grf-slots": ranged("grf-slots", neurons=15, slots=10),
-        "grf-prob": ranged("grf-prob", neurons=15, seed=1),
-        "grf-nonlinear": ranged("grf-nonlinear", neurons=20, companding=5),
-        "grf-nonlinear-slots": ranged("grf-nonlinear-slots", neurons=15, slots=10, companding=5),
-        "rank-order": ranged("rank-order", neurons=15, spikes=3),
-        "ttfs": ranged("ttfs"),
-        "ttfs-log": ranged("ttfs", edges="log"),
-        "latency-phase": ranged("latency-phase"),
-        "weighted-phase": ranged("weighted-phase"),
-        "burst": ranged("burst"),
+        name: {"encoding_scheme": OF_TOOLBOX.get(scheme, scheme), **keywords}
+        for name, (scheme, keywords) in flown.items()
     }
 
 

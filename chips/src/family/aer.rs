@@ -65,11 +65,12 @@ enum Answer {
 #[derive(Debug)]
 pub(super) struct Aer<P> {
     pub(super) port: P,
-    /// How often a wait reads the pins, for each look in a clock of the chip.
+    /// The number of reads of the pins in a wait, if one read takes a clock of the chip or longer.
     polls: u32,
     /// How often the pins may be read within one clock of the chip.
     looks_a_clock: NonZeroU32,
-    /// How often a wait reads them: the product, as a Cortex-M0 takes long to multiply with care.
+    /// The number of reads of the pins in a wait: the saturated product of `polls` and `looks_a_clock`, which a Cortex-M0
+    /// would take long to compute.
     patience: u32,
     /// The phase of the word that was begun last.
     phase: Phase,
@@ -123,7 +124,7 @@ impl<P: AerPort> Aer<P> {
         Ok((is_under_way.then_some(self.carries), is_output_lost))
     }
 
-    /// Goes on with both buses, with a few reads of the pins.
+    /// Advances the handshakes of both buses as far as a few reads of the pins allow.
     pub(super) fn poll(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
         // ACK up, and down again.
         for _ in 0..2 {

@@ -59,7 +59,7 @@ pub trait Input: Copy {
     /// The neuron of these bytes.
     fn neuron(bytes: [u8; 16]) -> Self::Neuron;
 
-    /// The neuron that a time step turns into this one without a spike; `None` if there is none.
+    /// The neuron that a time step turns into this one without a spike; `None` if no neuron becomes this one.
     fn before_step(neuron: &Self::Neuron) -> Option<Self::Neuron>;
 
     /// A signed weight's 4 bits.

@@ -75,7 +75,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
     }
 }
 
-/// How many bytes [`each_byte`] visits.
+/// The number of bytes that [`each_byte`] visits.
 fn frames<I: Input>(network: &impl Describe<I>) -> u32 {
     let (neurons, rows) = (u32::from(network.neurons()), u32::from(network.rows()));
     let bytes = u32::from(I::NEURON_BYTES);

@@ -192,7 +192,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Counters { overflows: self.aer.overflows, ..self.counters }
     }
 
-    /// The device and the port, for other uses.
+    /// Gives the device and the port back.
     pub fn release(self) -> (D, P) {
         (self.wire.device, self.aer.port)
     }

@@ -11,13 +11,13 @@ use spikewire::{Code, Event, Polarity, Scheme, Tick};
 /// virtual event for one neuron. In open loop the chip's rows from 0 on belong to the inputs; in closed loop they belong
 /// to the neurons, and the rows of the inputs follow.
 pub trait Describe<I: Input> {
-    /// How many neurons, 1 to 256.
+    /// Returns the number of neurons, 1 to 256.
     fn neurons(&self) -> u16;
 
     /// A neuron; a [disabled](Input::DISABLED) one if the network has no such neuron.
     fn neuron(&self, neuron: u8) -> I::Neuron;
 
-    /// How many inputs.
+    /// Returns the number of inputs.
     fn inputs(&self) -> u16;
 
     /// The neuron on which an input acts without a synapse, and its weight; `None` if it has a row.
@@ -108,7 +108,7 @@ pub trait Describe<I: Input> {
         if self.is_recurrent() { self.neurons() } else { 0 }
     }
 
-    /// How many rows of synapses the network has, from row 0 on.
+    /// Returns the number of rows of synapses, from row 0 on.
     fn rows(&self) -> u16 {
         let is_virtual = self.virtual_input(0).is_some();
         self.first_input_row().saturating_add(if is_virtual { 0 } else { self.inputs() })

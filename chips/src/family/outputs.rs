@@ -68,7 +68,7 @@ impl<const N: usize> Spikes<N> {
         self.len = 0;
     }
 
-    /// How many events were lost, as the list was full.
+    /// Returns the number of events that were lost because the list was full.
     pub const fn lost(&self) -> u32 {
         self.lost
     }

@@ -19,7 +19,7 @@ pub(super) struct Beacon {
     value: u8,
 }
 
-/// A byte that the step check writes: moved by a bit, it is another.
+/// The byte that the step check writes: a bus out of step by a bit reads another.
 const SIGN: u8 = 0xA5;
 
 /// The byte that the step check writes to.

@@ -11,21 +11,21 @@ use spikewire::Tick;
 /// The most leak events at once.
 const MAX_LEAKS: u32 = 255;
 
-/// How late a tick may be, in µs: 67 s. One that lies further back is of the clock's next round instead, as after an hour in
-/// which the chip was gated.
+/// The latest that a tick may be, in µs: 67 s. A tick further back counts as one of the clock's next round, as after an hour
+/// in which the chip was gated.
 const LATEST: u32 = 1 << 26;
 
-/// The µs from `last` to `now`; none if `now` is late.
+/// The µs from `last` to `now`; `None` if `now` is late.
 fn passed(last: Tick, now: Tick) -> Option<u32> {
     let passed = now.micros().wrapping_sub(last.micros());
     (passed < LATEST.wrapping_neg()).then_some(passed)
 }
 
-/// When leak events are due.
+/// The clock of leak events.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Time {
     step: NonZeroU32,
-    /// When the last leak event was due.
+    /// The time at which the last leak event was due.
     last: Option<Tick>,
 }
 

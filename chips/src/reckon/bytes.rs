@@ -132,7 +132,7 @@ impl<'a> ReckOnBytes<'a> {
     }
 }
 
-/// The weight of a row of so many.
+/// The weight in this row and column, of rows of this length.
 fn weight(rows: &[u8], length: u16, row: u16, column: u16) -> i8 {
     let at = usize::from(row).wrapping_mul(length.into()).wrapping_add(column.into());
     rows.get(at).filter(|_| column < length).map_or(0, |&byte| byte as i8)

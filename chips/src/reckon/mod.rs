@@ -115,7 +115,7 @@ pub struct ReckOn<D, P> {
     sizes: Sizes,
 }
 
-/// The last input, neuron and output.
+/// The highest numbers of an input, a neuron and an output in the network.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Sizes {
     input: u8,
@@ -222,7 +222,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         }
     }
 
-    /// The device and the port, for other uses.
+    /// Gives the device and the port back.
     pub fn release(self) -> (D, P) {
         (self.wire.device, self.port)
     }
@@ -267,7 +267,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         self.heed(Err(ChipError::ReadBack { address: address.0, written, read }))
     }
 
-    /// Writes a word that no network uses, and reads it, twice: moved by a bit, each is another.
+    /// Writes two words to a place that no network uses, and reads each back: a bus out of step by a bit reads another.
     fn check_step(&mut self) -> Outcome<(), D, P> {
         for word in [0xA53C_0F96, 0x5AC3_F069] {
             self.write(Address::anchor(), word)?;
@@ -281,7 +281,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         self.polls.div_ceil(Self::MAX_CLOCKS).saturating_mul(clocks)
     }
 
-    /// Reads the ready line until it is as asked, up to `looks` times.
+    /// Reads the ready line up to `looks` times, and returns whether it became `is_high`.
     fn wait_ready(&mut self, is_high: bool, looks: u32) -> Result<bool, P::Error> {
         for _ in 0..looks {
             if self.port.ready()? == is_high {

@@ -149,8 +149,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         self.chip.check_step()
     }
 
-    /// Writes the registers and lets the chip run. That the memories have closed shows in a word that then reads as
-    /// another did.
+    /// Writes the registers and lets the chip run. Closed memories are checked: whatever word is asked for then reads as the
+    /// one before.
     ///
     /// # Errors
     /// Returns an error if a value is out of its range: the chip is as it was. Also if the bus failed or is out of
@@ -241,7 +241,7 @@ fn pair(network: &impl DescribeReckOn, pair: u16) -> ReckOnPair {
     if pair < network.neurons().div_ceil(2) { network.pair(pair) } else { ReckOnPair::REST }
 }
 
-/// How many words [`each_word`] visits.
+/// The number of words that [`each_word`] visits.
 fn words(network: &impl DescribeReckOn) -> u32 {
     let rows = u32::from(network.inputs()) + 256;
     let row = u32::from(network.neurons().div_ceil(4));

@@ -197,7 +197,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         if is_ready { Ok(()) } else { Err(ChipError::Unfinished) }
     }
 
-    /// A tick that an answer follows: the line stays low until that is taken.
+    /// Ticks where an answer follows: the ready line then stays low until the answer is taken.
     fn tick(&mut self) -> Outcome<(), D, P> {
         self.port.set_tick(true).map_err(ChipError::Port)?;
         let is_taken = self.wait_ready(false, self.polls).map_err(ChipError::Port)?;

@@ -9,7 +9,7 @@ const READ: u32 = 1 << 31;
 pub(super) struct Address(pub(super) u32);
 
 impl Address {
-    /// A quarter of what a pair of neurons holds.
+    /// One of the four words of a pair of neurons.
     pub(super) const fn pair(pair: u16, quarter: u32) -> Self {
         Self(1 << 28 | (pair as u32) << 2 | quarter)
     }
@@ -34,7 +34,7 @@ impl Address {
         Self::output(0x1AA)
     }
 
-    /// The address some words on.
+    /// The address this many words further on.
     pub(super) const fn next(self, words: u16) -> Self {
         Self(self.0.wrapping_add(words as u32))
     }

@@ -4,5 +4,5 @@
 
 #[cfg_attr(target_os = "none", board::entry)]
 fn main() -> ! {
-    board::finish(camera::run(&mut board::console()))
+    board::finish(camera_frames::run(&mut board::console()))
 }

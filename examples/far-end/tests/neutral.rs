@@ -3,7 +3,7 @@
 use far_end::{CHANNELS, Command, FarEnd, KEYFRAME_MS, SCHEMES, SILENCE_MS};
 use spikewire::{
     Bank, EventQueue, Overflow, Tick,
-    link::{Coding, MAX_FRAME, Session, Transmitter},
+    link::{MAX_FRAME, Session, Transmitter},
 };
 
 /// A sender, and what it has sent: one frame each.
@@ -16,15 +16,9 @@ struct Sender {
 
 impl Sender {
     fn new(starts: u32) -> Self {
-        Self {
-            bank: Bank::per_channel(SCHEMES),
-            queue: EventQueue::new(Overflow::DropOldest),
-            transmitter: Transmitter::new(
-                Coding::for_channels(CHANNELS as u16, 1_000),
-                Session::counted(starts),
-            ),
-            now: Tick::from(0),
-        }
+        let bank = Bank::per_channel(SCHEMES);
+        let transmitter = Transmitter::for_bank(&bank, 1_000, Session::counted(starts));
+        Self { bank, queue: EventQueue::new(Overflow::DropOldest), transmitter, now: Tick::from(0) }
     }
 
     fn sample(&mut self, rate: f32) -> Vec<u8> {

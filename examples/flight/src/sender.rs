@@ -2,7 +2,7 @@
 
 use embedded_io_async::Write;
 use spikewire::{
-    Source,
+    Bank, Source,
     link::{Coding, MAX_FRAME, Session, Transmitter},
 };
 
@@ -25,7 +25,8 @@ impl Sender {
     pub fn new<I: Imu>(session: Session) -> Self {
         // The sensor's clock is not ours: its samples come a few µs early or late.
         let coding = Coding::for_channels(CHANNELS as u16, I::PLAN.period).with_jitter_bits(4);
-        let transmitter = Transmitter::new(coding, session);
+        let bank = Bank::<_, CHANNELS>::per_channel(I::SCHEMES);
+        let transmitter = Transmitter::new(coding, session).with_fingerprint(bank.fingerprint());
         Self { transmitter, frame: [0; MAX_FRAME], bytes: 0, failed: 0 }
     }
 

@@ -4,7 +4,7 @@ use core::fmt;
 
 use spikewire::{
     Bank, FromItems, Item, Put, Tick,
-    link::{Coding, MAX_FRAME, Reader, Receiver, Session, Transmitter},
+    link::{MAX_FRAME, Reader, Receiver, Session, Transmitter},
     temporal::SendOnDelta,
 };
 
@@ -50,8 +50,7 @@ impl Put for &mut Items {
 pub fn run(out: &mut impl fmt::Write) -> fmt::Result {
     let mut line = Usart1::new();
     let mut bank = Bank::<_, CHANNELS>::per_channel(SCHEMES);
-    let mut transmitter =
-        Transmitter::new(Coding::for_channels(CHANNELS as u16, PERIOD), Session::counted(0));
+    let mut transmitter = Transmitter::for_bank(&bank, PERIOD, Session::counted(0));
     let mut reader = Reader::<MAX_FRAME>::new();
     let mut receiver = Receiver::<_, CHANNELS, 0>::per_channel(SCHEMES);
     let mut control = Control::new(500.0);

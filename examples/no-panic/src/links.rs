@@ -113,11 +113,15 @@ fn framed<S: Sample>(scheme: &'static StepForward<S>) -> Option<()> {
     bank.reset_into(tick(), &EVENTS);
 
     let mut events = EVENTS.consumer()?;
-    let mut transmitter = black_box(Transmitter::new(coding, Session::counted(black_box(1))));
+    let described = Transmitter::for_bank(&bank, black_box(1_000), Session::counted(black_box(1)));
+    let mut transmitter = black_box(described.with_label(black_box("roll")));
     transmitter.observe(tick());
     hide(transmitter.leaps());
     let mut reader = black_box(Reader::<MAX_FRAME>::new());
-    let mut receiver = black_box(Receiver::<_, 3, 0>::per_channel([scheme; 3]));
+    let receiver = black_box(Receiver::<_, 3, 0>::per_channel([scheme; 3]));
+    let tolerant = receiver.with_clock_tolerance(black_box(9)).with_label(black_box("roll"));
+    hide(tolerant.fingerprint());
+    let mut receiver = black_box(tolerant);
     let mut buffer = black_box([0; 300]);
     while let Ok(Some(bytes)) =
         transmitter.next_frame(&mut events, buffer.get_mut(..black_box(300)).unwrap_or_default())
@@ -131,7 +135,7 @@ fn framed<S: Sample>(scheme: &'static StepForward<S>) -> Option<()> {
     hide(reader.next_after_silence().map(|received| received.is_start));
     hide((reader.frames(), reader.lost_frames(), reader.bad_checksums(), reader.skipped()));
     hide((reader.repeated(), reader.late(), receiver.exact(black_box(1))));
-    hide(receiver.withheld(black_box(1)));
+    hide((receiver.withheld(black_box(1)), receiver.compared(), receiver.contradicted()));
     hide(black_box(Readout::<_, 3>::per_channel([scheme; 3])).decode(tick(), &[event()]));
 
     let mut framer = black_box(Framer::new(coding, Session::counted(black_box(1))));

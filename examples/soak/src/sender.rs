@@ -2,7 +2,7 @@
 
 use spikewire::{
     Bank, Decoder, EventQueue, Item, Overflow, Put, Scheme, Source, Tick,
-    link::{Coding, Session, Transmitter},
+    link::{Session, Transmitter},
     temporal::StepForward,
 };
 
@@ -35,13 +35,14 @@ pub struct Sender {
 
 impl Sender {
     pub fn new(starts: u32, micros: u64) -> Self {
-        let coding = Coding::for_channels(CHANNELS as u16, PERIOD as u16);
+        let bank = Bank::per_channel(SCHEMES);
+        let transmitter = Transmitter::for_bank(&bank, PERIOD as u16, Session::counted(starts));
         Self {
             starts,
             micros,
-            bank: Bank::per_channel(SCHEMES),
+            bank,
             queue: EventQueue::new(Overflow::DropOldest),
-            transmitter: Transmitter::new(coding, Session::counted(starts)),
+            transmitter,
             decoders: SCHEMES.map(Scheme::decoder),
             truth: None,
             offered: 0,

@@ -1,6 +1,6 @@
 //! How numbers are packed into frames. See "Blackbox Internals" of Betaflight's documentation.
 
-/// The front of what is left.
+/// The bytes of a frame, and the place of the next one to read.
 pub(crate) struct Input<'a> {
     pub bytes: &'a [u8],
     pub at: usize,
@@ -18,19 +18,19 @@ pub(crate) enum Fault {
 /// How the next numbers of a frame are packed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Encoding {
-    /// Seven bits a byte, the sign last.
+    /// Variable length, seven bits a byte; the lowest bit is the sign.
     Signed,
-    /// Seven bits a byte.
+    /// Variable length, seven bits a byte.
     Unsigned,
     /// 14 bits, negated.
     Negative14,
     /// Up to eight numbers, and a byte that says which are not 0.
     UpToEight,
-    /// Three numbers of one size of four.
+    /// Three numbers that share one of four sizes.
     Three,
-    /// Four numbers, each of one size of four.
+    /// Four numbers, each of its own one of four sizes.
     Four,
-    /// Nothing.
+    /// No bytes: the number is 0.
     Null,
     /// Three numbers of one of four sizes, in fewer bits for the third.
     ThreeVariable,
@@ -52,7 +52,7 @@ impl Encoding {
         })
     }
 
-    /// How many numbers are packed together, of so many with this encoding in a row.
+    /// The number of fields that are packed together, if `in_a_row` neighbours have this encoding.
     pub(crate) fn group(self, in_a_row: usize) -> usize {
         match self {
             Self::UpToEight => in_a_row.min(8),

@@ -6,14 +6,14 @@ use super::encoding::Encoding;
 #[derive(Clone, Debug)]
 pub(crate) struct Header {
     pub version: i64,
-    /// A frame of all numbers comes every so many iterations.
+    /// The number of iterations from one full frame to the next.
     pub full_every: i64,
-    /// Numerator and denominator: so many of so many loop iterations are logged.
+    /// Numerator and denominator of the part of loop iterations that is logged.
     pub logged: (i64, i64),
     pub min_throttle: i32,
     pub min_motor: i32,
     pub battery: i32,
-    /// Frames of all numbers, and those of what changed.
+    /// Frames that hold all numbers. `changes` has those that hold differences from the frame before.
     pub full: Fields,
     pub changes: Fields,
     pub slow: Fields,
@@ -76,7 +76,7 @@ impl Header {
         })
     }
 
-    /// How many iterations behind this one are not logged on purpose.
+    /// The number of iterations after this one that the logger leaves out on purpose.
     pub(crate) fn skipped(&self, after: i64) -> i64 {
         let (some, of) = self.logged;
         let is_logged =

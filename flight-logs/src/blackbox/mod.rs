@@ -1,4 +1,4 @@
-//! Blackbox logs of Betaflight and its kin: frames of all numbers, and of what changed since.
+//! Blackbox logs of Betaflight and its kin: full frames, and between them frames of differences.
 //!
 //! A topic each for the frames of the main loop (`main`), for what changes seldom (`slow`) and for `gps`; those of a
 //! second log in the file are `main:1`. Numbers are as logged, in the flight controller's units.
@@ -24,7 +24,8 @@ pub(crate) const MAIN: &str = "main";
 
 /// The longest frame, and the longest line of the header.
 const LONGEST: usize = 4096;
-/// A frame is not later than so by the log's counts, unless those after it agree: in µs and in iterations.
+/// The longest plausible step from frame to frame, in µs and in iterations. A longer one counts as damage unless the
+/// frames after it agree.
 const LONGEST_JUMP: (i64, i64) = (10_000_000, 5000);
 
 /// A log that is read from its start to its end.
@@ -36,7 +37,7 @@ pub(crate) struct Blackbox {
     at: usize,
     start: u64,
     is_read: bool,
-    /// How many logs of the file began.
+    /// The number of logs in the file so far: a flight controller appends one for each flight.
     logs: usize,
     session: Option<Session>,
     topics: Vec<Topic>,
@@ -48,7 +49,7 @@ pub(crate) struct Blackbox {
 /// A log of the file.
 struct Session {
     header: Header,
-    /// The places of its topics.
+    /// The index of its main topic; `slow` and `gps` are those of the others.
     main: usize,
     slow: Option<usize>,
     gps: Option<usize>,
@@ -57,7 +58,7 @@ struct Session {
     home: Vec<i32>,
     /// The iteration and the time of the last good frame.
     last: Option<(i64, i64)>,
-    /// The iteration and time of a frame that is far from it, until another confirms them.
+    /// The iteration and time of a frame far from the last good one, until another confirms them.
     doubted: Option<(i64, i64)>,
     /// The place of `loopIteration` and `time`.
     iteration: Option<usize>,
@@ -88,7 +89,7 @@ impl Blackbox {
         })
     }
 
-    /// Sees to it that a frame is in the window, unless the file ends.
+    /// Reads on until the window holds a whole frame, or the file ends.
     fn fill(&mut self) -> Result<()> {
         const MORE: u64 = 1 << 16;
         if self.is_read || self.window.len() - self.at >= LONGEST {
@@ -241,13 +242,13 @@ impl Session {
             }
             b'S' => {
                 let frame = self.numbers(&self.header.slow, false, input)?;
-                let numbers = self.header.slow.told(&frame);
+                let numbers = self.header.slow.widened(&frame);
                 let time = self.last.map_or(0, |(_, time)| time);
                 Ok(self.slow.map_or(Frame::Other, |topic| Frame::Message { topic, time, numbers }))
             }
             b'G' => {
                 let frame = self.numbers(&self.header.gps, false, input)?;
-                let numbers = self.header.gps.told(&frame);
+                let numbers = self.header.gps.widened(&frame);
                 let own = self.header.gps.place("time").and_then(|place| numbers.get(place));
                 let time = own.copied().or(self.last.map(|(_, time)| time)).unwrap_or_default();
                 Ok(self.gps.map_or(Frame::Other, |topic| Frame::Message { topic, time, numbers }))
@@ -263,7 +264,7 @@ impl Session {
 
     /// Takes a frame of the main loop, if it follows from the one before.
     fn main(&mut self, frame: Vec<i32>, is_full: bool) -> Result<Frame, Fault> {
-        let mut numbers = self.header.full.told(&frame);
+        let mut numbers = self.header.full.widened(&frame);
         let mut time = numbers[self.time];
         let iteration =
             self.iteration.and_then(|place| numbers.get(place)).copied().unwrap_or_default();
@@ -291,7 +292,7 @@ impl Session {
         Ok(Frame::Message { topic: self.main, time, numbers })
     }
 
-    /// The numbers of a frame: what is packed, on top of what is predicted.
+    /// The numbers of a frame: the packed difference plus the prediction, for each field.
     fn numbers(
         &self,
         fields: &Fields,
@@ -381,8 +382,8 @@ impl Session {
 }
 
 impl Fields {
-    /// The numbers of a frame, those without a sign as such.
-    fn told(&self, frame: &[i32]) -> Vec<i64> {
+    /// The numbers of a frame, in which unsigned fields are not negative.
+    fn widened(&self, frame: &[i32]) -> Vec<i64> {
         let numbers = frame.iter().zip(&self.signed);
         numbers
             .map(|(&number, &signed)| if signed { number.into() } else { (number as u32).into() })

@@ -1,4 +1,4 @@
-//! Files that a page lends.
+//! Files that a web page lends to the library, by name.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -98,7 +98,7 @@ impl Read for File {
     }
 }
 
-/// Appends; only a scratch file can be written.
+/// Appends to a scratch file; a lent one cannot be written.
 impl Write for File {
     fn write(&mut self, from: &[u8]) -> io::Result<usize> {
         let Content::Scratch(bytes) = &mut self.content else {

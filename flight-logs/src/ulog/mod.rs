@@ -14,16 +14,16 @@ use std::path::Path;
 /// The first bytes of a log.
 pub(crate) const START: &[u8] = b"ULog";
 
-/// The error of a file that starts with others.
+/// The error of a file that starts with other bytes.
 pub(crate) const OTHER: &str = "not a flight log; ULog files start with `ULog` and 12 bytes more";
 
 /// A log, all in memory.
 pub(crate) struct Ulog {
     bytes: Vec<u8>,
     topics: Vec<Topic>,
-    /// More about each of the topics.
+    /// For each topic, the layout of its messages.
     series: Vec<Series>,
-    /// The good messages of data in their order: which topic, and where in the file.
+    /// The good messages of data in order: the index of the topic, and the place in the file.
     messages: std::vec::IntoIter<(usize, usize)>,
     /// The content of the present message.
     present: Range<usize>,
@@ -31,7 +31,7 @@ pub(crate) struct Ulog {
 }
 
 impl Ulog {
-    /// Reads a log and sees to it that it is whole.
+    /// Reads a log, and counts its faults.
     pub(crate) fn open(path: &Path, mut faults: Faults) -> Result<Self> {
         let refused = |kind| Err(Error::of(path, kind));
         let mut bytes = Vec::new();

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 /// The length of the file's header.
 pub(crate) const HEADER: usize = 16;
-/// What comes before the content of a message of data: length, kind and id.
+/// The bytes before the content of a message of data: length, kind and id.
 pub(crate) const DATA: usize = 5;
 
 /// Findings on a log besides its data.
@@ -89,20 +89,20 @@ pub(crate) struct Scan<'a> {
     formats: HashMap<String, String>,
     /// The present meaning of each registered id, as an index of `topics`.
     registered: HashMap<u16, usize>,
-    /// What was registered.
+    /// The topics that were registered, in order.
     pub topics: Vec<Topic>,
-    /// More about each of them.
+    /// For each topic, the layout of its messages.
     pub series: Vec<Series>,
-    /// The good messages of data in their order: which of the above, and where in the file.
+    /// The good messages of data in order: the index of the topic, and the place in the file.
     pub messages: Vec<(usize, usize)>,
     pub findings: Findings,
 }
 
-/// The messages of a topic.
+/// The layout of a topic's messages.
 pub(crate) struct Series {
     /// The place of the time at which a message was logged.
     pub time: Path,
-    /// How long a message is, without the padding at its end, which is seldom logged, and with it.
+    /// The length of a message without the padding at its end, which is seldom logged, and with it.
     pub lengths: (usize, usize),
 }
 
@@ -165,7 +165,7 @@ impl<'a> Scan<'a> {
         (content.end <= end).then_some(Message { at, kind, content })
     }
 
-    /// A message here that may be skipped but leads to the next.
+    /// The message at this place: a good one, or one to skip whose length leads to another message or to the end.
     fn accepted(&self, at: usize, end: usize) -> Option<Message> {
         let message = self.header(at, end)?;
         if self.is_good(&message) {
@@ -249,7 +249,7 @@ impl<'a> Scan<'a> {
     }
 
     fn register(&mut self, at: usize, content: &[u8]) {
-        /// More than the longest message.
+        /// Zeros, more than the longest message has bytes.
         const NOTHING: &[u8] = &[0; 1 << 16];
         let registered = || {
             let (&[instance, low, high], name) = content.split_first_chunk()?;

@@ -1,5 +1,5 @@
-//! No form for slices may be slower than the same samples one by one: every scheme as it flies, both ways, on every
-//! channel of the recorded flights.
+//! No form for slices may be slower than the same samples one by one: every scheme as it flies, both ways, on the six
+//! channels of each recorded flight.
 
 use std::hint::black_box;
 
@@ -15,20 +15,39 @@ const MOST_ROUNDS: usize = 6 * ROUNDS;
 /// By how much a median may be off on a machine with other work: what is slower than this is looked at once more.
 const NOISE: f64 = 1.05;
 
-/// Both ways of a scheme on a channel.
+/// One way of a scheme on a flight's channels.
 pub struct Measured {
     pub name: &'static str,
     pub way: &'static str,
-    pub channel: String,
+    pub flight: String,
+    samples: usize,
+    /// The sum over the channels: slices, and single samples.
+    seconds: [f64; 2],
+}
+
+impl Measured {
     /// How many times as long single samples take.
-    pub times: f64,
-    /// Of slices, in millions a second.
-    pub samples: f64,
+    pub fn times(&self) -> f64 {
+        self.seconds[1] / self.seconds[0]
+    }
+
+    /// The speed of slices, in millions of samples a second.
+    pub fn millions(&self) -> f64 {
+        1e-6 * self.samples as f64 / self.seconds[0]
+    }
+
+    /// Adds what another channel took.
+    fn add(&mut self, other: &Self) {
+        self.samples += other.samples;
+        for (sum, seconds) in self.seconds.iter_mut().zip(other.seconds) {
+            *sum += seconds;
+        }
+    }
 }
 
 struct Slices<'a, S> {
     variants: &'a [Vec<S>],
-    channel: &'a str,
+    flight: &'a str,
     measured: Vec<Measured>,
 }
 
@@ -45,12 +64,14 @@ impl<S: Sample> Slices<'_, S> {
         if turns.ratio() * NOISE < 1.0 {
             turns = Turns::take(MOST_ROUNDS - ROUNDS, slice, each);
         }
+        // The single samples' time by the turns' ratio, as other work slows both of a turn.
+        let sliced = turns.of(0);
         self.measured.push(Measured {
             name,
             way,
-            channel: self.channel.into(),
-            times: turns.ratio(),
-            samples: 1e-6 * self.variants[0].len() as f64 / turns.of(0),
+            flight: self.flight.into(),
+            samples: self.variants[0].len(),
+            seconds: [sliced, sliced * turns.ratio()],
         });
     }
 }
@@ -124,26 +145,37 @@ impl<S: Sample> Flight for Slices<'_, S> {
 
 /// Measures every scheme in one type of samples. In whole numbers a channel fills three quarters of the type.
 pub fn every_scheme<S: Sample>(words: &str, largest: Option<f64>) -> Vec<Measured> {
-    let mut measured = Vec::new();
-    for (flight, recording) in
-        [("hexarotor", flight_data::HEXAROTOR), ("vtol_at_rest", flight_data::VTOL_AT_REST)]
-    {
-        for index in 0..6 {
-            let samples: Vec<f64> = flight_data::channel(recording, index).map(f64::from).collect();
-            let peak = samples.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
-            let unit = largest.map_or(1.0, |largest| 0.75 * largest / peak);
-            let of = |x: f64| S::from_f64(x * unit);
-            let variants = variants(&samples).into_iter();
-            let variants: Vec<Vec<S>> =
-                variants.map(|samples| samples.into_iter().map(of).collect()).collect();
-            let mut calibration = Calibration::new();
-            variants[0].iter().for_each(|&sample| calibration.observe(sample));
-            let channel = format!("{words}, {flight}, channel {index}");
-            let mut slices =
-                Slices { variants: &variants, channel: &channel, measured: Vec::new() };
-            catalogue::fly(&Channel::new(index, calibration), &mut slices).unwrap();
-            measured.append(&mut slices.measured);
-        }
-    }
-    measured
+    let flights =
+        [("hexarotor", flight_data::HEXAROTOR), ("vtol_at_rest", flight_data::VTOL_AT_REST)];
+    let channels = flights.map(|(flight, recording)| {
+        let flight = format!("{words}, {flight}");
+        let channels = (0..6).map(|index| channel::<S>(&flight, recording, index, largest));
+        let sums = channels.reduce(|mut sums, channel| {
+            sums.iter_mut().zip(&channel).for_each(|(sum, one)| sum.add(one));
+            sums
+        });
+        sums.unwrap_or_default()
+    });
+    channels.into_iter().flatten().collect()
+}
+
+/// Measures every scheme on one channel.
+fn channel<S: Sample>(
+    flight: &str,
+    recording: &[u8],
+    index: usize,
+    largest: Option<f64>,
+) -> Vec<Measured> {
+    let samples: Vec<f64> = flight_data::channel(recording, index).map(f64::from).collect();
+    let peak = samples.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
+    let unit = largest.map_or(1.0, |largest| 0.75 * largest / peak);
+    let of = |x: f64| S::from_f64(x * unit);
+    let variants = variants(&samples).into_iter();
+    let variants: Vec<Vec<S>> =
+        variants.map(|samples| samples.into_iter().map(of).collect()).collect();
+    let mut calibration = Calibration::new();
+    variants[0].iter().for_each(|&sample| calibration.observe(sample));
+    let mut slices = Slices { variants: &variants, flight, measured: Vec::new() };
+    catalogue::fly(&Channel::new(index, calibration), &mut slices).unwrap();
+    slices.measured
 }

@@ -17,7 +17,7 @@ pub struct Info {
     /// Whether its spikes have a direction.
     pub is_signed: bool,
     /// The errors of its steps, if its decoder adds up steps from a first value.
-    pub steps: Steps,
+    pub steps: StepErrors,
     /// The parameter that limits how far the decoded value can move in one sample, if one does.
     pub climbs_by: Option<&'static str>,
     /// Whether it is in the paper's first figure.
@@ -37,7 +37,7 @@ impl Info {
         words: "",
         good_for: "",
         is_signed: false,
-        steps: Steps::None,
+        steps: StepErrors::None,
         climbs_by: None,
         is_drawn: false,
         colour: [0; 3],
@@ -46,12 +46,12 @@ impl Info {
 
     /// Returns whether its decoder adds up steps from a first value.
     pub const fn has_first_value(&self) -> bool {
-        !matches!(self.steps, Steps::None)
+        !matches!(self.steps, StepErrors::None)
     }
 
     /// Returns whether the errors of its steps add up in its decoder until a keyframe comes, though every spike arrives.
     pub const fn drifts(&self) -> bool {
-        matches!(self.steps, Steps::Drifting)
+        matches!(self.steps, StepErrors::Drifting)
     }
 
     /// The parameter of this name.
@@ -62,7 +62,7 @@ impl Info {
 
 /// The errors of a code's steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Steps {
+pub enum StepErrors {
     /// The code has no steps: its decoder has no first value.
     None,
     /// The encoder holds what the decoder holds, so that the errors of steps do not add up.

@@ -24,7 +24,7 @@ pub mod toolbox;
 pub use channel::Channel;
 pub use entry::{Count, Entry, Flight};
 pub use in_c::{Argument, Flown, InC, Made};
-pub use info::{Found, Info, Kind, Paper, Parameter, Search, Steps, Unit};
+pub use info::{Found, Info, Kind, Paper, Parameter, Search, StepErrors, Unit};
 pub use signal::Scaled;
 pub use state::State;
 

@@ -6,7 +6,7 @@ pub(crate) use crate::entry::spike_of;
 pub(crate) use crate::plain::{self, Plain};
 pub(crate) use crate::{
     Argument, Channel, Count, Entry, Flight, Flown, InC, Info, Kind, Made, Paper, Parameter,
-    Scaled, Search, Steps, Unit,
+    Scaled, Search, StepErrors, Unit,
 };
 
 #[cfg(feature = "run")]

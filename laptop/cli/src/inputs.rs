@@ -1,11 +1,11 @@
-//! Where samples come from, and how events go through, as options.
+//! Options for the source of samples, and for the way of events from one format to another.
 
 use clap::Args;
 use clap::builder::{MapValueParser, PossibleValuesParser, TypedValueParser};
 use lab::input::{self, Delimiter, TimeUnit, above_zero};
 use std::path::{Path, PathBuf};
 
-/// How events go through.
+/// Options for events on their way from one format to another.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct StreamOptions {
     /// Take the first tick off all: some formats count from 0
@@ -16,7 +16,7 @@ pub(crate) struct StreamOptions {
     pub drop: bool,
 }
 
-/// Where samples come from.
+/// The recording, and the options to read it.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InputOptions {
     /// CSV table with a header, also compressed by gzip, or log: PX4's `ULog`, bag of ROS 1 or
@@ -27,7 +27,7 @@ pub(crate) struct InputOptions {
     channel: ChannelOptions,
 }
 
-/// What of a recording is read, and how.
+/// Options that choose channels of a recording, and say how they are read.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct ChannelOptions {
     /// Column of a CSV table, by name or by number from 1; `encode` takes several

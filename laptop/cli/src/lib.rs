@@ -38,7 +38,7 @@ enum Command {
     Emit(commands::emit::Emit),
 }
 
-/// As for wrong options.
+/// The exit status of a command that fails, the same as for wrong options.
 const FAILURE: u8 = 2;
 
 /// Runs the program with the arguments that it was started with.

@@ -1,4 +1,4 @@
-//! Counts while they grow, where somebody looks on.
+//! A line of counts that grow, on a terminal.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::events::Stream;
@@ -6,9 +6,9 @@ use std::fmt::Write;
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
 
-/// How often the counts are shown.
+/// The time from one display of the counts to the next.
 const PERIOD: Duration = Duration::from_millis(500);
-/// How many addresses have a rate of their own.
+/// The most addresses whose rates are shown.
 const ADDRESSES: usize = 6;
 
 /// A line of counts on standard error; nothing where that is no terminal, or where the output itself
@@ -16,7 +16,7 @@ const ADDRESSES: usize = 6;
 pub(crate) struct Live {
     line: Option<ProgressBar>,
     shown: Instant,
-    /// The count of each address when it was shown last.
+    /// The counts of the addresses at the last display.
     counts: Vec<u64>,
     bytes: u64,
 }

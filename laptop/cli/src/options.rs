@@ -201,7 +201,7 @@ fn read_value(parameter: &Parameter, text: &str) -> Result<Value, String> {
 /// The filter that asks for the taps themselves.
 pub(crate) const FREE: &str = "free";
 
-/// A name, and the schemes that have a parameter of it, with what it is there.
+/// The name of an option, and each scheme that has a parameter of this name, with that parameter.
 type Owned = (&'static str, Vec<(&'static Info, &'static Parameter)>);
 
 fn parameters(is_taken: fn(&Parameter) -> bool) -> Vec<Owned> {
@@ -217,7 +217,7 @@ fn parameters(is_taken: fn(&Parameter) -> bool) -> Vec<Owned> {
     all
 }
 
-/// `sf, mw: what it means, in the signal's unit, such as 0.1. tbr: what it means there`.
+/// The help of an option: `sf, mw: its meaning, in the signal's unit, such as 0.1. tbr: its meaning there`.
 fn help(owners: &[(&'static Info, &'static Parameter)]) -> String {
     let mut meanings: Vec<(Vec<&str>, String)> = Vec::new();
     for (info, parameter) in owners {

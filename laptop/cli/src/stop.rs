@@ -1,4 +1,4 @@
-//! Ctrl-C ends what has no end of its own, with all that it has so far kept, and leaves no half-written file of the rest.
+//! Ctrl-C: a command without an end of its own stops and keeps what it has so far; any other leaves no half-written file.
 
 use anyhow::{Context, Result};
 use lab::output::abandon;
@@ -8,15 +8,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 static IS_WANTED: AtomicBool = AtomicBool::new(false);
-/// Whether the command looks at it.
+/// Whether the command ends by itself once Ctrl-C was pressed.
 static IS_AWAITED: AtomicBool = AtomicBool::new(false);
 
-/// Handles Ctrl-C: a command that awaits it ends by itself; another, and at the second time any, ends here and now.
+/// Handles Ctrl-C: a command that has a [`Stop`] ends by itself; any other, and any at the second Ctrl-C, is ended at once.
 ///
 /// # Errors
 /// The system refuses.
 pub(crate) fn handle() -> Result<()> {
-    /// As a shell tells of a program that Ctrl-C ended.
+    /// The exit status that shells give a program that Ctrl-C ended.
     const INTERRUPTED: i32 = 130;
     ctrlc::set_handler(|| {
         if IS_WANTED.swap(true, Ordering::Relaxed) || !IS_AWAITED.load(Ordering::Relaxed) {
@@ -27,14 +27,14 @@ pub(crate) fn handle() -> Result<()> {
     Ok(())
 }
 
-/// When to stop.
+/// Tells a command that goes on for ever when to stop.
 pub(crate) struct Stop {
     start: Instant,
     after: Option<Duration>,
 }
 
 impl Stop {
-    /// On Ctrl-C, and after this many seconds if there is a number; a second Ctrl-C ends at once.
+    /// Stops on Ctrl-C, or after this many seconds if they are given; a second Ctrl-C ends the program at once.
     ///
     /// # Errors
     /// The number is not above 0.
@@ -44,7 +44,7 @@ impl Stop {
         Ok(Self { start: Instant::now(), after })
     }
 
-    /// Whether it is time.
+    /// Whether it is time to stop.
     pub(crate) fn is_due(&self) -> bool {
         IS_WANTED.load(Ordering::Relaxed)
             || self.after.is_some_and(|after| self.start.elapsed() >= after)

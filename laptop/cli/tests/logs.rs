@@ -214,8 +214,12 @@ fn bags_are_tuned_and_advised_on() {
         let tuned = ran!("tune --scheme sf --min-efficiency 10 --emit toml {channel}");
         assert!(tuned.output.contains("threshold = "), "{kind:?}: {}", tuned.output);
         let advised = ran!("advise --json --max-rmse 0.4 {channel}").json();
-        assert_eq!(advised[0]["look"]["samples"], 400, "{kind:?}: {advised:#}");
-        assert_ne!(advised[0]["reaching"], Value::Array(Vec::new()), "{kind:?}: {advised:#}");
+        assert_eq!(advised["channels"][0]["look"]["samples"], 400, "{kind:?}: {advised:#}");
+        assert_ne!(
+            advised["channels"][0]["reaching"],
+            Value::Array(Vec::new()),
+            "{kind:?}: {advised:#}"
+        );
     }
 }
 

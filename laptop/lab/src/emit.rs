@@ -1,8 +1,11 @@
 //! Sources for firmware: a constant in Rust, a file of parameters, a crate that makes the library for C.
 
+use crate::c_bank::CBank;
 use crate::coding::Coding;
 use crate::error::At;
+use crate::flight::Flight;
 use crate::output::OutputKind;
+use crate::scheme::Scheme;
 use crate::tune::RequestKind;
 use crate::tune::emit;
 use crate::{Place, Result, Spot};
@@ -41,9 +44,9 @@ fn settings(coding: &Coding) -> Result<Settings> {
 /// A codec of the library for C.
 #[derive(Clone, Debug)]
 pub struct Codec {
-    /// Its name in C: `roll` gives `sw_roll_encode`.
+    /// The codec's name in C: `roll` gives `sw_roll_encode`.
     pub name: String,
-    /// Its scheme, sample type and parameters.
+    /// The scheme, the sample type and the parameters.
     pub coding: Coding,
 }
 
@@ -66,6 +69,24 @@ pub fn c_crate(codecs: &[Codec], directory: &Path, spikewire: Option<&Path>) -> 
     write(directory, &all, spikewire).map_err(unwritten)
 }
 
+/// Writes a crate that makes the library for C of a flight's codecs, as [`c_crate`] does, and `flight_bank.h` with its bank
+/// and its writer.
+///
+/// # Errors
+/// Returns an error if the library has no such scheme or sample type, or the directory is there.
+pub fn c_flight(flight: &Flight, directory: &Path, spikewire: Option<&Path>) -> Result<()> {
+    let bank = CBank::new(flight)?;
+    let scheme = Scheme::from(flight.run_time());
+    let declared = bank.codecs().iter();
+    let declared: Vec<String> =
+        declared.map(|(name, own, constant)| declaration(name, scheme, own, constant)).collect();
+    let written = write(directory, &declared, spikewire).and_then(|()| {
+        fs::create_dir_all(directory.join("include"))?;
+        fs::write(directory.join("include/flight_bank.h"), bank.header(directory))
+    });
+    written.map_err(|error| OutputKind::Unwritten { error }.at(directory))
+}
+
 /// The declaration of a codec.
 fn declared(Codec { name, coding }: &Codec) -> Result<String> {
     let Coding { scheme, sample, asked } = coding;
@@ -83,14 +104,18 @@ fn declared(Codec { name, coding }: &Codec) -> Result<String> {
     let known = Known { calibrated: None, first: &[0.0], can_calibrate: false };
     let settings = scheme.resolve(*sample, asked, &known)?;
     scheme.codec(&settings)?; // what makes no sense is told here, not by the compiler
-    let Constant { scheme: kind, value } = scheme.constant(&settings)?;
-    let text = Coding::of_settings(*scheme, &settings).to_toml(&[]);
+    Ok(declaration(name, *scheme, &settings, &scheme.constant(&settings)?))
+}
+
+/// The declaration of a codec of this name and constant.
+fn declaration(name: &str, scheme: Scheme, settings: &Settings, constant: &Constant) -> String {
+    let Constant { scheme: kind, value } = constant;
+    let text = Coding::of_settings(scheme, settings).to_toml(&[]);
     let lines: Vec<String> = text.lines().map(|line| format!("    /// {line}\n")).collect();
-    let text = lines.concat();
-    Ok(format!(
-        "    /// {}, in {sample}.\n    ///\n{text}    {name}: {kind} {{\n        constant {value};\n    }}\n",
-        info.words
-    ))
+    let (text, words, sample) = (lines.concat(), scheme.info().words, settings.sample);
+    format!(
+        "    /// {words}, in {sample}.\n    ///\n{text}    {name}: {kind} {{\n        constant {value};\n    }}\n"
+    )
 }
 
 fn write(directory: &Path, declared: &[String], spikewire: Option<&Path>) -> io::Result<()> {
@@ -113,7 +138,7 @@ fn write(directory: &Path, declared: &[String], spikewire: Option<&Path>) -> io:
     let manifest = MANIFEST
         .replace("@NAME@", &name)
         .replace("@SPIKEWIRE@", &place("")?)
-        .replace("@C@", &place("c")?);
+        .replace("@C@", &place("bindings/c")?);
     let codecs = CODECS.replace("@CODECS@", &declared.concat());
     for (path, text) in [
         ("Cargo.toml", manifest.as_str()),

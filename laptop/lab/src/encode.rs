@@ -2,7 +2,9 @@
 
 use crate::Result;
 use crate::bank::Bank;
+use crate::coding::Coding;
 use crate::fit::{Fit, explained, rounding};
+use crate::flight::{self, Flight, Sampled};
 use crate::input::TableKind;
 use crate::input::{Chunk, Clock, InputOptions, Source};
 use crate::output::Output;
@@ -10,6 +12,23 @@ use crate::scheme::Scheme;
 use crate::spikes::{Format, Header, Record, Recorder, Summary, Writer, unrecorded};
 use crate::tune::RequestKind;
 use catalogue::run::{Asked, Calibrated, Event, Known, SET, SampleType, Settings, Words};
+
+/// Encodes the channels of a flight out of a recording, as its sender does; see [`encode`].
+///
+/// # Errors
+/// Returns an error if the recording lacks a channel, or the output is not good.
+pub fn encode_flight(
+    flight: &Flight,
+    input: &InputOptions,
+    format: Option<Format>,
+    output: impl FnOnce() -> Result<Output>,
+) -> Result<(Output, Vec<Words>)> {
+    let Coding { scheme, sample, asked } = Coding::of_flight(flight);
+    let input = flight::input(flight, input);
+    let open =
+        || -> Result<Box<dyn Source + '_>> { Ok(Box::new(Sampled::new(flight, input.open()?)?)) };
+    encode_from(&open, &input, (scheme, sample, &asked), format, output)
+}
 
 /// Encodes channels of a recording into an output, which is opened once all else is known to be good. Without a format
 /// it is a table. Returns the output, to be finished, and what a user should know, a line each.
@@ -24,6 +43,20 @@ pub fn encode(
     format: Option<Format>,
     output: impl FnOnce() -> Result<Output>,
 ) -> Result<(Output, Vec<Words>)> {
+    let open = || input.open().map(|own| -> Box<dyn Source> { own });
+    encode_from(&open, input, (scheme, sample, parameters), format, output)
+}
+
+/// Opens a recording at its start.
+type Open<'a> = dyn Fn() -> Result<Box<dyn Source + 'a>> + 'a;
+
+fn encode_from(
+    open: &Open<'_>,
+    input: &InputOptions,
+    (scheme, sample, parameters): (Scheme, SampleType, &Asked),
+    format: Option<Format>,
+    output: impl FnOnce() -> Result<Output>,
+) -> Result<(Output, Vec<Words>)> {
     parameters.check(scheme.info())?;
     if format.is_some() && input.is_stdin() {
         return Err(RequestKind::RangeAtEnd.into());
@@ -33,10 +66,10 @@ pub fn encode(
         Some(needs) if input.is_stdin() => {
             return Err(RequestKind::ReadOnce { scheme: scheme.name(), needs }.into());
         }
-        Some(_) => Some(calibrate(input, sample)?),
+        Some(_) => Some(calibrate(open, sample)?),
     };
 
-    let mut source = input.open()?;
+    let mut source = open()?;
     let mut chunk = first(source.as_mut(), scheme.looks_back(parameters))?;
     let mut clock = Clock::new(&chunk.times, input.rate, input.gap);
     let rows = chunk.finite_rows();
@@ -70,7 +103,7 @@ pub fn encode(
     let mut writer: Box<dyn Record> = match format {
         None => Box::new(Writer::new(output, &header, is_timed)?),
         Some(format) => {
-            let calibrated = calibrated.map_or_else(|| calibrate(input, sample), Ok)?;
+            let calibrated = calibrated.map_or_else(|| calibrate(open, sample), Ok)?;
             let ranges: Vec<_> = calibrated.iter().filter_map(Calibrated::range).collect();
             Box::new(Recorder::new(output, format, &header, is_timed, &ranges)?)
         }
@@ -114,7 +147,7 @@ pub fn encode(
     Ok((output, notes))
 }
 
-/// The first samples: at least so many finite ones, or all there are.
+/// The first samples: `enough` finite ones or more, or all if there are fewer.
 fn first(source: &mut dyn Source, enough: usize) -> Result<Chunk> {
     let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
     let mut finite = 0;
@@ -133,9 +166,9 @@ fn first(source: &mut dyn Source, enough: usize) -> Result<Chunk> {
 ///
 /// # Errors
 /// Returns an error if the input cannot be read.
-fn calibrate(input: &InputOptions, sample: SampleType) -> Result<Vec<Calibrated>> {
+fn calibrate(open: &Open<'_>, sample: SampleType) -> Result<Vec<Calibrated>> {
     let mut calibrated = Vec::new();
-    let (mut source, mut chunk) = (input.open()?, Chunk::default());
+    let (mut source, mut chunk) = (open()?, Chunk::default());
     loop {
         source.next(&mut chunk)?;
         if chunk.is_empty() {

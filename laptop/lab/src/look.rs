@@ -45,7 +45,7 @@ pub struct Look {
     pub verdict: Verdict,
 }
 
-/// Whether there is something to tune on.
+/// The judgement of a channel: worth tuning on, or why not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -171,8 +171,8 @@ fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|own| (own - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// From second differences, which a slow signal does not have and white noise has √6 times as large: those of the
-/// quietest tenth of the windows.
+/// The deviation of the noise, from second differences, which are near 0 in a slow signal and √6 times the noise in white
+/// noise: their mean over the quietest tenth of the windows.
 fn noise(values: &[f64]) -> f64 {
     let of = |window: &[f64]| {
         let second = window.windows(3).map(|own| (own[0] - 2.0 * own[1] + own[2]).powi(2));

@@ -61,7 +61,7 @@ impl Port {
         Ok(Self { bytes, name, is_file: true })
     }
 
-    /// Its name, for errors.
+    /// The source's name, for errors.
     pub fn name(&self) -> &str {
         &self.name
     }

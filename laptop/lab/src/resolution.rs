@@ -124,8 +124,8 @@ impl Resolution {
         finest.into_iter().flatten().find(|own| self.is_fine(own.step()))
     }
 
-    /// Whether rounding to steps of this length leaves the column's own. Two values are off by a third of it on average, or
-    /// somewhat more.
+    /// Whether the column's own steps survive rounding to steps of this length, which moves two values by a third of it or
+    /// somewhat more on average.
     fn is_fine(&self, step: f64) -> bool {
         step / 2.0 * self.steps as f64 <= PART * self.moved
     }
@@ -162,7 +162,7 @@ mod tests {
         assert!(lost("q8.8", |sample| 100.0 * fine(sample)).is_empty());
     }
 
-    /// What is named holds the column's steps, for columns of any size and step.
+    /// The sample type that is named holds the column's steps, for columns of any size and step.
     #[test]
     fn a_type_that_is_named_holds_the_steps() {
         for offset in [0.0, 3.7, 250.0, 4e4, 1e6, 3e8, 2e9, 7e12] {

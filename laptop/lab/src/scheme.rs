@@ -14,7 +14,7 @@ impl Scheme {
         catalogue::ALL.iter().map(|scheme| Self(*scheme))
     }
 
-    /// The scheme that options and files call so.
+    /// Returns the scheme of this name in options and files.
     pub fn named(name: &str) -> Option<Self> {
         Self::all().find(|scheme| scheme.name() == name)
     }

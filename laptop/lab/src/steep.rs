@@ -14,9 +14,9 @@ pub struct Steep {
     scheme: &'static str,
     /// Whether no step from sample to sample is larger than the threshold.
     follows: bool,
-    /// How many are.
+    /// The number of steps that are larger.
     steps_above_threshold: usize,
-    /// The part of the samples that they are.
+    /// That number as a part of the samples.
     part: f64,
     /// Threshold times rate, or the threshold where no rate is known.
     fastest: f64,

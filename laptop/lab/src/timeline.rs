@@ -23,7 +23,7 @@ impl Timeline {
         }
     }
 
-    /// How many times are known of samples that were not asked for.
+    /// The number of times that are known and were not asked for yet.
     pub fn ahead(&self) -> usize {
         self.ahead.len()
     }

@@ -12,7 +12,7 @@ use std::ops::Range;
 
 /// A recording in memory.
 pub struct Recording {
-    /// Its finite samples.
+    /// The finite samples.
     pub values: Vec<f64>,
     /// Their times in µs, if recorded. Where the clock started anew, a segment follows the one before it after a usual step.
     pub times: Vec<i64>,
@@ -87,6 +87,28 @@ impl Recording {
                 })
             })
             .collect()
+    }
+
+    /// This recording with a function of each sample in its place, which starts anew in each segment.
+    #[must_use]
+    pub fn filtered<F: FnMut(f64) -> f64>(&self, mut start: impl FnMut() -> F) -> Self {
+        let mut values = self.values.clone();
+        for segment in &self.segments {
+            let mut filter = start();
+            for value in values.get_mut(segment.clone()).into_iter().flatten() {
+                *value = filter(*value);
+            }
+        }
+        Self {
+            values,
+            times: self.times.clone(),
+            segments: self.segments.clone(),
+            rate: self.rate,
+            name: self.name.clone(),
+            rejected: self.rejected,
+            clock: self.clock.clone(),
+            notes: self.notes.clone(),
+        }
     }
 
     /// Notes for the user on the recording.

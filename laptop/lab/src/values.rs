@@ -7,7 +7,7 @@ use crate::tune::RequestKind;
 use catalogue::for_sample_type;
 use catalogue::run::{SampleType, Settings, Visit};
 use spikewire::link::{Received, Receiver};
-use spikewire::{Recovery, Sample, SampleKind, Scheme, Spike, Tick};
+use spikewire::{Fingerprint, Recovery, Sample, SampleKind, Scheme, Spike, Tick};
 use std::any::Any;
 
 /// The most channels of a code of one neuron.
@@ -22,6 +22,21 @@ const EVENTS: usize = 1 << 14;
 /// A function that uses a receiver.
 type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 
+/// What a sender has beside its schemes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Link {
+    /// The length of its sub-timesteps in µs, if it has some.
+    pub slot_ticks: Option<u32>,
+    /// The fingerprint of the filter before its schemes, if there is one.
+    pub filter: Option<Fingerprint>,
+}
+
+impl From<Option<u32>> for Link {
+    fn from(slot_ticks: Option<u32>) -> Self {
+        Self { slot_ticks, filter: None }
+    }
+}
+
 /// Makes a receiver with these settings, one for each channel, or one for all, and passes it to `then`.
 ///
 /// # Errors
@@ -30,11 +45,12 @@ pub fn with_receiver<'a>(
     scheme: Chosen,
     sample: SampleType,
     settings: &'a [Settings],
-    slot_ticks: Option<u32>,
+    link: impl Into<Link>,
     then: impl FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a,
 ) -> Result<()> {
     let first = settings.first().ok_or(RequestKind::NoChannel)?;
-    let visitor = Receive { scheme, sample, settings, slot_ticks, then: Box::new(then) };
+    let link = link.into();
+    let visitor = Receive { scheme, sample, settings, link, then: Box::new(then) };
     for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.name(), first, visitor))?
 }
 
@@ -42,7 +58,7 @@ struct Receive<'a> {
     scheme: Chosen,
     sample: SampleType,
     settings: &'a [Settings],
-    slot_ticks: Option<u32>,
+    link: Link,
     then: Then<'a>,
 }
 
@@ -69,23 +85,26 @@ impl<S: Sample> Visit<S> for Receive<'_> {
 impl Receive<'_> {
     /// Makes a receiver of `N` channels for this scheme.
     fn receive<P: Scheme + 'static, const N: usize, const EVENTS: usize>(self) -> Result<()> {
-        let Self { scheme, sample, settings, slot_ticks, then } = self;
+        let Self { scheme, sample, settings, link: Link { slot_ticks, filter }, then } = self;
         if settings.len() > N {
             let (channels, scheme) = (settings.len(), scheme.name());
             return Err(RequestKind::Channels { channels, scheme, most: N }.into());
         }
         let mut started = Vec::new();
-        for own in settings {
+        // The last one stands beyond the channels that were given.
+        let beyond = settings.first().filter(|_| settings.len() > 1);
+        for (place, own) in settings.iter().chain(beyond).enumerate() {
             let built = catalogue::visit::<P::Sample, _>(scheme.name(), own, Boxed)?;
             let start = own.first_value().map(|start| P::Sample::from_f64(start * sample.one()));
             let Ok(scheme) = built.downcast::<P>() else {
                 return Err(RequestKind::Differ.into());
             };
-            started.push(Started { scheme: *scheme, start });
+            started.push(Started { scheme: *scheme, is_given: place < settings.len(), start });
         }
-        let first = started.first().ok_or(RequestKind::NoChannel)?;
-        let channels = if started.len() == 1 { N } else { started.len() };
-        let schemes = std::array::from_fn(|channel| started.get(channel).unwrap_or(first));
+        let last = started.last().ok_or(RequestKind::NoChannel)?;
+        let given = started.get(..settings.len()).unwrap_or_default();
+        let channels = if given.len() == 1 { N } else { given.len() };
+        let schemes = std::array::from_fn(|channel| given.get(channel).unwrap_or(last));
         let mut receiver = Receiver::<_, N, EVENTS>::per_channel(schemes);
         if let Some(length) = slot_ticks {
             receiver = receiver.with_slot_ticks(length);
@@ -93,15 +112,18 @@ impl Receive<'_> {
         then(Box::new(Receiving {
             receiver,
             channels,
-            neurons: first.neurons(),
+            neurons: last.neurons(),
             has_fired: [P::RECOVERY == Recovery::Keyframe; N],
             end: None,
             unused_keyframes: 0,
             one: sample.one(),
             kind: kind(sample),
             outside: 0,
-            are_held: scheme.info().climbs_by.is_some(),
-            held: Held::default(),
+            slot_ticks: slot_ticks.unwrap_or(0),
+            schemes: given
+                .iter()
+                .map(|own| filter.map_or(own.fingerprint(), |filter| filter.and(own.fingerprint())))
+                .collect(),
             has_exact: false,
             decoded: Vec::new(),
         }))
@@ -135,6 +157,8 @@ fn kind(sample: SampleType) -> SampleKind {
 /// A scheme whose decoders start from a given value. Only the decoding half is of use.
 struct Started<P: Scheme> {
     scheme: P,
+    /// Whether there is such a channel; false for what stands in its place beyond the last one.
+    is_given: bool,
     start: Option<P::Sample>,
 }
 
@@ -147,6 +171,14 @@ impl<P: Scheme> Scheme for Started<P> {
 
     const LATENCY: usize = P::LATENCY;
     const RECOVERY: Recovery = P::RECOVERY;
+
+    fn fingerprint(&self) -> Fingerprint {
+        self.scheme.fingerprint()
+    }
+
+    fn holds_keyframes(&self) -> bool {
+        self.is_given && self.scheme.holds_keyframes()
+    }
 
     fn encode(&self, state: &mut P::EncoderState, sample: P::Sample) -> P::Output {
         self.scheme.encode(state, sample)
@@ -206,9 +238,10 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     kind: SampleKind,
     /// Number of events outside, beside those that the receiver counts.
     outside: u64,
-    /// Whether keyframes are what a decoder holds already.
-    are_held: bool,
-    held: Held,
+    /// The length of a sub-timestep in µs, or 0.
+    slot_ticks: u32,
+    /// The fingerprint of each channel's scheme, or of the one of all channels, however many the sender has.
+    schemes: Vec<Fingerprint>,
     /// Whether a value was exact.
     has_exact: bool,
     decoded: Vec<(u16, Tick, P::Sample)>,
@@ -272,20 +305,16 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// Compares keyframes with what their channels hold before them, where that is exact.
-    fn compare(&mut self, received: &Received<'_>) {
-        if received.is_after_break() {
-            return;
-        }
-        for keyframe in received.frame.keyframes() {
-            let known = self.receiver.exact(keyframe.address); // of a code of one neuron
-            let told = keyframe.value::<P::Sample>();
-            if let (Some(value), Some(told)) = (known, told)
-                && usize::from(keyframe.address) < self.channels
-            {
-                self.held.compared += 1;
-                self.held.contradicted += u64::from(value.to_bits32() != told.to_bits32());
+    /// The fingerprint that a sender of these channels has, in its own sample type: that of as many channels as make it
+    /// the sender's where one scheme is given for all.
+    fn fingerprint(&self, sender: Fingerprint) -> Fingerprint {
+        let of = |schemes: &[_]| Fingerprint::of_bank(self.kind, 0, self.slot_ticks, schemes);
+        match *self.schemes {
+            [scheme] => {
+                let mut any = (1..=N).map(|channels| of(&vec![scheme; channels]));
+                any.find(|own| *own == sender).unwrap_or_else(|| of(&[scheme]))
             }
+            _ => of(&self.schemes),
         }
     }
 }
@@ -293,8 +322,11 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
 impl<P: Scheme, const N: usize, const EVENTS: usize> Values for Receiving<'_, P, N, EVENTS> {
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>) {
         let received = &self.in_our_type(received);
-        if self.are_held {
-            self.compare(received);
+        if let Some(sender) = received.frame.fingerprint() {
+            let own = self.fingerprint(sender);
+            if own != self.receiver.fingerprint() {
+                self.receiver = self.receiver.clone().with_fingerprint(own);
+            }
         }
         let keyframes = received.frame.keyframes().filter(|keyframe| {
             usize::from(keyframe.address) < N * self.neurons
@@ -329,7 +361,8 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Values for Receiving<'_, P,
         tally.outside = self.outside + u64::from(self.receiver.outside());
         tally.misfits = u64::from(self.receiver.misfits()).saturating_sub(self.unused_keyframes);
         tally.unused_keyframes = self.unused_keyframes;
-        tally.held = self.held;
+        let (compared, contradicted) = (self.receiver.compared(), self.receiver.contradicted());
+        tally.held = Held { compared: compared.into(), contradicted: contradicted.into() };
         let heard = self.has_fired.iter().position(|has_fired| *has_fired).unwrap_or(0);
         let is_heard = tally.frames > 0 && !self.has_exact;
         tally.withheld = self.receiver.withheld(heard as u16).filter(|_| is_heard);

@@ -13,7 +13,7 @@ impl Watch<'_> {
     pub const NONE: Watch<'static> = Watch { is_stopped: &|| false, tell: &|_| () };
 }
 
-/// How far long work is.
+/// The progress of long work.
 #[derive(Clone, Debug, Default)]
 pub struct Progress {
     /// Units of work done, such as settings tried.

@@ -1,8 +1,8 @@
 //! Partition: looks up the cell in which a value lies.
 
 use super::count_preceding;
-use crate::Sample;
 use crate::num::{EvenBins, bin_of, even_bins, from_f64, units};
+use crate::{Fingerprint, Sample};
 
 /// `C` cells that cover the line of values, 2 to 1024, each of which stands for a value.
 ///
@@ -116,6 +116,13 @@ impl<S: Sample, const C: usize> Partition<S, C> {
     #[inline]
     fn edges(&self) -> &[S] {
         self.edges.get(..C - 1).unwrap_or_default()
+    }
+
+    /// The name of a scheme, and these cells, of which it has `count`.
+    pub(in crate::scheme) fn named(&self, name: &str, count: usize) -> Fingerprint {
+        let values = self.values.get(..count).unwrap_or_default();
+        let edges = self.edges.get(..count.saturating_sub(1)).unwrap_or_default();
+        Fingerprint::new(name).samples(values).samples(edges)
     }
 
     /// What a cell stands for; cells are counted from 0.

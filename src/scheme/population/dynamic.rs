@@ -13,7 +13,7 @@ use crate::error::{positive, within};
 use crate::num::{DoubleDouble, EvenBins, reach};
 use crate::scheme::cells::number_by_search;
 use crate::scheme::held::{Held, hold_value};
-use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
+use crate::{ConfigError, Encoder, Fingerprint, Recovery, Sample, Scheme};
 
 /// The most neurons of a population.
 pub const NEURONS: usize = 1024;
@@ -156,6 +156,10 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Spike;
 
+    fn fingerprint(&self) -> Fingerprint {
+        Fingerprint::new("Position").samples(&self.centres).samples(&self.edges)
+    }
+
     fn encode(&self, state: &mut PositionState, sample: S) -> Option<Neuron<M>> {
         if !sample.is_finite() {
             state.tally.reject();
@@ -196,6 +200,7 @@ struct Tables<S: Sample> {
     centres: Vec<S>,
     min: S,
     max: S,
+    beta: f32,
     bins: EvenBins,
     near: [S; 2],
     reaches: Vec<S::Reach>,
@@ -213,11 +218,11 @@ impl<S: Sample> Tables<S> {
         let Position { centres, .. } = Position::<S, M>::try_linear(neurons, range)?;
         let mut reaches = vec![reach::<S>(DoubleDouble::ZERO, neurons); levels];
         let (bins, near) = tables::<S>(neurons, range, beta, &mut reaches);
-        Ok(Self { centres, min: *range.start(), max: *range.end(), bins, near, reaches })
+        Ok(Self { centres, min: *range.start(), max: *range.end(), beta, bins, near, reaches })
     }
 
     fn fields(&self) -> Fields<'_, S> {
-        let Self { centres, min, max, bins, near, reaches } = self;
+        let Self { centres, min, max, bins, near, reaches, .. } = self;
         Fields { centres, reaches, min: *min, max: *max, bins: *bins, near: *near }
     }
 }
@@ -279,6 +284,10 @@ impl<S: Sample, const M: usize> Scheme for Slots<S, M> {
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Spike;
 
+    fn fingerprint(&self) -> Fingerprint {
+        self.fields.fields().named("Slots", self.fields.beta).number(self.floor.into())
+    }
+
     fn encode(&self, state: &mut SlotsState, sample: S) -> SlotSpikes<M, LEVELS> {
         let mut spikes = SlotSpikes::EMPTY;
         if sample.is_finite() {
@@ -327,7 +336,7 @@ mod random {
 
     use super::{LEVELS, NEURONS, Tables, hold_value, middle};
     use crate::population::{FiredNeurons, Held, ProbabilisticState};
-    use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
+    use crate::{ConfigError, Encoder, Fingerprint, Recovery, Sample, Scheme};
 
     /// [`population::Probabilistic`](crate::population::Probabilistic) with any number of neurons, up to
     /// `M`.
@@ -378,6 +387,10 @@ mod random {
 
         const LATENCY: usize = 0;
         const RECOVERY: Recovery = Recovery::Spike;
+
+        fn fingerprint(&self) -> Fingerprint {
+            self.fields.fields().named("Probabilistic", self.fields.beta)
+        }
 
         fn encode(&self, state: &mut ProbabilisticState<G>, sample: S) -> FiredNeurons<M> {
             let mut neurons = FiredNeurons::EMPTY;

@@ -12,7 +12,7 @@ use super::{Held, NeuronSlots, SlotsState};
 use crate::error::{positive, within};
 use crate::num::{scale, widths};
 use crate::scheme::held::hold_value;
-use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
+use crate::{ConfigError, Encoder, Fingerprint, Recovery, Sample, Scheme};
 
 /// [`population::NonLinearSlots`](crate::population::NonLinearSlots) with any number of neurons, up to `M`, and of
 /// slots.
@@ -121,6 +121,10 @@ impl<S: Sample, const M: usize> Scheme for NonLinearSlots<S, M> {
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Spike;
+
+    fn fingerprint(&self) -> Fingerprint {
+        self.fields().fingerprint()
+    }
 
     fn encode(&self, state: &mut SlotsState, sample: S) -> NeuronSlots<M, LEVELS> {
         let mut spikes = NeuronSlots::EMPTY;

@@ -11,7 +11,7 @@ use super::{Held, SlotSpikes, SlotsState};
 use crate::error::within;
 use crate::scheme::cells::number_by_search;
 use crate::scheme::held::hold_value;
-use crate::{ConfigError, Encoder, Recovery, Sample, Scheme};
+use crate::{ConfigError, Encoder, Fingerprint, Recovery, Sample, Scheme};
 
 use super::centres::even;
 
@@ -93,6 +93,10 @@ impl<S: Sample, const M: usize> Scheme for RankOrder<S, M> {
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Spike;
+
+    fn fingerprint(&self) -> Fingerprint {
+        self.ranks().fingerprint(self.spikes)
+    }
 
     fn encode(&self, state: &mut SlotsState, sample: S) -> SlotSpikes<M, LEVELS> {
         let mut spikes = SlotSpikes::EMPTY;

@@ -11,7 +11,7 @@ use crate::error::positive;
 use crate::num::curve::ln;
 use crate::num::{Distance, DoubleDouble, EvenBins, bin_of, even_bins, near, reach, top, units};
 use crate::scheme::cells::count_preceding;
-use crate::{ConfigError, Sample};
+use crate::{ConfigError, Fingerprint, Sample};
 
 /// Receptive fields of `M` neurons, 3 to 1024, whose responses to a value are rounded to `N` levels, 2 to 256.
 ///
@@ -135,6 +135,10 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
         &self.centres
     }
 
+    pub(super) const fn beta(&self) -> f32 {
+        self.beta
+    }
+
     /// The fields without their sizes.
     #[allow(clippy::inline_always)] // lengths of arrays stay known
     #[inline(always)]
@@ -174,6 +178,12 @@ pub(super) struct Fields<'f, S: Sample> {
 }
 
 impl<'f, S: Sample> Fields<'f, S> {
+    /// The name of a scheme, and its fields.
+    pub(super) fn named(&self, name: &str, beta: f32) -> Fingerprint {
+        let ends = Fingerprint::new(name).samples(self.centres).sample(self.min).sample(self.max);
+        ends.sample(beta).number(self.reaches.len() as u32)
+    }
+
     pub(super) fn middle(&self) -> S {
         self.centres.get(self.centres.len() / 2).copied().unwrap_or(S::ZERO)
     }

@@ -9,7 +9,7 @@ use crate::error::{offset, positive, unwrap, within};
 use crate::num::{scale, to_f64, widths, within_widths};
 use crate::scheme::cells::count_preceding;
 use crate::scheme::held::hold_value;
-use crate::{ConfigError, Destination, Recovery, Sample, SampleKind, Scheme, Start};
+use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, SampleKind, Scheme, Start};
 
 /// Non-linear Gaussian receptive fields whose neurons fire in one of `N` sub-timesteps of a sample, its slots.
 ///
@@ -287,6 +287,23 @@ pub(super) struct Fields<'f, S: Sample> {
 }
 
 impl<S: Sample> Fields<'_, S> {
+    pub(super) fn fingerprint(&self) -> Fingerprint {
+        let centres = Fingerprint::new("NonLinearSlots").samples(self.centres);
+        let scales = self
+            .scales
+            .iter()
+            .fold(centres.number(self.scales.len() as u32), |description, scale| {
+                description.bytes(bytemuck::bytes_of(scale))
+            });
+        let reaches = self
+            .reaches
+            .iter()
+            .fold(scales.number(self.reaches.len() as u32), |description, &reach| {
+                description.number(reach)
+            });
+        reaches.number(self.radii.len() as u32)
+    }
+
     /// Sets the slot, counted from 1, of each neuron that reaches the floor; the others stay 0.
     #[inline]
     pub(super) fn respond(&self, sample: S, slots: &mut [u16]) {
@@ -339,6 +356,10 @@ impl<S: Sample, const M: usize, const N: usize> Scheme for NonLinearSlots<S, M, 
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Spike;
+
+    fn fingerprint(&self) -> Fingerprint {
+        self.fields().fingerprint()
+    }
 
     #[inline]
     fn encode(&self, state: &mut SlotsState, sample: S) -> NeuronSlots<M, N> {

@@ -8,7 +8,7 @@ use crate::error::unwrap;
 use crate::num::Tally;
 use crate::scheme::codec::decode_copied;
 use crate::scheme::held::{Held, hold_value};
-use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Start};
+use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Start};
 
 /// Position coding: every sample fires the one neuron whose centre is nearest.
 ///
@@ -172,6 +172,10 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Spike;
+
+    fn fingerprint(&self) -> Fingerprint {
+        self.centres.named("Position", M)
+    }
 
     #[inline]
     fn encode(&self, state: &mut PositionState, sample: S) -> Option<Neuron<M>> {

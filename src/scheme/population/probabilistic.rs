@@ -11,7 +11,7 @@ use super::fields::{Fields, ReceptiveFields};
 use crate::error::unwrap;
 use crate::num::{Distance, Tally};
 use crate::scheme::held::{Held, hold_value};
-use crate::{ConfigError, Destination, Encoder, Recovery, Sample, Scheme};
+use crate::{ConfigError, Destination, Encoder, Fingerprint, Recovery, Sample, Scheme};
 
 /// Gaussian receptive fields in which a neuron fires with a probability equal to its response, drawn from the
 /// caller's random number generator.
@@ -214,6 +214,10 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Scheme for Probabilistic
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Spike;
+
+    fn fingerprint(&self) -> Fingerprint {
+        self.fields.fields().named("Probabilistic", self.fields.beta())
+    }
 
     #[inline]
     fn encode(&self, state: &mut ProbabilisticState<G>, sample: S) -> FiredNeurons<M> {

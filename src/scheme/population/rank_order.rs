@@ -7,7 +7,7 @@ use super::{Held, SlotSpikes, SlotsState};
 use crate::error::{offset, unwrap};
 use crate::num::{from_f64, to_f64};
 use crate::scheme::held::hold_value;
-use crate::{ConfigError, Destination, Recovery, Sample, SampleKind, Scheme, Start};
+use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, SampleKind, Scheme, Start};
 
 /// Rank order coding: the `K` neurons of `M` whose centres are nearest fire one after the other, the nearest first.
 ///
@@ -202,6 +202,11 @@ pub(super) struct Ranks<'r, S> {
 }
 
 impl<S: Sample> Ranks<'_, S> {
+    pub(super) fn fingerprint(&self, spikes: usize) -> Fingerprint {
+        let centres = Fingerprint::new("RankOrder").samples(self.centres);
+        centres.sample(self.min).sample(self.max).number(spikes as u32)
+    }
+
     /// The value of the range that is nearest to a sample.
     #[inline]
     pub(super) fn within(&self, sample: S) -> S {
@@ -335,6 +340,10 @@ impl<S: Sample, const M: usize, const K: usize> Scheme for RankOrder<S, M, K> {
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Spike;
+
+    fn fingerprint(&self) -> Fingerprint {
+        self.ranks().fingerprint(K)
+    }
 
     #[inline]
     fn encode(&self, state: &mut SlotsState, sample: S) -> SlotSpikes<M, K> {

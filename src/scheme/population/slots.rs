@@ -7,7 +7,7 @@ use super::fields::{Fields, ReceptiveFields};
 use crate::error::{unwrap, within};
 use crate::num::{Distance, Tally};
 use crate::scheme::held::{Held, hold_value};
-use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Start};
+use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Start};
 
 /// Gaussian receptive fields whose neurons fire in one of `N` sub-timesteps of a sample, its slots.
 ///
@@ -209,6 +209,10 @@ impl<S: Sample, const M: usize, const N: usize> Scheme for Slots<S, M, N> {
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Spike;
+
+    fn fingerprint(&self) -> Fingerprint {
+        self.fields.fields().named("Slots", self.fields.beta()).number(self.floor.into())
+    }
 
     #[inline]
     fn encode(&self, state: &mut SlotsState, sample: S) -> SlotSpikes<M, N> {

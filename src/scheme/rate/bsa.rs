@@ -6,7 +6,7 @@ use super::encoder::{RateState, Rule, rate_scheme};
 use super::filtered::{Filtered, with_shift};
 use crate::error::{not_negative, ratio, unwrap};
 use crate::num::{Bound, Nearer, Ratio, to_f64};
-use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// Ben's spiker algorithm, as published: errors and subtraction aligned with the sample.
 ///
@@ -137,6 +137,14 @@ impl<S: Sample, const F: usize> Bsa<S, F> {
 impl<S: Sample, const F: usize> Rule<S, F> for Bsa<S, F> {
     const IN_ORDER: bool = false;
     const KEEPS_A_SUM: bool = true;
+
+    fn fingerprint(&self) -> Fingerprint {
+        let name = Fingerprint::new("Bsa");
+        match self.limit {
+            Limit::Subtractive(threshold) => name.number(0).sample(threshold),
+            Limit::Multiplicative(ratio) => name.number(1).sample(ratio.factor()),
+        }
+    }
 
     #[inline(always)]
     fn filtered(&self) -> &Filtered<S, F> {

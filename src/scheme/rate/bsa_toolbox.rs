@@ -7,7 +7,7 @@ use super::encoder::{cells, subtract};
 use super::filtered::{Filtered, with_shift};
 use crate::error::{ratio, unwrap};
 use crate::num::{Nearer, Ratio, Residual, Tally};
-use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// Ben's spiker algorithm with the indices behind the paper's tables: the filter is compared one sample later, and
 /// subtracted two samples later, than in [`Bsa`](super::Bsa).
@@ -154,6 +154,14 @@ impl<S: Sample, const F: usize> Scheme for BsaToolbox<S, F> {
 
     const LATENCY: usize = F;
     const RECOVERY: Recovery = Recovery::Samples(F);
+
+    fn fingerprint(&self) -> Fingerprint {
+        let Filtered { taps, shift } = &self.filtered;
+        Fingerprint::new("BsaToolbox")
+            .sample(self.ratio.factor())
+            .samples(taps.as_array())
+            .sample(*shift)
+    }
 
     #[inline]
     fn encode(&self, state: &mut BsaToolboxState<S, F>, sample: S) -> Option<Spike> {

@@ -11,7 +11,7 @@ use crate::{Sample, Spike};
 /// - **Range:** the sum takes the oldest spike first, one rounding each in `f32`; fixed point is
 ///   exact and saturates at the type's ends.
 /// - **Work:** one addition a tap for a sample with a spike, two operations for a sample without. Long slices on a core
-///   with vectors take every tap for every sample, many samples at once.
+///   with vectors take every tap for every sample where spikes are dense, many samples at once.
 /// - **Memory:** `4 F + 4` bytes in `f32`.
 /// - **Loss:** a lost spike is forgotten after `F` samples, so a rate decoder needs no keyframes.
 ///
@@ -63,9 +63,7 @@ impl<S: Sample, const F: usize> RateDecoderState<S, F> {
 
     /// Decodes panel after panel, and returns how many values that made.
     ///
-    /// Each value is the sum that [`decode`](Self::decode) makes, in its order: all values of a panel take the
-    /// filter's last tap, then the tap before it, and so on. Without a spike they add 0, which changes no sum, as none
-    /// is -0.
+    /// Each value is the sum that [`decode`](Self::decode) makes, in its order: that of the spikes.
     fn decode_panels(
         &mut self,
         filtered: &Filtered<S, F>,
@@ -80,7 +78,13 @@ impl<S: Sample, const F: usize> RateDecoderState<S, F> {
         while let Some(values) = values.get_mut(done..).and_then(<[S]>::first_chunk_mut::<PANEL>)
             && let Some(spikes) = spikes.get(done - past..done + PANEL)
         {
-            for (value, sum) in values.iter_mut().zip(sums::<S>(filtered.taps.as_array(), spikes)) {
+            let taps = filtered.taps.as_array();
+            let sums = if fired(spikes) < FEW {
+                sums_of_few::<S, F>(taps, spikes)
+            } else {
+                sums::<S>(taps, spikes)
+            };
+            for (value, sum) in values.iter_mut().zip(sums) {
                 *value = filtered.shift.restore(sum);
             }
             done += PANEL;
@@ -101,7 +105,40 @@ const BLOCK: usize = 48;
 /// Of how many taps the spikes are looked up at once.
 const GROUP: usize = 16;
 
+/// For fewer spikes in a panel, adding the filter of each is quicker than every tap.
+const FEW: u8 = (PANEL / 8) as u8;
+
+/// How many spikes the panel has, at the end of `spikes`; in bytes, of which a vector register holds most.
+#[inline]
+fn fired(spikes: &[impl Copy + Into<Spike>]) -> u8 {
+    let panel = spikes.last_chunk::<PANEL>().into_iter().flatten();
+    panel.fold(0, |fired, &spike| fired.wrapping_add(u8::from(spike.into() == Spike::Up)))
+}
+
+/// The sums of a panel, spike after spike.
+#[inline]
+fn sums_of_few<S: Sample, const F: usize>(
+    taps: &[S; F],
+    spikes: &[impl Copy + Into<Spike>],
+) -> [S::Residual; PANEL] {
+    let mut sums = [S::Residual::ZERO; PANEL];
+    for (at, &spike) in spikes.iter().enumerate() {
+        if spike.into() == Spike::Up {
+            // The spikes before the panel reach into it with their last taps.
+            let taps = taps.get((F - 1).saturating_sub(at)..).unwrap_or_default();
+            let sums = sums.get_mut(at.saturating_sub(F - 1)..).unwrap_or_default();
+            for (sum, tap) in sums.iter_mut().zip(taps) {
+                *sum = sum.plus(tap.widen());
+            }
+        }
+    }
+    sums
+}
+
 /// The sums of a panel. `spikes` are the panel's, and before them one less than there are taps.
+///
+/// All values take the filter's last tap, then the tap before it, and so on. Without a spike they add 0, which changes
+/// no sum, as none is -0.
 #[inline]
 fn sums<S: Sample>(taps: &[S], mut spikes: &[impl Copy + Into<Spike>]) -> [S::Residual; PANEL] {
     let mut sums = [S::Residual::ZERO; PANEL];

@@ -10,7 +10,7 @@ use super::filter::magnitude;
 use super::{Criterion, bsa, bsa_toolbox, hough, threshold_hough};
 use crate::error::{offset, ratio, within};
 use crate::num::{Nearer, Ratio, Residual, Tally, to_f64};
-use crate::{ConfigError, Encoder, Recovery, Sample, Scheme, Spike};
+use crate::{ConfigError, Encoder, Fingerprint, Recovery, Sample, Scheme, Spike};
 
 /// The most taps of a filter.
 pub const LONGEST: usize = 4096;
@@ -214,6 +214,10 @@ impl<S: Sample, R: Rule<S, 1>> Scheme for Rate<S, R> {
     const LATENCY: usize = LONGEST - 1;
     const RECOVERY: Recovery = Recovery::Samples(LONGEST);
 
+    fn fingerprint(&self) -> Fingerprint {
+        self.rule.fingerprint().samples(self.taps.as_slice()).sample(self.shift)
+    }
+
     fn encode(&self, state: &mut RateState<S>, sample: S) -> Option<Spike> {
         if !sample.is_finite() {
             state.tally.reject();
@@ -314,6 +318,13 @@ impl<S: Sample> Scheme for BsaToolbox<S> {
 
     const LATENCY: usize = LONGEST;
     const RECOVERY: Recovery = Recovery::Samples(LONGEST);
+
+    fn fingerprint(&self) -> Fingerprint {
+        Fingerprint::new("BsaToolbox")
+            .sample(self.ratio.factor())
+            .samples(self.taps.as_slice())
+            .sample(self.shift)
+    }
 
     fn encode(&self, state: &mut BsaToolboxState<S>, sample: S) -> Option<Spike> {
         if !sample.is_finite() {

@@ -6,7 +6,7 @@ use core::hint::black_box;
 use super::cursor::Cursor;
 use super::filtered::Filtered;
 use crate::num::{Residual, Tally};
-use crate::{Destination, Sample, Spike};
+use crate::{Destination, Fingerprint, Sample, Spike};
 
 /// A rate code's rule for when a sample spikes.
 pub(super) trait Rule<S: Sample, const F: usize> {
@@ -16,6 +16,9 @@ pub(super) trait Rule<S: Sample, const F: usize> {
 
     /// Whether the rule keeps a sum in a register from tap to tap.
     const KEEPS_A_SUM: bool;
+
+    /// The name of the rule and its own parameters.
+    fn fingerprint(&self) -> Fingerprint;
 
     /// The filter and the shift.
     fn filtered(&self) -> &Filtered<S, F>;
@@ -96,7 +99,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
     }
 
     /// [`encode`](Self::encode) as a call. In fixed point each criterion of BSA has its own loop over taps, for each
-    /// of which the compiler would repeat the loop over samples.
+    /// of which the compiler would repeat the loop over samples: flash that only a laptop can spare.
     #[inline(never)]
     fn encode_called(&mut self, rule: &impl Rule<S, F>, sample: S) -> Option<Spike> {
         self.encode(rule, sample)
@@ -112,7 +115,7 @@ impl<S: Sample, const F: usize> RateState<S, F> {
         let length = samples.len().min(spikes.len());
         if !R::IN_ORDER {
             for (spike, &sample) in spikes.iter_mut().zip(samples) {
-                spike.write(if S::Residual::IS_EXACT {
+                spike.write(if S::Residual::IS_EXACT && !crate::num::HAS_VECTORS {
                     self.encode_called(rule, sample)
                 } else {
                     self.encode(rule, sample)
@@ -281,6 +284,11 @@ macro_rules! rate_scheme {
 
             const LATENCY: usize = F - 1;
             const RECOVERY: Recovery = Recovery::Samples(F);
+
+            fn fingerprint(&self) -> Fingerprint {
+                let Filtered { taps, shift } = &self.filtered;
+                Rule::fingerprint(self).samples(taps.as_array()).sample(*shift)
+            }
 
             #[inline]
             fn encode(&self, state: &mut RateState<S, F>, sample: S) -> Option<Spike> {

@@ -5,7 +5,7 @@ use super::decoder::{RateDecoderState, decode_rate};
 use super::encoder::{RateState, Rule, rate_scheme};
 use super::filtered::{Filtered, with_shift};
 use crate::error::unwrap;
-use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// The Hough spike algorithm (HSA).
 ///
@@ -55,6 +55,10 @@ impl<S: Sample, const F: usize> Hough<S, F> {
 impl<S: Sample, const F: usize> Rule<S, F> for Hough<S, F> {
     const IN_ORDER: bool = true;
     const KEEPS_A_SUM: bool = false;
+
+    fn fingerprint(&self) -> Fingerprint {
+        Fingerprint::new("Hough")
+    }
 
     #[inline(always)]
     fn filtered(&self) -> &Filtered<S, F> {

@@ -6,7 +6,7 @@ use super::encoder::{RateState, Rule, rate_scheme};
 use super::filtered::{Filtered, with_shift};
 use crate::error::{not_negative, unwrap};
 use crate::num::{Shortfall, to_f64};
-use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// The threshold Hough spike algorithm (T-HSA).
 ///
@@ -72,6 +72,10 @@ impl<S: Sample, const F: usize> ThresholdHough<S, F> {
 impl<S: Sample, const F: usize> Rule<S, F> for ThresholdHough<S, F> {
     const IN_ORDER: bool = true;
     const KEEPS_A_SUM: bool = true;
+
+    fn fingerprint(&self) -> Fingerprint {
+        Fingerprint::new("ThresholdHough").sample(self.threshold)
+    }
 
     #[inline(always)]
     fn filtered(&self) -> &Filtered<S, F> {

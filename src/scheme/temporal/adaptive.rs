@@ -3,9 +3,9 @@
 use super::band::Band;
 use super::doublings;
 use crate::error::{unwrap, within};
-use crate::num::Tally;
+use crate::num::{HAS_VECTORS, Tally};
 use crate::scheme::codec::{Until, decode_copied, encode_each};
-use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// Adaptive step forward: the baseline follows the signal by one step a spike, and the step grows while the signal
 /// runs away.
@@ -193,6 +193,18 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
     /// Each silent sample halves the step: after as many as there are doublings it is the smallest.
     const RECOVERY: Recovery = Recovery::TimedKeyframe(MOST_DOUBLINGS as usize);
 
+    fn holds_keyframes(&self) -> bool {
+        true
+    }
+
+    fn fingerprint(&self) -> Fingerprint {
+        let Self { threshold, doublings, run } = *self;
+        Fingerprint::new("AdaptiveStepForward")
+            .sample(threshold)
+            .number(doublings.into())
+            .number(run.into())
+    }
+
     #[inline]
     fn encode(&self, state: &mut AdaptiveState<S>, sample: S) -> Spike {
         if state.tally.is_primed()
@@ -204,7 +216,8 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         Spike::None
     }
 
-    /// The baseline and the pace stay in registers, and while at rest also the band.
+    /// The baseline and the pace stay in registers, and while at rest also the band, but on a core with vectors, which
+    /// predicts the branches of single samples.
     #[inline]
     fn encode_slice(
         &self,
@@ -223,7 +236,7 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         let AdaptiveState { mut base, mut pace, .. } = *state;
         let mut band = Band::around(base, self.threshold);
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
-            if pace == Pace::REST && band.holds(sample) {
+            if !HAS_VECTORS && pace == Pace::REST && band.holds(sample) {
                 spike.write(Spike::None);
                 continue;
             }

@@ -4,7 +4,7 @@ use super::doublings;
 use crate::error::unwrap;
 use crate::num::Tally;
 use crate::scheme::codec::{Until, decode_copied, encode_each};
-use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// Adaptive temporal contrast: the threshold follows how much the signal changes, between two bounds.
 ///
@@ -144,6 +144,11 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
     const LATENCY: usize = 0;
     /// After 16 silent samples the threshold is the smallest.
     const RECOVERY: Recovery = Recovery::TimedKeyframe(COUNTED);
+
+    fn fingerprint(&self) -> Fingerprint {
+        let Self { threshold, doublings } = *self;
+        Fingerprint::new("AdaptiveContrast").sample(threshold).number(doublings.into())
+    }
 
     #[inline]
     fn encode(&self, state: &mut AdaptiveContrastState<S>, sample: S) -> Spike {

@@ -5,7 +5,9 @@ use super::steps::decode_steps;
 use crate::error::{positive, unwrap};
 use crate::num::{Tally, to_f64};
 use crate::scheme::codec::{Until, encode_each};
-use crate::{Calibration, ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
+use crate::{
+    Calibration, ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start,
+};
 
 /// Temporal contrast, also called temporal-based representation (TBR): what event cameras do.
 ///
@@ -135,6 +137,10 @@ impl<S: Sample> Scheme for TemporalContrast<S> {
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Keyframe;
+
+    fn fingerprint(&self) -> Fingerprint {
+        Fingerprint::new("TemporalContrast").sample(self.threshold).sample(self.step)
+    }
 
     #[inline]
     fn encode(&self, state: &mut ContrastState<S>, sample: S) -> Spike {

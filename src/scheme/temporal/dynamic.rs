@@ -7,7 +7,7 @@ use super::StepState;
 use super::steps::decode_steps;
 use crate::error::{positive, within};
 use crate::num::{Difference, Tally, margin, to_f64};
-use crate::{ConfigError, Encoder, Recovery, Sample, Scheme, Spike};
+use crate::{ConfigError, Encoder, Fingerprint, Recovery, Sample, Scheme, Spike};
 
 /// The most samples that a mean is taken over.
 pub const WIDEST: usize = 16_384;
@@ -79,6 +79,10 @@ impl<S: Sample> Scheme for MovingWindow<S> {
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Keyframe;
+
+    fn fingerprint(&self) -> Fingerprint {
+        Fingerprint::new("MovingWindow").sample(self.threshold).number(self.count as u32)
+    }
 
     /// Emits no spike before the window is full, for a sample that is not finite, and for a difference that is NaN.
     fn encode(&self, state: &mut MovingWindowState<S>, sample: S) -> Spike {

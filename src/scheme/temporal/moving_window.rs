@@ -7,7 +7,7 @@ use super::StepState;
 use super::steps::decode_steps;
 use crate::error::{positive, unwrap};
 use crate::num::{Difference, HAS_VECTORS, Tally, Windowed, fast_margin, margin, to_f64};
-use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// Moving window: the baseline is the mean of the `N` samples before.
 ///
@@ -302,6 +302,10 @@ impl<S: Sample, const N: usize> Scheme for MovingWindow<S, N> {
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Keyframe;
+
+    fn fingerprint(&self) -> Fingerprint {
+        Fingerprint::new("MovingWindow").sample(self.threshold).number(N as u32)
+    }
 
     #[inline]
     fn encode(&self, state: &mut MovingWindowState<S, N>, sample: S) -> Spike {

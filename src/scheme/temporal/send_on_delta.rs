@@ -8,8 +8,8 @@ use crate::error::{step, unwrap, within};
 use crate::num::{Tally, to_f64};
 use crate::scheme::codec::{Until, encode_each};
 use crate::{
-    Code, ConfigError, Destination, NeuronSpike, Output, Polarity, Recovery, Sample, Scheme, Spike,
-    Start,
+    Code, ConfigError, Destination, Fingerprint, NeuronSpike, Output, Polarity, Recovery, Sample,
+    Scheme, Spike, Start,
 };
 
 /// Send-on-delta: the baseline follows the signal by up to `K` thresholds a sample, with one spike for each.
@@ -212,6 +212,15 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Keyframe;
+
+    fn holds_keyframes(&self) -> bool {
+        true
+    }
+
+    fn fingerprint(&self) -> Fingerprint {
+        let most = u32::from(self.most.unsigned_abs());
+        Fingerprint::new("SendOnDelta").sample(self.threshold).number(most)
+    }
 
     #[inline]
     fn encode(&self, state: &mut SendOnDeltaState<S>, sample: S) -> Steps<K> {

@@ -6,7 +6,7 @@ use super::steps::decode_steps;
 use crate::error::{step, unwrap};
 use crate::num::{HAS_VECTORS, Tally, groups, groups_mut, to_f64};
 use crate::scheme::codec::{Until, encode_each};
-use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// Step forward: the baseline starts at the first sample and follows the signal by one threshold with each
 /// spike.
@@ -105,6 +105,14 @@ impl<S: Sample> Scheme for StepForward<S> {
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Keyframe;
+
+    fn holds_keyframes(&self) -> bool {
+        true
+    }
+
+    fn fingerprint(&self) -> Fingerprint {
+        Fingerprint::new("StepForward").sample(self.threshold)
+    }
 
     #[inline]
     fn encode(&self, state: &mut StepForwardState<S>, sample: S) -> Spike {

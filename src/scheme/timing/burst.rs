@@ -7,7 +7,7 @@ use crate::error::{unwrap, within};
 use crate::num::to_f64;
 use crate::scheme::cells::{Cuts, Partition, Side, count_preceding};
 use crate::scheme::held::{Held, hold_value};
-use crate::{ConfigError, Recovery, Sample, Scheme, Start};
+use crate::{ConfigError, Fingerprint, Recovery, Sample, Scheme, Start};
 
 /// Burst coding: every sample is a burst, whose spike count and interval give the value.
 ///
@@ -232,6 +232,12 @@ impl<S: Sample, const N: usize> Scheme for Burst<S, N> {
     const LATENCY: usize = 0;
     /// Every code gives a value by itself, also one without a spike.
     const RECOVERY: Recovery = Recovery::Samples(1);
+
+    fn fingerprint(&self) -> Fingerprint {
+        let cells = self.cells.named("Burst", self.count.into()).sample(self.min);
+        let bursts = self.bursts.iter().take(self.count.into()).flatten();
+        bursts.fold(cells, |description, &number| description.number(number.into()))
+    }
 
     #[inline]
     fn encode(&self, state: &mut TimingState, sample: S) -> BurstSpikes<N> {

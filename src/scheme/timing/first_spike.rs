@@ -9,7 +9,7 @@ use crate::num::{DoubleDouble, to_f64};
 use crate::scheme::cells::{Cuts, Partition, Side};
 use crate::scheme::code::Destination;
 use crate::scheme::held::{Held, hold_value};
-use crate::{ConfigError, Recovery, Sample, Scheme, Start};
+use crate::{ConfigError, Fingerprint, Recovery, Sample, Scheme, Start};
 
 /// Time to first spike: one spike a sample, in the slot of the value's cell; the highest cell has the first slot.
 ///
@@ -271,6 +271,14 @@ impl<S: Sample, const N: usize> Scheme for FirstSpike<S, N> {
     const LATENCY: usize = 0;
     /// That of even points. Where silence has a value, [`recovery`](Self::recovery) is after one sample.
     const RECOVERY: Recovery = Recovery::Spike;
+
+    fn fingerprint(&self) -> Fingerprint {
+        let cells = self.cells.named("FirstSpike", self.slots.into());
+        match self.silence {
+            Some(Silence { last, value }) => cells.number(1).sample(last).sample(value),
+            None => cells.number(0),
+        }
+    }
 
     #[inline]
     fn encode(&self, state: &mut TimingState, sample: S) -> Option<Slot<N>> {

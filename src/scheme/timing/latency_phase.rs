@@ -6,7 +6,7 @@ use super::{PhaseSpikes, TimingState};
 use crate::error::{unwrap, within};
 use crate::scheme::cells::{Cuts, Partition};
 use crate::scheme::held::{Held, hold_value};
-use crate::{ConfigError, Recovery, Sample, Scheme, Start};
+use crate::{ConfigError, Fingerprint, Recovery, Sample, Scheme, Start};
 
 /// Latency-phase: neurons that fire only at the peaks of an oscillation, so that one line may carry them all.
 ///
@@ -193,6 +193,13 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> Scheme
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Spike;
+
+    fn fingerprint(&self) -> Fingerprint {
+        let lowest = self.cells.as_array().get(..self.width.into()).unwrap_or_default();
+        let numbers = [self.width, self.period, self.neurons, self.spacing, self.phase];
+        let cells = Fingerprint::new("LatencyPhase").samples(lowest).sample(self.max);
+        numbers.iter().fold(cells, |description, &number| description.number(number.into()))
+    }
 
     #[inline]
     fn encode(&self, state: &mut TimingState, sample: S) -> PhaseSpikes<M, W, P> {

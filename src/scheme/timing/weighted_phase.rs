@@ -6,7 +6,7 @@ use super::{PhaseBits, TimingState};
 use crate::error::{range as check_range, unwrap, within};
 use crate::num::to_f64;
 use crate::scheme::held::{Held, hold_value};
-use crate::{ConfigError, Recovery, Sample, SampleKind, Scheme, Start};
+use crate::{ConfigError, Fingerprint, Recovery, Sample, SampleKind, Scheme, Start};
 
 /// Weighted phase: the `K` slots of a sample are the binary digits of its place in the range, the highest first.
 ///
@@ -128,6 +128,11 @@ impl<S: Sample, const K: usize> Scheme for WeightedPhase<S, K> {
     const LATENCY: usize = 0;
     /// Every code gives a value by itself, also one without a spike.
     const RECOVERY: Recovery = Recovery::Samples(1);
+
+    fn fingerprint(&self) -> Fingerprint {
+        let Self { min, max, slots } = *self;
+        Fingerprint::new("WeightedPhase").sample(min).sample(max).number(slots.into())
+    }
 
     #[inline]
     fn encode(&self, state: &mut TimingState, sample: S) -> PhaseBits<K> {

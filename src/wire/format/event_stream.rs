@@ -182,7 +182,11 @@ impl EventDecoder for EventStreamDecoder {
                 State::Size { size: 0, shift: 0 }
             }
             State::Size { size, shift } => {
-                let size = size | u32::from(byte >> 1).unbounded_shl(shift.into());
+                let part = u32::from(byte >> 1);
+                let shifted = part.unbounded_shl(shift.into());
+                // A size that 32 bits cannot hold is longer than any stream.
+                let is_held = shifted.unbounded_shr(shift.into()) == part;
+                let size = if is_held { size | shifted } else { u32::MAX };
                 if byte & MORE == 0 {
                     self.after_size(size)
                 } else {

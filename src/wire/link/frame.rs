@@ -8,8 +8,8 @@ use super::bits::BitReader;
 use super::delta::Place;
 use super::time::Time;
 use super::{Coding, LinkError};
-use crate::SampleKind;
 use crate::event::{Event, Keyframe, Tick};
+use crate::{Fingerprint, SampleKind};
 
 /// The bytes of a frame without keyframes and events.
 pub const MIN_FRAME: usize = HEADER + CHECKSUM;
@@ -27,11 +27,16 @@ const PERIOD_AT: usize = 14;
 pub(super) const LENGTH_AT: usize = 17;
 /// The sample type of keyframes that have no value: heartbeats.
 pub(super) const HEARTBEATS: u8 = u8::MAX;
+/// The bytes of a fingerprint, before keyframes and events.
+pub(super) const FINGERPRINT: usize = 4;
 
 pub(super) mod flag {
     pub(in crate::wire::link) const LOST: u8 = 1;
     pub(in crate::wire::link) const KEYFRAMES: u8 = 2;
     pub(in crate::wire::link) const FIRST: u8 = 4;
+    pub(in crate::wire::link) const FINGERPRINT: u8 = 8;
+    /// Above the version.
+    pub(in crate::wire::link) const DESCRIBED: u8 = 0x80;
 }
 
 static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
@@ -49,6 +54,7 @@ pub struct FrameView<'a> {
     number: u64,
     time: Time,
     coding: Coding,
+    fingerprint: Option<Fingerprint>,
     /// The sample type of the keyframes; `None` if they are heartbeats.
     kind: Option<SampleKind>,
     keyframes: &'a [u8],
@@ -77,12 +83,14 @@ impl<'a> FrameView<'a> {
     pub(super) fn read(body: &'a [u8]) -> Option<Self> {
         let (header, payload) = body.split_first_chunk::<HEADER>()?;
         let &[_, flags, n0, n1, n2, n3, n4, n5, t0, t1, t2, t3, t4, t5, p0, p1, coding, _] = header;
+        let (fingerprint, payload) = split_fingerprint(flags, payload)?;
         let (kind, keyframes, events) = split_keyframes(flags, payload)?;
         Some(Self {
             flags,
             number: u64::from_le_bytes([n0, n1, n2, n3, n4, n5, 0, 0]),
             time: Time::from_micros(u64::from_le_bytes([t0, t1, t2, t3, t4, t5, 0, 0])),
             coding: Coding::from_byte(NonZeroU16::new(u16::from_le_bytes([p0, p1]))?, coding),
+            fingerprint,
             kind,
             keyframes,
             events,
@@ -97,8 +105,8 @@ impl<'a> FrameView<'a> {
         let truncated = LinkError::Truncated { needed: MIN_FRAME, found: bytes.len() };
         match *bytes {
             [magic, ..] if magic != MAGIC => return Err(LinkError::NotAFrame { found: magic }),
-            [_, version, ..] if version >> 4 != VERSION => {
-                return Err(LinkError::Version { found: version >> 4 });
+            [_, flags, ..] if version(flags) != VERSION => {
+                return Err(LinkError::Version { found: version(flags) });
             }
             _ => {}
         }
@@ -118,6 +126,18 @@ impl<'a> FrameView<'a> {
     /// Whether it is the first frame of its session.
     pub fn is_first(&self) -> bool {
         self.flags & flag::FIRST != 0
+    }
+
+    /// Whether the sender has a [fingerprint], which comes with this frame or another.
+    ///
+    /// [fingerprint]: Self::fingerprint
+    pub fn is_described(&self) -> bool {
+        self.flags & flag::DESCRIBED != 0
+    }
+
+    /// The fingerprint of the sender's schemes, in a frame that has it.
+    pub fn fingerprint(&self) -> Option<Fingerprint> {
+        self.fingerprint
     }
 
     /// The tick of the keyframes: at or before that of the first event, unless events are out of order.
@@ -190,6 +210,20 @@ pub(super) const fn keyframe_size(kind: Option<SampleKind>) -> usize {
         Some(kind) => 2 + kind.size(),
         None => 2,
     }
+}
+
+/// The version of the link, between the flags of a byte.
+const fn version(flags: u8) -> u8 {
+    flags >> 4 & 7
+}
+
+/// The fingerprint, and what follows it.
+fn split_fingerprint(flags: u8, payload: &[u8]) -> Option<(Option<Fingerprint>, &[u8])> {
+    if flags & flag::FINGERPRINT == 0 {
+        return Some((None, payload));
+    }
+    let (bits, rest) = payload.split_first_chunk::<FINGERPRINT>()?;
+    Some((Some(Fingerprint::from_bits(u32::from_le_bytes(*bits))), rest))
 }
 
 /// The keyframes with their sample type, and the events.

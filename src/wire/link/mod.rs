@@ -7,25 +7,29 @@
 //! | byte | field | |
 //! |---|---|---|
 //! | 0 | magic | `A5` |
-//! | 1 | version and flags | version 3 in the high nibble; flags 1 *lost*, 2 *keyframes*, 4 *first*; others are 0 |
+//! | 1 | version and flags | version 3 in bits 4 to 6; flags 1 *lost*, 2 *keyframes*, 4 *first*, 8 *fingerprint*, 128 *described* |
 //! | 2-7 | number | of the frame: that of the session first, +1 each, modulo 2⁴⁸ |
 //! | 8-13 | time | µs, modulo 2⁴⁸; that of the keyframes, from which the first event's time is counted |
 //! | 14-15 | period | µs from sample to sample, 1 to 65 535 |
 //! | 16 | coding | address bits in the low nibble, jitter bits in the high one |
-//! | 17 | length | bytes of keyframes and events, 0 to 255 |
+//! | 17 | length | bytes of fingerprint, keyframes and events, 0 to 255 |
+//! | | fingerprint | with the flag *fingerprint*: the 4 bytes of a [`Fingerprint`](crate::Fingerprint) |
 //! | | keyframes | with the flag *keyframes*: their count, their sample type, then each its address (2 bytes) and bits (2 or 4, or none) |
 //! | | events | a string of bits, below |
 //! | | checksum | CRC-32/ISO-HDLC, the one of zlib, of all bytes before it |
 //!
 //! **Flags:** *lost*, the sender lost items before this frame, its encoders changed without events, or it does not know
-//! the time since the frame before; *first*, the first frame of a session. **Sample types:** 0 is `f32`; 1 to 17 are fixed
+//! the time since the frame before; *first*, the first frame of a session; *described*, in every frame of a sender that has
+//! a fingerprint, which comes in the first frame and in later ones. **Sample types:** 0 is `f32`; 1 to 17 are fixed
 //! point of 16 bits with 0 to 16 fraction bits; 18 to 50 are fixed point of 32 bits with 0 to 32 fraction bits; 255 has no
 //! bits, for heartbeats.
 //!
 //! **Number:** a session begins at a number of its own, which [`Session`] spreads over all 2⁴⁸. One number thus tells a
-//! reader whose frame it is and how many are missing: 0 ahead, none; up to 2³²-1 ahead, as many; up to 256 behind, the
-//! frame is late; anything else is another session, or the same after a very long outage. However many frames are lost, a
-//! frame continues the one before only by being the next one, or by a chance of one in 2⁴⁸. (A session and a sequence of 16
+//! reader whose frame it is and how many are missing: 0 ahead, none; up to 2²⁴-1 ahead (35 minutes of 8000 frames a
+//! second), as many; up to 65 536 behind, the frame is late; anything else is another session, or the same after a longer
+//! outage. So is a frame with the flag *first*, unless it is the first frame that came, once more; and one whose number and
+//! time tell of different orders, by more than 2¹⁶ µs. After a gap as after a start no value is exact. However many
+//! frames are lost, a frame continues the one before only by being the next one, or by a chance of one in 2⁴⁸. (A session and a sequence of 16
 //! bits each take 4 bytes, too few: 65 536 lost frames, 8 s of them, look like none, and so do sessions that come again.)
 //!
 //! **Time:** a receiver has no clock; what it knows of elapsed time is the difference of two frames' times, which is right
@@ -55,6 +59,10 @@
 //! that its events lie in earlier frames: a receiver then knows that samples are whole though no event comes, and when
 //! those with sub-timesteps begin, also if it joins late or the link was down. Their address is the bank's first.
 //!
+//! **Fingerprint:** the first frame has it, every frame 2¹⁹ µs (0.52 s) or more after the last one that had it, and a
+//! frame with keyframes or heartbeats if three or more came since without it. A receiver with other schemes, or one that
+//! has not heard it yet, thus calls no value exact; it costs at most a byte a frame on average, or 8 bytes a second.
+//!
 //! **Order:** a reader delivers frames by rising number. It leaves out frames that are repeated or late.
 //!
 //! **Resynchronisation:** after a byte that is not the magic, a wrong header or a wrong checksum, the reader goes on
@@ -73,7 +81,7 @@
 //! static GYRO: StepForward<f32> = StepForward::new(0.1);
 //! let mut bank = Bank::<_, 3>::new(&GYRO);
 //! static EVENTS: EventQueue<64> = EventQueue::new(Overflow::DropOldest);
-//! let mut transmitter = Transmitter::new(Coding::for_channels(3, 1_000), Session::counted(1));
+//! let mut transmitter = Transmitter::for_bank(&bank, 1_000, Session::counted(1)); // a sample every 1000 µs
 //! let mut reader = Reader::<MAX_FRAME>::new();
 //! let mut receiver = Receiver::<_, 3>::new(&GYRO);
 //!
@@ -101,16 +109,19 @@ mod bits;
 mod delta;
 mod error;
 mod frame;
+mod pace;
 mod reader;
 mod receiver;
 mod session;
 mod time;
 mod transmitter;
+mod trust;
 mod withheld;
 mod writer;
 
 pub use error::LinkError;
 pub use frame::{Events, FrameView, MAX_FRAME, MIN_FRAME};
+pub use pace::CLOCK_TOLERANCE;
 pub use reader::{Gap, Reader, Received};
 pub use receiver::Receiver;
 pub use session::Session;

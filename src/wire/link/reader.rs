@@ -1,6 +1,7 @@
 //! Reader: finds frames in bytes that arrive cut anywhere, damaged, or from the middle of a stream.
 
 use super::frame::{CHECKSUM, MAGIC};
+use super::time::Time;
 use super::{FrameView, LinkError, MIN_FRAME, session};
 
 /// A gap in the numbers: frames that are missing between two that arrived.
@@ -17,7 +18,8 @@ pub struct Gap {
 pub struct Received<'a> {
     /// The gap before this frame, if there is one.
     pub gap: Option<Gap>,
-    /// Whether it is the first frame of the sender's session that arrived; also after 2³² lost frames or more.
+    /// Whether it is the first frame of the sender's session that arrived, also after 2²⁴ lost frames or more; or one of
+    /// whose number or time the session's earlier frames say that it is used again.
     pub is_start: bool,
     /// The frame.
     pub frame: FrameView<'a>,
@@ -33,10 +35,13 @@ impl Received<'_> {
 
 /// Finds frames of up to `N` bytes; [`MAX_FRAME`](super::MAX_FRAME) takes all.
 ///
-/// - **Order:** a frame that was already delivered, or that comes up to 256 frames late, is left out. So is a late
+/// - **Order:** a frame that was already delivered, or that comes up to 65 536 frames late, is left out. So is a late
 ///   frame of the three sessions before, until the present one has delivered 256 frames. Sixteen such frames in a row
 ///   show that their session goes on, and the sixteenth counts as a start.
-/// - **Memory:** `N + 104` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
+/// - **A session that is used again**, as where a sender's supply fails before its start was counted, begins anew where it
+///   shows: by another first frame, by other bytes of the frame delivered last, by a time that goes back by more than
+///   65.5 ms while numbers rise or the other way round, or by 256 late frames in a row.
+/// - **Memory:** `N + 152` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
 ///   the first of a frame.
 /// - **Delay:** none; a frame whose length was damaged, or whose end is missing, may delay the frames in the 255 bytes
 ///   after it, which on a quiet link are several keyframes: see [`next_after_silence`](Self::next_after_silence).
@@ -52,8 +57,11 @@ pub struct Reader<const N: usize> {
     handed_out: usize,
     /// The sender's last sessions, the present one first.
     sessions: [Run; 4],
-    /// How many frames of earlier sessions came in a row.
-    strays: u8,
+    /// How many late frames, or frames of earlier sessions, came in a row.
+    strays: u16,
+    /// The time and the checksum of the frame that was delivered last.
+    time: Time,
+    checksum: u32,
     frames: u32,
     lost_frames: u32,
     bad_checksums: u32,
@@ -62,11 +70,25 @@ pub struct Reader<const N: usize> {
     skipped: u32,
 }
 
-/// A frame counts as late up to this many frames back, and beyond that as one after a long gap.
-const LATE: u16 = 256;
+/// A frame counts as late up to this many frames back, and beyond that as a start.
+const LATE: i64 = 1 << 16;
+
+/// A frame counts as one after a gap if fewer frames than this are missing, and beyond that as a start: 35 minutes of 8000
+/// frames a second. Both leave no value exact; only the count of lost frames differs.
+const LONGEST_GAP: i64 = 1 << 24;
+
+/// A frame of an earlier session is late up to this many frames after the last that was delivered of it, until the present
+/// session has delivered as many.
+const OVERLAP: u16 = 256;
 
 /// Number of frames of earlier sessions in a row from which on they are not late: the present session was the late one.
-const RETURN: u8 = 16;
+const RETURN: u16 = 16;
+
+/// Number of late frames in a row from which on they are not late: their session is used again.
+const USED_AGAIN: u16 = 256;
+
+/// How far the times of frames may be out of their order, in µs.
+const DISORDER: i64 = 1 << 16;
 
 /// The frames of one session.
 #[derive(Clone, Copy, Debug)]
@@ -75,10 +97,12 @@ struct Run {
     next: u64,
     /// How many were delivered, up to 256.
     delivered: u16,
+    /// The checksum of its first frame, if that was delivered.
+    first: Option<u32>,
 }
 
 impl Run {
-    const NONE: Self = Self { next: 0, delivered: 0 };
+    const NONE: Self = Self { next: 0, delivered: 0, first: None };
 
     /// How many frames `frame` comes after the next one; `None` for no run.
     fn ahead(&self, frame: &FrameView<'_>) -> Option<i64> {
@@ -118,6 +142,8 @@ impl<const N: usize> Reader<N> {
             handed_out: 0,
             sessions: [Run::NONE; 4],
             strays: 0,
+            time: Time::from_micros(0),
+            checksum: 0,
             frames: 0,
             lost_frames: 0,
             bad_checksums: 0,
@@ -141,25 +167,32 @@ impl<const N: usize> Reader<N> {
 
     fn next(&mut self, input: &mut &[u8], is_silent: bool) -> Option<Received<'_>> {
         self.start = self.start.wrapping_add(core::mem::take(&mut self.handed_out));
-        let (length, standing) = self.find(input, is_silent)?;
+        let (length, standing, checksum) = self.find(input, is_silent)?;
         self.handed_out = length;
         let end = self.start.wrapping_add(length).wrapping_sub(CHECKSUM);
         let frame = FrameView::read(self.buffer.get(self.start..end)?)?;
         self.frames = self.frames.saturating_add(1);
 
         let next = session::next(frame.number());
+        (self.time, self.checksum) = (frame.time(), checksum);
         let [present, earlier @ ..] = &mut self.sessions;
         let is_start = standing == Standing::First;
         if is_start {
-            let [second, third, _] = *earlier;
-            *earlier = [*present, second, third];
+            // Of a session that is used again, the frames before are not those of another one.
+            let is_other =
+                present.ahead(&frame).is_none_or(|ahead| !(-LATE..LONGEST_GAP).contains(&ahead));
+            if is_other {
+                let [second, third, _] = *earlier;
+                *earlier = [*present, second, third];
+            }
             *present = Run::NONE;
         }
-        let delivered = present.delivered.saturating_add(1).min(LATE);
-        if delivered == LATE {
+        let delivered = present.delivered.saturating_add(1).min(OVERLAP);
+        if delivered == OVERLAP {
             *earlier = [Run::NONE; 3];
         }
-        *present = Run { next, delivered };
+        let first = if frame.is_first() { Some(checksum) } else { present.first };
+        *present = Run { next, delivered, first };
         self.strays = 0;
 
         let lost_frames = if let Standing::After(lost) = standing { lost } else { 0 };
@@ -200,21 +233,21 @@ impl<const N: usize> Reader<N> {
         self.skipped
     }
 
-    /// Finds the next frame to deliver, which then begins at `start`, and returns its length.
-    fn find(&mut self, input: &mut &[u8], is_silent: bool) -> Option<(usize, Standing)> {
+    /// Finds the next frame to deliver, which then begins at `start`, and returns its length, standing and checksum.
+    fn find(&mut self, input: &mut &[u8], is_silent: bool) -> Option<(usize, Standing, u32)> {
         loop {
             let bytes = self.buffer.get(self.start..self.end).unwrap_or_default();
             let frame = FrameView::new(bytes);
             match frame {
                 Ok((frame, length)) => {
-                    let counter = match self.standing(&frame) {
+                    let checksum = checksum_of(bytes, length);
+                    let counter = match self.standing(&frame, checksum) {
                         Standing::Repeated => &mut self.repeated,
-                        Standing::Late => &mut self.late,
-                        Standing::Stray => {
-                            self.strays = self.strays.wrapping_add(1);
+                        Standing::Late | Standing::Stray => {
+                            self.strays = self.strays.saturating_add(1);
                             &mut self.late
                         }
-                        standing => return Some((length, standing)),
+                        standing => return Some((length, standing, checksum)),
                     };
                     *counter = counter.saturating_add(1);
                     self.start = self.start.wrapping_add(length);
@@ -240,22 +273,49 @@ impl<const N: usize> Reader<N> {
         }
     }
 
-    fn standing(&self, frame: &FrameView<'_>) -> Standing {
-        const LATEST: i64 = -(LATE as i64);
+    fn standing(&self, frame: &FrameView<'_>, checksum: u32) -> Standing {
+        const BEFORE: i64 = -LATE;
         let [present, earlier @ ..] = &self.sessions;
-        match present.ahead(frame) {
-            Some(-1) => Standing::Repeated,
-            Some(LATEST..0) => Standing::Late,
-            ahead => {
-                if let (Some(Ok(lost)), false) = (ahead.map(u32::try_from), frame.is_first()) {
-                    return Standing::After(lost);
-                }
-                // A frame that was on its way when the sender restarted is late.
-                let is_near = |ahead: i64| ahead.unsigned_abs() < u64::from(LATE);
-                let mut earlier = earlier.iter().filter_map(|run| run.ahead(frame));
-                let is_stray = earlier.any(is_near) && self.strays.wrapping_add(1) < RETURN;
-                if is_stray { Standing::Stray } else { Standing::First }
+        let ahead = present.ahead(frame);
+        let since = frame.time().since(self.time);
+        if frame.is_first() {
+            // The first frame of the present session once more, or late; or of another start with the same session.
+            let is_known = match present.first {
+                Some(first) => first == checksum,
+                None => since <= DISORDER,
+            };
+            match ahead {
+                Some(-1) if is_known => return Standing::Repeated,
+                Some(BEFORE..0) if is_known => return Standing::Late,
+                Some(BEFORE..0) => return Standing::First,
+                _ => {}
             }
+        } else if let Some(ahead) = ahead {
+            match ahead {
+                -1 if checksum == self.checksum => return Standing::Repeated,
+                -1 => return Standing::First,
+                BEFORE..0 => {
+                    let is_late = since <= DISORDER && self.strays < USED_AGAIN - 1;
+                    return if is_late { Standing::Late } else { Standing::First };
+                }
+                // After so many late frames the next one may be of another start.
+                0 if self.strays >= RETURN => return Standing::First,
+                0..LONGEST_GAP => {
+                    let is_later = since >= -DISORDER;
+                    return if is_later { Standing::After(ahead as u32) } else { Standing::First };
+                }
+                _ => {}
+            }
+        }
+        // A frame that was on its way when the sender restarted is late.
+        let is_stray = |run: &Run| {
+            let is_near = run.ahead(frame).is_some_and(|ahead| ahead.abs() < i64::from(OVERLAP));
+            is_near && (!frame.is_first() || run.first.is_none_or(|first| first == checksum))
+        };
+        if self.strays < RETURN - 1 && earlier.iter().any(is_stray) {
+            Standing::Stray
+        } else {
+            Standing::First
         }
     }
 
@@ -281,4 +341,10 @@ impl<const N: usize> Reader<N> {
         self.end = used.wrapping_add(count);
         *input = rest;
     }
+}
+
+/// The checksum of a frame of this length.
+fn checksum_of(bytes: &[u8], length: usize) -> u32 {
+    let last = bytes.get(length.wrapping_sub(CHECKSUM)..length).and_then(<[u8]>::first_chunk);
+    last.map_or(0, |bytes| u32::from_le_bytes(*bytes))
 }

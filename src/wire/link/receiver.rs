@@ -1,14 +1,16 @@
 //! Receiver: the decoders of several channels at the end of a link, which know whether their values are exact.
 
 use core::fmt;
-use core::num::{NonZeroU32, NonZeroU64};
 
+use super::pace::{CLOCK_TOLERANCE, Elapsed, Pace};
 use super::time::Time;
+use super::trust::Trust;
 use super::{Received, Withheld};
 use crate::event::{
     Addresses, CodeOf, DecoderStateOf, Event, Keyframe, SampleOf, Schemes, States, Tick,
+    bank_fingerprint,
 };
-use crate::{Code, ConfigError, NeuronSpike, Recovery, Scheme, error};
+use crate::{Code, ConfigError, Fingerprint, NeuronSpike, Recovery, Sample, Scheme, error};
 
 /// The decoders of `N` channels at the end of a link, for any code.
 ///
@@ -22,22 +24,29 @@ use crate::{Code, ConfigError, NeuronSpike, Recovery, Scheme, error};
 /// - **Temporal codes whose step adapts** ([`Recovery::TimedKeyframe`]) are exact from their next keyframe on too. The
 ///   sender must take its samples every period, as for rate codes.
 /// - **Population codes** ([`Recovery::Spike`]) are exact from the next whole sample in which the channel fires. A
-///   sample is over when an event of a later one or a heartbeat arrives, or at [`advance`](Self::advance).
+///   sample is over when an event of another tick or a heartbeat arrives, or at [`advance`](Self::advance); however early
+///   or late it is.
 /// - **Rate codes** ([`Recovery::Samples`]) are exact after as many whole samples as the filter has taps. The sender
-///   must take a sample every [period](super::Coding::period) of the link, with a jitter of each tick below a quarter of
-///   a period, since samples without events are decoded, too: after as many of them as the filter has taps the value no
+///   must take a sample every [period](super::Coding::period) of the link, with a jitter of each tick of at most an eighth
+///   of a period, since samples without events are decoded, too: after as many of them as the filter has taps the value no
 ///   longer changes, and the others are passed over.
 /// - **Means** ([`Recovery::Fading`]) take their samples every period too. They are never exact: the error of an
 ///   estimate fades.
 /// - **Codes with sub-timesteps** need the sender's [`with_slot_ticks`](Self::with_slot_ticks), and a
 ///   [heartbeat](crate::Item::Heartbeat) after each loss, which says when a sample was taken: no value is decoded before.
-///   The sender must take a sample every period, as long as all sub-timesteps or longer, with a jitter of each tick
-///   below a quarter of a sub-timestep.
+///   The sender must take a sample every period, as long as all sub-timesteps or longer, with a jitter of each tick of at
+///   most an eighth of a sub-timestep.
 ///
 /// **Time:** however long a link is down, or a sender at rest, a frame's time says how many samples have passed. The
-/// sender must know it: see [`Transmitter::observe`](super::Transmitter::observe).
+/// sender must know it: see [`Transmitter::observe`](super::Transmitter::observe). A time that goes back, or that lies
+/// between two samples, withholds every value of a code that counts samples. The samples' clock may run slow or fast by the
+/// [tolerance](Self::with_clock_tolerance): where samples can then not be counted for certain, values are withheld.
 ///
-/// - **Memory:** on a 32-bit part about 64 bytes; per channel the decoder's state, a sample and 8 bytes; and 8 bytes
+/// **Identity:** a receiver compares the sender's [fingerprint](Fingerprint) with that of its own schemes, and calls no
+/// value exact if they differ or none has come yet. A sender without fingerprint is believed until a keyframe contradicts
+/// the exact value before it.
+///
+/// - **Memory:** on a 32-bit part about 104 bytes; per channel the decoder's state, a sample and 8 bytes; and 8 bytes
 ///   for each of `EVENTS`, the most events that one sample has over all channels. Codes of [`Recovery::Keyframe`] need
 ///   none of these: 0.
 /// - **Latency:** none for codes of [`Recovery::Keyframe`]; for others until the sample is over.
@@ -54,9 +63,14 @@ pub struct Receiver<T: Schemes<N>, const N: usize, const EVENTS: usize = 32> {
     addresses: Addresses,
     /// How many sub-timesteps a sample has, in the channel with most; 1 where they do not matter.
     slots: u32,
+    /// From so many samples without events on, further ones change no channel; 0 where samples need not be counted.
+    settled: u32,
     sample: Sampled<EVENTS>,
+    trust: Trust,
     outside: u32,
     misfits: u32,
+    compared: u32,
+    contradicted: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -78,16 +92,20 @@ impl<D, S> Channel<D, S> {
 /// The sample that is being received, of codes that take all events of a sample at once.
 #[derive(Clone, Copy, Debug)]
 struct Sampled<const EVENTS: usize> {
-    /// The time of the sample; `None` while it is not known.
+    /// The time of the last sample of which it is known; `None` if there is none.
     time: Option<Time>,
-    /// The events, each at the tick of its sub-timestep from 0 on.
+    /// How many samples, from that one on, are over.
+    over: u64,
+    /// The events of that sample, each at the tick of its sub-timestep from 0 on.
     events: [Event; EVENTS],
     count: usize,
     /// Whether none of its events was lost.
     is_whole: bool,
     /// Whether none of the next sample's events was lost.
     is_next_whole: bool,
-    period: NonZeroU32,
+    /// Whether the time is too long ago to tell sub-timesteps apart until the next heartbeat.
+    is_clock_lost: bool,
+    pace: Pace,
 }
 
 impl<'a, P: Scheme, const N: usize, const EVENTS: usize> Receiver<&'a P, N, EVENTS> {
@@ -114,17 +132,35 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             assert!(N >= 1, "a receiver has at least one channel");
             assert!(Self::ADDRESSES <= 1 << 16, "addresses have 16 bits");
         }
-        let mut slots = 1;
+        let (mut slots, mut settled) = (1, 0);
         let channels = schemes.channels(|scheme| {
             if T::Scheme::RECOVERY != Recovery::Keyframe {
                 slots = slots.max(scheme.slots() as u32);
             }
+            settled = settled.max(match scheme.recovery() {
+                Recovery::Samples(samples)
+                | Recovery::TimedKeyframe(samples)
+                | Recovery::Fading(samples) => samples as u32,
+                Recovery::Keyframe | Recovery::Spike => 0,
+            });
             let state = scheme.decoder_state();
             let value = scheme.held(&state).unwrap_or_default();
             Channel { state, value, is_exact: false, whole: 0 }
         });
         let addresses = Addresses { first: 0, slot_ticks: 0 };
-        Self { channels, addresses, slots, sample: Sampled::NONE, outside: 0, misfits: 0 }
+        let (sample, trust) = (Sampled::NONE, Trust::NONE);
+        Self {
+            channels,
+            addresses,
+            slots,
+            settled,
+            sample,
+            trust,
+            outside: 0,
+            misfits: 0,
+            compared: 0,
+            contradicted: 0,
+        }
     }
 
     /// Sets the first address, 0 by default; events of addresses without a channel are counted as
@@ -156,6 +192,38 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         self
     }
 
+    /// Sets by how many millionths the time from sample to sample may differ from the link's period, in ticks of the
+    /// sender; 20 000 (2 %) by default, for a sensor that takes samples by its own clock. 0 is a timer of the clock that the
+    /// ticks come from. The receiver measures the time, too: after a few dozen samples it is known better than this.
+    #[must_use]
+    pub const fn with_clock_tolerance(mut self, millionths: u32) -> Self {
+        self.sample.pace = self.sample.pace.with_tolerance(millionths);
+        self
+    }
+
+    /// Sets the fingerprint that the sender must have, instead of that of this receiver's own schemes: where several banks
+    /// share a link, or the far end stands in for another type.
+    #[must_use]
+    pub const fn with_fingerprint(mut self, fingerprint: Fingerprint) -> Self {
+        self.trust = self.trust.with_own(fingerprint);
+        self
+    }
+
+    /// Adds the label that the sender has: see [`Transmitter::with_label`](super::Transmitter::with_label).
+    #[must_use]
+    pub const fn with_label(mut self, label: &str) -> Self {
+        self.trust = self.trust.with_label(label);
+        self
+    }
+
+    /// The fingerprint that the sender must have.
+    pub fn fingerprint(&self) -> Fingerprint {
+        self.trust.own(|| {
+            let schemes = T::each(&self.channels).map(|(scheme, _)| scheme);
+            bank_fingerprint(schemes, self.addresses.first, self.addresses.slot_ticks)
+        })
+    }
+
     /// Decodes a frame, and passes the channel, tick and new value of each keyframe, event or sample to `on_value`, in
     /// order.
     pub fn apply(
@@ -164,10 +232,13 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         mut on_value: impl FnMut(u16, Tick, SampleOf<T, N>),
     ) {
         let frame = &received.frame;
+        self.verify(received);
         if received.is_after_break() {
             self.begin_again(received.is_start, &mut on_value);
         }
-        self.sample.period = frame.period().into();
+        let period = frame.period().get().into();
+        let unit = if self.has_slots() { self.addresses.slot_ticks.max(1) } else { period };
+        self.sample.pace.set(period, unit);
         for keyframe in frame.keyframes() {
             self.keyframe(frame.time(), keyframe, &mut on_value);
         }
@@ -184,12 +255,30 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         }
     }
 
+    /// Compares the sender's fingerprint with that of the receiver.
+    fn verify(&mut self, received: &Received<'_>) {
+        if received.is_start {
+            self.trust.begin();
+        }
+        let frame = &received.frame;
+        if let Some(sender) = frame.fingerprint() {
+            if !self.trust.has_own() {
+                self.trust = self.trust.with_own(self.fingerprint());
+            }
+            self.trust.compare(sender);
+        } else {
+            self.trust.lack(frame.is_described());
+        }
+    }
+
     /// Tells the receiver that all events before this tick have arrived: samples that are over by then are decoded and
     /// passed to `on_value`. Otherwise a sample is decoded when an event of a later one arrives. `now` must lie less than
     /// 2³¹ µs (35.8 minutes) after the last event or call. Codes of [`Recovery::Keyframe`] do not need this.
     pub fn advance(&mut self, now: Tick, mut on_value: impl FnMut(u16, Tick, SampleOf<T, N>)) {
         if let Some(time) = self.sample.time {
-            self.finish_samples(time.nearest(now), &mut on_value);
+            let half = i64::from(self.sample.pace.unit() / 2);
+            let since = time.nearest(now).since(time).saturating_add(half).max(0);
+            self.finish(self.sample.pace.samples(since.cast_unsigned()), &mut on_value);
         }
     }
 
@@ -207,12 +296,17 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
     ) {
         self.mark_stale();
-        if (is_start || self.has_slots())
-            && let Some(time) = self.sample.time.take()
-            && self.sample.count > 0
-        {
-            self.decode(time, on_value);
+        self.sample.pace.cut();
+        if is_start || self.has_slots() {
+            if self.sample.count > 0 {
+                self.finish(1, on_value);
+            }
+            self.sample.time = None;
             self.sample.count = 0;
+            self.sample.is_clock_lost = false;
+        }
+        if is_start {
+            self.sample.pace.forget();
         }
     }
 
@@ -220,7 +314,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
     /// the last event, for others that of the last sample that is over.
     pub fn exact(&self, channel: u16) -> Option<SampleOf<T, N>> {
         let (_, channel) = T::each(&self.channels).nth(channel.into())?;
-        channel.is_exact.then_some(channel.value)
+        (channel.is_exact && self.trust.is_given()).then_some(channel.value)
     }
 
     /// The value of a channel, exact or not; 0 for a channel that does not exist.
@@ -232,19 +326,22 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
     /// Why a channel has no exact value; `None` if it has one, or does not exist.
     pub fn withheld(&self, channel: u16) -> Option<Withheld> {
         let (scheme, channel) = T::each(&self.channels).nth(channel.into())?;
-        let Sampled { time, period, .. } = self.sample;
+        let Sampled { time, pace, is_clock_lost, .. } = self.sample;
         let slot_ticks = self.addresses.slot_ticks;
+        let doubt = self.trust.doubt();
         Some(match scheme.recovery() {
+            Recovery::Fading(_) if doubt.is_none() => Withheld::Always,
+            _ if self.has_slots() && slot_ticks == 0 => Withheld::SlotTicks,
+            _ if self.is_blind() && pace.period() > 1 => {
+                Withheld::Slots { slots: self.slots, slot_ticks, period: pace.period() }
+            }
+            _ if let Some(doubt) = doubt => doubt,
             _ if channel.is_exact => return None,
             Recovery::Keyframe | Recovery::TimedKeyframe(_) => Withheld::Keyframe,
-            Recovery::Fading(_) => Withheld::Always,
-            _ if self.has_slots() && slot_ticks == 0 => Withheld::SlotTicks,
-            _ if self.is_blind() && period > NonZeroU32::MIN => {
-                Withheld::Slots { slots: self.slots, slot_ticks, period: period.get() }
-            }
+            _ if self.has_slots() && is_clock_lost => Withheld::Clock,
             _ if self.has_slots() && time.is_none() => Withheld::Heartbeat,
             Recovery::Samples(needed) => Withheld::Samples(needed.saturating_sub(channel.whole)),
-            Recovery::Spike => Withheld::Spike,
+            Recovery::Spike | Recovery::Fading(_) => Withheld::Spike,
         })
     }
 
@@ -255,9 +352,21 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
 
     /// Number of things that do not fit the schemes: keyframes of another sample type or for a code without keyframes;
     /// frames with bits that code no event; events beyond the `EVENTS` of a sample, after their sample was over, or in
-    /// none of its sub-timesteps.
+    /// none of its sub-timesteps; ticks that go back, or lie between two samples, of a code that counts samples.
     pub const fn misfits(&self) -> u32 {
         self.misfits
+    }
+
+    /// Number of keyframes of codes whose decoders [hold](Scheme::holds_keyframes) what a keyframe says, after a value
+    /// without a loss.
+    pub const fn compared(&self) -> u32 {
+        self.compared
+    }
+
+    /// Number of [those](Self::compared) that had another value: the sender has other schemes or parameters, or lost items
+    /// without telling.
+    pub const fn contradicted(&self) -> u32 {
+        self.contradicted
     }
 
     /// How many neurons a channel has.
@@ -275,7 +384,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
     /// Whether all sub-timesteps of a sample are over when the next begins.
     fn slots_fit(&self) -> bool {
         let length = u64::from(self.slots).wrapping_mul(self.addresses.slot_ticks.into());
-        length <= u64::from(self.sample.period.get())
+        length <= u64::from(self.sample.pace.period())
     }
 
     /// Whether the code tells values by sub-timesteps that are not known.
@@ -292,14 +401,21 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         let address = usize::from(keyframe.address.wrapping_sub(self.addresses.first));
         let channel = address / self.neurons();
         if channel < N && matches!(T::Scheme::RECOVERY, Recovery::TimedKeyframe(_)) {
-            self.sample_behind(time, on_value);
+            self.sample_taken(time, on_value);
         }
         let Some((scheme, known)) = T::each_mut(&mut self.channels).nth(channel) else {
             self.outside = self.outside.saturating_add(1);
             return;
         };
-        match keyframe.value() {
+        match keyframe.value::<SampleOf<T, N>>() {
             Some(value) if Self::HAS_KEYFRAMES => {
+                if known.is_exact && scheme.holds_keyframes() {
+                    self.compared = self.compared.saturating_add(1);
+                    if value.to_bits32() != known.value.to_bits32() {
+                        self.contradicted = self.contradicted.saturating_add(1);
+                        self.trust.contradict();
+                    }
+                }
                 scheme.resync(&mut known.state, value);
                 known.value = value;
                 known.is_exact = true;
@@ -319,7 +435,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         if address >= N * self.neurons() {
             self.outside = self.outside.saturating_add(1);
         } else if T::Scheme::RECOVERY != Recovery::Keyframe {
-            self.sample_behind(time, on_value);
+            self.sample_taken(time, on_value);
         }
     }
 
@@ -356,21 +472,25 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         event: Event,
         on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
     ) {
-        if self.is_blind() || self.has_slots() && self.sample.time.is_none() {
+        if self.is_blind() || self.has_slots() && !self.sample.is_timed() {
             return;
         }
-        self.finish_samples(time, on_value);
-        let Some(slot) = self.slot(time) else {
-            self.misfits = self.misfits.saturating_add(1);
-            return self.begin_again(true, on_value);
+        let last = self.sample.events.get(self.sample.count.wrapping_sub(1));
+        let is_behind = last.is_some_and(|last| event.address < last.address);
+        if is_behind && !self.has_slots() && self.sample.time == Some(time) {
+            // Another sample of the same tick: events of a sample come by rising address.
+            self.lose_time(true, on_value);
+        }
+        let slot = match self.place(time, on_value) {
+            Some(slot) => slot,
+            None if self.has_slots() => return,
+            // The first event of which the sample is known again.
+            None => self.place(time, on_value).unwrap_or(0),
         };
         // Events that were lost before this one belong to its sample or to an earlier one.
         self.sample.is_next_whole = true;
-        let after = slot.wrapping_mul(self.addresses.slot_ticks);
-        // The event's own time instead of a whole number of periods: samples are counted from here on, whatever the
-        // jitter, and where the sender's period is not quite that of the link.
-        self.sample.time = Some(time.after(u64::from(after).wrapping_neg()));
         if let Some(place) = self.sample.events.get_mut(self.sample.count) {
+            let after = slot.wrapping_mul(self.addresses.slot_ticks);
             *place = Event { tick: after.into(), ..event };
             self.sample.count = self.sample.count.wrapping_add(1);
         } else {
@@ -384,71 +504,146 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         }
     }
 
-    /// How far an event may lie before its sample's time or sub-timestep: half a period, or half a sub-timestep.
-    fn half(&self) -> u32 {
-        let length =
-            if self.has_slots() { self.addresses.slot_ticks } else { self.sample.period.get() };
-        length / 2
-    }
-
-    /// The sub-timestep of the present sample at this time; `None` if the time lies in none.
-    fn slot(&self, time: Time) -> Option<u32> {
-        let Some(sample) = self.sample.time else { return Some(0) };
-        let since = time.since(sample).saturating_add(self.half().into());
-        let since = u32::try_from(since).ok()?;
-        if !self.has_slots() {
+    /// Finds the sample and the sub-timestep of an event at this time, after the samples before it are over. `None` if the
+    /// time fits no sample, or its sample is over: every channel is then stale, and the time of samples not known.
+    fn place(
+        &mut self,
+        time: Time,
+        on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
+    ) -> Option<u32> {
+        let Some(anchor) = self.sample.time else {
+            self.sample.pace.begin();
+            self.go_to(time);
+            return Some(0);
+        };
+        let since = time.since(anchor);
+        if !self.has_slots() && (self.settled == 0 || since == 0) {
+            // All events of a sample have its tick.
+            if since == 0 && self.sample.over > 0 {
+                return self.lose_time(true, on_value);
+            }
+            if since != 0 {
+                self.finish(1, on_value);
+                self.go_to(time);
+            }
             return Some(0);
         }
-        let slot = since.checked_div(self.addresses.slot_ticks)?;
-        (slot < self.slots).then_some(slot)
+        let (slot_ticks, slots) = (self.addresses.slot_ticks, self.slots);
+        let elapsed = if self.has_slots() {
+            self.sample.pace.slot(since, slots)
+        } else {
+            self.sample.pace.elapsed(since, self.settled)
+        };
+        match elapsed {
+            Elapsed::Samples { samples, slot } if samples >= self.sample.over => {
+                if samples > 0 {
+                    self.finish(samples, on_value);
+                    let taken = time.before(slot.wrapping_mul(slot_ticks).into());
+                    self.sample.pace.learn(taken.since(anchor), samples);
+                    self.go_to(taken);
+                }
+                Some(slot)
+            }
+            Elapsed::Settled { samples } if samples >= self.sample.over => {
+                self.finish(samples, on_value);
+                self.sample.pace.begin();
+                self.go_to(time);
+                Some(0)
+            }
+            Elapsed::Unknown => self.lose_time(false, on_value),
+            Elapsed::Settled { .. } | Elapsed::Samples { .. } | Elapsed::Misfit => {
+                self.lose_time(true, on_value)
+            }
+        }
     }
 
-    /// Goes on to the sample after the one taken at this time, which is over.
-    fn sample_behind(&mut self, time: Time, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
+    /// Gives up the time of samples, since what arrived does not fit it, or since it is not known well enough any more.
+    fn lose_time(
+        &mut self,
+        is_misfit: bool,
+        on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
+    ) -> Option<u32> {
+        self.misfits = self.misfits.saturating_add(is_misfit.into());
+        let Sampled { time, pace, .. } = self.sample;
+        self.begin_again(true, on_value);
+        if !is_misfit {
+            self.sample.pace = pace;
+        }
+        if !is_misfit && self.has_slots() {
+            // From the last heartbeat to the next the pace can still be measured.
+            (self.sample.time, self.sample.is_clock_lost) = (time, true);
+        }
+        None
+    }
+
+    /// Goes on to the sample taken at this time, of which nothing has come yet.
+    fn go_to(&mut self, time: Time) {
+        self.sample.is_whole = self.sample.is_next_whole;
+        (self.sample.time, self.sample.over, self.sample.count) = (Some(time), 0, 0);
+    }
+
+    /// Takes note that a sample was taken at this time, and that all its events have come.
+    fn sample_taken(&mut self, time: Time, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
         if self.is_blind() {
             return;
         }
-        let next = time.after(self.sample.period.get().into());
-        self.finish_samples(next, on_value);
+        if let Some(anchor) = self.sample.time {
+            let since = time.since(anchor);
+            let counts = self.settled > 0 || self.has_slots();
+            let elapsed = match since {
+                0 => Elapsed::Samples { samples: 0, slot: 0 },
+                _ if !counts => Elapsed::Samples { samples: 1, slot: 0 },
+                _ if self.has_slots() => self.sample.pace.beat(since, self.settled),
+                _ => self.sample.pace.elapsed(since, self.settled),
+            };
+            match elapsed {
+                Elapsed::Samples { samples, .. }
+                    if samples.saturating_add(1) >= self.sample.over =>
+                {
+                    self.finish(samples.saturating_add(1), on_value);
+                    if samples > 0 {
+                        self.sample.pace.learn(since, samples);
+                    }
+                }
+                Elapsed::Settled { samples } if samples >= self.sample.over => {
+                    self.finish(samples.saturating_add(1), on_value);
+                    self.sample.pace.begin();
+                }
+                Elapsed::Unknown => {
+                    self.lose_time(false, on_value);
+                }
+                Elapsed::Settled { .. } | Elapsed::Samples { .. } | Elapsed::Misfit => {
+                    self.lose_time(true, on_value);
+                }
+            }
+        }
+        if self.sample.time.is_none() {
+            self.sample.pace.begin();
+        }
         // Events that come from here on belong to the next sample or to a later one.
-        self.sample.is_whole |= self.sample.count == 0;
-        self.sample.is_next_whole = true;
-        self.sample.time = Some(next);
+        (self.sample.time, self.sample.over, self.sample.count) = (Some(time), 1, 0);
+        (self.sample.is_whole, self.sample.is_next_whole) = (true, true);
+        self.sample.is_clock_lost = false;
     }
 
-    /// Decodes the sample that is over at this time, and the samples without events after it.
-    fn finish_samples(&mut self, now: Time, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
-        let Some(time) = self.sample.time else { return };
-        let Sampled { period, is_next_whole, .. } = self.sample;
-        // With sub-timesteps an event lies in the period after its sample, otherwise near its sample.
-        let half = self.half();
-        let since = now.since(time).saturating_add(half.into()).max(0).cast_unsigned();
-        let samples = match u32::try_from(since) {
-            Ok(since) => (since / period).into(),
-            Err(_) => since / NonZeroU64::from(period),
+    /// Decodes so many samples from the last known one on, those that are not over yet.
+    fn finish(&mut self, samples: u64, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
+        let Sampled { time: Some(time), over, is_next_whole, pace, .. } = self.sample else {
+            return;
         };
-        if samples == 0 {
+        if samples <= over {
             return;
         }
-        let period = u64::from(period.get());
-        self.sample.time = Some(time.after(samples.wrapping_mul(period)));
-        self.decode(time, on_value);
-        self.sample.is_whole = is_next_whole;
-        self.sample.count = 0;
-        if samples == 1 {
-            return;
+        if over == 0 {
+            self.decode(time, on_value);
+            self.sample.is_whole = is_next_whole;
+            self.sample.count = 0;
         }
         // From the longest recovery on, samples without events change no channel.
-        let silent = T::each(&self.channels).map(|(scheme, _)| match scheme.recovery() {
-            Recovery::Samples(samples)
-            | Recovery::TimedKeyframe(samples)
-            | Recovery::Fading(samples) => samples,
-            Recovery::Keyframe | Recovery::Spike => 0,
-        });
-        let silent = silent.max().unwrap_or_default();
-        for sample in (1..samples).take(silent) {
-            self.decode(time.after(sample.wrapping_mul(period)), on_value);
+        for sample in (over.max(1)..samples).take(self.settled as usize) {
+            self.decode(time.after(pace.time_of(sample)), on_value);
         }
+        self.sample.over = samples;
     }
 
     /// Decodes a sample that is over, in every channel.
@@ -475,12 +670,19 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
 impl<const EVENTS: usize> Sampled<EVENTS> {
     const NONE: Self = Self {
         time: None,
+        over: 0,
         events: [Event::ZERO; EVENTS],
         count: 0,
         is_whole: false,
         is_next_whole: false,
-        period: NonZeroU32::MIN,
+        is_clock_lost: false,
+        pace: Pace::new(CLOCK_TOLERANCE),
     };
+
+    /// Whether it is known when samples are taken, well enough to tell sub-timesteps apart.
+    const fn is_timed(&self) -> bool {
+        self.time.is_some() && !self.is_clock_lost
+    }
 }
 
 impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Clone for Receiver<T, N, EVENTS>

@@ -10,8 +10,8 @@ const MASK: u64 = (1 << BITS) - 1;
 ///
 /// - **[`counted`](Self::counted)** for a board that counts its starts in flash. Any two of 65 536 starts in a row
 ///   lie at least 1.9 thousand million frames apart.
-/// - **[`random`](Self::random)** for a board with a generator. Two sessions continue each other by chance in
-///   one of 2⁴⁸ restarts.
+/// - **[`random`](Self::random)** for a board with a generator. A session continues the one before by chance in one of
+///   2⁴⁸ restarts, and one in 2²⁴ looks like that one after lost frames, which is as safe as a start.
 ///
 /// A constant, or a bit that changes at each start, is no session: a receiver that misses the starts between would go on
 /// from values of an earlier one, and call them exact.

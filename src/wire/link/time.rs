@@ -50,4 +50,9 @@ impl Time {
     pub(super) const fn after(self, micros: u64) -> Self {
         Self::from_micros(self.0.wrapping_add(micros))
     }
+
+    #[inline]
+    pub(super) const fn before(self, micros: u64) -> Self {
+        Self::from_micros(self.0.wrapping_sub(micros))
+    }
 }

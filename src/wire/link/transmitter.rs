@@ -1,7 +1,8 @@
 //! Transmitter: turns items into frames, in their order.
 
 use super::{Coding, FrameWriter, Framer, LinkError, Session};
-use crate::event::{Item, Source, Taken, Tick};
+use crate::Fingerprint;
+use crate::event::{Bank, Item, Schemes, Source, Taken, Tick};
 use crate::wire::Batch;
 
 /// Takes items from a source and turns them into frames, in their order.
@@ -11,14 +12,20 @@ use crate::wire::Batch;
 ///   keyframe.
 /// - **Time:** a tick wraps after 71.6 minutes, so that a longer silence cannot be told from a short one. If there may
 ///   be no item for 17.9 minutes, as with a rate code at rest without heartbeats, call [`observe`](Self::observe).
-/// - **Memory:** 48 bytes on a 32-bit part.
+/// - **Fingerprint:** that of the bank goes into the first frame, into frames with keyframes, at most every fourth, and
+///   into any frame 0.52 s or more after the last one that had it: a byte a frame on average at most, or 8 bytes a second
+///   where there are fewer than 8 frames a second. A [`Receiver`](super::Receiver) with other schemes then calls no value
+///   exact.
+/// - **Memory:** 56 bytes on a 32-bit part.
 ///
 /// ```
-/// use spikewire::{Event, FromEvents, Polarity, Tick};
-/// use spikewire::link::{Coding, FrameView, MAX_FRAME, Session, Transmitter};
+/// use spikewire::{Bank, Event, FromEvents, Polarity, Tick, temporal::StepForward};
+/// use spikewire::link::{FrameView, MAX_FRAME, Session, Transmitter};
 ///
+/// static GYRO: StepForward<i16> = StepForward::new(120);
+/// let bank = Bank::<_, 6>::new(&GYRO);
 /// let starts = 7; // as counted in flash
-/// let mut link = Transmitter::new(Coding::for_channels(6, 1_000), Session::counted(starts));
+/// let mut link = Transmitter::for_bank(&bank, 1_000, Session::counted(starts)); // a sample every 1000 µs
 ///
 /// let event = Event { tick: Tick::from_micros(5_000), address: 3, polarity: Polarity::Up };
 /// let mut source = FromEvents([event].into_iter());
@@ -37,9 +44,37 @@ pub struct Transmitter {
 }
 
 impl Transmitter {
-    /// A transmitter before the first frame of this session.
+    /// A transmitter for the items of this bank, sampled every `period` µs (0 counts as 1), before the first frame of
+    /// this session. It sends the bank's [fingerprint](Bank::fingerprint).
+    pub fn for_bank<T: Schemes<N>, const N: usize>(
+        bank: &Bank<T, N>,
+        period: u16,
+        session: Session,
+    ) -> Self {
+        let coding = Coding::for_channels(bank.addresses(), period);
+        Self::new(coding, session).with_fingerprint(bank.fingerprint())
+    }
+
+    /// A transmitter before the first frame of this session, without a fingerprint: a receiver cannot tell whether it has
+    /// the sender's schemes, except by keyframes that contradict it.
     pub const fn new(coding: Coding, session: Session) -> Self {
         Self { framer: Framer::new(coding, session), held: None }
+    }
+
+    /// Sends this fingerprint: that of the bank, or of several banks on one link, each [and](Fingerprint::and) the next.
+    #[must_use]
+    pub const fn with_fingerprint(self, fingerprint: Fingerprint) -> Self {
+        Self { framer: self.framer.with_fingerprint(fingerprint), ..self }
+    }
+
+    /// Adds what both ends must have in common beside the schemes, such as names and units of the channels, to the
+    /// [fingerprint](Fingerprint::labelled). Without a fingerprint it does nothing.
+    #[must_use]
+    pub const fn with_label(self, label: &str) -> Self {
+        match self.framer.fingerprint() {
+            Some(fingerprint) => self.with_fingerprint(fingerprint.labelled(label)),
+            None => self,
+        }
     }
 
     /// Tells the transmitter the time while there are no items. An item or this call must come at least every 2³⁰ µs

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use crate::Fingerprint;
+
 /// Why a channel of a [`Receiver`](super::Receiver) has no exact value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -28,8 +30,25 @@ pub enum Withheld {
         /// The link's period, in µs.
         period: u32,
     },
+    /// The samples' clock is not known well enough, after as long as it was since the last heartbeat, to tell
+    /// sub-timesteps apart: the sender must call [`keyframe_into`](crate::Bank::keyframe_into) more often, or the receiver
+    /// be told of a better clock, by [`with_clock_tolerance`](super::Receiver::with_clock_tolerance).
+    Clock,
     /// The code is never exact after a start or a loss: the error fades.
     Always,
+    /// No fingerprint has come since the sender started, or since the receiver joined it.
+    Unknown,
+    /// The sender has other schemes, parameters, channels or [labels](super::Receiver::with_label) than the receiver. No
+    /// value is exact until a sender with the receiver's own starts.
+    Description {
+        /// The fingerprint of the receiver.
+        own: Fingerprint,
+        /// The fingerprint of the sender.
+        sender: Fingerprint,
+    },
+    /// The sender has no fingerprint, and a keyframe had another value than the exact one before it: the sender has other
+    /// schemes or parameters, or lost items without telling. No value is exact until a sender starts.
+    Contradicted,
 }
 
 impl fmt::Display for Withheld {
@@ -49,7 +68,22 @@ impl fmt::Display for Withheld {
                 f,
                 "{slots} sub-timesteps of {slot_ticks} µs are longer than the link's period of {period} µs"
             ),
+            Self::Clock => write!(
+                f,
+                "heartbeats are too far apart for sub-timesteps as short as these, with a clock known this well"
+            ),
             Self::Always => write!(f, "the error of this code fades, and is never 0"),
+            Self::Unknown => write!(f, "no fingerprint of the sender's schemes yet"),
+            Self::Description { own, sender } => write!(
+                f,
+                "the sender's schemes have the fingerprint {sender}, the receiver's {own}: they differ in code, parameters, sample type, order or label"
+            ),
+            Self::Contradicted => {
+                write!(
+                    f,
+                    "a keyframe contradicts the value before it: the sender has other parameters"
+                )
+            }
         }
     }
 }

@@ -5,14 +5,14 @@ use core::num::NonZeroU16;
 use super::bits::{BitWriter, Word};
 use super::delta::Place;
 use super::frame::{
-    CHECKSUM, FLAGS_AT, HEADER, HEARTBEATS, LENGTH_AT, MAGIC, MAX_LENGTH, VERSION, checksum, flag,
-    keyframe_size,
+    CHECKSUM, FINGERPRINT, FLAGS_AT, HEADER, HEARTBEATS, LENGTH_AT, MAGIC, MAX_LENGTH, VERSION,
+    checksum, flag, keyframe_size,
 };
 use super::time::Time;
 use super::{LinkError, Session, session};
-use crate::SampleKind;
 use crate::event::{Event, Keyframe, Tick};
 use crate::wire::bytes::Cursor;
+use crate::{Fingerprint, SampleKind};
 
 /// How many bits the parts of an event take. Every choice can carry every event; a good one takes fewer bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -95,7 +95,17 @@ pub struct Framer {
     /// The flags of the next frame.
     flags: u8,
     leaps: u32,
+    fingerprint: Fingerprint,
+    /// The tick of the last frame with the fingerprint, and how many frames came since.
+    told_at: Tick,
+    untold: u8,
 }
+
+/// The fingerprint goes into a frame that comes this many µs (0.52 s) after the last one that had it, or later.
+const TELL_AFTER: u32 = 1 << 19;
+
+/// The fingerprint goes into every fourth frame at most, if that has keyframes.
+const TELL_EVERY: u8 = 4;
 
 impl Framer {
     /// A framer before the first frame of this session.
@@ -106,7 +116,28 @@ impl Framer {
             time: Time::from_micros(0),
             flags: flag::FIRST,
             leaps: 0,
+            fingerprint: Fingerprint::from_bits(0),
+            told_at: Tick::from_micros(0),
+            untold: 0,
         }
+    }
+
+    /// Sends the fingerprint of the schemes: see
+    /// [`Transmitter::with_fingerprint`](super::Transmitter::with_fingerprint).
+    #[must_use]
+    pub const fn with_fingerprint(self, fingerprint: Fingerprint) -> Self {
+        Self { fingerprint, flags: self.flags | flag::DESCRIBED, ..self }
+    }
+
+    /// The fingerprint, if there is one.
+    pub(super) const fn fingerprint(&self) -> Option<Fingerprint> {
+        if self.flags & flag::DESCRIBED != 0 { Some(self.fingerprint) } else { None }
+    }
+
+    /// Whether a frame at this tick has the fingerprint, with or without keyframes.
+    fn must_tell(&self, tick: Tick) -> bool {
+        let since = tick.micros().wrapping_sub(self.told_at.micros());
+        self.flags & flag::DESCRIBED != 0 && (self.flags & flag::FIRST != 0 || since >= TELL_AFTER)
     }
 
     /// Marks the next frame as one before which items were lost, or encoders changed without events.
@@ -162,8 +193,9 @@ impl Framer {
         bytes.set_limit(limit.min(HEADER + MAX_LENGTH));
         bytes.put(&header).ok_or(LinkError::Full)?;
         let flags = self.flags;
+        let must_tell = self.must_tell(tick);
         let bits = BitWriter::new(bytes);
-        Ok(FrameWriter {
+        let mut frame = FrameWriter {
             framer: self,
             bits,
             flags,
@@ -172,7 +204,11 @@ impl Framer {
             keyframes: 0,
             events: 0,
             place: Place::new(coding, tick),
-        })
+        };
+        if must_tell {
+            frame.tell();
+        }
+        Ok(frame)
     }
 }
 
@@ -216,6 +252,21 @@ impl<'a> FrameWriter<'_, 'a> {
         self.entry(tick, address, None, 0)
     }
 
+    /// Appends the fingerprint if there is room.
+    #[cold]
+    #[inline(never)]
+    fn tell(&mut self) {
+        if self.bits.room() >= FINGERPRINT {
+            self.bits.put_bytes(&self.framer.fingerprint.bits().to_le_bytes());
+            self.flags |= flag::FINGERPRINT;
+        }
+    }
+
+    /// Where the keyframes begin.
+    const fn run_at(&self) -> usize {
+        if self.flags & flag::FINGERPRINT != 0 { HEADER + FINGERPRINT } else { HEADER }
+    }
+
     fn entry(
         &mut self,
         tick: Tick,
@@ -232,6 +283,11 @@ impl<'a> FrameWriter<'_, 'a> {
             return Err(LinkError::Full);
         }
         if self.run.is_none() {
+            let is_due = self.flags & (flag::DESCRIBED | flag::FINGERPRINT) == flag::DESCRIBED
+                && self.framer.untold >= TELL_EVERY - 1;
+            if is_due && run + keyframe_size(kind) + FINGERPRINT <= self.bits.room() {
+                self.tell();
+            }
             self.run = Some(own);
             self.flags |= flag::KEYFRAMES;
             self.bits.put_bytes(&[0, kind.map_or(HEARTBEATS, SampleKind::to_byte)]);
@@ -292,12 +348,13 @@ impl<'a> FrameWriter<'_, 'a> {
     /// Closes the frame and returns its bytes, ready to send. The frame takes its number: if it is not sent, the reader
     /// sees a gap.
     pub fn finish(self) -> &'a [u8] {
+        let run_at = self.run_at();
         let mut bytes = self.bits.finish();
         let length = bytes.written().saturating_sub(HEADER) as u8;
         bytes.replace(FLAGS_AT, VERSION << 4 | self.flags);
         bytes.replace(LENGTH_AT, length);
         if self.keyframes > 0 {
-            bytes.replace(HEADER, self.keyframes);
+            bytes.replace(run_at, self.keyframes);
         }
         bytes.set_limit(usize::MAX);
         let checksum = checksum(bytes.as_slice());
@@ -305,7 +362,12 @@ impl<'a> FrameWriter<'_, 'a> {
         let _ = bytes.put(&checksum.to_le_bytes());
         self.framer.number = session::next(self.framer.number);
         self.framer.time = self.framer.time.nearest(self.place.tick());
-        self.framer.flags = 0;
+        self.framer.flags = self.flags & flag::DESCRIBED;
+        if self.flags & flag::FINGERPRINT == 0 {
+            self.framer.untold = self.framer.untold.saturating_add(1);
+        } else {
+            (self.framer.untold, self.framer.told_at) = (0, self.tick);
+        }
         bytes.into_slice()
     }
 }

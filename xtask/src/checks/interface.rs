@@ -86,8 +86,11 @@ fn lines(text: &str) -> BTreeSet<&str> {
 fn types(text: &str) -> usize {
     const KINDS: [&str; 5] = ["struct", "enum", "union", "trait", "type"];
     let declares = |line: &&str| {
-        let kind = line.strip_prefix("pub ").and_then(|rest| rest.split(' ').next());
-        kind.is_some_and(|kind| KINDS.contains(&kind)) && !is_member(line)
+        let declared = line.strip_prefix("pub ").and_then(|rest| rest.split_once(' '));
+        // Not the type of an implementation for references or arrays.
+        declared.is_some_and(|(kind, name)| {
+            KINDS.contains(&kind) && name.starts_with(char::is_alphabetic) && !is_member(line)
+        })
     };
     text.lines().filter(declares).count()
 }

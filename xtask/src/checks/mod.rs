@@ -10,6 +10,7 @@ pub mod link;
 pub mod logging;
 pub mod long;
 pub mod network;
+pub mod network_flies;
 pub mod nucleo;
 pub mod package;
 pub mod peers;

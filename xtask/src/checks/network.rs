@@ -1,14 +1,17 @@
-//! `cargo xtask network`: a network that `spikewire network` wrote, on an emulated STM32F405 and RP2040, against the host.
+//! `cargo xtask network`: a network that `spikewire network` wrote, on five emulated cores and an RP2040, against the host.
 
 use super::emulator;
 use crate::common::{cargo, command, output, paths, run, usage};
-use crate::programs::boards::Board;
+use crate::programs::boards::{BOARDS, Board};
 use crate::programs::{host, image, qemu};
 use anyhow::{Context, Result, bail, ensure};
 use std::fs;
 use std::path::Path;
 
 const PROGRAM: &str = "trained";
+
+/// The Cortex-M4F among the emulated boards.
+const STM32: &str = "STM32F405";
 
 /// The Cortex-M0+ of a Pico, in rp2040js.
 const RP2040: Board = Board {
@@ -35,7 +38,7 @@ pub fn network(args: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// From the published files to spikes on both boards, in single precision and in integers.
+/// From the published files to spikes on both boards, in single precision and in integers; then instructions of a step.
 pub fn verify() -> Result<()> {
     let place = paths::target().join(PROGRAM);
     fs::create_dir_all(&place)?;
@@ -50,11 +53,78 @@ pub fn verify() -> Result<()> {
         }
         println!("{numbers}:\n{}", everywhere(&module, &paths::root().join(SPIKES))?);
     }
+    counts("M4F", &[("A,f32", 2420), ("A,i8", 3453), ("D,f32", 23_798), ("D,i8", 22_369)])?;
+    counts("M0", &[("A,i8", 4778), ("D,i8", 31_985)])
+}
+
+/// The same network as a library for C: the same outputs, and the potentials' bits.
+fn in_c(network: &Path, spikes: &Path, on_host: &str) -> Result<()> {
+    let target = paths::target();
+    let mut build = cargo("build --quiet --manifest-path examples/Cargo.toml --package network-c");
+    run(build.env("CARGO_TARGET_DIR", &target).env("NETWORK", network))?;
+    let place = target.join(PROGRAM);
+    fs::create_dir_all(&place)?;
+    let program = place.join("steps");
+    let own = paths::examples().join("network-c/steps.c");
+    let library = target.join("debug/libnetwork.a");
+    run(command("cc")
+        .args(["-Wall", "-Wextra", "-Werror", "-o"])
+        .arg(&program)
+        .arg(own)
+        .arg(library))?;
+    let printed = output(command(program).stdin(fs::File::open(spikes)?))?;
+    // The host's first line tells of the check; behind the steps are the potentials, and what was left out.
+    let mut expected: Vec<String> =
+        on_host.lines().skip(1).map(|line| line.trim_end().to_owned()).collect();
+    let count = printed.lines().count();
+    expected.truncate(count);
+    let potentials = expected.pop().unwrap_or_default();
+    let bits = |value: &str| -> Result<String> {
+        let bits = value.parse::<i32>().map(i32::cast_unsigned);
+        let bits = bits.or_else(|_| value.parse::<f32>().map(f32::to_bits))?;
+        Ok(format!("{bits:08x}"))
+    };
+    let potentials = potentials.trim_matches(['[', ']']).split(", ").map(bits);
+    expected.push(potentials.collect::<Result<Vec<_>>>()?.join(" "));
+    let in_c: Vec<&str> = printed.lines().map(str::trim_end).collect();
+    ensure!(count > 1 && in_c == expected, "C has other spikes or potentials than the host");
     Ok(())
 }
 
-/// What the host and both boards print: an error if they differ.
-fn everywhere(network: &Path, spikes: &Path) -> Result<String> {
+/// Counts the steps of `examples/network` at 10 % of the neurons firing: an error if one takes 5 % more instructions than
+/// it did, or 10 % more than the C beside it.
+fn counts(core: &str, known: &[(&str, u32)]) -> Result<()> {
+    let board = Board::with(core)?;
+    let image = image::build_with("network", board, &[("PLAIN_C", "1")])?;
+    let printed = qemu::run_counting(board, &image)?;
+    let count = |row: &str| -> Result<u32> {
+        let start = format!("{row},10,");
+        let rest = printed.lines().find_map(|line| line.strip_prefix(&start));
+        let count = rest.and_then(|rest| rest.split(',').next()).with_context(|| start.clone())?;
+        Ok(count.parse()?)
+    };
+    for &(row, before) in known {
+        let now = count(row)?;
+        ensure!(
+            now * 20 <= before * 21,
+            "{row} on the {core}: {now} instructions, {before} before"
+        );
+        print!("{row} on the {core}: {now} instructions a step");
+        if row.starts_with('D') {
+            let plain = count(&format!("{row} in C"))?;
+            ensure!(
+                now * 10 <= plain * 11,
+                "{row} on the {core}: {now} instructions, {plain} in C"
+            );
+            print!(", {plain} in C");
+        }
+        println!();
+    }
+    Ok(())
+}
+
+/// What the host, the five emulated cores and an RP2040 print: an error if they differ.
+pub(super) fn everywhere(network: &Path, spikes: &Path) -> Result<String> {
     let variables = [("NETWORK", network), ("SPIKES", spikes)];
     let target = paths::target();
     let mut build = cargo("build --quiet --manifest-path examples/Cargo.toml --package");
@@ -71,17 +141,23 @@ fn everywhere(network: &Path, spikes: &Path) -> Result<String> {
     let mut all = told(&on_host);
     ensure!(all.starts_with("is intact: true\n"), "its own check fails on the host");
 
-    let stm32 = Board::with("M4F")?;
+    in_c(network, spikes, &on_host)?;
     let mut compare = |name: &str, printed: &str| -> Result<()> {
         if told(printed) != told(&on_host) {
             bail!("{name} prints something else than the host:\n{printed}");
         }
         let costs = printed.lines().rfind(|line| line.starts_with('#')).unwrap_or_default();
-        all += &format!("{name}: the same, {}\n", costs.trim_start_matches("# "));
+        all += &match name {
+            STM32 | "RP2040" => format!("{name}: the same, {}\n", costs.trim_start_matches("# ")),
+            _ => format!("{name}: the same\n"),
+        };
         Ok(())
     };
-    let built = image::build_with(PROGRAM, stm32, &variables)?;
-    compare("STM32F405", &qemu::run_counting(stm32, &built)?)?;
+    for board in &BOARDS {
+        let built = image::build_with(PROGRAM, board, &variables)?;
+        let name = if board.core == "M4F" { STM32 } else { board.core };
+        compare(name, &qemu::run_counting(board, &built)?)?;
+    }
     let built = image::build_with(PROGRAM, &RP2040, &variables)?;
     let mut node = command("node");
     node.arg(emulator::installed()?.join("steps.mjs")).arg(built);

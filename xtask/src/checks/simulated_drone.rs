@@ -11,9 +11,11 @@ use std::{
 };
 
 const PAGE: &str = "docs/loop.md";
-const MARKER: &str = "loop";
+/// The tables: every code's flights as it is tuned by flying, and as it is tuned on its error behind other filters.
+const TABLES: [&str; 2] = ["loop", "filters"];
 const CHIP: &str = "chip";
 const PICTURE: &str = "docs/loop.svg";
+const CRASH: &str = "docs/crash.svg";
 
 /// The row that a check flies again.
 const AGAIN: &str = "sod";
@@ -30,13 +32,27 @@ pub fn fly(args: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Flies all codes, and puts table and picture into the page.
+/// Flies all codes, and puts tables and pictures into the page.
 pub fn write() -> Result<()> {
     let python = environment()?;
-    let picture = draw(&python)?;
-    drawing::keep(&picture, PICTURE)?;
-    let table = output(&mut program(&python, "table.py"))?;
-    markdown::write(PAGE, MARKER, &format!("\n{table}\n"))
+    drawing::keep(&draw(&python, "picture.py")?, PICTURE)?;
+    drawing::keep(&draw(&python, "crash.py")?, CRASH)?;
+    put(&output(&mut program(&python, "table.py"))?)
+}
+
+/// Puts the tables of the flights that `loop/verdicts.json` keeps into the page, and flies none.
+pub fn write_tables() -> Result<()> {
+    put(&output(program(&environment()?, "table.py").arg("--print"))?)
+}
+
+fn put(printed: &str) -> Result<()> {
+    tables(printed).try_for_each(|(marker, table)| markdown::write(PAGE, marker, &table))
+}
+
+/// The tables, which an empty line divides, with their places in the page.
+fn tables(printed: &str) -> impl Iterator<Item = (&'static str, String)> {
+    let each = printed.split("\n\n").map(|table| format!("\n{}\n\n", table.trim_end()));
+    TABLES.into_iter().zip(each)
 }
 
 /// The control is steady, links carry what codecs make, the same seeds give the page's picture and one of its rows.
@@ -44,8 +60,13 @@ pub fn verify() -> Result<()> {
     let python = environment()?;
     run(&mut program(&python, "test_loop.py"))?;
     run(&mut program(&python, "steps.py"))?;
-    drawing::ensure_kept(&draw(&python)?, PICTURE, "cargo xtask write loop")?;
-    let table = output(program(&python, "table.py").arg(AGAIN))?;
+    drawing::ensure_kept(&draw(&python, "picture.py")?, PICTURE, "cargo xtask write loop")?;
+    drawing::ensure_kept(&draw(&python, "crash.py")?, CRASH, "cargo xtask write loop")?;
+    let printed = output(program(&python, "table.py").arg("--print"))?;
+    for (marker, table) in tables(&printed) {
+        markdown::ensure_written(PAGE, marker, &table, "cargo xtask write verdicts")?;
+    }
+    let table = output(program(&python, "table.py").args(["--filters", AGAIN]))?;
     let page = fs::read_to_string(paths::root().join(PAGE))?;
     let row = table.lines().last().unwrap_or_default();
     println!("{row}");
@@ -81,22 +102,22 @@ pub fn board() -> Result<()> {
     run(program(&python, "board.py").arg(image))
 }
 
-fn draw(python: &Path) -> Result<PathBuf> {
-    let picture = paths::target().join("loop.svg");
-    run(program(python, "picture.py").arg(&picture))?;
+fn draw(python: &Path, name: &str) -> Result<PathBuf> {
+    let picture = paths::target().join(name).with_extension("svg");
+    run(program(python, name).arg(&picture))?;
     Ok(picture)
 }
 
 /// A program of `loop`, with this Python.
-fn program(python: &Path, name: &str) -> Command {
+pub(super) fn program(python: &Path, name: &str) -> Command {
     let mut program = command(python);
     program.arg(paths::root().join("loop").join(name));
     program
 }
 
 /// `RotorPy`, and the package of this repository, compiled as its tests are.
-fn environment() -> Result<PathBuf> {
-    println!("Installs in target/loop, from PyPI: what loop/requirements.txt names, 0.5 GB.");
+pub(super) fn environment() -> Result<PathBuf> {
+    println!("Installs in target/loop, from PyPI: what loop/requirements.txt names, 1.1 GB.");
     let python = python::environment("loop")?;
     python::install(&python, &["--requirement", "loop/requirements.txt"])?;
     python::package(&python, "dev")?;

@@ -75,3 +75,19 @@ fn print_table(signal: &Signal, flown: &[Flown], here: &[Flown]) {
         "\nEfficiency: 100 % without a spike, 0 % with one a sample, negative beyond. Latency: samples of look-ahead.\n"
     );
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use needs::{CHECKS, DEMO};
+
+    /// On a machine of two cores each core library takes half a minute, and the compiler for C half a gigabyte.
+    #[test]
+    fn it_asks_for_the_core_that_it_flies_on_and_the_emulator_alone() {
+        assert_eq!(DEMO.targets, [Board::with("M4F").unwrap().target]);
+        let programs: Vec<&str> = DEMO.tools.iter().map(|tool| tool.program).collect();
+        assert_eq!(programs, ["qemu-system-arm"]);
+        assert!(DEMO.targets.iter().all(|target| CHECKS.targets.contains(target)));
+        assert_eq!(CHECKS.targets.len(), 4);
+    }
+}

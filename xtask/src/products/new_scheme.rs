@@ -1,7 +1,7 @@
 //! `cargo xtask scheme NAME TYPE --like NAME`: a scheme to begin from, which compiles as it comes.
 //!
 //! It is a copy of one that there is, under another name, in the crate and in the catalogue, with the lines that list it. The
-//! reference and its test are not copied: they would prove nothing.
+//! reference and its test begin empty: copied, they would prove nothing.
 
 use crate::common::{cargo, command, output, paths, run, usage};
 use anyhow::{Context, Result, ensure};
@@ -13,6 +13,12 @@ use std::{
 
 pub const USAGE: &str =
     "cargo xtask scheme NAME TYPE --like NAME, as in: trial TrialForward --like sf";
+
+/// Where the reference and the test go, what they are, and the files that list them.
+const BY_HAND: [(&str, &str, &str); 2] = [
+    ("host-tests/src/reference", "once more, from the paper alone and in doubles", "mod.rs"),
+    ("host-tests/tests", "against the reference", "codes.rs"),
+];
 
 /// Tables with a row for each scheme.
 const PAGES: [&str; 3] = ["src/lib.rs", "docs/schemes.md", "docs/codes.md"];
@@ -31,9 +37,10 @@ pub fn new_scheme(args: &[String]) -> Result<()> {
     for file in names.write(&paths::root())? {
         println!("{file}");
     }
+    run(&mut cargo("fmt --package spikewire --package catalogue --package host-tests"))?;
     println!(
-        "By hand now: the law in the first, names and parameters in the second, the rows' words; then \
-         host-tests/src/reference/{module}.rs and host-tests/tests/{module}.rs, and `cargo xtask write`.",
+        "By hand now: the law in the first, names and parameters in the second, the rows' words, and \
+         host-tests/src/reference/{module}.rs and host-tests/tests/{module}.rs, which are empty; then `cargo xtask write`.",
         module = names.new.module
     );
     Ok(())
@@ -121,6 +128,16 @@ impl Names {
             fs::write(&page, self.listed(&text, &is_row))?;
             files.push(page);
         }
+        for (room, words, list) in BY_HAND {
+            let (room, module) = (root.join(room), &new.module);
+            let file = room.join(format!("{module}.rs"));
+            fs::write(&file, format!("//! `{}` {words}.\n", new.type_name))?;
+            let list = room.join(list);
+            let text = inserted(&fs::read_to_string(&list)?, &format!("mod {module};"));
+            let text = inserted(&text, &format!("pub use {module}::*;"));
+            fs::write(&list, text)?;
+            files.extend([file, list]);
+        }
         let shown = |file: PathBuf| file.strip_prefix(root).unwrap_or(&file).display().to_string();
         Ok(files.into_iter().map(shown).collect())
     }
@@ -142,6 +159,17 @@ impl Names {
         }
         lines.join("\n") + "\n"
     }
+}
+
+/// The text with one more line before those that begin with the same word, if there are any; rustfmt sorts them. The module
+/// `common` stands apart.
+fn inserted(text: &str, line: &str) -> String {
+    let (word, _) = line.split_once(' ').unwrap_or((line, ""));
+    let is_listed = |other: &&str| other.starts_with(word) && *other != "mod common;";
+    text.lines().find(is_listed).map_or_else(
+        || text.to_owned(),
+        |first| text.replacen(&format!("\n{first}\n"), &format!("\n{line}\n{first}\n"), 1),
+    )
 }
 
 /// The text with another beginning of words: `StepForward` in `StepForwardState` and not in `AdaptiveStepForward`.
@@ -201,4 +229,19 @@ pub fn verify() -> Result<()> {
         .env("CARGO_TARGET_DIR", paths::target().join("new-scheme")))?;
     println!("A scheme to begin from compiles; {} files are written.", files.len());
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_listed_where_there_is_a_list() {
+        let text = "//! x\n\nmod common;\n\nmod bank;\nmod slots;\n\npub use bank::{\n    a,\n};\n";
+        let with = text.replace("mod bank;", "mod hough;\nmod bank;");
+        assert_eq!(inserted(text, "mod hough;"), with);
+        let with = text.replace("pub use bank", "pub use trial::*;\npub use bank");
+        assert_eq!(inserted(text, "pub use trial::*;"), with);
+        assert_eq!(inserted("fn f() {}\n", "mod x;"), "fn f() {}\n");
+    }
 }

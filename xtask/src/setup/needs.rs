@@ -87,19 +87,3 @@ pub fn ensure_met() -> Result<()> {
     );
     Ok(())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::programs::boards::Board;
-
-    /// On a machine of two cores each core library takes half a minute, and the compiler for C half a gigabyte.
-    #[test]
-    fn the_demo_asks_for_the_core_that_it_flies_on_and_the_emulator_alone() {
-        assert_eq!(DEMO.targets, [Board::with("M4F").unwrap().target]);
-        let programs: Vec<&str> = DEMO.tools.iter().map(|tool| tool.program).collect();
-        assert_eq!(programs, ["qemu-system-arm"]);
-        assert!(DEMO.targets.iter().all(|target| CHECKS.targets.contains(target)));
-        assert_eq!(CHECKS.targets.len(), 4);
-    }
-}

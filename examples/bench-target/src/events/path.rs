@@ -8,7 +8,7 @@ use core::{
 use board::stopwatch::{Count, counted};
 use spikewire::{
     Bank, Consumer, Event, EventQueue, Overflow, Source as _, SpscQueue, Tick,
-    link::{Coding, MAX_FRAME, Reader, Receiver, Session, Transmitter},
+    link::{MAX_FRAME, Reader, Receiver, Session, Transmitter},
 };
 
 use super::{
@@ -106,12 +106,11 @@ struct Way<'a, S: Measured> {
 
 impl<'a, S: Measured> Way<'a, S> {
     fn new(schemes: &'a Schemes<S>, period: u16) -> Self {
+        let bank = schemes.bank();
+        let transmitter = Transmitter::for_bank(&bank, period, Session::counted(1));
         Self {
-            bank: schemes.bank(),
-            transmitter: Transmitter::new(
-                Coding::for_channels(CHANNELS as u16, period),
-                Session::counted(1),
-            ),
+            bank,
+            transmitter,
             reader: Reader::new(),
             receiver: Receiver::per_channel(schemes.each()),
             interrupt: Cost::default(),

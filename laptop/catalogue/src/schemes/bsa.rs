@@ -12,6 +12,16 @@ use spikewire::rate::Criterion;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly them: taps, and what they are made of, in parts of a channel's range.
+const TAPS: usize = 24;
+const SUM: f64 = 1.0;
+const THRESHOLD: f64 = 0.955;
+const MULTIPLICATIVE_SUM: f64 = 2.0;
+const FACTOR: f32 = 0.92;
+const TOOLBOX_TAPS: usize = 9;
+const TOOLBOX_PEAK: f64 = 0.2;
+const TOOLBOX_FACTOR: f32 = 1.15;
+
 /// The words of `form` and of `criterion`.
 const FORMS: &[&str] = &["aligned", "toolbox"];
 const CRITERIA: &[&str] = &["sub", "mul"];
@@ -60,7 +70,7 @@ impl Entry for Scheme {
         InC {
             name: "bsa",
             scheme: "rate::Bsa<S, {0}>",
-            shapes: &[&[24]],
+            shapes: &[&[TAPS]],
             made: &[
                 Made {
                     name: "init",
@@ -74,8 +84,8 @@ impl Entry for Scheme {
                     words: "`shape`: SW_TRIANGULAR, SW_HANN or SW_GAUSSIAN; `sum`: of its taps; `threshold`: subtractive, 0 or more; `shift`: what is taken off the samples, at most their minimum.",
                     arguments: &[
                         Argument::HANN,
-                        Argument::sample("sum", Flown::Fraction(1.0)),
-                        Argument::sample("threshold", Flown::Fraction(0.955)),
+                        Argument::sample("sum", Flown::Fraction(SUM)),
+                        Argument::sample("threshold", Flown::Fraction(THRESHOLD)),
                         Argument::SHIFT,
                     ],
                     value: "rate::Bsa::try_subtractive(rate::Taps::try_shaped(shape, rate::Scale::Sum(sum))?, threshold)?.try_with_shift(shift)",
@@ -86,8 +96,8 @@ impl Entry for Scheme {
                     words: "`shape`: SW_TRIANGULAR, SW_HANN or SW_GAUSSIAN; `sum`: of its taps; `factor`: multiplicative, above 0 and below 4; `shift`: what is taken off the samples, at most their minimum.",
                     arguments: &[
                         Argument::HANN,
-                        Argument::sample("sum", Flown::Fraction(2.0)),
-                        Argument::number("factor", "f32", 0.92),
+                        Argument::sample("sum", Flown::Fraction(MULTIPLICATIVE_SUM)),
+                        Argument::number("factor", "f32", FACTOR as f64),
                         Argument::SHIFT,
                     ],
                     value: "rate::Bsa::try_multiplicative(rate::Taps::try_shaped(shape, rate::Scale::Sum(sum))?, factor)?.try_with_shift(shift)",
@@ -98,7 +108,7 @@ impl Entry for Scheme {
         InC {
             name: "bsa_toolbox",
             scheme: "rate::BsaToolbox<S, {0}>",
-            shapes: &[&[9]],
+            shapes: &[&[TOOLBOX_TAPS]],
             made: &[
                 Made {
                     name: "init",
@@ -112,8 +122,8 @@ impl Entry for Scheme {
                     words: "`shape`: SW_TRIANGULAR, SW_HANN or SW_GAUSSIAN; `peak`: its largest tap; `factor`: above 0 and below 4; `shift`: what is taken off the samples, at most their minimum.",
                     arguments: &[
                         Argument::TRIANGULAR,
-                        Argument::sample("peak", Flown::Fraction(0.2)),
-                        Argument::number("factor", "f32", 1.15),
+                        Argument::sample("peak", Flown::Fraction(TOOLBOX_PEAK)),
+                        Argument::number("factor", "f32", TOOLBOX_FACTOR as f64),
                         Argument::SHIFT,
                     ],
                     value: "rate::BsaToolbox::try_new(rate::Taps::try_shaped(shape, rate::Scale::Peak(peak))?, factor)?.try_with_shift(shift)",
@@ -125,9 +135,9 @@ impl Entry for Scheme {
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         published(channel, visitor)?;
-        let scale = Scale::Peak(channel.fraction(0.2));
-        let taps = Taps::<_, 9>::try_shaped(Shape::Triangular, scale)?;
-        let scheme = BsaToolbox::try_new(taps, 1.15)?.try_with_shift(channel.min)?;
+        let scale = Scale::Peak(channel.fraction(TOOLBOX_PEAK));
+        let taps = Taps::<_, TOOLBOX_TAPS>::try_shaped(Shape::Triangular, scale)?;
+        let scheme = BsaToolbox::try_new(taps, TOOLBOX_FACTOR)?.try_with_shift(channel.min)?;
         visitor.visit("bsa-toolbox", "Ben's spiker, as in the toolbox", &scheme, BsaToolbox::START)
     }
 
@@ -255,13 +265,13 @@ impl Build for Scheme {
 
 #[inline(never)]
 fn published<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-    let taps = Taps::<_, 24>::try_shaped(Shape::Hann, Scale::Sum(channel.fraction(1.0)))?;
-    let scheme = Bsa::try_subtractive(taps, channel.fraction(0.955))?;
+    let taps = Taps::<_, TAPS>::try_shaped(Shape::Hann, Scale::Sum(channel.fraction(SUM)))?;
+    let scheme = Bsa::try_subtractive(taps, channel.fraction(THRESHOLD))?;
     let scheme = scheme.try_with_shift(channel.min)?;
     visitor.visit("bsa", Scheme::INFO.words, &scheme, Bsa::START)?;
 
-    let taps = Taps::<_, 24>::try_shaped(Shape::Hann, Scale::Sum(channel.fraction(2.0)))?;
-    let scheme = Bsa::try_multiplicative(taps, 0.92)?.try_with_shift(channel.min)?;
+    let taps = Taps::<_, TAPS>::try_shaped(Shape::Hann, Scale::Sum(channel.fraction(MULTIPLICATIVE_SUM)))?;
+    let scheme = Bsa::try_multiplicative(taps, FACTOR)?.try_with_shift(channel.min)?;
     visitor.visit("bsa-mul", "Ben's spiker, multiplicative", &scheme, Bsa::START)
 }
 

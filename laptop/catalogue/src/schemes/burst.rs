@@ -8,6 +8,11 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it.
+const SPIKES: u8 = 5;
+const SHORTEST: u8 = 2;
+const LONGEST: u8 = 10;
+
 /// Slots enough for five spikes at intervals from 2 to 10.
 const SLOTS: usize = 19;
 
@@ -41,16 +46,16 @@ impl Entry for Scheme {
     const IN_C: &'static [InC] = &[InC {
         name: "burst",
         scheme: "timing::Burst<S, {0}>",
-        shapes: &[&[19]],
+        shapes: &[&[SLOTS]],
         made: &[Made {
             name: "init",
             words: "`min`, `max`: the range, which must rise. `spikes`: most of a sample, above 0; `shortest`, `longest`: their intervals in slots.",
             arguments: &[
                 Argument::MIN,
                 Argument::MAX,
-                Argument::number("spikes", "u8", 5.0),
-                Argument::number("shortest", "u8", 2.0),
-                Argument::number("longest", "u8", 10.0),
+                Argument::number("spikes", "u8", SPIKES as f64),
+                Argument::number("shortest", "u8", SHORTEST as f64),
+                Argument::number("longest", "u8", LONGEST as f64),
             ],
             value: "timing::Burst::try_new(min..=max, spikes, shortest..=longest)",
             flies: Some("burst"),
@@ -58,7 +63,7 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = Burst::<_, SLOTS>::try_new(channel.min..=channel.max, 5, 2..=10)?;
+        let scheme = Burst::<_, SLOTS>::try_new(channel.min..=channel.max, SPIKES, SHORTEST..=LONGEST)?;
         visitor.visit("burst", Self::INFO.words, &scheme, Burst::<V::Sample, SLOTS>::START)
     }
 

@@ -9,6 +9,9 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it.
+const NEURONS: usize = 20;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "grf",
@@ -25,7 +28,7 @@ impl Entry for Scheme {
     const IN_C: &'static [InC] = &[InC {
         name: "gaussian",
         scheme: "population::Gaussian<S, {0}>",
-        shapes: &[&[20]],
+        shapes: &[&[NEURONS]],
         made: &[Made {
             name: "init",
             words: "`min`, `max`: the range, which must rise.",
@@ -36,8 +39,8 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = Gaussian::<_, 20>::try_linear(channel.min..=channel.max)?;
-        visitor.visit("grf", Self::INFO.words, &scheme, Gaussian::<V::Sample, 20>::START)
+        let scheme = Gaussian::<_, NEURONS>::try_linear(channel.min..=channel.max)?;
+        visitor.visit("grf", Self::INFO.words, &scheme, Gaussian::<V::Sample, NEURONS>::START)
     }
 
     fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {

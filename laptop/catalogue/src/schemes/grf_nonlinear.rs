@@ -9,6 +9,10 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it.
+const NEURONS: usize = 20;
+const COMPANDED_BY: f32 = 5.0;
+
 /// The places of the centres.
 pub(super) const CENTRES: Parameter = Parameter::new(
     "centres",
@@ -60,7 +64,7 @@ impl Entry for Scheme {
     const IN_C: &'static [InC] = &[InC {
         name: "non_linear_gaussian",
         scheme: "population::Gaussian<S, {0}>",
-        shapes: &[&[20]],
+        shapes: &[&[NEURONS]],
         made: &[
             Made {
                 name: "init",
@@ -75,7 +79,7 @@ impl Entry for Scheme {
                 arguments: &[
                     Argument::MIN,
                     Argument::MAX,
-                    Argument::number("companding", "f32", 5.0),
+                    Argument::number("companding", "f32", COMPANDED_BY as f64),
                 ],
                 value: "population::Gaussian::try_companded(min..=max, companding)",
                 flies: Some("grf-nonlinear"),
@@ -84,8 +88,8 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = Gaussian::<_, 20>::try_companded(channel.min..=channel.max, 5.0)?;
-        let start = Gaussian::<V::Sample, 20>::START;
+        let scheme = Gaussian::<_, NEURONS>::try_companded(channel.min..=channel.max, COMPANDED_BY)?;
+        let start = Gaussian::<V::Sample, NEURONS>::START;
         visitor.visit(Self::INFO.name, Self::INFO.words, &scheme, start)
     }
 

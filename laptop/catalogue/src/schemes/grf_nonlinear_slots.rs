@@ -14,6 +14,12 @@ use super::grf_nonlinear;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it.
+const NEURONS: usize = 15;
+const SLOTS: usize = 10;
+const COMPANDED_BY: f32 = 5.0;
+const BETA: f32 = 1.5;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "grf-nonlinear-slots",
@@ -39,7 +45,7 @@ impl Entry for Scheme {
     const IN_C: &'static [InC] = &[InC {
         name: "non_linear_slots",
         scheme: "population::NonLinearSlots<S, {0}, {1}>",
-        shapes: &[&[15, 10]],
+        shapes: &[&[NEURONS, SLOTS]],
         made: &[
             Made {
                 name: "init",
@@ -58,8 +64,8 @@ impl Entry for Scheme {
                 arguments: &[
                     Argument::MIN,
                     Argument::MAX,
-                    Argument::number("companding", "f32", 5.0),
-                    Argument::number("beta", "f32", 1.5),
+                    Argument::number("companding", "f32", COMPANDED_BY as f64),
+                    Argument::number("beta", "f32", BETA as f64),
                     Argument::number("floor", "u16", 1.0),
                 ],
                 value: "population::NonLinearSlots::try_companded(min..=max, companding, beta)?.try_with_floor(floor)",
@@ -70,8 +76,8 @@ impl Entry for Scheme {
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let range = channel.min..=channel.max;
-        let scheme = NonLinearSlots::<_, 15, 10>::try_companded(range, 5.0, 1.5)?;
-        let start = NonLinearSlots::<V::Sample, 15, 10>::START;
+        let scheme = NonLinearSlots::<_, NEURONS, SLOTS>::try_companded(range, COMPANDED_BY, BETA)?;
+        let start = NonLinearSlots::<V::Sample, NEURONS, SLOTS>::START;
         visitor.visit(Self::INFO.name, Self::INFO.words, &scheme, start)
     }
 

@@ -11,6 +11,9 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it.
+const NEURONS: usize = 15;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "grf-prob",
@@ -32,9 +35,9 @@ impl Entry for Scheme {
     const IN_C: &'static [InC] = &[];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = Probabilistic::<_, Pcg32, 15, 64>::try_new(channel.min..=channel.max, 1.5)?;
+        let scheme = Probabilistic::<_, Pcg32, NEURONS, 64>::try_new(channel.min..=channel.max, 1.5)?;
         let generator = Pcg32::new(2026, channel.index as u64);
-        let start = Probabilistic::<V::Sample, Pcg32, 15, 64>::state(generator);
+        let start = Probabilistic::<V::Sample, Pcg32, NEURONS, 64>::state(generator);
         visitor.visit("grf-prob", Self::INFO.words, &scheme, start)
     }
 

@@ -9,6 +9,11 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it.
+const NEURONS: usize = 15;
+const SLOTS: usize = 10;
+const BETA: f32 = 1.5;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "grf-slots",
@@ -31,14 +36,14 @@ impl Entry for Scheme {
     const IN_C: &'static [InC] = &[InC {
         name: "slots",
         scheme: "population::Slots<S, {0}, {1}>",
-        shapes: &[&[15, 10]],
+        shapes: &[&[NEURONS, SLOTS]],
         made: &[Made {
             name: "init",
             words: "`min`, `max`: the range, which must rise. `beta`: the fields' width is their distance divided by it, above 0; `floor`: neurons below this level of the slots are silent, 1 or more.",
             arguments: &[
                 Argument::MIN,
                 Argument::MAX,
-                Argument::number("beta", "f32", 1.5),
+                Argument::number("beta", "f32", BETA as f64),
                 Argument::number("floor", "u16", 1.0),
             ],
             value: "population::Slots::try_new(min..=max, beta)?.try_with_floor(floor)",
@@ -47,8 +52,8 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = Slots::<_, 15, 10>::try_new(channel.min..=channel.max, 1.5)?;
-        visitor.visit("grf-slots", Self::INFO.words, &scheme, Slots::<V::Sample, 15, 10>::START)
+        let scheme = Slots::<_, NEURONS, SLOTS>::try_new(channel.min..=channel.max, BETA)?;
+        visitor.visit("grf-slots", Self::INFO.words, &scheme, Slots::<V::Sample, NEURONS, SLOTS>::START)
     }
 
     fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {

@@ -8,6 +8,10 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it; the peak is a part of a channel's range.
+const TAPS: usize = 15;
+const PEAK: f64 = 0.1;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "hsa",
@@ -24,7 +28,7 @@ impl Entry for Scheme {
     const IN_C: &'static [InC] = &[InC {
         name: "hough",
         scheme: "rate::Hough<S, {0}>",
-        shapes: &[&[15]],
+        shapes: &[&[TAPS]],
         made: &[
             Made {
                 name: "init",
@@ -38,7 +42,7 @@ impl Entry for Scheme {
                 words: "`shape`: SW_TRIANGULAR, SW_HANN or SW_GAUSSIAN; `peak`: its largest tap; `shift`: what is taken off the samples, at most their minimum.",
                 arguments: &[
                     Argument::TRIANGULAR,
-                    Argument::sample("peak", Flown::Fraction(0.1)),
+                    Argument::sample("peak", Flown::Fraction(PEAK)),
                     Argument::SHIFT,
                 ],
                 value: "rate::Hough::new(rate::Taps::try_shaped(shape, rate::Scale::Peak(peak))?).try_with_shift(shift)",
@@ -48,8 +52,8 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scale = Scale::Peak(channel.fraction(0.1));
-        let scheme = Hough::<_, 15>::new(Taps::try_shaped(Shape::Triangular, scale)?);
+        let scale = Scale::Peak(channel.fraction(PEAK));
+        let scheme = Hough::<_, TAPS>::new(Taps::try_shaped(Shape::Triangular, scale)?);
         let scheme = scheme.try_with_shift(channel.min)?;
         visitor.visit("hsa", Self::INFO.words, &scheme, Hough::START)
     }

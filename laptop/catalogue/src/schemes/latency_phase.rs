@@ -8,6 +8,9 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it.
+const SPACING: u16 = 1;
+
 /// Four neurons, 32 latencies and a period of four slots.
 type Four<S> = LatencyPhase<S, 4, 32, 4>;
 
@@ -46,14 +49,14 @@ impl Entry for Scheme {
         made: &[Made {
             name: "init",
             words: "`min`, `max`: the range, which must rise. `spacing`: from one neuron's peaks to the next's, in slots.",
-            arguments: &[Argument::MIN, Argument::MAX, Argument::number("spacing", "u16", 1.0)],
+            arguments: &[Argument::MIN, Argument::MAX, Argument::number("spacing", "u16", SPACING as f64)],
             value: "timing::LatencyPhase::try_new(min..=max, spacing)",
             flies: Some("latency-phase"),
         }],
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = Four::try_new(channel.min..=channel.max, 1)?;
+        let scheme = Four::try_new(channel.min..=channel.max, SPACING)?;
         visitor.visit("latency-phase", Self::INFO.words, &scheme, Four::<V::Sample>::START)
     }
 

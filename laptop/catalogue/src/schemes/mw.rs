@@ -8,6 +8,10 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it; a threshold is a part of a channel's range.
+const THRESHOLD: f64 = 0.02;
+const SAMPLES: usize = 6;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "mw",
@@ -16,7 +20,7 @@ impl Entry for Scheme {
         words: "moving window (MW)",
         good_for: "changes against a short past; drifts",
         is_signed: true,
-        steps: Steps::Drifting,
+        steps: StepErrors::Drifting,
         is_drawn: true,
         colour: [0xe0, 0x85, 0x3a],
         parameters: &[
@@ -39,18 +43,18 @@ impl Entry for Scheme {
     const IN_C: &'static [InC] = &[InC {
         name: "moving_window",
         scheme: "temporal::MovingWindow<S, {0}>",
-        shapes: &[&[6]],
+        shapes: &[&[SAMPLES]],
         made: &[Made {
             name: "init",
             words: "`threshold`: what the distance from the window's mean must exceed, above 0.",
-            arguments: &[Argument::sample("threshold", Flown::Fraction(0.02))],
+            arguments: &[Argument::sample("threshold", Flown::Fraction(THRESHOLD))],
             value: "temporal::MovingWindow::try_new(threshold)",
             flies: Some("mw"),
         }],
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = MovingWindow::<_, 6>::try_new(channel.fraction(0.02))?;
+        let scheme = MovingWindow::<_, SAMPLES>::try_new(channel.fraction(THRESHOLD))?;
         visitor.visit("mw", Self::INFO.words, &scheme, MovingWindow::START)
     }
 

@@ -9,6 +9,9 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it.
+const NEURONS: usize = 20;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "position",
@@ -36,7 +39,7 @@ impl Entry for Scheme {
     const IN_C: &'static [InC] = &[InC {
         name: "position",
         scheme: "population::Position<S, {0}>",
-        shapes: &[&[20]],
+        shapes: &[&[NEURONS]],
         made: &[
             Made {
                 name: "init",
@@ -64,12 +67,12 @@ impl Entry for Scheme {
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         linear(channel, visitor)?;
-        let scheme = Position::<_, 20>::try_gaussian_spaced(channel.min..=channel.max)?;
+        let scheme = Position::<_, NEURONS>::try_gaussian_spaced(channel.min..=channel.max)?;
         visitor.visit(
             "position-gauss",
             "position, dense in the middle",
             &scheme,
-            Position::<V::Sample, 20>::START,
+            Position::<V::Sample, NEURONS>::START,
         )
     }
 
@@ -135,8 +138,8 @@ impl Build for Scheme {
 
 #[inline(never)]
 fn linear<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-    let scheme = Position::<_, 20>::try_linear(channel.min..=channel.max)?;
-    visitor.visit("position", Scheme::INFO.words, &scheme, Position::<V::Sample, 20>::START)
+    let scheme = Position::<_, NEURONS>::try_linear(channel.min..=channel.max)?;
+    visitor.visit("position", Scheme::INFO.words, &scheme, Position::<V::Sample, NEURONS>::START)
 }
 
 /// A neuron as the transcription writes it.

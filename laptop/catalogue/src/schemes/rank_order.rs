@@ -9,6 +9,10 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it.
+const NEURONS: usize = 15;
+const SPIKES: usize = 3;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "rank-order",
@@ -39,7 +43,7 @@ impl Entry for Scheme {
     const IN_C: &'static [InC] = &[InC {
         name: "rank_order",
         scheme: "population::RankOrder<S, {0}, {1}>",
-        shapes: &[&[15, 3]],
+        shapes: &[&[NEURONS, SPIKES]],
         made: &[
             Made {
                 name: "init",
@@ -59,8 +63,8 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = RankOrder::<_, 15, 3>::try_linear(channel.min..=channel.max)?;
-        let start = RankOrder::<V::Sample, 15, 3>::START;
+        let scheme = RankOrder::<_, NEURONS, SPIKES>::try_linear(channel.min..=channel.max)?;
+        let start = RankOrder::<V::Sample, NEURONS, SPIKES>::START;
         visitor.visit(Self::INFO.name, Self::INFO.words, &scheme, start)
     }
 

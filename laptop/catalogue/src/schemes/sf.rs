@@ -8,6 +8,9 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it; a threshold is a part of a channel's range.
+const THRESHOLD: f64 = 0.02;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "sf",
@@ -16,7 +19,7 @@ impl Entry for Scheme {
         words: "step forward (SF)",
         good_for: "following a signal closely with few spikes, while it changes by a threshold a sample at most",
         is_signed: true,
-        steps: Steps::Held,
+        steps: StepErrors::Held,
         climbs_by: Some("threshold"),
         is_drawn: true,
         colour: [0xe9, 0xc4, 0x3a],
@@ -36,14 +39,14 @@ impl Entry for Scheme {
         made: &[Made {
             name: "init",
             words: "`threshold`: what the distance from the baseline must exceed, above 0.",
-            arguments: &[Argument::sample("threshold", Flown::Fraction(0.02))],
+            arguments: &[Argument::sample("threshold", Flown::Fraction(THRESHOLD))],
             value: "temporal::StepForward::try_new(threshold)",
             flies: Some("sf"),
         }],
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = StepForward::try_new(channel.fraction(0.02))?;
+        let scheme = StepForward::try_new(channel.fraction(THRESHOLD))?;
         visitor.visit("sf", Self::INFO.words, &scheme, StepForward::START)
     }
 

@@ -8,6 +8,11 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it; peak and threshold are parts of a channel's range.
+const TAPS: usize = 15;
+const PEAK: f64 = 0.1;
+const THRESHOLD: f64 = 0.085;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "t-hsa",
@@ -33,7 +38,7 @@ impl Entry for Scheme {
     const IN_C: &'static [InC] = &[InC {
         name: "threshold_hough",
         scheme: "rate::ThresholdHough<S, {0}>",
-        shapes: &[&[15]],
+        shapes: &[&[TAPS]],
         made: &[
             Made {
                 name: "init",
@@ -47,8 +52,8 @@ impl Entry for Scheme {
                 words: "`shape`: SW_TRIANGULAR, SW_HANN or SW_GAUSSIAN; `peak`: its largest tap; `threshold`: by how much the signal may fall short of it in all; `shift`: what is taken off the samples, at most their minimum.",
                 arguments: &[
                     Argument::TRIANGULAR,
-                    Argument::sample("peak", Flown::Fraction(0.1)),
-                    Argument::sample("threshold", Flown::Fraction(0.085)),
+                    Argument::sample("peak", Flown::Fraction(PEAK)),
+                    Argument::sample("threshold", Flown::Fraction(THRESHOLD)),
                     Argument::SHIFT,
                 ],
                 value: "rate::ThresholdHough::try_new(rate::Taps::try_shaped(shape, rate::Scale::Peak(peak))?, threshold)?.try_with_shift(shift)",
@@ -58,9 +63,9 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scale = Scale::Peak(channel.fraction(0.1));
-        let taps = Taps::<_, 15>::try_shaped(Shape::Triangular, scale)?;
-        let scheme = ThresholdHough::try_new(taps, channel.fraction(0.085))?;
+        let scale = Scale::Peak(channel.fraction(PEAK));
+        let taps = Taps::<_, TAPS>::try_shaped(Shape::Triangular, scale)?;
+        let scheme = ThresholdHough::try_new(taps, channel.fraction(THRESHOLD))?;
         let scheme = scheme.try_with_shift(channel.min)?;
         visitor.visit("t-hsa", Self::INFO.words, &scheme, ThresholdHough::START)
     }

@@ -8,6 +8,9 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it.
+const FACTOR: f32 = 0.5;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "tbr",
@@ -16,7 +19,7 @@ impl Entry for Scheme {
         words: "temporal contrast (TBR)",
         good_for: "changes, as an event camera sees them; drifts",
         is_signed: true,
-        steps: Steps::Drifting,
+        steps: StepErrors::Drifting,
         is_drawn: true,
         colour: [0x3b, 0x6f, 0xb6],
         parameters: &[
@@ -79,7 +82,7 @@ impl Entry for Scheme {
                         kind: "Calibration<S>",
                         flown: Flown::Calibration,
                     },
-                    Argument::number("factor", "f32", 0.5),
+                    Argument::number("factor", "f32", FACTOR as f64),
                 ],
                 value: "temporal::TemporalContrast::from_magnitudes(&calibration, factor)",
                 flies: Some("tbr"),
@@ -88,7 +91,7 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = TemporalContrast::from_magnitudes(&channel.calibration, 0.5)?;
+        let scheme = TemporalContrast::from_magnitudes(&channel.calibration, FACTOR)?;
         visitor.visit("tbr", Self::INFO.words, &scheme, TemporalContrast::START)
     }
 

@@ -9,6 +9,10 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it.
+const SLOTS: usize = 16;
+const RATIO: f32 = 32.0;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "ttfs",
@@ -46,7 +50,7 @@ impl Entry for Scheme {
     const IN_C: &'static [InC] = &[InC {
         name: "first_spike",
         scheme: "timing::FirstSpike<S, {0}>",
-        shapes: &[&[16]],
+        shapes: &[&[SLOTS]],
         made: &[
             Made {
                 name: "init",
@@ -65,7 +69,7 @@ impl Entry for Scheme {
             Made {
                 name: "init_logarithmic",
                 words: "`min`, `max`: the range, which must rise. `ratio`: of the largest value that has a spike to the smallest, above 1.",
-                arguments: &[Argument::MIN, Argument::MAX, Argument::number("ratio", "f32", 32.0)],
+                arguments: &[Argument::MIN, Argument::MAX, Argument::number("ratio", "f32", RATIO as f64)],
                 value: "timing::FirstSpike::try_logarithmic(min..=max, ratio)",
                 flies: Some("ttfs-log"),
             },
@@ -73,14 +77,14 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = FirstSpike::<_, 16>::try_linear(channel.min..=channel.max)?;
-        visitor.visit("ttfs", Self::INFO.words, &scheme, FirstSpike::<V::Sample, 16>::START)?;
-        let scheme = FirstSpike::<_, 16>::try_logarithmic(channel.min..=channel.max, 32.0)?;
+        let scheme = FirstSpike::<_, SLOTS>::try_linear(channel.min..=channel.max)?;
+        visitor.visit("ttfs", Self::INFO.words, &scheme, FirstSpike::<V::Sample, SLOTS>::START)?;
+        let scheme = FirstSpike::<_, SLOTS>::try_logarithmic(channel.min..=channel.max, RATIO)?;
         visitor.visit(
             "ttfs-log",
             "time to first spike, logarithmic",
             &scheme,
-            FirstSpike::<V::Sample, 16>::START,
+            FirstSpike::<V::Sample, SLOTS>::START,
         )
     }
 

@@ -8,6 +8,9 @@ use crate::prelude::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme;
 
+// As the checks fly it.
+const DIGITS: usize = 8;
+
 impl Entry for Scheme {
     const INFO: Info = Info {
         name: "weighted-phase",
@@ -29,7 +32,7 @@ impl Entry for Scheme {
     const IN_C: &'static [InC] = &[InC {
         name: "weighted_phase",
         scheme: "timing::WeightedPhase<S, {0}>",
-        shapes: &[&[8]],
+        shapes: &[&[DIGITS]],
         made: &[Made {
             name: "init",
             words: "`min`, `max`: the range, which must rise.",
@@ -40,12 +43,12 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = WeightedPhase::<_, 8>::try_new(channel.min..=channel.max)?;
+        let scheme = WeightedPhase::<_, DIGITS>::try_new(channel.min..=channel.max)?;
         visitor.visit(
             "weighted-phase",
             Self::INFO.words,
             &scheme,
-            WeightedPhase::<V::Sample, 8>::START,
+            WeightedPhase::<V::Sample, DIGITS>::START,
         )
     }
 

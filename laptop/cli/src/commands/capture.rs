@@ -58,7 +58,7 @@ pub(crate) fn run(options: &Capture) -> Result<()> {
     })?)
 }
 
-/// Says how to get it.
+/// Returns an error that says how to build the program with this command.
 ///
 /// # Errors
 /// Always.

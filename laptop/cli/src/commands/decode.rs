@@ -74,7 +74,7 @@ fn decode(
     file: &str,
     open: impl FnOnce() -> lab::Result<Output>,
 ) -> Result<()> {
-    /// How many events or times are taken together.
+    /// The number of events or times that are decoded at once.
     const BATCH: usize = 4096;
     let bank = Bank::new(header.scheme, &header.channels).with_context(|| file.to_owned())?;
     let mut decoding = Decoding::new(bank, header, reader.is_timed(), open()?)?;
@@ -118,16 +118,16 @@ fn decode(
     }
 }
 
-/// Values in the making.
+/// A file of spikes on its way to values.
 struct Decoding {
     bank: Bank,
     output: Output,
     is_single: bool,
     is_timed: bool,
     timeline: Timeline,
-    /// The next sample, as the file counts.
+    /// The number of the next sample, as the file counts.
     next: u64,
-    /// How many were skipped before.
+    /// The number of samples before it that the encoder never saw.
     skipped: u64,
     columns: Vec<Vec<f64>>,
     line: Vec<u8>,
@@ -169,7 +169,7 @@ impl Decoding {
         })
     }
 
-    /// Decodes up to this sample, which takes all events.
+    /// Decodes all samples before `end`, and empties `events`, which holds theirs.
     fn advance(&mut self, end: u64, events: &mut Vec<Event>) -> Result<(), Failure> {
         const MOST: u64 = 8192;
         for event in events.iter_mut() {
@@ -191,7 +191,7 @@ impl Decoding {
         Ok(())
     }
 
-    /// Samples that the encoder never saw have no value.
+    /// Writes `count` samples without a value, which the encoder never saw.
     fn skip(&mut self, count: u64) -> Result<(), Failure> {
         const MOST: u64 = 8192;
         self.skipped += count;

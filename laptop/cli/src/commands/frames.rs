@@ -86,9 +86,9 @@ pub(crate) fn run(options: &Frames) -> Result<()> {
     }
 }
 
-/// A contrast in levels of the logarithm.
+/// Returns a contrast in levels of the logarithm.
 fn levels(option: &str, contrast: f64) -> Result<u16> {
-    /// Levels for a factor of e, and the highest that is of use.
+    /// The levels of a factor of e. `MOST` is the highest that is of use.
     const SCALE: f64 = 1024.0;
     const MOST: f64 = 5673.0;
     let levels = (SCALE * contrast).round();
@@ -191,7 +191,7 @@ fn encoder<C: PixelCode>(
     })
 }
 
-/// Frames so far, of so many if that is known; nothing where nobody looks on.
+/// A bar of the frames so far, with their total if it is known; hidden unless standard error is a terminal.
 fn bar(frames: Option<u64>) -> Result<ProgressBar> {
     if !io::stderr().is_terminal() {
         return Ok(ProgressBar::hidden());

@@ -12,6 +12,7 @@ use clap::{Args, value_parser};
 use lab::coding::Coding;
 use lab::events::{EventReader, Format, LinkReader, Stream, Values, values_writer};
 use lab::fit::rounding;
+use lab::flight::{self, Flight};
 use lab::output::Output;
 use lab::port::{Bytes, Port};
 use lab::scheme::Scheme;
@@ -32,6 +33,7 @@ Examples:
   spikewire listen --baud 921600 /dev/ttyUSB0 -o events.csv
   spikewire listen --baud 921600 /dev/ttyUSB0 --scheme sf --thresholds 0.1,0.1,0.1,0.5,0.5,0.5
   spikewire listen captured.bytes --scheme grf --neurons 20 --min=-9 --max=9
+  spikewire listen captured.bytes --flight flight.toml
   spikewire listen captured.bytes --to es -o flight.es")]
 pub(crate) struct Listen {
     /// Serial port, or file of captured bytes; `-` is standard input
@@ -63,6 +65,9 @@ pub(crate) struct Listen {
     /// File of the sender's parameters, TOML, as `tune --emit toml` writes it; options override it
     #[arg(long, value_name = "FILE", value_parser = crate::options::read)]
     params: Option<Coding>,
+    /// The flight's file, TOML, as `advise -o` writes it, from which the sender was made
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "slot_ticks"])]
+    flight: Option<PathBuf>,
     /// Length of the sender's sub-timesteps in µs, of schemes that have them
     #[arg(long, value_name = "µs", value_parser = value_parser!(u32).range(1..))]
     slot_ticks: Option<u32>,
@@ -90,6 +95,19 @@ option_group!(
 /// # Errors
 /// The options, the port or the output are not good.
 pub(crate) fn run(options: &Listen) -> Result<()> {
+    if let Some(path) = &options.flight {
+        if !options.parameters.0.is_empty() {
+            bail!("--flight says all parameters");
+        }
+        options.check_formats("--flight")?;
+        let flight = Flight::read(path)?;
+        let mut heard = Ok(());
+        flight::with_receiver(&flight, |values| {
+            heard = listen(options, Some((values, flight.sample)));
+            Ok(())
+        })?;
+        return heard;
+    }
     let sample = options.params.as_ref().map(|params| params.sample);
     let sample = options.sample.or(sample).unwrap_or_default();
     let Some(scheme) = options.named()? else {
@@ -181,16 +199,22 @@ impl Listen {
         }
     }
 
-    /// The settings of one channel for all, or of each.
-    fn settings(&self, scheme: Scheme, sample: SampleType) -> Result<Vec<Settings>> {
+    /// Refuses formats that hold no values.
+    fn check_formats(&self, option: &str) -> Result<()> {
         if !matches!(self.from, Format::Link(_)) {
             bail!(
-                "--scheme needs --from link, whose frames say what was lost and where keyframes are"
+                "{option} needs --from link, whose frames say what was lost and where keyframes are"
             );
         }
         if self.to != Format::Csv {
-            bail!("--scheme gives values, which only --to csv holds");
+            bail!("{option} gives values, which only --to csv holds");
         }
+        Ok(())
+    }
+
+    /// The settings of one channel for all, or of each.
+    fn settings(&self, scheme: Scheme, sample: SampleType) -> Result<Vec<Settings>> {
+        self.check_formats("--scheme")?;
         let mut asked = match &self.params {
             Some(params) => self.parameters.0.or(&params.asked),
             None => self.parameters.0.clone(),

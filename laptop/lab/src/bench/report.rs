@@ -1,4 +1,4 @@
-//! Our cells beside the paper's.
+//! The cells of the paper's tables, beside those of the benchmark run here.
 
 use super::CaseResult;
 use super::paper::{EFFICIENCY, MISPRINT, RMSE, SCHEMES, TESTS, Table};
@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde_json::{Value, json as object};
 use std::fmt::Write;
 
-/// How many standard errors a mean may be off, and what part of itself a deviation.
+/// The most standard errors by which a mean may be off. A deviation may be off by `DEVIATION_PART` of itself.
 const STANDARD_ERRORS: f64 = 4.0;
 const DEVIATION_PART: f64 = 0.15;
 

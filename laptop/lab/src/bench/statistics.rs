@@ -9,7 +9,7 @@ pub struct Statistics {
     pub mean: f64,
     /// The standard deviation, with N-1.
     pub deviation: f64,
-    /// How many tests.
+    /// The number of tests.
     pub count: usize,
 }
 

@@ -90,7 +90,7 @@ impl Reader {
     }
 }
 
-/// Whether a datagram may begin so: with the kinds that are written.
+/// Whether these may be the first bytes of a datagram of the kinds that are written.
 fn begins(bytes: &[u8]) -> bool {
     let padded: Vec<u8> = bytes.iter().copied().chain([0; LONGEST]).collect();
     bytes.len() < 2 || eieio::decode(&padded).is_some()

@@ -90,7 +90,7 @@ pub fn values_writer(sample: SampleType) -> Box<dyn EventWriter> {
     Box::new(csv::Writer::new(Some(sample)))
 }
 
-/// Its name without settings.
+/// Writes the format's name without its settings.
 impl fmt::Display for Format {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

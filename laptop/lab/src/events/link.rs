@@ -115,16 +115,16 @@ pub(super) struct Writer {
     keyframes: Vec<Keyframe>,
     /// The tick of the next item, as far as it is known.
     tick: Tick,
-    /// How often it restarted.
+    /// The number of restarts.
     starts: u32,
     /// Whether the session has no frame yet.
     is_fresh: bool,
     events: Vec<Event>,
-    /// Whether a loss or restart waits for a frame to say it.
+    /// Whether a loss or restart still has to be told by a frame.
     owes_mark: bool,
 }
 
-/// How many events wait for their frames at most.
+/// The most events that wait for their frames.
 const BATCH: usize = 1024;
 
 impl Writer {
@@ -181,7 +181,7 @@ impl Writer {
     }
 }
 
-/// How many items from the front the frame took.
+/// The number of items from the front that the frame took.
 fn fitting<T>(items: &[T], put: impl FnMut(&T) -> Result<(), LinkError>) -> usize {
     items.iter().map(put).take_while(Result::is_ok).count()
 }

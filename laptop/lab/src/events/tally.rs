@@ -22,7 +22,7 @@ pub struct Tally {
 pub struct LinkTally {
     /// Frames that arrived whole.
     pub frames: u64,
-    /// Frames that never did.
+    /// Frames that never arrived.
     pub lost: u64,
     /// Number of places at which frames are missing.
     pub gaps: u64,
@@ -32,7 +32,7 @@ pub struct LinkTally {
     pub repeated: u64,
     /// Frames before which the sender lost events.
     pub after_loss: u64,
-    /// How often the sender began.
+    /// The number of times that the sender began.
     pub restarts: u64,
     /// Keyframes.
     pub keyframes: u64,

@@ -19,10 +19,10 @@ const DOWN: u8 = 254;
 const PAPER: u8 = 255;
 /// The margin beside and between the panels.
 const GAP: usize = 6;
-/// Small videos are shown larger, by whole numbers, up to this many columns in all.
+/// The most columns of a preview: small videos are enlarged by a whole factor up to this width.
 const WIDEST: usize = 1080;
 
-/// The frame of a picture, a second into a usual video.
+/// The frame that a picture shows unless told otherwise: a second into a usual video.
 const USUAL: u64 = 30;
 
 /// A picture, or an animated one.

@@ -16,11 +16,11 @@ pub enum Kind {
 /// An unusual step in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// Its kind.
+    /// The kind of the step.
     pub kind: Kind,
     /// The sample before it.
     pub after: u64,
-    /// How long it is, in µs.
+    /// The length of the step in µs; negative if it goes back.
     pub microseconds: i64,
 }
 
@@ -77,7 +77,7 @@ const RESTART: f64 = 10.0;
 /// A rate jumps where it changes by more than this factor.
 const JUMP: f64 = 1.5;
 
-/// How many there were, and the first of them.
+/// The number of unusual things of a kind, and the first of them.
 #[derive(Clone, Debug)]
 struct Told<T> {
     count: u64,
@@ -263,8 +263,7 @@ impl fmt::Display for Clock {
     }
 }
 
-/// Whether so many times go back that samples are out of order: a few, and more than a tenth of those that differ from the
-/// one before.
+/// Whether samples are out of order: more than two times go back, and more than a tenth of those that change.
 fn is_disordered(times: &[i64]) -> bool {
     const FEW: usize = 2;
     let steps = |is: fn(&[i64]) -> bool| times.windows(2).filter(|pair| is(pair)).count();

@@ -27,7 +27,7 @@ const AHEAD: usize = 64;
 /// Columns, and perhaps others with the times.
 pub(super) struct Table {
     rows: Rows,
-    /// How many comments stand below the header.
+    /// The number of comments below the header.
     comments: Rc<Cell<u64>>,
     ahead: VecDeque<ByteRecord>,
     /// The row in hand, and whether it was one of those ahead.
@@ -304,7 +304,7 @@ pub(super) fn is_missing(field: &[u8]) -> bool {
 /// The rows of a table.
 struct Rows {
     reader: Reader<Box<dyn Read>>,
-    /// Whether lines end in two bytes, the second of which the reader takes for the next line's.
+    /// Whether lines end in CR and LF, of which the reader counts the LF to the next line.
     is_of_windows: bool,
 }
 

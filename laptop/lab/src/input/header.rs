@@ -9,9 +9,9 @@ use std::io::{self, BufRead, Read};
 
 /// The comments that a table begins with, and its first line that is none.
 pub(super) struct Start {
-    /// All of it, as the file has it.
+    /// The bytes of comments and first line, as the file has them.
     pub text: Vec<u8>,
-    /// Where the line that is no comment begins.
+    /// The place in `text` at which the first line without a comment begins.
     line: usize,
 }
 

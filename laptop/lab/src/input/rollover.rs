@@ -18,7 +18,7 @@ pub struct Rollover {
     /// The last step forward.
     step: i64,
     samples: u64,
-    /// How often it ran over, by how much each time, and the sample before the first time.
+    /// The number of times that the clock ran over; `range` is what it lost each time, `first` the sample before the first.
     count: i64,
     range: i64,
     first: u64,

@@ -8,7 +8,7 @@ use flight_logs::GZIP;
 use flight_logs::zstd::{Frames, ZSTD};
 use std::io::{self, BufReader, Cursor, Read};
 
-/// How far a file is looked at to tell what it is.
+/// The number of bytes that tell the kind of a file.
 const HEAD: usize = 16;
 
 /// The first bytes of files that are no tables, the name of each kind, and the way to export it.

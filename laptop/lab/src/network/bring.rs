@@ -41,11 +41,11 @@ pub struct Figures {
     pub agreeing: usize,
     /// Steps in which an output fires, in double precision or on the chip.
     pub active: usize,
-    /// Of the active steps, those in which the same outputs fire.
+    /// Active steps in which the same outputs fire as in double precision.
     pub active_agreeing: usize,
     /// Windows of [`WINDOW`] steps in which an output fires.
     pub windows: usize,
-    /// Of the windows, those in which the same outputs fire most.
+    /// Windows in which the same outputs fire most.
     pub windows_agreeing: usize,
     /// The chip's clocks for a step: the mean.
     pub mean_clocks: f64,

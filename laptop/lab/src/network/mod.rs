@@ -14,7 +14,7 @@ mod trained;
 pub use bring::{Brought, Figures, LayerFigures, PotentialFigures, Request, WINDOW, bring};
 pub use chip::{CHIPS, Chip, OnChip, Ran, Stepped, Told};
 pub use controller::{
-    Asked, ControllerRequest, Current, Decay, Fires, Framework, Model, Numbers, Reset, Rule,
+    Asked, ControllerRequest, Current, Decay, Fires, Flown, Framework, Model, Numbers, Reset, Rule,
     bring_to_controller,
 };
 pub use distance::Distance;

@@ -50,7 +50,7 @@ impl Beside {
         self.file.as_mut().ok_or_else(|| io::Error::other("it is finished"))
     }
 
-    /// Writes again what stands at a place of the file.
+    /// Overwrites bytes at a place of the file.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.

@@ -43,9 +43,9 @@ pub trait Channel {
 /// The result of a capture.
 #[derive(Debug)]
 pub struct Captured {
-    /// How much was written.
+    /// The number of bytes written.
     pub bytes: u64,
-    /// The reason that it ended, unless it was asked to.
+    /// `Ok` if the capture was asked to end, else the reason that it ended.
     pub end: Result<()>,
 }
 

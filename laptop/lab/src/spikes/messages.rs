@@ -15,9 +15,9 @@ use std::path::Path;
 /// A log of spikes that is read from its start to its end.
 pub struct Messages {
     log: Reading,
-    /// The topic of each channel, and how many samples it had until now.
+    /// The topic of each channel, and the number of its samples so far.
     channels: Vec<(String, u64)>,
-    /// How many neurons a channel has, and sub-timesteps.
+    /// The numbers of a channel's neurons and, in `slots`, of a sample's sub-timesteps.
     neurons: usize,
     slots: usize,
     is_signed: bool,

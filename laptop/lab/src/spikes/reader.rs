@@ -29,7 +29,7 @@ pub enum Item {
     Rejected {
         /// The first of them.
         first: u64,
-        /// How many.
+        /// The number of samples.
         count: u64,
     },
     /// The end, after this many samples.

@@ -124,7 +124,7 @@ pub(crate) fn text(text: &str, format: Format) -> Vec<u8> {
     bytes
 }
 
-/// What a message starts with: in ROS 2 that it is plain CDR whose bytes of low value come first.
+/// The first bytes of a message: none in ROS 1; in ROS 2 those of plain CDR, little-endian.
 fn start(format: Format) -> Vec<u8> {
     match format {
         Format::Bag => Vec::new(),
@@ -139,7 +139,7 @@ fn add_text(bytes: &mut Vec<u8>, text: &str, format: Format) {
     bytes.extend(end);
 }
 
-/// To four bytes, behind the first four as from the start.
+/// Pads to a multiple of four bytes in ROS 2.
 fn align(bytes: &mut Vec<u8>, format: Format) {
     if format == Format::Mcap {
         bytes.resize(bytes.len().next_multiple_of(4), 0);

@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 pub(super) struct Chance(ChaCha8Rng);
 
 impl Chance {
-    /// The same numbers for the same seed.
+    /// A generator that gives the same numbers for the same seed on every machine.
     pub(super) fn new(seed: u64) -> Self {
         Self(ChaCha8Rng::seed_from_u64(seed))
     }

@@ -32,7 +32,7 @@ pub struct Costs {
     pub ram: Option<usize>,
     /// Instructions a sample to encode, in the mean, where they were measured.
     pub instructions: Option<f64>,
-    /// Whether those are a bound from above, from a shorter filter that was measured.
+    /// Whether `instructions` is an upper bound, scaled from a shorter filter that was measured.
     pub is_bound: bool,
 }
 

@@ -100,7 +100,7 @@ impl Figures {
     }
 }
 
-/// How many samples a lag may have.
+/// The longest lag that is looked for, in samples.
 const FARTHEST: usize = 100;
 
 #[derive(Default)]
@@ -164,7 +164,7 @@ fn correlate(values: &[f64], decoded: &[f64], correlations: &mut [f64]) {
     }
 }
 
-/// The sum of the squares of what lies below a frequency, in parts of the rate: an ideal low pass.
+/// The sum of the squares after an ideal low pass at `limit`, a part of the rate.
 pub fn squares_below(values: &[f64], limit: f64) -> f64 {
     let power = power(values);
     let count = values.len();

@@ -2,7 +2,7 @@
 
 use crate::error::room;
 use catalogue::kinds;
-use catalogue::run::{Needs, Worded};
+use catalogue::run::{Needs, SampleType, Worded};
 
 kinds! {
     /// The reason that a request cannot be met.
@@ -17,6 +17,11 @@ kinds! {
             "{subject} must be {most} or less: {recording} has {rate} samples a second, and a loop acts on {fewest} or \
              more in a period of its bandwidth"
         ),
+        NotFlown { most: f64 } => ("{subject} must be 0 to {most} percent: more was not flown"),
+        NoPeriod => ("{subject} has no period of 1 µs to 65 535 µs"),
+        BankNeedsRate => ("a bank needs the rate of its channels"),
+        SeveralSchemes => ("a flight has one scheme for all channels: {} names it", spell("scheme")),
+        NotInC { sample: SampleType } => ("the library for C has f32, i16, q8.8 and q16.16, not {sample}"),
         NeedsRate { recording: String } => ("{subject} needs the rate of {recording}"),
         LeavesNone { blocks: usize } =>
             ("{subject} of {blocks} blocks leaves none to tune on or none to check on"),

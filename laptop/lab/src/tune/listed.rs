@@ -11,7 +11,7 @@ use rayon::prelude::*;
 const SMALLEST: f64 = 1e-3;
 /// Samples passed over for a list of outcomes at most: seconds.
 const PASSES: usize = 4_000_000_000;
-/// The same for each setting of the budget, so that a small budget is a short search.
+/// Samples passed over for each setting of the budget at most, so that a small budget is a short search.
 const PASSES_A_SETTING: usize = 200_000;
 /// Neighbourhoods of good thresholds in which the outcomes are listed again, one by one.
 const NEIGHBOURHOODS: usize = 24;

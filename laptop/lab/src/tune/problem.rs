@@ -39,7 +39,7 @@ pub struct Tally {
     pub spikes: usize,
     /// Sum of the squared errors.
     pub squares: f64,
-    /// How long they are, if that is known.
+    /// The duration of the samples in seconds, if the rate is known.
     pub seconds: Option<f64>,
 }
 
@@ -226,7 +226,7 @@ impl<'a> Problem<'a> {
         Ok((tally, latency))
     }
 
-    /// The same with the settings of the last stretch.
+    /// [`tally`](Self::tally), with the settings of the last stretch.
     fn tallied(
         &self,
         options: &Asked,
@@ -312,7 +312,7 @@ impl<'a> Problem<'a> {
         if part > 0.0 { NOT_ALLOWED * (1.0 + part) + value } else { value }
     }
 
-    /// The same of counts alone, without the limits.
+    /// The value of a goal for these spikes and errors, without the limits.
     pub fn value_of(&self, goal: Goal, spikes: usize, squares: f64, samples: usize) -> f64 {
         let range = (self.extent.max - self.extent.min).max(f64::MIN_POSITIVE);
         let rmse = (squares / samples as f64).sqrt();

@@ -53,7 +53,7 @@ pub struct Row {
     pub evaluated: usize,
     /// Outcomes compared in exact arithmetic.
     pub listed: usize,
-    /// Whether those are all that there are.
+    /// Whether all outcomes were compared.
     pub is_complete: bool,
     /// Whether the search ended before its budget of settings.
     pub is_cut_short: bool,

@@ -12,13 +12,13 @@ use catalogue::run::{Asked, LANES, Value};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
-/// How long a search may take.
+/// The limits of a search: settings, time, and the user's wish.
 pub struct Budget<'a> {
     /// Settings to try at most.
     pub evaluations: usize,
     /// The time at which to stop, which makes the result depend on how fast the machine is.
     pub deadline: Option<Instant>,
-    /// Whether somebody wants it to stop.
+    /// Returns whether the user wants the search to stop.
     pub is_stopped: &'a (dyn Fn() -> bool + Sync),
     /// Told how many settings were tried, and the best so far.
     pub tick: &'a (dyn Fn(usize, Option<&Scored>) + Sync),
@@ -30,11 +30,11 @@ pub struct Found {
     pub best: Option<Scored>,
     /// Settings within the limits that no other one beats in both spikes and error.
     pub front: Vec<Scored>,
-    /// How many settings were scored by the codec.
+    /// The number of settings scored by the codec.
     pub evaluated: usize,
-    /// How many outcomes were compared in exact arithmetic, where the scheme lists them.
+    /// The number of outcomes compared in exact arithmetic, where the scheme lists them.
     pub listed: usize,
-    /// Whether those are all that there are.
+    /// Whether all outcomes were compared.
     pub is_complete: bool,
     /// Whether the search ended before its budget of settings, by its deadline or by somebody's wish.
     pub is_cut_short: bool,

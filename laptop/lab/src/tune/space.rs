@@ -22,7 +22,7 @@ impl Extent {
     }
 }
 
-/// One number of the search.
+/// An axis of the search: one number of the settings.
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
     pub name: &'static str,
@@ -73,7 +73,7 @@ pub(crate) struct Space {
 pub(crate) struct Inner {
     /// Its place among the axes.
     pub axis: usize,
-    /// Whether it is the filter's sum, which factors change, and not the threshold.
+    /// Whether the axis is the filter's sum, which is multiplied, and not the threshold.
     pub is_factor: bool,
 }
 

@@ -17,7 +17,7 @@ pub(super) struct Strategy {
     variances: Vec<f64>,
     /// The way of the mean, in steps.
     path: Vec<f64>,
-    /// The same, to learn the variances from.
+    /// The way of the mean over more steps, from which the variances are learnt.
     long_path: Vec<f64>,
     weights: Vec<f64>,
     mass: f64,

@@ -89,7 +89,7 @@ pub fn cut(recording: &Recording, hold_out: HoldOut) -> Result<(Vec<Stretch>, Ve
     }
     let before_it = |block: usize| (block as f64 * part + OFFSET).floor();
     let is_held_out = |block: usize| before_it(block + 1) > before_it(block);
-    let (mut kept, mut held_out) = (Vec::new(), Vec::new());
+    let (mut tuned_on, mut checked) = (Vec::new(), Vec::new());
     for segment in &recording.segments {
         let mut ranges: [Vec<Range<usize>>; 2] = Default::default();
         for block in 0..blocks {
@@ -105,7 +105,7 @@ pub fn cut(recording: &Recording, hold_out: HoldOut) -> Result<(Vec<Stretch>, Ve
             }
         }
         let [to_tune_on, scored] = ranges;
-        kept.extend(to_tune_on.iter().map(|own| {
+        tuned_on.extend(to_tune_on.iter().map(|own| {
             let scored = std::iter::once(0..own.len()).collect();
             Stretch::scored(recording, own, scored)
         }));
@@ -113,13 +113,13 @@ pub fn cut(recording: &Recording, hold_out: HoldOut) -> Result<(Vec<Stretch>, Ve
             let from_start =
                 |own: &Range<usize>| own.start - segment.start..own.end - segment.start;
             let scored = scored.iter().map(from_start).collect();
-            held_out.push(Stretch::scored(recording, segment, scored));
+            checked.push(Stretch::scored(recording, segment, scored));
         }
     }
-    if kept.is_empty() || held_out.is_empty() {
+    if tuned_on.is_empty() || checked.is_empty() {
         return Err(RequestKind::LeavesNone { blocks }.of(Given::new("hold_out", part)));
     }
-    Ok((kept, held_out))
+    Ok((tuned_on, checked))
 }
 
 #[cfg(test)]

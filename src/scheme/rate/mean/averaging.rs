@@ -4,19 +4,22 @@ use core::fmt::Debug;
 
 use crate::error::{unwrap, within};
 use crate::num::{Stored, Total};
-use crate::{ConfigError, Recovery, Sample};
+use crate::{ConfigError, Fingerprint, Recovery, Sample};
 
 /// How a decoder takes the mean of spikes: [`Window`] or [`Average`]. Sealed.
 pub trait Averaging: Copy + Debug + PartialEq + sealed::Averaging {}
 
 pub(super) mod sealed {
-    use super::{Debug, Recovery, Stored, Total, Weight};
+    use super::{Debug, Fingerprint, Recovery, Stored, Total, Weight};
 
     pub trait Averaging {
         /// What the decoder keeps from sample to sample.
         type State<T: Total>: Clone + Debug + Stored;
 
         const RECOVERY: Recovery;
+
+        /// The description goes on with this mean.
+        fn describe(&self, scheme: Fingerprint) -> Fingerprint;
 
         fn start<T: Total>(&self, weight: &Weight<T>) -> Self::State<T>;
 
@@ -164,6 +167,10 @@ impl<const WORDS: usize> sealed::Averaging for Window<WORDS> {
 
     const RECOVERY: Recovery = Recovery::Samples(32 * WORDS + 32);
 
+    fn describe(&self, scheme: Fingerprint) -> Fingerprint {
+        scheme.number(0).number(self.power.into())
+    }
+
     fn start<T: Total>(&self, _: &Weight<T>) -> Spikes<WORDS> {
         Spikes { bits: [0; WORDS], oldest: 0, first: Gain::NONE, last: Gain::NONE, sum: 0 }
     }
@@ -245,6 +252,10 @@ impl sealed::Averaging for Average {
 
     /// Ten times the longest average.
     const RECOVERY: Recovery = Recovery::Fading(10 << Self::MOST);
+
+    fn describe(&self, scheme: Fingerprint) -> Fingerprint {
+        scheme.number(1).number(self.power.into())
+    }
 
     fn start<T: Total>(&self, weight: &Weight<T>) -> Faded<T> {
         Faded { sum: weight.range.doubled(self.power.wrapping_sub(1)), gain: Gain::NONE }

@@ -9,7 +9,7 @@ use super::averaging::{Averaging, MeanState, decode_mean};
 use super::range::Range;
 use crate::error::unwrap;
 use crate::num::{Tally, Total};
-use crate::{ConfigError, Encoder, Recovery, Sample, Scheme, Spike};
+use crate::{ConfigError, Encoder, Fingerprint, Recovery, Sample, Scheme, Spike};
 
 /// Bernoulli spiking: a sample spikes with the probability `p / R`, its height in the range, drawn from the caller's
 /// random number generator. Sample by sample this is a Poisson spike train.
@@ -162,6 +162,10 @@ impl<S: Sample, G: Rng, A: Averaging> Scheme for Bernoulli<S, G, A> {
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = A::RECOVERY;
+
+    fn fingerprint(&self) -> Fingerprint {
+        self.averaging.describe(self.range.named("Bernoulli"))
+    }
 
     #[inline]
     fn encode(&self, state: &mut BernoulliState<G>, sample: S) -> Spike {

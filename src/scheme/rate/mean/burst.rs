@@ -6,7 +6,7 @@ use super::averaging::{Averaging, Gain, MeanState, Weight, decode_mean};
 use super::range::Range;
 use crate::error::{LARGEST_STEP, step, unwrap, within};
 use crate::num::{Tally, Total, to_f64};
-use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// Weighted bursts: spikes that follow each other double in weight. A high signal has many spikes, a low one few.
 ///
@@ -124,6 +124,11 @@ impl<S: Sample, A: Averaging> Scheme for WeightedBurst<S, A> {
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = A::RECOVERY;
+
+    fn fingerprint(&self) -> Fingerprint {
+        let weights = self.range.named("WeightedBurst").sample(self.weight);
+        self.averaging.describe(weights.number(self.doublings.into()))
+    }
 
     #[inline]
     fn encode(&self, state: &mut WeightedBurstState<S>, sample: S) -> Spike {

@@ -6,7 +6,7 @@ use crate::error::{offset, step, unwrap, within};
 use crate::num::{Tally, Total, to_f64};
 use crate::scheme::codec::{Until, encode_each};
 use crate::temporal::Steps;
-use crate::{ConfigError, Destination, Recovery, Sample, Scheme, Start};
+use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Start};
 
 /// Integrate and fire (IF), and with [`leaky`](Self::leaky) leaky integrate and fire (LIF): a potential adds up the
 /// signal, and fires when it reaches the threshold.
@@ -230,6 +230,16 @@ impl<S: Sample, const K: usize> Scheme for IntegrateAndFire<S, K> {
     const LATENCY: usize = 0;
     /// Ten times the longest mean.
     const RECOVERY: Recovery = Recovery::Fading(10 << MOST_POWER);
+
+    fn fingerprint(&self) -> Fingerprint {
+        let Self { threshold, reference, power, is_leaky, most } = *self;
+        Fingerprint::new("IntegrateAndFire")
+            .sample(threshold)
+            .sample(reference)
+            .number(power.into())
+            .number(is_leaky.into())
+            .number(most.unsigned_abs().into())
+    }
 
     #[inline]
     fn encode(&self, state: &mut IntegrateAndFireState<S>, sample: S) -> Steps<K> {

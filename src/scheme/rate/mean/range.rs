@@ -3,7 +3,7 @@
 use super::averaging::Weight;
 use crate::error::{LARGEST_STEP, range, within};
 use crate::num::{Total, to_f64};
-use crate::{ConfigError, Sample};
+use crate::{ConfigError, Fingerprint, Sample};
 
 /// A range of values. A sample outside counts as the end that it is beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +32,11 @@ impl<S: Sample> Range<S> {
     #[inline]
     pub(super) fn width(self) -> S::Total {
         self.max.offset_from(self.min)
+    }
+
+    /// The name of a scheme, and its range.
+    pub(super) fn named(self, name: &str) -> Fingerprint {
+        Fingerprint::new(name).sample(self.min).sample(self.max)
     }
 
     /// The weight of a spike that stands for the whole range.

@@ -6,7 +6,7 @@ use super::averaging::{Averaging, MeanState, decode_mean};
 use super::range::Range;
 use crate::error::unwrap;
 use crate::num::{Tally, Total};
-use crate::{ConfigError, Recovery, Sample, Scheme, Spike, Start};
+use crate::{ConfigError, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// First-order sigma-delta: the share of samples with a spike is `p / R`, the signal's height in its range.
 ///
@@ -84,6 +84,10 @@ impl<S: Sample, A: Averaging> Scheme for SigmaDelta<S, A> {
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = A::RECOVERY;
+
+    fn fingerprint(&self) -> Fingerprint {
+        self.averaging.describe(self.range.named("SigmaDelta"))
+    }
 
     #[inline]
     fn encode(&self, state: &mut SigmaDeltaState<S>, sample: S) -> Spike {

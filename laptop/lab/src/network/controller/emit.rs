@@ -35,7 +35,7 @@ impl Spelled for f32 {
     }
 
     fn spell_weights(rows: &[&[Self]], _: u32) -> String {
-        format!("Weights::new(&[\n{}])", spell_rows(rows, |weight| weight.spell()))
+        format!("Weights::new(&[\n{}])", spell_rows(rows, Spelled::spell))
     }
 }
 
@@ -103,7 +103,8 @@ pub(super) fn emit<K: Spelled>(
 use spikewire_network::{{Network, State, Weights}};
 use spikewire_network::{{{used}}};
 {body}",
-        rules = net.rules().iter().map(|rule| format!("//! - {rule}\n")).collect::<String>(),
+        rules =
+            net.rules().iter().flat_map(|rule| ["//! - ", rule.as_str(), "\n"]).collect::<String>(),
     )
 }
 

@@ -34,7 +34,7 @@ impl Model {
                 let spike = Some(Spike { threshold, reset });
                 Neuron { current: None, decay: keep, bias, inner: 0.0, spike }
             });
-            let own = own(recurrent);
+            let own = own(&recurrent);
             Layer { name, weights: turned(&weights), own, neurons: neurons.collect(), rule }
         };
         let mut layers: Vec<_> = layers.into_iter().map(of_layer).collect();
@@ -116,7 +116,9 @@ impl Layer<f64> {
                 neuron.spike.unwrap_or(Spike { threshold: 0.0, reset: 0.0 });
             [neuron.bias, neuron.inner, threshold, reset]
         });
-        if let Some(odd) = weights.copied().chain(of_neurons).find(|n| !(n.abs() <= LARGEST)) {
+        if let Some(odd) =
+            weights.copied().chain(of_neurons).find(|n| n.is_nan() || n.abs() > LARGEST)
+        {
             bail!("a weight, bias, threshold or reset value of {odd}, where 1e15 is the most");
         }
         ensure!(
@@ -136,7 +138,7 @@ fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
 }
 
 /// Recurrent weights, given by neuron; of each to itself alone, only these.
-fn own(rows: Vec<Vec<f64>>) -> Own<f64> {
+fn own(rows: &[Vec<f64>]) -> Own<f64> {
     if rows.is_empty() {
         return Own::None;
     }
@@ -147,7 +149,7 @@ fn own(rows: Vec<Vec<f64>>) -> Own<f64> {
     if is_diagonal {
         Own::OneToOne(rows.iter().enumerate().map(|(at, row)| row[at]).collect())
     } else {
-        Own::Full(turned(&rows))
+        Own::Full(turned(rows))
     }
 }
 
@@ -204,7 +206,7 @@ fn of_stage(stage: Stage, mut rule: Rule, notes: &mut Vec<String>) -> Result<Lay
         // As all of its neurons but `Leaky` do.
         rule.reset = Reset::ToValueHeld;
     }
-    Ok(Layer { name, weights: turned(&rows), own: own(back), neurons: all, rule })
+    Ok(Layer { name, weights: turned(&rows), own: own(&back), neurons: all, rule })
 }
 
 struct Stepped {

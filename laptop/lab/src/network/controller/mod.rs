@@ -86,6 +86,12 @@ impl Model {
         (fired, potentials)
     }
 
+    /// The same step by step.
+    pub fn as_flown(&self) -> Flown {
+        let net = quantise::float(&self.net);
+        Flown { state: net.state(), net }
+    }
+
     fn original(&self, inputs: &Trains) -> Original {
         let Done { fired, potentials, .. } = self.net.run(inputs);
         let named = |layer: &net::Layer<f64>| (layer.name.clone(), layer.neurons.len());
@@ -98,6 +104,45 @@ impl Model {
     fn is_silent(&self) -> bool {
         let last = self.net.layers.last().and_then(|layer| layer.neurons.first());
         last.is_some_and(|neuron| neuron.spike.is_none())
+    }
+}
+
+/// A network in `f32`, bit for bit as the controller computes it, and its state.
+#[derive(Clone)]
+pub struct Flown {
+    net: Net<f32>,
+    state: Vec<State<f32>>,
+}
+
+impl Flown {
+    /// How many neurons each layer has.
+    pub fn layers(&self) -> impl Iterator<Item = usize> {
+        self.net.layers.iter().map(|layer| layer.neurons.len())
+    }
+
+    /// Number of inputs.
+    pub fn inputs(&self) -> usize {
+        self.net.layers.first().map_or(0, net::Layer::inputs)
+    }
+
+    /// Puts it at rest.
+    pub fn reset(&mut self) {
+        self.state = self.net.state();
+    }
+
+    /// Takes a step with these inputs, in this order, each below [`inputs`](Self::inputs).
+    pub fn step(&mut self, inputs: &[u16]) {
+        self.net.step(&mut self.state, inputs);
+    }
+
+    /// The neurons of each layer that fired in the last step, by rising number.
+    pub fn fired(&self) -> impl Iterator<Item = &[u16]> {
+        self.state.iter().map(|state| &state.fired[..])
+    }
+
+    /// The potentials of the last layer.
+    pub fn potentials(&self) -> &[f32] {
+        self.state.last().map_or(&[], |last| &last.potentials)
     }
 }
 
@@ -193,8 +238,7 @@ fn bytes<K: Number>(net: &Net<K>, weight: usize) -> (usize, usize) {
         let neuron = if fires { 16 } else { 8 } + if has_current { 8 } else { 0 };
         flash += (layer.inputs() * count + own) * weight + count * neuron;
         let list = (2 * count).next_multiple_of(4) + 8;
-        let lists = if matches!(layer.own, Own::None) { 1 } else { 2 };
-        ram += count * if has_current { 8 } else { 4 } + lists * list + 8;
+        ram += count * if has_current { 8 } else { 4 } + list + 8;
     }
     (flash, ram)
 }

@@ -1,0 +1,92 @@
+//! Trust: whether the sender has the schemes of the receiver.
+
+use super::Withheld;
+use crate::Fingerprint;
+
+/// What a receiver knows of the sender's schemes, since the sender's start.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Trust {
+    own: Option<Fingerprint>,
+    label: Option<Fingerprint>,
+    standing: Standing,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Standing {
+    /// Nothing has come yet.
+    Unknown,
+    /// The sender has a fingerprint, which has not come yet.
+    Awaited,
+    /// The fingerprint of the receiver.
+    Same,
+    /// Another one.
+    Other(Fingerprint),
+    /// The sender has no fingerprint.
+    Undescribed,
+    /// Nor did its keyframes fit.
+    Contradicted,
+}
+
+impl Trust {
+    pub(super) const NONE: Self = Self { own: None, label: None, standing: Standing::Unknown };
+
+    pub(super) const fn with_own(self, own: Fingerprint) -> Self {
+        Self { own: Some(own), ..self }
+    }
+
+    pub(super) const fn with_label(self, label: &str) -> Self {
+        Self { label: Some(Fingerprint::new(label)), own: None, ..self }
+    }
+
+    pub(super) const fn has_own(&self) -> bool {
+        self.own.is_some()
+    }
+
+    /// The receiver's own fingerprint: the one that it was given, or this one with its label.
+    pub(super) fn own(&self, schemes: impl FnOnce() -> Fingerprint) -> Fingerprint {
+        match (self.own, self.label) {
+            (Some(own), _) => own,
+            (None, None) => schemes(),
+            (None, Some(label)) => schemes().and(label),
+        }
+    }
+
+    /// A sender has started.
+    pub(super) fn begin(&mut self) {
+        self.standing = Standing::Unknown;
+    }
+
+    /// The sender has this fingerprint.
+    pub(super) fn compare(&mut self, sender: Fingerprint) {
+        let is_same = self.own == Some(sender);
+        self.standing = if is_same { Standing::Same } else { Standing::Other(sender) };
+    }
+
+    /// A frame has no fingerprint; the sender may have one.
+    pub(super) fn lack(&mut self, is_described: bool) {
+        if self.standing == Standing::Unknown {
+            self.standing = if is_described { Standing::Awaited } else { Standing::Undescribed };
+        }
+    }
+
+    /// A keyframe contradicted an exact value. With the same fingerprint, items were lost without a word.
+    pub(super) fn contradict(&mut self) {
+        if self.standing == Standing::Undescribed {
+            self.standing = Standing::Contradicted;
+        }
+    }
+
+    pub(super) const fn is_given(&self) -> bool {
+        matches!(self.standing, Standing::Same | Standing::Undescribed)
+    }
+
+    /// Why no value is exact, if that is for want of trust in a sender that was heard.
+    pub(super) fn doubt(&self) -> Option<Withheld> {
+        match (self.standing, self.own) {
+            (Standing::Other(sender), Some(own)) => Some(Withheld::Description { own, sender }),
+            (Standing::Contradicted, _) => Some(Withheld::Contradicted),
+            (Standing::Awaited, _) => Some(Withheld::Unknown),
+            _ => None,
+        }
+    }
+}
