@@ -13,8 +13,9 @@ use lab::bank::Bank;
 use lab::fit::rounding;
 use lab::input::{InputOptions as Input, above_zero};
 use lab::network::{
-    Brought, CHIPS, Chip, Compare, ControllerRequest, Cost, Figures, File, HeldOut, Model, NetworkKind,
-    Numbers, OnChip, Request, Stepped, Told, Trained, Trains, WINDOW, bring, bring_to_controller,
+    Brought, CHIPS, Chip, Compare, ControllerRequest, Cost, Figures, File, HeldOut, Model,
+    NetworkKind, Numbers, OnChip, Request, Stepped, Told, Trained, Trains, WINDOW, bring,
+    bring_to_controller,
 };
 use lab::output::Output;
 use lab::scheme::Scheme;

@@ -10,7 +10,7 @@ mod shape;
 use super::super::chip::{OnChip, Ran, Stepped, Told, written};
 use super::super::costs::Cost;
 use super::super::{Trained, Trains};
-use crate::Result;
+use crate::network::fault::Result;
 use neuron::{Added, GatedNeuron};
 use rayon::prelude::*;
 use search::{Aim, CLIMBS, Drive, search};

@@ -4,7 +4,7 @@ use super::super::super::Trains;
 use super::super::super::chip::{Ran, Stepped, refused};
 use super::super::run::RATIO;
 use super::Gated;
-use crate::Result;
+use crate::network::fault::Result;
 use silicon::Board;
 use spikewire_chips::{Describe, Input, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput};
 
