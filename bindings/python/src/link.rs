@@ -334,7 +334,7 @@ impl Hearer {
     #[new]
     fn new(coders: Vec<Coder>, period: u16, clock_tolerance: f64) -> PyResult<Self> {
         if !(0.0..=0.1).contains(&clock_tolerance) {
-            return Err(value(&anyhow!("clock_tolerance {clock_tolerance} must lie in 0..=0.1")));
+            return Err(value(anyhow!("clock_tolerance {clock_tolerance} must lie in 0..=0.1")));
         }
         let millionths = (clock_tolerance * 1e6).ceil() as u32;
         let unfiltered = vec![None; CHANNELS];

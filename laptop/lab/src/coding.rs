@@ -228,7 +228,10 @@ mod tests {
             ("scheme = \"sf\"\n\nthreshold = -1", "own.toml:3: threshold -1 must be above 0"),
             ("scheme = \"sf\"\nthreshold = [1, -1]", "own.toml:2: "),
             ("scheme = \"mw\"\nthreshold = 1\nwindow = 99999", "own.toml:3: "),
-            ("scheme = \"position\"\nneurons = 4\nmin = 5\nmax = 1", "own.toml:4: min and max"),
+            (
+                "scheme = \"position\"\nneurons = 4\nmin = 5\nmax = 1",
+                "own.toml:3: min 5 must be below",
+            ),
             ("scheme = \"sf\"\nsample = \"q8.8\"\nthreshold = 0.0001", "own.toml:3: "),
         ] {
             let told = read(text).unwrap_err().to_string();

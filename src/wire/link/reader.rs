@@ -185,7 +185,8 @@ impl<const N: usize> Reader<N> {
                 let [second, third, _] = *earlier;
                 *earlier = [*present, second, third];
             }
-            *present = Run::NONE;
+            let first = present.first.filter(|_| !is_other);
+            *present = Run { first, ..Run::NONE };
         }
         let delivered = present.delivered.saturating_add(1).min(OVERLAP);
         if delivered == OVERLAP {

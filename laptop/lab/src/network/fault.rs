@@ -14,13 +14,14 @@ kinds! {
         NotAnInput { word: String } => ("`{word}` is not the number of an input"),
         NoInputs { inputs: usize, step: Vec<u16> } =>
             ("the network has {inputs} inputs, and not those of {step:?}"),
-        NoStep => (
-            "its time constants are in seconds, and neither {} nor the recording's times say how long a step is",
+        ShorterThanStep { tau: f64, step: f64 } => (
+            "a time constant of {tau:e} s is shorter than a step of {step} s; {} gives the step that the network was \
+             trained with",
             spell("dt")
         ),
-        ShorterThanStep { tau: f64, step: f64 } => (
-            "a time constant of {tau} s is shorter than a step of {step} s; {} gives the step that its framework \
-             counts with (snnTorch: 1e-4)",
+        NorsesTime { tau: f64, step: f64, meant: f64 } => (
+            "a time constant of {tau:e} s is shorter than a step of {step} s; Norse writes time constants times the dt \
+             that it was called with (0.001 unless told): if that was {step} s, they are right with {} {meant}",
             spell("dt")
         ),
     }
