@@ -350,11 +350,15 @@ where
                     exact(&self.receiver)
                 };
                 self.is_first_heard |= received.is_start && received.frame.is_first();
+                let misfits = self.receiver.misfits();
                 let values = &mut self.values;
                 values.clear();
                 let on_value = |channel, tick, value| values.push((channel, tick, value));
                 self.receiver.apply(&received, on_value);
                 let after = exact(&self.receiver);
+                // After a misfit within a long frame, a code may be exact again before the frame ends.
+                let before =
+                    if self.receiver.misfits() == misfits { before } else { [None; CHANNELS] };
                 if !matches!(P::RECOVERY, Recovery::Keyframe) {
                     self.check_samples(before, after);
                 }
