@@ -70,6 +70,8 @@ struct World<'a, P: Scheme> {
     session: u32,
     is_counted: bool,
     is_attack: bool,
+    /// The most that a sample's tick differs from that of its value.
+    near: u32,
     /// In millionths, to which the remainder of a tick adds up.
     drift: i64,
     remainder: i64,
@@ -131,6 +133,12 @@ where
         let drifts = is_attack && tolerance > 0 && (!has_slots || slot_ticks >= 16);
         let drift = if drifts { i64::from(random.next_u32() % 39_000) - 19_500 } else { 0 };
         let jitter = if drift == 0 { jitter } else { 0 };
+        // Slots lie on a grid, which 2³² µs shift by more than this: a sample so long ago is not taken for the present one.
+        let near = match slot_ticks {
+            0 if is_attack => 5 * period / 8,
+            0 => period / 2,
+            _ => 2 * jitter + slot_ticks / 4 * u32::from(drift != 0),
+        };
         let is_counted = random.next_u32().is_multiple_of(2);
         let session = random.next_u32();
         let mut world = Self {
@@ -144,6 +152,7 @@ where
             session,
             is_counted,
             is_attack,
+            near,
             drift,
             remainder: 0,
             first: 0,
@@ -382,12 +391,6 @@ where
         after: [Option<P::Sample>; CHANNELS],
     ) {
         let are_all_told = matches!(P::RECOVERY, Recovery::Samples(_) | Recovery::Spike);
-        // Slots lie on a grid, which 2³² µs shift by more than this: a sample so long ago is not taken for the present one.
-        let near = match self.slot_ticks {
-            0 if self.is_attack => 5 * self.period / 8,
-            0 => self.period / 2,
-            _ => 2 * self.jitter + self.slot_ticks / 4 * u32::from(self.drift != 0),
-        };
         for channel in 0..CHANNELS {
             let Some(value) = after[channel] else { continue };
             let was_exact = before[channel].is_some();
@@ -401,7 +404,7 @@ where
                 let from = self.truth.partition_point(|truth| truth.number < self.claimed[channel]);
                 // Ticks come again after 2³² µs: of samples with such a tick one has the value.
                 let is_near = |truth: &&Truth<P::Sample>| {
-                    tick.since(Tick::from_micros(truth.time)).unsigned_abs() <= near
+                    tick.since(Tick::from_micros(truth.time)).unsigned_abs() <= self.near
                 };
                 let is_told = |truth: &&Truth<P::Sample>| {
                     truth.values[channel].to_bits32() == told.to_bits32()
